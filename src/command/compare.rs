@@ -5,7 +5,6 @@ use super::streams::{say, write_out};
 use bubbletouch::files::{CsvFile, write_bytes};
 use bubbletouch::report::compared::{differences_page, differences_text};
 use bubbletouch::report::differences::differences;
-use bubbletouch::study::provenance::PROGRAM;
 use bubbletouch::{Error, Result, kinds};
 use std::path::PathBuf;
 
@@ -24,12 +23,8 @@ pub struct Args {
 }
 
 pub fn compare(args: &Args) -> Result<()> {
-    if let Some(out) = &args.out {
-        check_ending(out, "csv")?;
-    }
-    if let Some(html) = &args.html {
-        check_ending(html, "html")?;
-    }
+    check_ending(args.out.as_deref(), "csv")?;
+    check_ending(args.html.as_deref(), "html")?;
     let (kind, first) = kinds::read_tables(&args.first)?;
     let (other, second) = kinds::read_tables(&args.second)?;
     let [first_name, second_name] =
@@ -48,7 +43,7 @@ pub fn compare(args: &Args) -> Result<()> {
         file.commit()?;
     }
     if let Some(html) = &args.html {
-        let page = differences_page(&found, (&first_name, &second_name), PROGRAM)?;
+        let page = differences_page(&found, (&first_name, &second_name))?;
         write_bytes(html, page.as_bytes())?;
     }
     say(format_args!("First: {first_name}; second: {second_name}."))?;

@@ -1,6 +1,6 @@
 //! `bubbletouch features`: what one cell of a study learns from.
 
-use super::output::{output_folder, packings_beside};
+use super::output::output_folder;
 use super::study_args::StudyArgs;
 use bubbletouch::Result;
 use bubbletouch::kinds::recognition::load_study;
@@ -24,9 +24,7 @@ pub struct Args {
 }
 
 pub fn features(args: &Args) -> Result<()> {
-    let mut source = args.study.source()?;
-    source.packings = Some(packings_beside(&args.out));
-    let loaded = load_study(&source)?;
+    let loaded = load_study(&args.study.source(&args.out)?)?;
     output_folder(&args.out)?;
     let loaded = loaded.part_of(args.cell);
     let progress = progress::to_stderr();

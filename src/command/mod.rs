@@ -4,7 +4,6 @@ mod advise;
 mod classify;
 mod compare;
 mod features;
-mod listener;
 mod memory_limit;
 mod merge;
 mod objects;
@@ -33,6 +32,7 @@ mod which_object;
 
 use bubbletouch::Result;
 use clap::{Parser, Subcommand};
+use study_args::QUICKSTART_FILE;
 
 /// Simulated touch for robot skin: press objects on arrays of taxels, compress what they feel, recognise the object.
 ///
@@ -100,8 +100,12 @@ pub fn dispatch() -> Result<()> {
         Err(asked) if !asked.use_stderr() => return streams::written(asked.print()),
         Err(wrong) => wrong.exit(),
     };
-    match line.command {
-        None => run::run(&run::Args::quickstart()),
+    let quickstart = ["bubbletouch", "run", QUICKSTART_FILE, "--demonstration"];
+    let command = line
+        .command
+        .or_else(|| CommandLine::parse_from(quickstart).command);
+    match command {
+        None => Ok(()),
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Merge(args)) => merge::merge(&args),
         Some(Command::Slurm(args)) => slurm::slurm(&args),

@@ -9,8 +9,8 @@ use bubbletouch::files::write_bytes;
 use bubbletouch::mesh::{LengthUnit, MeshReport, SizeLimits};
 use bubbletouch::objects::{Catalogue, Entry, Object, SphereUnion};
 use bubbletouch::report::object_picture::contact_sheet;
+use bubbletouch::report::terminal::rows_text;
 use bubbletouch::study::{ObjectsSpec, load_mesh, read_mesh_file};
-use comfy_table::{CellAlignment, Table, presets::NOTHING};
 use rayon::prelude::*;
 use std::path::PathBuf;
 
@@ -84,7 +84,7 @@ pub fn objects(args: &Args) -> Result<()> {
     let Some(path) = &args.out else {
         return say(table(&listed));
     };
-    check_ending(path, "png")?;
+    check_ending(Some(path), "png")?;
     let tiles: Vec<_> = listed
         .iter()
         .map(|(_, object)| (object.name.as_str(), spheres(object)))
@@ -114,16 +114,11 @@ impl Args {
             };
             return Ok(vec![("mesh".to_owned(), load_mesh(path, &spec, None)?)]);
         }
+        let surface_error = self.surface_error_mm * 1e-3;
+        let built = |entry: &Entry| Ok((entry.set.clone(), entry.build(surface_error)?));
         let catalogue = catalogue(self.objects.as_deref())?;
-        self.chosen(&catalogue)?
-            .into_par_iter()
-            .map(|entry| {
-                Ok((
-                    entry.set.clone(),
-                    entry.build(self.surface_error_mm * 1e-3)?,
-                ))
-            })
-            .collect()
+        let chosen = self.chosen(&catalogue)?.into_par_iter();
+        chosen.map(built).collect()
     }
 
     fn chosen<'a>(&self, catalogue: &'a Catalogue) -> Result<Vec<&'a Entry>> {
@@ -138,24 +133,17 @@ impl Args {
     }
 }
 
-fn table(listed: &[Listed]) -> Table {
-    let mut table = Table::new();
-    table.load_preset(NOTHING);
-    table.set_header(["set", "name", "parts", "spheres", "size (mm)"]);
-    for (set, object) in listed {
+fn table(listed: &[Listed]) -> String {
+    let header = ["set", "name", "parts", "spheres", "size (mm)"];
+    let rows = listed.iter().map(|(set, object)| {
         let size = object.model.bounds().size() * 1e3;
-        table.add_row([
+        vec![
             set.clone(),
             object.name.clone(),
             object.n_parts.to_string(),
             object.model.n_spheres().to_string(),
             format!("{:.0} × {:.0} × {:.0}", size.x, size.y, size.z),
-        ]);
-    }
-    for column in [2, 3] {
-        if let Some(column) = table.column_mut(column) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
-    }
-    table
+        ]
+    });
+    rows_text(&header, &[0, 1, 4], rows)
 }

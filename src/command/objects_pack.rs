@@ -2,11 +2,12 @@
 
 use super::output::check_ending;
 use super::streams::say;
-use super::which_object::{Loaded, WhichObject};
+use super::which_object::WhichObject;
 use bubbletouch::Result;
 use bubbletouch::files::write_whole;
 use bubbletouch::objects::{Solid, SphereUnion, surface_error, write_spheres};
 use bubbletouch::packing::{PackingError, Spread, packing_error};
+use bubbletouch::report::fit_picture::Original;
 use std::path::PathBuf;
 
 const MM: f64 = 1e-3;
@@ -37,15 +38,15 @@ pub struct Args {
 }
 
 pub fn pack(args: &Args) -> Result<()> {
-    check_ending(&args.out, "csv")?;
+    check_ending(Some(&args.out), "csv")?;
     let object = args.object.load()?;
     let tolerance = args.surface_error_mm * MM;
     let spheres = args.object.pack(&object, tolerance)?;
     write_whole(&args.out, |sink| write_spheres(&spheres, sink))?;
     say(format_args!("spheres     {}", spheres.n_spheres()))?;
     match object {
-        Loaded::Solid(solid) => say(describe_solid(&solid, &spheres, tolerance))?,
-        Loaded::Mesh(surface, body) => {
+        Original::Solid(solid) => say(describe_solid(&solid, &spheres, tolerance))?,
+        Original::Mesh(surface, body) => {
             say(describe(&packing_error(&surface, body, &spheres, N_POINTS)))?;
         }
     }

@@ -39,17 +39,13 @@ pub struct Args {
 }
 
 pub fn show(args: &Args) -> Result<()> {
-    check_ending(&args.out, "png")?;
+    check_ending(Some(&args.out), "png")?;
     let object = args.object.load()?;
     let spheres = match &args.spheres {
         Some(path) => load_spheres(path, args.spheres_unit, &SizeLimits::ANY)?,
         None => args.object.pack(&object, args.surface_error_mm * 1e-3)?,
     };
-    let picture = fit_picture(
-        &args.object.name(),
-        object.original(),
-        &spheres,
-        args.panel_px,
-    )?;
+    let name = args.object.name();
+    let picture = fit_picture(&name, &object, &spheres, args.panel_px)?;
     write_bytes(&args.out, &picture.png()?)
 }

@@ -19,11 +19,12 @@ pub fn output_folder(folder: &Path) -> Result<()> {
     })
 }
 
-/// An error unless a file's name has this ending.
-pub fn check_ending(path: &Path, ending: &str) -> Result<()> {
-    if path.extension().is_some_and(|given| given == ending) {
+/// An error unless the name of a file, if one is asked for, has this ending.
+pub fn check_ending(path: Option<&Path>, ending: &str) -> Result<()> {
+    let has_another = |path: &&Path| path.extension().is_none_or(|given| given != ending);
+    let Some(path) = path.filter(has_another) else {
         return Ok(());
-    }
+    };
     let given = format!("not a .{ending} file");
     let allowed = format!("a name that ends in .{ending}");
     Err(Error::input(path.display(), given, allowed))

@@ -10,7 +10,7 @@ use bubbletouch::study::write_npy;
 use bubbletouch::world::Scene;
 use bubbletouch::{Error, Result};
 use glam::{DQuat, DVec3};
-use ndarray::Array3;
+use ndarray::{Array3, ArrayView2};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -69,9 +69,7 @@ pub fn press_poses(
         let allowed = format!("1 to {MOST_REPEATS}");
         return Err(Error::input("--repeat", args.repeat, allowed));
     }
-    if let Some(out) = out {
-        check_ending(out, "npy")?;
-    }
+    check_ending(out, "npy")?;
     let poses = read_poses(path)?;
     let grid = &scene.patch.grid;
     let mut frames = Array3::zeros((poses.len(), grid.ny, grid.nx));
@@ -83,11 +81,8 @@ pub fn press_poses(
     let mut contacts: Vec<Option<Contact>> = Vec::with_capacity(poses.len());
     for (pose, mut frame) in poses.iter().zip(frames.outer_iter_mut()) {
         contacts.push(press(pose, &mut workspace));
-        let read = workspace.deflections();
-        frame
-            .iter_mut()
-            .zip(read)
-            .for_each(|(to, from)| *to = *from);
+        let read = ArrayView2::from_shape(frame.dim(), workspace.deflections());
+        frame.assign(&read.expect("a press gives one deflection a taxel"));
     }
     // Round after round: a pose that is pressed again at once is nearer to the processor than a new one.
     let mut times = vec![Vec::new(); poses.len()];

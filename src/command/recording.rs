@@ -46,10 +46,8 @@ pub struct Args {
 }
 
 pub fn recording(args: &Args) -> Result<()> {
-    let pictures = [&args.out, &args.animate];
-    for path in pictures.into_iter().flatten() {
-        check_ending(path, "png")?;
-    }
+    check_ending(args.out.as_deref(), "png")?;
+    check_ending(args.animate.as_deref(), "png")?;
     let mut file = RecordingFile::open(&args.file)?;
     match (args.frame, &args.animate) {
         (Some(frame), _) => draw_frame(args, &mut file, frame),
@@ -85,7 +83,7 @@ fn draw_frame(args: &Args, file: &mut RecordingFile, frame: usize) -> Result<()>
     match (&args.out, patch.grid) {
         (Some(path), _) => {
             let scale = ColourScale::over(&values, args.quantity);
-            let skin = SkinPicture::new(patch, args.quantity, scale)?;
+            let skin = SkinPicture::new(patch, scale)?;
             write_bytes(path, &skin.frame(&values, &said)?.png()?)?;
         }
         (None, Some(grid)) => {
@@ -96,14 +94,9 @@ fn draw_frame(args: &Args, file: &mut RecordingFile, frame: usize) -> Result<()>
             write_out(text.as_bytes())?;
         }
         (None, None) => {
-            return Err(Error::input(
-                "--frame",
-                format!(
-                    "patch {} is no grid, which the terminal could show",
-                    patch.name
-                ),
-                "--out FILE.png beside it",
-            ));
+            let name = &patch.name;
+            let given = format!("patch {name} is no grid, which the terminal could show");
+            return Err(Error::input("--frame", given, "--out FILE.png beside it"));
         }
     }
     note(format_args!("{}: {said}", patch.name));

@@ -2,14 +2,12 @@
 
 use super::output::output_folder;
 use super::signals::keep_journal_on_signals;
-use super::study_args::QUICKSTART_FILE;
 use super::study_run::{RunArgs, StudyRun};
 use bubbletouch::kinds::AnyStudy;
 use bubbletouch::study::Shard;
 use bubbletouch::study::journal::{JOURNAL_FILE, Journal, set_aside};
 use bubbletouch::study::pieces::{Part, PieceManner};
 use bubbletouch::{Error, Result};
-use clap::Parser;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -33,18 +31,6 @@ pub struct Args {
     /// Run anew, unless the run before was interrupted
     #[arg(long, hide = true)]
     demonstration: bool,
-}
-
-impl Args {
-    /// What a bare `bubbletouch` runs.
-    pub fn quickstart() -> Self {
-        #[derive(Parser)]
-        struct Line {
-            #[command(flatten)]
-            args: Args,
-        }
-        Line::parse_from(["run", QUICKSTART_FILE, "--demonstration"]).args
-    }
 }
 
 pub fn run(args: &Args) -> Result<()> {
@@ -75,12 +61,8 @@ pub fn run(args: &Args) -> Result<()> {
     progress.finish(&format!("{:.1} s", run.elapsed_s()));
     let results = &args.run.results;
     let mut merge = results.study.arguments();
-    merge.extend(
-        results
-            .out
-            .iter()
-            .map(|out| format!("--out {}", out.display())),
-    );
+    let out = results.out.iter();
+    merge.extend(out.map(|out| format!("--out {}", out.display())));
     progress.finish(&format!(
         "shard {shard} is done; when all are, put them together: bubbletouch merge {}",
         merge.join(" ")

@@ -69,17 +69,17 @@ impl StudyArgs {
     /// Reads and checks the study and loads its objects; its results go to a folder, and it is to hold at most so many bytes.
     pub fn load(&self, results: &Path, memory: Option<u64>) -> Result<Box<dyn AnyStudy>> {
         kinds::load(&Source {
-            packings: Some(packings_beside(results)),
-            results: results.to_owned(),
             memory,
-            ..self.source()?
+            ..self.source(results)?
         })
     }
 
-    /// The study's text, and what replaces some of it.
-    pub fn source(&self) -> Result<Source> {
+    /// The study's text, what replaces some of it, and the folder where its results go.
+    pub fn source(&self, results: &Path) -> Result<Source> {
         set_threads(self.threads)?;
         Ok(Source {
+            packings: Some(packings_beside(results)),
+            results: results.to_owned(),
             folder: self.folder(),
             objects: self.objects.clone(),
             seed: self.seed,

@@ -1,15 +1,16 @@
 //! A run of a study from its file to its folder of results: how `run` and `merge` begin, and how they end.
 
-use super::listener::Listener;
 use super::memory_limit::MemoryLimit;
 use super::output::terminal_width;
 use super::streams::{say, write_out};
 use super::study_args::StudyArgs;
 use bubbletouch::kinds::{AnyStudy, Outcome};
 use bubbletouch::report::csv_tables::FAILURES_FILE;
-use bubbletouch::study::progress::Progress;
+use bubbletouch::report::progress::{json_lines, to_stderr};
+use bubbletouch::study::progress::{Progress, Silent};
 use bubbletouch::study::provenance::Manifest;
 use bubbletouch::{Error, Result};
+use std::io::stdout;
 use std::path::PathBuf;
 use std::time::SystemTime;
 
@@ -37,8 +38,23 @@ pub struct RunArgs {
     pub results: ResultsArgs,
     #[command(flatten)]
     memory: MemoryLimit,
-    #[command(flatten)]
-    listener: Listener,
+    /// Say nothing but errors
+    #[arg(long, conflicts_with = "json")]
+    quiet: bool,
+    /// Say what happens as JSON lines on standard output
+    #[arg(long)]
+    json: bool,
+}
+
+impl RunArgs {
+    /// Who listens: a person at a terminal, a program, or nobody.
+    fn progress(&self) -> Box<dyn Progress> {
+        match (self.quiet, self.json) {
+            (true, _) => Box::new(Silent),
+            (_, true) => json_lines(stdout()),
+            _ => to_stderr(),
+        }
+    }
 }
 
 /// A study that is loaded, and the folder of its results.
@@ -59,7 +75,7 @@ impl<'a> StudyRun<'a> {
         Ok(Self {
             study: args.results.study.load(&folder, args.memory.bytes()?)?,
             folder,
-            progress: args.listener.progress(),
+            progress: args.progress(),
             args,
             started,
         })
@@ -86,7 +102,7 @@ impl<'a> StudyRun<'a> {
         self.progress.advance(1);
         let elapsed_s = self.elapsed_s();
         self.progress.finish(&format!("{what}{elapsed_s:.1} s"));
-        if self.args.listener.json {
+        if self.args.json {
             say(serde_json::json!({
                 "event": "finished",
                 "folder": folder,
@@ -95,7 +111,7 @@ impl<'a> StudyRun<'a> {
                 "failed": outcome.n_failed,
                 "elapsed_s": elapsed_s,
             }))?;
-        } else if !self.args.listener.quiet {
+        } else if !self.args.quiet {
             write_out(study.words(outcome, terminal_width()).as_bytes())?;
             let page = folder.join("report.html");
             let (folder, page) = (folder.display(), page.display());

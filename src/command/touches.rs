@@ -1,6 +1,6 @@
 //! `bubbletouch touches`: just the data set.
 
-use super::output::{output_folder, packings_beside};
+use super::output::output_folder;
 use super::study_args::StudyArgs;
 use bubbletouch::kinds::recognition::{load_study, read_plan};
 use bubbletouch::random::Seed;
@@ -27,9 +27,7 @@ pub struct Args {
 }
 
 pub fn touches(args: &Args) -> Result<()> {
-    let packings = packings_beside(&args.out);
-    let mut source = args.study.source()?;
-    source.packings = Some(packings.clone());
+    let source = args.study.source(&args.out)?;
     let progress = progress::to_stderr();
     let (plan, read) = match args.cell {
         None => (read_plan(&source)?, None),
@@ -49,7 +47,7 @@ pub fn touches(args: &Args) -> Result<()> {
         }
     };
     args.check(&plan)?;
-    let objects = load_objects(&plan.spec.objects, Some(&packings))?;
+    let objects = load_objects(&plan.spec.objects, source.packings.as_deref())?;
     let drawn = (&plan.placement, &Seed::new(plan.spec.seed));
     let mut n_touches = 0;
     let arrays: Vec<_> = match &read {

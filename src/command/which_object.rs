@@ -2,7 +2,7 @@
 
 use super::streams::note;
 use bubbletouch::mesh::{LengthUnit, SizeLimits, Surface, TriangleMesh};
-use bubbletouch::objects::{Catalogue, Solid, SphereUnion};
+use bubbletouch::objects::{Catalogue, SphereUnion};
 use bubbletouch::packing::{Body, error_of_file, pack_mesh_watched};
 use bubbletouch::report::fit_picture::Original;
 use bubbletouch::report::progress::to_stderr;
@@ -28,29 +28,25 @@ pub struct WhichObject {
     close_holes_mm: Option<f64>,
 }
 
-/// An object before it is packed.
-pub enum Loaded {
-    Mesh(Box<Surface>, Body),
-    Solid(Solid),
-}
-
 impl WhichObject {
     /// A file goes before a built-in object of the same name.
-    pub fn load(&self) -> Result<Loaded> {
+    pub fn load(&self) -> Result<Original> {
         if self.objects.is_some() {
             if self.unit.is_some() || self.as_sheet {
                 let given = "--unit or --as-sheet beside --objects";
                 return Err(Error::input("objects", given, "them only for a mesh"));
             }
             let catalogue = catalogue(self.objects.as_deref())?;
-            return Ok(Loaded::Solid(catalogue.object(&self.object)?.solid.clone()));
+            return Ok(Original::Solid(
+                catalogue.object(&self.object)?.solid.clone(),
+            ));
         }
         let path = Path::new(&self.object);
         let catalogue = catalogue(None)?;
         if let Ok(entry) = catalogue.object(&self.object)
             && !path.exists()
         {
-            return Ok(Loaded::Solid(entry.solid.clone()));
+            return Ok(Original::Solid(entry.solid.clone()));
         }
         let body = if self.as_sheet {
             Body::Sheet
@@ -59,7 +55,7 @@ impl WhichObject {
         };
         let mesh = read_mesh_file(path, self.unit, &SizeLimits::ANY)?.into_mesh(&self.object)?;
         let surface = Box::new(Surface::new(self.closed(mesh)?));
-        Ok(Loaded::Mesh(surface, body))
+        Ok(Original::Mesh(surface, body))
     }
 
     /// The mesh without the holes that are to be closed.
@@ -74,11 +70,11 @@ impl WhichObject {
         Ok(closed.mesh)
     }
 
-    /// Few spheres within a tolerance (metres) of what was loaded.
-    pub fn pack(&self, loaded: &Loaded, tolerance: f64) -> Result<SphereUnion> {
-        let (surface, body) = match loaded {
-            Loaded::Solid(solid) => return solid.pack(tolerance),
-            Loaded::Mesh(surface, body) => (surface, body),
+    /// Few spheres within a tolerance (metres) of what spheres shall stand for.
+    pub fn pack(&self, object: &Original, tolerance: f64) -> Result<SphereUnion> {
+        let (surface, body) = match object {
+            Original::Solid(solid) => return solid.pack(tolerance),
+            Original::Mesh(surface, body) => (surface, body),
         };
         const STEPS: u64 = 100;
         let progress = to_stderr();
@@ -102,15 +98,6 @@ impl WhichObject {
             || self.object.clone(),
             |stem| stem.to_string_lossy().into_owned(),
         )
-    }
-}
-
-impl Loaded {
-    pub fn original(&self) -> Original<'_> {
-        match self {
-            Self::Mesh(surface, body) => Original::Mesh(surface, *body),
-            Self::Solid(solid) => Original::Solid(solid),
-        }
     }
 }
 

@@ -2,9 +2,9 @@
 //! value is enough, or the one of best value that is cheap enough.
 
 use crate::error::{Error, Result};
-use crate::report::swept::Swept;
+use crate::report::swept::{Setting, Swept};
 use crate::study::column_name;
-use crate::table::{Better, Column, Data, Role, Scale, Table, Value, front};
+use crate::table::{Better, Column, Role, Scale, Table, Value, front};
 use std::collections::HashSet;
 
 /// A column that is sought in tables.
@@ -322,7 +322,7 @@ impl<'a> Offers<'a> {
         let mut row = serde_json::Map::new();
         row.insert("setting".to_owned(), self.setting(offer).into());
         row.insert("condition".to_owned(), self.condition(offer).into());
-        for (column, data) in self.table.columns.iter().zip(&self.table.data) {
+        for Setting { column, data } in Setting::all(self.table) {
             let value = serde_json::json!(data.value(offer.row));
             row.insert(column.name.to_string(), value);
         }
@@ -341,15 +341,12 @@ impl Sought {
             }
             None => true,
         };
-        let columns = table.columns.iter().zip(&table.data);
-        let is_sought = |(column, data): &(&Column, &Data)| {
-            (self.has_role)(column.role)
-                && is_named(&column.name)
-                && matches!(data, Data::Numbers(_))
+        let is_sought = |one: &Setting| {
+            (self.has_role)(one.column.role) && is_named(&one.column.name) && one.is_number()
         };
-        let mut found: Vec<_> = columns.filter(is_sought).collect();
-        found.sort_by_key(|(_, data)| !data.varies(0..table.n_rows));
-        found.into_iter().map(|(column, _)| column).collect()
+        let mut found: Vec<Setting> = Setting::all(table).filter(is_sought).collect();
+        found.sort_by_key(|one| !one.data.varies(0..table.n_rows));
+        found.into_iter().map(|one| one.column).collect()
     }
 
     /// Keeps the tables that have one of the name that is asked for, or of the usual name where any has it; gives that name.

@@ -1,7 +1,7 @@
 //! The rays of a picture, and what they meet of spheres or of another surface.
 
 use crate::objects::Sphere;
-use glam::{DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 use rayon::prelude::*;
 
 /// Rays a pixel, each way: a picture of rays is halved.
@@ -18,36 +18,17 @@ pub(crate) struct Hit {
     pub part: usize,
 }
 
-/// Axes of the picture in the object's frame.
-pub(crate) struct View {
-    pub right: DVec3,
-    pub up: DVec3,
-    pub towards_eye: DVec3,
+/// Right, up and towards the eye, in the object's frame: the eye stands before the object (−y), 30° to the right of it and 38° up.
+pub(crate) fn three_quarter_view() -> DMat3 {
+    view_from(30f64.to_radians(), 38f64.to_radians())
 }
 
-impl View {
-    /// The eye stands before the object (−y), 30° to the right of it and 38° up.
-    pub fn three_quarter() -> Self {
-        Self::from_angles(30f64.to_radians(), 38f64.to_radians())
-    }
-
-    /// The eye stands before the object (−y), so many radians to the right of it and up.
-    pub fn from_angles(azimuth: f64, elevation: f64) -> Self {
-        let right = DVec3::new(azimuth.cos(), azimuth.sin(), 0.0);
-        let back = DVec3::new(azimuth.sin(), -azimuth.cos(), 0.0);
-        let towards_eye = elevation.cos() * back + elevation.sin() * DVec3::Z;
-        Self {
-            right,
-            up: towards_eye.cross(right),
-            towards_eye,
-        }
-    }
-
-    /// Of a vector of the object's frame: right, up, towards the eye.
-    fn turn(&self, vector: DVec3) -> DVec3 {
-        let axes = [self.right, self.up, self.towards_eye];
-        DVec3::from_array(axes.map(|axis| vector.dot(axis)))
-    }
+/// The same from so many radians to the right of the object and up.
+pub(crate) fn view_from(azimuth: f64, elevation: f64) -> DMat3 {
+    let right = DVec3::new(azimuth.cos(), azimuth.sin(), 0.0);
+    let back = DVec3::new(azimuth.sin(), -azimuth.cos(), 0.0);
+    let towards_eye = elevation.cos() * back + elevation.sin() * DVec3::Z;
+    DMat3::from_cols(right, towards_eye.cross(right), towards_eye)
 }
 
 /// A supersampled part of a picture that shows an object.
@@ -60,15 +41,16 @@ pub(crate) struct Canvas {
     pub scale: f64,
     /// The point of the view's plane in the middle.
     middle: DVec2,
-    view: View,
+    /// Object from picture: right, up, towards the eye.
+    view: DMat3,
 }
 
 impl Canvas {
     /// Spheres in the middle of width × height pixels, as large as `room` (pixels each way) allows.
-    pub fn new(view: View, spheres: &[Sphere], [width, height]: [usize; 2], room: DVec2) -> Self {
+    pub fn new(view: DMat3, spheres: &[Sphere], [width, height]: [usize; 2], room: DVec2) -> Self {
         let (mut low, mut high) = (DVec2::MAX, DVec2::MIN);
         for sphere in spheres {
-            let center = view.turn(sphere.center).truncate();
+            let center = view.transpose_mul_vec3(sphere.center).truncate();
             low = low.min(center - sphere.radius);
             high = high.max(center + sphere.radius);
         }
@@ -91,7 +73,7 @@ impl Canvas {
         let mut hits: Vec<Option<Hit>> = vec![None; self.width * self.height];
         let size = DVec2::new(self.width as f64, self.height as f64);
         for (part, sphere) in spheres.iter().enumerate() {
-            let center = self.view.turn(sphere.center);
+            let center = self.view.transpose_mul_vec3(sphere.center);
             let offset = (center.truncate() - self.middle) * self.scale;
             let middle = 0.5 * size + DVec2::new(offset.x, -offset.y);
             let radius = sphere.radius * self.scale;
@@ -128,13 +110,13 @@ impl Canvas {
         middle: DVec3,
         radius: f64,
     ) -> Vec<Option<Hit>> {
-        let towards_eye = self.view.towards_eye;
+        let towards_eye = self.view.z_axis;
         let start = middle.dot(towards_eye) + radius;
         let ray = |index: usize| {
             let (point, normal) = first_hit(self.point(index, start), -towards_eye)?;
             Some(Hit {
                 height: point.dot(towards_eye),
-                normal: self.view.turn(normal),
+                normal: self.view.transpose_mul_vec3(normal),
                 part: 0,
             })
         };
@@ -149,6 +131,6 @@ impl Canvas {
             0.5 * self.height as f64 - (index / self.width) as f64 - 0.5,
         );
         let place = self.middle + ray / self.scale;
-        place.x * self.view.right + place.y * self.view.up + height * self.view.towards_eye
+        self.view * place.extend(height)
     }
 }

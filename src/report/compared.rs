@@ -7,6 +7,7 @@ use crate::report::page::StudyAbout;
 use crate::report::study_folder::{Found, MOST_CHARTS, page_of};
 use crate::report::terminal::{paragraph, table_text};
 use crate::spelling::counted;
+use crate::study::provenance::PROGRAM;
 use crate::study::table::PStatus;
 use crate::table::{
     Along, At, Better, ChartSpec, File, Mark, Role, Rule, Shown, Table, short_number,
@@ -28,25 +29,25 @@ pub fn differences_text(found: &[ColumnDifferences], width: usize) -> Result<Str
     ))
 }
 
-/// The page of two folders by their names, and the program that made it.
+/// The page of two folders by their names.
 ///
 /// # Errors
 /// As [`differences_text`]; a chart that cannot be drawn.
 pub fn differences_page(
     found: &[ColumnDifferences],
     (first, second): (&str, &str),
-    program: &str,
 ) -> Result<String> {
     let note = format!("First: {first}; second: {second}. What moved most surely comes first.");
     let about = StudyAbout {
         name: format!("{first} and {second}"),
-        program: program.to_owned(),
+        program: PROGRAM.to_owned(),
         wall_s: f64::NAN,
         ..StudyAbout::default()
     };
     let values = values(found)?.noted(note);
     let charts = found.iter().filter(|one| !is_cost(one));
-    let charts = charts.filter_map(|one| Some(chart(one, one.rows.first()?, (first, second))));
+    let charts =
+        charts.filter_map(|one| Some(chart(&values, one, one.rows.first()?, (first, second))));
     let charts: Vec<ChartSpec> = charts.take(MOST_CHARTS).collect();
     let costs = table(&COSTS, found.iter().filter(|one| is_cost(one)))?;
     page_of(
@@ -61,6 +62,7 @@ pub fn differences_page(
 
 /// A column in the second run against the first.
 fn chart(
+    values: &Table,
     one: &ColumnDifferences,
     Difference { table, column, .. }: &Difference,
     (first, second): (&str, &str),
@@ -69,14 +71,11 @@ fn chart(
         column: column.to_owned(),
         value: value.into(),
     };
+    let name = format!("{}_{column}", table.trim_end_matches(".csv"));
+    let title = format!("{} in both runs", one.column.words);
     ChartSpec {
-        name: format!("{}_{column}", table.trim_end_matches(".csv")),
-        title: format!("{} in both runs", one.column.words),
         note: format!("Up: {second}. Across: {first}. Each point is a setting of {table}."),
-        table: VALUES.name(),
         shown: vec![shown("table", table), shown("column", column)],
-        x: "first".to_owned(),
-        y: "second".to_owned(),
         lines: vec!["moved".to_owned()],
         mark: Mark::Points,
         rules: vec![Rule {
@@ -84,7 +83,7 @@ fn chart(
             at: At::Column("first".to_owned()),
             words: "no difference".to_owned(),
         }],
-        ..ChartSpec::default()
+        ..values.chart(name, title, ("second", "first"))
     }
 }
 

@@ -7,11 +7,12 @@
 use crate::error::{Error, Result};
 use crate::recognition::comparison::TrialSize;
 use crate::recognition::many_tests::holm_of_some;
+use crate::report::swept::Setting;
 use crate::row;
 use crate::study::CONFIDENCE;
 use crate::study::repeats::{Paired, Repeat};
 use crate::study::table::PStatus;
-use crate::table::{Better, Column, Data, Role, Table};
+use crate::table::{Better, Column, Role, Table};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeSet, HashMap, HashSet};
 
@@ -100,7 +101,7 @@ pub fn differences(first: &[Table], second: &[Table]) -> Result<Vec<ColumnDiffer
         for column in &second.table.columns {
             let is_told = matches!(column.role, Role::Value(_) | Role::Cost);
             let is_number = first.table.numbers(&column.name).is_some();
-            let settings = second.columns.iter().map(|(column, _)| &column.name);
+            let settings = second.columns.iter().map(|one| &one.column.name);
             let what = (settings.collect::<Vec<_>>(), &column.name);
             if is_told && is_number && told.insert(what) {
                 found.push(of_column(column, &first, &second)?);
@@ -122,7 +123,7 @@ pub fn differences(first: &[Table], second: &[Table]) -> Result<Vec<ColumnDiffer
 struct Settings<'a> {
     table: &'a Table,
     /// The columns that tell them apart.
-    columns: Vec<(&'a Column, &'a Data)>,
+    columns: Vec<Setting<'a>>,
     /// Rows of each, the trials of repeated ones; in the order of their first.
     groups: Vec<Vec<usize>>,
     is_repeated: bool,
@@ -131,17 +132,15 @@ struct Settings<'a> {
 impl<'a> Settings<'a> {
     /// None of a table that names cells by their numbers, which other runs number otherwise, or whose rows nothing tells apart.
     fn of(table: &'a Table) -> Option<Self> {
-        let columns = table.columns.iter().zip(&table.data);
-        let is_setting = |(column, _): &(&Column, &Data)| {
-            let role = column.role;
-            matches!(role, Role::Choice | Role::Condition | Role::Subject) && column.name != "trial"
-        };
-        let columns: Vec<_> = columns.filter(is_setting).collect();
-        let names: Vec<&str> = columns.iter().map(|(column, _)| &column.name[..]).collect();
-        let groups = table.groups(&names, 0..table.n_rows);
+        let columns = Setting::of_roles(table, &[Role::Choice, Role::Condition, Role::Subject]);
+        let columns = columns.filter(|one| one.column.name != "trial");
+        let columns: Vec<Setting> = columns.collect();
+        let all: Vec<usize> = (0..table.n_rows).collect();
+        let groups = Setting::groups(&columns, table, &all);
         let is_repeated = table.place("trial").is_some();
         let is_told_apart = is_repeated || groups.len() == table.n_rows;
-        let is_known = !names.is_empty() && !names.contains(&"cell") && is_told_apart;
+        let has_cells = columns.iter().any(|one| one.column.name == "cell");
+        let is_known = !columns.is_empty() && !has_cells && is_told_apart;
         is_known.then_some(Self {
             table,
             columns,
@@ -153,7 +152,7 @@ impl<'a> Settings<'a> {
     /// A setting by its values and their units; what is absent is left out.
     fn key(&self, row: usize) -> BTreeSet<String> {
         let columns = self.columns.iter();
-        let said = columns.filter_map(|(column, data)| {
+        let said = columns.filter_map(|Setting { column, data }| {
             let value = data.value(row)?;
             Some(format!("{} {} {value};", column.name, column.unit))
         });
@@ -163,8 +162,8 @@ impl<'a> Settings<'a> {
     /// The same in words: what varies.
     fn words(&self, row: usize) -> String {
         let columns = self.columns.iter();
-        let varying = columns.filter(|(_, data)| data.varies(0..self.table.n_rows));
-        let said = varying.filter_map(|(column, data)| Some(column.phrase(&data.value(row)?)));
+        let varying = columns.filter(|one| one.data.varies(0..self.table.n_rows));
+        let said = varying.filter_map(|one| Some(one.column.phrase(&one.data.value(row)?)));
         said.collect::<Vec<_>>().join(", ")
     }
 
@@ -241,20 +240,16 @@ fn of_setting(
     if ours_told.is_empty() || theirs_told.is_empty() {
         return Ok(None);
     }
-    let size = second.trial_size(ours[0]);
-    let untested = TrialSize {
-        n_train: 1,
-        n_test: 1,
-    };
-    let paired = Paired::of(&ours_told, &theirs_told, size.unwrap_or(untested));
+    let paired = Paired::of(&ours_told, &theirs_told);
     let setting = second.words(ours[0]);
     if paired.n_trials() == 0 {
         let given = format!("{}: {setting}: no trial is in both", second.table.file);
         let allowed = "runs that share their trials";
         return Err(Error::input("two runs", given, allowed));
     }
-    let is_tested = size.is_some() && column.role != Role::Cost;
-    let tested = is_tested.then(|| paired.tested()).transpose()?;
+    let size = second.trial_size(ours[0]);
+    let size = size.filter(|_| column.role != Role::Cost);
+    let tested = size.map(|size| paired.tested(size)).transpose()?;
     let tested = tested.as_ref();
     let (ours_mean, theirs_mean) = paired.means();
     let intervals = first.table.interval(column, theirs[0]);

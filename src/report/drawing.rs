@@ -34,6 +34,21 @@ pub struct Area {
 }
 
 impl Area {
+    /// Of a top left corner, and pixels across and down.
+    pub const fn new((x, y): Point, (width, height): (f64, f64)) -> Self {
+        Self {
+            x,
+            y,
+            width,
+            height,
+        }
+    }
+
+    /// The same of the point in its middle.
+    pub const fn around((x, y): Point, (width, height): (f64, f64)) -> Self {
+        Self::new((x - 0.5 * width, y - 0.5 * height), (width, height))
+    }
+
     /// A place in it by parts of its width, from the left, and of its height, from below.
     pub fn at(&self, across: f64, up: f64) -> Point {
         (

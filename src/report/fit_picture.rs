@@ -1,6 +1,6 @@
 //! The picture of a fit: an object, the spheres that stand for it, and how far apart the two are.
 
-use super::canvas::{Canvas, Hit, View};
+use super::canvas::{Canvas, Hit, three_quarter_view};
 use super::colours::diverging;
 use super::drawing::{Align, Area, Drawing, TextStyle};
 use super::picture::Picture;
@@ -16,12 +16,11 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 /// What spheres stand for.
-#[derive(Clone, Copy)]
-pub enum Original<'a> {
+pub enum Original {
     /// A mesh and how it is understood.
-    Mesh(&'a Surface, Body),
+    Mesh(Box<Surface>, Body),
     /// A solid made of shapes.
-    Solid(&'a Solid),
+    Solid(Solid),
 }
 
 /// Three panels of `tile` × `tile` pixels: the original, the spheres with every sphere visible, and the spheres painted by
@@ -31,7 +30,7 @@ pub enum Original<'a> {
 /// The same bytes for the same input. An error for a tile of fewer than 200 or more than 6,000 pixels.
 pub fn fit_picture(
     name: &str,
-    original: Original,
+    original: &Original,
     spheres: &SphereUnion,
     tile: usize,
 ) -> Result<Picture> {
@@ -47,7 +46,7 @@ pub fn fit_picture(
     let side = tile as f64;
     let margin = 0.10 * side;
     let room = DVec2::new(side - 1.6 * margin, side - 3.4 * margin);
-    let canvas = Canvas::new(View::three_quarter(), spheres.spheres(), [tile; 2], room);
+    let canvas = Canvas::new(three_quarter_view(), spheres.spheres(), [tile; 2], room);
     let bounds = spheres.bounds();
     let (middle, radius) = (bounds.center(), bounds.size().length());
     let whole = canvas.cast(
@@ -92,7 +91,7 @@ pub fn fit_picture(
     Ok(picture)
 }
 
-impl Original<'_> {
+impl Original {
     /// Where a ray from outside meets it first, within a length of it, and the unit normal there, towards the start.
     fn first_hit(&self, start: DVec3, direction: DVec3, length: f64) -> Option<(DVec3, DVec3)> {
         match self {
@@ -169,12 +168,8 @@ impl Scale {
 
     /// A bar under the third panel, with its ends and its middle in millimetres.
     fn draw(&self, drawing: &mut Drawing, side: f64, style: TextStyle) {
-        let bar = Area {
-            x: 2.25 * side,
-            y: (13.0 / 14.0 * side).floor(),
-            width: 0.5 * side,
-            height: (0.02 * side).max(4.0),
-        };
+        let corner = (2.25 * side, (13.0 / 14.0 * side).floor());
+        let bar = Area::new(corner, (0.5 * side, (0.02 * side).max(4.0)));
         draw_colours(drawing, bar, |part| diverging(2.0 * part - 1.0));
         for (part, text) in [
             (0.0, signed_millimetres(-self.end)),
@@ -227,26 +222,19 @@ mod tests {
 
     #[test]
     fn rays_meet_a_solid_where_its_shape_says_and_a_mesh_where_its_triangles_are() {
-        let ball = Solid::of(Shape::Ball { diameter: 1.0 }).unwrap();
-        let square = square();
+        let ball = Original::Solid(Solid::of(Shape::Ball { diameter: 1.0 }).unwrap());
+        let mesh = Original::Mesh(Box::new(square()), Body::Sheet);
         for (x, y) in [(0.0, 0.0), (0.3, -0.2), (-0.1, 0.45)] {
             let start = DVec3::new(x, y, 3.0);
-            let (point, normal) = Original::Solid(&ball)
-                .first_hit(start, DVec3::NEG_Z, 6.0)
-                .unwrap();
+            let (point, normal) = ball.first_hit(start, DVec3::NEG_Z, 6.0).unwrap();
             assert!((point.length() - 0.5).abs() < 1e-5, "{point}");
             assert!(normal.distance(point / 0.5) < 1e-3, "{normal} at {point}");
-            let mesh = Original::Mesh(&square, Body::Sheet);
             let (point, normal) = mesh.first_hit(start, DVec3::NEG_Z, 6.0).unwrap();
             assert!(point.distance(DVec3::new(x, y, 0.0)) < 1e-12);
             assert_eq!(normal, DVec3::Z);
         }
         let beside = DVec3::new(1.2, 0.0, 3.0);
-        assert!(
-            Original::Solid(&ball)
-                .first_hit(beside, DVec3::NEG_Z, 6.0)
-                .is_none()
-        );
+        assert!(ball.first_hit(beside, DVec3::NEG_Z, 6.0).is_none());
     }
 
     #[test]
@@ -257,9 +245,10 @@ mod tests {
         };
         let hole = Part::new(cylinder(0.4), Pose::IDENTITY).unwrap();
         let ring = Solid::of(cylinder(1.0)).unwrap().less(vec![hole]).unwrap();
+        let ring = Original::Solid(ring);
         let first_hit = |x: f64| {
             let start = DVec3::new(x, 0.01, 1.5);
-            Original::Solid(&ring).first_hit(start, DVec3::NEG_Z, 3.0)
+            ring.first_hit(start, DVec3::NEG_Z, 3.0)
         };
         assert!(first_hit(0.1).is_none());
         let (point, _) = first_hit(0.35).unwrap();
@@ -268,9 +257,8 @@ mod tests {
 
     #[test]
     fn spheres_that_reach_outside_are_red_and_those_that_stay_inside_blue() {
-        let solid = Solid::of(Shape::Ball { diameter: 0.04 }).unwrap();
-        let shown =
-            |radius| fit_picture("ball", Original::Solid(&solid), &ball(radius), 200).unwrap();
+        let solid = Original::Solid(Solid::of(Shape::Ball { diameter: 0.04 }).unwrap());
+        let shown = |radius| fit_picture("ball", &solid, &ball(radius), 200).unwrap();
         let (large, small) = (shown(0.021), shown(0.019));
         assert_eq!((large.width, large.height), (600, 200));
         assert!(redness(&large) > 100_000, "{}", redness(&large));
@@ -279,10 +267,9 @@ mod tests {
 
     #[test]
     fn panels_of_other_sizes_than_a_screen_has_are_refused() {
-        let solid = Solid::of(Shape::Ball { diameter: 0.04 }).unwrap();
+        let solid = Original::Solid(Solid::of(Shape::Ball { diameter: 0.04 }).unwrap());
         for tile in [0, 199, 6_001] {
-            let error =
-                fit_picture("ball", Original::Solid(&solid), &ball(0.02), tile).unwrap_err();
+            let error = fit_picture("ball", &solid, &ball(0.02), tile).unwrap_err();
             assert_eq!(error.exit_code(), 2);
         }
     }

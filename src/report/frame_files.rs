@@ -40,7 +40,7 @@ pub fn write_frame(path: &Path, deflection: &Array2<f64>, grid: &Grid) -> Result
             let patch = RecordedPatch::of_grid(title, *grid, ForceKind::Normal);
             let scale = ColourScale::over(deflection, quantity);
             let values: Vec<f64> = deflection.iter().copied().collect();
-            let picture = SkinPicture::new(&patch, quantity, scale)?;
+            let picture = SkinPicture::new(&patch, scale)?;
             write_bytes(path, &picture.frame(&values, "")?.png()?)
         }
         _ => Err(Error::input(

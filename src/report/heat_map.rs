@@ -22,6 +22,8 @@ pub(crate) fn block_sentence(block: usize) -> String {
 /// The lowest and the highest shown value that colours stand for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColourScale {
+    /// What the values are of.
+    pub quantity: Quantity,
     /// Darkest colour: 0, or the lowest value if that is below.
     pub low: f64,
     /// Lightest colour.
@@ -32,6 +34,7 @@ impl ColourScale {
     /// The scale that covers values as they are stored, in shown units. Zeros get 0 … 1.
     pub fn over<'a>(values: impl IntoIterator<Item = &'a f64>, quantity: Quantity) -> Self {
         let mut scale = Self {
+            quantity,
             low: 0.0,
             high: 0.0,
         };
@@ -45,14 +48,15 @@ impl ColourScale {
         scale
     }
 
-    /// Place of a shown value on the scale, 0 … 1.
+    /// Place on the scale, 0 … 1, of a value as it is stored.
     pub fn place(&self, value: f64) -> f64 {
-        ((value - self.low) / (self.high - self.low)).clamp(0.0, 1.0)
+        let shown = value * self.quantity.factor();
+        ((shown - self.low) / (self.high - self.low)).clamp(0.0, 1.0)
     }
 
     /// The colour of a value as it is stored.
-    pub(crate) fn colour(&self, value: f64, quantity: Quantity) -> Rgb {
-        heat(self.place(value * quantity.factor()))
+    pub(crate) fn colour(&self, value: f64) -> Rgb {
+        heat(self.place(value))
     }
 }
 

@@ -14,8 +14,10 @@ pub(super) const MARKER_RADIUS: f64 = 4.2;
 pub(super) const FRONT: Stroke = Stroke::new(INK, 1.4);
 const TITLE: u32 = 16;
 const SMALL: u32 = 12;
-/// Pixels of the mark before a text, across and down, and of what it takes with the gap behind it.
-const SWATCH: [f64; 3] = [28.0, 16.0, 34.0];
+/// Pixels of the mark before a text, across and down.
+const SWATCH: (f64, f64) = (28.0, 16.0);
+/// Pixels of the gap behind it.
+const SWATCH_GAP: f64 = 6.0;
 /// Pixels between two entries.
 const GAP: f64 = 20.0;
 
@@ -98,18 +100,12 @@ impl LegendEntry {
     }
 
     fn mark_width(&self) -> f64 {
-        self.mark.as_ref().map_or(0.0, |_| SWATCH[2])
+        self.mark.as_ref().map_or(0.0, |_| SWATCH.0 + SWATCH_GAP)
     }
 
     fn draw(&self, drawing: &mut Drawing, x: f64, y: f64) {
         if let Some(mark) = &self.mark {
-            let area = Area {
-                x,
-                y: y - 12.0,
-                width: SWATCH[0],
-                height: SWATCH[1],
-            };
-            mark(drawing, area);
+            mark(drawing, Area::new((x, y - 12.0), SWATCH));
         }
         let at = (x + self.mark_width(), y);
         drawing.text(at, &self.text, TextStyle::new(SMALL));

@@ -1,6 +1,6 @@
 //! The picture of objects: their spheres seen from above and to the side, in tiles.
 
-use super::canvas::{Canvas, View};
+use super::canvas::{Canvas, three_quarter_view};
 use super::drawing::{Align, Drawing, TextStyle};
 pub use super::picture::Picture;
 use super::picture_axes::draw_scale_bar;
@@ -34,13 +34,13 @@ pub fn contact_sheet(
     let room = DVec2::new(side - 1.6 * margin, side - 2.8 * margin);
     let size = (0.045 * side).clamp(9.0, 18.0) as u32;
     let style = TextStyle::new(size).align(Align::Middle);
+    let view = three_quarter_view();
     for (index, (name, union)) in objects.iter().enumerate() {
         let corner = [index % n_columns * tile, index / n_columns * tile];
-        let canvas = Canvas::new(View::three_quarter(), union.spheres(), [tile; 2], room);
+        let canvas = Canvas::new(view, union.spheres(), [tile; 2], room);
         let hits = canvas.hits(union.spheres());
-        canvas.paint(&mut picture, corner, &hits, Lighting::Smoothed, |_, _| {
-            PAINT
-        });
+        let lighting = Lighting::Smoothed;
+        canvas.paint(&mut picture, corner, &hits, lighting, |_, _| PAINT);
         let (middle, top) = (corner[0] as f64 + 0.5 * side, corner[1] as f64);
         let above = top + 0.55 * margin + 0.5 * f64::from(size);
         drawing.text((middle, above), name, style);

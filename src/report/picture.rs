@@ -2,7 +2,6 @@
 
 use crate::error::{Error, Result};
 use crate::report::drawing::Drawing;
-use std::ops::Range;
 
 /// Brightness of blank paper, 0 to 255.
 pub(crate) const BACKGROUND: u8 = 250;
@@ -89,16 +88,6 @@ impl Picture {
         let rows = self.rgb.chunks_mut(3 * self.width).skip(top);
         for (row, pixels) in rows.zip(other.rgb.chunks(3 * other.width)) {
             row[3 * left..3 * left + n].copy_from_slice(&pixels[..n]);
-        }
-    }
-
-    /// Fills the pixels of an area that are on the paper.
-    pub(crate) fn fill(&mut self, columns: Range<usize>, rows: Range<usize>, rgb: [u8; 3]) {
-        for y in rows.start..rows.end.min(self.height) {
-            for x in columns.start..columns.end.min(self.width) {
-                let at = 3 * (y * self.width + x);
-                self.rgb[at..at + 3].copy_from_slice(&rgb);
-            }
         }
     }
 }

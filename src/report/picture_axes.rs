@@ -4,7 +4,6 @@ use super::chart::even_ticks;
 use super::colours::{INK, Rgb, heat};
 use super::drawing::{Align, Area, Drawing, Point, Stroke, TextStyle};
 use super::heat_map::ColourScale;
-use crate::signal::Quantity;
 use crate::table::short_number;
 
 /// Where an axis stands.
@@ -54,15 +53,10 @@ pub(crate) fn draw_map_axis(drawing: &mut Drawing, area: Area, side: Side, lengt
 }
 
 /// A bar of colours to the right of what it explains, `area` wide and high.
-pub(crate) fn draw_colour_bar(
-    drawing: &mut Drawing,
-    scale: ColourScale,
-    quantity: Quantity,
-    area: Area,
-) {
+pub(crate) fn draw_colour_bar(drawing: &mut Drawing, scale: ColourScale, area: Area) {
     draw_colours(drawing, area, heat);
     drawing.frame(area, Stroke::new(INK, 1.0));
-    let title = format!("{} ({})", quantity.name(), quantity.unit());
+    let title = format!("{} ({})", scale.quantity.name(), scale.quantity.unit());
     draw_axis(drawing, area, Side::Right, (scale.low, scale.high), &title);
 }
 
@@ -72,18 +66,12 @@ pub(crate) fn draw_colours(drawing: &mut Drawing, area: Area, colour: impl Fn(f6
     for step in 0..STEPS {
         let [from, to] = [step, step + 1].map(|step| step as f64 / STEPS as f64);
         // Each reaches to the end, so that no gap shines through between two steps.
-        let piece = if area.width > area.height {
-            Area {
-                x: area.at(from, 0.0).0,
-                width: area.width * (1.0 - from),
-                ..area
-            }
-        } else {
-            Area {
-                height: area.height * (1.0 - from),
-                ..area
-            }
+        let (across, up) = match area.width > area.height {
+            true => (from, 0.0),
+            false => (0.0, from),
         };
+        let size = (area.width * (1.0 - across), area.height * (1.0 - up));
+        let piece = Area::new(area.at(across, 1.0), size);
         drawing.area(piece, colour(0.5 * (from + to)));
     }
 }

@@ -36,11 +36,11 @@ pub fn pressure_text(
                 false => (1, 2 * block),
             };
             let shown = largest_of_blocks(frame, (down, block));
-            (wide, ascii_lines(&shown, quantity, scale, wide))
+            (wide, ascii_lines(&shown, scale, wide))
         }
         Ink::Colours256 | Ink::TrueColour => {
             let shown = largest_of_blocks(frame, (block, block));
-            (1, half_block_lines(&shown, quantity, scale, ink))
+            (1, half_block_lines(&shown, scale, ink))
         }
     };
     let border = format!("+{}+\n", "-".repeat(wide * nx.div_ceil(block)));
@@ -54,7 +54,7 @@ pub fn pressure_text(
         grid_sentence((nx, ny), pitch_mm),
         peak_sentence(frame, pitch_mm, quantity)
     );
-    text += &scale_sentence(scale, quantity, ink);
+    text += &scale_sentence(scale, ink);
     if block > 1 {
         text += &format!("each place shows the largest of {block} × {block} taxels\n");
     }
@@ -81,9 +81,9 @@ pub(super) fn peak_sentence(frame: &Array2<f64>, pitch_mm: f64, quantity: Quanti
     )
 }
 
-fn scale_sentence(scale: ColourScale, quantity: Quantity, ink: Ink) -> String {
+fn scale_sentence(scale: ColourScale, ink: Ink) -> String {
     let (low, high) = (short_number(scale.low), short_number(scale.high));
-    let unit = quantity.unit();
+    let unit = scale.quantity.unit();
     match ink {
         Ink::Plain => {
             let ramp = String::from_utf8_lossy(RAMP);
@@ -98,14 +98,9 @@ fn scale_sentence(scale: ColourScale, quantity: Quantity, ink: Ink) -> String {
     }
 }
 
-fn ascii_lines(
-    shown: &Array2<f64>,
-    quantity: Quantity,
-    scale: ColourScale,
-    wide: usize,
-) -> Vec<String> {
+fn ascii_lines(shown: &Array2<f64>, scale: ColourScale, wide: usize) -> Vec<String> {
     let character = |value: &f64| {
-        let place = scale.place(value * quantity.factor());
+        let place = scale.place(*value);
         let step = (place * RAMP.len() as f64) as usize;
         // Whatever is above the lowest value shows: a light touch is not no touch.
         let step = if place > 0.0 { step.max(1) } else { 0 };
@@ -120,13 +115,8 @@ fn ascii_lines(
     shown.outer_iter().rev().map(line).collect()
 }
 
-fn half_block_lines(
-    shown: &Array2<f64>,
-    quantity: Quantity,
-    scale: ColourScale,
-    ink: Ink,
-) -> Vec<String> {
-    let colour = |row, column| scale.colour(shown[(row, column)], quantity);
+fn half_block_lines(shown: &Array2<f64>, scale: ColourScale, ink: Ink) -> Vec<String> {
+    let colour = |row, column| scale.colour(shown[(row, column)]);
     let rows: Vec<usize> = (0..shown.nrows()).rev().collect();
     let line = |pair: &[usize]| {
         let mut line = String::new();

@@ -1,9 +1,9 @@
 //! What came of a scene, as tables for people.
 
+use crate::report::terminal::rows_text;
 use crate::scene::{Held, Movement, ScenePlan, Summary};
 use crate::table::short_number;
 use crate::world::Motion;
-use comfy_table::{CellAlignment, Table, presets::NOTHING};
 
 /// One table of patches with their peaks over all frames, one of objects with what holds them at the end.
 pub fn scene_table(plan: &ScenePlan, summary: &Summary) -> String {
@@ -14,7 +14,7 @@ pub fn scene_table(plan: &ScenePlan, summary: &Summary) -> String {
     text
 }
 
-fn patches(plan: &ScenePlan, summary: &Summary) -> Table {
+fn patches(plan: &ScenePlan, summary: &Summary) -> String {
     let mut header = vec![
         "patch",
         "taxels",
@@ -27,8 +27,8 @@ fn patches(plan: &ScenePlan, summary: &Summary) -> Table {
     if plan.patches.iter().any(|patch| patch.shears.is_some()) {
         header.extend(["most friction (N)", "most sticking", "most slipping"]);
     }
-    let mut table = table(&header, &[0]);
-    for (patch, peaks) in plan.patches.iter().zip(&summary.patches) {
+    let patches = plan.patches.iter().zip(&summary.patches);
+    let rows = patches.map(|(patch, peaks)| {
         let mut row = vec![
             patch.skin.name().to_owned(),
             patch.skin.n_taxels().to_string(),
@@ -43,17 +43,16 @@ fn patches(plan: &ScenePlan, summary: &Summary) -> Table {
             row.push(peaks.n_sticking.to_string());
             row.push(peaks.n_slipping.to_string());
         }
-        table.add_row(row);
-    }
-    table
+        row
+    });
+    rows_text(&header, &[0], rows)
 }
 
-fn objects(plan: &ScenePlan, summary: &Summary) -> Table {
-    let mut table = table(&["object", "parts", "at the end"], &[0, 1, 2]);
+fn objects(plan: &ScenePlan, summary: &Summary) -> String {
     let all = plan.objects.iter().zip(&plan.models);
     let counts = summary.n_unsettled.iter().zip(&summary.n_off);
-    let ends = summary.objects.iter().zip(counts);
-    for ((object, model), (held, (n_unsettled, n_off))) in all.zip(ends) {
+    let ends = all.zip(summary.objects.iter().zip(counts));
+    let rows = ends.map(|((object, model), (held, (n_unsettled, n_off)))| {
         let parts = match model.spheres() {
             Some(union) if union.n_spheres() == 1 => "1 sphere".to_owned(),
             Some(union) => format!("{} spheres", union.n_spheres()),
@@ -66,9 +65,9 @@ fn objects(plan: &ScenePlan, summary: &Summary) -> Table {
         if *n_off > 0 {
             end += &format!("; not with the force wanted in {n_off} frames");
         }
-        table.add_row([object.name.clone(), parts, end]);
-    }
-    table
+        vec![object.name.clone(), parts, end]
+    });
+    rows_text(&["object", "parts", "at the end"], &[0, 1, 2], rows)
 }
 
 /// What holds an object, in words.
@@ -98,16 +97,4 @@ fn ending(movement: &Movement, held: &Held) -> String {
             )
         }
     }
-}
-
-/// A table without lines; numbers, which is all but the columns of texts, end at the right.
-pub(super) fn table(header: &[&str], texts: &[usize]) -> Table {
-    let mut table = Table::new();
-    table.load_preset(NOTHING).set_header(header);
-    for (number, column) in table.column_iter_mut().enumerate() {
-        if !texts.contains(&number) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
-    }
-    table
 }

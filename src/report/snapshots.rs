@@ -6,8 +6,11 @@ use crate::report::drawing::{Align, Area, Drawing, Stroke, TextStyle};
 use crate::report::heat_map::{ColourScale, check_frame, largest_of_blocks};
 use crate::report::picture::Picture;
 use crate::report::picture_axes::{Side, draw_colour_bar, draw_map_axis};
+use crate::report::recording::cells::{Cells, whole_pixels};
+use crate::report::recording::pixels::paint;
 use crate::report::text_width::shorten;
 use crate::signal::Quantity;
+use crate::world::Grid;
 use ndarray::Array2;
 
 /// Cells of a frame that are shown each way, at most; larger frames are shown by the largest value of blocks.
@@ -33,10 +36,9 @@ pub fn snapshots(
     };
     let scale = ColourScale::over(frames.iter().flat_map(|(_, frame)| frame), quantity);
     let block = largest.div_ceil(MOST_CELLS);
-    // Whole pixels a cell: no seams between neighbours.
-    let n_cells = largest.div_ceil(block) as f64;
-    let side = (192.0 / n_cells).floor().max(1.0);
-    let box_side = side * n_cells;
+    let n_cells = largest.div_ceil(block);
+    let side = whole_pixels(192.0, n_cells);
+    let box_side = side * n_cells as f64;
     let (left, top) = (66.0, 34.0);
     let (column_width, row_height) = (box_side + 22.0, box_side + 74.0);
     let right = left + frames.len().min(MOST_COLUMNS) as f64 * column_width;
@@ -45,43 +47,35 @@ pub fn snapshots(
     let mut maps = Vec::new();
     for (index, (name, frame)) in frames.iter().enumerate() {
         check_frame(frame)?;
-        let shown = largest_of_blocks(frame, (block, block));
-        let area = Area {
-            x: left + (index % MOST_COLUMNS) as f64 * column_width,
-            y: top + (index / MOST_COLUMNS) as f64 * row_height,
-            width: side * shown.ncols() as f64,
-            height: side * shown.nrows() as f64,
+        let (ny, nx) = frame.dim();
+        let grid = Grid {
+            nx,
+            ny,
+            pitch: pitch_mm * 1e-3,
         };
+        let x = left + (index % MOST_COLUMNS) as f64 * column_width;
+        let y = top + (index / MOST_COLUMNS) as f64 * row_height;
+        let cells = Cells::of_grid(&grid, block, side, (x, y));
+        let area = cells.area;
         let (middle, above) = area.at(0.5, 1.0);
         let title = shorten(name, 15.0, box_side);
         let style = TextStyle::new(13).align(Align::Middle);
         drawing.bold_text((middle, above - 10.0), &title, style);
         drawing.frame(area, Stroke::new(INK, 2.0));
-        let (ny, nx) = frame.dim();
         draw_map_axis(&mut drawing, area, Side::Below, nx as f64 * pitch_mm);
         if index % MOST_COLUMNS == 0 {
             draw_map_axis(&mut drawing, area, Side::Left, ny as f64 * pitch_mm);
         }
-        maps.push((area, shown));
+        maps.push((cells, largest_of_blocks(frame, (block, block))));
     }
-    let bar = Area {
-        x: right,
-        y: top,
-        width: 16.0,
-        height: box_side,
-    };
-    draw_colour_bar(&mut drawing, scale, quantity, bar);
+    let bar = Area::new((right, top), (16.0, box_side));
+    draw_colour_bar(&mut drawing, scale, bar);
     let style = TextStyle::new(12).colour(MUTED);
     drawing.text((left, height - 10.0), caption, style);
     let mut picture = drawing.picture()?;
-    for (area, shown) in &maps {
-        let (left, bottom) = area.at(0.0, 0.0);
-        for ((row, column), &value) in shown.indexed_iter() {
-            let fine = |place: f64| (2.0 * place) as usize;
-            let (x, y) = (left + column as f64 * side, bottom - row as f64 * side);
-            let colour = scale.colour(value, quantity);
-            picture.fill(fine(x)..fine(x + side), fine(y - side)..fine(y), colour);
-        }
+    for (cells, shown) in &maps {
+        let colours = shown.iter().map(|&value| scale.colour(value));
+        paint(&mut picture, cells, 2.0, &colours.collect::<Vec<_>>());
     }
     Ok(picture)
 }

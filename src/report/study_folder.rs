@@ -2,9 +2,8 @@
 
 use crate::error::Result;
 use crate::report::chart;
-use crate::report::drawing::Drawing;
 use crate::report::folder::Folder;
-use crate::report::page::{Beside, Picture, Section, StudyAbout, study_page};
+use crate::report::page::{Beside, Section, StudyAbout, study_page};
 use crate::report::terminal::{paragraph, table_text};
 use crate::table::{ChartSpec, Role, Table};
 use rayon::prelude::*;
@@ -67,34 +66,18 @@ pub fn folder_with<'a>(
         }
     }
     let draw = |(number, spec): (usize, &ChartSpec)| {
-        let (name, title) = (&spec.name, &spec.title);
         let drawing = chart::draw(spec, found.tables)?;
-        Ok(match number < MOST_CHARTS {
-            true => {
-                let picture = Picture::of(&drawing, title);
-                (picture_files(name, title, &drawing)?, Some(picture))
-            }
-            false => (vec![svg_file(name, title, &drawing)], None),
-        })
+        let png = (number < MOST_CHARTS).then(|| drawing.png());
+        Ok((png.transpose()?, drawing.svg(&spec.title)))
     };
     let draw_all = || charts.par_iter().enumerate().map(draw).collect();
     let (drawn, beyond): (Result<Vec<_>>, _) = rayon::join(draw_all, beyond);
-    let (drawn, beyond) = (drawn?, beyond?);
     let mut folder = Folder::of_tables(dir, &[]);
-    for (files, picture) in drawn {
-        folder.files.extend(files);
-        beside.charts.extend(picture);
-    }
-    beside.sections = beyond.sections;
-    for NamedPicture {
-        name,
-        title,
-        png,
-        size,
-    } in beyond.pictures
-    {
-        beside.pictures.push(Picture::of_png(&png, size, &title));
-        folder.files.push((format!("{name}.png"), png));
+    let files = &mut folder.files;
+    for (ChartSpec { name, .. }, (png, svg)) in charts.iter().zip(drawn?) {
+        files.extend(png.map(|png| (format!("{name}.png"), png)));
+        files.push((format!("{name}.svg"), svg.clone().into_bytes()));
+        beside.charts.push(svg);
     }
     // More would make the page slow; each can be arranged to show what the others do.
     charts.truncate(MOST_CHARTS);
@@ -102,19 +85,12 @@ pub fn folder_with<'a>(
         charts: &charts,
         ..*found
     };
-    let page = study_page(about, &found, beside).into_bytes();
-    folder.files.push(("report.html".to_owned(), page));
+    beside.beyond = beyond?;
+    let page = study_page(about, &found, &beside).into_bytes();
+    let pictures = beside.beyond.pictures.into_iter();
+    files.extend(pictures.map(|picture| (picture.name + ".png", picture.png)));
+    files.push(("report.html".to_owned(), page));
     Ok(folder)
-}
-
-/// A drawing as PNG and as SVG; its name has no ending.
-fn picture_files(name: &str, title: &str, drawing: &Drawing) -> Result<Vec<(String, Vec<u8>)>> {
-    let png = (format!("{name}.png"), drawing.png()?);
-    Ok(vec![png, svg_file(name, title, drawing)])
-}
-
-fn svg_file(name: &str, title: &str, drawing: &Drawing) -> (String, Vec<u8>) {
-    (format!("{name}.svg"), drawing.svg(title).into_bytes())
 }
 
 /// A page alone.
@@ -122,13 +98,12 @@ fn svg_file(name: &str, title: &str, drawing: &Drawing) -> (String, Vec<u8>) {
 /// # Errors
 /// What cannot be drawn.
 pub(super) fn page_of(about: &StudyAbout, found: &Found) -> Result<String> {
-    let draw = |spec| Ok(Picture::of(&chart::draw(spec, found.tables)?, &spec.title));
-    let charts = found.charts.iter().map(draw).collect::<Result<_>>()?;
+    let draw = |spec: &ChartSpec| Ok(chart::draw(spec, found.tables)?.svg(&spec.title));
     let beside = Beside {
-        charts,
+        charts: found.charts.iter().map(draw).collect::<Result<_>>()?,
         ..Beside::default()
     };
-    Ok(study_page(about, found, beside))
+    Ok(study_page(about, found, &beside))
 }
 
 /// What a person reads at the end of a run, in lines of about `width` letters: the first of some tables, the answers, then the others.

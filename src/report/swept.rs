@@ -50,11 +50,15 @@ pub struct Swept<'a> {
 }
 
 impl<'a> Setting<'a> {
-    /// The columns of a table that have one of some roles.
-    pub fn of_roles(table: &'a Table, roles: &[Role]) -> impl Iterator<Item = Self> {
+    /// All columns of a table.
+    pub fn all(table: &'a Table) -> impl Iterator<Item = Self> {
         let columns = table.columns.iter().zip(&table.data);
-        let all = columns.map(|(column, data)| Self { column, data });
-        all.filter(|one| roles.contains(&one.column.role))
+        columns.map(|(column, data)| Self { column, data })
+    }
+
+    /// Those that have one of some roles.
+    pub fn of_roles(table: &'a Table, roles: &[Role]) -> impl Iterator<Item = Self> {
+        Self::all(table).filter(|one| roles.contains(&one.column.role))
     }
 
     /// Rows of a table by the values of some of its settings, in the order in which rows first have them.

@@ -118,8 +118,7 @@ fn shown_columns(table: &Table) -> Vec<Setting<'_>> {
         Role::Cost => 2,
         Role::Note => 3,
     };
-    let columns = table.columns.iter().zip(&table.data);
-    let columns = columns.map(|(column, data)| Setting { column, data });
+    let columns = Setting::all(table);
     let mut shown: Vec<Setting> = columns.filter(|one| is_telling(table, one)).collect();
     shown.sort_by_key(rank);
     shown
@@ -162,23 +161,21 @@ fn columns_text(mut columns: Vec<TextColumn>, n_lines: usize, width: usize) -> (
     for line in 0..n_lines {
         shown.add_row(columns.iter().map(|column| &column.said[line]));
     }
-    for (
-        TextColumn {
-            said, is_number, ..
-        },
-        column,
-    ) in columns.iter().zip(shown.column_iter_mut())
-    {
+    for (text, column) in columns.iter().zip(shown.column_iter_mut()) {
         column.set_padding((0, 2));
-        if *is_number {
+        if text.is_number {
             column.set_cell_alignment(CellAlignment::Right);
         }
-        if said.iter().any(|text| text.contains('[')) {
+        if text.said.iter().any(|text| text.contains('[')) {
             // An interval broken over two lines cannot be read down the column.
             column.set_constraint(ColumnConstraint::ContentWidth);
         }
     }
-    (finish(&shown), columns.len())
+    let lines = shown.lines();
+    let lines: String = lines
+        .map(|line| line.trim_end().to_owned() + "\n")
+        .collect();
+    (lines, columns.len())
 }
 
 /// What is the same in all rows, in a line or more; empty if nothing is.
@@ -254,39 +251,39 @@ fn pivot_text(table: &Table, width: usize) -> Option<String> {
     Some(constants(table, width) + &head + &text + &paragraph(&remark, width))
 }
 
-/// A table without lines that breaks its texts to fit a width, letters.
-pub(super) fn plain_table(width: usize) -> TextTable {
+/// Rows of a table for people, without lines; numbers, which is all but the columns of texts, end at the right.
+pub fn rows_text(
+    header: &[&str],
+    texts: &[usize],
+    rows: impl IntoIterator<Item = Vec<String>>,
+) -> String {
+    let mut table = TextTable::new();
+    table.load_preset(presets::NOTHING).set_header(header);
+    table.add_rows(rows);
+    for (number, column) in table.column_iter_mut().enumerate() {
+        if !texts.contains(&number) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    table.to_string()
+}
+
+/// A table with a line below its header alone, at least 20 letters wide, that breaks its texts to fit a width.
+fn ruled_table(width: usize) -> TextTable {
     let mut table = TextTable::new();
     table.load_preset(presets::NOTHING);
     table.set_content_arrangement(ContentArrangement::Dynamic);
-    table.set_width(width.min(usize::from(u16::MAX)) as u16);
-    table
-}
-
-/// The same with a line below its header, at least 20 letters wide.
-pub(super) fn ruled_table(width: usize) -> TextTable {
-    let mut table = plain_table(width.max(20));
-    table.remove_style(TableComponent::VerticalLines);
+    table.set_width(width.clamp(20, usize::from(u16::MAX)) as u16);
     table.set_style(TableComponent::HeaderLines, '-');
     table.set_style(TableComponent::MiddleHeaderIntersections, '-');
     table
-}
-
-pub(super) fn finish(table: &TextTable) -> String {
-    let lines = table.lines().map(|line| line.trim_end().to_owned() + "\n");
-    lines.collect()
 }
 
 fn letters(text: &str) -> usize {
     text.chars().count()
 }
 
-/// Breaks a text at spaces (not at U+00A0) into lines of at most `width` letters.
-pub(super) fn wrap(text: &str, width: usize) -> Vec<String> {
-    break_lines(text, |line| letters(line) <= width)
-}
-
-/// The same as one text, a line end after each line.
+/// A text broken at spaces (not at U+00A0) into lines of at most `width` letters, with a line end after each.
 pub(super) fn paragraph(text: &str, width: usize) -> String {
-    wrap(text, width).join("\n") + "\n"
+    break_lines(text, |line| letters(line) <= width).join("\n") + "\n"
 }

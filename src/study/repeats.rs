@@ -109,18 +109,17 @@ pub struct Tested {
 pub struct Paired {
     ours: Vec<Repeat>,
     theirs: Vec<Repeat>,
-    size: TrialSize,
 }
 
 impl Paired {
-    /// The trials of two configurations by their numbers; how they split the touches.
-    pub fn of(ours: &[Repeat], theirs: &[Repeat], size: TrialSize) -> Self {
+    /// The trials of two configurations by their numbers.
+    pub fn of(ours: &[Repeat], theirs: &[Repeat]) -> Self {
         let pairs = ours.iter().filter_map(|ours| {
             let theirs = theirs.iter().find(|theirs| theirs.trial == ours.trial);
             Some((*ours, *theirs?))
         });
         let (ours, theirs) = pairs.unzip();
-        Self { ours, theirs, size }
+        Self { ours, theirs }
     }
 
     /// How many trials both have.
@@ -135,14 +134,14 @@ impl Paired {
         (mean(&self.ours), mean(&self.theirs))
     }
 
-    /// The test of no difference, if there are trials enough for one.
-    pub fn tested(&self) -> Result<Tested> {
-        let n_needed = trials_needed(self.size, CONFIDENCE)?;
+    /// The test of no difference, if there are trials enough for one, by how they split the touches.
+    pub fn tested(&self, size: TrialSize) -> Result<Tested> {
+        let n_needed = trials_needed(size, CONFIDENCE)?;
         let split = |trial: &Repeat| trial.place.map_or(trial.trial, |(split, _)| split);
         let splits: BTreeSet<usize> = self.ours.iter().map(split).collect();
         let is_enough = n_needed.is_some_and(|needed| splits.len() >= needed);
         let n_projections = (self.ours.len() / splits.len().max(1)).max(1);
-        let test = self.test()?;
+        let test = self.test(size)?;
         Ok(Tested {
             p_status: match (&test, is_enough) {
                 (_, false) => PStatus::TooFewTrials,
@@ -156,16 +155,16 @@ impl Paired {
     }
 
     /// Ours less theirs; `None` for a single trial, and for crossed trials of which some are missing.
-    fn test(&self) -> Result<Option<Comparison>> {
+    fn test(&self, size: TrialSize) -> Result<Option<Comparison>> {
         let (Some(ours), Some(theirs)) = (scores(&self.ours), scores(&self.theirs)) else {
             return Ok(None);
         };
         match (ours.ncols(), theirs.ncols()) {
             (1, 1) => {
                 let (ours, theirs) = (ours.column(0).to_vec(), theirs.column(0).to_vec());
-                compare(&ours, &theirs, self.size, CONFIDENCE)
+                compare(&ours, &theirs, size, CONFIDENCE)
             }
-            _ => compare_crossed(ours.view(), theirs.view(), self.size, CONFIDENCE),
+            _ => compare_crossed(ours.view(), theirs.view(), size, CONFIDENCE),
         }
     }
 }

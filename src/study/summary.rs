@@ -67,18 +67,17 @@ fn mean(trials: &[Row], value: fn(&TrialScore) -> f64) -> f64 {
 /// Every cell against the one with the highest mean accuracy in its condition (the first of equals), paired trial by trial.
 pub fn compare_with_best(rows: &[Row]) -> Result<Vec<Comparison>> {
     let cells: Vec<&[Row]> = rows.chunk_by(|a, b| a.0.cell == b.0.cell).collect();
-    let mut table = Vec::with_capacity(cells.len());
+    let mut best = vec![0; cells.len()];
     for alike in by_condition(cells.iter().map(|trials| &trials[0].0))? {
         let accuracies = alike
             .iter()
             .map(|&place| (place, mean(cells[place], |t| t.accuracy)));
-        let best = most_accurate(accuracies).expect("a condition has the cell that has it");
-        for place in alike {
-            table.push((place, against(cells[place], cells[best])?));
-        }
+        let best_here = most_accurate(accuracies).expect("a condition has the cell that has it");
+        alike.iter().for_each(|&place| best[place] = best_here);
     }
-    table.sort_by_key(|(place, _)| *place);
-    let mut table: Vec<Comparison> = table.into_iter().map(|(_, row)| row).collect();
+    let pairs = cells.iter().zip(best);
+    let rows = pairs.map(|(trials, best)| against(trials, cells[best]));
+    let mut table = rows.collect::<Result<Vec<Comparison>>>()?;
     let is_other = |row: &Comparison| row.cell != row.best_cell;
     let p_values = table
         .iter()
@@ -102,12 +101,12 @@ fn against(trials: &[Row], best: &[Row]) -> Result<Comparison> {
         n_train: first.n_train,
         n_test: first.n_test * cell.fused_touches,
     };
-    let paired = Paired::of(&ours, &theirs, size);
+    let paired = Paired::of(&ours, &theirs);
     let (ours, theirs) = match paired.n_trials() {
         0 => (mean(trials, |t| t.accuracy), mean(best, |t| t.accuracy)),
         _ => paired.means(),
     };
-    let tested = paired.tested()?;
+    let tested = paired.tested(size)?;
     Ok(Comparison {
         cell: trials[0].0.cell,
         best_cell: best[0].0.cell,

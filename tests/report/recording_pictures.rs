@@ -17,6 +17,7 @@ use std::io::BufReader;
 use std::path::Path;
 
 const SCALE: ColourScale = ColourScale {
+    quantity: Quantity::Deflection,
     low: 0.0,
     high: 2.0,
 };
@@ -65,7 +66,7 @@ fn blob(picture: &Picture, colour: [u8; 3]) -> ([f64; 2], usize) {
 #[test]
 fn a_touched_taxel_is_one_spot_of_its_colour_and_neighbours_stand_side_by_side() {
     for patch in [grid(), tube()] {
-        let skin = SkinPicture::new(&patch, Quantity::Deflection, SCALE).unwrap();
+        let skin = SkinPicture::new(&patch, SCALE).unwrap();
         let spot = |taxel: usize| {
             let mut values = vec![0.0; patch.n_taxels()];
             values[taxel] = 1.5e-3;
@@ -89,7 +90,11 @@ fn a_touched_taxel_is_one_spot_of_its_colour_and_neighbours_stand_side_by_side()
 
 #[test]
 fn values_that_cannot_be_drawn_are_errors() {
-    let skin = SkinPicture::new(&tube(), Quantity::Force, SCALE).unwrap();
+    let scale = ColourScale {
+        quantity: Quantity::Force,
+        ..SCALE
+    };
+    let skin = SkinPicture::new(&tube(), scale).unwrap();
     let said = skin.frame(&[0.0; 5], "").unwrap_err().to_string();
     assert_eq!(said, "frame: 5 values; 96, one a taxel");
     let mut values = [0.0; 96];
@@ -170,11 +175,12 @@ fn an_animation_shows_the_pictures_of_its_frames_on_one_scale() {
         // 0.39 s at half the speed, and the last stands as long as the one before it.
         assert!((seconds - 0.78 - 0.08).abs() < 1e-9, "{seconds}");
         let scale = ColourScale {
+            quantity: Quantity::Deflection,
             low: 0.0,
             high: f64::from(1.95e-3_f32) * 1e3,
         };
         let skin = &file.header().patches[patch].clone();
-        let skin = SkinPicture::new(skin, Quantity::Deflection, scale).unwrap();
+        let skin = SkinPicture::new(skin, scale).unwrap();
         assert_eq!(pictures.len(), frames.len());
         for (picture, &frame) in pictures.iter().zip(&frames) {
             let values = file.frame(patch, Quantity::Deflection, frame).unwrap();

@@ -3,7 +3,7 @@
 use super::plan::{ScenePlan, WholeBodyPlan};
 use crate::error::Result;
 use crate::objects::Sphere;
-use crate::report::canvas::{Canvas, Hit, View};
+use crate::report::canvas::{Canvas, Hit, view_from};
 use crate::report::colours::tint;
 use crate::report::drawing::{Align, Area, Drawing, TextStyle};
 use crate::report::picture::Picture;
@@ -116,7 +116,7 @@ fn draw(name: &str, scene: &SceneView) -> Result<Picture> {
     let both: Vec<Sphere> = alone.iter().copied().chain(object).collect();
     let [width, height] = PANEL.map(|side| side as f64);
     let room = DVec2::new(0.62 * width, height - 150.0);
-    let canvas = Canvas::new(View::from_angles(AZIMUTH, ELEVATION), &both, PANEL, room);
+    let canvas = Canvas::new(view_from(AZIMUTH, ELEVATION), &both, PANEL, room);
     let highest = scene.skin.iter().map(|place| place.1).fold(0.0, f64::max);
     let pressure = |_: usize, hit: &Hit| match scene.skin.get(hit.part) {
         Some(&(_, pressure)) if pressure > 0.0 => tint(pressure / highest),

@@ -89,12 +89,10 @@ impl Layout {
     /// From the first panel to the last.
     fn panels(&self) -> Area {
         let (across, down) = (self.columns, self.titles.len().div_ceil(self.columns));
-        Area {
-            x: self.left,
-            y: self.heading.height() + self.above_first + self.above,
-            width: across as f64 * (self.size.0 + GAP) - GAP,
-            height: (down - 1) as f64 * self.pitch() + self.size.1,
-        }
+        let top = self.heading.height() + self.above_first + self.above;
+        let width = across as f64 * (self.size.0 + GAP) - GAP;
+        let height = (down - 1) as f64 * self.pitch() + self.size.1;
+        Area::new((self.left, top), (width, height))
     }
 
     fn pitch(&self) -> f64 {
@@ -104,12 +102,9 @@ impl Layout {
     pub fn frame(&self, panel: usize) -> Area {
         let (row, column) = (panel / self.columns, panel % self.columns);
         let panels = self.panels();
-        Area {
-            x: panels.x + column as f64 * (self.size.0 + GAP),
-            y: panels.y + row as f64 * self.pitch(),
-            width: self.size.0,
-            height: self.size.1,
-        }
+        let x = panels.x + column as f64 * (self.size.0 + GAP);
+        let y = panels.y + row as f64 * self.pitch();
+        Area::new((x, y), self.size)
     }
 
     /// The heading, and the titles that all panels have in common.

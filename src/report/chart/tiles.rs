@@ -58,13 +58,7 @@ pub(super) fn draw(view: &View, fill: &str, sign: Option<&str>) -> Result<Drawin
         let here = here.filter(|place| look.fill.data.value(place.row).is_some());
         let tiles: Vec<(Area, Rgb, String)> = here
             .map(|place| {
-                let (x, y) = frame.at(place.x, place.y);
-                let area = Area {
-                    x: x - 0.5 * size.0,
-                    y: y - 0.5 * size.1,
-                    width: size.0,
-                    height: size.1,
-                };
+                let area = Area::around(frame.at(place.x, place.y), size);
                 (area, look.colour(place.row), look.sign(place.row))
             })
             .collect();
@@ -85,13 +79,7 @@ pub(super) fn draw(view: &View, fill: &str, sign: Option<&str>) -> Result<Drawin
 fn draw_sign(drawing: &mut Drawing, place: Area, colour: Rgb, sign: &str) {
     let width = text_width(sign, f64::from(SIGN)) + 4.0;
     let (x, y) = place.at(0.5, 0.5);
-    let ground = Area {
-        x: x - 0.5 * width,
-        y: y - 7.0,
-        width,
-        height: 14.0,
-    };
-    drawing.area(ground, colour);
+    drawing.area(Area::around((x, y), (width, 14.0)), colour);
     let style = TextStyle::new(SIGN).align(Align::Middle);
     drawing.text((x, y + 4.0), sign, style.colour(text_on(colour)));
 }

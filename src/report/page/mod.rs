@@ -15,6 +15,5 @@ mod touches;
 pub use about::{Snapshots, StudyAbout};
 pub use frame::Section;
 pub(super) use frame::definition;
-pub use picture::Picture;
 pub(super) use study::{Beside, page as study_page};
 pub(super) use touches::touches_html;

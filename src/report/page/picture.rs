@@ -1,50 +1,19 @@
 //! Pictures in a page.
 
-use crate::report::drawing::{Drawing, escape};
+use crate::report::drawing::escape;
 
-/// A picture for the page.
-#[derive(Clone, Debug)]
-pub struct Picture {
-    /// Title, and text for those who cannot see it.
-    pub title: String,
-    /// An `<svg>` or `<img>` element.
-    pub element: String,
-}
-
-impl Picture {
-    /// An SVG in the page.
-    pub fn of(drawing: &Drawing, title: &str) -> Self {
-        Self {
-            title: title.to_owned(),
-            element: drawing.svg(title),
-        }
-    }
-
-    /// A PNG in the page, with its width and height in pixels.
-    pub fn of_png(png: &[u8], (width, height): (usize, usize), title: &str) -> Self {
-        let data = base64(png);
-        Self {
-            title: title.to_owned(),
-            element: format!(
-                r#"<img src="data:image/png;base64,{data}" width="{width}" height="{height}" alt="{}">"#,
-                escape(title)
-            ),
-        }
-    }
-}
-
-/// A picture in its frame.
-pub(crate) fn figure(picture: &Picture) -> String {
+/// The element of a PNG file, with its width and height in pixels; the title is for those who cannot see it.
+pub(super) fn png_element(png: &[u8], (width, height): (usize, usize), title: &str) -> String {
+    let (data, title) = (base64(png), escape(title));
     format!(
-        "<figure class=\"card\" tabindex=\"0\" aria-label=\"{}\">{}</figure>",
-        escape(&picture.title),
-        picture.element
+        r#"<img src="data:image/png;base64,{data}" width="{width}" height="{height}" alt="{title}">"#
     )
 }
 
-/// Pictures, one below the other.
-pub(crate) fn figures<'a>(pictures: impl IntoIterator<Item = &'a Picture>) -> String {
-    pictures.into_iter().map(figure).collect()
+/// An `<svg>` or `<img>` element in its frame.
+pub(super) fn figure(element: &str, title: &str) -> String {
+    let title = escape(title);
+    format!("<figure class=\"card\" tabindex=\"0\" aria-label=\"{title}\">{element}</figure>")
 }
 
 /// RFC 4648 with padding.

@@ -3,10 +3,10 @@
 use super::about::StudyAbout;
 use super::data::PageData;
 use super::frame::{Section, html, sentences_html};
-use super::picture::{Picture, figure, figures};
+use super::picture::{figure, png_element};
 use super::provenance::provenance_html;
 use crate::report::drawing::escape;
-use crate::report::study_folder::Found;
+use crate::report::study_folder::{Beyond, Found, NamedPicture};
 use crate::table::{ChartSpec, Column, Scale, Table, short_number};
 
 /// Letters of pictures for readers without script, at most: a study of thousands of rows has megabytes of them.
@@ -19,27 +19,26 @@ const MOST_TABLES: usize = 150_000;
 /// What stands on a page beside tables and charts.
 #[derive(Default)]
 pub(crate) struct Beside {
-    /// The charts as pictures, in their order, for readers without script.
-    pub charts: Vec<Picture>,
+    /// The charts as SVG, in their order, for readers without script.
+    pub charts: Vec<String>,
     /// Names of charts that were not drawn.
     pub left_out: Vec<String>,
-    /// Pictures that are no charts.
-    pub pictures: Vec<Picture>,
-    /// Sections of its own, before the tables.
-    pub sections: Vec<Section>,
+    /// Pictures that are no charts, and sections of its own, which come before the tables.
+    pub beyond: Beyond,
 }
 
 /// The page.
-pub(crate) fn page(about: &StudyAbout, found: &Found, beside: Beside) -> String {
+pub(crate) fn page(about: &StudyAbout, found: &Found, beside: &Beside) -> String {
     let data = PageData::of(found.tables, found.charts);
-    let charts = charts_html(found.charts, &data, &beside);
+    let charts = charts_html(found.charts, &data, beside);
+    let pictures = beside.beyond.pictures.iter().map(picture_html).collect();
     let mut sections = vec![
         Section::new("answer", "Answer", sentences_html(found.answers)),
         Section::new("charts", "Charts", charts),
         Section::new("choices", "What to choose", advice_html(found, &data)),
-        Section::new("pictures", "Pictures", figures(&beside.pictures)),
+        Section::new("pictures", "Pictures", pictures),
     ];
-    sections.extend(beside.sections);
+    sections.extend_from_slice(&beside.beyond.sections);
     let provenance = about.manifest.as_ref().map(provenance_html);
     sections.extend([
         Section::new("tables", "Tables", tables_html(found.tables, &data)),
@@ -49,17 +48,22 @@ pub(crate) fn page(about: &StudyAbout, found: &Found, beside: Beside) -> String 
     html(about, &sections, &foot(about, found.tables), &data.json)
 }
 
+fn picture_html(picture: &NamedPicture) -> String {
+    let title = &picture.title;
+    figure(&png_element(&picture.png, picture.size, title), title)
+}
+
 /// A chart that the script draws, and its picture for readers without.
 fn charts_html(charts: &[ChartSpec], data: &PageData, beside: &Beside) -> String {
     let mut letters = 0;
     let drawn = charts.iter().zip(&beside.charts);
     let held = drawn.filter(|(chart, _)| data.holds(chart.table));
-    let place = |(number, (chart, picture)): (usize, (&ChartSpec, &Picture))| {
+    let place = |(number, (chart, svg)): (usize, (&ChartSpec, &String))| {
         let name = escape(&chart.name);
-        let without = match letters + picture.element.len() <= MOST_PICTURES {
+        let without = match letters + svg.len() <= MOST_PICTURES {
             true => {
-                letters += picture.element.len();
-                figure(picture)
+                letters += svg.len();
+                figure(svg, &chart.title)
             }
             false => format!("<p>This chart lies beside the page: {name}.svg.</p>"),
         };

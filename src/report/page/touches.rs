@@ -5,8 +5,8 @@ use crate::report::colours::heat;
 use crate::report::drawing::escape;
 use crate::report::heat_map::{ColourScale, block_sentence, check_frame, largest_of_blocks};
 use crate::report::page::about::Snapshots;
-use crate::report::page::picture::Picture;
-use crate::report::picture::Picture as Pixels;
+use crate::report::page::picture::png_element;
+use crate::report::picture::Picture;
 use crate::table::short_number;
 use ndarray::Array2;
 
@@ -30,18 +30,14 @@ pub fn touches_html(set: &Snapshots) -> Result<String> {
         escape(&set.caption),
         block_sentence(block)
     );
-    html += &colour_bar(set, scale)?;
+    html += &colour_bar(scale)?;
     html += "<div class=\"touches\">";
     for (name, frame) in set.frames.iter().take(MOST_TOUCHES) {
         let shown = largest_of_blocks(frame, (block, block));
-        let places = shown.mapv(|value| scale.place(value * set.quantity.factor()));
+        let places = shown.mapv(|value| scale.place(value));
         let title = format!("{name}: largest {}", value_words(frame, set));
-        let image = image(&places, &title)?;
-        html += &format!(
-            "<figure>{}<figcaption>{}</figcaption></figure>",
-            image.element,
-            escape(name)
-        );
+        let (image, name) = (image(&places, &title)?, escape(name));
+        html += &format!("<figure>{image}<figcaption>{name}</figcaption></figure>");
     }
     html += "</div>";
     if set.frames.len() > MOST_TOUCHES {
@@ -57,30 +53,29 @@ fn value_words(frame: &Array2<f64>, set: &Snapshots) -> String {
     format!("{} {shown} {}", set.quantity.name(), set.quantity.unit())
 }
 
-fn colour_bar(set: &Snapshots, scale: ColourScale) -> Result<String> {
+fn colour_bar(scale: ColourScale) -> Result<String> {
     let bar = Array2::from_shape_fn((1, 129), |(_, x)| x as f64 / N_COLOURS);
     let image = image(&bar, "dark is low, light is high")?;
     let [low, high] = [scale.low, scale.high].map(|end| format!("{end:.2}").replace('-', "−"));
-    let (name, unit) = (set.quantity.name(), set.quantity.unit());
+    let (name, unit) = (scale.quantity.name(), scale.quantity.unit());
     Ok(format!(
-        "<p class=\"colours\">{name} <span>{low}</span>{}<span>{high} {unit}</span></p>",
-        image.element
+        "<p class=\"colours\">{name} <span>{low}</span>{image}<span>{high} {unit}</span></p>"
     ))
 }
 
-fn image(places: &Array2<f64>, title: &str) -> Result<Picture> {
+fn image(places: &Array2<f64>, title: &str) -> Result<String> {
     let pixels = pixels(places);
     let size = (pixels.width, pixels.height);
-    Ok(Picture::of_png(&pixels.png()?, size, title))
+    Ok(png_element(&pixels.png()?, size, title))
 }
 
 /// A pixel a value between 0 and 1; row 0, the lowest y, at the bottom.
-fn pixels(places: &Array2<f64>) -> Pixels {
+fn pixels(places: &Array2<f64>) -> Picture {
     let (height, width) = places.dim();
     let rows = places.outer_iter().rev();
     // Few colours are small files.
     let colour = |place: &f64| heat((place * N_COLOURS).round() / N_COLOURS);
-    Pixels {
+    Picture {
         width,
         height,
         rgb: rows.flatten().flat_map(colour).collect(),

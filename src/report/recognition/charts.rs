@@ -5,7 +5,7 @@
 
 use super::{CELLS, filled};
 use crate::report::swept::{Setting, Swept, without};
-use crate::table::{Along, At, ChartSpec, Mark, Role, Rule, Shown, Table, Value};
+use crate::table::{Along, ChartSpec, Mark, Role, Rule, Table, Value};
 use std::cmp::Reverse;
 
 /// Classifiers from which on a study is about choosing one.
@@ -39,11 +39,8 @@ pub fn charts(tables: &[Table], pareto: Option<bool>) -> Vec<ChartSpec> {
 /// A line at the share that guessing recognises.
 fn chance(confusion: &Table) -> Rule {
     let n_objects = confusion.groups(&["object"], 0..confusion.n_rows).len();
-    Rule {
-        along: Along::Y,
-        at: At::Value(1.0 / n_objects as f64),
-        words: format!("chance (1 in {n_objects})"),
-    }
+    let words = format!("chance (1 in {n_objects})");
+    Rule::at(Along::Y, 1.0 / n_objects as f64, words)
 }
 
 /// The charts of accuracy that show every cell. Settings of the signal that leave their first values one at a time get charts of their own,
@@ -61,9 +58,9 @@ fn accuracy_charts(cells: &Table, chart: &ChartSpec) -> Vec<ChartSpec> {
             others.all(|other| other.data.key(*row) == other.data.key(0))
         };
         let rows: Vec<usize> = all.iter().copied().filter(is_first).collect();
-        let shown = others.iter().filter_map(|other| shown(cells, other, 0));
+        let others = others.iter().map(|other| &other.column.name);
         let chart = ChartSpec {
-            shown: shown.collect(),
+            shown: others.filter_map(|name| cells.shown(name, 0)).collect(),
             ..chart.clone()
         };
         charts_along(cells, &chart, Some(*setting), &rows)
@@ -87,7 +84,8 @@ fn charts_along(
     let [lines, panels] = [used.first(), used.get(1)].map(|one| one.map(name_of));
     let x = x.map_or_else(|| "ratio".to_owned(), |x| name_of(&x));
     let of_rows = |rows: Vec<usize>| {
-        let here = fixed.iter().filter_map(|one| shown(cells, one, rows[0]));
+        let here = fixed.iter().map(|one| &one.column.name);
+        let here = here.filter_map(|name| cells.shown(name, rows[0]));
         ChartSpec {
             name: format!("accuracy_by_{}{}", word(&x), name_ending(fixed, rows[0])),
             title: title(cells, &x, (used, fixed), rows[0]),
@@ -114,10 +112,6 @@ fn charts_along(
 
 fn name_of(setting: &Setting) -> String {
     setting.column.name.to_string()
-}
-
-fn shown(cells: &Table, setting: &Setting, row: usize) -> Option<Shown> {
-    cells.shown(&setting.column.name, row)
 }
 
 /// `Accuracy by compression, for each pitch and array size (noise 10 %)`.
@@ -197,37 +191,27 @@ fn confusion_chart(cells: &Table, confusion: &Table) -> Option<ChartSpec> {
     let accuracy = cells.numbers("accuracy")?;
     let best = (0..accuracy.len()).reduce(|a, b| if accuracy[b] > accuracy[a] { b } else { a })?;
     let cell = cells.number("cell", best);
-    let is_there = confusion.numbers("cell")?.contains(&cell);
+    let mut cells_there = confusion.numbers("cell")?.iter();
+    let row = cells_there.position(|known| *known == cell)?;
     let all: Vec<usize> = (0..cells.n_rows).collect();
     let swept = Swept::of(cells, &all);
-    let words = [
-        swept.condition_words(best),
-        swept.choice_words(best),
-        format!("accuracy {:.2}", accuracy[best]),
-    ];
-    let words: Vec<&str> = words
-        .iter()
-        .map(String::as_str)
-        .filter(|words| !words.is_empty())
-        .collect();
-    is_there.then(|| ChartSpec {
-        name: "confusion".to_owned(),
-        title: "What was taken for what".to_owned(),
+    let mut words = vec![swept.condition_words(best), swept.choice_words(best)];
+    words.retain(|words| !words.is_empty());
+    words.push(format!("accuracy {:.2}", accuracy[best]));
+    Some(ChartSpec {
         note: format!(
             "Rows were touched, columns are what they were taken for, all trials together. Of the most accurate cell ({}).",
             words.join(", ")
         ),
-        table: "confusion.csv",
-        shown: vec![Shown {
-            column: "cell".to_owned(),
-            value: cell.into(),
-        }],
-        x: "predicted".to_owned(),
-        y: "object".to_owned(),
+        shown: confusion.shown("cell", row).into_iter().collect(),
         mark: Mark::Tiles {
             fill: "count".to_owned(),
             sign: None,
         },
-        ..ChartSpec::default()
+        ..confusion.chart(
+            "confusion",
+            "What was taken for what",
+            ("object", "predicted"),
+        )
     })
 }

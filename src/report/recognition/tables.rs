@@ -160,17 +160,10 @@ fn cells_of(tables: &[Table]) -> Option<Table> {
     let found = |table: &Table, column| summary.look_up(table, "cell", column);
     let (comparison, pareto) = (of(COMPARISON.name())?, of(PARETO.name())?);
     let product = |name: &'static str, words: &'static str, factors: &[&str]| {
-        let of_row = |row| {
-            factors
-                .iter()
-                .map(|name| summary.number(name, row))
-                .product()
-        };
+        let numbers = |row| factors.iter().map(move |name| summary.number(name, row));
+        let products = (0..summary.n_rows).map(|row| numbers(row).product());
         let column = Column::new(name, Role::Cost, words, "", Scale::Log);
-        Some((
-            column,
-            Data::Numbers((0..summary.n_rows).map(of_row).collect()),
-        ))
+        Some((column, Data::Numbers(products.collect())))
     };
     let more = [
         found(comparison, "difference").map(|(column, data)| {

@@ -100,7 +100,7 @@ pub fn write_animation(
         }
     })?;
     let scale = ColourScale::over(&range, quantity);
-    let skin = SkinPicture::new(&recording.header().patches[patch], quantity, scale)?;
+    let skin = SkinPicture::new(&recording.header().patches[patch], scale)?;
     let failed = |error: EncodingError| Error::io(path, "encode", std::io::Error::other(error));
     let mut bytes = Vec::new();
     let mut film = start(&mut bytes, skin.size(), shown.len()).map_err(failed)?;

@@ -3,7 +3,7 @@
 use super::header::RecordedPatch;
 use super::unrolled::unroll;
 use crate::report::colours::{GRID, INK};
-use crate::report::drawing::{Area, Drawing, Stroke};
+use crate::report::drawing::{Area, Drawing, Point, Stroke};
 use crate::report::heat_map::{block_sentence, grid_sentence};
 use crate::report::picture_axes::{Side, draw_map_axis, draw_scale_bar};
 use crate::world::Grid;
@@ -20,7 +20,7 @@ const TOP: f64 = 76.0;
 const LARGEST_DISC: f64 = 24.0;
 
 /// The cells of a skin, pixels from the top left corner of the drawing.
-pub(super) struct Cells {
+pub(in crate::report) struct Cells {
     /// All cells.
     pub area: Area,
     /// The middle of each: of a grid row by row, else one a taxel.
@@ -39,27 +39,25 @@ pub(super) struct Cells {
 impl Cells {
     pub fn of(patch: &RecordedPatch) -> Self {
         match &patch.grid {
-            Some(grid) => Self::of_grid(grid),
+            Some(grid) => {
+                let largest = grid.nx.max(grid.ny);
+                let block = largest.div_ceil(MOST_CELLS);
+                let side = whole_pixels(SIDE, largest.div_ceil(block));
+                Self::of_grid(grid, block, side, (LEFT, TOP))
+            }
             None => Self::of_skin(patch),
         }
     }
 
-    fn of_grid(grid: &Grid) -> Self {
-        let block = grid.nx.max(grid.ny).div_ceil(MOST_CELLS);
+    /// Of blocks of a grid's taxels, from a top left corner on, so many pixels wide and high each.
+    pub fn of_grid(grid: &Grid, block: usize, side: f64, (x, y): Point) -> Self {
         let (rows, columns) = (grid.ny.div_ceil(block), grid.nx.div_ceil(block));
-        // Whole pixels a cell: no seams between neighbours.
-        let side = (SIDE / rows.max(columns) as f64).floor().max(1.0);
-        let area = Area {
-            x: LEFT,
-            y: TOP,
-            width: side * columns as f64,
-            height: side * rows as f64,
-        };
+        let area = Area::new((x, y), (side * columns as f64, side * rows as f64));
         let place = |cell: usize| {
             let (row, column) = ((cell / columns) as f64, (cell % columns) as f64);
             DVec2::new(
-                LEFT + (column + 0.5) * side,
-                TOP + area.height - (row + 0.5) * side,
+                x + (column + 0.5) * side,
+                y + area.height - (row + 0.5) * side,
             )
         };
         let size = grid_sentence((grid.nx, grid.ny), grid.pitch * 1e3);
@@ -91,12 +89,7 @@ impl Cells {
         };
         let plural = if places.len() == 1 { "" } else { "s" };
         Self {
-            area: Area {
-                x: LEFT,
-                y: TOP,
-                width: scale * size.x,
-                height: scale * size.y,
-            },
+            area: Area::new((LEFT, TOP), (scale * size.x, scale * size.y)),
             places: places.iter().map(place).collect(),
             radius: scale * radius,
             distance: f64::hypot,
@@ -108,26 +101,24 @@ impl Cells {
 
     /// What is around the cells: axes in millimetres of a grid, a scale bar of another skin.
     pub fn draw_frame(&self, drawing: &mut Drawing, is_grid: bool) {
+        let area = self.area;
         if is_grid {
-            for (side, pixels) in [
-                (Side::Below, self.area.width),
-                (Side::Left, self.area.height),
-            ] {
-                draw_map_axis(
-                    drawing,
-                    self.area,
-                    side,
-                    pixels / self.pixels_per_metre * 1e3,
-                );
-            }
-            drawing.frame(self.area, Stroke::new(INK, 1.0));
+            let millimetres = |pixels: f64| pixels / self.pixels_per_metre * 1e3;
+            draw_map_axis(drawing, area, Side::Below, millimetres(area.width));
+            draw_map_axis(drawing, area, Side::Left, millimetres(area.height));
+            drawing.frame(area, Stroke::new(INK, 1.0));
             return;
         }
-        drawing.area(self.area, GRID);
-        let (x, y) = self.area.at(0.5, 0.0);
-        let longest = 0.3 * self.area.width;
+        drawing.area(area, GRID);
+        let (x, y) = area.at(0.5, 0.0);
+        let longest = 0.3 * area.width;
         draw_scale_bar(drawing, (x, y + 26.0), self.pixels_per_metre, longest);
     }
+}
+
+/// Pixels of each of so many cells in a row that have some room: whole ones, so that no seams part neighbours.
+pub(in crate::report) fn whole_pixels(room: f64, n_cells: usize) -> f64 {
+    (room / n_cells as f64).floor().max(1.0)
 }
 
 /// The median of distances to the nearest taxel, metres; of about 200 taxels, since it is a look, no number.

@@ -23,9 +23,9 @@
 //! [`skin_picture`] and [`animation`] draw.
 
 pub mod animation;
-mod cells;
+pub(super) mod cells;
 mod header;
-mod pixels;
+pub(super) mod pixels;
 mod reader;
 pub mod skin_picture;
 mod summary;

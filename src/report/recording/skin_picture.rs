@@ -10,7 +10,6 @@ use crate::report::heat_map::{ColourScale, largest_of_blocks};
 pub use crate::report::picture::Picture;
 use crate::report::picture_axes::draw_colour_bar;
 use crate::report::text_width::text_width;
-use crate::signal::Quantity;
 use crate::world::Grid;
 use ndarray::ArrayView2;
 
@@ -23,7 +22,6 @@ const FINE: f64 = 2.0;
 pub struct SkinPicture {
     background: Picture,
     cells: Cells,
-    quantity: Quantity,
     scale: ColourScale,
     n_taxels: usize,
     grid: Option<Grid>,
@@ -35,14 +33,13 @@ impl SkinPicture {
     /// A grid is drawn as a heat map with axes in millimetres. Of another skin each taxel is a dot: a flat one is seen from
     /// above, a cylinder unrolled, a part of a sphere flattened about its middle; another is seen from the side to which its
     /// axes point, and from behind. The picture says which, and has a scale bar.
-    pub fn new(patch: &RecordedPatch, quantity: Quantity, scale: ColourScale) -> Result<Self> {
+    pub fn new(patch: &RecordedPatch, scale: ColourScale) -> Result<Self> {
         let cells = Cells::of(patch);
-        let mut drawing = paper(&patch.name, &cells, quantity, scale);
+        let mut drawing = paper(&patch.name, &cells, scale);
         cells.draw_frame(&mut drawing, patch.grid.is_some());
         Ok(Self {
             background: drawing.picture()?,
             cells,
-            quantity,
             scale,
             n_taxels: patch.n_taxels(),
             grid: patch.grid,
@@ -79,7 +76,7 @@ impl SkinPicture {
     }
 
     fn colours(&self, values: &[f64]) -> Vec<Rgb> {
-        let colour = |value: &f64| self.scale.colour(*value, self.quantity);
+        let colour = |value: &f64| self.scale.colour(*value);
         match self.grid {
             Some(grid) if self.cells.block > 1 => {
                 let frame = ArrayView2::from_shape((grid.ny, grid.nx), values)
@@ -94,20 +91,16 @@ impl SkinPicture {
 }
 
 /// Title, a line below it, and the colour bar.
-fn paper(name: &str, cells: &Cells, quantity: Quantity, scale: ColourScale) -> Drawing {
+fn paper(name: &str, cells: &Cells, scale: ColourScale) -> Drawing {
     let (area, below) = (cells.area, &cells.sentence);
-    let bar = Area {
-        x: area.x + area.width + 18.0,
-        width: 16.0,
-        height: area.height.max(120.0),
-        ..area
-    };
+    let corner = (area.x + area.width + 18.0, area.y);
+    let bar = Area::new(corner, (16.0, area.height.max(120.0)));
     let text_right = LEFT + text_width(below, 11.0).max(text_width(name, 15.0)) + 16.0;
     let width = (bar.x + 92.0).max(text_right).max(LEFT + NOTE.2);
     let mut drawing = Drawing::new(width, area.y + bar.height + 54.0);
     drawing.bold_text((LEFT, 22.0), name, TextStyle::new(13).colour(INK));
     drawing.text((LEFT, 40.0), below, TextStyle::new(11).colour(MUTED));
-    draw_colour_bar(&mut drawing, scale, quantity, bar);
+    draw_colour_bar(&mut drawing, scale, bar);
     drawing
 }
 

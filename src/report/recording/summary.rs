@@ -2,7 +2,7 @@
 
 use super::reader::RecordingFile;
 use crate::error::Result;
-use crate::report::scene_summary::table;
+use crate::report::terminal::rows_text;
 use crate::signal::Quantity;
 use crate::table::short_number;
 
@@ -21,11 +21,9 @@ pub fn recording_table(file: &mut RecordingFile) -> Result<String> {
             "at frame",
             "peak force (N)",
         ];
-        let mut table = table(&header, &[0, 2, 3]);
-        for patch in 0..n_patches {
-            table.add_row(row(file, patch)?);
-        }
-        text += &format!("\n{table}\n");
+        let rows = (0..n_patches).map(|patch| row(file, patch));
+        let rows = rows.collect::<Result<Vec<_>>>()?;
+        text += &format!("\n{}\n", rows_text(&header, &[0, 2, 3], rows));
     }
     let header = file.header();
     if !header.objects.is_empty() {
@@ -38,7 +36,7 @@ pub fn recording_table(file: &mut RecordingFile) -> Result<String> {
 }
 
 /// A patch and its largest values over all frames.
-fn row(file: &mut RecordingFile, patch: usize) -> Result<[String; 8]> {
+fn row(file: &mut RecordingFile, patch: usize) -> Result<Vec<String>> {
     let (mut most_touched, mut peak_frame) = (0, 0);
     let (mut peak_deflection, mut peak_force) = (0.0, 0.0);
     file.each_frame(patch, Quantity::Deflection, |frame, values| {
@@ -61,7 +59,7 @@ fn row(file: &mut RecordingFile, patch: usize) -> Result<[String; 8]> {
         0 => "–".to_owned(),
         _ => text,
     };
-    Ok([
+    Ok(vec![
         patch.name.clone(),
         patch.n_taxels().to_string(),
         layout,

@@ -94,16 +94,11 @@ fn cylinder(centers: &[DVec3], axes: &[DVec3]) -> Option<Unrolled> {
         };
         DVec2::new(radius * angle, center.dot(along))
     });
-    let sentence = format!(
-        "unrolled from {} cylinder of radius {} mm; up: {}, middle: {}",
-        hollow(radius),
-        short_number(radius.abs() * 1e3),
-        direction(along),
-        direction(front)
-    );
+    let shape = round("cylinder", radius);
+    let (up, middle) = (direction(along), direction(front));
     Some(Unrolled {
         places: places.collect(),
-        sentence,
+        sentence: format!("unrolled from {shape}; up: {up}, middle: {middle}"),
     })
 }
 
@@ -119,15 +114,10 @@ fn cap(centers: &[DVec3], axes: &[DVec3]) -> Option<Unrolled> {
         let heading = (view * axis).truncate().normalize_or_zero();
         radius * polar(axis) * heading
     });
-    let sentence = format!(
-        "flattened from {} sphere of radius {} mm; middle: {}",
-        hollow(radius),
-        short_number(radius.abs() * 1e3),
-        direction(middle)
-    );
+    let (shape, middle) = (round("sphere", radius), direction(middle));
     Some(Unrolled {
         places: places.collect(),
-        sentence,
+        sentence: format!("flattened from {shape}; middle: {middle}"),
     })
 }
 
@@ -171,8 +161,11 @@ fn larger(a: f64, b: f64) -> f64 {
     if b.abs() > a.abs() { b } else { a }
 }
 
-fn hollow(radius: f64) -> &'static str {
-    if radius < 0.0 { "the inside of a" } else { "a" }
+/// `a sphere of radius 20 mm`; of a negative radius, its inside.
+fn round(shape: &str, radius: f64) -> String {
+    let side = if radius < 0.0 { "the inside of " } else { "" };
+    let radius_mm = short_number(radius.abs() * 1e3);
+    format!("{side}a {shape} of radius {radius_mm} mm")
 }
 
 /// `+z` within half a degree, or three components.
