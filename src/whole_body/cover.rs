@@ -1,11 +1,12 @@
-//! A robot covered in skin: patches on the sides of its cylinders and on the half balls at their ends.
+//! A robot covered in skin: patches on the sides of its cylinders, on the half balls or the flat ends of these, and on boxes.
 
 use super::body_patch::{BodyPatch, WholeBody};
+use super::flat_ends::{FlatEnd, flat_ends};
 use super::half_balls::{HalfBall, half_balls};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
-use crate::world::{Dome, Extrusion, LinkGeometry, Robot, ShapeRole, Taxel};
-use glam::{DQuat, DVec3};
+use crate::world::{Dome, Extrusion, Grid, Layout, LinkGeometry, Robot, ShapeRole, Taxel};
+use glam::{DMat3, DQuat, DVec3};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// A robot's skin, and where its patches are on the links.
@@ -32,6 +33,13 @@ struct Cover {
     side: f64,
 }
 
+impl Cover {
+    /// Patches along a length.
+    fn parts(&self, length: f64) -> f64 {
+        (length / self.side).round().max(1.0)
+    }
+}
+
 /// Patches so far.
 #[derive(Default)]
 struct Covered {
@@ -39,63 +47,77 @@ struct Covered {
     mounts: Vec<Mount>,
 }
 
-/// The side of a cylinder on a link.
-struct Side<'a> {
+/// A shape on a link.
+struct On<'a> {
     name: &'a str,
     link: usize,
-    link_from_cylinder: Pose,
-    radius: f64,
-    length: f64,
+    link_from_shape: Pose,
 }
 
 impl CoveredRobot {
-    /// Covers the cylinders, capsules and balls that a robot's links touch with, cut into equal patches of about `side` by `side`
-    /// metres, a taxel about every `pitch` metres, across the seams too.
+    /// Covers the cylinders, capsules, balls and boxes that a robot's links touch with, cut into equal patches of about `side` by `side`
+    /// metres, a taxel about every `pitch` metres, across the seams too (on boxes, half to one and a half of it there).
     ///
     /// - The side of a cylinder is cut around and along. Patches are called by their link, their ring from its lower end and their
-    ///   place around it from +x, both from 1: `trunk 2.3`; a link's second cylinder begins with `trunk'`.
+    ///   place around it from +x, both from 1: `trunk 2.3`; a link's second shape begins with `trunk'`.
     /// - A ball at the end of a cylinder of its radius, and the end of a capsule, is covered on its outer half, any other ball
     ///   wholly; each half is cut from pole to rim: `head cap 2.3` is the third part of the second half ball of the file. A ball
     ///   within a larger one of another link, such as an elbow's inner one, is never touched, and left out.
+    /// - Each face of a box is a grid of flat patches: `palm face 5 1.2`, the faces towards +x, −x, +y, −y, +z, −z.
     ///
-    /// Flat ends and boxes stay bare.
+    /// Flat ends of cylinders stay bare.
     ///
     /// # Errors
     /// A robot with nothing to cover, a taxel that cannot be, or a pitch or side for which a patch has no or too many taxels.
     pub fn new(robot: &Robot, taxel: Taxel, pitch: f64, side: f64) -> Result<Self> {
-        let cover = Cover { taxel, pitch, side };
+        Self::of(robot, Cover { taxel, pitch, side }, &[])
+    }
+
+    /// The same, with a round patch of staggered rows on each flat end of a cylinder, such as `palm end 1`; but for those that lie on
+    /// another cylinder, ball or box, all joints at zero, and are never touched.
+    ///
+    /// # Errors
+    /// Those of [`new`](Self::new).
+    pub fn with_flat_ends(robot: &Robot, taxel: Taxel, pitch: f64, side: f64) -> Result<Self> {
+        Self::of(robot, Cover { taxel, pitch, side }, &flat_ends(robot)?)
+    }
+
+    fn of(robot: &Robot, cover: Cover, ends: &[FlatEnd]) -> Result<Self> {
         let mut covered = Covered::default();
         let half_balls = half_balls(robot)?;
         for (number, link) in robot.links().iter().enumerate() {
             let mut name = link.name.clone();
-            for shape in &link.shapes {
-                let (LinkGeometry::Cylinder { radius, length }
-                | LinkGeometry::Capsule { radius, length }) = shape.geometry
-                else {
-                    continue;
+            let touching = link.shapes.iter();
+            for shape in touching.filter(|shape| shape.role == ShapeRole::Collision) {
+                let on = On {
+                    name: &name,
+                    link: number,
+                    link_from_shape: shape.origin,
                 };
-                if shape.role == ShapeRole::Collision {
-                    let side_of = Side {
-                        name: &name,
-                        link: number,
-                        link_from_cylinder: shape.origin,
-                        radius,
-                        length,
-                    };
-                    covered.add_side(&side_of, cover)?;
-                    name.push('\'');
+                match shape.geometry {
+                    LinkGeometry::Cylinder { radius, length }
+                    | LinkGeometry::Capsule { radius, length } => {
+                        covered.add_side(&on, (radius, length), cover)?;
+                    }
+                    LinkGeometry::Box { size } => covered.add_faces(&on, size, cover)?,
+                    _ => continue,
                 }
+                name.push('\'');
             }
             let of_link = half_balls.iter().filter(|half| half.link == number);
             for (cap, half) in of_link.enumerate() {
                 covered.add_half_ball(&format!("{} cap {}", link.name, cap + 1), half, cover)?;
             }
+            let of_link = ends.iter().filter(|end| end.link == number);
+            for (place, end) in of_link.enumerate() {
+                covered.add_end(&format!("{} end {}", link.name, place + 1), end, cover)?;
+            }
         }
         if covered.patches.is_empty() {
             return Err(Error::input(
                 format!("robot {}", robot.name()),
-                "no cylinder or ball to cover",
-                "a link with a collision cylinder, capsule or sphere",
+                "nothing to cover",
+                "a link with a collision cylinder, capsule, sphere or box",
             ));
         }
         Ok(Self {
@@ -129,29 +151,80 @@ impl CoveredRobot {
 }
 
 impl Covered {
-    fn add_side(&mut self, of: &Side, cover: Cover) -> Result<()> {
-        let Cover { taxel, pitch, side } = cover;
-        let parts = |length: f64| (length / side).round().max(1.0);
-        let (n_around, n_along) = (parts(TAU * of.radius), parts(of.length));
+    fn add(&mut self, patch: BodyPatch, link: usize, link_from_patch: Pose) {
+        self.patches.push(patch);
+        self.mounts.push(Mount {
+            link,
+            link_from_patch,
+        });
+    }
+
+    fn add_side(&mut self, on: &On, (radius, length): (f64, f64), cover: Cover) -> Result<()> {
+        let Cover { taxel, pitch, .. } = cover;
+        let (n_around, n_along) = (cover.parts(TAU * radius), cover.parts(length));
         // Half a pitch is left at each seam, so that taxels go on across it.
-        let arc = TAU / n_around - pitch / of.radius;
-        let length = of.length / n_along - pitch;
-        let part = Extrusion::cylinder(of.radius, length.max(0.0), arc, pitch)
-            .map_err(|error| error.under(format!("skin of {}, ", of.name)))?;
+        let arc = TAU / n_around - pitch / radius;
+        let part_length = length / n_along - pitch;
+        let part = Extrusion::cylinder(radius, part_length.max(0.0), arc, pitch)
+            .map_err(|error| error.under(format!("skin of {}, ", on.name)))?;
         for ring in 0..n_along as usize {
-            let height = ((ring as f64 + 0.5) / n_along - 0.5) * of.length;
+            let height = ((ring as f64 + 0.5) / n_along - 0.5) * length;
             for place in 0..n_around as usize {
                 let turn = DQuat::from_rotation_z(TAU * place as f64 / n_around);
                 let cylinder_from_patch = Pose::new(turn, height * DVec3::Z);
-                let name = format!("{} {}.{}", of.name, ring + 1, place + 1);
-                self.patches
-                    .push(BodyPatch::new(name, part.clone(), taxel)?);
-                self.mounts.push(Mount {
-                    link: of.link,
-                    link_from_patch: of.link_from_cylinder.compose(&cylinder_from_patch),
-                });
+                let name = format!("{} {}.{}", on.name, ring + 1, place + 1);
+                let patch = BodyPatch::new(name, part.clone(), taxel)?;
+                self.add(
+                    patch,
+                    on.link,
+                    on.link_from_shape.compose(&cylinder_from_patch),
+                );
             }
         }
+        Ok(())
+    }
+
+    /// Each face of a box, its x and y along the two axes that follow its own.
+    fn add_faces(&mut self, on: &On, size: DVec3, cover: Cover) -> Result<()> {
+        for (face, (axis, side)) in (0..6).map(|face| (face, (face / 2, face % 2))) {
+            let outwards = DVec3::AXES[axis] * if side == 0 { 1.0 } else { -1.0 };
+            let along = DVec3::AXES[(axis + 1) % 3];
+            let turn = DMat3::from_cols(along, outwards.cross(along), outwards);
+            let box_from_face = Pose::new(DQuat::from_mat3(&turn), 0.5 * size[axis] * outwards);
+            let link_from_face = on.link_from_shape.compose(&box_from_face);
+            let [width, height] = [1, 2].map(|next| size[(axis + next) % 3]);
+            let (n_x, n_y) = (cover.parts(width), cover.parts(height));
+            let taxels = |length: f64| (length / cover.pitch).round().max(1.0) as usize;
+            let grid = Grid {
+                nx: taxels(width / n_x),
+                ny: taxels(height / n_y),
+                pitch: cover.pitch,
+            };
+            let name = format!("{} face {}", on.name, face + 1);
+            let part = Extrusion::grid(&grid);
+            let part = part.map_err(|error| error.under(format!("skin of {name}, ")))?;
+            let place = |k: usize, n: f64, length: f64| ((k as f64 + 0.5) / n - 0.5) * length;
+            for row in 0..n_y as usize {
+                for column in 0..n_x as usize {
+                    let (x, y) = (place(column, n_x, width), place(row, n_y, height));
+                    let face_from_patch = Pose::from_translation(DVec3::new(x, y, 0.0));
+                    let name = format!("{name} {}.{}", row + 1, column + 1);
+                    let patch = BodyPatch::new(name, part.clone(), cover.taxel)?;
+                    self.add(patch, on.link, link_from_face.compose(&face_from_patch));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Half a pitch is left to the rim.
+    fn add_end(&mut self, name: &str, end: &FlatEnd, cover: Cover) -> Result<()> {
+        let radius = (end.radius - 0.5 * cover.pitch).max(0.5 * end.radius);
+        let layout = Layout::disc(radius, cover.pitch);
+        let layout = layout.map_err(|error| error.under(format!("skin of {name}, ")))?;
+        let (layout, _) = layout.with_neighbours_together();
+        let patch = BodyPatch::draped(name, &layout, cover.taxel)?;
+        self.add(patch, end.link, end.link_from_end);
         Ok(())
     }
 
@@ -164,12 +237,9 @@ impl Covered {
         for place in 0..n_around as usize {
             let turn = DQuat::from_rotation_z(TAU * place as f64 / n_around);
             let name = format!("{name}.{}", place + 1);
-            self.patches
-                .push(BodyPatch::dome(name, part.clone(), taxel)?);
-            self.mounts.push(Mount {
-                link: half.link,
-                link_from_patch: half.link_from_ball.compose(&Pose::from_rotation(turn)),
-            });
+            let patch = BodyPatch::dome(name, part.clone(), taxel)?;
+            let link_from_patch = half.link_from_ball.compose(&Pose::from_rotation(turn));
+            self.add(patch, half.link, link_from_patch);
         }
         Ok(())
     }

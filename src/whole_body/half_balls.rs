@@ -81,7 +81,7 @@ fn of_link(link: usize, shapes: &[LinkShape]) -> Vec<HalfBall> {
 }
 
 /// The ends of a cylinder at a pose: centre, and unit outwards.
-fn ends(link_from_cylinder: &Pose, length: f64) -> [(DVec3, DVec3); 2] {
+pub(super) fn ends(link_from_cylinder: &Pose, length: f64) -> [(DVec3, DVec3); 2] {
     [-1.0, 1.0].map(|side| {
         let outwards = side * DVec3::Z;
         (

@@ -46,6 +46,7 @@ mod body_state;
 mod cover;
 mod dome_patch;
 mod draped_patch;
+mod flat_ends;
 mod half_balls;
 mod lanes;
 mod object_press;

@@ -473,7 +473,7 @@ fn a_robot_with_nothing_to_cover_and_a_pitch_that_is_none_are_refused() {
     let bare = CoveredRobot::new(&Robot::floating("ghost"), TAXEL, 1e-3, 0.1).unwrap_err();
     assert!(
         bare.to_string()
-            .starts_with("robot ghost: no cylinder or ball to cover; "),
+            .starts_with("robot ghost: nothing to cover; "),
         "{bare}"
     );
     let tiny = Dome::new(1e-3, 1.0, 1.0, 1e-4).unwrap();
@@ -490,4 +490,101 @@ fn a_robot_with_nothing_to_cover_and_a_pitch_that_is_none_are_refused() {
             .starts_with("skin of pelvis, taxel pitch: -1 m; "),
         "{error}"
     );
+}
+
+/// A hand of a box and two fingers: one ends flat and in the open, one in a ball; both begin within the box.
+const HAND: &str = r#"<robot name="hand"><link name="palm">
+    <collision><origin xyz="0 0 0.02"/><geometry><box size="0.08 0.03 0.1"/></geometry></collision>
+    <collision><origin xyz="0.02 0 0.09"/><geometry><cylinder radius="0.01" length="0.06"/></geometry></collision>
+    <collision><origin xyz="-0.02 0 0.09"/><geometry><cylinder radius="0.01" length="0.06"/></geometry></collision>
+    <collision><origin xyz="-0.02 0 0.12"/><geometry><sphere radius="0.01"/></geometry></collision>
+</link></robot>"#;
+
+#[test]
+fn faces_of_boxes_are_covered_and_flat_ends_in_the_open_if_they_are_asked_for() {
+    let hand = Robot::from_urdf("hand.urdf", HAND).unwrap();
+    let pitch = 2e-3;
+    let bare = CoveredRobot::new(&hand, TAXEL, pitch, 0.04).unwrap();
+    let covered = CoveredRobot::with_flat_ends(&hand, TAXEL, pitch, 0.04).unwrap();
+    let names = |covered: &CoveredRobot, part: &str| -> Vec<String> {
+        let patches = covered.body().patches().iter();
+        let names = patches.map(|patch| patch.name().to_owned());
+        names.filter(|name| name.contains(part)).collect()
+    };
+    assert_eq!(names(&bare, " end "), [""; 0]);
+    assert_eq!(names(&covered, " end "), ["palm end 1"]);
+    // 30 mm are whole, 100 mm are cut in three.
+    let face = ["palm face 1 1.1", "palm face 1 2.1", "palm face 1 3.1"];
+    assert_eq!(names(&bare, "face 1 "), face);
+    assert_eq!(names(&covered, "face 1 "), face);
+    let mut poses = Vec::new();
+    covered.patch_poses(&[Pose::IDENTITY], &mut poses);
+    let mut n_on_faces = [0; 6];
+    for (patch, pose) in covered.body().patches().iter().zip(&poses) {
+        let layout = patch.layout();
+        for (&center, &axis) in layout.centers().iter().zip(layout.axes()) {
+            let (center, axis) = (pose.transform_point(center), pose.transform_vector(axis));
+            if patch.name().contains(" end ") {
+                assert!((center.z - 0.12).abs() < 1e-12 && axis.distance(DVec3::Z) < 1e-12);
+                assert!(center.truncate().distance(DVec3::X.truncate() * 0.02) < 0.01);
+            } else if patch.name().contains(" face ") {
+                let from_middle = center - 0.02 * DVec3::Z;
+                let half = 0.5 * DVec3::new(0.08, 0.03, 0.1);
+                let out = from_middle.dot(axis);
+                assert!(
+                    (out - half.dot(axis.abs())).abs() < 1e-12,
+                    "on the face: {out}"
+                );
+                assert!((from_middle.abs() - half).max_element() < 1e-12);
+                let face = 2 * axis.abs().max_position() + usize::from(axis.element_sum() < 0.0);
+                n_on_faces[face] += 1;
+                assert!(patch.name().contains(&format!(" face {} ", face + 1)));
+            }
+        }
+    }
+    for (face, n) in n_on_faces.into_iter().enumerate() {
+        let [width, height] = [1, 2].map(|next| [0.08, 0.03, 0.1][(face / 2 + next) % 3]);
+        let expected = width * height / (pitch * pitch);
+        assert!(
+            (f64::from(n) / expected - 1.0).abs() < 0.05,
+            "face {face}: {n}"
+        );
+    }
+}
+
+#[test]
+fn a_ball_on_a_box_and_on_a_flat_end_is_felt_as_by_any_skin() {
+    let hand = Robot::from_urdf("hand.urdf", HAND).unwrap();
+    let covered = CoveredRobot::with_flat_ends(&hand, TAXEL, 2e-3, 0.04).unwrap();
+    let body = covered.body();
+    let mut poses = Vec::new();
+    covered.patch_poses(&[Pose::IDENTITY], &mut poses);
+    let mut state = BodyState::at_rest(body);
+    state.place(body, &poses);
+    let on_end = DVec3::new(0.021, 1e-3, 0.1295);
+    let on_face = DVec3::new(0.0, -0.0245, 0.03);
+    for place in [on_end, on_face] {
+        let ball = SphereUnion::new(vec![Sphere {
+            center: DVec3::ZERO,
+            radius: 0.01,
+        }])
+        .unwrap();
+        let clusters = [SphereClusters::new(&ball)];
+        let contact = state.press(body, &clusters, &[Pose::from_translation(place)], DT);
+        assert!(contact.n_touched > 4, "{place}: {contact:?}");
+        for (number, (patch, pose)) in body.patches().iter().zip(&poses).enumerate() {
+            let layout = patch.layout();
+            let center = pose.inverse().transform_point(place);
+            for (taxel, found) in state.deflections(number).iter().enumerate() {
+                let from = center - layout.centers()[taxel];
+                let height = from.dot(layout.axes()[taxel]);
+                let left =
+                    (0.01 + TAXEL.radius).powi(2) - (from.length_squared() - height * height);
+                let is_pushed = left > 0.0 && height >= -TAXEL.stroke - TAXEL.radius;
+                let needed = if is_pushed { left.sqrt() - height } else { 0.0 };
+                let expected = needed.clamp(0.0, TAXEL.stroke);
+                assert!((found - expected).abs() < 1e-12, "{} {taxel}", patch.name());
+            }
+        }
+    }
 }

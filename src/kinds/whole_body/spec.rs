@@ -36,6 +36,9 @@ pub struct WholeBodySpec {
     /// Side of a patch, about, mm.
     #[serde(default = "number::<100>")]
     pub patch_mm: f64,
+    /// Whether flat ends of cylinders are covered, too.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub flat_ends: bool,
     /// ρ, mm; half the pitch when left out.
     pub taxel_radius_mm: Option<f64>,
     /// s, mm.

@@ -192,7 +192,11 @@ impl WholeBodyPlan {
 
     /// The robot under skin with so many metres between taxels.
     pub(super) fn cover(&self, pitch: f64) -> Result<CoveredRobot> {
-        CoveredRobot::new(&self.robot, self.taxel, pitch, self.side)
+        let cover = match self.spec.whole_body.flat_ends {
+            true => CoveredRobot::with_flat_ends,
+            false => CoveredRobot::new,
+        };
+        cover(&self.robot, self.taxel, pitch, self.side)
     }
 
     /// Where everything of the robot is.

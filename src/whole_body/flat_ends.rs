@@ -1,0 +1,78 @@
+//! The flat ends of a robot's cylinders that can be touched.
+
+use super::half_balls::ends;
+use crate::error::Result;
+use crate::geometry::Pose;
+use crate::world::{LinkGeometry, LinkShape, Robot, ShapeRole};
+use glam::{DQuat, DVec3};
+
+/// A point this far outside of a shape is meant to be on it, metres.
+const SAME: f64 = 1e-6;
+
+/// The end of a cylinder on a link.
+pub(super) struct FlatEnd {
+    pub link: usize,
+    /// Its middle, and +z outwards.
+    pub link_from_end: Pose,
+    /// Metres.
+    pub radius: f64,
+}
+
+/// Link by link, each link's in the order of the file, the lower end first. An end whose middle is in or on another shape that touches, all
+/// joints at zero, is left out: a ball makes it round, or a link goes on there.
+pub(super) fn flat_ends(robot: &Robot) -> Result<Vec<FlatEnd>> {
+    let world_from_links = robot.forward(&Pose::IDENTITY, &vec![0.0; robot.n_positions()])?;
+    let links = robot.links().iter().zip(&world_from_links).enumerate();
+    let shapes: Vec<(usize, Pose, &LinkShape)> = links
+        .flat_map(|(number, (link, world_from_link))| {
+            let touching = link.shapes.iter();
+            let touching = touching.filter(|shape| shape.role == ShapeRole::Collision);
+            touching.map(move |shape| (number, world_from_link.compose(&shape.origin), shape))
+        })
+        .collect();
+    let mut found = Vec::new();
+    for (place, (link, world_from_shape, shape)) in shapes.iter().enumerate() {
+        let LinkGeometry::Cylinder { radius, length } = shape.geometry else {
+            continue;
+        };
+        let in_world = ends(world_from_shape, length);
+        for ((middle, outwards), (in_world, _)) in
+            ends(&shape.origin, length).into_iter().zip(in_world)
+        {
+            let mut others = shapes.iter().enumerate();
+            let is_buried = others.any(|(other, (_, world_from_other, shape))| {
+                other != place
+                    && holds(
+                        &shape.geometry,
+                        world_from_other.inverse().transform_point(in_world),
+                    )
+            });
+            if !is_buried {
+                let turn = DQuat::from_rotation_arc(DVec3::Z, outwards);
+                found.push(FlatEnd {
+                    link: *link,
+                    link_from_end: Pose::new(turn, middle),
+                    radius,
+                });
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// Whether a point in a shape's own frame is in or on it; of a mesh nobody says.
+fn holds(shape: &LinkGeometry, point: DVec3) -> bool {
+    let beside = point.truncate().length();
+    match *shape {
+        LinkGeometry::Sphere { radius } => point.length() <= radius + SAME,
+        LinkGeometry::Box { size } => (point.abs() - 0.5 * size).max_element() <= SAME,
+        LinkGeometry::Cylinder { radius, length } => {
+            beside <= radius + SAME && point.z.abs() <= 0.5 * length + SAME
+        }
+        LinkGeometry::Capsule { radius, length } => {
+            let along = point.z.abs() - 0.5 * length;
+            DVec3::new(beside, 0.0, along.max(0.0)).length() <= radius + SAME
+        }
+        LinkGeometry::Mesh { .. } => false,
+    }
+}
