@@ -144,6 +144,7 @@
 //! - Scheinberg, *An efficient implementation of an active set method for SVMs*, JMLR 2006.
 //! - Wen et al., *Improving efficiency of SVM k-fold cross-validation by alpha seeding*, AAAI 2017.
 #![warn(missing_docs)]
+#![warn(clippy::missing_errors_doc)]
 // They panic where nobody reads any more.
 #![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
 

@@ -20,12 +20,18 @@ pub const LIMITS_FILE: &str = "limits.csv";
 const A_TABLE: &str = "a table of results as bubbletouch run writes it";
 
 /// SHA-256 of a file as it stands there.
+///
+/// # Errors
+/// It cannot be read.
 pub fn sha256_of(path: &Path) -> Result<String> {
     let content = std::fs::read(path).map_err(|e| Error::unreadable(path, A_TABLE, e))?;
     Ok(sha256(content))
 }
 
-/// Reads a table; the error names the file and the line.
+/// Reads a table.
+///
+/// # Errors
+/// The error names the file and the line.
 pub fn read_rows<R: DeserializeOwned>(path: &Path) -> Result<Vec<R>> {
     let file = File::open(path).map_err(|e| Error::unreadable(path, A_TABLE, e))?;
     csv::Reader::from_reader(file)

@@ -252,11 +252,17 @@ impl Drawing {
     }
 
     /// The drawing as a PNG file with two picture elements a pixel.
+    ///
+    /// # Errors
+    /// It cannot be drawn.
     pub fn png(&self) -> Result<Vec<u8>> {
         self.picture()?.png()
     }
 
     /// The drawing as pixels, two a pixel of its own each way: a tenth of a second's work.
+    ///
+    /// # Errors
+    /// It cannot be drawn.
     pub fn picture(&self) -> Result<Picture> {
         Ok(self.pixels(FINE)?.halved())
     }

@@ -27,7 +27,10 @@ pub enum Original {
 /// their signed distance from the original (positive: outside it; from a sheet all distances are positive), with a colour
 /// bar in millimetres.
 ///
-/// The same bytes for the same input. An error for a tile of fewer than 200 or more than 6,000 pixels.
+/// The same bytes for the same input.
+///
+/// # Errors
+/// A tile of fewer than 200 or more than 6,000 pixels.
 pub fn fit_picture(
     name: &str,
     original: &Original,

@@ -20,7 +20,8 @@ use std::path::Path;
 /// - `.npz`: arrays `deflection` (ny × nx), `x` (nx) and `y` (ny), metres, f64; opens with `np.load`.
 /// - `.png`: a heat map.
 ///
-/// Errors: another ending, a shape that is not the grid's, a picture of a frame with values that are not finite.
+/// # Errors
+/// Another ending, a shape that is not the grid's, a picture of a frame with values that are not finite.
 pub fn write_frame(path: &Path, deflection: &Array2<f64>, grid: &Grid) -> Result<()> {
     let ending = path.extension().and_then(|ending| ending.to_str());
     if deflection.dim() != (grid.ny, grid.nx) {

@@ -60,7 +60,10 @@ impl ColourScale {
     }
 }
 
-/// The error says what is wrong with a frame that nobody can draw: no taxels, or a value that is not a number.
+/// Whether a frame can be drawn.
+///
+/// # Errors
+/// No taxels, or a value that is not a number.
 pub fn check_frame(frame: &Array2<f64>) -> Result<()> {
     let (ny, nx) = frame.dim();
     if frame.is_empty() {

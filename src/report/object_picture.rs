@@ -12,7 +12,10 @@ use glam::DVec2;
 /// Objects, each at its own scale, in rows of `n_columns` tiles of `tile` × `tile` pixels: orthographic, z up, light
 /// background, its name above and a bar of known length below.
 ///
-/// The same bytes for the same input. An error for no objects, no columns, or tiles of fewer than 64 pixels.
+/// The same bytes for the same input.
+///
+/// # Errors
+/// No objects, no columns, or tiles of fewer than 64 pixels.
 pub fn contact_sheet(
     objects: &[(&str, &SphereUnion)],
     n_columns: usize,

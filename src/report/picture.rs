@@ -19,6 +19,9 @@ pub struct Picture {
 
 impl Picture {
     /// The picture as a PNG file's bytes.
+    ///
+    /// # Errors
+    /// It has no pixels.
     pub fn png(&self) -> Result<Vec<u8>> {
         let mut bytes = Vec::new();
         let mut encoder = png::Encoder::new(&mut bytes, self.width as u32, self.height as u32);

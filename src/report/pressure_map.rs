@@ -13,8 +13,11 @@ const RAMP: &[u8] = b" .:-=+*#%@";
 
 /// A frame drawn with characters, at most `width` columns wide, the highest y on top.
 ///
-/// With colours, half blocks show two rows of taxels a line; without, ten ASCII characters from blank to `@`. Long arrays
-/// are shown by the largest value of blocks, and the text says so. Errors: a frame without taxels, or with a value that is not finite.
+/// With colours, half blocks show two rows of taxels a line; without, ten ASCII characters from blank to `@`. Long arrays are shown by the
+/// largest value of blocks, and the text says so.
+///
+/// # Errors
+/// A frame without taxels, or with a value that is not finite.
 pub fn pressure_text(
     frame: &Array2<f64>,
     pitch_mm: f64,

@@ -44,6 +44,7 @@ pub struct SceneFiles {
 impl SceneFiles {
     /// Starts the files in a folder that is there.
     ///
+    /// # Errors
     /// The error is a name that a recording cannot have (such as one with a slash), or why nothing can be written.
     pub fn create(folder: &Path, plan: &ScenePlan) -> Result<Self> {
         let header = RecordingHeader {
@@ -74,6 +75,9 @@ impl SceneFiles {
     }
 
     /// Puts all files in place.
+    ///
+    /// # Errors
+    /// They cannot be written.
     pub fn finish(self) -> Result<()> {
         self.recording.finish()?;
         self.wrenches.commit()?;

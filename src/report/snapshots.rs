@@ -20,8 +20,10 @@ const MOST_COLUMNS: usize = 4;
 
 /// Draws named frames (ny × nx, row = y ascending), four a row, with a common colour bar; two picture elements a pixel.
 ///
-/// `caption` stands below (what was pressed how, and the noise). Errors: no frames, or one that
-/// [`check_frame`] rejects.
+/// `caption` stands below (what was pressed how, and the noise).
+///
+/// # Errors
+/// No frames, or one that [`check_frame`] rejects.
 pub fn snapshots(
     frames: &[(String, Array2<f64>)],
     pitch_mm: f64,

@@ -29,6 +29,7 @@ pub struct NamedMesh {
 /// Builds the objects of a study: sets first, in their order, then meshes by file name. Packed meshes are looked for and
 /// kept in the folder `packings`, if one is given.
 ///
+/// # Errors
 /// The error names a set, name or file that is not there, an object that two sources share, a mesh that cannot be packed,
 /// or an empty selection.
 pub fn load_objects(spec: &ObjectsSpec, packings: Option<&Path>) -> Result<Vec<Object>> {
@@ -47,6 +48,9 @@ pub fn load_objects(spec: &ObjectsSpec, packings: Option<&Path>) -> Result<Vec<O
 }
 
 /// The objects of a TOML file ([its keys](crate::guide::own_objects)), in a set of the file's name.
+///
+/// # Errors
+/// A file that cannot be read; those of [`Catalogue::parse`].
 pub fn load_catalogue(path: &Path) -> Result<Catalogue> {
     let place = path.display().to_string();
     let text = std::fs::read_to_string(path).map_err(|e| {
@@ -85,6 +89,9 @@ pub fn file_content(path: &Path) -> Result<String> {
 }
 
 /// What a PLY, OBJ or STL file holds, in metres; without a unit its numbers are metres, and must be such as `sizes` allow.
+///
+/// # Errors
+/// A file that cannot be read, of no known ending, or without such a mesh.
 pub fn read_mesh_file(
     path: &Path,
     unit: Option<LengthUnit>,
@@ -108,6 +115,9 @@ pub fn read_mesh_file(
 }
 
 /// The spheres of a CSV file with columns x, y, z, r; without a unit its numbers are metres, and must be such as `sizes` allow.
+///
+/// # Errors
+/// A file that cannot be read or holds no such spheres.
 pub fn load_spheres(
     path: &Path,
     unit: Option<LengthUnit>,
@@ -183,6 +193,9 @@ fn closed(file: MeshFile, place: &str, widest: Option<f64>) -> Result<TriangleMe
 }
 
 /// The meshes of a study as triangles, by file name.
+///
+/// # Errors
+/// A mesh that cannot be read.
 pub fn load_named_meshes(folder: &Path, spec: &ObjectsSpec) -> Result<Vec<NamedMesh>> {
     let paths = mesh_paths(folder, spec)?;
     let meshes = paths.par_iter().map(|path| {

@@ -45,7 +45,10 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Checks a study; the error names `place` (the file) and the first key that is out of its range.
+    /// Checks a study.
+    ///
+    /// # Errors
+    /// The error names `place` (the file) and the first key that is out of its range.
     pub fn new(place: &str, mut spec: StudySpec) -> Result<Self> {
         let check = Check { place };
         check.count("trials", spec.trials, MOST_TRIALS)?;

@@ -38,6 +38,9 @@ pub struct Samples {
 /// finest array at its highest noise, before smoothing; in a study of one imperfection at a time, the first touch of the first
 /// of them, read with each imperfection at its last value. A skin that remembers was touched by the last of them before. Beside them the
 /// first touch of every object, at the highest noise.
+///
+/// # Errors
+/// What a signal step refuses.
 pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> Result<Samples> {
     let group = loudest_group(plan, sweep)
         .ok_or_else(|| Error::input("study", "no cells", "at least one value an axis"))?;

@@ -24,6 +24,9 @@ pub struct TouchedObject {
 }
 
 /// Draws the touches of every object.
+///
+/// # Errors
+/// Those of [`touches`](crate::world::touches()).
 pub fn draw_touches(
     objects: Vec<Object>,
     placement: &Placement,

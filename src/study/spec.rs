@@ -238,7 +238,10 @@ pub enum GroupSpec {
 }
 
 impl StudySpec {
-    /// Reads a study; the error names the file, the line and the key.
+    /// Reads a study.
+    ///
+    /// # Errors
+    /// The error names the file, the line and the key.
     pub fn parse(place: &str, text: &str) -> Result<Self> {
         let (spec, axes) = axes::read::<Self>(place, text, AXIS_RULES)?;
         Ok(Self { axes, ..spec })

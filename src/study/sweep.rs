@@ -100,7 +100,10 @@ impl Group {
 }
 
 impl Sweep {
-    /// Lays out splits and cells; the error says which objects or touches are too few, or shown without being there.
+    /// Lays out splits and cells.
+    ///
+    /// # Errors
+    /// The error says which objects or touches are too few, or shown without being there.
     pub fn new(plan: &Plan, touched: &dyn TouchSet) -> Result<Self> {
         let classes = touched.class_names();
         // Asked before it runs: samples are drawn when it is over.
@@ -158,8 +161,10 @@ impl Sweep {
         }
     }
 
-    /// A trial's split, with no more training touches an object than the cell allows, and with its imbalance; an error for a
-    /// trial that the study does not have.
+    /// A trial's split, with no more training touches an object than the cell allows, and with its imbalance.
+    ///
+    /// # Errors
+    /// A trial that the study does not have.
     pub fn split(&self, plan: &Plan, cell: &Cell, trial: usize) -> Result<Split> {
         let split = self.splits.get(trial).ok_or_else(|| {
             let last = self.splits.len() - 1;
@@ -179,6 +184,9 @@ impl Sweep {
 
     /// The label of every touch as a cell learns it in a trial: some of the split's training touches may have another
     /// object's.
+    ///
+    /// # Errors
+    /// A fraction that is not from 0 to 1.
     pub fn learned_labels(
         &self,
         plan: &Plan,

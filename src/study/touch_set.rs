@@ -33,6 +33,9 @@ pub trait TouchSet: Sync {
     }
 
     /// Group of every touch, for splits that keep groups together: its own, where touches share nothing.
+    ///
+    /// # Errors
+    /// An axis that is spread uniformly, without a distance.
     fn group_keys(&self, _together: &KeepTogether) -> Result<Array1<usize>> {
         Ok((0..self.labels().len()).collect())
     }
@@ -56,6 +59,9 @@ pub trait TouchSet: Sync {
     fn to_read(&self, plan: &Plan, n_frames: usize, seed: &Seed) -> Vec<TouchToRead>;
 
     /// A few touches for the eye.
+    ///
+    /// # Errors
+    /// What is shown cannot be made.
     fn samples(&self, plan: &Plan, sweep: &Sweep) -> Result<Samples>;
 
     /// How many of them go deeper (metres past first contact) than a stroke.

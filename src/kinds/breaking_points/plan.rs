@@ -46,8 +46,10 @@ impl PlannedValue {
 }
 
 impl BreakingPointsPlan {
-    /// Checks a study; the error names `place` (the file) and the first key that is out of its range, or the way and the value
-    /// at which a key is.
+    /// Checks a study.
+    ///
+    /// # Errors
+    /// The error names `place` (the file) and the first key that is out of its range, or the way and the value at which a key is.
     pub fn new(place: &str, spec: BreakingPointsSpec) -> Result<Self> {
         let check = Check { place };
         let mut base = Table::try_from(&spec).expect("every field of a study has a TOML form");

@@ -34,7 +34,10 @@ const KEYS: [(&str, Range); 7] = [
 ];
 
 impl ObjectDetailPlan {
-    /// Checks a study; the error names `place` (the file) and the first key that is out of its range.
+    /// Checks a study.
+    ///
+    /// # Errors
+    /// The error names `place` (the file) and the first key that is out of its range.
     pub fn new(place: &str, mut spec: ObjectDetailStudySpec) -> Result<Self> {
         let check = Check { place };
         check.objects(&spec.objects)?;

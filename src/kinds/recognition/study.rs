@@ -204,6 +204,9 @@ impl RecognitionStudy {
     }
 
     /// SHA-256 of what each object is made of, by its name and, where combinations of the study's own axes differ in it, by those.
+    ///
+    /// # Errors
+    /// A file of an object cannot be read.
     pub fn content(&self) -> Result<BTreeMap<String, String>> {
         let mut all = BTreeMap::new();
         let objects = self.parts.iter().map(|part| &part.plan.spec.objects);

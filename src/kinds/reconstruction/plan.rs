@@ -50,7 +50,10 @@ const KEYS: [(&str, Range); 10] = [
 ];
 
 impl ReconstructionPlan {
-    /// Checks a study; the error names `place` (the file) and the first key that is out of its range.
+    /// Checks a study.
+    ///
+    /// # Errors
+    /// The error names `place` (the file) and the first key that is out of its range.
     pub fn new(place: &str, mut spec: ReconstructionStudySpec) -> Result<Self> {
         let check = Check { place };
         check.objects(&spec.objects)?;

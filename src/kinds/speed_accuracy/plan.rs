@@ -81,7 +81,10 @@ impl SpeedAccuracyPlan {
         })
     }
 
-    /// Checks a study that lies in `folder`; the error names `place` (the file) and the first key that is out of its range.
+    /// Checks a study that lies in `folder`.
+    ///
+    /// # Errors
+    /// The error names `place` (the file) and the first key that is out of its range.
     pub fn new(place: &str, folder: &Path, mut spec: SpeedAccuracyStudySpec) -> Result<Self> {
         let check = Check { place };
         check.objects(&spec.objects)?;

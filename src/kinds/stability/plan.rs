@@ -37,7 +37,10 @@ const KEYS: [(&str, Range); 9] = [
 ];
 
 impl StabilityPlan {
-    /// Checks a study that lies in `folder`; the error names `place` (the file) and the first key that is out of its range.
+    /// Checks a study that lies in `folder`.
+    ///
+    /// # Errors
+    /// The error names `place` (the file) and the first key that is out of its range.
     pub fn new(place: &str, folder: &Path, spec: StabilityStudySpec) -> Result<Self> {
         let check = Check { place };
         let wanted = &spec.stability;

@@ -100,7 +100,10 @@ const SCENE_KEYS: [(&str, Range); 3] = [
 ];
 
 impl WholeBodyPlan {
-    /// Checks a study whose robot lies beside `folder`; the error names `place` (the file) and the first key that is out of its range.
+    /// Checks a study whose robot lies beside `folder`.
+    ///
+    /// # Errors
+    /// The error names `place` (the file) and the first key that is out of its range.
     pub fn new(place: &str, folder: &Path, spec: WholeBodyStudySpec) -> Result<Self> {
         let check = Check { place };
         let wanted = &spec.whole_body;

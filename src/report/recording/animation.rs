@@ -43,9 +43,11 @@ pub struct ShownFrame {
 
 /// Which frames an animation shows, and for how long: what was the newest frame at each tick of the playback, each once.
 ///
-/// The first and the last frame are among them; if there would be more than [`MOST_SHOWN`], ticks are further apart. A frame
-/// stands until the next was recorded, the last as long as the one before it (alone, one second). `time` in seconds,
-/// increasing. Errors: a playback out of its range; no frames.
+/// The first and the last frame are among them; if there would be more than [`MOST_SHOWN`], ticks are further apart. A frame stands until the
+/// next was recorded, the last as long as the one before it (alone, one second). `time` in seconds, increasing.
+///
+/// # Errors
+/// A playback out of its range; no frames.
 pub fn shown_frames(time: &[f64], playback: &Playback) -> Result<Vec<ShownFrame>> {
     let Playback { speed, fps } = *playback;
     if !(speed.is_finite() && speed > 0.0 && fps > 0.0 && fps <= 50.0) {
@@ -84,7 +86,10 @@ pub fn shown_frames(time: &[f64], playback: &Playback) -> Result<Vec<ShownFrame>
 
 /// Writes a patch of a recording as an animated PNG that loops, all frames on one scale; returns what it shows.
 ///
-/// Memory: a picture and the file. Errors: those of [`shown_frames`] and of the recording; a file that cannot be written.
+/// Memory: a picture and the file.
+///
+/// # Errors
+/// Those of [`shown_frames`] and of the recording; a file that cannot be written.
 pub fn write_animation(
     path: &Path,
     recording: &mut RecordingFile,

@@ -145,7 +145,10 @@ impl Member {
 }
 
 impl RecordingHeader {
-    /// The error names a patch that makes no sense, or a name that cannot be a member's.
+    /// Whether it can be that of a recording.
+    ///
+    /// # Errors
+    /// A patch that makes no sense, or a name that cannot be a member's.
     pub fn check(&self) -> Result<()> {
         self.patches.iter().try_for_each(RecordedPatch::check)?;
         let mut seen = HashSet::new();

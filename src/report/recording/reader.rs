@@ -25,6 +25,7 @@ pub struct RecordingFile {
 impl RecordingFile {
     /// Opens a recording and checks that its members are all there and of the right shapes.
     ///
+    /// # Errors
     /// The error says why the file cannot be read, or which member is missing, damaged or not as `meta` says. Members that do
     /// not belong to a recording are let be.
     pub fn open(path: &Path) -> Result<Self> {
@@ -74,7 +75,8 @@ impl RecordingFile {
     /// What a patch reported in one frame, one number a taxel: metres, or newtons (of vectors, the length). What stands before it in the
     /// file is not read, and no checksum compared.
     ///
-    /// Errors: no such frame; a file that cannot be read.
+    /// # Errors
+    /// No such frame; a file that cannot be read.
     pub fn frame(&mut self, patch: usize, quantity: Quantity, frame: usize) -> Result<Vec<f64>> {
         if frame >= self.time.len() {
             let allowed = match self.time.len() {
@@ -95,6 +97,9 @@ impl RecordingFile {
     /// Visits what a patch reported in every frame, in time's order: `visit(frame, values)`; memory for one of them.
     ///
     /// The zip's checksum is checked at the end: then it is an error if a bit has changed.
+    ///
+    /// # Errors
+    /// Those of [`frame`](Self::frame); a bit of the zip that has changed; what `visit` says.
     pub fn each_frame(
         &mut self,
         patch: usize,

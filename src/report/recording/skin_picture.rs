@@ -33,6 +33,9 @@ impl SkinPicture {
     /// A grid is drawn as a heat map with axes in millimetres. Of another skin each taxel is a dot: a flat one is seen from
     /// above, a cylinder unrolled, a part of a sphere flattened about its middle; another is seen from the side to which its
     /// axes point, and from behind. The picture says which, and has a scale bar.
+    ///
+    /// # Errors
+    /// Taxels that cannot be laid out.
     pub fn new(patch: &RecordedPatch, scale: ColourScale) -> Result<Self> {
         let cells = Cells::of(patch);
         let mut drawing = paper(&patch.name, &cells, scale);
@@ -53,6 +56,7 @@ impl SkinPicture {
 
     /// The picture of a frame, one value a taxel (metres or newtons); `note` is a line above it, such as the time.
     ///
+    /// # Errors
     /// The error names a number of values that is not that of the taxels, or a value that is not finite.
     pub fn frame(&self, values: &[f64], note: &str) -> Result<Picture> {
         if values.len() != self.n_taxels {

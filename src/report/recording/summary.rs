@@ -7,6 +7,9 @@ use crate::signal::Quantity;
 use crate::table::short_number;
 
 /// Frames and time, patches with their peaks, objects, and what the writer had to say; every number is read.
+///
+/// # Errors
+/// A file that cannot be read.
 pub fn recording_table(file: &mut RecordingFile) -> Result<String> {
     let mut text = time_sentence(file.time()) + "\n";
     let n_patches = file.header().patches.len();

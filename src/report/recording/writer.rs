@@ -65,6 +65,7 @@ impl RecordingWriter {
 
     /// Adds a frame, patches and objects in the header's order.
     ///
+    /// # Errors
     /// The error names a time that does not increase, or patches, objects or taxels that are not the header's, or says why nothing can be
     /// written; the frame is then not in the recording.
     pub fn push(&mut self, frame: &Frame) -> Result<()> {

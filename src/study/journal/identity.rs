@@ -54,7 +54,10 @@ impl Identity {
         names.into_iter().map(line).collect()
     }
 
-    /// An error that says what differs unless the other is the same study; `place` is where this one stands.
+    /// Whether the other is the same study; `place` is where this one stands.
+    ///
+    /// # Errors
+    /// It is not; the error says what differs.
     pub fn check_same(&self, other: &Self, place: &str) -> Result<()> {
         let differences = self.differences(other);
         if differences.is_empty() {

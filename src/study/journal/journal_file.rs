@@ -115,6 +115,9 @@ impl Journal {
     }
 
     /// Keeps a record: when this returns, the end of the process cannot lose it.
+    ///
+    /// # Errors
+    /// It cannot be written.
     pub fn keep(&self, key: &str, record: &impl Serialize) -> Result<()> {
         self.append(key, record).map(|_| ())
     }
@@ -153,12 +156,18 @@ impl Journal {
     }
 
     /// Waits until everything is on the disk.
+    ///
+    /// # Errors
+    /// It cannot be written.
     pub fn sync(&self) -> Result<()> {
         let synced = self.lock().as_mut().map_or(Ok(()), Writer::sync);
         synced.map_err(|e| Error::io(&self.path, "write", e))
     }
 
     /// As [`sync`](Self::sync), and no thread writes from then on: for a process that is about to end.
+    ///
+    /// # Errors
+    /// They cannot be written.
     pub fn stop(&self) -> Result<()> {
         // Never given back: who wants to write waits for the end.
         let mut writer = std::mem::ManuallyDrop::new(self.lock());
