@@ -109,7 +109,7 @@ function drawPanel(view, { panel, row }, look, width, labels) {
   const { spec, x, y } = view;
   const title = [view.panels.titles[panel], row === null ? "" : view.lines.titles[row]].filter(Boolean).join(" · ");
   const turned = x.isWords && x.ticks.some((tick) => 7 * tick.label.length > (width - labels - 60) / x.n);
-  const below = turned ? Math.min(140, 7 * Math.max(...x.ticks.map((tick) => tick.label.length)) + 30) : 46;
+  const below = turned ? Math.min(250, 7 * Math.max(...x.ticks.map((tick) => tick.label.length)) + 30) : 46;
   const high = look || y.isWords ? 22 * y.n : Math.round(Math.min(400, Math.max(230, 0.55 * width)));
   const box = { left: 34 + labels, right: width - 12, top: title ? 30 : 10 };
   box.bottom = box.top + high;
