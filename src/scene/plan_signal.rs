@@ -6,20 +6,14 @@ use super::spec::SignalStepSpec;
 use crate::error::Result;
 use crate::random::Seed;
 use crate::signal::{
-    Chain, MOST_STRENGTHS, Noise, NoiseUnit, Quantity, Recording, SENSOR_ERRORS, Scratch,
-    SignalStep, Strength,
+    Chain, MOST_STRENGTHS, Noise, Quantity, Recording, SENSOR_ERRORS, Scratch, SignalStep, Strength,
 };
 use crate::spelling::nearest_names;
-use crate::study::not_negative;
+use crate::study::{NOISES, not_negative};
 use crate::world::SkinPatch;
 
-/// Keys of steps that are no sensor errors.
+/// The key of smoothing, beside those of [noise](NOISES) and of sensor errors.
 const SMOOTHING: &str = "smoothing_mm";
-const NOISES: [(&str, NoiseUnit); 3] = [
-    ("noise_std_full_scale", NoiseUnit::FullScale),
-    ("noise_std_mm", NoiseUnit::Mm),
-    ("noise_std_n", NoiseUnit::N),
-];
 
 /// The signal of a patch, ready to be read.
 #[derive(Clone, Debug)]

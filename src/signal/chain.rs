@@ -66,8 +66,7 @@ enum Prepared {
         std: f64,
         place: u64,
     },
-    Smoothing(Smoothing),
-    /// A sensor error, or a smoothing of a skin that is no grid.
+    /// A smoothing or a sensor error.
     Effect(Arc<dyn Effect>),
 }
 
@@ -193,10 +192,6 @@ impl Chain {
                     noise::add_normal(values, *std, &seed.named("noise").numbered(*place));
                 }
             }
-            Prepared::Smoothing(smoothing) => {
-                let frames = frames.chunks_exact_mut(n_taxels);
-                frames.for_each(|frame| smoothing.apply(frame, scratch));
-            }
             Prepared::Effect(effect) => {
                 let touch = TouchRead {
                     n_taxels,
@@ -261,16 +256,11 @@ impl Chain {
     }
 
     fn prepare_smoothing(&mut self, width: f64, skin: &ReadSkin) -> Result<Prepared> {
-        let grid = match skin.shape() {
-            Shape::Grid(grid) => grid,
-            Shape::Surface(surface) => {
-                let smoothing = SurfaceSmoothing::new(width, surface)?;
-                return Ok(self.prepare_effect(Box::new(smoothing)));
-            }
+        let smoothing: Box<dyn Effect> = match skin.shape() {
+            Shape::Grid(grid) => Box::new(Smoothing::new(width, &grid)?),
+            Shape::Surface(surface) => Box::new(SurfaceSmoothing::new(width, surface)?),
         };
-        let smoothing = Smoothing::new(width, &grid)?;
-        self.scratch_len = self.scratch_len.max(smoothing.scratch_len());
-        Ok(Prepared::Smoothing(smoothing))
+        Ok(self.prepare_effect(smoothing))
     }
 
     fn prepare_effect(&mut self, effect: Box<dyn Effect>) -> Prepared {

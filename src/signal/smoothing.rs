@@ -5,6 +5,7 @@
 //! is mirrored, edge taxel included (d c b a | a b c d | d c b a). Truncation and mirror are those of
 //! `scipy.ndimage.gaussian_filter` by default.
 
+use super::sensor_error::{Effect, TouchRead};
 use crate::error::{Error, Result};
 use crate::world::Grid;
 
@@ -70,6 +71,17 @@ impl Smoothing {
         {
             smooth_row(row_in, row_out, line, &self.taps_x);
         }
+    }
+}
+
+impl Effect for Smoothing {
+    fn scratch_len(&self) -> usize {
+        self.scratch_len()
+    }
+
+    fn apply(&self, frames: &mut [f64], touch: &TouchRead, scratch: &mut [f64]) {
+        let frames = frames.chunks_exact_mut(touch.n_taxels);
+        frames.for_each(|frame| self.apply(frame, scratch));
     }
 }
 

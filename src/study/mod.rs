@@ -81,6 +81,7 @@ pub use shard::Shard;
 pub use simulation::{TouchedObject, draw_touches, simulate_array};
 pub(crate) use spec::default_seed;
 pub use spec::*;
+pub(crate) use spec_signal::NOISES;
 pub use sweep::{Group, Sweep};
 pub use touch_files::{ReadFrames, write_touches};
 pub use touch_set::TouchSet;

@@ -49,7 +49,7 @@ fn all_axes() -> impl Iterator<Item = (&'static str, StepSpec)> {
 }
 
 /// What noise is measured in.
-pub(super) const NOISES: [(&str, NoiseUnit); 3] = [
+pub(crate) const NOISES: [(&str, NoiseUnit); 3] = [
     ("noise_std_full_scale", NoiseUnit::FullScale),
     ("noise_std_mm", NoiseUnit::Mm),
     ("noise_std_n", NoiseUnit::N),

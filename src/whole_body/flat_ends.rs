@@ -1,13 +1,10 @@
 //! The flat ends of a robot's cylinders that can be touched.
 
-use super::half_balls::ends;
+use super::half_balls::{SAME, ends};
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::world::{LinkGeometry, LinkShape, Robot, ShapeRole};
 use glam::{DQuat, DVec3};
-
-/// A point this far outside of a shape is meant to be on it, metres.
-const SAME: f64 = 1e-6;
 
 /// The end of a cylinder on a link.
 pub(super) struct FlatEnd {

@@ -6,7 +6,7 @@ use crate::world::{LinkGeometry, LinkShape, Robot, ShapeRole};
 use glam::{DQuat, DVec3};
 
 /// Distances and radii that differ by less are meant to be the same, metres.
-const SAME: f64 = 1e-6;
+pub(super) const SAME: f64 = 1e-6;
 
 /// Half a ball on a link.
 pub(super) struct HalfBall {
