@@ -54,14 +54,12 @@ pub fn touches(args: &Args) -> Result<()> {
         None => plan.arrays.iter().collect(),
         Some(read) => vec![&plan.arrays[read.array]],
     };
-    for &patch in &arrays {
-        let grid = &patch.grid;
+    for &array in &arrays {
         let folder = match arrays.len() {
             1 => args.out.clone(),
             _ => {
-                let pitch_mm = millimetres(grid.pitch);
-                args.out
-                    .join(format!("{}x{}_at_{pitch_mm}_mm", grid.nx, grid.ny))
+                let ((ny, nx), pitch_mm) = (array.shape(), millimetres(array.pitch()));
+                args.out.join(format!("{nx}x{ny}_at_{pitch_mm}_mm"))
             }
         };
         output_folder(&folder)?;
@@ -69,7 +67,7 @@ pub fn touches(args: &Args) -> Result<()> {
             &folder,
             &objects,
             drawn,
-            patch,
+            array,
             read.as_ref(),
             progress.as_ref(),
         )?;

@@ -35,6 +35,7 @@
 //! and slip, and each taxel feels a force in three dimensions ([`FrictionState`], which has the equations). Without it, and with μ = 0 to
 //! the bit, the forces are those of `spring_load`.
 
+mod approach;
 pub mod balance;
 mod below;
 mod coulomb;
@@ -61,6 +62,7 @@ mod spring_load;
 mod swept_triangle;
 mod taxel_contact;
 
+pub use approach::{Approach, SkinTouch};
 pub(crate) use below::Below;
 pub(crate) use damper::Relaxation;
 pub use damper::{DamperState, relaxation_factor};

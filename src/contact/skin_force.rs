@@ -3,7 +3,7 @@
 use super::crossing::{Sample, crossing};
 use super::press_force::{ACCURACY, check_force, too_much};
 use super::spring_load::spring_load;
-use super::{SkinContact, SkinWorkspace, press_skin};
+use super::{SkinContact, SkinWorkspace, deflect_skin, press_skin};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::objects::Model;
@@ -21,9 +21,6 @@ pub struct SkinPress {
     pub counts: SkinContact,
 }
 
-/// Steps in which the way is looked at are this part of the shortest stroke. Larger: a short peak of the force may be jumped
-/// over; smaller: more presses in vain.
-const STEP: f64 = 0.5;
 /// At most so many steps a way: of strokes far shorter than the way they become longer.
 const MOST_STEPS: f64 = 4096.0;
 
@@ -50,13 +47,7 @@ pub fn press_skin_to_force(
     workspace: &mut SkinWorkspace,
 ) -> Result<Option<SkinPress>> {
     check_force(force)?;
-    if !(direction.is_finite() && (direction.length() - 1.0).abs() < 1e-9) {
-        return Err(Error::input(
-            "touch direction",
-            direction,
-            "a vector of length one",
-        ));
-    }
+    Way::check(direction)?;
     workspace.hold([]);
     let mut way = Way {
         patch,
@@ -71,22 +62,38 @@ pub fn press_skin_to_force(
 }
 
 /// A patch on its way along a line past objects.
-struct Way<'a> {
-    patch: &'a SkinPatch,
-    objects: &'a [Model],
-    patch_from_objects: &'a [Pose],
-    direction: DVec3,
-    workspace: &'a mut SkinWorkspace,
+pub(super) struct Way<'a> {
+    pub patch: &'a SkinPatch,
+    pub objects: &'a [Model],
+    pub patch_from_objects: &'a [Pose],
+    pub direction: DVec3,
+    pub workspace: &'a mut SkinWorkspace,
 }
 
 impl Way<'_> {
+    /// Steps in which the way is looked at are this part of the shortest stroke. Larger: a short peak of the force may be jumped
+    /// over, and small spheres may pass through; smaller: more presses in vain.
+    pub const STEP: f64 = 0.5;
+
+    /// An error unless a direction's length is one.
+    pub fn check(direction: DVec3) -> Result<()> {
+        match direction.is_finite() && (direction.length() - 1.0).abs() < 1e-9 {
+            true => Ok(()),
+            false => Err(Error::input(
+                "touch direction",
+                direction,
+                "a vector of length one",
+            )),
+        }
+    }
+
     /// Goes on until the force is felt.
     fn go(&mut self, force: f64) -> Result<Option<SkinPress>> {
-        let Some(ends) = self.ends() else {
+        let Some([start, end]) = self.ends().filter(|[_, end]| *end > 0.0) else {
             self.press(0.0);
             return Ok(None);
         };
-        let Some([low, high]) = self.bracket(ends, force)? else {
+        let Some([low, high]) = self.bracket([start.max(0.0), end], force)? else {
             return Ok(None);
         };
         let travel = crossing(low, high, ACCURACY * force, |travel| {
@@ -102,8 +109,8 @@ impl Way<'_> {
         }))
     }
 
-    /// The travels between which the balls around patch and objects meet; `None` if no travel from 0 on does.
-    fn ends(&self) -> Option<[f64; 2]> {
+    /// The travels between which the balls around patch and objects meet; `None` if none does.
+    pub fn ends(&self) -> Option<[f64; 2]> {
         let tree = self.patch.tree();
         let around = tree.bounds()?;
         let center = around.center();
@@ -117,8 +124,7 @@ impl Way<'_> {
             let half2 = reach * reach - away.cross(self.direction).length_squared();
             (half2 > 0.0).then(|| [ahead - half2.sqrt(), ahead + half2.sqrt()])
         });
-        let [start, end] = meetings.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])?;
-        (end > 0.0).then_some([start.max(0.0), end])
+        meetings.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
     }
 
     /// Two travels, with less than the force at the first and not less at the second; `None` if nothing is touched.
@@ -133,7 +139,7 @@ impl Way<'_> {
             ));
         }
         let strokes = (0..self.patch.n_taxels()).map(|t| self.patch.taxels().at(t).stroke);
-        let step = STEP * strokes.fold(f64::INFINITY, f64::min);
+        let step = Self::STEP * strokes.fold(f64::INFINITY, f64::min);
         let n_steps = ((end - start) / step).ceil().clamp(1.0, MOST_STEPS) as usize;
         let mut low = start;
         for k in 1..=n_steps {
@@ -155,8 +161,22 @@ impl Way<'_> {
         Err(too_much(force, largest.0, &where_to))
     }
 
-    /// Presses after a travel. The patch's travel is the objects' the other way.
-    fn press(&mut self, travel: f64) -> SkinContact {
+    /// Presses after a travel.
+    pub fn press(&mut self, travel: f64) -> SkinContact {
+        self.after(travel, |way, poses| {
+            press_skin(way.patch, way.objects, poses, way.workspace)
+        })
+    }
+
+    /// The deflections alone after a travel.
+    pub fn deflect(&mut self, travel: f64) {
+        self.after(travel, |way, poses| {
+            deflect_skin(way.patch, way.objects, poses, way.workspace);
+        })
+    }
+
+    /// Does something with the objects' poses after a travel. The patch's travel is the objects' the other way.
+    fn after<T>(&mut self, travel: f64, act: impl FnOnce(&mut Self, &[Pose]) -> T) -> T {
         let mut poses = std::mem::take(&mut self.workspace.poses);
         poses.clear();
         let back = -travel * self.direction;
@@ -164,9 +184,9 @@ impl Way<'_> {
             translation: pose.translation + back,
             ..*pose
         }));
-        let counts = press_skin(self.patch, self.objects, &poses, self.workspace);
+        let done = act(self, &poses);
         self.workspace.poses = poses;
-        counts
+        done
     }
 
     fn sample(&mut self, travel: f64) -> Sample {

@@ -134,6 +134,7 @@ fn measure(blocks: &[Block], frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64
 
 pub(super) const ABOUT: EnsembleAbout = EnsembleAbout {
     is_prefix_nested: false,
+    needs_rows: true,
     ..EnsembleAbout::new("block average", |grid, m, _| {
         Box::new(Blocks(blocks(grid, m)))
     })

@@ -17,6 +17,8 @@ pub struct EnsembleAbout {
     pub is_prefix_nested: bool,
     /// Whether it measures the whole frame, whatever m.
     pub is_whole_frame: bool,
+    /// Whether it needs rows and columns: a layout without any has none of it.
+    pub needs_rows: bool,
     /// Bytes that a map from n taxels to m measurements takes, by m and n.
     pub bytes: fn(f64, f64) -> f64,
     /// About how many seconds it takes for one taxel of a frame among many, by m and n.
@@ -32,6 +34,7 @@ impl EnsembleAbout {
             words,
             is_prefix_nested: true,
             is_whole_frame: false,
+            needs_rows: false,
             bytes: |_, n| 16.0 * n,
             taxel_s: |_, _| 5e-10,
             draw,

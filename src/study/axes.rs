@@ -357,6 +357,11 @@ impl StudyAxes {
         self.0.is_empty()
     }
 
+    /// Whether a key is one of them.
+    pub fn has(&self, key: &str) -> bool {
+        self.0.iter().any(|axis| axis.key == key)
+    }
+
     /// The column of each, where the names of others are taken.
     pub fn columns(&self, is_taken: impl Fn(&str) -> bool) -> Vec<Column> {
         let column = |axis: &StudyAxis| {

@@ -78,13 +78,14 @@ pub const COUNT: Range = Range::Count(1, MOST_COUNTED);
 pub const TOUCHES: Range = Range::Count(1, MOST_TOUCHES);
 
 /// The keys of the tables that kinds of study share, and what their numbers may be. A list has values, and none twice.
-const KEYS: [(&str, Range); 48] = [
+const KEYS: [(&str, Range); 49] = [
     ("objects.surface_error_mm", Range::Positive),
     ("objects.close_holes_mm", Range::Positive),
     ("objects.names", Range::Any),
     ("skin.pitch_mm", Range::Positive),
     ("skin.size_mm", Range::Positive),
     ("skin.taxels", Range::Count(1, MOST_SIDE)),
+    ("skin.curvature_radius_mm", Range::Positive),
     ("skin.taxel_radius_mm", Range::Positive),
     ("skin.stroke_mm", Range::Positive),
     ("skin.stiffness_n_per_m", Range::Positive),

@@ -15,7 +15,6 @@ use super::npy::{write_integers, write_npy};
 use super::npy_numbers::{read_labels, read_matrix, read_rows};
 use super::plan::Plan;
 use super::progress::Progress;
-use super::simulation::describe;
 use super::spec::RecognitionSpec;
 use super::sweep::{Group, Sweep};
 use super::table::Cell;
@@ -90,10 +89,10 @@ pub(super) fn measured(
     trial: (usize, &Split),
     (stage, progress): (&str, &dyn Progress),
 ) -> Result<Measurements> {
-    let patch = &plan.arrays[group.array];
+    let array = &plan.arrays[group.array];
     let n_touches = touched.labels().len() as u64;
-    progress.stage(&format!("{stage} {}", describe(patch)), n_touches);
-    let on = (patch, group.frames);
+    progress.stage(&format!("{stage} {}", array.describe()), n_touches);
+    let on = (array, group.frames);
     let frames = touched.simulate(on, &FramePlace::Memory, progress)?;
     measure_group(plan, group, (touched, &frames), trial, n_measurements)
 }

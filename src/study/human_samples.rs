@@ -3,11 +3,11 @@
 use super::human_touches::{HumanTouches, record_touch};
 use super::plan::{Plan, millimetres};
 use super::samples::{Samples, named_samples};
+use super::taxel_array::TaxelArray;
 use super::touch_set::TouchSet;
 use crate::contact::SkinWorkspace;
 use crate::error::{Error, Result};
 use crate::signal::Quantity;
-use crate::world::Patch;
 use ndarray::Array2;
 use rayon::prelude::*;
 
@@ -20,11 +20,12 @@ const N_LOOKED_AT: usize = 10;
 /// Of the kinds that the study names for its picture (else of all), the firmest of the first touches, at four instants evenly between
 /// those when its first and its last taxel are touched; on the study's finest array, without noise.
 pub fn human_samples(plan: &Plan, touches: &HumanTouches) -> Result<Samples> {
-    let n_taxels = |patch: &&Patch| patch.grid.n_taxels();
+    let n_taxels = |array: &&TaxelArray| array.n_taxels();
     // The first of several.
-    let patch = plan.arrays.iter().rev().max_by_key(n_taxels).copied();
-    let patch =
-        patch.ok_or_else(|| Error::input("study", "no cells", "at least one value an axis"))?;
+    let patch = plan.arrays.iter().rev().max_by_key(n_taxels);
+    let patch = *patch
+        .ok_or_else(|| Error::input("study", "no cells", "at least one value an axis"))?
+        .square();
     let grid = patch.grid;
     let skin = touches.spec.skin(&patch)?;
     let interval = touches.spec.interval();

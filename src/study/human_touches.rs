@@ -8,12 +8,13 @@ use super::progress::Progress;
 use super::samples::Samples;
 use super::spec::HumanTouchSpec;
 use super::sweep::Sweep;
+use super::taxel_array::TaxelArray;
 use super::touch_set::TouchSet;
 use crate::contact::{SkinWorkspace, press_skin};
 use crate::error::{Error, Result};
 use crate::objects::{Hand, Model};
 use crate::random::Seed;
-use crate::world::{HumanTouch, Patch, SkinPatch, TouchRanges};
+use crate::world::{HumanTouch, SkinPatch, TouchRanges};
 use ndarray::ArrayViewMut2;
 use rand::Rng;
 use rayon::prelude::*;
@@ -110,14 +111,14 @@ impl TouchSet for HumanTouches {
 
     fn simulate(
         &self,
-        (patch, n_frames): (&Patch, usize),
+        (array, n_frames): (&TaxelArray, usize),
         place: &FramePlace,
         progress: &dyn Progress,
     ) -> Result<Frames> {
-        let skin = self.spec.skin(patch);
+        let skin = self.spec.skin(array.square());
         let skin = skin.expect("the plan has checked that it fits");
         let interval = self.spec.interval();
-        let mut frames = Frames::new((patch.grid.n_taxels(), n_frames), place)?;
+        let mut frames = Frames::new((array.n_taxels(), n_frames), place)?;
         let record = |touch: &_, workspace: &mut _, rows: ArrayViewMut2<f32>| {
             record_touch(&skin, touch, interval, rows, workspace)
         };

@@ -128,20 +128,19 @@ pub fn measure_group(
     (trial, split): (usize, &Split),
     n_measurements: usize,
 ) -> Result<Measurements> {
-    let patch = &plan.arrays[group.array];
+    let array = &plan.arrays[group.array];
     let seed = Seed::new(plan.spec.seed);
     let drawn = plan.spec.projection_of(trial) as u64;
     let drawn = seed.named("projection").numbered(drawn);
     let trial = trial as u64;
-    let shape = (patch.grid.ny, patch.grid.nx);
-    let projection = Projection::new(group.ensemble, shape, n_measurements, &drawn)?;
+    let projection = Projection::new(group.ensemble, array.shape(), n_measurements, &drawn)?;
     let skins = skins(plan, group, trial);
-    let chain = |skin| Chain::new(&signal_steps(plan, group, skin), patch);
+    let chain = |skin| Chain::new(&signal_steps(plan, group, skin), array);
     let chains = skins.iter().map(chain).collect::<Result<Vec<_>>>()?;
     let reading = Reading {
         chains: &chains,
         projection: &projection,
-        taxel: patch.taxel,
+        taxel: *array.taxel(),
         speed: plan.speed,
     };
     let signal = seed.named("signal").numbered(trial);
@@ -151,7 +150,7 @@ pub fn measure_group(
         touches[touch].skin = skins.len() - 1;
     }
     let (values, cpu_s) = measure(reading, frames, &touches)?;
-    let ones = Array2::ones((1, patch.grid.n_taxels()));
+    let ones = Array2::ones((1, array.n_taxels()));
     Ok(Measurements {
         values,
         n_frames,
@@ -179,8 +178,7 @@ pub fn signal_steps(plan: &Plan, group: &Group, skin: &Seed) -> Vec<SignalStep> 
 
 /// The skin of training touches, and that of test touches if it is another.
 fn skins(plan: &Plan, group: &Group, trial: u64) -> Vec<Seed> {
-    let grid = &plan.arrays[group.array].grid;
-    let first = skin(&Seed::new(plan.spec.seed), grid);
+    let first = skin(&Seed::new(plan.spec.seed), &plan.arrays[group.array]);
     match group.tested_on {
         TestedOn::SameSkin => vec![first],
         TestedOn::AnotherSkin => vec![first, first.named("another").numbered(trial)],

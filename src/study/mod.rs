@@ -51,6 +51,7 @@ pub(crate) mod summary;
 pub(crate) mod sweep;
 pub mod table;
 pub(crate) mod tabulate;
+pub mod taxel_array;
 pub mod time_left;
 mod touch_files;
 pub(crate) mod touch_set;

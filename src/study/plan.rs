@@ -6,10 +6,11 @@ use super::axes::AxisValues;
 use super::check::Check;
 use super::pose_groups::KeepTogether;
 use super::spec::{SpreadSpec, StudySpec, TouchesSpec};
+use super::taxel_array::TaxelArray;
 use crate::error::Result;
 use crate::sensing::Ensemble;
 use crate::signal::NoiseUnit;
-use crate::world::{Patch, Placement};
+use crate::world::Placement;
 use std::collections::HashSet;
 
 /// Metres in a millimetre.
@@ -30,8 +31,8 @@ pub fn millimetres(metres: f64) -> f64 {
 pub struct Plan {
     /// As it was written.
     pub spec: StudySpec,
-    /// One patch per value of the resolution axis and the size axis.
-    pub arrays: Vec<Patch>,
+    /// One array per value of the resolution axis and the size axis.
+    pub arrays: Vec<TaxelArray>,
     /// How touches are drawn; of nothing in a study of human touches.
     pub placement: Placement,
     /// Approach speed at the moment of reading, m/s.
@@ -52,6 +53,7 @@ impl Plan {
     pub fn new(place: &str, mut spec: StudySpec) -> Result<Self> {
         let check = Check { place };
         check.count("trials", spec.trials, MOST_TRIALS)?;
+        check.layout(&spec)?;
         let arrays = check.arrays(&spec.skin)?;
         check.human_touch(&spec, &arrays)?;
         let placement = match spec.human_touch {
@@ -126,8 +128,8 @@ impl Plan {
     }
 
     /// The m axis on an array; a ratio axis can name the same m twice on a small one.
-    pub(super) fn measurement_counts(&self, patch: &Patch, ensemble: Ensemble) -> Vec<usize> {
-        let n_taxels = patch.grid.n_taxels();
+    pub(super) fn measurement_counts(&self, array: &TaxelArray, ensemble: Ensemble) -> Vec<usize> {
+        let n_taxels = array.n_taxels();
         if ensemble.about().is_whole_frame {
             return vec![n_taxels];
         }

@@ -3,6 +3,7 @@
 use super::check::Check;
 use super::plan::{MM, MOST_FRAMES, millimetres};
 use super::spec::{HumanTouchSpec, ObjectsSpec, StudySpec, TouchesSpec};
+use super::taxel_array::TaxelArray;
 use crate::error::Result;
 use crate::world::{Layout, Patch, SkinPatch, Taxels};
 
@@ -43,7 +44,7 @@ impl HumanTouchSpec {
 
 impl Check<'_> {
     /// What a study has instead of objects, if it has; and nothing that only objects have.
-    pub fn human_touch(&self, spec: &StudySpec, arrays: &[Patch]) -> Result<()> {
+    pub fn human_touch(&self, spec: &StudySpec, arrays: &[TaxelArray]) -> Result<()> {
         let Some(human) = &spec.human_touch else {
             if spec.touches == TouchesSpec::default() {
                 let allowed = "a table [touches]: how the objects are touched";
@@ -65,13 +66,14 @@ impl Check<'_> {
             return Err(self.error("skin.damping_n_s_per_m", given, allowed));
         }
         self.table("human_touch", human)?;
+        self.grids(&spec.skin)?;
         let n_frames = (human.duration_s * human.frames_hz).round() + 1.0;
         if !(2.0..=MOST_FRAMES as f64).contains(&n_frames) {
             let allowed = format!("2 to {MOST_FRAMES} frames in duration_s at frames_hz");
             return Err(self.error("human_touch", format!("{n_frames} frames a touch"), allowed));
         }
         let mut arrays = arrays.iter();
-        arrays.try_for_each(|patch| self.fits_around(human, patch))
+        arrays.try_for_each(|array| self.fits_around(human, array.square()))
     }
 
     /// An array leaves a gap of a pitch at least on the arm's other side, and no layout rounds its rows and columns.

@@ -5,10 +5,10 @@ use super::check::Check;
 use super::plan::MM;
 use super::pose_groups::KeepTogether;
 use super::spec::{RecognitionSpec, SensingSpec, StudySpec};
+use super::taxel_array::TaxelArray;
 use crate::error::Result;
 use crate::recognition::ClassifierKind;
 use crate::recognition::over_time::OverTime;
-use crate::world::Patch;
 
 /// What a classifier may have a use for.
 type Has = fn(ClassifierKind) -> bool;
@@ -52,7 +52,7 @@ const BESIDE: [(&str, &[&str]); 4] = [
 
 impl Check<'_> {
     /// A ratio or measurements, no more than any array has taxels.
-    pub fn sensing(&self, sensing: &SensingSpec, arrays: &[Patch]) -> Result<()> {
+    pub fn sensing(&self, sensing: &SensingSpec, arrays: &[TaxelArray]) -> Result<()> {
         self.table("sensing", sensing)?;
         if sensing.ratio.is_some() && sensing.measurements.is_some() {
             return Err(self.error("sensing", "both ratio and measurements", "one of them"));
@@ -61,10 +61,18 @@ impl Check<'_> {
         let ratios = ratios.map(|ratio| ("sensing.ratio", ratio));
         let counts = sensing.measurements.iter().flat_map(Axis::values);
         let counts = counts.map(|m| ("sensing.measurements", m as f64));
-        let smallest = arrays.iter().map(|a| a.grid.n_taxels()).min().unwrap_or(0);
+        let smallest = arrays.iter().map(TaxelArray::n_taxels).min().unwrap_or(0);
         if let Some((key, given)) = ratios.chain(counts).find(|(_, n)| *n > smallest as f64) {
             let allowed = format!("at most {smallest}, the taxels of the smallest array");
             return Err(self.error(key, given, allowed));
+        }
+        let mut ensembles = sensing.ensemble.values().into_iter();
+        let of_rows = ensembles.find(|ensemble| ensemble.about().needs_rows);
+        let no_rows = arrays.iter().find(|array| array.sides().is_none());
+        if let (Some(ensemble), Some(array)) = (of_rows, no_rows) {
+            let given = format!("{} of a {}", ensemble.about().words, array.layout().words());
+            let allowed = "ensembles that need no rows and columns";
+            return Err(self.error("sensing.ensemble", given, allowed));
         }
         Ok(())
     }

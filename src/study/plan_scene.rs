@@ -3,7 +3,10 @@
 use super::axis::Axis;
 use super::check::{Check, MOST_VALUES, positive};
 use super::plan::MM;
-use super::spec::{ModelSpec, ObjectsSpec, RangeSpec, SkinSpec, SpreadSpec, TouchesSpec};
+use super::spec::{
+    ModelSpec, ObjectsSpec, RangeSpec, SkinSpec, SpreadSpec, StudySpec, TouchesSpec,
+};
+use super::taxel_array::TaxelArray;
 use crate::error::Result;
 use crate::mesh::SizeLimits;
 use crate::world::{Grid, Patch, Placement, Spread, Taxel};
@@ -26,8 +29,8 @@ impl ModelSpec {
 
 impl ObjectsSpec {
     /// Says how far spheres may be from surfaces, where the study leaves it to the arrays.
-    pub(crate) fn settle_surface_error(&mut self, arrays: &[Patch]) {
-        let pitches = arrays.iter().map(|patch| patch.grid.pitch / MM);
+    pub(crate) fn settle_surface_error(&mut self, arrays: &[TaxelArray]) {
+        let pitches = arrays.iter().map(|array| array.pitch() / MM);
         let finest = pitches.fold(f64::INFINITY, f64::min);
         let model = self.model.unwrap_or_default();
         let default = || model.default_surface_error_mm(finest);
@@ -36,8 +39,9 @@ impl ObjectsSpec {
     }
 
     /// Says how large objects may be whose files have no unit.
-    pub(crate) fn settle_sizes(&mut self, arrays: &[Patch]) {
-        let feels = |patch: &Patch| {
+    pub(crate) fn settle_sizes(&mut self, arrays: &[TaxelArray]) {
+        let feels = |array: &TaxelArray| {
+            let patch = array.square();
             let n = patch.grid.nx.max(patch.grid.ny);
             (n as f64 * patch.grid.pitch, patch.taxel.radius)
         };
@@ -80,7 +84,36 @@ impl Check<'_> {
         Ok(())
     }
 
-    pub fn arrays(&self, skin: &SkinSpec) -> Result<Vec<Patch>> {
+    /// What layouts need, and what some of them cannot have.
+    pub fn layout(&self, spec: &StudySpec) -> Result<()> {
+        let SkinSpec {
+            layout,
+            curvature_radius_mm: radius,
+            ..
+        } = spec.skin;
+        let layout = layout.unwrap_or_default();
+        let (key, given, allowed) = match radius {
+            None if layout.is_curved() => (
+                "skin.layout",
+                layout.words().to_owned(),
+                "skin.curvature_radius_mm beside a cylinder or a cap",
+            ),
+            Some(radius) if !layout.is_curved() && !spec.axes.has("skin.layout") => (
+                "skin.curvature_radius_mm",
+                radius.to_string(),
+                "no such key: the layout is flat",
+            ),
+            Some(_) if layout.is_curved() && spec.touches.speed_mm_per_s > 0.0 => (
+                "touches.speed_mm_per_s",
+                spec.touches.speed_mm_per_s.to_string(),
+                "0: taxels of a curved layout move at speeds of their own",
+            ),
+            _ => return Ok(()),
+        };
+        Err(self.error(key, given, allowed))
+    }
+
+    pub fn arrays(&self, skin: &SkinSpec) -> Result<Vec<TaxelArray>> {
         self.table("skin", skin)?;
         let pitches = skin.pitch_mm.values();
         let refuse = |given| Err(self.error("skin", given, "one of them"));
@@ -91,6 +124,8 @@ impl Check<'_> {
             _ => return refuse("both size_mm and taxels"),
         };
         self.configurations(pitches.len() as f64 * n_sizes as f64)?;
+        let layout = skin.layout.unwrap_or_default();
+        let radius = skin.curvature_radius_mm.unwrap_or(0.0) * MM;
         let mut arrays = Vec::new();
         for pitch_mm in pitches {
             let taxel = Taxel {
@@ -105,15 +140,28 @@ impl Check<'_> {
                     ny: n,
                     pitch: pitch_mm * MM,
                 };
-                arrays.push(Patch::new(grid, taxel)?);
+                let square = Patch::new(grid, taxel)?;
+                let array = TaxelArray::new(layout, square, radius);
+                let place = || format!("{}, key skin.curvature_radius_mm, ", self.place);
+                arrays.push(array.map_err(|error| error.under(place()))?);
             }
         }
         Ok(arrays)
     }
 
+    /// The arrays of a study that has square grids alone.
+    pub fn grids(&self, skin: &SkinSpec) -> Result<Vec<Patch>> {
+        if skin.layout.is_some() || skin.curvature_radius_mm.is_some() {
+            let allowed = "no such key: only studies of recognition have other layouts than grids";
+            return Err(self.error("skin.layout", "given", allowed));
+        }
+        let arrays = self.arrays(skin)?;
+        Ok(arrays.iter().map(|array| *array.square()).collect())
+    }
+
     /// The array of a study that has no axis of arrays; `allowed` says so.
     pub fn one_array(&self, skin: &SkinSpec, allowed: &str) -> Result<Patch> {
-        let arrays = self.arrays(skin)?;
+        let arrays = self.grids(skin)?;
         match arrays[..] {
             [patch] => Ok(patch),
             _ => Err(self.error("skin", format!("{} arrays", arrays.len()), allowed)),

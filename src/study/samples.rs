@@ -1,7 +1,7 @@
 //! Sample touches for the eye: what the array feels of a few objects, noise included.
 
 use super::measurement::{Reading, measure, signal_steps, touches_to_read};
-use super::plan::{Plan, millimetres};
+use super::plan::Plan;
 use super::progress::Silent;
 use super::sensor_errors::{skin, strength_columns};
 use super::simulation::{TouchedObject, simulate_array};
@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::random::Seed;
 use crate::sensing::{Ensemble, Projection};
 use crate::signal::{Chain, Quantity, SensorError, SignalStep, Strength};
-use ndarray::{Array2, ArrayView1};
+use ndarray::Array2;
 
 /// How many objects a picture of samples shows when the study names none.
 const N_SAMPLES: usize = 4;
@@ -44,17 +44,15 @@ pub struct Samples {
 pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> Result<Samples> {
     let group = loudest_group(plan, sweep)
         .ok_or_else(|| Error::input("study", "no cells", "at least one value an axis"))?;
-    let patch = &plan.arrays[group.array];
+    let on = &plan.arrays[group.array];
     let names: Vec<&str> = touched.iter().map(|t| t.object.name.as_str()).collect();
     let n = N_SAMPLES.min(names.len());
     let chosen = named_samples(plan, &names)?;
     let chosen = chosen.unwrap_or_else(|| (0..n).map(|k| k * names.len() / n).collect());
     let before = chosen.last().copied().unwrap_or(0);
     let name = |label: usize| names[label].replace('_', " ");
-    let grid = &patch.grid;
-    let pitch_mm = millimetres(grid.pitch);
-    let array = format!("{} × {} taxels at {pitch_mm} mm", grid.nx, grid.ny);
-    let quantity = Chain::new(&steps(plan, group), patch)?.quantity();
+    let array = on.describe_taxels();
+    let quantity = Chain::new(&steps(plan, group), on)?.quantity();
     let noise = match group.condition.noise {
         0.0 => "no noise".to_owned(),
         level => format!("noise of {}", plan.describe_noise(level)),
@@ -66,7 +64,7 @@ pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> R
     let (frames, caption) = match chosen.first() {
         Some(&first) if !groups.is_empty() => {
             // One taxel of a large gain would take the colours of all others.
-            let full_scale = quantity.full_scale(&patch.taxel);
+            let full_scale = quantity.full_scale(on.taxel());
             let shown = groups.into_iter().map(|(words, group)| {
                 let frame = read(plan, group, (touched, before))?.swap_remove(first);
                 Ok((words, frame.mapv_into(|value| value.min(full_scale))))
@@ -89,7 +87,7 @@ pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> R
     };
     Ok(Samples {
         frames,
-        pitch_mm,
+        pitch_mm: on.picture_pitch_mm(),
         quantity,
         caption,
         each,
@@ -103,37 +101,31 @@ fn read(
     group: &Group,
     (touched, before): (&[TouchedObject], usize),
 ) -> Result<Vec<Array2<f64>>> {
-    let patch = plan.arrays[group.array];
-    let shape = (patch.grid.ny, patch.grid.nx);
-    let n_taxels = patch.grid.n_taxels();
+    let array = &plan.arrays[group.array];
     let seed = Seed::new(plan.spec.seed);
     let first = |t: &TouchedObject| TouchedObject {
         touches: t.touches[..1].to_vec(),
         ..t.clone()
     };
     let firsts: Vec<TouchedObject> = touched.iter().map(first).collect();
-    let frames = simulate_array(&firsts, &patch, 1, &Silent);
+    let frames = simulate_array(&firsts, array, 1, &Silent);
     let mut touches = touches_to_read(firsts.classes(), &seed.named("signal").numbered(0));
     for touch in &mut touches {
         touch.before = Some(before);
     }
     let reading = Reading {
-        chains: &[Chain::new(&steps(plan, group), &patch)?],
-        projection: &Projection::new(Ensemble::Identity, shape, n_taxels, &seed)?,
-        taxel: patch.taxel,
+        chains: &[Chain::new(&steps(plan, group), array)?],
+        projection: &Projection::new(Ensemble::Identity, array.shape(), array.n_taxels(), &seed)?,
+        taxel: *array.taxel(),
         speed: plan.speed,
     };
     let (values, _) = measure(reading, &frames, &touches)?;
-    let frame = |row: ArrayView1<f64>| {
-        let frame = Array2::from_shape_vec(shape, row.to_vec());
-        frame.expect("a value a taxel")
-    };
-    Ok(values.outer_iter().map(frame).collect())
+    Ok(values.outer_iter().map(|row| array.picture(row)).collect())
 }
 
 /// The signal's steps but for smoothing, which hides what it is there to hide.
 fn steps(plan: &Plan, group: &Group) -> Vec<SignalStep> {
-    let skin = skin(&Seed::new(plan.spec.seed), &plan.arrays[group.array].grid);
+    let skin = skin(&Seed::new(plan.spec.seed), &plan.arrays[group.array]);
     let mut steps = signal_steps(plan, group, &skin);
     steps.retain(|step| !matches!(step, SignalStep::Smoothing { .. }));
     steps
@@ -175,7 +167,7 @@ fn imperfect_groups<'a>(plan: &Plan, sweep: &'a Sweep, array: usize) -> Vec<(Str
 
 /// The group with the most taxels and, among those, the most noise.
 fn loudest_group<'a>(plan: &Plan, sweep: &'a Sweep) -> Option<&'a Group> {
-    let n_taxels = |group: &Group| plan.arrays[group.array].grid.n_taxels();
+    let n_taxels = |group: &Group| plan.arrays[group.array].n_taxels();
     sweep.groups.iter().max_by(|a, b| {
         let by_size = n_taxels(a).cmp(&n_taxels(b));
         by_size.then(a.condition.noise.total_cmp(&b.condition.noise))

@@ -1,9 +1,9 @@
 //! Sensor errors as a study has them: their strengths, and which skin tests.
 
+use super::taxel_array::TaxelArray;
 use crate::random::Seed;
 use crate::signal::{MOST_STRENGTHS, SENSOR_ERRORS, SensorError, SignalStep, Strength};
 use crate::table::{Column, Role, Scale};
-use crate::world::Grid;
 use serde::{Deserialize, Serialize};
 use std::sync::LazyLock;
 
@@ -96,10 +96,11 @@ impl Strengths {
 }
 
 /// The skin of a study's array: the same in each touch and trial.
-pub(super) fn skin(study: &Seed, grid: &Grid) -> Seed {
-    let sides = study.named("skin").numbered(grid.nx as u64);
-    let sides = sides.numbered(grid.ny as u64);
-    sides.numbered(grid.pitch.to_bits())
+pub(super) fn skin(study: &Seed, array: &TaxelArray) -> Seed {
+    let (ny, nx) = array.shape();
+    let sides = study.named("skin").numbered(nx as u64);
+    let sides = sides.numbered(ny as u64);
+    sides.numbered(array.pitch().to_bits())
 }
 
 #[cfg(test)]

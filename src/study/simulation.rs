@@ -1,14 +1,13 @@
 //! Touches of an array: made once, shared by all cells.
 
 use super::frames::{FramePlace, Frames};
-use super::plan::millimetres;
 use super::progress::Progress;
+use super::taxel_array::{ArrayWorkspace, TaxelArray};
 use super::touch_set::TouchSet;
-use crate::contact::{Contact, Workspace, press_to_depth};
 use crate::error::Result;
 use crate::objects::Object;
 use crate::random::Seed;
-use crate::world::{Patch, Placement, RestPose, Scene, Touch, touches};
+use crate::world::{Placement, RestPose, Touch, touches};
 use ndarray::{Array1, ArrayViewMut2};
 use rayon::prelude::*;
 
@@ -51,12 +50,6 @@ pub fn touch_labels(classes: &[(&str, usize)]) -> Array1<usize> {
     labels.collect()
 }
 
-/// An array in words: `64×64 at 2 mm`.
-pub(crate) fn describe(patch: &Patch) -> String {
-    let grid = &patch.grid;
-    format!("{}×{} at {} mm", grid.nx, grid.ny, millimetres(grid.pitch))
-}
-
 /// What an object's touches are drawn from.
 pub fn touch_stream(seed: &Seed, object: &Object) -> Seed {
     seed.named("touches").named(&object.name)
@@ -65,11 +58,11 @@ pub fn touch_stream(seed: &Seed, object: &Object) -> Seed {
 /// Makes all touches on an array and keeps the frames in memory.
 pub fn simulate_array(
     touched: &dyn TouchSet,
-    patch: &Patch,
+    array: &TaxelArray,
     n_frames: usize,
     progress: &dyn Progress,
 ) -> Frames {
-    let frames = touched.simulate((patch, n_frames), &FramePlace::Memory, progress);
+    let frames = touched.simulate((array, n_frames), &FramePlace::Memory, progress);
     frames.expect("memory takes all frames")
 }
 
@@ -79,32 +72,33 @@ pub fn simulate_array(
 /// rest does not remember how it came there.
 pub(super) fn press_objects(
     touched: &[TouchedObject],
-    (patch, n_frames): (&Patch, usize),
+    (array, n_frames): (&TaxelArray, usize),
     place: &FramePlace,
     progress: &dyn Progress,
 ) -> Result<Frames> {
-    let mut frames = Frames::new((patch.grid.n_taxels(), n_frames), place)?;
+    let mut frames = Frames::new((array.n_taxels(), n_frames), place)?;
     for TouchedObject {
         object,
         rests,
         touches,
     } in touched
     {
-        let scene = Scene::of_one(patch, &object.model);
-        let press = |touch: &Touch, workspace: &mut Workspace, mut rows: ArrayViewMut2<f32>| {
-            let pose = touch.patch_from_object(&rests[touch.rest]);
-            let mut contact = None;
-            for (frame, row) in rows.outer_iter_mut().enumerate() {
-                let part = (frame + 1) as f64 / n_frames as f64;
-                contact = press_to_depth(&scene, &[pose], touch.depth * part, workspace);
-                for (to, &from) in row.into_iter().zip(workspace.deflections()) {
-                    *to = from as f32;
+        let press = array.press(&object.model);
+        let press =
+            |touch: &Touch, workspace: &mut ArrayWorkspace, mut rows: ArrayViewMut2<f32>| {
+                let pose = touch.patch_from_object(&rests[touch.rest]);
+                let mut last = None;
+                for (frame, row) in rows.outer_iter_mut().enumerate() {
+                    let part = (frame + 1) as f64 / n_frames as f64;
+                    last = press.to_depth(pose, touch.depth * part, workspace);
+                    for (to, &from) in row.into_iter().zip(press.deflections(workspace)) {
+                        *to = from as f32;
+                    }
                 }
-            }
-            let reads_any = |count: fn(Contact) -> usize| contact.is_some_and(|c| count(c) > 0);
-            (!reads_any(|c| c.n_touched), reads_any(|c| c.n_saturated))
-        };
-        frames.make(touches, Workspace::new, press, progress)?;
+                let last = last.unwrap_or_default();
+                (last.n_touched == 0, last.n_saturated > 0)
+            };
+        frames.make(touches, ArrayWorkspace::default, press, progress)?;
     }
     Ok(frames)
 }

@@ -4,7 +4,7 @@ use super::axis::Axis;
 use super::defaults::number;
 use super::spec::one_value;
 use crate::mesh::{LengthUnit, SizeLimits};
-use crate::world::RestPoses;
+use crate::world::{ArrayLayout, RestPoses};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -45,6 +45,10 @@ pub struct SkinSpec {
     pub size_mm: Option<Axis<f64>>,
     /// Axis, instead of `size_mm`: taxels along a side.
     pub taxels: Option<Axis<usize>>,
+    /// How the taxels lie, as many an area in every layout: `grid` (when left out), `hexagonal`, `disc`, `cylinder`, `cap`.
+    pub layout: Option<ArrayLayout>,
+    /// Radius to which `cylinder` and `cap` are bent, to the taxels' rest centres, mm.
+    pub curvature_radius_mm: Option<f64>,
     /// ρ, mm; half the pitch when left out.
     pub taxel_radius_mm: Option<f64>,
     /// s, mm.

@@ -10,10 +10,11 @@
 
 use super::axes::AxisValues;
 use super::axis::Axis;
+use super::measurement::signal_steps;
 use super::plan::{Plan, millimetres};
 use super::plan_signal::Condition;
 use super::samples::named_samples;
-use super::sensor_errors::TestedOn;
+use super::sensor_errors::{TestedOn, skin};
 use super::splits::{draw_split, train_touches};
 use super::table::Cell;
 use super::touch_set::TouchSet;
@@ -23,6 +24,7 @@ use crate::recognition::ClassifierKind;
 use crate::recognition::split::Split;
 use crate::recognition::spoiled::mislabelled;
 use crate::sensing::Ensemble;
+use crate::signal::Chain;
 use ndarray::Array1;
 
 /// Loops within loops: the first changes slowest.
@@ -147,7 +149,7 @@ impl Sweep {
                     ensemble,
                     cells: Vec::new(),
                 };
-                sweep.add_group(plan, group, &train_touches);
+                sweep.add_group(plan, group, &train_touches)?;
             }
         }
         Ok(sweep)
@@ -214,9 +216,14 @@ impl Sweep {
         self.groups.iter().map(|group| group.cells.len()).sum()
     }
 
-    fn add_group(&mut self, plan: &Plan, mut group: Group, train_touches: &[usize]) {
-        let patch = &plan.arrays[group.array];
-        let grid = &patch.grid;
+    fn add_group(&mut self, plan: &Plan, mut group: Group, train_touches: &[usize]) -> Result<()> {
+        let array = &plan.arrays[group.array];
+        let (ny, nx) = array.shape();
+        if array.skin().is_some() {
+            // A step that its layout cannot have is known before anything runs.
+            let skin = skin(&Seed::new(plan.spec.seed), array);
+            Chain::new(&signal_steps(plan, &group, &skin), array)?;
+        }
         let learned = &plan.spec.recognition;
         let penalties = |classifier: ClassifierKind| match classifier.has_c() {
             true => learned.penalties(),
@@ -226,7 +233,7 @@ impl Sweep {
         let last = self.groups.last().and_then(|group| group.cells.last());
         let first = last.map_or(0, |cell| cell.cell + 1);
         nested! {
-            measurements in plan.measurement_counts(patch, group.ensemble);
+            measurements in plan.measurement_counts(array, group.ensemble);
             over_time in Axis::of(&learned.over_time);
             features in learned.features.values();
             classifier in learned.classifier.values();
@@ -237,10 +244,10 @@ impl Sweep {
             fused_touches in learned.fused_touches.values();
             group.cells.push(Cell {
                 cell: first + group.cells.len(),
-                pitch_mm: millimetres(grid.pitch),
-                nx: grid.nx,
-                ny: grid.ny,
-                size_mm: millimetres(grid.pitch * grid.nx as f64),
+                pitch_mm: millimetres(array.pitch()),
+                nx,
+                ny,
+                size_mm: millimetres(array.pitch() * array.square().grid.nx as f64),
                 noise_std: group.condition.noise,
                 noise_unit: plan.noise_unit,
                 smoothing_mm: millimetres(group.condition.smoothing),
@@ -248,7 +255,7 @@ impl Sweep {
                 tested_on: plan.spec.signal.tested_on.as_ref().map(|_| group.tested_on),
                 ensemble: group.ensemble,
                 measurements,
-                ratio: grid.n_taxels() as f64 / measurements as f64,
+                ratio: array.n_taxels() as f64 / measurements as f64,
                 frames: group.frames,
                 over_time,
                 features,
@@ -264,6 +271,7 @@ impl Sweep {
         // Of many groups of few cells, room for more would be most of the memory.
         group.cells.shrink_to_fit();
         self.groups.push(group);
+        Ok(())
     }
 }
 

@@ -2,10 +2,11 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `frames.npy` | n × ny × nx, f32, metres of deflection, without noise; or as a cell reads them |
+//! | `frames.npy` | n × ny × nx (1 × n_taxels of layouts without rows), f32, metres of deflection, without noise; or as a cell reads them |
 //! | `labels.npy` | n, i64: the object's number |
 //! | `poses.npy` | n × 7, f64: the object in the patch frame when it is read: x, y, z in metres, quaternion x, y, z, w |
 //! | `depths.npy` | n, f64: metres past first contact |
+//! | `taxels.npy` | n_taxels × 6, f64, of layouts that are no grid: rest centres (metres) and axes in the patch frame |
 //! | `touches.csv` | one row a touch: object, resting pose, offset, yaw, tilts, depth, taxels touched and saturated |
 //! | `objects.csv` | one row an object: number, name, spheres (0 of a mesh), touches |
 //!
@@ -16,16 +17,16 @@ use super::feature_files::{find, measured};
 use super::npy::NpyFile;
 use super::plan::Plan;
 use super::progress::Progress;
-use super::simulation::{describe, touch_stream};
+use super::simulation::touch_stream;
 use super::sweep::{Group, Sweep};
+use super::taxel_array::{ArrayPress, ArrayWorkspace, TaxelArray};
 use super::touch_set::TouchSet;
-use crate::contact::{Workspace, press_to_depth};
 use crate::error::Result;
 use crate::files::CsvFile;
 use crate::objects::Object;
 use crate::random::Seed;
 use crate::sensing::Ensemble;
-use crate::world::{Patch, Placement, RestPose, Scene, Touch, TouchSource};
+use crate::world::{Placement, RestPose, Touch, TouchSource};
 use ndarray::Array2;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -96,7 +97,7 @@ impl ReadFrames {
             ensemble: Ensemble::Identity,
             ..group.clone()
         };
-        let n_taxels = plan.arrays[group.array].grid.n_taxels();
+        let n_taxels = plan.arrays[group.array].n_taxels();
         let of = (touched, &identity, n_taxels);
         let read = measured(plan, of, (trial, &split), ("read", progress))?;
         Ok(Self {
@@ -121,7 +122,7 @@ pub fn write_touches(
     folder: &Path,
     objects: &[Object],
     (placement, seed): (&Placement, &Seed),
-    patch: &Patch,
+    array: &TaxelArray,
     read: Option<&ReadFrames>,
     progress: &dyn Progress,
 ) -> Result<usize> {
@@ -132,15 +133,16 @@ pub fn write_touches(
         sources.map(|(o, rests)| TouchSource::new(placement, rests, &touch_stream(seed, o)));
     let sources = sources.collect::<Result<Vec<_>>>()?;
     let n_touches = sources.iter().map(TouchSource::n_touches).sum();
-    progress.stage(&format!("touch {}", describe(patch)), n_touches as u64);
-    let array = |name: &str, descr, shape: &[usize]| {
+    progress.stage(&format!("touch {}", array.describe()), n_touches as u64);
+    let file = |name: &str, descr, shape: &[usize]| {
         let shape = [&[n_touches], shape].concat();
         NpyFile::create(&folder.join(name), descr, &shape)
     };
-    let mut frames = array("frames.npy", "<f4", &[patch.grid.ny, patch.grid.nx])?;
-    let mut labels = array("labels.npy", "<i8", &[])?;
-    let mut poses = array("poses.npy", "<f8", &[7])?;
-    let mut depths = array("depths.npy", "<f8", &[])?;
+    let (ny, nx) = array.shape();
+    let mut frames = file("frames.npy", "<f4", &[ny, nx])?;
+    let mut labels = file("labels.npy", "<i8", &[])?;
+    let mut poses = file("poses.npy", "<f8", &[7])?;
+    let mut depths = file("depths.npy", "<f8", &[])?;
     let mut n_before = 0;
     let mut table = CsvFile::create(&folder.join("touches.csv"))?;
     let mut rows = CsvFile::create(&folder.join("objects.csv"))?;
@@ -151,15 +153,16 @@ pub fn write_touches(
             n_spheres: object.model.n_spheres(),
             n_touches: source.n_touches(),
         })?;
-        let scene = Scene::of_one(patch, &object.model);
+        let press = array.press(&object.model);
         for first in (0..source.n_touches()).step_by(BLOCK) {
             let block = first..source.n_touches().min(first + BLOCK);
-            let press = |workspace: &mut Workspace, number| {
+            let read_one = |workspace: &mut ArrayWorkspace, number| {
                 let named = (n_before + number, label, object.name.as_str());
-                pressed((&scene, rests), named, &source.touch(number), workspace)
+                pressed((&press, rests), named, &source.touch(number), workspace)
             };
             let readings = block.clone().into_par_iter();
-            let readings: Vec<_> = readings.map_init(Workspace::new, press).collect();
+            let readings = readings.map_init(ArrayWorkspace::default, read_one);
+            let readings: Vec<_> = readings.collect();
             for reading in readings {
                 labels.push([(label as i64).to_le_bytes()])?;
                 poses.push(reading.pose.map(f64::to_le_bytes))?;
@@ -175,21 +178,37 @@ pub fn write_touches(
     for file in [frames, labels, poses, depths] {
         file.commit()?;
     }
+    write_taxels(folder, array)?;
     table.commit()?;
     rows.commit()?;
     Ok(n_touches)
 }
 
+/// Where the taxels of a layout are that is no grid, and their axes.
+fn write_taxels(folder: &Path, array: &TaxelArray) -> Result<()> {
+    let Some(skin) = array.skin() else {
+        return Ok(());
+    };
+    let (centers, axes) = (skin.layout().centers(), skin.layout().axes());
+    let mut file = NpyFile::create(&folder.join("taxels.npy"), "<f8", &[centers.len(), 6])?;
+    for (center, axis) in centers.iter().zip(axes) {
+        let numbers = center.to_array().into_iter().chain(axis.to_array());
+        file.push(numbers.map(f64::to_le_bytes))?;
+    }
+    file.commit()
+}
+
 /// Presses a touch, of which the number, the label and the name of its object are known.
 fn pressed<'a>(
-    (scene, rests): (&Scene, &[RestPose]),
+    (press, rests): (&ArrayPress, &[RestPose]),
     (number, label, object): (usize, usize, &'a str),
     touch: &Touch,
-    workspace: &mut Workspace,
+    workspace: &mut ArrayWorkspace,
 ) -> Reading<'a> {
     let mut pose = touch.patch_from_object(&rests[touch.rest]);
-    let contact = press_to_depth(scene, &[pose], touch.depth, workspace);
-    pose.translation.z -= contact.map_or(0.0, |c| c.travel);
+    let felt = press.to_depth(pose, touch.depth, workspace);
+    let felt = felt.unwrap_or_default();
+    pose.translation.z -= felt.travel;
     let (t, q) = (pose.translation, pose.rotation);
     Reading {
         row: TouchRow {
@@ -203,10 +222,14 @@ fn pressed<'a>(
             tilt_x_deg: touch.tilt[0].to_degrees(),
             tilt_y_deg: touch.tilt[1].to_degrees(),
             depth_mm: 1e3 * touch.depth,
-            n_touched: contact.map_or(0, |c| c.n_touched),
-            n_saturated: contact.map_or(0, |c| c.n_saturated),
+            n_touched: felt.n_touched,
+            n_saturated: felt.n_saturated,
         },
-        frame: workspace.deflections().iter().map(|&d| d as f32).collect(),
+        frame: press
+            .deflections(workspace)
+            .iter()
+            .map(|&d| d as f32)
+            .collect(),
         pose: [t.x, t.y, t.z, q.x, q.y, q.z, q.w],
         depth: touch.depth,
     }

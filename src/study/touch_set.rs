@@ -8,11 +8,11 @@ use super::progress::Progress;
 use super::samples::{Samples, sample_frames};
 use super::simulation::{TouchedObject, press_objects, touch_labels};
 use super::sweep::Sweep;
+use super::taxel_array::TaxelArray;
 use crate::contact::saturation_limit;
 use crate::error::Result;
 use crate::objects::Model;
 use crate::random::Seed;
-use crate::world::Patch;
 use ndarray::Array1;
 use rand::Rng;
 use rayon::prelude::*;
@@ -49,7 +49,7 @@ pub trait TouchSet: Sync {
     /// The file of frames cannot be written.
     fn simulate(
         &self,
-        on: (&Patch, usize),
+        on: (&TaxelArray, usize),
         place: &FramePlace,
         progress: &dyn Progress,
     ) -> Result<Frames>;
@@ -93,7 +93,7 @@ impl TouchSet for Vec<TouchedObject> {
 
     fn simulate(
         &self,
-        on: (&Patch, usize),
+        on: (&TaxelArray, usize),
         place: &FramePlace,
         progress: &dyn Progress,
     ) -> Result<Frames> {

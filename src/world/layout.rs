@@ -2,6 +2,7 @@
 
 use super::Grid;
 use crate::error::{Error, Result};
+use crate::geometry::Pose;
 use glam::{DMat3, DVec3};
 
 /// Taxels of one layout, at most: more is a pitch in the wrong unit, and a hundred bytes each.
@@ -109,6 +110,16 @@ impl Layout {
     /// The grid that it was made from, if it was.
     pub fn as_grid(&self) -> Option<&Grid> {
         self.grid.as_ref()
+    }
+
+    /// The same taxels elsewhere in the patch frame; no grid any more.
+    #[must_use]
+    pub fn moved(&self, pose: &Pose) -> Self {
+        let taxels = self.centers.iter().zip(&self.axes);
+        Self::of_taxels(taxels.map(|(&center, &axis)| {
+            let axis = (pose.rotation * axis).normalize();
+            (pose.transform_point(center), axis)
+        }))
     }
 
     /// What a family has made: taxels whose axes are all of length one.

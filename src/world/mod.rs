@@ -4,6 +4,7 @@
 //! On a [`SkinPatch`] of another [`Layout`] each taxel has its own place and axis.
 //! In the **table frame** z points up and objects rest on z = 0.
 
+mod array_layout;
 mod basins;
 mod body;
 mod dome;
@@ -32,6 +33,7 @@ mod taxel_tree;
 mod touches;
 mod trajectory;
 
+pub use array_layout::ArrayLayout;
 pub use body::Body;
 pub use dome::{Dome, DomeRing};
 pub use extrusion::Extrusion;

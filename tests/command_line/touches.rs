@@ -114,11 +114,11 @@ const FOLDERS: [&str; 2] = ["data/12x12_at_4_mm", "data/24x24_at_2_mm"];
 fn the_frames_are_the_librarys_one_folder_an_array() {
     let case = written();
     let study = Study::new(STUDY);
-    for (folder, patch) in FOLDERS.iter().zip(&study.plan.arrays) {
+    for (folder, array) in FOLDERS.iter().zip(&study.plan.arrays) {
         let files = Files::read(&case.path(folder));
-        let (ny, nx) = (patch.grid.ny, patch.grid.nx);
+        let (ny, nx) = array.shape();
         assert_eq!(files.frames.dim(), (900, ny, nx));
-        let expected = simulate_array(&study.touched, patch, 1, &Silent);
+        let expected = simulate_array(&study.touched, array, 1, &Silent);
         let flat = files.frames.to_shape((900, ny * nx)).unwrap();
         assert_eq!(flat.mapv(f64::from), expected.to_array().unwrap());
         let n_missed = files.touches.iter().filter(|t| t.n_touched == 0).count();
@@ -218,7 +218,8 @@ fn labels_depths_and_tables_agree_and_are_the_touches_of_the_study() {
 fn pressing_at_the_recorded_pose_reproduces_the_frame() {
     let case = written();
     let study = Study::new(STUDY);
-    for (folder, patch) in FOLDERS.iter().zip(&study.plan.arrays) {
+    for (folder, array) in FOLDERS.iter().zip(&study.plan.arrays) {
+        let patch = array.square();
         let files = Files::read(&case.path(folder));
         let mut workspace = Workspace::new();
         for (touch, pose) in files.poses.outer_iter().enumerate() {

@@ -11,6 +11,7 @@ mod random_scenes;
 #[path = "../fixtures/reference_data/mod.rs"]
 mod reference_data;
 
+mod approach;
 mod balance;
 mod balance_limits;
 mod dynamics_laws;

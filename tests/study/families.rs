@@ -61,7 +61,7 @@ const ALL_FEATURES: &str = r#"features = ["raw", "centred", "unit_norm", "centre
 
 /// The rows of a cell in a trial, one touch, one frame, one number after the other.
 fn slow_rows(study: &Study, cell: &Cell, trial: u64) -> Array2<f64> {
-    let patch = study.plan.arrays[0];
+    let patch = *study.plan.arrays[0].square();
     let seed = Seed::new(study.plan.spec.seed);
     let steps = [SignalStep::Noise(Noise {
         std: cell.noise_std,

@@ -40,8 +40,8 @@ classifier = "linear_svm"
 #[test]
 fn every_frame_is_its_touch_pressed_alone() {
     let study = Study::new(STUDY);
-    let patch = study.plan.arrays[0];
-    let frames = simulate_array(&study.touched, &patch, 1, &Silent);
+    let patch = *study.plan.arrays[0].square();
+    let frames = simulate_array(&study.touched, &patch.into(), 1, &Silent);
     let deflection = frames.to_array().unwrap();
     let mut row = 0;
     let (mut n_missed, mut n_saturated) = (0, 0);
@@ -72,8 +72,8 @@ fn frames_without_a_deflection_are_counted_and_none_is_of_a_deep_touch() {
     let depths = |depths: &str| {
         let text = STUDY.replace("depth_mm = [2.0, 4.0]", depths);
         let study = Study::new(&text.replace(", 400.0]", "]"));
-        let patch = study.plan.arrays[0];
-        let frames = simulate_array(&study.touched, &patch, 3, &Silent);
+        let patch = *study.plan.arrays[0].square();
+        let frames = simulate_array(&study.touched, &patch.into(), 3, &Silent);
         let deflection = frames.to_array().unwrap();
         let empty = deflection.outer_iter().skip(2).step_by(3);
         let n_empty = empty.filter(|row| row.iter().all(|&d| d == 0.0)).count();
@@ -116,9 +116,9 @@ fn by_the_equations(patch: &Patch, object: &TouchedObject, touch: &Touch) -> Opt
 #[test]
 fn missed_and_saturated_touches_are_counted_as_the_equations_say() {
     let study = Study::new(STUDY);
-    let patch = study.plan.arrays[0];
+    let patch = *study.plan.arrays[0].square();
     let stroke = patch.taxel.stroke;
-    let frames = simulate_array(&study.touched, &patch, 1, &Silent);
+    let frames = simulate_array(&study.touched, &patch.into(), 1, &Silent);
     let deflection = frames.to_array().unwrap();
     let touches = study
         .touched
@@ -359,8 +359,8 @@ fn a_damper_pushes_back_on_taxels_that_move_and_not_on_saturated_ones() {
         .replace("[2.0, 4.0]\n", "4.0\nspeed_mm_per_s = 50.0\n")
         .replace("[sensing]", "[signal]\nsteps = [\"force\"]\n\n[sensing]");
     let study = Study::new(&text);
-    let patch = study.plan.arrays[0];
-    let frames = simulate_array(&study.touched, &patch, 1, &Silent);
+    let patch = *study.plan.arrays[0].square();
+    let frames = simulate_array(&study.touched, &patch.into(), 1, &Silent);
     let frames = frames.to_array().unwrap();
     let samples = sample_frames(&study.plan, &study.sweep, &study.touched).unwrap();
     assert_eq!(samples.frames.len(), study.touched.len());

@@ -172,7 +172,7 @@ fn a_touch_is_read_as_a_press_that_goes_on_after_another_touch() {
     let signal =
         "steps = [\"hysteresis\", \"scan\"]\nhysteresis_full_scale = 0.2\nscan_time_ms = 30.0";
     let study = Study::new(&with_signal(signal));
-    let patch = study.plan.arrays[0];
+    let patch = *study.plan.arrays[0].square();
     let n = patch.grid.n_taxels();
     let touches: Vec<_> = study
         .touched

@@ -11,6 +11,7 @@ mod experiments;
 mod families;
 mod frames;
 mod hardware;
+mod layouts;
 mod memory;
 mod quickstart;
 mod repeatability;

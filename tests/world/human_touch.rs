@@ -413,9 +413,13 @@ fn touches_are_balanced_and_alone_the_same() {
     assert_eq!(fewer.of(1), &touches.of(0)[..12]);
     // Frame by frame as pressed by hand, with new spheres each time.
     let human = plan.spec.human_touch.as_ref().unwrap();
-    let patch = plan.arrays[0];
+    let patch = *plan.arrays[0].square();
     let skin = human.skin(&patch).unwrap();
-    let frames = touches.simulate((&patch, human.n_frames()), &FramePlace::Memory, &Silent);
+    let frames = touches.simulate(
+        (&patch.into(), human.n_frames()),
+        &FramePlace::Memory,
+        &Silent,
+    );
     let deflection = frames.unwrap().to_array().unwrap();
     assert_eq!(deflection.dim(), (240 * 49, 1024));
     let mut workspace = SkinWorkspace::new();
@@ -447,7 +451,7 @@ fn touches_are_balanced_and_alone_the_same() {
 #[test]
 fn rows_and_columns_of_the_array_run_along_and_around_the_arm() {
     let (plan, touches, _) = laid_out(&STUDY.replace("KINDS", "")).unwrap();
-    let skin = touches.spec.skin(&plan.arrays[0]).unwrap();
+    let skin = touches.spec.skin(plan.arrays[0].square()).unwrap();
     let centers = skin.layout().centers();
     let place = |row: usize, column: usize| {
         let p = centers[row * 32 + column];

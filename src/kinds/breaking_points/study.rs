@@ -75,8 +75,7 @@ fn name((way, value): &(&PlannedWay, &PlannedValue)) -> String {
 
 /// Numbers that a value reads of one object.
 fn n_read(value: &PlannedValue) -> usize {
-    let of_plan =
-        |plan: &Plan| plan.arrays[0].grid.n_taxels() * plan.placement.per_object.unwrap_or(1);
+    let of_plan = |plan: &Plan| plan.arrays[0].n_taxels() * plan.placement.per_object.unwrap_or(1);
     value.plans().map(of_plan).sum()
 }
 

@@ -54,9 +54,9 @@ impl<'a> World<'a> {
     /// An error unless what is learned here can be tested there: the same touches, split alike, measured by the same projection.
     fn check_alike(&self, tested: &Self) -> Result<()> {
         let shape = |world: &Self| {
-            let grid = world.plan.arrays[0].grid;
+            let array = &world.plan.arrays[0];
             let cell = &world.sweep.groups[0].cells[0];
-            (grid.nx, grid.ny, cell.ensemble, cell.n_features())
+            (array.shape(), cell.ensemble, cell.n_features())
         };
         let is_alike = self.sweep.labels == tested.sweep.labels
             && self.sweep.splits == tested.sweep.splits

@@ -53,7 +53,7 @@ impl ObjectDetailPlan {
             return Err(check.error("objects.model", "a model", allowed));
         }
         let patch = check.one_array(&spec.skin, "one pitch and one size")?;
-        spec.objects.settle_sizes(&[patch]);
+        spec.objects.settle_sizes(&[patch.into()]);
         if spec.objects.surface_error_mm.is_some() {
             let allowed = "no such key: object_detail.tolerances_mm says how far spheres may be from the meshes";
             return Err(check.error("objects.surface_error_mm", "a surface error", allowed));

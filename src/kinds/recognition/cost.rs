@@ -5,8 +5,8 @@ use crate::recognition::svm::{Multiclass, Solver};
 use crate::study::plan::Plan;
 use crate::study::sweep::Group;
 use crate::study::table::Cell;
+use crate::study::taxel_array::TaxelArray;
 use crate::study::touch_set::TouchSet;
-use crate::world::Patch;
 
 /// Seconds to make or to read a taxel of a frame.
 const TAXEL_S: f64 = 8e-9;
@@ -18,19 +18,19 @@ const LINFA_ENTRY_S: f64 = 1.2e-7;
 
 /// To make all touches on an array, so many frames each.
 pub(super) fn touch_s(
-    patch: &Patch,
+    array: &TaxelArray,
     touched: &dyn TouchSet,
     (n_touches, n_frames): (usize, usize),
 ) -> f64 {
     // What a frame after the first takes, as a share of it.
     let frames = 1.0 + 0.25 * (n_frames as f64 - 1.0);
-    let taxels = (n_touches * n_frames * patch.grid.n_taxels()) as f64;
+    let taxels = (n_touches * n_frames * array.n_taxels()) as f64;
     frames * touched.place_s() + 0.5 * TAXEL_S * taxels
 }
 
 /// To read and project all frames of a group once.
 pub(super) fn measure_s(plan: &Plan, group: &Group, (n_touches, m): (usize, usize)) -> f64 {
-    let n_taxels = plan.arrays[group.array].grid.n_taxels();
+    let n_taxels = plan.arrays[group.array].n_taxels();
     let project_s = (group.ensemble.about().taxel_s)(m as f64, n_taxels as f64);
     (n_touches * group.frames * n_taxels) as f64 * (TAXEL_S + project_s)
 }

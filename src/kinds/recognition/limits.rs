@@ -16,8 +16,8 @@ impl RecognitionStudy {
         let sum = |count: fn(&TouchRow) -> usize| made.iter().map(|row| count(row)).sum();
         let n_touches = sum(|row| row.n_touches);
         let deeper = made.iter().map(|row| {
-            let (part, patch, _) = self.on(row.on);
-            part.touched.n_deeper_than(patch.taxel.stroke)
+            let (part, array, _) = self.on(row.on);
+            part.touched.n_deeper_than(array.taxel().stroke)
         });
         let n_deeper: usize = deeper.sum();
         let n_capped = fits.iter().filter(|(_, score)| score.n_capped > 0).count();

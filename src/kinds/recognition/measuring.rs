@@ -9,7 +9,6 @@ use crate::study::frames::Frames;
 use crate::study::measurement::{Measurements, measure_group};
 use crate::study::pieces::PiecesLeft;
 use crate::study::progress::{Progress, Silent};
-use crate::study::simulation::describe;
 use crate::study::time_left::Piece;
 use rayon::prelude::*;
 use std::cmp::Reverse;
@@ -109,12 +108,12 @@ impl RecognitionStudy {
         jobs: Vec<Job>,
     ) -> Result<()> {
         let touches = self.touches_item(on);
-        let (part, patch, n_frames) = self.on(on);
+        let (part, array, n_frames) = self.on(on);
         let mut need: Vec<usize> = jobs.iter().flat_map(Job::items).collect();
         let n_families = need.len();
         need.push(touches);
         let stage = |name: &str, total: usize| {
-            let stage = in_frames(&format!("{name} {}", describe(patch)), n_frames);
+            let stage = in_frames(&format!("{name} {}", array.describe()), n_frames);
             left.progress.stage(&stage, total as u64);
         };
         let mut touched: &dyn Progress = &Silent;
@@ -124,7 +123,7 @@ impl RecognitionStudy {
         }
         let make = || {
             left.during(&self.touch_work(on), || {
-                let on = (patch, n_frames);
+                let on = (array, n_frames);
                 part.touched.simulate(on, &self.place, touched)
             })
         };

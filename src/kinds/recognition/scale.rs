@@ -27,7 +27,7 @@ pub fn recognition_scale(
     folder: &Path,
 ) -> (Scale, FramePlace) {
     type Placed<'a> = (&'a StudyPart, &'a Group);
-    let n_taxels = |(part, group): Placed| part.plan.arrays[group.array].grid.n_taxels();
+    let n_taxels = |(part, group): Placed| part.plan.arrays[group.array].n_taxels();
     let n_frames = |(part, group): Placed| (part.sweep.labels.len() * group.frames) as f64;
     let m = |group: &Group| group.projected().into_iter().max().unwrap_or(0) as f64;
     let measured = |on: Placed| {

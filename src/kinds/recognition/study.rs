@@ -23,10 +23,10 @@ use crate::study::spec::ObjectsSpec;
 use crate::study::sweep::{Group, Sweep};
 use crate::study::table::{Cell, StageTime, Tables};
 use crate::study::tabulate::tabulate;
+use crate::study::taxel_array::TaxelArray;
 use crate::study::time_left::Piece;
 use crate::study::touch_set::TouchSet;
 use crate::table::Table;
-use crate::world::Patch;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ops::Range;
 use std::sync::Arc;
@@ -139,9 +139,9 @@ impl RecognitionStudy {
         for (part, StudyPart { plan, sweep, .. }) in self.parts.iter().enumerate() {
             let touched = touch_content(plan);
             for (place, group) in sweep.groups.iter().enumerate() {
-                let (patch, number) = (&plan.arrays[group.array], self.groups.len());
-                let content = format!("{touched} {patch:?} {}", group.frames);
-                let name = touches_name(patch, group.frames, &content);
+                let (array, number) = (&plan.arrays[group.array], self.groups.len());
+                let content = format!("{touched} {} {}", array.content(), group.frames);
+                let name = touches_name(array, group.frames, &content);
                 let touches = *known_touches.entry(content).or_insert_with(|| {
                     let group = number;
                     self.touch_sets.push(Touches { group, name });
@@ -260,15 +260,15 @@ impl RecognitionStudy {
     }
 
     /// What is touched, and on what.
-    pub(super) fn on(&self, touches: usize) -> (&StudyPart, &Patch, usize) {
+    pub(super) fn on(&self, touches: usize) -> (&StudyPart, &TaxelArray, usize) {
         let (part, group) = self.group(self.touch_sets[touches].group);
         (part, &part.plan.arrays[group.array], group.frames)
     }
 
     pub(super) fn touch_work(&self, touches: usize) -> Piece {
-        let (part, patch, n_frames) = self.on(touches);
+        let (part, array, n_frames) = self.on(touches);
         let on = (part.sweep.labels.len(), n_frames);
-        let planned_s = touch_s(patch, part.touched.as_ref(), on);
+        let planned_s = touch_s(array, part.touched.as_ref(), on);
         Piece::one_by_one(TOUCH, planned_s / rayon::current_num_threads() as f64)
     }
 
@@ -283,7 +283,8 @@ impl RecognitionStudy {
     fn stages(&self, rows: &[TouchRow]) -> Vec<StageTime> {
         let mut stages = Vec::new();
         for on in 0..self.touch_sets.len() {
-            let (_, Patch { grid, .. }, n_frames) = self.on(on);
+            let (_, array, n_frames) = self.on(on);
+            let (ny, nx) = array.shape();
             for (stage, is_made) in [("simulate", true), ("measure", false)] {
                 let rows = rows.iter().filter(|row| row.on == on);
                 let rows: Vec<&TouchRow> = rows.filter(|row| row.is_made == is_made).collect();
@@ -294,9 +295,9 @@ impl RecognitionStudy {
                 let cpu_s: f64 = rows.iter().map(|row| row.cpu_s).sum();
                 stages.push(StageTime {
                     stage: in_frames(stage, n_frames),
-                    pitch_mm: millimetres(grid.pitch),
-                    nx: grid.nx,
-                    ny: grid.ny,
+                    pitch_mm: millimetres(array.pitch()),
+                    nx,
+                    ny,
                     n_touches,
                     cpu_s,
                     us_per_touch: 1e6 * cpu_s / n_touches as f64,
@@ -308,15 +309,15 @@ impl RecognitionStudy {
 }
 
 /// What touches are called as a work item.
-fn touches_name(patch: &Patch, n_frames: usize, content: &str) -> String {
-    let (grid, content) = (&patch.grid, short_hash(content, 12));
-    let (nx, ny, pitch) = (grid.nx, grid.ny, grid.pitch);
+fn touches_name(array: &TaxelArray, n_frames: usize, content: &str) -> String {
+    let ((ny, nx), content) = (array.shape(), short_hash(content, 12));
+    let pitch = array.pitch();
     format!("touches of {n_frames} frames on {nx}x{ny} taxels at {pitch} m, {content}")
 }
 
 /// All that the measurements of a group depend on, beside its touches.
 fn measured_content(plan: &Plan, group: &Group) -> String {
-    let patch = &plan.arrays[group.array];
+    let array = plan.arrays[group.array].content();
     let steps = signal_steps(plan, group, &Seed::new(plan.spec.seed));
     let recognition = &plan.spec.recognition;
     // Test touches are read by another skin only where there is one.
@@ -327,7 +328,7 @@ fn measured_content(plan: &Plan, group: &Group) -> String {
     ));
     let drawn = (plan.spec.seed, plan.spec.projections_per_split, plan.speed);
     let (ensemble, m) = (group.ensemble, group.projected());
-    format!("{patch:?} {steps:?} {split:?} {drawn:?} {ensemble:?} {m:?}")
+    format!("{array} {steps:?} {split:?} {drawn:?} {ensemble:?} {m:?}")
 }
 
 impl RecognitionStudy {

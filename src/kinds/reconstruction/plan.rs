@@ -59,12 +59,12 @@ impl ReconstructionPlan {
         check.objects(&spec.objects)?;
         let allowed = "one pitch and one size: a dictionary is of one array";
         let patch = check.one_array(&spec.skin, allowed)?;
-        spec.objects.settle_surface_error(&[patch]);
+        spec.objects.settle_surface_error(&[patch.into()]);
         let placement = check.placement(&spec.touches)?;
         let (noise_unit, noise) = check.noise(&spec.signal)?;
         check.steps(&spec.signal)?;
         check.noise_is_last(&spec.signal)?;
-        check.sensing(&spec.sensing, &[patch])?;
+        check.sensing(&spec.sensing, &[patch.into()])?;
         let wanted = &spec.reconstruction;
         check.keys("reconstruction", wanted, KEYS)?;
         let dictionaries = check.dictionaries(wanted, &patch.grid)?;

@@ -49,7 +49,7 @@ impl Touches {
     ) -> Result<Self> {
         let labels = touched.labels();
         progress.stage("touch", labels.len() as u64);
-        let frames = simulate_array(touched, &plan.patch, 1, progress);
+        let frames = simulate_array(touched, &plan.patch.into(), 1, progress);
         let seed = Seed::new(plan.spec.seed);
         let fraction = plan.spec.reconstruction.test_fraction;
         let split = stratified_hold_out(labels.view(), fraction, &seed.named("split").numbered(0))?;

@@ -94,7 +94,7 @@ impl SpeedAccuracyPlan {
             return Err(check.error(keys, "a value", allowed));
         }
         let patch = check.one_array(&spec.skin, "one pitch and one size")?;
-        spec.objects.settle_sizes(&[patch]);
+        spec.objects.settle_sizes(&[patch.into()]);
         let placement = check.placement(&spec.touches)?;
         let wanted = &spec.speed_accuracy;
         check.keys("speed_accuracy", wanted, KEYS)?;
@@ -140,7 +140,7 @@ fn check_recognition(
         let allowed = "values of speed_accuracy.tolerances_mm";
         return Err(check.error(&key("tolerances_mm"), level, allowed));
     }
-    let arrays = check.arrays(&SkinSpec {
+    let arrays = check.grids(&SkinSpec {
         pitch_mm: Axis::Many(spec.pitch_mm.clone()),
         size_mm: Some(Axis::One(spec.size_mm)),
         taxels: None,

@@ -110,7 +110,7 @@ impl SpeedAccuracyStudy {
                 unit: NoiseUnit::FullScale,
             });
             let chain = &Chain::new(&[noise], patch)?;
-            let tested = &simulate_array(&exact, patch, 1, &Silent);
+            let tested = &simulate_array(&exact, &(*patch).into(), 1, &Silent);
             for of_level in of_array.chunk_by(|(_, a), (_, b)| a.level == b.level) {
                 let touched = &levels[of_level[0].1.level];
                 let bench = Bench {
@@ -118,7 +118,7 @@ impl SpeedAccuracyStudy {
                     seed,
                     patch,
                     touched,
-                    learned: &simulate_array(touched, patch, 1, &Silent),
+                    learned: &simulate_array(touched, &(*patch).into(), 1, &Silent),
                     tested,
                     to_read,
                     chain,

@@ -1,0 +1,140 @@
+//! A skin of any layout moved past first contact: against the grid's own press, and against all pairs of spheres.
+
+use bubbletouch::contact::{Approach, SkinWorkspace, Workspace, press_skin, press_to_depth};
+use bubbletouch::geometry::Pose;
+use bubbletouch::objects::{MeshModel, Model, Sphere, SphereUnion};
+use bubbletouch::world::{ArrayLayout, Grid, Patch, Scene, SkinPatch, Taxels};
+use glam::DVec3;
+use rand::Rng;
+
+use crate::mesh_shapes;
+use crate::random_scenes::{TAXEL, random_pose, rng};
+
+const GRID: Grid = Grid {
+    nx: 16,
+    ny: 16,
+    pitch: 2e-3,
+};
+
+/// Spheres of a millimetre and of centimetres: in a deep press the small ones go past the substrate.
+fn random_union(rng: &mut impl Rng) -> SphereUnion {
+    let spheres = (0..rng.gen_range(1..60)).map(|_| Sphere {
+        center: DVec3::from_array([0; 3].map(|_| rng.gen_range(-0.02..0.02))),
+        radius: 10f64.powf(rng.gen_range(-3.0..-1.5)),
+    });
+    SphereUnion::new(spheres.collect()).unwrap()
+}
+
+#[test]
+fn on_a_grid_it_is_the_grids_own_press() {
+    let mut rng = rng("approach", 0);
+    let patch = Patch::new(GRID, TAXEL).unwrap();
+    let skin = SkinPatch::from(patch);
+    let approach = Approach::new(&skin, DVec3::Z).unwrap();
+    let (mut workspace, mut of_grid) = (SkinWorkspace::new(), Workspace::new());
+    let (mut n_touched, mut n_deep) = (0, 0);
+    for case in 0..400 {
+        let objects: Vec<Model> = match case % 4 {
+            0 => {
+                let half = [0; 3].map(|_| rng.gen_range(1e-3..2e-2));
+                let cuboid = mesh_shapes::cuboid(DVec3::from_array(half));
+                vec![MeshModel::new(cuboid).into()]
+            }
+            _ => vec![random_union(&mut rng).into(), random_union(&mut rng).into()],
+        };
+        let poses: Vec<Pose> = objects
+            .iter()
+            .map(|_| random_pose(&mut rng, 0.03))
+            .collect();
+        let depth = TAXEL.stroke * 10f64.powf(rng.gen_range(-2.0..0.5));
+        let touch = approach.press_to_depth(&objects, &poses, depth, &mut workspace);
+        let scene = Scene { patch, objects };
+        let contact = press_to_depth(&scene, &poses, depth, &mut of_grid);
+        assert_eq!(touch.is_some(), contact.is_some(), "case {case}");
+        for (own, grid) in workspace.deflections().iter().zip(of_grid.deflections()) {
+            assert!((own - grid).abs() < 1e-12, "case {case}: {own} for {grid}");
+        }
+        if let (Some(touch), Some(contact)) = (touch, contact) {
+            assert!((touch.travel - contact.travel).abs() < 1e-12, "case {case}");
+            assert_eq!(touch.counts.n_touched, contact.n_touched, "case {case}");
+            n_touched += 1;
+            n_deep += usize::from(depth > TAXEL.stroke);
+        }
+    }
+    assert!(n_touched > 200 && n_deep > 50, "{n_touched} {n_deep}");
+}
+
+#[test]
+fn first_contact_is_that_of_the_nearest_pair_of_spheres() {
+    let mut rng = rng("approach", 1);
+    let mut workspace = SkinWorkspace::new();
+    let mut n_met = 0;
+    for case in 0..120 {
+        let layout = [
+            ArrayLayout::Hexagonal,
+            ArrayLayout::Disc,
+            ArrayLayout::Cylinder,
+            ArrayLayout::Cap,
+        ][case % 4];
+        let layout = layout.taxels(&GRID, 0.02).unwrap();
+        let skin = SkinPatch::new("skin", layout, Taxels::Equal(TAXEL)).unwrap();
+        let direction =
+            DVec3::new(rng.gen_range(-0.3..0.3), rng.gen_range(-0.3..0.3), 1.0).normalize();
+        let approach = Approach::new(&skin, direction).unwrap();
+        let union = random_union(&mut rng);
+        let pose = random_pose(&mut rng, 0.05);
+        let objects = [Model::from(union.clone())];
+        let found = approach.first_contact(&objects, &[pose], &mut workspace);
+        let mut expected = f64::INFINITY;
+        for sphere in union.spheres() {
+            for center in skin.layout().centers() {
+                let away = pose.transform_point(sphere.center) - *center;
+                let ahead = away.dot(direction);
+                let reach = sphere.radius + TAXEL.radius;
+                let beside2 = away.length_squared() - ahead * ahead;
+                let half2 = reach * reach - beside2;
+                if half2 > 0.0 {
+                    expected = expected.min(ahead - half2.sqrt());
+                }
+            }
+        }
+        let Some(found) = found else {
+            assert!(expected.is_infinite(), "case {case}: {expected}");
+            continue;
+        };
+        n_met += 1;
+        assert!(
+            (found - expected).abs() < 1e-12,
+            "case {case}: {found} for {expected}"
+        );
+        // A hair before it nothing is touched, a hair behind it something is.
+        let mut n_touched = |travel: f64| {
+            let moved = Pose {
+                translation: pose.translation - travel * direction,
+                ..pose
+            };
+            press_skin(&skin, &objects, &[moved], &mut workspace).n_touched
+        };
+        assert!(n_touched(found + 1e-9) > 0, "case {case}");
+    }
+    assert!(n_met > 60, "{n_met}");
+}
+
+#[test]
+fn what_was_pressed_goes_on_being_pressed_behind_the_substrate() {
+    let mut workspace = SkinWorkspace::new();
+    let layout = ArrayLayout::Cap.taxels(&GRID, 0.03).unwrap();
+    let skin = SkinPatch::new("cap", layout, Taxels::Equal(TAXEL)).unwrap();
+    let approach = Approach::new(&skin, DVec3::Z).unwrap();
+    let pin = Sphere {
+        center: DVec3::ZERO,
+        radius: 0.5e-3,
+    };
+    let objects = [SphereUnion::new(vec![pin]).unwrap().into()];
+    let pose = Pose::from_translation(0.05 * DVec3::Z);
+    let touch = approach.press_to_depth(&objects, &[pose], 3.0 * TAXEL.stroke, &mut workspace);
+    assert!(touch.unwrap().counts.n_saturated >= 1);
+    let moved = Pose::from_translation((0.05 - touch.unwrap().travel) * DVec3::Z);
+    let there = press_skin(&skin, &objects, &[moved], &mut workspace);
+    assert_eq!(there.n_touched, 0, "without its way it is behind");
+}

@@ -1,0 +1,183 @@
+//! Layouts of taxels as an axis: the grid is what it is without one, others are touched, read and measured as their taxels lie.
+
+use crate::command::Case;
+use bubbletouch::contact::{Approach, SkinWorkspace};
+use bubbletouch::kinds::recognition::RecognitionStudy;
+use bubbletouch::study::progress::Silent;
+use bubbletouch::study::{Plan, StudySpec, simulate_array};
+use glam::DVec3;
+
+const STUDY: &str = r#"
+question = "?"
+trials = 2
+
+[objects]
+sets = ["balls"]
+names = ["golf", "tennis", "baseball"]
+
+[skin]
+pitch_mm = 4.0
+taxels = 8
+stroke_mm = 5.0
+
+[touches]
+per_object = 12
+offset_x_mm = { uniform = [-6.0, 6.0] }
+offset_y_mm = { uniform = [-6.0, 6.0] }
+depth_mm = [2.0, 7.0]
+
+[signal]
+steps = ["crosstalk", "noise", "smoothing"]
+crosstalk = 0.1
+noise_std_full_scale = 0.05
+smoothing_mm = 4.0
+
+[sensing]
+measurements = 16
+
+[recognition]
+classifier = "linear_svm"
+test_fraction = 0.25
+"#;
+
+fn plans(text: &str) -> bubbletouch::Result<Vec<(bubbletouch::study::axes::AxisValues, Plan)>> {
+    let spec = StudySpec::parse("study.toml", text)?;
+    Plan::variants("study.toml", spec)
+}
+
+fn study(text: &str) -> RecognitionStudy {
+    RecognitionStudy::load(plans(text).unwrap(), None, None).unwrap()
+}
+
+fn with(old: &str, new: &str) -> String {
+    let text = STUDY.replace(old, new);
+    assert!(text != STUDY, "{old}");
+    text
+}
+
+fn refused(text: &str) -> String {
+    let laid_out = plans(text).and_then(|plans| RecognitionStudy::load(plans, None, None));
+    laid_out.err().expect("it is refused").to_string()
+}
+
+#[test]
+fn a_layout_is_an_axis_and_its_grid_is_the_grid() {
+    let axes =
+        "[axes]\n\"skin.layout\" = [\"cap\", \"grid\", \"hexagonal\", \"disc\", \"cylinder\"]\n";
+    let text = with("stroke_mm", "curvature_radius_mm = 30.0\nstroke_mm") + axes;
+    let layouts = study(&text).run(&Silent).unwrap();
+    let alone = study(STUDY).run(&Silent).unwrap();
+    let accuracy = |number: usize| {
+        let rows = layouts.accuracy.iter();
+        let rows = rows.filter(|(cell, _)| cell.variant.number == number);
+        rows.map(|(_, score)| score.clone()).collect::<Vec<_>>()
+    };
+    let expected: Vec<_> = alone
+        .accuracy
+        .iter()
+        .map(|(_, score)| score.clone())
+        .collect();
+    assert_eq!(accuracy(1), expected);
+    let sides = layouts.summary.iter().map(|(cell, _)| (cell.nx, cell.ny));
+    let sides: Vec<_> = sides.collect();
+    assert_eq!(sides[1..3], [(8, 8), (7, 9)]);
+    assert_eq!(sides[4], (8, 8));
+    for (nx, ny) in [sides[0], sides[3]] {
+        assert!(ny == 1 && nx.abs_diff(64) < 8, "{nx} × {ny}");
+    }
+    for number in [0, 2, 3, 4] {
+        assert_ne!(accuracy(number), expected, "layout {number}");
+    }
+}
+
+#[test]
+fn frames_are_those_of_the_skin_pressed_by_hand() {
+    let text = with(
+        "stroke_mm",
+        "layout = \"cap\"\ncurvature_radius_mm = 30.0\nstroke_mm",
+    );
+    let study = study(&text);
+    let part = study.first();
+    let array = &part.plan.arrays[0];
+    let skin = array.skin().unwrap();
+    let frames = simulate_array(part.touched.as_ref(), array, 2, &Silent);
+    let frames = frames.to_array().unwrap();
+    assert_eq!(frames.ncols(), skin.n_taxels());
+    let objects = bubbletouch::study::load_objects(&part.plan.spec.objects, None).unwrap();
+    let touched = bubbletouch::study::draw_touches(
+        objects,
+        &part.plan.placement,
+        &bubbletouch::random::Seed::new(part.plan.spec.seed),
+    );
+    let approach = Approach::new(skin, DVec3::Z).unwrap();
+    let mut workspace = SkinWorkspace::new();
+    let mut row = 0;
+    for object in touched.unwrap() {
+        for touch in &object.touches {
+            let pose = touch.patch_from_object(&object.rests[touch.rest]);
+            for depth in [0.5 * touch.depth, touch.depth] {
+                let model = [object.object.model.clone()];
+                approach.press_to_depth(&model, &[pose], depth, &mut workspace);
+                let expected = workspace.deflections().iter().map(|&d| f64::from(d as f32));
+                assert!(frames.row(row).iter().copied().eq(expected), "row {row}");
+                row += 1;
+            }
+        }
+    }
+    assert_eq!(row, frames.nrows());
+}
+
+#[test]
+fn what_a_layout_cannot_have_is_refused_by_its_key() {
+    let skin = |keys: &str| with("stroke_mm", &format!("{keys}\nstroke_mm"));
+    let cap = "layout = \"cap\"\ncurvature_radius_mm = 30.0";
+    for (text, expected) in [
+        (
+            skin("layout = \"cap\""),
+            "study.toml, key skin.layout: sphere cap; skin.curvature_radius_mm beside a cylinder or a cap",
+        ),
+        (
+            skin("layout = \"disc\"\ncurvature_radius_mm = 30.0"),
+            "study.toml, key skin.curvature_radius_mm: 30; no such key: the layout is flat",
+        ),
+        (
+            skin("layout = \"cap\"\ncurvature_radius_mm = 3.0"),
+            "study.toml, key skin.curvature_radius_mm, sphere cap: a radius of 3 mm; at least 12.766 mm, where it is half a sphere",
+        ),
+        (
+            skin(cap).replace(
+                "measurements = 16",
+                "measurements = 16\nensemble = \"block_average\"",
+            ),
+            "study.toml, key sensing.ensemble: block average of a sphere cap; ensembles that need no rows and columns",
+        ),
+        (
+            skin(cap).replace("per_object", "speed_mm_per_s = 5.0\nper_object"),
+            "study.toml, key touches.speed_mm_per_s: 5; 0: taxels of a curved layout move at speeds of their own",
+        ),
+    ] {
+        assert_eq!(refused(&text), expected);
+    }
+    let matrix = skin("layout = \"hexagonal\"")
+        .replace("[\"crosstalk\"", "[\"matrix_readout\", \"crosstalk\"")
+        .replace("crosstalk = 0.1", "crosstalk = 0.1\nline_resistance = 0.01");
+    assert!(refused(&matrix).contains("grid"), "{}", refused(&matrix));
+}
+
+#[test]
+fn the_command_writes_where_the_taxels_are() {
+    let case = Case::new();
+    let text = with("stroke_mm", "layout = \"disc\"\nstroke_mm");
+    case.file("study.toml", &text);
+    case.succeeds(&["touches", "study.toml", "--out", "touches"]);
+    let taxels: ndarray::Array2<f64> =
+        ndarray_npy::read_npy(case.path("touches/taxels.npy")).unwrap();
+    let plans = plans(&text).unwrap();
+    let skin = plans[0].1.arrays[0].skin().unwrap();
+    assert_eq!(taxels.dim(), (skin.n_taxels(), 6));
+    for (row, center) in taxels.outer_iter().zip(skin.layout().centers()) {
+        assert_eq!(row.to_vec()[..3], center.to_array());
+        assert_eq!(row.to_vec()[3..], [0.0, 0.0, 1.0]);
+    }
+    case.succeeds(&["run", "study.toml", "--out", "results"]);
+}
