@@ -162,8 +162,8 @@ impl TaxelArray {
         }
     }
 
-    /// A frame as a picture has it: its rows and columns, of a layout without these what is nearest to each of the cells that a pitch has
-    /// [`PICTURE_CELLS`] of, seen along the axis in the middle; zero where nothing is near.
+    /// A frame as a picture has it: its rows and columns, of a layout without these what is nearest to each of three cells
+    /// a pitch, seen along the axis in the middle; zero where nothing is near.
     pub fn picture(&self, frame: ArrayView1<f64>) -> Array2<f64> {
         let Some(skin) = self.skin().filter(|_| self.is_drawn()) else {
             let frame = Array2::from_shape_vec(self.shape(), frame.to_vec());
