@@ -61,6 +61,7 @@ mod sphere_search;
 mod spring_load;
 mod swept_triangle;
 mod taxel_contact;
+mod way;
 
 pub use approach::{Approach, SkinTouch};
 pub(crate) use below::Below;

@@ -3,7 +3,8 @@
 use super::crossing::{Sample, crossing};
 use super::press_force::{ACCURACY, check_force, too_much};
 use super::spring_load::spring_load;
-use super::{SkinContact, SkinWorkspace, deflect_skin, press_skin};
+use super::way::{Way, meeting};
+use super::{SkinContact, SkinWorkspace};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::objects::Model;
@@ -20,9 +21,6 @@ pub struct SkinPress {
     /// What it touches there.
     pub counts: SkinContact,
 }
-
-/// At most so many steps a way: of strokes far shorter than the way they become longer.
-const MOST_STEPS: f64 = 4096.0;
 
 /// Moves a patch along a direction (unit, in the patch frame) until its springs carry `force` newtons together, Σ k δ: to within
 /// 1e-12 of it, or to the last bit of the travel.
@@ -61,35 +59,16 @@ pub fn press_skin_to_force(
     pressed
 }
 
-/// A patch on its way along a line past objects.
-pub(super) struct Way<'a> {
-    pub patch: &'a SkinPatch,
-    pub objects: &'a [Model],
-    pub patch_from_objects: &'a [Pose],
-    pub direction: DVec3,
-    pub workspace: &'a mut SkinWorkspace,
-}
-
 impl Way<'_> {
-    /// Steps in which the way is looked at are this part of the shortest stroke. Larger: a short peak of the force may be jumped
-    /// over, and small spheres may pass through; smaller: more presses in vain.
-    pub const STEP: f64 = 0.5;
-
-    /// An error unless a direction's length is one.
-    pub fn check(direction: DVec3) -> Result<()> {
-        match direction.is_finite() && (direction.length() - 1.0).abs() < 1e-9 {
-            true => Ok(()),
-            false => Err(Error::input(
-                "touch direction",
-                direction,
-                "a vector of length one",
-            )),
-        }
-    }
-
     /// Goes on until the force is felt.
     fn go(&mut self, force: f64) -> Result<Option<SkinPress>> {
-        let Some([start, end]) = self.ends().filter(|[_, end]| *end > 0.0) else {
+        let ends = meeting(
+            self.patch,
+            self.objects,
+            self.patch_from_objects,
+            self.direction,
+        );
+        let Some([start, end]) = ends.filter(|[_, end]| *end > 0.0) else {
             self.press(0.0);
             return Ok(None);
         };
@@ -109,24 +88,6 @@ impl Way<'_> {
         }))
     }
 
-    /// The travels between which the balls around patch and objects meet; `None` if none does.
-    pub fn ends(&self) -> Option<[f64; 2]> {
-        let tree = self.patch.tree();
-        let around = tree.bounds()?;
-        let center = around.center();
-        let radius = 0.5 * around.size().length() + tree.largest_radius();
-        let pairs = self.objects.iter().zip(self.patch_from_objects);
-        let meetings = pairs.filter_map(|(object, pose)| {
-            let bounds = object.bounds();
-            let away = pose.transform_point(bounds.center()) - center;
-            let reach = radius + 0.5 * bounds.size().length();
-            let ahead = away.dot(self.direction);
-            let half2 = reach * reach - away.cross(self.direction).length_squared();
-            (half2 > 0.0).then(|| [ahead - half2.sqrt(), ahead + half2.sqrt()])
-        });
-        meetings.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
-    }
-
     /// Two travels, with less than the force at the first and not less at the second; `None` if nothing is touched.
     fn bracket(&mut self, [start, end]: [f64; 2], force: f64) -> Result<Option<[f64; 2]>> {
         let mut largest = (self.sample(start).value, start);
@@ -138,9 +99,7 @@ impl Way<'_> {
                 format!("more than the {:.6} N where the patch is", largest.0),
             ));
         }
-        let strokes = (0..self.patch.n_taxels()).map(|t| self.patch.taxels().at(t).stroke);
-        let step = Self::STEP * strokes.fold(f64::INFINITY, f64::min);
-        let n_steps = ((end - start) / step).ceil().clamp(1.0, MOST_STEPS) as usize;
+        let n_steps = self.n_steps(end - start);
         let mut low = start;
         for k in 1..=n_steps {
             let high = start + (end - start) * (k as f64 / n_steps as f64);
@@ -159,34 +118,6 @@ impl Way<'_> {
         }
         let where_to = format!("the patch has gone {:.3} mm", 1e3 * largest.1);
         Err(too_much(force, largest.0, &where_to))
-    }
-
-    /// Presses after a travel.
-    pub fn press(&mut self, travel: f64) -> SkinContact {
-        self.after(travel, |way, poses| {
-            press_skin(way.patch, way.objects, poses, way.workspace)
-        })
-    }
-
-    /// The deflections alone after a travel.
-    pub fn deflect(&mut self, travel: f64) {
-        self.after(travel, |way, poses| {
-            deflect_skin(way.patch, way.objects, poses, way.workspace);
-        })
-    }
-
-    /// Does something with the objects' poses after a travel. The patch's travel is the objects' the other way.
-    fn after<T>(&mut self, travel: f64, act: impl FnOnce(&mut Self, &[Pose]) -> T) -> T {
-        let mut poses = std::mem::take(&mut self.workspace.poses);
-        poses.clear();
-        let back = -travel * self.direction;
-        poses.extend(self.patch_from_objects.iter().map(|pose| Pose {
-            translation: pose.translation + back,
-            ..*pose
-        }));
-        let done = act(self, &poses);
-        self.workspace.poses = poses;
-        done
     }
 
     fn sample(&mut self, travel: f64) -> Sample {

@@ -285,7 +285,7 @@ fn needed(taxel: &PlacedTaxel, center: DVec3, radius: f64) -> f64 {
 ///
 /// The order of the operations is that of the grid kernel, so that both agree to the last bit on a grid.
 #[inline]
-fn needed_anywhere(taxel: &PlacedTaxel, center: DVec3, radius: f64) -> (f64, f64) {
+pub(super) fn needed_anywhere(taxel: &PlacedTaxel, center: DVec3, radius: f64) -> (f64, f64) {
     let from = taxel.center - center;
     let height = -from.dot(taxel.axis);
     let [dx, dy] = taxel.across.map(|across| from.dot(across));

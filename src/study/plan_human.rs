@@ -33,11 +33,8 @@ impl HumanTouchSpec {
     /// # Errors
     /// An array that does not fit around the arm.
     pub fn skin(&self, patch: &Patch) -> Result<SkinPatch> {
-        let grid = &patch.grid;
         let radius = self.surface() - patch.taxel.radius;
-        let side = |n: usize| (n - 1) as f64 * grid.pitch;
-        let arc = side(grid.nx) / radius;
-        let layout = Layout::cylinder(radius, side(grid.ny), arc.max(1e-9), grid.pitch)?;
+        let layout = Layout::bent_grid(&patch.grid, radius)?;
         SkinPatch::new("forearm", layout, Taxels::Equal(patch.taxel))
     }
 }

@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::random::Seed;
 use crate::sensing::{Ensemble, Projection};
 use crate::signal::{Chain, Quantity, SensorError, SignalStep, Strength};
-use ndarray::Array2;
+use ndarray::{Array2, ArrayView1};
 
 /// How many objects a picture of samples shows when the study names none.
 const N_SAMPLES: usize = 4;
@@ -120,7 +120,9 @@ fn read(
         speed: plan.speed,
     };
     let (values, _) = measure(reading, &frames, &touches)?;
-    Ok(values.outer_iter().map(|row| array.picture(row)).collect())
+    let cells = array.picture_cells();
+    let frame = |row: ArrayView1<f64>| cells.mapv(|taxel| taxel.map_or(0.0, |taxel| row[taxel]));
+    Ok(values.outer_iter().map(frame).collect())
 }
 
 /// The signal's steps but for smoothing, which hides what it is there to hide.

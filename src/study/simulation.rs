@@ -4,6 +4,7 @@ use super::frames::{FramePlace, Frames};
 use super::progress::Progress;
 use super::taxel_array::{ArrayWorkspace, TaxelArray};
 use super::touch_set::TouchSet;
+use crate::contact::Contact;
 use crate::error::Result;
 use crate::objects::Object;
 use crate::random::Seed;
@@ -95,8 +96,8 @@ pub(super) fn press_objects(
                         *to = from as f32;
                     }
                 }
-                let last = last.unwrap_or_default();
-                (last.n_touched == 0, last.n_saturated > 0)
+                let reads_any = |count: fn(Contact) -> usize| last.is_some_and(|c| count(c) > 0);
+                (!reads_any(|c| c.n_touched), reads_any(|c| c.n_saturated))
             };
         frames.make(touches, ArrayWorkspace::default, press, progress)?;
     }

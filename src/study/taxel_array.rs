@@ -1,14 +1,14 @@
 //! Arrays of taxels that a study touches with.
 
 use super::plan::millimetres;
-use crate::contact::{Approach, SkinWorkspace, Workspace, press_to_depth};
+use crate::contact::{Approach, Contact, SkinWorkspace, Workspace, press_to_depth};
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::objects::Model;
 use crate::signal::ReadSkin;
 use crate::world::{ArrayLayout, Patch, Scene, SkinPatch, Taxel, Taxels};
 use glam::{DVec2, DVec3};
-use ndarray::{Array2, ArrayView1};
+use ndarray::Array2;
 use std::sync::Arc;
 
 /// Cells of a picture in a pitch: staggered rows are seen as such.
@@ -28,17 +28,6 @@ struct OtherLayout {
     /// Of curvature, metres; 0 of a flat one.
     radius: f64,
     skin: Arc<SkinPatch>,
-}
-
-/// What a touch of an array did.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ArrayTouch {
-    /// How far the array went along its axis, metres.
-    pub travel: f64,
-    /// Taxels with a deflection above zero.
-    pub n_touched: usize,
-    /// Taxels at their stroke that an object would push further.
-    pub n_saturated: usize,
 }
 
 /// What a thread touches in.
@@ -162,12 +151,12 @@ impl TaxelArray {
         }
     }
 
-    /// A frame as a picture has it: its rows and columns, of a layout without these what is nearest to each of three cells
-    /// a pitch, seen along the axis in the middle; zero where nothing is near.
-    pub fn picture(&self, frame: ArrayView1<f64>) -> Array2<f64> {
+    /// The cells of its pictures and the taxel that each shows: rows and columns; of a layout that is drawn otherwise the nearest taxel to each
+    /// of three cells a pitch, seen along the axis in the middle, and none where none is near.
+    pub fn picture_cells(&self) -> Array2<Option<usize>> {
+        let (ny, nx) = self.shape();
         let Some(skin) = self.skin().filter(|_| self.is_drawn()) else {
-            let frame = Array2::from_shape_vec(self.shape(), frame.to_vec());
-            return frame.expect("a value a taxel");
+            return Array2::from_shape_fn((ny, nx), |(row, column)| Some(row * nx + column));
         };
         let centers = skin.layout().centers();
         let widest = centers.iter().map(|c| c.x.abs().max(c.y.abs()));
@@ -176,11 +165,12 @@ impl TaxelArray {
         let n = (2.0 * half / cell).ceil() as usize;
         Array2::from_shape_fn((n, n), |(row, column)| {
             let [x, y] = [column, row].map(|k| (k as f64 + 0.5) * cell - 0.5 * n as f64 * cell);
-            let away =
-                |&taxel: &usize| (centers[taxel].truncate() - DVec2::new(x, y)).length_squared();
-            let nearest = (0..centers.len()).min_by(|a, b| away(a).total_cmp(&away(b)));
-            let is_near = |taxel: &usize| away(taxel) < (0.75 * self.pitch()).powi(2);
-            nearest.filter(is_near).map_or(0.0, |taxel| frame[taxel])
+            let away = |taxel: usize| {
+                let center = centers[taxel].truncate();
+                (center - DVec2::new(x, y)).length_squared()
+            };
+            let nearest = (0..centers.len()).min_by(|&a, &b| away(a).total_cmp(&away(b)));
+            nearest.filter(|&taxel| away(taxel) < (0.75 * self.pitch()).powi(2))
         })
     }
 
@@ -225,19 +215,12 @@ impl ArrayPress<'_> {
         pose: Pose,
         depth: f64,
         workspace: &mut ArrayWorkspace,
-    ) -> Option<ArrayTouch> {
+    ) -> Option<Contact> {
         match self {
-            Self::Grid(scene) => {
-                let contact = press_to_depth(scene, &[pose], depth, &mut workspace.grid)?;
-                Some(ArrayTouch {
-                    travel: contact.travel,
-                    n_touched: contact.n_touched,
-                    n_saturated: contact.n_saturated,
-                })
-            }
+            Self::Grid(scene) => press_to_depth(scene, &[pose], depth, &mut workspace.grid),
             Self::Skin(approach, object) => {
                 let touch = approach.press_to_depth(object, &[pose], depth, &mut workspace.skin)?;
-                Some(ArrayTouch {
+                Some(Contact {
                     travel: touch.travel,
                     n_touched: touch.counts.n_touched,
                     n_saturated: touch.counts.n_saturated,

@@ -206,9 +206,8 @@ fn pressed<'a>(
     workspace: &mut ArrayWorkspace,
 ) -> Reading<'a> {
     let mut pose = touch.patch_from_object(&rests[touch.rest]);
-    let felt = press.to_depth(pose, touch.depth, workspace);
-    let felt = felt.unwrap_or_default();
-    pose.translation.z -= felt.travel;
+    let contact = press.to_depth(pose, touch.depth, workspace);
+    pose.translation.z -= contact.map_or(0.0, |c| c.travel);
     let (t, q) = (pose.translation, pose.rotation);
     Reading {
         row: TouchRow {
@@ -222,8 +221,8 @@ fn pressed<'a>(
             tilt_x_deg: touch.tilt[0].to_degrees(),
             tilt_y_deg: touch.tilt[1].to_degrees(),
             depth_mm: 1e3 * touch.depth,
-            n_touched: felt.n_touched,
-            n_saturated: felt.n_saturated,
+            n_touched: contact.map_or(0, |c| c.n_touched),
+            n_saturated: contact.map_or(0, |c| c.n_saturated),
         },
         frame: press
             .deflections(workspace)

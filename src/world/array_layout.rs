@@ -31,15 +31,6 @@ pub enum ArrayLayout {
 }
 
 impl ArrayLayout {
-    /// Names and words.
-    pub const NAMES: [(&str, &str); 5] = [
-        ("grid", "square grid"),
-        ("hexagonal", "hexagonal"),
-        ("disc", "hexagonal disc"),
-        ("cylinder", "cylinder"),
-        ("cap", "sphere cap"),
-    ];
-
     /// Whether it has a radius of curvature.
     pub fn is_curved(self) -> bool {
         matches!(self, Self::Cylinder | Self::Cap)
@@ -47,7 +38,13 @@ impl ArrayLayout {
 
     /// What people call it.
     pub fn words(self) -> &'static str {
-        Self::NAMES[self as usize].1
+        match self {
+            Self::Grid => "square grid",
+            Self::Hexagonal => "hexagonal",
+            Self::Disc => "hexagonal disc",
+            Self::Cylinder => "cylinder",
+            Self::Cap => "sphere cap",
+        }
     }
 
     /// Its taxels instead of those of a square grid (nx = ny); `radius`: of curvature, to the rest centres, metres; of no use to a flat one.
@@ -72,9 +69,7 @@ impl ArrayLayout {
             Self::Disc => Layout::disc(side / PI.sqrt(), neighbour),
             Self::Cylinder => {
                 self.check_radius(side / PI, radius)?;
-                let length = side - pitch;
-                let arc = (length / radius).max(1e-9);
-                Ok(Layout::cylinder(radius, length, arc, pitch)?.moved(&up(radius)))
+                Ok(Layout::bent_grid(grid, radius)?.moved(&up(radius)))
             }
             Self::Cap => {
                 self.check_radius(side / TAU.sqrt(), radius)?;

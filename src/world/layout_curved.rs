@@ -1,10 +1,10 @@
 //! Layouts around the z axis of the patch frame, as on forearms, fingers and elbows.
 
-use super::Extrusion;
 use super::extrusion::check_angle;
 use super::layout::{Layout, check_count};
 use super::patch::check_positive;
 use super::ring::{Ring, n_steps};
+use super::{Extrusion, Grid};
 use crate::error::Result;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
@@ -26,6 +26,17 @@ impl Layout {
         Ok(Self::from(&Extrusion::cylinder(
             radius, length, arc, pitch,
         )?))
+    }
+
+    /// A square or oblong grid bent around a [`cylinder`](Self::cylinder) of this radius (of the rest centres, metres): its rows become
+    /// rings, its columns run along z.
+    ///
+    /// # Errors
+    /// Those of [`cylinder`](Self::cylinder).
+    pub fn bent_grid(grid: &Grid, radius: f64) -> Result<Self> {
+        let side = |n: usize| (n - 1) as f64 * grid.pitch;
+        let arc = side(grid.nx) / radius;
+        Self::cylinder(radius, side(grid.ny), arc.max(1e-9), grid.pitch)
     }
 
     /// Rings of taxels on a sphere around the origin, from its pole at +z outwards; axes point away from the centre.

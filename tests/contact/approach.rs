@@ -84,7 +84,7 @@ fn first_contact_is_that_of_the_nearest_pair_of_spheres() {
         let union = random_union(&mut rng);
         let pose = random_pose(&mut rng, 0.05);
         let objects = [Model::from(union.clone())];
-        let found = approach.first_contact(&objects, &[pose], &mut workspace);
+        let found = approach.first_contact(&objects, &[pose]);
         let mut expected = f64::INFINITY;
         for sphere in union.spheres() {
             for center in skin.layout().centers() {

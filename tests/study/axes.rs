@@ -1,7 +1,7 @@
 //! Studies with axes of their own: each combination is the study that has its values, and what is the same is made once.
 
 use crate::command::Case;
-use crate::study::Study;
+use crate::study::{self, Study};
 use bubbletouch::kinds::recognition::RecognitionStudy;
 use bubbletouch::report::folder::Folder;
 use bubbletouch::report::recognition::{read_tables, tables_of};
@@ -36,9 +36,7 @@ const HEAD: &str = "question = \"?\"\ntrials = 2\n";
 const LEARNING: &str = "[recognition]\ntest_fraction = 0.25\n";
 
 fn laid_out(text: &str) -> RecognitionStudy {
-    let spec = StudySpec::parse("study.toml", text).unwrap();
-    let plans = Plan::variants("study.toml", spec).unwrap();
-    RecognitionStudy::load(plans, None, None).unwrap()
+    study::laid_out(text).unwrap()
 }
 
 fn run(study: &RecognitionStudy) -> Tables {

@@ -1,10 +1,11 @@
 //! Layouts of taxels as an axis: the grid is what it is without one, others are touched, read and measured as their taxels lie.
 
 use crate::command::Case;
+use crate::study::laid_out;
 use bubbletouch::contact::{Approach, SkinWorkspace};
 use bubbletouch::kinds::recognition::RecognitionStudy;
 use bubbletouch::study::progress::Silent;
-use bubbletouch::study::{Plan, StudySpec, simulate_array};
+use bubbletouch::study::simulate_array;
 use glam::DVec3;
 
 const STUDY: &str = r#"
@@ -40,13 +41,8 @@ classifier = "linear_svm"
 test_fraction = 0.25
 "#;
 
-fn plans(text: &str) -> bubbletouch::Result<Vec<(bubbletouch::study::axes::AxisValues, Plan)>> {
-    let spec = StudySpec::parse("study.toml", text)?;
-    Plan::variants("study.toml", spec)
-}
-
 fn study(text: &str) -> RecognitionStudy {
-    RecognitionStudy::load(plans(text).unwrap(), None, None).unwrap()
+    laid_out(text).unwrap()
 }
 
 fn with(old: &str, new: &str) -> String {
@@ -56,8 +52,7 @@ fn with(old: &str, new: &str) -> String {
 }
 
 fn refused(text: &str) -> String {
-    let laid_out = plans(text).and_then(|plans| RecognitionStudy::load(plans, None, None));
-    laid_out.err().expect("it is refused").to_string()
+    laid_out(text).err().expect("it is refused").to_string()
 }
 
 #[test]
@@ -172,8 +167,8 @@ fn the_command_writes_where_the_taxels_are() {
     case.succeeds(&["touches", "study.toml", "--out", "touches"]);
     let taxels: ndarray::Array2<f64> =
         ndarray_npy::read_npy(case.path("touches/taxels.npy")).unwrap();
-    let plans = plans(&text).unwrap();
-    let skin = plans[0].1.arrays[0].skin().unwrap();
+    let study = study(&text);
+    let skin = study.first().plan.arrays[0].skin().unwrap();
     assert_eq!(taxels.dim(), (skin.n_taxels(), 6));
     for (row, center) in taxels.outer_iter().zip(skin.layout().centers()) {
         assert_eq!(row.to_vec()[..3], center.to_array());

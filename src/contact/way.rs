@@ -1,0 +1,81 @@
+//! A patch on its way along a line past objects.
+
+use super::{SkinContact, SkinWorkspace, press_skin};
+use crate::error::{Error, Result};
+use crate::geometry::Pose;
+use crate::objects::Model;
+use crate::world::SkinPatch;
+use glam::DVec3;
+
+/// Steps in which the way is looked at are this part of the shortest stroke. Larger: a short peak of the force may be jumped
+/// over, and small spheres may pass through; smaller: more presses in vain.
+const STEP: f64 = 0.5;
+/// At most so many steps a way: of strokes far shorter than the way they become longer.
+const MOST_STEPS: f64 = 4096.0;
+
+/// A patch, and where the objects are before it goes along a direction (unit, in the patch frame).
+pub(super) struct Way<'a> {
+    pub patch: &'a SkinPatch,
+    pub objects: &'a [Model],
+    pub patch_from_objects: &'a [Pose],
+    pub direction: DVec3,
+    pub workspace: &'a mut SkinWorkspace,
+}
+
+impl Way<'_> {
+    /// An error unless a direction's length is one.
+    pub fn check(direction: DVec3) -> Result<()> {
+        match direction.is_finite() && (direction.length() - 1.0).abs() < 1e-9 {
+            true => Ok(()),
+            false => Err(Error::input(
+                "touch direction",
+                direction,
+                "a vector of length one",
+            )),
+        }
+    }
+
+    /// In how many steps a part of the way is looked at; its length in metres.
+    pub fn n_steps(&self, length: f64) -> usize {
+        let strokes = self.patch.taxels().all().iter().map(|taxel| taxel.stroke);
+        let step = STEP * strokes.fold(f64::INFINITY, f64::min);
+        (length / step).ceil().clamp(1.0, MOST_STEPS) as usize
+    }
+
+    /// Presses after a travel. The patch's travel is the objects' the other way.
+    pub fn press(&mut self, travel: f64) -> SkinContact {
+        let mut poses = std::mem::take(&mut self.workspace.poses);
+        poses.clear();
+        let back = -travel * self.direction;
+        poses.extend(self.patch_from_objects.iter().map(|pose| Pose {
+            translation: pose.translation + back,
+            ..*pose
+        }));
+        let counts = press_skin(self.patch, self.objects, &poses, self.workspace);
+        self.workspace.poses = poses;
+        counts
+    }
+}
+
+/// The travels between which the balls around a patch that goes along a direction and objects meet; `None` if none does.
+pub(super) fn meeting(
+    patch: &SkinPatch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    direction: DVec3,
+) -> Option<[f64; 2]> {
+    let tree = patch.tree();
+    let around = tree.bounds()?;
+    let center = around.center();
+    let radius = 0.5 * around.size().length() + tree.largest_radius();
+    let pairs = objects.iter().zip(patch_from_objects);
+    let meetings = pairs.filter_map(|(object, pose)| {
+        let bounds = object.bounds();
+        let away = pose.transform_point(bounds.center()) - center;
+        let reach = radius + 0.5 * bounds.size().length();
+        let ahead = away.dot(direction);
+        let half2 = reach * reach - away.cross(direction).length_squared();
+        (half2 > 0.0).then(|| [ahead - half2.sqrt(), ahead + half2.sqrt()])
+    });
+    meetings.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
+}
