@@ -13,7 +13,10 @@ const MOST_OPEN: usize = 200;
 /// What a text says; the error names `place` (the file), line and column.
 pub(crate) fn read<T: DeserializeOwned>(place: &str, text: &str) -> Result<T> {
     check_brackets(place, text)?;
-    toml::from_str(text).map_err(|error| Error::toml(place, text, &error))
+    let refused = |error| Error::toml(place, text, &error);
+    // A type may take whole numbers that no TOML table has.
+    text.parse::<toml::Table>().map_err(refused)?;
+    toml::from_str(text).map_err(refused)
 }
 
 /// What a file says, as a type that is read from its text.
@@ -90,6 +93,22 @@ mod tests {
             assert!(said.starts_with("study.toml:3: 201 brackets"), "{said}");
         }
         assert_eq!(table(&"[".repeat(100_000)), None);
+    }
+
+    #[test]
+    fn numbers_that_no_table_holds_are_refused_with_their_line() {
+        #[derive(Debug, serde::Deserialize)]
+        struct Spec {
+            #[expect(dead_code, reason = "only read")]
+            seed: u64,
+        }
+        assert!(read::<Spec>("study.toml", "seed = 9223372036854775807").is_ok());
+        for number in ["9223372036854775808", "18446744073709551615"] {
+            let error = read::<Spec>("study.toml", &format!("# large\nseed = {number}"));
+            let said = error.unwrap_err().to_string();
+            assert!(said.starts_with("study.toml:2"), "{said}");
+            assert!(said.contains("seed"), "{said}");
+        }
     }
 
     #[test]
