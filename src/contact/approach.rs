@@ -1,14 +1,15 @@
 //! A skin of any shape moved along a line past first contact.
 
+use super::near_spheres::PlacedUnion;
 use super::skin_mesh::MeshAt;
 use super::skin_press::needed_anywhere;
 use super::way::{Way, meeting};
-use super::{SkinContact, SkinWorkspace, press_skin};
+use super::{FrictionState, NormalForce, SkinContact, SkinWorkspace, press_skin};
 use crate::error::Result;
 use crate::geometry::Pose;
-use crate::objects::Model;
-use crate::world::{Layout, PlacedTaxel, SkinPatch, Taxel, TaxelTree, Taxels};
-use glam::{DMat3, DVec3};
+use crate::objects::{Model, Sphere, SphereUnion};
+use crate::world::{Layout, SkinPatch, Taxel, TaxelTree, Taxels};
+use glam::DVec3;
 
 /// A stroke that nothing ends, metres.
 const ENDLESS: f64 = 1e6;
@@ -63,6 +64,11 @@ impl<'a> Approach<'a> {
         })
     }
 
+    /// The patch.
+    pub fn patch(&self) -> &'a SkinPatch {
+        self.patch
+    }
+
     /// How far the patch goes until a taxel meets an object, metres, negative if it is past that; `None` where the way misses all of them.
     ///
     /// `patch_from_objects`: where the objects are, one an object.
@@ -92,22 +98,7 @@ impl<'a> Approach<'a> {
     fn farthest(&self, object: &Model, pose: &Pose, others: f64) -> f64 {
         let mut farthest = others;
         match object {
-            Model::Spheres(union) => {
-                let rotation = DMat3::from_quat(pose.rotation);
-                for sphere in union.spheres() {
-                    let center = rotation * sphere.center + pose.translation;
-                    // Most of an object is behind what was met first.
-                    let most = self.front + sphere.radius - center.dot(self.direction);
-                    if most + ROUNDING < farthest {
-                        continue;
-                    }
-                    let needed =
-                        |taxel: &PlacedTaxel| needed_anywhere(taxel, center, sphere.radius).0;
-                    self.travelling.each_near(center, sphere.radius, |taxel| {
-                        farthest = farthest.max(needed(taxel));
-                    });
-                }
-            }
+            Model::Spheres(union) => farthest = self.farthest_sphere(union, pose, others),
             Model::Mesh(mesh) => {
                 let mesh = MeshAt::new(mesh, pose);
                 let (center, radius) = mesh.ball();
@@ -118,6 +109,47 @@ impl<'a> Approach<'a> {
             }
         }
         farthest
+    }
+
+    /// The same of spheres: first those of the cluster that may push farthest, then of those that may push farther than these do.
+    fn farthest_sphere(&self, union: &SphereUnion, pose: &Pose, others: f64) -> f64 {
+        let placed = PlacedUnion::new(union, pose);
+        let mut foremost = (others, None);
+        for (cluster, ball) in placed.clusters() {
+            let most = self.most(&ball);
+            if most > foremost.0 && self.travelling.is_near(ball.center, ball.radius) {
+                foremost = (most, Some(cluster));
+            }
+        }
+        let Some(first) = foremost.1 else {
+            return others;
+        };
+        let mut farthest = self.farthest_of(&placed, placed.of(first), others);
+        for (cluster, ball) in placed.clusters() {
+            if self.most(&ball) > farthest && self.travelling.is_near(ball.center, ball.radius) {
+                farthest = self.farthest_of(&placed, placed.of(cluster), farthest);
+            }
+        }
+        farthest
+    }
+
+    fn farthest_of(&self, placed: &PlacedUnion, numbers: &[u32], others: f64) -> f64 {
+        let mut farthest = others;
+        for &number in numbers {
+            let sphere = placed.at(number);
+            let Sphere { center, radius } = sphere;
+            if self.most(&sphere) > farthest {
+                self.travelling.each_near(center, radius, |taxel| {
+                    farthest = farthest.max(needed_anywhere(taxel, center, radius).0);
+                });
+            }
+        }
+        farthest
+    }
+
+    /// How far a ball (in the patch frame) can push a taxel as they travel, at most, metres.
+    fn most(&self, ball: &Sphere) -> f64 {
+        self.front + ball.radius - ball.center.dot(self.direction) + ROUNDING
     }
 
     /// Presses to a depth (metres, positive) past first contact; `None` (and zero deflections) where the way misses all objects.
@@ -133,7 +165,27 @@ impl<'a> Approach<'a> {
         depth: f64,
         workspace: &mut SkinWorkspace,
     ) -> Option<SkinTouch> {
+        let motion = (depth, DVec3::ZERO);
+        self.press_and_slide(objects, patch_from_objects, motion, None, workspace)
+    }
+
+    /// Presses to a depth and then slides along a straight line (metres, in the patch frame), dragging the tips of the taxels if there is
+    /// friction, which begins at rest; its forces are those at the end.
+    ///
+    /// # Panics
+    /// If there are not as many poses as objects, or the friction is another patch's.
+    pub fn press_and_slide(
+        &self,
+        objects: &[Model],
+        patch_from_objects: &[Pose],
+        (depth, slide): (f64, DVec3),
+        mut friction: Option<&mut FrictionState>,
+        workspace: &mut SkinWorkspace,
+    ) -> Option<SkinTouch> {
         workspace.hold([]);
+        if let Some(friction) = &mut friction {
+            friction.step(self.patch, &[], &[], NormalForce::Springs);
+        }
         let Some(first) = self.first_contact(objects, patch_from_objects) else {
             press_skin(self.patch, &[], &[], workspace);
             return None;
@@ -145,14 +197,35 @@ impl<'a> Approach<'a> {
             direction: self.direction,
             workspace,
         };
-        let n_steps = way.n_steps(depth);
-        for step in 1..n_steps {
-            way.press(first + depth * step as f64 / n_steps as f64);
-            way.workspace.hold_touched();
-        }
+        let n_steps = |length| match friction {
+            Some(_) => way.n_friction_steps(length),
+            None => way.n_steps(length),
+        };
         let travel = first + depth;
-        let counts = way.press(travel);
+        let pressed = parts(depth, n_steps(depth)).map(|part| (first + part) * self.direction);
+        let length = slide.length();
+        let n_slides = if length > 0.0 { n_steps(length) } else { 0 };
+        let slid = parts(1.0, n_slides).map(|part| travel * self.direction + part * slide);
+        let mut counts = SkinContact::default();
+        for (number, place) in pressed.chain(slid).enumerate() {
+            if number > 0 {
+                way.workspace.hold_touched();
+            }
+            counts = way.press_at(place);
+            if let Some(friction) = &mut friction {
+                let (contacts, poses) = (way.workspace.contacts(), &way.workspace.poses);
+                friction.step(self.patch, contacts, poses, NormalForce::Springs);
+            }
+        }
         workspace.hold([]);
         Some(SkinTouch { travel, counts })
     }
+}
+
+/// The ends of so many equal parts of a length; the last is the length.
+fn parts(length: f64, n: usize) -> impl Iterator<Item = f64> {
+    (1..=n).map(move |number| match number == n {
+        true => length,
+        false => length * number as f64 / n as f64,
+    })
 }

@@ -48,6 +48,7 @@ mod grid_lines;
 mod hold_force;
 mod indentation;
 mod instructions;
+mod near_spheres;
 mod placed_sphere;
 mod press_force;
 mod raise;

@@ -1,14 +1,15 @@
 //! The indentation kernel of a skin patch of any layout: each taxel along its own axis, only those that a sphere reaches.
 
 use super::grid_lines::GridLines;
+use super::near_spheres::PlacedUnion;
 use super::placed_sphere::View;
 use super::skin_mesh::MeshAt;
 use super::taxel_contact::TaxelContact;
 use crate::geometry::Pose;
 use crate::mesh::Triangle;
-use crate::objects::{MeshModel, Model, Sphere};
+use crate::objects::{MeshModel, Model, Sphere, SphereUnion};
 use crate::world::{EvenGrid, PlacedTaxel, SkinPatch};
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 /// What a press did, beside its deflections and contacts in the [`SkinWorkspace`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -30,6 +31,8 @@ pub struct SkinWorkspace {
     deciding: Vec<[u32; 2]>,
     /// The touched taxels, ascending at the end of a press.
     touched: Vec<u32>,
+    /// Spheres of an object that are near.
+    near: Vec<u32>,
     /// Of the last even grid.
     lines: GridLines,
     /// Of the touched taxels, in the same order.
@@ -181,10 +184,19 @@ fn push(
     workspace.clear(patch.n_taxels());
     for (number, (object, pose)) in objects.iter().zip(patch_from_objects).enumerate() {
         match object {
-            Model::Spheres(union) => match patch.even_grid() {
-                Some(grid) => push_along_rows(grid, number, union.spheres(), pose, workspace),
-                None => push_by_spheres(patch, number, union.spheres(), pose, workspace),
-            },
+            Model::Spheres(union) => {
+                let placed = PlacedUnion::new(union, pose);
+                let mut near = std::mem::take(&mut workspace.near);
+                let is_near = |ball: &Sphere| patch.tree().is_near(ball.center, ball.radius);
+                placed.gather(is_near, &mut near);
+                match patch.even_grid() {
+                    Some(grid) => {
+                        push_along_rows(grid, (number, union, &near), pose, workspace);
+                    }
+                    None => push_by_spheres(patch, (number, &placed, &near), workspace),
+                }
+                workspace.near = near;
+            }
             Model::Mesh(mesh) => push_by_mesh(patch, number, mesh, pose, workspace),
         }
     }
@@ -221,8 +233,7 @@ fn push_held(
 /// The same as [`push_by_spheres`] to the bit, for taxels in rows: no search, and no look at spheres that are above all of them.
 fn push_along_rows(
     grid: &EvenGrid,
-    object: usize,
-    spheres: &[Sphere],
+    (object, union, near): (usize, &SphereUnion, &[u32]),
     pose: &Pose,
     workspace: &mut SkinWorkspace,
 ) {
@@ -236,15 +247,15 @@ fn push_along_rows(
     lines.lay(&grid.grid);
     let view = View::new(grid.radius, lines, pose);
     let mut is_near = false;
-    for (number, sphere) in spheres.iter().enumerate() {
-        let Some(placed) = view.place(sphere, 0.0) else {
+    for &number in near {
+        let Some(placed) = view.place(&union.spheres()[number as usize], 0.0) else {
             continue;
         };
         if placed.center.z < grid.behind {
             continue;
         }
         is_near = true;
-        let mark = [object as u32, number as u32];
+        let mark = [object as u32, number];
         placed.raise_and_mark(lines, deflections, mark, deciding);
     }
     if !is_near {
@@ -257,17 +268,14 @@ fn push_along_rows(
 
 fn push_by_spheres(
     patch: &SkinPatch,
-    object: usize,
-    spheres: &[Sphere],
-    pose: &Pose,
+    (object, placed, near): (usize, &PlacedUnion, &[u32]),
     workspace: &mut SkinWorkspace,
 ) {
-    let rotation = DMat3::from_quat(pose.rotation);
-    for (number, sphere) in spheres.iter().enumerate() {
-        let center = rotation * sphere.center + pose.translation;
-        let deciding = [object as u32, number as u32];
-        patch.tree().each_near(center, sphere.radius, |taxel| {
-            workspace.push(taxel, needed(taxel, center, sphere.radius), deciding);
+    for &number in near {
+        let Sphere { center, radius } = placed.at(number);
+        let deciding = [object as u32, number];
+        patch.tree().each_near(center, radius, |taxel| {
+            workspace.push(taxel, needed(taxel, center, radius), deciding);
         });
     }
 }

@@ -4,12 +4,15 @@ use super::{SkinContact, SkinWorkspace, press_skin};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::objects::Model;
-use crate::world::SkinPatch;
+use crate::world::{SkinPatch, Taxel};
 use glam::DVec3;
 
 /// Steps in which the way is looked at are this part of the shortest stroke. Larger: a short peak of the force may be jumped
 /// over, and small spheres may pass through; smaller: more presses in vain.
 const STEP: f64 = 0.5;
+/// With friction a step is this part of the smallest taxel's radius, too. Larger: what comes into contact within a step has dragged less
+/// than it should; smaller: more presses for no more than a hundredth of the shear.
+const FRICTION_STEP: f64 = 0.25;
 /// At most so many steps a way: of strokes far shorter than the way they become longer.
 const MOST_STEPS: f64 = 4096.0;
 
@@ -37,16 +40,34 @@ impl Way<'_> {
 
     /// In how many steps a part of the way is looked at; its length in metres.
     pub fn n_steps(&self, length: f64) -> usize {
-        let strokes = self.patch.taxels().all().iter().map(|taxel| taxel.stroke);
-        let step = STEP * strokes.fold(f64::INFINITY, f64::min);
+        let step = STEP * self.least(|taxel| taxel.stroke);
         (length / step).ceil().clamp(1.0, MOST_STEPS) as usize
     }
 
-    /// Presses after a travel. The patch's travel is the objects' the other way.
+    /// The same where friction drags the taxels' tips.
+    pub fn n_friction_steps(&self, length: f64) -> usize {
+        let step = FRICTION_STEP * self.least(|taxel| taxel.radius);
+        // A whole number of steps is not one more for the last bit of a length.
+        let n_steps = (length / step * (1.0 - 1e-9)).ceil();
+        let n_steps = n_steps.clamp(1.0, MOST_STEPS) as usize;
+        n_steps.max(self.n_steps(length))
+    }
+
+    fn least(&self, of: fn(&Taxel) -> f64) -> f64 {
+        let values = self.patch.taxels().all().iter().map(of);
+        values.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Presses after a travel.
     pub fn press(&mut self, travel: f64) -> SkinContact {
+        self.press_at(travel * self.direction)
+    }
+
+    /// Presses where the patch is after it has moved (metres, in the patch frame), which is the objects' motion the other way.
+    pub fn press_at(&mut self, moved: DVec3) -> SkinContact {
         let mut poses = std::mem::take(&mut self.workspace.poses);
         poses.clear();
-        let back = -travel * self.direction;
+        let back = -moved;
         poses.extend(self.patch_from_objects.iter().map(|pose| Pose {
             translation: pose.translation + back,
             ..*pose

@@ -14,6 +14,8 @@ pub struct SphereClusters {
     centers: [Vec<f64>; 3],
     /// Their radii.
     radii: Vec<f64>,
+    /// Which of the object's spheres each is.
+    numbers: Vec<u32>,
     /// Where each cluster begins among the spheres, and behind them where the last one ends.
     starts: Vec<u32>,
     bounds: ClusterBounds,
@@ -38,9 +40,10 @@ pub(crate) struct ClusterBounds {
 impl SphereClusters {
     /// Sorts the spheres of an object into clusters; about 100 ns a sphere.
     pub fn new(union: &SphereUnion) -> Self {
-        let mut spheres = union.spheres().to_vec();
+        let mut numbered: Vec<(u32, Sphere)> = (0..).zip(union.spheres().to_vec()).collect();
         let mut sizes = Vec::new();
-        cut(&mut spheres, &mut sizes);
+        cut(&mut numbered, &mut sizes);
+        let (numbers, spheres): (Vec<u32>, Vec<Sphere>) = numbered.into_iter().unzip();
         let mut starts = vec![0];
         let mut bounds = ClusterBounds::default();
         let mut rest = &spheres[..];
@@ -61,7 +64,8 @@ impl SphereClusters {
                 padded(|s| s.center.z),
             ],
             radii: padded(|s| s.radius),
-            ball: Extent::of(&spheres).ball(&spheres),
+            numbers,
+            ball: Extent::of(spheres.iter()).ball(&spheres),
             starts,
             bounds,
         }
@@ -80,6 +84,11 @@ impl SphereClusters {
     /// Around each cluster.
     pub(crate) fn bounds(&self) -> &ClusterBounds {
         &self.bounds
+    }
+
+    /// Which of the object's spheres are in a cluster.
+    pub(crate) fn numbers(&self, cluster: usize) -> &[u32] {
+        &self.numbers[self.starts[cluster] as usize..self.starts[cluster + 1] as usize]
     }
 
     /// The spheres of a cluster.
@@ -127,7 +136,7 @@ fn lanes(values: &[f64]) -> &[f64; MOST_IN_CLUSTER] {
 
 impl ClusterBounds {
     fn push(&mut self, spheres: &[Sphere]) {
-        let extent = Extent::of(spheres);
+        let extent = Extent::of(spheres.iter());
         let ball = extent.ball(spheres);
         for axis in 0..3 {
             self.middle[axis].push(ball.center[axis]);
@@ -135,6 +144,14 @@ impl ClusterBounds {
         }
         self.largest.push(extent.high.w);
         self.radius.push(ball.radius);
+    }
+
+    /// The ball around a cluster.
+    pub fn ball(&self, cluster: usize) -> Sphere {
+        Sphere {
+            center: DVec3::from_array([0, 1, 2].map(|axis| self.middle[axis][cluster])),
+            radius: self.radius[cluster],
+        }
     }
 
     /// How many clusters.
@@ -150,8 +167,8 @@ struct Extent {
 }
 
 impl Extent {
-    fn of(spheres: &[Sphere]) -> Self {
-        let all = || spheres.iter().map(|s| s.center.extend(s.radius));
+    fn of<'a>(spheres: impl Iterator<Item = &'a Sphere> + Clone) -> Self {
+        let all = || spheres.clone().map(|s| s.center.extend(s.radius));
         Self {
             low: all().fold(DVec4::INFINITY, DVec4::min),
             high: all().fold(DVec4::NEG_INFINITY, DVec4::max),
@@ -174,13 +191,14 @@ impl Extent {
 }
 
 /// Halves spheres across the longest side of where their centres are, or by their size if that differs more, until few are left.
-fn cut(spheres: &mut [Sphere], sizes: &mut Vec<usize>) {
+fn cut(spheres: &mut [(u32, Sphere)], sizes: &mut Vec<usize>) {
     if spheres.len() <= MOST_IN_CLUSTER {
         sizes.push(spheres.len());
         return;
     }
-    let side = Extent::of(spheres).sides().max_position();
-    let along = |sphere: &Sphere| sphere.center.extend(sphere.radius)[side];
+    let all = spheres.iter().map(|(_, sphere)| sphere);
+    let side = Extent::of(all).sides().max_position();
+    let along = |(_, sphere): &(u32, Sphere)| sphere.center.extend(sphere.radius)[side];
     spheres.sort_by(|a, b| along(a).total_cmp(&along(b)));
     let (left, right) = spheres.split_at_mut(spheres.len() / 2);
     cut(left, sizes);
@@ -210,13 +228,11 @@ mod tests {
             let mut found = Vec::new();
             let bounds = clusters.bounds();
             for cluster in 0..bounds.len() {
-                let middle = [0, 1, 2].map(|axis| bounds.middle[axis][cluster]);
-                let ball = Sphere {
-                    center: DVec3::from_array(middle),
-                    radius: bounds.radius[cluster],
-                };
+                let ball = bounds.ball(cluster);
                 let its = clusters.of(cluster);
                 let its: Vec<Sphere> = (0..its.n_spheres).map(|k| its.at(k)).collect();
+                let numbers = clusters.numbers(cluster).iter();
+                assert!(numbers.map(|&n| &spheres[n as usize]).eq(&its));
                 assert!((1..=MOST_IN_CLUSTER).contains(&its.len()));
                 assert!(its.iter().all(|sphere| is_inside(sphere, &ball)));
                 found.extend(its);

@@ -35,6 +35,8 @@ pub struct Chain {
     n_taxels: usize,
     taxel: Taxel,
     quantity: Quantity,
+    /// Whether values are of either sign.
+    is_signed: bool,
     scratch_len: usize,
 }
 
@@ -91,25 +93,46 @@ impl Chain {
         quantity: Quantity,
     ) -> Result<Self> {
         let skin = skin.into();
-        let mut chain = Self {
-            steps: Vec::with_capacity(steps.len()),
+        Self::at_rest(&skin, quantity, false)?.with(steps, &skin)
+    }
+
+    /// The same of forces across the axes of taxels that read these too: newtons of either sign, with the full scale of those along the axes.
+    /// They are forces from the first step on, so [`Force`](SignalStep::Force) leaves them as they are.
+    ///
+    /// # Errors
+    /// Those of [`new`](Self::new).
+    pub fn of_shear<'s>(steps: &[SignalStep], skin: impl Into<ReadSkin<'s>>) -> Result<Self> {
+        let skin = skin.into();
+        let mut steps = steps.to_vec();
+        steps.retain(|step| *step != SignalStep::Force);
+        Self::at_rest(&skin, Quantity::Force, true)?.with(&steps, &skin)
+    }
+
+    /// Without steps.
+    fn at_rest(skin: &ReadSkin, quantity: Quantity, is_signed: bool) -> Result<Self> {
+        Ok(Self {
+            steps: Vec::new(),
             n_remembering: 0,
             n_taxels: skin.n_taxels(),
             taxel: skin.taxel()?,
             quantity,
+            is_signed,
             scratch_len: 0,
-        };
+        })
+    }
+
+    fn with(mut self, steps: &[SignalStep], skin: &ReadSkin) -> Result<Self> {
         let mut n_noises = 0;
         for step in steps {
             n_noises += u64::from(matches!(step, SignalStep::Noise(_)));
-            let n_before = chain.steps.len();
-            let prepared = chain.prepare(step, n_noises, &skin)?;
-            chain.steps.extend(prepared);
-            if chain.steps.len() > n_before && step.remembers() {
-                chain.n_remembering = chain.steps.len();
+            let n_before = self.steps.len();
+            let prepared = self.prepare(step, n_noises, skin)?;
+            self.steps.extend(prepared);
+            if self.steps.len() > n_before && step.remembers() {
+                self.n_remembering = self.steps.len();
             }
         }
-        Ok(chain)
+        Ok(self)
     }
 
     /// What the frames are after the chain.
@@ -205,7 +228,8 @@ impl Chain {
         }
     }
 
-    fn n_taxels(&self) -> usize {
+    /// Values of a frame.
+    pub fn n_taxels(&self) -> usize {
         self.n_taxels
     }
 
@@ -228,9 +252,11 @@ impl Chain {
                 strengths,
                 skin: name,
             } => {
+                let full_scale = self.quantity.full_scale(&self.taxel);
                 let skin = Skin {
                     taxels: *skin,
-                    full_scale: self.quantity.full_scale(&self.taxel),
+                    full_scale,
+                    least: if self.is_signed { -full_scale } else { 0.0 },
                     name: *name,
                 };
                 self.prepare_effect((error.about().prepare)(strengths, &skin)?)

@@ -15,18 +15,22 @@ use rand::seq::SliceRandom;
 pub struct Faults {
     /// Fraction of the taxels that read 0; rounded to whole taxels.
     pub dead: f64,
-    /// Fraction of the taxels that read a level of their own, drawn evenly from 0 to the full scale.
+    /// Fraction of the taxels that read a level of their own, drawn evenly from all that they can read.
     pub stuck: f64,
     /// The skin that they belong to.
     pub skin: Seed,
 }
 
 impl Faults {
-    /// The taxels at fault, each with what it reads: first the dead, then the stuck.
+    /// The taxels at fault, each with what it reads, of those that can read from the least to the largest value: first the dead, then the stuck.
     ///
     /// # Errors
     /// A fraction that is not from 0 to 1; fractions whose sum is above 1.
-    pub fn taxels(&self, n_taxels: usize, full_scale: f64) -> Result<Vec<(usize, f64)>> {
+    pub fn taxels(
+        &self,
+        n_taxels: usize,
+        [least, largest]: [f64; 2],
+    ) -> Result<Vec<(usize, f64)>> {
         let dead = fraction("dead fraction", self.dead)?;
         let stuck = fraction("stuck fraction", self.stuck)?;
         if dead + stuck > 1.0 {
@@ -38,7 +42,7 @@ impl Faults {
         }
         let mut rng = self.skin.named("faults").rng();
         let levels: Vec<f64> = (0..n_taxels)
-            .map(|_| full_scale * rng.r#gen::<f64>())
+            .map(|_| least + (largest - least) * rng.r#gen::<f64>())
             .collect();
         let mut order: Vec<usize> = (0..n_taxels).collect();
         order.shuffle(&mut rng);
@@ -67,7 +71,8 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
                 stuck,
                 skin: skin.name,
             };
-            let taxels = faults.taxels(skin.taxels.n_taxels(), skin.full_scale)?;
+            let range = [skin.least, skin.full_scale];
+            let taxels = faults.taxels(skin.taxels.n_taxels(), range)?;
             Ok(Box::new(Levels(taxels)))
         },
     )
@@ -93,7 +98,7 @@ mod tests {
 
     fn taxels(dead: f64, stuck: f64) -> Result<Vec<(usize, f64)>> {
         let skin = Seed::new(11);
-        Faults { dead, stuck, skin }.taxels(1000, 5e-3)
+        Faults { dead, stuck, skin }.taxels(1000, [0.0, 5e-3])
     }
 
     #[test]

@@ -148,6 +148,10 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
                     allowed,
                 ));
             };
+            if skin.least < 0.0 {
+                let allowed = "forces along the axes: a resistance has no sign";
+                return Err(Error::input("matrix readout", "shear", allowed));
+            }
             let readout = MatrixReadout::new(resistance, skin.full_scale, &grid)?;
             Ok(Box::new(readout))
         },

@@ -1,7 +1,7 @@
 //! Quantisation: an analogue-to-digital converter of so many bits over the full scale.
 //!
-//! x ← q round(min(max(x, 0), X) / q), q = X / (2ᵇ − 1): 2ᵇ codes from 0 to the full scale X, both included. What is outside
-//! reads as the nearest end: a converter clips as well as it rounds.
+//! x ← q round(min(max(x, 0), X) / q), q = X / (2ᵇ − 1): 2ᵇ codes from 0 to the full scale X, both included, or from −X to X where values have
+//! a sign. What is outside reads as the nearest end: a converter clips as well as it rounds.
 
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use crate::error::{Error, Result};
@@ -9,33 +9,39 @@ use crate::error::{Error, Result};
 /// The most bits. A finer step is below anything that a touch could change.
 const MAX_BITS: u32 = 24;
 
-/// A converter, prepared for frames of one full scale.
+/// A converter, prepared for frames of one range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantisation {
-    full_scale: f64,
+    least: f64,
+    span: f64,
     /// The last code, 2ᵇ − 1.
     last: f64,
 }
 
 impl Quantisation {
-    /// A converter of 1 to 24 bits for frames of this full scale, in their own unit.
+    /// A converter of 1 to 24 bits for frames from the least to the largest value, in their own unit.
     ///
     /// # Errors
     /// Another number of bits.
-    pub fn new(bits: u32, full_scale: f64) -> Result<Self> {
+    pub fn new(bits: u32, [least, largest]: [f64; 2]) -> Result<Self> {
         if !(1..=MAX_BITS).contains(&bits) {
             let allowed = format!("1 to {MAX_BITS}, or 0 for no converter");
             return Err(Error::input("converter bits", bits, allowed));
         }
         let last = f64::from((1u32 << bits) - 1);
-        Ok(Self { full_scale, last })
+        Ok(Self {
+            least,
+            span: largest - least,
+            last,
+        })
     }
 
     /// Clips and rounds each value.
     pub fn convert(&self, frame: &mut [f64]) {
         for value in frame {
-            let code = ((*value / self.full_scale).clamp(0.0, 1.0) * self.last).round();
-            *value = code / self.last * self.full_scale;
+            let share = (*value - self.least) / self.span;
+            let code = (share.clamp(0.0, 1.0) * self.last).round();
+            *value = self.least + code / self.last * self.span;
         }
     }
 }
@@ -53,7 +59,10 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
             allowed: "a whole number of bits, 1 to 24, or 0 for no converter",
             names: &[("0", "none")],
         }],
-        |&[bits, _], skin| Ok(Box::new(Quantisation::new(bits as u32, skin.full_scale)?)),
+        |&[bits, _], skin| {
+            let range = [skin.least, skin.full_scale];
+            Ok(Box::new(Quantisation::new(bits as u32, range)?))
+        },
     )
 };
 
@@ -69,7 +78,8 @@ mod tests {
 
     fn converted(bits: u32, frame: &[f64]) -> Vec<f64> {
         let mut out = frame.to_vec();
-        Quantisation::new(bits, 5e-3).unwrap().convert(&mut out);
+        let converter = Quantisation::new(bits, [0.0, 5e-3]);
+        converter.unwrap().convert(&mut out);
         out
     }
 
@@ -101,9 +111,22 @@ mod tests {
     }
 
     #[test]
+    fn values_with_a_sign_have_as_many_codes_over_twice_the_range() {
+        let mut frame: Vec<f64> = (-120..=120).map(|i| f64::from(i) * 1e-2).collect();
+        let felt = frame.clone();
+        let converter = Quantisation::new(4, [-1.0, 1.0]).unwrap();
+        converter.convert(&mut frame);
+        for (out, value) in frame.iter().zip(&felt) {
+            assert!((out - value.clamp(-1.0, 1.0)).abs() <= 1.0 / 15.0 + 1e-12);
+        }
+        frame.dedup();
+        assert_eq!((frame[0], frame[15], frame.len()), (-1.0, 1.0, 16));
+    }
+
+    #[test]
     fn no_bits_and_too_many_are_refused() {
         for bits in [0, 25, u32::MAX] {
-            let error = Quantisation::new(bits, 1.0).unwrap_err();
+            let error = Quantisation::new(bits, [0.0, 1.0]).unwrap_err();
             assert!(error.to_string().starts_with("converter bits"), "{error}");
         }
     }

@@ -56,6 +56,8 @@ pub struct Skin<'a> {
     pub taxels: ReadSkin<'a>,
     /// The value of a taxel at its stroke: metres, or newtons.
     pub full_scale: f64,
+    /// The least value that it reads: zero, or minus the full scale of values that have a sign.
+    pub least: f64,
     /// The name of the piece of hardware, the same in each touch.
     pub name: Seed,
 }

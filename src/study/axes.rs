@@ -313,11 +313,13 @@ const UNITS: [(&str, &str); 15] = [
     ("_g", "g"),
 ];
 
-/// Roles by the beginnings of keys; all others are choices. How deep, how often and how fast one presses is chosen; where the object lies
-/// and how it is turned is not.
-const ROLES: [(&str, Role); 11] = [
+/// Roles by the beginnings of keys; all others are choices. How deep, how far along, how often and how fast one presses is chosen; where the
+/// object lies, how it is turned and how slippery it is is not.
+const ROLES: [(&str, Role); 13] = [
     ("seed", Role::Subject),
+    ("skin.friction", Role::Condition),
     ("touches.depth", Role::Choice),
+    ("touches.slide", Role::Choice),
     ("touches.per_object", Role::Choice),
     ("touches.frames", Role::Choice),
     ("touches.speed", Role::Choice),

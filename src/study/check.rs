@@ -78,7 +78,7 @@ pub const COUNT: Range = Range::Count(1, MOST_COUNTED);
 pub const TOUCHES: Range = Range::Count(1, MOST_TOUCHES);
 
 /// The keys of the tables that kinds of study share, and what their numbers may be. A list has values, and none twice.
-const KEYS: [(&str, Range); 49] = [
+const KEYS: [(&str, Range); 53] = [
     ("objects.surface_error_mm", Range::Positive),
     ("objects.close_holes_mm", Range::Positive),
     ("objects.names", Range::Any),
@@ -86,11 +86,15 @@ const KEYS: [(&str, Range); 49] = [
     ("skin.size_mm", Range::Positive),
     ("skin.taxels", Range::Count(1, MOST_SIDE)),
     ("skin.curvature_radius_mm", Range::Positive),
+    ("skin.friction", Range::NotNegative),
+    ("skin.shear_stiffness_n_per_m", Range::Positive),
     ("skin.taxel_radius_mm", Range::Positive),
     ("skin.stroke_mm", Range::Positive),
     ("skin.stiffness_n_per_m", Range::Positive),
     ("skin.damping_n_s_per_m", Range::NotNegative),
     ("touches.per_object", TOUCHES),
+    ("touches.slide_mm", Range::NotNegative),
+    ("touches.slide_deg", Range::Finite),
     ("touches.frames", Range::Count(1, MOST_FRAMES)),
     ("touches.speed_mm_per_s", Range::NotNegative),
     ("human_touch.kinds", Range::Any),

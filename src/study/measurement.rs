@@ -2,6 +2,7 @@
 
 use super::frames::Frames;
 use super::plan::Plan;
+use super::sensed::of_channel;
 use super::sensor_errors::{TestedOn, skin};
 use super::spec::StepSpec;
 use super::sweep::Group;
@@ -36,8 +37,8 @@ pub struct Measurements {
 /// What a reading is made with, the same for all frames.
 #[derive(Clone, Copy)]
 pub struct Reading<'a> {
-    /// Signal steps, of each skin that touches are made with.
-    pub chains: &'a [Chain],
+    /// The signal of each channel, of each skin that touches are made with.
+    pub chains: &'a [Vec<Chain>],
     /// The ensemble's matrix.
     pub projection: &'a Projection,
     /// The taxels that were pressed.
@@ -133,10 +134,10 @@ pub fn measure_group(
     let drawn = plan.spec.projection_of(trial) as u64;
     let drawn = seed.named("projection").numbered(drawn);
     let trial = trial as u64;
-    let projection = Projection::new(group.ensemble, array.shape(), n_measurements, &drawn)?;
+    let projection = Projection::new(group.ensemble, array.frame_shape(), n_measurements, &drawn)?;
     let skins = skins(plan, group, trial);
-    let chain = |skin| Chain::new(&signal_steps(plan, group, skin), array);
-    let chains = skins.iter().map(chain).collect::<Result<Vec<_>>>()?;
+    let chains = |skin| array.chains(skin, |skin| signal_steps(plan, group, skin));
+    let chains = skins.iter().map(chains).collect::<Result<Vec<_>>>()?;
     let reading = Reading {
         chains: &chains,
         projection: &projection,
@@ -150,7 +151,7 @@ pub fn measure_group(
         touches[touch].skin = skins.len() - 1;
     }
     let (values, cpu_s) = measure(reading, frames, &touches)?;
-    let ones = Array2::ones((1, array.n_taxels()));
+    let ones = Array2::ones((1, array.n_values()));
     Ok(Measurements {
         values,
         n_frames,
@@ -218,8 +219,10 @@ pub fn measure(
 struct Working {
     /// Frames of a block.
     frames: Vec<f64>,
-    /// Those of a touch, behind two that may have come before it.
+    /// Those of a channel of a touch, behind two that may have come before it.
     with_history: Vec<f64>,
+    /// A frame of the touch before.
+    deepest: Vec<f64>,
     rates: Vec<f64>,
     scratch: Scratch,
 }
@@ -232,41 +235,96 @@ fn measure_block(
     working: &mut Working,
     out: ArrayViewMut2<f64>,
 ) -> Result<()> {
-    let (n_frames, n_taxels) = (kept.facts.n_frames, kept.n_taxels);
-    let n_values = n_frames * n_taxels;
+    let (n_frames, n_values) = (kept.facts.n_frames, kept.n_values);
+    let mut frames = std::mem::take(&mut working.frames);
     // Whatever is there of another block is read over.
-    working.frames.resize(touches.len() * n_values, 0.0);
-    working.with_history.resize(2 * n_taxels + n_values, 0.0);
-    let of_touches = working.frames.chunks_exact_mut(n_values);
-    for (touch, out) in touches.iter().zip(of_touches) {
-        let chain = &reading.chains[touch.skin];
-        let (history, frames) = working.with_history.split_at_mut(2 * n_taxels);
-        for (frame, row) in frames.chunks_exact_mut(n_taxels).enumerate() {
+    frames.resize(touches.len() * n_frames * n_values, 0.0);
+    let of_touches = frames.chunks_exact_mut(n_frames * n_values);
+    for (touch, frames) in touches.iter().zip(of_touches) {
+        for (frame, row) in frames.chunks_exact_mut(n_values).enumerate() {
             kept.read(touch.number * n_frames + frame, row)?;
         }
-        // The deepest frame of the touch before, and the skin let go.
-        let before = touch.before.filter(|_| chain.remembers());
+        let before = touch.before.filter(|_| remembers(&reading, touch));
         if let Some(before) = before {
-            let (deepest, free) = history.split_at_mut(n_taxels);
-            kept.read((before + 1) * n_frames - 1, deepest)?;
-            free.fill(0.0);
+            working.deepest.resize(n_values, 0.0);
+            kept.read((before + 1) * n_frames - 1, &mut working.deepest)?;
         }
-        let n_before = if before.is_some() { 2 } else { 0 };
-        let frames = &mut working.with_history[(2 - n_before) * n_taxels..];
-        let recording = Recording {
-            rates: rates_of(frames, &reading.taxel, reading.speed, &mut working.rates),
-            frames,
-            n_before,
-            interval: touch.interval,
-            time: None,
-        };
-        chain.apply_recording(recording, &touch.seed, &mut working.scratch);
-        out.copy_from_slice(&working.with_history[2 * n_taxels..]);
+        let touch = TouchToRead { before, ..*touch };
+        match (before, &reading.chains[touch.skin][..]) {
+            (None, [chain]) => {
+                let rates = rates_of(frames, &reading.taxel, reading.speed, &mut working.rates);
+                let recording = recording(frames, (rates, 0), &touch);
+                chain.apply_recording(recording, &touch.seed, &mut working.scratch);
+            }
+            (_, chains) => {
+                for channel in 0..chains.len() {
+                    read_channel(&reading, (&touch, channel), frames, working);
+                }
+            }
+        }
     }
-    let shape = (touches.len() * n_frames, n_taxels);
-    let frames = ArrayView2::from_shape(shape, &working.frames).expect("whole frames");
-    reading.projection.measure_into(frames, out);
+    let shape = (touches.len() * n_frames, n_values);
+    let read = ArrayView2::from_shape(shape, &frames).expect("whole frames");
+    reading.projection.measure_into(read, out);
+    working.frames = frames;
     Ok(())
+}
+
+fn recording<'a>(
+    frames: &'a mut [f64],
+    (rates, n_before): (Option<&'a [f64]>, usize),
+    touch: &TouchToRead,
+) -> Recording<'a> {
+    Recording {
+        frames,
+        rates,
+        n_before,
+        interval: touch.interval,
+        time: None,
+    }
+}
+
+/// Whether what came before a touch changes what is read of it.
+fn remembers(reading: &Reading, touch: &TouchToRead) -> bool {
+    reading.chains[touch.skin].iter().any(Chain::remembers)
+}
+
+/// Reads one channel of a touch's frames, in place.
+fn read_channel(
+    reading: &Reading,
+    (touch, channel): (&TouchToRead, usize),
+    frames: &mut [f64],
+    working: &mut Working,
+) {
+    let chains = &reading.chains[touch.skin];
+    let n_taxels = chains[channel].n_taxels();
+    let taxels = channel * n_taxels..(channel + 1) * n_taxels;
+    let Working {
+        with_history,
+        deepest,
+        rates,
+        scratch,
+        ..
+    } = working;
+    with_history.clear();
+    if touch.before.is_some() {
+        // The deepest frame of the touch before, and the skin let go.
+        with_history.extend_from_slice(&deepest[taxels.clone()]);
+        with_history.resize(2 * n_taxels, 0.0);
+    }
+    let n_before = with_history.len() / n_taxels;
+    let n_values = chains.len() * n_taxels;
+    for frame in frames.chunks_exact(n_values) {
+        with_history.extend_from_slice(&frame[taxels.clone()]);
+    }
+    let rates = rates_of(with_history, &reading.taxel, reading.speed, rates);
+    let recording = recording(with_history, (rates, n_before), touch);
+    let named = of_channel(&touch.seed, channel);
+    chains[channel].apply_recording(recording, &named, scratch);
+    let read = with_history[n_before * n_taxels..].chunks_exact(n_taxels);
+    for (frame, read) in frames.chunks_exact_mut(n_values).zip(read) {
+        frame[taxels.clone()].copy_from_slice(read);
+    }
 }
 
 /// δ̇ of every taxel: the approach speed (m/s) where the object pushes a taxel that can still move; `None` at rest.

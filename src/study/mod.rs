@@ -6,6 +6,7 @@
 //! Threads live here. Whatever their number, a study's tables are the same bytes, times apart: every touch, split, noise and
 //! projection is drawn from its own named stream, and sums are taken in a fixed order.
 
+mod array_press;
 mod attempt;
 pub mod axes;
 pub(crate) mod axis;
@@ -32,6 +33,7 @@ pub(crate) mod plan;
 mod plan_human;
 mod plan_learning;
 mod plan_scene;
+mod plan_shear;
 mod plan_signal;
 mod pose_groups;
 pub mod progress;
@@ -39,6 +41,7 @@ pub mod provenance;
 pub(crate) mod published;
 pub(crate) mod repeats;
 mod samples;
+mod sensed;
 mod sensor_errors;
 mod shard;
 pub(crate) mod simulation;
@@ -58,6 +61,7 @@ pub(crate) mod touch_set;
 mod training;
 mod variance_table;
 
+pub use array_press::{ArrayPress, ArrayWorkspace};
 pub use axis::Axis;
 pub(crate) use check::{Check, not_negative, positive};
 pub(crate) use conditions::column_name;
@@ -77,6 +81,7 @@ pub use plan::{Plan, millimetres};
 pub use plan_signal::Condition;
 pub use pose_groups::KeepTogether;
 pub use samples::{Samples, sample_frames};
+pub use sensed::Sensed;
 pub use sensor_errors::{Strengths, TestedOn, all_strengths, strength_columns};
 pub use shard::Shard;
 pub use simulation::{TouchedObject, draw_touches, simulate_array};

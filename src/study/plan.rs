@@ -54,21 +54,22 @@ impl Plan {
         let check = Check { place };
         check.count("trials", spec.trials, MOST_TRIALS)?;
         check.layout(&spec)?;
-        let arrays = check.arrays(&spec.skin)?;
+        check.shear(&spec)?;
+        let arrays = check.touching_arrays(&spec.skin, &spec.touches)?;
         check.human_touch(&spec, &arrays)?;
         let placement = match spec.human_touch {
             // It places no objects.
-            Some(_) => check.placement(&TouchesSpec {
+            Some(_) => check.placed(&TouchesSpec {
                 depth_mm: SpreadSpec::One(1.0),
                 ..TouchesSpec::default()
             })?,
             None => {
                 check.objects(&spec.objects)?;
                 spec.objects.settle_surface_error(&arrays);
-                check.placement(&spec.touches)?
+                check.placed(&spec.touches)?
             }
         };
-        let (noise_unit, _) = check.noise(&spec.signal)?;
+        let (noise_unit, _) = check.noise(&spec.signal, spec.skin.sensed)?;
         check.sensor_errors(&spec.signal, &spec.touches)?;
         check.steps(&spec.signal)?;
         check.tested_on(&spec.signal)?;
@@ -129,12 +130,12 @@ impl Plan {
 
     /// The m axis on an array; a ratio axis can name the same m twice on a small one.
     pub(super) fn measurement_counts(&self, array: &TaxelArray, ensemble: Ensemble) -> Vec<usize> {
-        let n_taxels = array.n_taxels();
+        let n_values = array.n_values();
         if ensemble.about().is_whole_frame {
-            return vec![n_taxels];
+            return vec![n_values];
         }
         let mut named = HashSet::new();
-        let mut counts = self.spec.sensing.measurements_on(n_taxels);
+        let mut counts = self.spec.sensing.measurements_on(n_values);
         counts.retain(|&m| named.insert(m));
         counts
     }

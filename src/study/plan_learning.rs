@@ -61,9 +61,9 @@ impl Check<'_> {
         let ratios = ratios.map(|ratio| ("sensing.ratio", ratio));
         let counts = sensing.measurements.iter().flat_map(Axis::values);
         let counts = counts.map(|m| ("sensing.measurements", m as f64));
-        let smallest = arrays.iter().map(TaxelArray::n_taxels).min().unwrap_or(0);
+        let smallest = arrays.iter().map(TaxelArray::n_values).min().unwrap_or(0);
         if let Some((key, given)) = ratios.chain(counts).find(|(_, n)| *n > smallest as f64) {
-            let allowed = format!("at most {smallest}, the taxels of the smallest array");
+            let allowed = format!("at most {smallest}, the numbers of the smallest frame");
             return Err(self.error(key, given, allowed));
         }
         let mut ensembles = sensing.ensemble.values().into_iter();

@@ -113,7 +113,7 @@ impl Check<'_> {
         Err(self.error(key, given, allowed))
     }
 
-    pub fn arrays(&self, skin: &SkinSpec) -> Result<Vec<TaxelArray>> {
+    pub(super) fn arrays(&self, skin: &SkinSpec) -> Result<Vec<TaxelArray>> {
         self.table("skin", skin)?;
         let pitches = skin.pitch_mm.values();
         let refuse = |given| Err(self.error("skin", given, "one of them"));
@@ -151,9 +151,15 @@ impl Check<'_> {
 
     /// The arrays of a study that has square grids alone.
     pub fn grids(&self, skin: &SkinSpec) -> Result<Vec<Patch>> {
+        let only = |key: &str, what: &str| {
+            let allowed = format!("no such key: only studies of recognition have {what}");
+            Err(self.error(key, "given", allowed))
+        };
         if skin.layout.is_some() || skin.curvature_radius_mm.is_some() {
-            let allowed = "no such key: only studies of recognition have other layouts than grids";
-            return Err(self.error("skin.layout", "given", allowed));
+            return only("skin.layout", "other layouts than grids");
+        }
+        if skin.sensed.is_some() || skin.friction.is_some() {
+            return only("skin.sensed", "skins that read shear");
         }
         let arrays = self.arrays(skin)?;
         Ok(arrays.iter().map(|array| *array.square()).collect())
@@ -183,7 +189,17 @@ impl Check<'_> {
         }
     }
 
+    /// Where touches are of a study in which none slides.
     pub fn placement(&self, touches: &TouchesSpec) -> Result<Placement> {
+        if touches.slide_mm.is_some() {
+            let allowed = "no such key: only touches of recognition studies slide";
+            return Err(self.error("touches.slide_mm", "given", allowed));
+        }
+        self.placed(touches)
+    }
+
+    /// Where touches are.
+    pub fn placed(&self, touches: &TouchesSpec) -> Result<Placement> {
         self.table("touches", touches)?;
         let degree = std::f64::consts::PI / 180.0;
         let spread = |key: &str, spread, unit| self.spread(&format!("touches.{key}"), spread, unit);

@@ -4,7 +4,7 @@ use super::axis::Axis;
 use super::check::{Check, Range};
 use super::plan::{MM, Plan};
 use super::sensor_errors::{Strengths, all_strengths};
-use super::spec::{CombineSpec, SignalSpec, StepSpec, TouchesSpec};
+use super::spec::{CombineSpec, SensedSpec, SignalSpec, StepSpec, TouchesSpec};
 use super::spec_signal::{NOISES, SignalAxis};
 use crate::error::Result;
 use crate::signal::{NoiseUnit, SENSOR_ERRORS, Strength};
@@ -21,8 +21,12 @@ pub struct Condition {
 }
 
 impl Check<'_> {
-    /// What the noise is measured in, and its axis.
-    pub fn noise(&self, signal: &SignalSpec) -> Result<(NoiseUnit, Vec<f64>)> {
+    /// What the noise is measured in, and its axis, on taxels that read so.
+    pub fn noise(
+        &self,
+        signal: &SignalSpec,
+        sensed: Option<SensedSpec>,
+    ) -> Result<(NoiseUnit, Vec<f64>)> {
         self.table("signal", signal)?;
         let axis = |(key, unit)| Some((key, unit, signal.axes.of(key)?));
         let mut given = NOISES.into_iter().filter_map(axis);
@@ -36,7 +40,8 @@ impl Check<'_> {
         }
         let place = |wanted| signal.steps.iter().position(|step| *step == wanted);
         let force = place(StepSpec::Force);
-        let of_force = force.is_some() && force < place(StepSpec::Noise);
+        let is_read = sensed.unwrap_or_default() != SensedSpec::Deflection;
+        let of_force = is_read || force.is_some() && force < place(StepSpec::Noise);
         let (given, allowed) = match (unit, of_force) {
             (NoiseUnit::Mm, true) => (
                 "millimetres of noise on a force",

@@ -52,7 +52,7 @@ pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> R
     let before = chosen.last().copied().unwrap_or(0);
     let name = |label: usize| names[label].replace('_', " ");
     let array = on.describe_taxels();
-    let quantity = Chain::new(&steps(plan, group), on)?.quantity();
+    let quantity = chains(plan, group)?[0].quantity();
     let noise = match group.condition.noise {
         0.0 => "no noise".to_owned(),
         level => format!("noise of {}", plan.describe_noise(level)),
@@ -95,7 +95,7 @@ pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> R
     })
 }
 
-/// What an array of a group reads of each object's first touch, ny × nx; a skin that remembers was touched by one of them before.
+/// What an array of a group reads of each object's first touch along the axes of its taxels, ny × nx; a skin that remembers was touched by one of them before.
 fn read(
     plan: &Plan,
     group: &Group,
@@ -114,8 +114,13 @@ fn read(
         touch.before = Some(before);
     }
     let reading = Reading {
-        chains: &[Chain::new(&steps(plan, group), array)?],
-        projection: &Projection::new(Ensemble::Identity, array.shape(), array.n_taxels(), &seed)?,
+        chains: &[chains(plan, group)?],
+        projection: &Projection::new(
+            Ensemble::Identity,
+            array.frame_shape(),
+            array.n_values(),
+            &seed,
+        )?,
         taxel: *array.taxel(),
         speed: plan.speed,
     };
@@ -125,12 +130,15 @@ fn read(
     Ok(values.outer_iter().map(frame).collect())
 }
 
-/// The signal's steps but for smoothing, which hides what it is there to hide.
-fn steps(plan: &Plan, group: &Group) -> Vec<SignalStep> {
-    let skin = skin(&Seed::new(plan.spec.seed), &plan.arrays[group.array]);
-    let mut steps = signal_steps(plan, group, &skin);
-    steps.retain(|step| !matches!(step, SignalStep::Smoothing { .. }));
-    steps
+/// The signal of each channel but for smoothing, which hides what it is there to hide.
+fn chains(plan: &Plan, group: &Group) -> Result<Vec<Chain>> {
+    let array = &plan.arrays[group.array];
+    let skin = skin(&Seed::new(plan.spec.seed), array);
+    array.chains(&skin, |skin| {
+        let mut steps = signal_steps(plan, group, skin);
+        steps.retain(|step| !matches!(step, SignalStep::Smoothing { .. }));
+        steps
+    })
 }
 
 /// In a study of one sensor error at a time: the first group of an array, then for each error the group that has it at

@@ -1,8 +1,9 @@
 //! Touches of an array: made once, shared by all cells.
 
+use super::array_press::ArrayWorkspace;
 use super::frames::{FramePlace, Frames};
 use super::progress::Progress;
-use super::taxel_array::{ArrayWorkspace, TaxelArray};
+use super::taxel_array::TaxelArray;
 use super::touch_set::TouchSet;
 use crate::contact::Contact;
 use crate::error::Result;
@@ -69,15 +70,15 @@ pub fn simulate_array(
 
 /// Presses one array on every object, touch by touch; the same bytes at any number of threads.
 ///
-/// A touch to a depth d is read at `n_frames` ≥ 1 depths, d/F, 2d/F … d: each is a direct press of its own, since a taxel at
-/// rest does not remember how it came there.
+/// A touch to a depth d is read at `n_frames` ≥ 1 depths, d/F, 2d/F … d, or at as many places of its way where it slides, too: each is a touch
+/// of its own, since a taxel at rest does not remember how it came there.
 pub(super) fn press_objects(
     touched: &[TouchedObject],
     (array, n_frames): (&TaxelArray, usize),
     place: &FramePlace,
     progress: &dyn Progress,
 ) -> Result<Frames> {
-    let mut frames = Frames::new((array.n_taxels(), n_frames), place)?;
+    let mut frames = Frames::new((array.n_values(), n_frames), place)?;
     for TouchedObject {
         object,
         rests,
@@ -91,8 +92,8 @@ pub(super) fn press_objects(
                 let mut last = None;
                 for (frame, row) in rows.outer_iter_mut().enumerate() {
                     let part = (frame + 1) as f64 / n_frames as f64;
-                    last = press.to_depth(pose, touch.depth * part, workspace);
-                    for (to, &from) in row.into_iter().zip(press.deflections(workspace)) {
+                    last = press.touch(pose, (touch.depth, part), workspace);
+                    for (to, from) in row.into_iter().zip(press.values(workspace)) {
                         *to = from as f32;
                     }
                 }

@@ -49,6 +49,12 @@ pub struct SkinSpec {
     pub layout: Option<ArrayLayout>,
     /// Radius to which `cylinder` and `cap` are bent, to the taxels' rest centres, mm.
     pub curvature_radius_mm: Option<f64>,
+    /// What each taxel reads: `deflection` (when left out), `force` along its axis, or `shear`, which is this and the two forces across it.
+    pub sensed: Option<SensedSpec>,
+    /// μ between the taxels' tips and what they touch, beside `sensed = "shear"`.
+    pub friction: Option<f64>,
+    /// k_t, N/m: how stiff the tips are across their axes, beside `sensed = "shear"`; as stiff as along them when left out.
+    pub shear_stiffness_n_per_m: Option<f64>,
     /// ρ, mm; half the pitch when left out.
     pub taxel_radius_mm: Option<f64>,
     /// s, mm.
@@ -81,6 +87,10 @@ pub struct TouchesSpec {
     pub tilt_y_deg: SpreadSpec,
     /// How far the patch goes past first contact, mm; beyond the stroke taxels stay saturated.
     pub depth_mm: SpreadSpec,
+    /// How far the patch goes along what it touches once it is pressed, mm; not at all when left out.
+    pub slide_mm: Option<f64>,
+    /// In which direction, degrees from the patch's x towards its y, beside `slide_mm`; along x when left out.
+    pub slide_deg: Option<f64>,
     /// Axis: F, frames a touch: it is read at the depths d/F, 2d/F … d, each frame with noise of its own, and the measurements
     /// of all of them are its features.
     pub frames: Axis<usize>,
@@ -120,10 +130,25 @@ impl Default for TouchesSpec {
             tilt_x_deg: zero(),
             tilt_y_deg: zero(),
             depth_mm: SpreadSpec::List(Vec::new()),
+            slide_mm: None,
+            slide_deg: None,
             frames: one_value(),
             speed_mm_per_s: 0.0,
         }
     }
+}
+
+/// What a taxel reads.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SensedSpec {
+    /// How far it is pushed in.
+    #[default]
+    Deflection,
+    /// The force along its axis.
+    Force,
+    /// The forces along and across its axis.
+    Shear,
 }
 
 /// What a mesh becomes.

@@ -24,7 +24,6 @@ use crate::recognition::ClassifierKind;
 use crate::recognition::split::Split;
 use crate::recognition::spoiled::mislabelled;
 use crate::sensing::Ensemble;
-use crate::signal::Chain;
 use ndarray::Array1;
 
 /// Loops within loops: the first changes slowest.
@@ -222,7 +221,7 @@ impl Sweep {
         if array.skin().is_some() {
             // A step that its layout cannot have is known before anything runs.
             let skin = skin(&Seed::new(plan.spec.seed), array);
-            Chain::new(&signal_steps(plan, &group, &skin), array)?;
+            array.chains(&skin, |skin| signal_steps(plan, &group, skin))?;
         }
         let learned = &plan.spec.recognition;
         let penalties = |classifier: ClassifierKind| match classifier.has_c() {
@@ -255,7 +254,7 @@ impl Sweep {
                 tested_on: plan.spec.signal.tested_on.as_ref().map(|_| group.tested_on),
                 ensemble: group.ensemble,
                 measurements,
-                ratio: array.n_taxels() as f64 / measurements as f64,
+                ratio: array.n_values() as f64 / measurements as f64,
                 frames: group.frames,
                 over_time,
                 features,

@@ -1,55 +1,39 @@
 //! Arrays of taxels that a study touches with.
 
 use super::plan::millimetres;
-use crate::contact::{Approach, Contact, SkinWorkspace, Workspace, press_to_depth};
+use super::sensed::Sensed;
 use crate::error::Result;
-use crate::geometry::Pose;
-use crate::objects::Model;
 use crate::signal::ReadSkin;
-use crate::world::{ArrayLayout, Patch, Scene, SkinPatch, Taxel, Taxels};
-use glam::{DVec2, DVec3};
+use crate::world::{ArrayLayout, Patch, SkinPatch, Taxel, Taxels};
+use glam::DVec2;
 use ndarray::Array2;
 use std::sync::Arc;
 
 /// Cells of a picture in a pitch: staggered rows are seen as such.
 const PICTURE_CELLS: f64 = 3.0;
 
-/// A square grid of taxels, or a layout that is made as dense and as large.
+/// A square grid of taxels, or a layout that is made as dense and as large; what they read; and how they are drawn along what they touch.
 #[derive(Clone, Debug)]
 pub struct TaxelArray {
     square: Patch,
-    other: Option<OtherLayout>,
-}
-
-/// A layout that is no square grid.
-#[derive(Clone, Debug)]
-struct OtherLayout {
     layout: ArrayLayout,
-    /// Of curvature, metres; 0 of a flat one.
+    /// Of curvature, metres; 0 of a flat layout.
     radius: f64,
-    skin: Arc<SkinPatch>,
-}
-
-/// What a thread touches in.
-#[derive(Debug, Default)]
-pub struct ArrayWorkspace {
-    grid: Workspace,
-    skin: SkinWorkspace,
-}
-
-/// An array that is brought to one object.
-pub enum ArrayPress<'a> {
-    /// A square grid and the object.
-    Grid(Scene),
-    /// Another layout and the object.
-    Skin(Box<Approach<'a>>, [Model; 1]),
+    sensed: Sensed,
+    slide: DVec2,
+    /// Its taxels one by one; none of a square grid that reads what pushes it in and does not slide.
+    skin: Option<Arc<SkinPatch>>,
 }
 
 impl From<Patch> for TaxelArray {
     fn from(square: Patch) -> Self {
         Self {
             square,
-            other: None,
+            layout: ArrayLayout::Grid,
+            radius: 0.0,
+            sensed: Sensed::Deflection,
+            slide: DVec2::ZERO,
+            skin: None,
         }
     }
 }
@@ -69,19 +53,38 @@ impl TaxelArray {
     /// # Errors
     /// A radius around which it does not fit.
     pub fn new(layout: ArrayLayout, square: Patch, radius: f64) -> Result<Self> {
-        let other = match layout {
-            ArrayLayout::Grid => None,
-            layout => {
-                let taxels = layout.taxels(&square.grid, radius)?;
-                let skin = SkinPatch::new(layout.words(), taxels, Taxels::Equal(square.taxel))?;
-                Some(OtherLayout {
-                    layout,
-                    radius: if layout.is_curved() { radius } else { 0.0 },
-                    skin: Arc::new(skin),
-                })
-            }
+        let mut array = Self {
+            layout,
+            radius: if layout.is_curved() { radius } else { 0.0 },
+            ..Self::from(square)
         };
-        Ok(Self { square, other })
+        if layout != ArrayLayout::Grid {
+            array.make_skin()?;
+        }
+        Ok(array)
+    }
+
+    /// The same that reads something else, and slides along its own x and y (metres) once it is pressed.
+    ///
+    /// # Errors
+    /// Shear springs that cannot be.
+    pub fn reading(mut self, sensed: Sensed, slide: DVec2) -> Result<Self> {
+        if let Sensed::Shear(shear) = &sensed {
+            shear.check()?;
+        }
+        (self.sensed, self.slide) = (sensed, slide);
+        if sensed.n_channels() > 1 || slide != DVec2::ZERO {
+            self.make_skin()?;
+        }
+        Ok(self)
+    }
+
+    fn make_skin(&mut self) -> Result<()> {
+        let (square, layout) = (&self.square, self.layout);
+        let taxels = layout.taxels(&square.grid, self.radius)?;
+        let skin = SkinPatch::new(layout.words(), taxels, Taxels::Equal(square.taxel))?;
+        self.skin = Some(Arc::new(skin));
+        Ok(())
     }
 
     /// The square grid: that it is, or that the layout is as dense and as large as.
@@ -91,9 +94,17 @@ impl TaxelArray {
 
     /// How its taxels lie.
     pub fn layout(&self) -> ArrayLayout {
-        self.other
-            .as_ref()
-            .map_or(ArrayLayout::Grid, |other| other.layout)
+        self.layout
+    }
+
+    /// What its taxels read.
+    pub fn sensed(&self) -> &Sensed {
+        &self.sensed
+    }
+
+    /// How far it goes along its own x and y once it is pressed, metres.
+    pub fn slide(&self) -> DVec2 {
+        self.slide
     }
 
     /// What each of its taxels is.
@@ -101,9 +112,9 @@ impl TaxelArray {
         &self.square.taxel
     }
 
-    /// Its taxels, of a layout that is no square grid.
+    /// Its taxels one by one; none of a square grid that reads what pushes it in and does not slide.
     pub fn skin(&self) -> Option<&SkinPatch> {
-        self.other.as_ref().map(|other| other.skin.as_ref())
+        self.skin.as_deref()
     }
 
     /// How many taxels.
@@ -114,6 +125,11 @@ impl TaxelArray {
         }
     }
 
+    /// How many numbers a frame has: one or more a taxel, channel by channel.
+    pub fn n_values(&self) -> usize {
+        self.sensed.n_channels() * self.n_taxels()
+    }
+
     /// Rows and columns; `None` where a layout has none.
     pub fn sides(&self) -> Option<(usize, usize)> {
         self.layout().sides(&self.square.grid)
@@ -122,6 +138,12 @@ impl TaxelArray {
     /// Rows and columns; one row of all taxels where a layout has none.
     pub fn shape(&self) -> (usize, usize) {
         self.sides().unwrap_or((1, self.n_taxels()))
+    }
+
+    /// Rows and columns of a frame: those of its channels below each other.
+    pub fn frame_shape(&self) -> (usize, usize) {
+        let (rows, columns) = self.shape();
+        (self.sensed.n_channels() * rows, columns)
     }
 
     /// Metres between taxels of the square grid.
@@ -145,7 +167,7 @@ impl TaxelArray {
             None => self.n_taxels().to_string(),
         };
         let count = format!("{count}{taxels} at {} mm", millimetres(self.pitch()));
-        match self.layout() {
+        match self.layout {
             ArrayLayout::Grid => count,
             other => format!("{count}, {}", other.words()),
         }
@@ -187,53 +209,16 @@ impl TaxelArray {
         !matches!(self.layout(), ArrayLayout::Grid | ArrayLayout::Cylinder)
     }
 
-    /// All that its touches depend on.
+    /// All that its frames depend on.
     pub fn content(&self) -> String {
-        match &self.other {
-            None => format!("{:?}", self.square),
-            Some(other) => format!("{:?} {:?} {}", self.square, other.layout, other.radius),
-        }
-    }
-
-    /// Brings it to one object.
-    pub fn press<'a>(&'a self, object: &Model) -> ArrayPress<'a> {
-        match self.skin() {
-            None => ArrayPress::Grid(Scene::of_one(&self.square, object)),
-            Some(skin) => {
-                let approach = Approach::new(skin, DVec3::Z);
-                let approach = approach.expect("an axis has length one");
-                ArrayPress::Skin(Box::new(approach), [object.clone()])
-            }
-        }
-    }
-}
-
-impl ArrayPress<'_> {
-    /// Presses to a depth (metres) past first contact; `None` where the way misses the object.
-    pub fn to_depth(
-        &self,
-        pose: Pose,
-        depth: f64,
-        workspace: &mut ArrayWorkspace,
-    ) -> Option<Contact> {
-        match self {
-            Self::Grid(scene) => press_to_depth(scene, &[pose], depth, &mut workspace.grid),
-            Self::Skin(approach, object) => {
-                let touch = approach.press_to_depth(object, &[pose], depth, &mut workspace.skin)?;
-                Some(Contact {
-                    travel: touch.travel,
-                    n_touched: touch.counts.n_touched,
-                    n_saturated: touch.counts.n_saturated,
-                })
-            }
-        }
-    }
-
-    /// Deflections of the last press: n_taxels, metres.
-    pub fn deflections<'w>(&self, workspace: &'w ArrayWorkspace) -> &'w [f64] {
-        match self {
-            Self::Grid(_) => workspace.grid.deflections(),
-            Self::Skin(..) => workspace.skin.deflections(),
-        }
+        let Self {
+            square,
+            layout,
+            radius,
+            sensed,
+            slide,
+            skin: _,
+        } = self;
+        format!("{square:?} {layout:?} {radius} {sensed:?} {slide}")
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `frames.npy` | n × ny × nx (1 × n_taxels of layouts without rows), f32, metres of deflection, without noise; or as a cell reads them |
+//! | `frames.npy` | n × ny × nx (1 × n_taxels of layouts without rows), f32, metres of deflection, without noise; or as a cell reads them; with `skin.sensed = "shear"` n × 3 × ny × nx, the second and third in newtons |
 //! | `labels.npy` | n, i64: the object's number |
 //! | `poses.npy` | n × 7, f64: the object in the patch frame when it is read: x, y, z in metres, quaternion x, y, z, w |
 //! | `depths.npy` | n, f64: metres past first contact |
@@ -13,20 +13,21 @@
 //! Deflections are what the press gives: no noise, no smoothing, none of the sensor errors of `[signal]`. Frames as a cell reads them
 //! ([`ReadFrames`]) have all of these, in metres or, with the step `force`, in newtons; only `frames.npy` differs.
 
+use super::array_press::{ArrayPress, ArrayWorkspace};
 use super::feature_files::{find, measured};
 use super::npy::NpyFile;
 use super::plan::Plan;
 use super::progress::Progress;
 use super::simulation::touch_stream;
 use super::sweep::{Group, Sweep};
-use super::taxel_array::{ArrayPress, ArrayWorkspace, TaxelArray};
+use super::taxel_array::TaxelArray;
 use super::touch_set::TouchSet;
 use crate::error::Result;
 use crate::files::CsvFile;
 use crate::objects::Object;
 use crate::random::Seed;
 use crate::sensing::Ensemble;
-use crate::world::{Placement, RestPose, Touch, TouchSource};
+use crate::world::{ArrayLayout, Placement, RestPose, Touch, TouchSource};
 use ndarray::Array2;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -97,8 +98,7 @@ impl ReadFrames {
             ensemble: Ensemble::Identity,
             ..group.clone()
         };
-        let n_taxels = plan.arrays[group.array].n_taxels();
-        let of = (touched, &identity, n_taxels);
+        let of = (touched, &identity, plan.arrays[group.array].n_values());
         let read = measured(plan, of, (trial, &split), ("read", progress))?;
         Ok(Self {
             array: group.array,
@@ -139,7 +139,14 @@ pub fn write_touches(
         NpyFile::create(&folder.join(name), descr, &shape)
     };
     let (ny, nx) = array.shape();
-    let mut frames = file("frames.npy", "<f4", &[ny, nx])?;
+    let n_channels = array.sensed().n_channels();
+    let shape = [n_channels, ny, nx];
+    let shape = if n_channels > 1 {
+        &shape[..]
+    } else {
+        &shape[1..]
+    };
+    let mut frames = file("frames.npy", "<f4", shape)?;
     let mut labels = file("labels.npy", "<i8", &[])?;
     let mut poses = file("poses.npy", "<f8", &[7])?;
     let mut depths = file("depths.npy", "<f8", &[])?;
@@ -186,7 +193,7 @@ pub fn write_touches(
 
 /// Where the taxels of a layout are that is no grid, and their axes.
 fn write_taxels(folder: &Path, array: &TaxelArray) -> Result<()> {
-    let Some(skin) = array.skin() else {
+    let Some(skin) = array.skin().filter(|_| array.layout() != ArrayLayout::Grid) else {
         return Ok(());
     };
     let (centers, axes) = (skin.layout().centers(), skin.layout().axes());
@@ -205,9 +212,9 @@ fn pressed<'a>(
     touch: &Touch,
     workspace: &mut ArrayWorkspace,
 ) -> Reading<'a> {
-    let mut pose = touch.patch_from_object(&rests[touch.rest]);
-    let contact = press.to_depth(pose, touch.depth, workspace);
-    pose.translation.z -= contact.map_or(0.0, |c| c.travel);
+    let pose = touch.patch_from_object(&rests[touch.rest]);
+    let contact = press.touch(pose, (touch.depth, 1.0), workspace);
+    let pose = press.end(pose, contact);
     let (t, q) = (pose.translation, pose.rotation);
     Reading {
         row: TouchRow {
@@ -224,11 +231,7 @@ fn pressed<'a>(
             n_touched: contact.map_or(0, |c| c.n_touched),
             n_saturated: contact.map_or(0, |c| c.n_saturated),
         },
-        frame: press
-            .deflections(workspace)
-            .iter()
-            .map(|&d| d as f32)
-            .collect(),
+        frame: press.values(workspace).map(|value| value as f32).collect(),
         pose: [t.x, t.y, t.z, q.x, q.y, q.z, q.w],
         depth: touch.depth,
     }

@@ -85,6 +85,13 @@ impl TaxelTree {
         self.depth
     }
 
+    /// Whether a ball can push a taxel, or comes near to it; metres, in the patch frame.
+    #[inline]
+    pub fn is_near(&self, center: DVec3, radius: f64) -> bool {
+        let root = self.nodes.first();
+        root.is_some_and(|root| root.is_near(center, radius))
+    }
+
     /// Calls `visit` with each taxel that a ball can push, and with some others; metres, in the patch frame.
     #[inline]
     pub fn each_near(&self, center: DVec3, radius: f64, mut visit: impl FnMut(&PlacedTaxel)) {

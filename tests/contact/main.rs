@@ -25,3 +25,4 @@ mod reference_scenes;
 mod skin_layouts;
 mod skin_meshes;
 mod skins;
+mod slide;

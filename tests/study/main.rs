@@ -15,4 +15,5 @@ mod layouts;
 mod memory;
 mod quickstart;
 mod repeatability;
+mod shear;
 mod variance;

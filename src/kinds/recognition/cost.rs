@@ -30,9 +30,9 @@ pub(super) fn touch_s(
 
 /// To read and project all frames of a group once.
 pub(super) fn measure_s(plan: &Plan, group: &Group, (n_touches, m): (usize, usize)) -> f64 {
-    let n_taxels = plan.arrays[group.array].n_taxels();
-    let project_s = (group.ensemble.about().taxel_s)(m as f64, n_taxels as f64);
-    (n_touches * group.frames * n_taxels) as f64 * (TAXEL_S + project_s)
+    let n_values = plan.arrays[group.array].n_values();
+    let project_s = (group.ensemble.about().taxel_s)(m as f64, n_values as f64);
+    (n_touches * group.frames * n_values) as f64 * (TAXEL_S + project_s)
 }
 
 /// A fit in one trial, with what it chooses, and its test.

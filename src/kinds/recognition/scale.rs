@@ -27,12 +27,12 @@ pub fn recognition_scale(
     folder: &Path,
 ) -> (Scale, FramePlace) {
     type Placed<'a> = (&'a StudyPart, &'a Group);
-    let n_taxels = |(part, group): Placed| part.plan.arrays[group.array].n_taxels();
+    let n_values = |(part, group): Placed| part.plan.arrays[group.array].n_values();
     let n_frames = |(part, group): Placed| (part.sweep.labels.len() * group.frames) as f64;
     let m = |group: &Group| group.projected().into_iter().max().unwrap_or(0) as f64;
     let measured = |on: Placed| {
         let matrix = on.1.ensemble.about().bytes;
-        8.0 * n_frames(on) * m(on.1) + matrix(m(on.1), n_taxels(on) as f64)
+        8.0 * n_frames(on) * m(on.1) + matrix(m(on.1), n_values(on) as f64)
     };
     let groups = || {
         let parts = study.parts().iter();
@@ -44,11 +44,11 @@ pub fn recognition_scale(
         let bytes = |family: &[Cell]| family_bytes(&part.plan, &family[0], n_test, n_classes);
         largest(group.families().map(bytes))
     };
-    let in_memory = largest(groups().map(|g| n_frames(g) * (most_bytes(n_taxels(g)) + 16) as f64));
+    let in_memory = largest(groups().map(|g| n_frames(g) * (most_bytes(n_values(g)) + 16) as f64));
     // Where each frame is, and what is held before it is put there.
     let in_file = largest(groups().map(|g| {
         let n_made = (made_at_once(g.1.frames) * g.1.frames) as f64;
-        8.0 * n_frames(g) + n_made * most_bytes(n_taxels(g)) as f64
+        8.0 * n_frames(g) + n_made * most_bytes(n_values(g)) as f64
     }));
     let first = study.first();
     let n_touches = first.sweep.labels.len();

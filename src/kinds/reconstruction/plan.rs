@@ -61,7 +61,7 @@ impl ReconstructionPlan {
         let patch = check.one_array(&spec.skin, allowed)?;
         spec.objects.settle_surface_error(&[patch.into()]);
         let placement = check.placement(&spec.touches)?;
-        let (noise_unit, noise) = check.noise(&spec.signal)?;
+        let (noise_unit, noise) = check.noise(&spec.signal, None)?;
         check.steps(&spec.signal)?;
         check.noise_is_last(&spec.signal)?;
         check.sensing(&spec.sensing, &[patch.into()])?;

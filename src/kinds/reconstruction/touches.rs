@@ -106,7 +106,7 @@ fn read(
     rows: &[usize],
     noise: Option<f64>,
 ) -> Result<Array2<f64>> {
-    let chains = [Chain::new(&plan.signal_steps(noise), &plan.patch)?];
+    let chains = [vec![Chain::new(&plan.signal_steps(noise), &plan.patch)?]];
     let projection = plan.projection(Ensemble::Identity, 1)?;
     let reading = Reading {
         chains: &chains,

@@ -70,7 +70,7 @@ impl Bench<'_> {
         let stream = self.seed.named("speed accuracy projection");
         let projection = Projection::new(cell.ensemble, size, cell.measurements, &stream)?;
         let reading = Reading {
-            chains: std::slice::from_ref(self.chain),
+            chains: &[vec![self.chain.clone()]],
             projection: &projection,
             taxel: self.patch.taxel,
             speed: 0.0,
@@ -88,7 +88,7 @@ impl Bench<'_> {
     /// Median microseconds of noise and compression.
     fn time_compression(&self, projection: &Projection) -> Result<f64> {
         let mut scratch = Scratch::default();
-        let mut frame = Array2::zeros((1, self.learned.n_taxels));
+        let mut frame = Array2::zeros((1, self.learned.n_values));
         let mut row = Array2::zeros((1, projection.n_measurements()));
         let felt = self.learned.to_array()?;
         Ok(self.median_us(self.learned.n(), |touch| {

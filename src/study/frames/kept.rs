@@ -20,14 +20,14 @@ pub enum FramePlace {
     File(PathBuf),
 }
 
-/// (n_touches · F) frames of an array, n_taxels metres of deflection each, and what happened while they were made: object by object, touch by
+/// (n_touches · F) frames of an array, n_values each (a metre of deflection a taxel, or more channels), and what happened while they were made: object by object, touch by
 /// touch, the deepest frame of a touch last. Only touched taxels are kept.
 #[derive(Debug)]
 pub struct Frames {
     /// What happened.
     pub facts: FrameFacts,
-    /// Taxels of each.
-    pub n_taxels: usize,
+    /// Numbers of each.
+    pub n_values: usize,
     place: Place,
 }
 
@@ -47,7 +47,7 @@ impl Frames {
     ///
     /// # Errors
     /// No file can be made in the folder.
-    pub fn new((n_taxels, n_frames): (usize, usize), place: &FramePlace) -> Result<Self> {
+    pub fn new((n_values, n_frames): (usize, usize), place: &FramePlace) -> Result<Self> {
         let place = match place {
             FramePlace::Memory => Place::Memory(Vec::new()),
             FramePlace::File(folder) => {
@@ -68,7 +68,7 @@ impl Frames {
         };
         Ok(Self {
             facts,
-            n_taxels,
+            n_values,
             place,
         })
     }
@@ -101,7 +101,7 @@ impl Frames {
         }
     }
 
-    /// Writes frame `number` into `frame` (n_taxels, metres); several threads read.
+    /// Writes frame `number` into `frame` (n_values); several threads read.
     ///
     /// # Errors
     /// The file cannot be read.
@@ -109,7 +109,7 @@ impl Frames {
     /// # Panics
     /// There is no such frame, or `frame` has another length.
     pub fn read(&self, number: usize, frame: &mut [f64]) -> Result<()> {
-        assert_eq!(frame.len(), self.n_taxels, "a value a taxel");
+        assert_eq!(frame.len(), self.n_values, "all values");
         match &self.place {
             Place::Memory(frames) => decode(&frames[number], frame),
             Place::File {
@@ -130,12 +130,12 @@ impl Frames {
         Ok(())
     }
 
-    /// All frames, n × n_taxels metres.
+    /// All frames, n × n_values.
     ///
     /// # Errors
     /// The file cannot be read.
     pub fn to_array(&self) -> Result<Array2<f64>> {
-        let mut array = Array2::zeros((self.n(), self.n_taxels));
+        let mut array = Array2::zeros((self.n(), self.n_values));
         let rows = array.axis_iter_mut(Axis(0)).into_par_iter().enumerate();
         rows.try_for_each(|(number, mut row)| {
             self.read(number, row.as_slice_mut().expect("rows of a new array"))

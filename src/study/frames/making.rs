@@ -25,7 +25,7 @@ pub fn made_at_once(n_frames: usize) -> usize {
 
 impl Frames {
     /// Makes the frames of some touches, each thread in a workspace of its own; the same bytes at any number of threads. `press` writes a touch
-    /// into its F frames (F × n_taxels, metres), and says whether it met nothing, and whether it saturated a taxel when it was deepest.
+    /// into its F frames (F × n_values), and says whether it met nothing, and whether it saturated a taxel when it was deepest.
     ///
     /// # Errors
     /// The file of frames cannot be written.
@@ -36,7 +36,7 @@ impl Frames {
         press: impl Fn(&T, &mut W, ArrayViewMut2<f32>) -> (bool, bool) + Sync,
         progress: &dyn Progress,
     ) -> Result<()> {
-        let shape = (self.facts.n_frames, self.n_taxels);
+        let shape = (self.facts.n_frames, self.n_values);
         for touches in touches.chunks(made_at_once(shape.0)) {
             let blocks = touches.par_chunks(block(shape.0));
             let made = blocks.map_init(&workspace, |workspace, touches: &[T]| {
