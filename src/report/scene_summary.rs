@@ -75,6 +75,7 @@ fn ending(movement: &Movement, held: &Held) -> String {
     match held {
         Held::Imposed => match movement {
             Movement::Imposed(Motion::Fixed(_)) => "fixed".to_owned(),
+            Movement::Carried(_) => "where its robot carries it".to_owned(),
             _ => "where its motion says".to_owned(),
         },
         Held::Pressed {

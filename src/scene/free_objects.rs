@@ -47,7 +47,7 @@ impl FreeObjects {
     pub fn of(plan: &ScenePlan) -> Self {
         let objects = plan.objects.iter().enumerate();
         let all = objects.filter_map(|(object, planned)| match planned.movement {
-            Movement::Imposed(_) => None,
+            Movement::Imposed(_) | Movement::Carried(_) => None,
             Movement::Free {
                 start,
                 mass,
@@ -233,9 +233,8 @@ fn push_by_others(
 ) {
     for ((patch, skin), pushed) in plan.patches.iter().zip(skins).zip(pushed) {
         pushed.clear();
-        if objects.can_reach(&patch.skin, &skin.pose) {
-            let poses = objects.poses.iter().map(|pose| pose.seen_from(&skin.pose));
-            let poses: Vec<Pose> = poses.collect();
+        if objects.can_reach(patch, &skin.pose) {
+            let poses: Vec<Pose> = objects.seen_by(patch, &skin.pose).collect();
             press_skin(&patch.skin, &plan.models, &poses, workspace);
             pushed.extend_from_slice(workspace.deflections());
         }

@@ -57,6 +57,7 @@
 
 mod frame;
 mod free_objects;
+mod mount;
 mod numbers;
 mod plan;
 mod plan_object;
@@ -77,9 +78,10 @@ mod summary;
 
 pub use frame::{Frame, FrameSink, FrictionReading, Held, ObjectReading, PatchReading};
 pub use free_objects::{MOST_ROUNDS, ROUND_TOLERANCE};
+pub use mount::Mount;
 pub use plan::ScenePlan;
 pub use plan_object::{Movement, PlannedObject};
-pub use plan_patch::{Mount, PlannedPatch};
+pub use plan_patch::PlannedPatch;
 pub use plan_press::PlannedPress;
 pub use plan_robot::PlannedRobot;
 pub use plan_signal::PlannedSignal;

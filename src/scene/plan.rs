@@ -70,14 +70,14 @@ impl ScenePlan {
         let patches = spec
             .patches
             .iter_mut()
-            .map(|patch| reader.patch(patch, &robots, &seed));
+            .map(|patch| reader.patch(patch, (&robots, &spec.objects), &seed));
         let patches = patches.collect::<Result<Vec<_>>>()?;
         let pitches = spec.patches.iter().map(|patch| patch.layout.pitch_mm());
         let finest_mm = pitches.fold(f64::INFINITY, f64::min);
         let objects = spec
             .objects
             .iter()
-            .map(|object| reader.object(object, &patches, finest_mm));
+            .map(|object| reader.object(object, (&robots, &patches), finest_mm));
         let (objects, models): (Vec<_>, Vec<_>) =
             objects.collect::<Result<Vec<_>>>()?.into_iter().unzip();
         check_presses(&reader.check, &spec)?;
@@ -234,6 +234,7 @@ fn end(robots: &[PlannedRobot], objects: &[PlannedObject]) -> f64 {
         let press = object.press.as_ref().map_or(0.0, PlannedPress::end);
         match &object.movement {
             Movement::Imposed(motion) => motion.end().max(press),
+            Movement::Carried(_) => press,
             Movement::Free { .. } => 0.0,
         }
     });

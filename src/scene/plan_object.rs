@@ -1,7 +1,9 @@
 //! Objects of a scene: what they are made of, and how they move.
 
+use super::mount::Mount;
 use super::plan_patch::PlannedPatch;
 use super::plan_press::PlannedPress;
+use super::plan_robot::PlannedRobot;
 use super::reader::{MM, Reader};
 use super::spec::{FreeSpec, ObjectSpec};
 use crate::error::Result;
@@ -30,6 +32,8 @@ pub struct PlannedObject {
 pub enum Movement {
     /// It goes where it is told, whatever it meets.
     Imposed(Motion),
+    /// It goes where a robot's link goes.
+    Carried(Mount),
     /// Gravity and the skins.
     Free {
         /// `world_from_object` before it comes to rest.
@@ -45,12 +49,23 @@ impl Reader<'_> {
     pub fn object(
         &self,
         spec: &ObjectSpec,
-        patches: &[PlannedPatch],
+        (robots, patches): (&[PlannedRobot], &[PlannedPatch]),
         finest_mm: f64,
     ) -> Result<(PlannedObject, Model)> {
         let key = &format!("objects.{}", spec.name);
         let model = self.model(key, spec, finest_mm)?;
+        let is_carried = spec.robot.is_some() || spec.link.is_some();
+        if is_carried && (spec.free.is_some() || spec.motion.is_some()) {
+            let allowed = "one of robot, motion and free";
+            return Err(self
+                .check
+                .error(key, "an object with two movements", allowed));
+        }
         let movement = match (&spec.free, &spec.motion) {
+            _ if is_carried => {
+                let on = (spec.robot.as_deref(), spec.link.as_deref());
+                Movement::Carried(self.mount(key, on, &spec.at, robots)?)
+            }
             (None, motion) => Movement::Imposed(self.motion(key, &spec.at, motion.as_ref())?),
             (Some(_), Some(_)) => {
                 let allowed = "free or motion, not both";

@@ -1,14 +1,13 @@
 //! Skin of a scene: layouts and taxels, and what carries them.
 
+use super::mount::Mount;
 use super::plan_robot::PlannedRobot;
 use super::plan_signal::PlannedSignal;
 use super::reader::{MM, Reader};
-use super::spec::{LayoutSpec, PatchSpec};
+use super::spec::{LayoutSpec, ObjectSpec, PatchSpec};
 use crate::error::Result;
-use crate::geometry::Pose;
 use crate::mesh::SizeLimits;
 use crate::random::Seed;
-use crate::spelling::nearest_names;
 use crate::study::{positive, read_mesh_file};
 use crate::world::{Grid, Layout, Patch, Shears, SkinPatch, Taxels};
 
@@ -23,22 +22,6 @@ pub struct PlannedPatch {
     pub shears: Option<Shears>,
     /// Its signal, if it has any steps.
     pub signal: Option<PlannedSignal>,
-}
-
-/// What carries a patch.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Mount {
-    /// Nothing: it stays where it is, `world_from_patch`.
-    World(Pose),
-    /// A robot's link.
-    Link {
-        /// The robot's number.
-        robot: usize,
-        /// The link's number in the robot.
-        link: usize,
-        /// Where it is on the link.
-        link_from_patch: Pose,
-    },
 }
 
 impl PlannedPatch {
@@ -83,7 +66,7 @@ impl Reader<'_> {
     pub fn patch(
         &self,
         spec: &mut PatchSpec,
-        robots: &[PlannedRobot],
+        (robots, objects): (&[PlannedRobot], &[ObjectSpec]),
         seed: &Seed,
     ) -> Result<PlannedPatch> {
         let key = &format!("patches.{}", spec.name);
@@ -101,7 +84,7 @@ impl Reader<'_> {
         Ok(PlannedPatch {
             signal: self.signal(key, &spec.signal, &skin, seed)?,
             skin,
-            mount: self.mount(key, spec, robots)?,
+            mount: self.mount_of_patch(key, spec, robots, objects)?,
             shears,
         })
     }
@@ -134,36 +117,5 @@ impl Reader<'_> {
             }
         };
         self.under(key, layout)
-    }
-
-    fn mount(&self, key: &str, spec: &PatchSpec, robots: &[PlannedRobot]) -> Result<Mount> {
-        let at = self.pose(&format!("{key}.at"), &spec.at)?;
-        let Some(name) = &spec.robot else {
-            return match &spec.link {
-                None => Ok(Mount::World(at)),
-                Some(link) => Err(self.check.error(
-                    &format!("{key}.link"),
-                    format!("`{link}` without a robot"),
-                    "robot = \"NAME\" beside it",
-                )),
-            };
-        };
-        let names = robots.iter().map(|robot| robot.name.as_str());
-        let Some(robot) = names.clone().position(|known| known == name) else {
-            let key = format!("{key}.robot");
-            return Err(self
-                .check
-                .error(&key, format!("`{name}`"), nearest_names(name, names)));
-        };
-        let carrier = &robots[robot].robot;
-        let link = match &spec.link {
-            Some(link) => self.under(&format!("{key}.link"), carrier.link(link))?,
-            None => carrier.base(),
-        };
-        Ok(Mount::Link {
-            robot,
-            link,
-            link_from_patch: at,
-        })
     }
 }

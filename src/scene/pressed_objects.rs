@@ -67,12 +67,12 @@ impl PressedObjects {
         for pressed in all {
             let planned = plan.objects[pressed.object].press.as_ref();
             let press = planned.expect("only those that are pressed are here");
-            let patch = &plan.patches[press.patch].skin;
+            let patch = &plan.patches[press.patch];
             let skin = &skins[press.patch];
             poses.clear();
-            poses.extend(objects.poses.iter().map(|pose| pose.seen_from(&skin.pose)));
+            poses.extend(objects.seen_by(patch, &skin.pose));
             let moved = MovedObject {
-                patch,
+                patch: &patch.skin,
                 objects: &plan.models,
                 moving: pressed.object,
                 direction: skin.pose.rotation.conjugate() * press.direction,

@@ -135,13 +135,15 @@ impl<'p> Simulation<'p> {
         for (state, robot) in self.robots.iter_mut().zip(&plan.robots) {
             state.place(robot, time)?;
         }
-        for (skin, patch) in self.skins.iter_mut().zip(&plan.patches) {
-            skin.place(patch, &self.robots);
-        }
         for (pose, object) in self.objects.poses.iter_mut().zip(&plan.objects) {
-            if let Movement::Imposed(motion) = &object.movement {
-                *pose = motion.pose_at(time);
+            match &object.movement {
+                Movement::Imposed(motion) => *pose = motion.pose_at(time),
+                Movement::Carried(mount) => *pose = mount.place(&self.robots, &[]),
+                Movement::Free { .. } => {}
             }
+        }
+        for (skin, patch) in self.skins.iter_mut().zip(&plan.patches) {
+            skin.pose = patch.mount.place(&self.robots, &self.objects.poses);
         }
         let objects = &mut self.objects;
         self.pressed.push(plan, &self.skins, objects, [time, dt]);

@@ -1,15 +1,14 @@
 //! A patch on its way: where it is, what pushes it now, and what its dampers remember.
 
 use super::frame::PatchReading;
-use super::plan_patch::{Mount, PlannedPatch};
-use super::robot_state::RobotState;
+use super::mount::Mount;
+use super::plan_patch::PlannedPatch;
 use crate::contact::{
     DamperState, FrictionState, GripCounts, NormalForce, SkinContact, SkinWorkspace, TaxelContact,
     Wrench, axial_load, deflect_skin, press_skin,
 };
 use crate::geometry::Pose;
 use crate::objects::Model;
-use crate::world::SkinPatch;
 use glam::DVec3;
 
 /// Where all objects are.
@@ -28,16 +27,33 @@ pub(super) const OUT_OF_REACH: Pose = Pose {
 };
 
 impl PlacedObjects {
+    /// Where a patch sees them, `patch_from_object`: all but the one that carries it, which it does not feel.
+    pub fn seen_by<'a>(
+        &'a self,
+        patch: &PlannedPatch,
+        world_from_patch: &'a Pose,
+    ) -> impl Iterator<Item = Pose> + 'a {
+        let carrier = match patch.mount {
+            Mount::Object { object, .. } => Some(object),
+            Mount::World(_) | Mount::Link { .. } => None,
+        };
+        let poses = self.poses.iter().enumerate();
+        poses.map(move |(number, pose)| match carrier == Some(number) {
+            true => OUT_OF_REACH,
+            false => pose.seen_from(world_from_patch),
+        })
+    }
+
     /// Whether any object may push a patch that is there: by a box around its taxels and balls around the objects.
-    pub fn can_reach(&self, skin: &SkinPatch, world_from_patch: &Pose) -> bool {
+    pub fn can_reach(&self, patch: &PlannedPatch, world_from_patch: &Pose) -> bool {
+        let skin = &patch.skin;
         let Some(bounds) = skin.tree().bounds() else {
             return false;
         };
-        self.poses
-            .iter()
+        self.seen_by(patch, world_from_patch)
             .zip(&self.balls)
             .any(|(pose, &(center, radius))| {
-                let center = pose.seen_from(world_from_patch).transform_point(center);
+                let center = pose.transform_point(center);
                 let reach = radius + skin.tree().largest_radius();
                 // What rounding may add, far above 1e-16 and far below what is felt.
                 bounds.distance_squared(center) <= reach * reach * (1.0 + 1e-9)
@@ -84,18 +100,6 @@ impl SkinState {
             untouched: vec![0.0; n_taxels],
             counts: SkinContact::default(),
         }
-    }
-
-    /// Goes to where what carries it is.
-    pub fn place(&mut self, patch: &PlannedPatch, robots: &[RobotState]) {
-        self.pose = match patch.mount {
-            Mount::World(pose) => pose,
-            Mount::Link {
-                robot,
-                link,
-                link_from_patch,
-            } => robots[robot].world_from_link[link].compose(&link_from_patch),
-        };
     }
 
     /// From now on these parts of objects push their taxels behind the substrate too.
@@ -171,7 +175,7 @@ impl SkinState {
         dt: f64,
         detail: Detail,
     ) {
-        if !self.workspace.holds_any() && !objects.can_reach(&patch.skin, &self.pose) {
+        if !self.workspace.holds_any() && !objects.can_reach(patch, &self.pose) {
             self.counts = SkinContact::default();
             if !self.is_idle {
                 self.damper.step(patch.skin.taxels(), dt, &self.untouched);
@@ -185,9 +189,8 @@ impl SkinState {
             return;
         }
         self.is_idle = false;
-        let seen = objects.poses.iter().map(|pose| pose.seen_from(&self.pose));
         self.poses.clear();
-        self.poses.extend(seen);
+        self.poses.extend(objects.seen_by(patch, &self.pose));
         let workspace = &mut self.workspace;
         if self.friction.is_some() || detail == Detail::Contacts {
             self.counts = press_skin(&patch.skin, models, &self.poses, workspace);

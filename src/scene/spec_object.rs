@@ -34,7 +34,13 @@ pub struct ObjectSpec {
     /// How far spheres may be from a solid's or packed mesh's surface; 0.25, or packed a tenth of the finest pitch, when left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub surface_error_mm: Option<f64>,
-    /// Where it is, or starts.
+    /// The robot that carries it, in place of a motion of its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub robot: Option<String>,
+    /// The robot's link that carries it; its base when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub link: Option<String>,
+    /// Where it is, or starts, in the world or on the link.
     #[serde(default)]
     pub at: PoseSpec,
     /// How it moves, whatever touches it; not at all when left out.

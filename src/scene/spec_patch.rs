@@ -19,7 +19,10 @@ pub struct PatchSpec {
     /// The robot's link that carries it; its base when left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub link: Option<String>,
-    /// Where it is on the link, or in the world.
+    /// Instead: the object that carries it, which it does not feel.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub object: Option<String>,
+    /// Where it is on the link, on the object, or in the world.
     #[serde(default)]
     pub at: PoseSpec,
     /// Where its taxels are.

@@ -19,6 +19,7 @@ mod robot_urdf;
 mod scene_errors;
 mod scene_forces;
 mod scene_laws;
+mod scene_mounts;
 mod scene_signal;
 mod whole_body_laws;
 mod whole_body_variants;

@@ -1,0 +1,131 @@
+//! What rides along: skin on an object, and objects on a robot's links, against the same things that move by themselves.
+
+use bubbletouch::scene::{Frame, ScenePlan, SceneSpec, Simulation, Stepping};
+use std::path::Path;
+
+const MOTION: &str = "motion = { phases = [
+    { duration_s = 0.2, linear_mm_per_s = [0.0, 5.0, -40.0] },
+    { duration_s = 0.3, linear_mm_per_s = [20.0, 0.0, 0.0], angular_deg_per_s = [0.0, 30.0, 40.0] },
+] }";
+
+fn plan(text: &str) -> bubbletouch::Result<ScenePlan> {
+    let spec = SceneSpec::parse("test.toml", text)?;
+    ScenePlan::new("test.toml", Path::new(""), spec)
+}
+
+fn frames(text: &str) -> Vec<Frame> {
+    let plan = plan(text).unwrap();
+    let mut frames = Vec::new();
+    let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);
+    simulation.run(&mut [&mut frames]).unwrap();
+    frames
+}
+
+/// The same deflections of the first patch, and not none.
+fn assert_same(a: &[Frame], b: &[Frame]) {
+    assert_eq!(a.len(), b.len());
+    let mut n_touched = 0;
+    for (a, b) in a.iter().zip(b) {
+        let [a, b] = [a, b].map(|frame| &frame.patches[0]);
+        n_touched += a.n_touched;
+        for (a, b) in a.deflection.iter().zip(&b.deflection) {
+            assert!((a - b).abs() < 1e-12, "{a} for {b}");
+        }
+    }
+    assert!(n_touched > 100, "{n_touched}");
+}
+
+/// An object above a skin that lies in the world.
+fn over_skin(carrier: &str, object: &str) -> String {
+    format!(
+        "title = \"over skin\"
+        output_hz = 50.0
+        duration_s = 0.5
+        {carrier}
+        [[patches]]
+        name = \"skin\"
+        layout = {{ grid = {{ nx = 24, ny = 24, pitch_mm = 3.0 }} }}
+        stroke_mm = 6.0
+        [[objects]]
+        name = \"pear\"
+        object = \"pear\"
+        {object}"
+    )
+}
+
+#[test]
+fn an_object_on_a_link_goes_where_the_link_goes() {
+    let at = "at = { position_mm = [3.0, -2.0, 6.0] }";
+    let alone = over_skin("", &format!("{at}\n{MOTION}"));
+    let carrier = format!("[[robots]]\nname = \"hand\"\nfloating = true\n{at}\n{MOTION}\n");
+    let carried = over_skin(&carrier, "robot = \"hand\"");
+    assert_same(&frames(&alone), &frames(&carried));
+}
+
+/// Skin around a can that comes down on a pear.
+fn skinned_can(carrier: &str, patch: &str, can: &str) -> String {
+    format!(
+        "title = \"a can with skin\"
+        output_hz = 50.0
+        duration_s = 0.5
+        {carrier}
+        [[patches]]
+        name = \"sleeve\"
+        {patch}
+        layout = {{ cylinder = {{ radius_mm = 37.0, length_mm = 60.0, arc_deg = 360.0, pitch_mm = 3.0 }} }}
+        stroke_mm = 3.0
+        {can}
+        [[objects]]
+        name = \"pear\"
+        object = \"pear\"
+        at = {{ position_mm = [62.0, 0.0, -20.0] }}"
+    )
+}
+
+#[test]
+fn skin_on_an_object_goes_with_it_and_does_not_feel_it() {
+    let place = "at = { position_mm = [0.0, 0.0, 30.0] }";
+    let can = format!("[[objects]]\nname = \"can\"\nobject = \"soup_can\"\n{place}\n{MOTION}\n");
+    let on_object = skinned_can(
+        "",
+        "object = \"can\"\nat = { position_mm = [0.0, 0.0, 50.0] }",
+        &can,
+    );
+    let robot = format!("[[robots]]\nname = \"core\"\nfloating = true\n{place}\n{MOTION}\n");
+    let on_robot = skinned_can(
+        &robot,
+        "robot = \"core\"\nat = { position_mm = [0.0, 0.0, 50.0] }",
+        "",
+    );
+    assert_same(&frames(&on_object), &frames(&on_robot));
+    // Beside it, skin of the world feels the can.
+    let beside = skinned_can("", "at = { position_mm = [0.0, 0.0, 80.0] }", &can);
+    assert_ne!(
+        frames(&beside)[0].patches[0].n_touched,
+        frames(&on_object)[0].patches[0].n_touched
+    );
+}
+
+#[test]
+fn what_cannot_carry_is_refused_by_its_key() {
+    let refused = |text: &str| plan(text).unwrap_err().to_string();
+    let can = "[[objects]]\nname = \"can\"\nobject = \"soup_can\"\nfree = { mass_kg = 0.1 }\n";
+    for (patch, expected) in [
+        ("object = \"cann\"", "patches.sleeve.object: `cann`"),
+        (
+            "object = \"can\"",
+            "patches.sleeve.object: `can`, which does not go where it is told",
+        ),
+        (
+            "object = \"can\"\nlink = \"palm\"",
+            "patches.sleeve.object: given beside a robot",
+        ),
+    ] {
+        let said = refused(&skinned_can("", patch, can));
+        assert!(said.contains(expected), "{said}");
+    }
+    let said = refused(&over_skin("", &format!("link = \"palm\"\n{MOTION}")));
+    assert!(said.contains("an object with two movements"), "{said}");
+    let said = refused(&over_skin("", "link = \"palm\""));
+    assert!(said.contains("`palm` without a robot"), "{said}");
+}
