@@ -10,6 +10,8 @@ use crate::study::touch_set::TouchSet;
 
 /// Seconds to make or to read a taxel of a frame.
 const TAXEL_S: f64 = 8e-9;
+/// Bringing an object to a skin takes so many times as long as to a grid: 20 to 60 in the studies of layouts and of shear.
+const SKIN: f64 = 35.0;
 /// Seconds of a multiply-add of a product of matrices.
 const PRODUCT_S: f64 = 4e-11;
 /// Seconds of an SVM's solver for an entry of the kernel matrices of its binary problems; of linfa's.
@@ -25,7 +27,11 @@ pub(super) fn touch_s(
     // What a frame after the first takes, as a share of it.
     let frames = 1.0 + 0.25 * (n_frames as f64 - 1.0);
     let taxels = (n_touches * n_frames * array.n_taxels()) as f64;
-    frames * touched.place_s() + 0.5 * TAXEL_S * taxels
+    let place_s = match array.skin() {
+        None => touched.place_s(),
+        Some(_) => SKIN * touched.place_s(),
+    };
+    frames * place_s + 0.5 * TAXEL_S * taxels
 }
 
 /// To read and project all frames of a group once.
