@@ -35,6 +35,29 @@ macro_rules! toml_file {
 }
 pub(crate) use toml_file;
 
+/// The file of a study: the keys that all of them begin with, and its own.
+macro_rules! study_file {
+    (pub struct $study:ident { $($(#[$of_field:meta])* pub $field:ident: $type:ty,)* }) => {
+        /// The file.
+        #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+        #[serde(deny_unknown_fields)]
+        pub struct $study {
+            /// What the study asks, in a sentence.
+            pub question: String,
+            /// What the author expected before it ran.
+            #[serde(default)]
+            pub expected: String,
+            /// Root of all randomness.
+            #[serde(default = "crate::study::default_seed")]
+            pub seed: u64,
+            $($(#[$of_field])* pub $field: $type,)*
+        }
+
+        $crate::toml_text::toml_file!($study);
+    };
+}
+pub(crate) use study_file;
+
 /// A study with every default spelt out.
 pub(crate) fn write(study: &impl Serialize) -> String {
     toml::to_string(study).expect("every field of a study has a TOML form")
