@@ -76,7 +76,7 @@ pub(crate) use plan::MM;
 pub use plan::{Plan, millimetres};
 pub use plan_signal::Condition;
 pub use pose_groups::KeepTogether;
-pub use samples::{Samples, sample_frames};
+pub use samples::{Samples, Snapshots, sample_frames};
 pub use sensor_errors::{Strengths, TestedOn, all_strengths, strength_columns};
 pub use shard::Shard;
 pub use simulation::{TouchedObject, draw_touches, simulate_array};

@@ -261,7 +261,12 @@ fn every_strength_gets_its_chart_and_every_imperfection_its_picture() {
     ];
     assert_eq!(names, expected);
     let samples = sample_frames(&study.plan, &study.sweep, &study.touched).unwrap();
-    let names: Vec<&str> = samples.frames.iter().map(|(name, _)| &name[..]).collect();
+    let names: Vec<&str> = samples
+        .shown
+        .frames
+        .iter()
+        .map(|(name, _)| &name[..])
+        .collect();
     let expected = [
         "ideal",
         "hysteresis 20 %",
@@ -273,8 +278,8 @@ fn every_strength_gets_its_chart_and_every_imperfection_its_picture() {
         "converter 2 bits",
     ];
     assert_eq!(names, expected);
-    for (name, frame) in &samples.frames[1..] {
-        assert_ne!(frame, &samples.frames[0].1, "{name}");
+    for (name, frame) in &samples.shown.frames[1..] {
+        assert_ne!(frame, &samples.shown.frames[0].1, "{name}");
     }
 }
 

@@ -5,14 +5,13 @@ use super::study::RecognitionStudy;
 use crate::error::Result;
 use crate::kinds::kind::{About, Facts, Findings, Kind};
 use crate::kinds::source::Source;
-use crate::report::page::{Section, Snapshots};
+use crate::report::page::Section;
 use crate::report::recognition;
 use crate::report::snapshots::snapshots;
 use crate::report::study_folder::NamedPicture;
-use crate::study::Samples;
 use crate::study::pieces::Scale;
+use crate::study::{Samples, Snapshots};
 use crate::table::{ChartSpec, Table};
-use ndarray::Array2;
 use std::path::Path;
 
 /// How intervals and p-values are made, by table and columns. Everything is at 95 %.
@@ -73,12 +72,11 @@ impl Findings for RecognitionStudy {
     }
 
     fn pictures(&self, _tables: &[Table]) -> Result<Vec<NamedPicture>> {
-        let samples = self.samples()?;
-        let (pitch_mm, quantity) = (samples.pitch_mm, samples.quantity);
-        let picture = snapshots(&samples.frames, pitch_mm, quantity, &samples.caption)?;
+        let shown = &self.samples()?.shown;
+        let picture = snapshots(shown)?;
         Ok(vec![NamedPicture {
             name: "snapshots".to_owned(),
-            title: samples.caption.clone(),
+            title: shown.caption.clone(),
             png: picture.png()?,
             size: (picture.width / 2, picture.height / 2),
         }])
@@ -108,19 +106,8 @@ impl Findings for RecognitionStudy {
 }
 
 /// Every object; before them what the picture shows, if that is something else.
-fn gallery(samples: &Samples) -> Vec<Snapshots> {
-    let shown = |frames: &[(String, Array2<f64>)], caption: &str| Snapshots {
-        frames: frames.to_vec(),
-        pitch_mm: samples.pitch_mm,
-        quantity: samples.quantity,
-        caption: caption.to_owned(),
-    };
-    let mut sets = Vec::new();
-    if samples.each.is_empty() || samples.caption != samples.each_caption {
-        sets.push(shown(&samples.frames, &samples.caption));
-    }
-    if !samples.each.is_empty() {
-        sets.push(shown(&samples.each, &samples.each_caption));
-    }
-    sets
+fn gallery(Samples { shown, each }: &Samples) -> Vec<Snapshots> {
+    let is_like = |each: &Snapshots| each.caption == shown.caption;
+    let shown = Some(shown).filter(|_| !each.as_ref().is_some_and(is_like));
+    shown.into_iter().chain(each).cloned().collect()
 }
