@@ -69,6 +69,11 @@ pub(crate) fn table(text: &str) -> Option<toml::Table> {
     text.parse().ok()
 }
 
+/// The line that a byte of a text is in, counted from 1.
+pub(crate) fn line_of(text: &str, byte: usize) -> usize {
+    1 + text[..byte.min(text.len())].matches('\n').count()
+}
+
 /// Refuses text that is no TOML and would need a deep stack to say so.
 pub(crate) fn check_brackets(place: &str, text: &str) -> Result<()> {
     // Square, and curly: in broken text either may be closed by the other, or not.

@@ -11,7 +11,7 @@
 use super::check::MOST_VALUES;
 use crate::error::{Error, Result};
 use crate::table::{Column, Role, Scale};
-use crate::toml_text::check_brackets;
+use crate::toml_text::{check_brackets, line_of};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -215,10 +215,6 @@ fn insert<'i>(
         DeValue::Table(inner) => insert(inner, rest, (start, value)),
         _ => None,
     }
-}
-
-fn line_of(text: &str, start: usize) -> usize {
-    1 + text[..start.min(text.len())].matches('\n').count()
 }
 
 impl StudyAxis {
