@@ -52,7 +52,8 @@ impl PieceStudy for Nothing {
     type Rows = Rows;
 
     fn pieces(&self) -> Vec<NamedPiece> {
-        NamedPiece::each_alone((0..N_PIECES).map(|n| (name(n), Piece::of_stage(0, 1.0))))
+        let piece = |n| NamedPiece::new(name(n), n, Piece::of_stage(0, 1.0));
+        (0..N_PIECES).map(piece).collect()
     }
 
     fn measure(&self, left: &PiecesLeft<Rows>) -> Result<()> {

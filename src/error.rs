@@ -104,7 +104,11 @@ impl Error {
             .replace("expected usize", "expected a whole number")
             .replace("expected u64", "expected a whole number")
             .replace("expected u32", "expected a whole number")
-            .replace("expected f64", "expected a number");
+            .replace("expected f64", "expected a number")
+            .replace(
+                "u64 value was too large",
+                "too large, expected a number below 2⁶³",
+            );
         let (given, allowed) = match message.split_once(", expected ") {
             Some((given, allowed)) => (given.to_owned(), format!("expected {allowed}")),
             None => (message, "TOML as in experiments/ and objects/".to_owned()),

@@ -1,4 +1,4 @@
-//! Names that were perhaps meant, and numbers of things.
+//! Names that were perhaps meant, numbers of things, and durations.
 
 /// At most this many are offered: more is a list that nobody reads.
 const OFFERED: usize = 8;
@@ -7,6 +7,17 @@ const OFFERED: usize = 8;
 pub(crate) fn counted(number: usize, one: &str) -> String {
     let plural = if number == 1 { "" } else { "s" };
     format!("{number} {one}{plural}")
+}
+
+/// Seconds in words: no more digits than an estimate has.
+pub(crate) fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 1.0 => "under 1 s".to_owned(),
+        s if s < 99.5 => format!("{s:.0} s"),
+        s if s < 5970.0 => format!("{:.0} min", s / 60.0),
+        s if s < 172_800.0 => format!("{:.1} h", s / 3600.0),
+        s => format!("{:.1} days", s / 86_400.0),
+    }
 }
 
 /// The error's last part for a name that is not among `names`: those it resembles, else the first few there are.
@@ -52,6 +63,21 @@ fn quoted(names: &[&str]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn times_are_written_with_as_many_digits_as_they_deserve() {
+        let words = [0.2, 1.0, 42.4, 99.6, 600.0, 7200.0, 259_200.0].map(duration);
+        let expected = [
+            "under 1 s",
+            "1 s",
+            "42 s",
+            "2 min",
+            "10 min",
+            "2.0 h",
+            "3.0 days",
+        ];
+        assert_eq!(words, expected);
+    }
 
     #[test]
     fn a_slip_is_offered_what_was_meant_and_a_stranger_the_list() {

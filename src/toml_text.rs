@@ -35,6 +35,29 @@ macro_rules! toml_file {
 }
 pub(crate) use toml_file;
 
+/// The file of a study: the keys that all of them begin with, and its own.
+macro_rules! study_file {
+    (pub struct $study:ident { $($(#[$of_field:meta])* pub $field:ident: $type:ty,)* }) => {
+        /// The file.
+        #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+        #[serde(deny_unknown_fields)]
+        pub struct $study {
+            /// What the study asks, in a sentence.
+            pub question: String,
+            /// What the author expected before it ran.
+            #[serde(default)]
+            pub expected: String,
+            /// Root of all randomness.
+            #[serde(default = "crate::study::default_seed")]
+            pub seed: u64,
+            $($(#[$of_field])* pub $field: $type,)*
+        }
+
+        $crate::toml_text::toml_file!($study);
+    };
+}
+pub(crate) use study_file;
+
 /// A study with every default spelt out.
 pub(crate) fn write(study: &impl Serialize) -> String {
     toml::to_string(study).expect("every field of a study has a TOML form")
@@ -44,6 +67,11 @@ pub(crate) fn write(study: &impl Serialize) -> String {
 pub(crate) fn table(text: &str) -> Option<toml::Table> {
     check_brackets("", text).ok()?;
     text.parse().ok()
+}
+
+/// The line that a byte of a text is in, counted from 1.
+pub(crate) fn line_of(text: &str, byte: usize) -> usize {
+    1 + text[..byte.min(text.len())].matches('\n').count()
 }
 
 /// Refuses text that is no TOML and would need a deep stack to say so.
@@ -107,7 +135,10 @@ mod tests {
             let error = read::<Spec>("study.toml", &format!("# large\nseed = {number}"));
             let said = error.unwrap_err().to_string();
             assert!(said.starts_with("study.toml:2"), "{said}");
-            assert!(said.contains("seed"), "{said}");
+            assert!(
+                said.ends_with("too large; expected a number below 2⁶³"),
+                "{said}"
+            );
         }
     }
 

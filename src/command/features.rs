@@ -5,7 +5,6 @@ use super::study_args::StudyArgs;
 use bubbletouch::Result;
 use bubbletouch::kinds::recognition::load_study;
 use bubbletouch::report::progress;
-use bubbletouch::study::write_features;
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -26,16 +25,9 @@ pub struct Args {
 pub fn features(args: &Args) -> Result<()> {
     let loaded = load_study(&args.study.source(&args.out)?)?;
     output_folder(&args.out)?;
-    let loaded = loaded.part_of(args.cell);
+    let (part, which) = (loaded.part_of(args.cell), (args.cell, args.trial));
     let progress = progress::to_stderr();
-    let set = write_features(
-        &args.out,
-        &loaded.plan,
-        &loaded.sweep,
-        loaded.touched.as_ref(),
-        (args.cell, args.trial),
-        progress.as_ref(),
-    )?;
+    let set = part.write_features(&args.out, which, progress.as_ref())?;
     let (n_touches, n_measurements) = set.data.records.dim();
     progress.finish(&format!(
         "{n_touches} touches of {n_measurements} measurements, {} to train on and {} to test, in {}",

@@ -2,7 +2,7 @@
 
 use super::output::packings_beside;
 use bubbletouch::kinds::{self, AnyStudy, Source};
-use bubbletouch::report::csv_tables::sha256_of;
+use bubbletouch::study::file_content;
 use bubbletouch::study::provenance::Manifest;
 use bubbletouch::{Error, Result};
 use std::path::Path;
@@ -21,7 +21,7 @@ pub fn checked_manifest(folder: &Path) -> Result<Option<Manifest>> {
 
 fn check(path: &Path, hash: &str) -> Result<()> {
     let given = match path.exists() {
-        true if sha256_of(path)? == *hash => return Ok(()),
+        true if file_content(path)? == *hash => return Ok(()),
         true => "was changed after its run",
         false => "is missing",
     };

@@ -33,17 +33,11 @@ pub fn touches(args: &Args) -> Result<()> {
         None => (read_plan(&source)?, None),
         Some(cell) => {
             let study = load_study(&source)?;
-            let loaded = study.part_of(cell);
-            args.check(&loaded.plan)?;
+            let part = study.part_of(cell);
+            args.check(&part.plan)?;
             let which = (cell, args.trial);
-            let read = ReadFrames::of_cell(
-                &loaded.plan,
-                &loaded.sweep,
-                loaded.touched.as_ref(),
-                which,
-                progress.as_ref(),
-            )?;
-            (loaded.plan.clone(), Some(read))
+            let read = ReadFrames::of_cell(part, which, progress.as_ref())?;
+            (part.plan.clone(), Some(read))
         }
     };
     args.check(&plan)?;

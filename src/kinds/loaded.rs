@@ -6,11 +6,10 @@ use super::kind::{Facts, Kind};
 use super::source::Source;
 use super::verified::same_rows;
 use crate::error::Result;
-use crate::files::write_bytes;
 use crate::report::csv_tables::FAILURES_FILE;
-use crate::report::folder::Folder;
+use crate::report::folder::{NamedFile, table_files, write_files};
 use crate::report::page::StudyAbout;
-use crate::report::study_folder::{Beyond, Found, folder_with};
+use crate::report::study_folder::{Beyond, Found, files_with};
 use crate::study::journal::{Identity, Journal};
 use crate::study::pieces::{NamedPiece, Part, PieceFailure, PieceManner, PiecesRun};
 use crate::study::progress::{Progress, Silent};
@@ -52,12 +51,7 @@ impl<K: Kind> Loaded<K> {
     }
 
     /// Charts, pictures and page, for a folder, with what is known of its run: nothing is written yet.
-    fn folder_of<'a>(
-        &self,
-        folder: &'a Path,
-        of_run: StudyAbout,
-        tables: &[Table],
-    ) -> Result<Folder<'a>> {
+    fn files_of(&self, of_run: StudyAbout, tables: &[Table]) -> Result<Vec<NamedFile>> {
         let wall_s = of_run.manifest.as_ref().and_then(Manifest::wall_s);
         let about = StudyAbout {
             question: self.facts.question.clone(),
@@ -71,7 +65,7 @@ impl<K: Kind> Loaded<K> {
             charts: &self.kind.charts(tables),
             answers: &self.kind.answers(tables),
         };
-        folder_with(folder, &about, &found, || {
+        files_with(&about, &found, || {
             Ok(Beyond {
                 pictures: self.kind.pictures(tables)?,
                 sections: self.kind.sections(tables)?,
@@ -144,11 +138,11 @@ impl<K: Kind> AnyStudy for Loaded<K> {
             manifest: Some(manifest),
             ..StudyAbout::default()
         };
-        let mut folder = Folder::of_tables(dir, &outcome.tables);
-        folder.append(self.folder_of(dir, of_run, &outcome.tables)?);
-        folder.write()?;
-        write_bytes(&dir.join("study.toml"), self.facts.toml.as_bytes())?;
-        write_bytes(&dir.join(MANIFEST_FILE), json.as_bytes())
+        let mut files = table_files(&outcome.tables);
+        files.extend(self.files_of(of_run, &outcome.tables)?);
+        files.push(("study.toml".to_owned(), self.facts.toml.clone().into()));
+        files.push((MANIFEST_FILE.to_owned(), json.into()));
+        write_files(dir, files).map(drop)
     }
 
     fn words(&self, outcome: &Outcome, width: usize) -> String {
@@ -184,6 +178,6 @@ impl<K: Kind> AnyStudy for Loaded<K> {
     fn report(&self, folder: &Path, about: StudyAbout) -> Result<()> {
         let mut tables = self.kind.read_tables(folder)?;
         tables.extend(FAILURES.read_if_there(folder)?);
-        self.folder_of(folder, about, &tables)?.write().map(|_| ())
+        write_files(folder, self.files_of(about, &tables)?).map(drop)
     }
 }

@@ -25,7 +25,7 @@ use super::solid_toml::WrittenPart;
 use super::{Hand, Object, Part, Solid, pack};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
-use crate::toml_text;
+use crate::toml_text::{self, line_of};
 use glam::DQuat;
 use serde::Deserialize;
 use std::collections::BTreeSet;
@@ -259,11 +259,6 @@ fn of_part(error: Error, place: impl Fn(&str) -> String) -> Error {
         }
         other => other,
     }
-}
-
-/// Counted from 1.
-fn line_of(text: &str, byte: usize) -> usize {
-    1 + text[..byte].matches('\n').count()
 }
 
 /// What the TOML reader says, with line and object.

@@ -4,7 +4,6 @@
 //! value is an empty field. A table without rows has its header, but for columns that only some studies have.
 
 use crate::error::{Error, Result};
-use crate::study::sha256;
 use crate::table::csv_place;
 use serde::de::DeserializeOwned;
 use std::fs::File;
@@ -18,15 +17,6 @@ pub const LIMITS_FILE: &str = "limits.csv";
 
 /// What is asked for where a table is missing.
 const A_TABLE: &str = "a table of results as bubbletouch run writes it";
-
-/// SHA-256 of a file as it stands there.
-///
-/// # Errors
-/// It cannot be read.
-pub fn sha256_of(path: &Path) -> Result<String> {
-    let content = std::fs::read(path).map_err(|e| Error::unreadable(path, A_TABLE, e))?;
-    Ok(sha256(content))
-}
 
 /// Reads a table.
 ///

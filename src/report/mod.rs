@@ -4,7 +4,7 @@
 //! says of itself ([`StudyAbout`](page::StudyAbout)). Out: CSV files, charts and pictures (SVG and PNG), terminal text, and
 //! one self-contained HTML page. Equal input gives equal bytes; every file is whole or not there.
 //!
-//! [`study_folder::folder_with`] makes a study's folder; [`terminal::table_text`] is what a run prints at its end;
+//! [`study_folder::files_with`] makes the files of a study's folder; [`terminal::table_text`] is what a run prints at its end;
 //! [`frame_files::write_frame`] and [`pressure_map`] show a single frame; [`recording`] streams frames over time to a file and
 //! draws them, also moving.
 

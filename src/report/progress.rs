@@ -6,7 +6,8 @@
 //! {"event":"message","text":"going on: 96 of 240 cells were finished before"}
 //! ```
 
-use crate::report::run_clock::{RunClock, in_words};
+use crate::report::run_clock::RunClock;
+use crate::spelling::duration;
 use crate::study::progress::Progress;
 use crate::study::time_left::Piece;
 use serde_json::json;
@@ -214,11 +215,11 @@ impl Stage {
         let full = (BAR as u64 * done / (*total).max(1)).min(BAR as u64) as usize;
         let bar = "=".repeat(full) + if full < BAR { ">" } else { "" };
         let left = match run_left_s {
-            Some(left_s) => format!("{} left", in_words(left_s)),
+            Some(left_s) => format!("{} left", duration(left_s)),
             None if *done == 0 => "no rate yet".to_owned(),
             None => {
                 let left_s = total.saturating_sub(*done) as f64 / rate;
-                format!("{} left of this stage", in_words(left_s))
+                format!("{} left of this stage", duration(left_s))
             }
         };
         format!("{name:>14} [{bar:BAR$}] {done}/{total}, {rate:.2}/s, {left}")

@@ -45,17 +45,6 @@ impl RunClock {
     }
 }
 
-/// `about 3 min`: no more digits than an estimate has.
-pub(super) fn in_words(seconds: f64) -> String {
-    match seconds {
-        s if s < 1.0 => "under 1 s".to_owned(),
-        s if s < 99.5 => format!("{s:.0} s"),
-        s if s < 5970.0 => format!("{:.0} min", s / 60.0),
-        s if s < 172_800.0 => format!("{:.1} h", s / 3600.0),
-        s => format!("{:.1} days", s / 86_400.0),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -81,20 +70,5 @@ mod tests {
         assert!(told_s > 20.0, "{told_s}");
         assert_eq!(left_s(&running, 35), told_s - 5.0);
         assert_eq!(running.elapsed_s(after(35)), 35.0);
-    }
-
-    #[test]
-    fn times_are_written_with_as_many_digits_as_they_deserve() {
-        let words = [0.2, 1.0, 42.4, 99.6, 600.0, 7200.0, 259_200.0].map(in_words);
-        let expected = [
-            "under 1 s",
-            "1 s",
-            "42 s",
-            "2 min",
-            "10 min",
-            "2.0 h",
-            "3.0 days",
-        ];
-        assert_eq!(words, expected);
     }
 }

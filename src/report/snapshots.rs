@@ -9,34 +9,29 @@ use crate::report::picture_axes::{Side, draw_colour_bar, draw_map_axis};
 use crate::report::recording::cells::{Cells, whole_pixels};
 use crate::report::recording::pixels::paint;
 use crate::report::text_width::shorten;
-use crate::signal::Quantity;
+use crate::study::Snapshots;
 use crate::world::Grid;
-use ndarray::Array2;
 
 /// Cells of a frame that are shown each way, at most; larger frames are shown by the largest value of blocks.
 const MOST_CELLS: usize = 128;
 /// Frames side by side, at most.
 const MOST_COLUMNS: usize = 4;
 
-/// Draws named frames (ny × nx, row = y ascending), four a row, with a common colour bar; two picture elements a pixel.
-///
-/// `caption` stands below (what was pressed how, and the noise).
+/// Draws named frames, four a row, with a common colour bar and the caption below; two picture elements a pixel.
 ///
 /// # Errors
 /// No frames, or one that [`check_frame`] rejects.
-pub fn snapshots(
-    frames: &[(String, Array2<f64>)],
-    pitch_mm: f64,
-    quantity: Quantity,
-    caption: &str,
-) -> Result<Picture> {
+pub fn snapshots(set: &Snapshots) -> Result<Picture> {
+    let Snapshots {
+        frames, pitch_mm, ..
+    } = set;
     let sides = frames
         .iter()
         .map(|(_, frame)| frame.nrows().max(frame.ncols()));
     let Some(largest) = sides.max() else {
         return Err(Error::input("snapshots", "no frames", "at least one"));
     };
-    let scale = ColourScale::over(frames.iter().flat_map(|(_, frame)| frame), quantity);
+    let scale = ColourScale::over(frames.iter().flat_map(|(_, frame)| frame), set.quantity);
     let block = largest.div_ceil(MOST_CELLS);
     let n_cells = largest.div_ceil(block);
     let side = whole_pixels(192.0, n_cells);
@@ -73,7 +68,7 @@ pub fn snapshots(
     let bar = Area::new((right, top), (16.0, box_side));
     draw_colour_bar(&mut drawing, scale, bar);
     let style = TextStyle::new(12).colour(MUTED);
-    drawing.text((left, height - 10.0), caption, style);
+    drawing.text((left, height - 10.0), &set.caption, style);
     let mut picture = drawing.picture()?;
     for (cells, shown) in &maps {
         let colours = shown.iter().map(|&value| scale.colour(value));

@@ -2,12 +2,11 @@
 
 use crate::error::Result;
 use crate::report::chart;
-use crate::report::folder::Folder;
+use crate::report::folder::NamedFile;
 use crate::report::page::{Beside, Section, StudyAbout, study_page};
 use crate::report::terminal::{paragraph, table_text};
 use crate::table::{ChartSpec, Role, Table};
 use rayon::prelude::*;
-use std::path::Path;
 
 /// A picture that is no chart: frames, bodies, objects.
 pub struct NamedPicture {
@@ -45,17 +44,16 @@ pub struct Beyond {
 /// heavy for a phone, and minutes for what the page shows anyway when it is asked.
 pub const MOST_CHARTS: usize = 24;
 
-/// Charts, pictures and the page, for the folder `dir`, with what else there is, which is made while charts are drawn: nothing is written
-/// yet. A chart that no row has a place in is left out.
+/// The files of charts, pictures and the page, with what else there is, which is made while charts are drawn. A chart that no row has a
+/// place in is left out.
 ///
 /// # Errors
 /// What cannot be drawn.
-pub fn folder_with<'a>(
-    dir: &'a Path,
+pub fn files_with(
     about: &StudyAbout,
     found: &Found,
     beyond: impl FnOnce() -> Result<Beyond> + Send,
-) -> Result<Folder<'a>> {
+) -> Result<Vec<NamedFile>> {
     let mut beside = Beside::default();
     let mut charts = Vec::new();
     for spec in found.charts {
@@ -72,8 +70,7 @@ pub fn folder_with<'a>(
     };
     let draw_all = || charts.par_iter().enumerate().map(draw).collect();
     let (drawn, beyond): (Result<Vec<_>>, _) = rayon::join(draw_all, beyond);
-    let mut folder = Folder::of_tables(dir, &[]);
-    let files = &mut folder.files;
+    let mut files = Vec::new();
     for (ChartSpec { name, .. }, (png, svg)) in charts.iter().zip(drawn?) {
         files.extend(png.map(|png| (format!("{name}.png"), png)));
         files.push((format!("{name}.svg"), svg.clone().into_bytes()));
@@ -90,7 +87,7 @@ pub fn folder_with<'a>(
     let pictures = beside.beyond.pictures.into_iter();
     files.extend(pictures.map(|picture| (picture.name + ".png", picture.png)));
     files.push(("report.html".to_owned(), page));
-    Ok(folder)
+    Ok(files)
 }
 
 /// A page alone.

@@ -11,7 +11,7 @@
 use super::check::MOST_VALUES;
 use crate::error::{Error, Result};
 use crate::table::{Column, Role, Scale};
-use crate::toml_text::check_brackets;
+use crate::toml_text::{check_brackets, line_of};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -217,10 +217,6 @@ fn insert<'i>(
     }
 }
 
-fn line_of(text: &str, start: usize) -> usize {
-    1 + text[..start.min(text.len())].matches('\n').count()
-}
-
 impl StudyAxis {
     /// An error about it: file, line and key first.
     fn error(&self, place: &str, given: impl ToString, allowed: impl ToString) -> Error {
@@ -280,6 +276,8 @@ impl StudyAxis {
             (!words.is_empty()).then_some((words, *unit))
         });
         let (words, unit) = found.unwrap_or((last, ""));
+        let known = WORDS.iter().find(|(key, _)| *key == self.key);
+        let words = known.map_or(words, |(_, known)| known);
         let mut words = words.replace('_', " ");
         if let (true, Some((table, _))) = (words.starts_with("per "), self.key.split_once('.')) {
             words = format!("{table} {words}");
@@ -293,6 +291,12 @@ impl StudyAxis {
         known.map_or(Role::Choice, |(_, role)| *role)
     }
 }
+
+/// Words of keys whose last word says too little.
+const WORDS: [(&str, &str); 2] = [
+    ("skin.sensed", "sensed quantity"),
+    ("recognition.keep_together", "group held out"),
+];
 
 /// Units by the ends of keys, longer ends first.
 const UNITS: [(&str, &str); 15] = [

@@ -13,12 +13,10 @@ use super::frames::FramePlace;
 use super::measurement::{Measurements, measure_group};
 use super::npy::{write_integers, write_npy};
 use super::npy_numbers::{read_labels, read_matrix, read_rows};
-use super::plan::Plan;
 use super::progress::Progress;
 use super::spec::RecognitionSpec;
-use super::sweep::{Group, Sweep};
+use super::sweep::{Group, StudyPart, Sweep};
 use super::table::Cell;
-use super::touch_set::TouchSet;
 use crate::error::{Error, Result};
 use crate::files::{CsvFile, write_bytes};
 use crate::recognition::dataset::{Dataset, dataset, rows};
@@ -54,87 +52,89 @@ struct Settings<'a> {
     recognition: &'a RecognitionSpec,
 }
 
-/// Makes the measurements of one cell in one trial: the numbers that a run gives its classifier.
-///
-/// # Errors
-/// A cell or a trial that the study does not have; what a signal step or a projection refuses.
-pub fn cell_features(
-    plan: &Plan,
-    sweep: &Sweep,
-    touched: &dyn TouchSet,
-    (cell, trial): (usize, usize),
-    progress: &dyn Progress,
-) -> Result<FeatureSet> {
-    let (group, cell) = find(sweep, cell)?;
-    let split = sweep.split(plan, cell, trial)?;
-    // As the run does it: nested measurements are the leading ones of the largest m.
-    let n_projected = match group.ensemble.is_prefix_nested() {
-        true => group.projected()[0],
-        false => cell.measurements,
-    };
-    let of = (touched, group, n_projected);
-    let measured = measured(plan, of, (trial, &split), ("touch", progress))?;
-    let all: Vec<usize> = (0..sweep.labels.len()).collect();
-    let features = measured.features(cell, &all);
-    Ok(FeatureSet {
-        data: dataset(features, sweep.learned_labels(plan, (cell, trial), &split)?)?,
-        split,
-    })
-}
-
-/// Makes the touches of a group, held in memory, and reads and measures them in a trial.
-pub(super) fn measured(
-    plan: &Plan,
-    (touched, group, n_measurements): (&dyn TouchSet, &Group, usize),
-    trial: (usize, &Split),
-    (stage, progress): (&str, &dyn Progress),
-) -> Result<Measurements> {
-    let array = &plan.arrays[group.array];
-    let n_touches = touched.labels().len() as u64;
-    progress.stage(&format!("{stage} {}", array.describe()), n_touches);
-    let on = (array, group.frames);
-    let frames = touched.simulate(on, &FramePlace::Memory, progress)?;
-    measure_group(plan, group, (touched, &frames), trial, n_measurements)
-}
-
-/// Writes the measurements of one cell in one trial into a folder that exists.
-///
-/// # Errors
-/// As [`cell_features`]; a file that cannot be written.
-pub fn write_features(
-    folder: &Path,
-    plan: &Plan,
-    sweep: &Sweep,
-    touched: &dyn TouchSet,
-    (cell, trial): (usize, usize),
-    progress: &dyn Progress,
-) -> Result<FeatureSet> {
-    let set = cell_features(plan, sweep, touched, (cell, trial), progress)?;
-    let Split { train, test } = &set.split;
-    write_npy(&folder.join("features.npy"), &set.data.records)?;
-    write_integers(&folder.join("labels.npy"), set.data.targets.to_vec())?;
-    write_integers(&folder.join("train.npy"), train.clone())?;
-    write_integers(&folder.join("test.npy"), test.clone())?;
-    let mut objects = CsvFile::create(&folder.join("objects.csv"))?;
-    for (label, object) in touched.class_names().into_iter().enumerate() {
-        objects.row(ObjectRow { label, object })?;
+impl StudyPart {
+    /// Makes the measurements of one cell in one trial: the numbers that a run gives its classifier.
+    ///
+    /// # Errors
+    /// A cell or a trial that the study does not have; what a signal step or a projection refuses.
+    pub fn features(
+        &self,
+        (cell, trial): (usize, usize),
+        progress: &dyn Progress,
+    ) -> Result<FeatureSet> {
+        let (plan, sweep) = (&self.plan, &self.sweep);
+        let (group, cell) = find(sweep, cell)?;
+        let split = sweep.split(plan, cell, trial)?;
+        // As the run does it: nested measurements are the leading ones of the largest m.
+        let n_projected = match group.ensemble.is_prefix_nested() {
+            true => group.projected()[0],
+            false => cell.measurements,
+        };
+        let of = (group, n_projected);
+        let measured = self.measured(of, (trial, &split), ("touch", progress))?;
+        let all: Vec<usize> = (0..sweep.labels.len()).collect();
+        let features = measured.features(cell, &all);
+        Ok(FeatureSet {
+            data: dataset(features, sweep.learned_labels(plan, (cell, trial), &split)?)?,
+            split,
+        })
     }
-    objects.commit()?;
-    let settings = Settings {
-        question: &plan.spec.question,
-        seed: plan.spec.seed,
-        trial,
-        n_train: train.len(),
-        n_test: test.len(),
-        cell: find(sweep, cell)?.1,
-        recognition: &plan.spec.recognition,
-    };
-    let text = toml::to_string(&settings).expect("every setting of a cell has a TOML form");
-    write_bytes(&folder.join("cell.toml"), text.as_bytes())?;
-    Ok(set)
+
+    /// Makes the touches of a group, held in memory, and reads and measures them in a trial.
+    pub(super) fn measured(
+        &self,
+        (group, n_measurements): (&Group, usize),
+        trial: (usize, &Split),
+        (stage, progress): (&str, &dyn Progress),
+    ) -> Result<Measurements> {
+        let array = &self.plan.arrays[group.array];
+        let n_touches = self.sweep.labels.len() as u64;
+        progress.stage(&format!("{stage} {}", array.describe()), n_touches);
+        let on = (array, group.frames);
+        let touched = self.touched.as_ref();
+        let frames = touched.simulate(on, &FramePlace::Memory, progress)?;
+        let touches = (touched as _, &frames);
+        measure_group(&self.plan, group, touches, trial, n_measurements)
+    }
+
+    /// Writes the measurements of one cell in one trial into a folder that exists.
+    ///
+    /// # Errors
+    /// As [`features`](Self::features); a file that cannot be written.
+    pub fn write_features(
+        &self,
+        folder: &Path,
+        (cell, trial): (usize, usize),
+        progress: &dyn Progress,
+    ) -> Result<FeatureSet> {
+        let spec = &self.plan.spec;
+        let set = self.features((cell, trial), progress)?;
+        let Split { train, test } = &set.split;
+        write_npy(&folder.join("features.npy"), &set.data.records)?;
+        write_integers(&folder.join("labels.npy"), set.data.targets.to_vec())?;
+        write_integers(&folder.join("train.npy"), train.clone())?;
+        write_integers(&folder.join("test.npy"), test.clone())?;
+        let mut objects = CsvFile::create(&folder.join("objects.csv"))?;
+        for (label, object) in self.touched.class_names().into_iter().enumerate() {
+            objects.row(ObjectRow { label, object })?;
+        }
+        objects.commit()?;
+        let settings = Settings {
+            question: &spec.question,
+            seed: spec.seed,
+            trial,
+            n_train: train.len(),
+            n_test: test.len(),
+            cell: find(&self.sweep, cell)?.1,
+            recognition: &spec.recognition,
+        };
+        let text = toml::to_string(&settings).expect("every setting of a cell has a TOML form");
+        write_bytes(&folder.join("cell.toml"), text.as_bytes())?;
+        Ok(set)
+    }
 }
 
-/// Reads a folder that [`write_features`] or another program wrote; only the four arrays are needed. Features may be of any type of
+/// Reads a folder that [`StudyPart::write_features`] or another program wrote; only the four arrays are needed. Features may be of any type of
 /// float, integer or bool; labels and rows of any type of integer, labels of two classes also bool, and rows also a mask: a
 /// bool for each row of features.
 ///

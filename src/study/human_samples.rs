@@ -2,7 +2,7 @@
 
 use super::human_touches::{HumanTouches, record_touch};
 use super::plan::{Plan, millimetres};
-use super::samples::{Samples, named_samples};
+use super::samples::{Samples, Snapshots, named_samples};
 use super::taxel_array::TaxelArray;
 use super::touch_set::TouchSet;
 use crate::contact::SkinWorkspace;
@@ -57,7 +57,7 @@ pub fn human_samples(plan: &Plan, touches: &HumanTouches) -> Result<Samples> {
         }
     }
     let pitch_mm = millimetres(grid.pitch);
-    Ok(Samples {
+    let shown = Snapshots {
         frames,
         pitch_mm,
         quantity: Quantity::Deflection,
@@ -65,7 +65,6 @@ pub fn human_samples(plan: &Plan, touches: &HumanTouches) -> Result<Samples> {
             "One touch of each kind by a hand on {} × {} taxels at {pitch_mm} mm around a forearm (x around it, y along it), no noise",
             grid.nx, grid.ny
         ),
-        each: Vec::new(),
-        each_caption: String::new(),
-    })
+    };
+    Ok(Samples { shown, each: None })
 }

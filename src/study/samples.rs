@@ -17,21 +17,26 @@ use ndarray::{Array2, ArrayView1};
 /// How many objects a picture of samples shows when the study names none.
 const N_SAMPLES: usize = 4;
 
-/// Frames of the first touch of some objects.
+/// Touches on one scale of colours.
 #[derive(Clone, Debug)]
-pub struct Samples {
-    /// Object names and frames (ny × nx), metres or newtons.
+pub struct Snapshots {
+    /// Names and frames (ny × nx, row = y ascending), metres or newtons.
     pub frames: Vec<(String, Array2<f64>)>,
     /// Millimetres between taxels.
     pub pitch_mm: f64,
-    /// Whether the frames are forces.
+    /// What the frames hold.
     pub quantity: Quantity,
-    /// What they show.
+    /// What was pressed how, and the noise.
     pub caption: String,
-    /// One touch of each object, if `frames` show some objects only; empty if they show something else.
-    pub each: Vec<(String, Array2<f64>)>,
-    /// What those show.
-    pub each_caption: String,
+}
+
+/// First touches of a study's objects.
+#[derive(Clone, Debug)]
+pub struct Samples {
+    /// What its picture shows.
+    pub shown: Snapshots,
+    /// One touch of each object; none where touches are of a hand.
+    pub each: Option<Snapshots>,
 }
 
 /// The first touch of the objects that the study names for its picture (else of four spread over its list), read with its
@@ -57,11 +62,19 @@ pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> R
         0.0 => "no noise".to_owned(),
         level => format!("noise of {}", plan.describe_noise(level)),
     };
-    let each_caption = format!("One touch each on {array}, {noise}");
     let each = read(plan, group, (touched, before))?;
-    let each: Vec<_> = (0..names.len()).map(name).zip(each).collect();
+    let set = |frames, caption| Snapshots {
+        frames,
+        pitch_mm: on.picture_pitch_mm(),
+        quantity,
+        caption,
+    };
+    let each = set(
+        (0..names.len()).map(name).zip(each).collect(),
+        format!("One touch each on {array}, {noise}"),
+    );
     let groups = imperfect_groups(plan, sweep, group.array);
-    let (frames, caption) = match chosen.first() {
+    let shown = match chosen.first() {
         Some(&first) if !groups.is_empty() => {
             // One taxel of a large gain would take the colours of all others.
             let full_scale = quantity.full_scale(on.taxel());
@@ -78,21 +91,15 @@ pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> R
             let first = name(first);
             let caption =
                 format!("A touch of the {first}{after} on {array}; colours end at the full scale");
-            (shown.collect::<Result<_>>()?, caption)
+            set(shown.collect::<Result<_>>()?, caption)
         }
         _ => {
-            let frames = chosen.iter().map(|&label| each[label].clone());
-            (frames.collect(), each_caption.clone())
+            let frames = chosen.iter().map(|&label| each.frames[label].clone());
+            set(frames.collect(), each.caption.clone())
         }
     };
-    Ok(Samples {
-        frames,
-        pitch_mm: on.picture_pitch_mm(),
-        quantity,
-        caption,
-        each,
-        each_caption,
-    })
+    let each = Some(each);
+    Ok(Samples { shown, each })
 }
 
 /// What an array of a group reads of each object's first touch along the axes of its taxels, ny × nx; a skin that remembers was touched by one of them before.

@@ -18,9 +18,9 @@ use std::collections::BTreeMap;
 type Row = (Cell, TrialScore);
 
 /// One row a cell from one row a cell and trial; the trials of a cell follow each other.
-pub fn summarise(rows: &[Row]) -> Result<Vec<(Cell, CellScore)>> {
+pub fn summarise<C: Clone + PartialEq>(rows: &[(C, TrialScore)]) -> Result<Vec<(C, CellScore)>> {
     let mut bootstrap = Bootstrap::default();
-    rows.chunk_by(|a, b| a.0.cell == b.0.cell)
+    rows.chunk_by(|a, b| a.0 == b.0)
         .map(|trials| {
             let scores: Vec<&TrialScore> = trials.iter().map(|(_, score)| score).collect();
             Ok((trials[0].0.clone(), score(&scores, &mut bootstrap)?))
@@ -29,7 +29,7 @@ pub fn summarise(rows: &[Row]) -> Result<Vec<(Cell, CellScore)>> {
 }
 
 /// What the trials of a cell say together.
-pub fn score(trials: &[&TrialScore], bootstrap: &mut Bootstrap) -> Result<CellScore> {
+fn score(trials: &[&TrialScore], bootstrap: &mut Bootstrap) -> Result<CellScore> {
     let mean = |value: fn(&TrialScore) -> f64| {
         trials.iter().map(|trial| value(trial)).sum::<f64>() / trials.len() as f64
     };

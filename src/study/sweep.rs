@@ -25,6 +25,7 @@ use crate::recognition::split::Split;
 use crate::recognition::spoiled::mislabelled;
 use crate::sensing::Ensemble;
 use ndarray::Array1;
+use std::sync::Arc;
 
 /// Loops within loops: the first changes slowest.
 macro_rules! nested {
@@ -68,6 +69,16 @@ pub struct Group {
     pub ensemble: Ensemble,
     /// Its cells, family by family.
     pub cells: Vec<Cell>,
+}
+
+/// What is run of one combination of a study's own axes.
+pub struct StudyPart {
+    /// What to run.
+    pub plan: Plan,
+    /// What is touched; the same for parts that touch the same.
+    pub touched: Arc<dyn TouchSet + Send>,
+    /// Splits and cells.
+    pub sweep: Sweep,
 }
 
 impl Group {

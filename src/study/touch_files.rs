@@ -14,14 +14,12 @@
 //! ([`ReadFrames`]) have all of these, in metres or, with the step `force`, in newtons; only `frames.npy` differs.
 
 use super::array_press::{ArrayPress, ArrayWorkspace};
-use super::feature_files::{find, measured};
+use super::feature_files::find;
 use super::npy::NpyFile;
-use super::plan::Plan;
 use super::progress::Progress;
 use super::simulation::touch_stream;
-use super::sweep::{Group, Sweep};
+use super::sweep::{Group, StudyPart};
 use super::taxel_array::TaxelArray;
-use super::touch_set::TouchSet;
 use crate::error::Result;
 use crate::files::CsvFile;
 use crate::objects::Object;
@@ -85,21 +83,19 @@ impl ReadFrames {
     /// # Errors
     /// A cell or a trial that the study does not have; what a signal step refuses.
     pub fn of_cell(
-        plan: &Plan,
-        sweep: &Sweep,
-        touched: &dyn TouchSet,
+        part: &StudyPart,
         (cell, trial): (usize, usize),
         progress: &dyn Progress,
     ) -> Result<Self> {
-        let (group, cell) = find(sweep, cell)?;
-        let split = sweep.split(plan, cell, trial)?;
+        let (group, cell) = find(&part.sweep, cell)?;
+        let split = part.sweep.split(&part.plan, cell, trial)?;
         // What the identity measures are the frames themselves.
         let identity = Group {
             ensemble: Ensemble::Identity,
             ..group.clone()
         };
-        let of = (touched, &identity, plan.arrays[group.array].n_values());
-        let read = measured(plan, of, (trial, &split), ("read", progress))?;
+        let of = (&identity, part.plan.arrays[group.array].n_values());
+        let read = part.measured(of, (trial, &split), ("read", progress))?;
         Ok(Self {
             array: group.array,
             values: read.values,

@@ -164,6 +164,7 @@ impl Column {
         match self.unit.as_ref() {
             "" | ":1" => tick,
             _ if self.is_time() || self.name_of(&short_number(number)).is_some() => tick,
+            "bits" if number == 1.0 => format!("{tick} bit"),
             unit => format!("{tick} {unit}"),
         }
     }

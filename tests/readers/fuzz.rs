@@ -14,7 +14,7 @@ use bubbletouch::objects::{Catalogue, read_spheres};
 use bubbletouch::report::advice::{Asked, Offers, Wish};
 use bubbletouch::report::compared::differences_text;
 use bubbletouch::report::differences::differences;
-use bubbletouch::report::folder::Folder;
+use bubbletouch::report::folder::{table_files, write_files};
 use bubbletouch::report::recognition::{read_tables, tables_of};
 use bubbletouch::scene::{ScenePlan, SceneSpec};
 use bubbletouch::study::journal::{Identity, Journal};
@@ -458,7 +458,7 @@ published = [{ claim = "all", accuracy = 1.0, source = "nobody" }]
 fn tables_of_results() {
     let tables = study_tables();
     let at = folder_in_memory();
-    Folder::of_tables(at.path(), &tables).write().unwrap();
+    write_files(at.path(), table_files(&tables)).unwrap();
     // The first byte of an input says which of the tables it stands for.
     let files = tables.iter().filter(|table| !table.csv.is_empty());
     let names: Vec<&str> = files.map(|table| table.file).collect();

@@ -10,6 +10,7 @@ use bubbletouch::report::recognition::{charts, tables_of};
 use bubbletouch::report::snapshots::snapshots;
 use bubbletouch::report::terminal::Ink;
 use bubbletouch::signal::Quantity;
+use bubbletouch::study::Snapshots;
 use bubbletouch::study::table::{Cell, Tables};
 use bubbletouch::table::{ChartSpec, Table};
 use bubbletouch::world::Grid;
@@ -148,6 +149,15 @@ fn a_name_is_drawn_letter_by_letter_whatever_it_holds() {
     assert!(!svg.contains("<i>") && !svg.contains('\u{1}'));
 }
 
+fn set_of(frames: Vec<(String, Array2<f64>)>) -> Snapshots {
+    Snapshots {
+        frames,
+        pitch_mm: 2.0,
+        quantity: Quantity::Deflection,
+        caption: "a caption".to_owned(),
+    }
+}
+
 #[test]
 fn snapshots_show_every_frame_on_one_scale() {
     let touched = |n: usize| {
@@ -157,7 +167,7 @@ fn snapshots_show_every_frame_on_one_scale() {
     let frames: Vec<_> = (0..5)
         .map(|n| (format!("object {n}"), touched(n)))
         .collect();
-    let picture = snapshots(&frames, 2.0, Quantity::Deflection, "a caption").unwrap();
+    let picture = snapshots(&set_of(frames)).unwrap();
     // Nothing touches the border of a frame, 8 taxels of 24 pixels of two elements: rows of the picture cross four maps, or one.
     let bare = heat(0.0);
     let is_bare = |pixel: &[u8]| pixel == bare;
@@ -174,9 +184,9 @@ fn snapshots_show_every_frame_on_one_scale() {
 
 #[test]
 fn snapshots_refuse_what_cannot_be_shown() {
-    assert!(snapshots(&[], 2.0, Quantity::Deflection, "").is_err());
-    let broken = [("a".to_owned(), array![[f64::INFINITY]])];
-    assert!(snapshots(&broken, 2.0, Quantity::Deflection, "").is_err());
+    assert!(snapshots(&set_of(Vec::new())).is_err());
+    let broken = vec![("a".to_owned(), array![[f64::INFINITY]])];
+    assert!(snapshots(&set_of(broken)).is_err());
 }
 
 #[test]

@@ -3,8 +3,9 @@
 use crate::browser::{ARROW_RIGHT, Browser};
 use crate::chart_tables::{charts, tables};
 use bubbletouch::report::chart::places;
+use bubbletouch::report::folder::write_files;
 use bubbletouch::report::page::StudyAbout;
-use bubbletouch::report::study_folder::{Beyond, Found, folder_with};
+use bubbletouch::report::study_folder::{Beyond, Found, files_with};
 use bubbletouch::table::{ChartSpec, Table};
 use serde_json::json;
 use std::path::PathBuf;
@@ -29,10 +30,8 @@ fn written(tables: &[Table], charts: &[ChartSpec]) -> (TempDir, PathBuf) {
         charts,
         answers: &answers,
     };
-    folder_with(folder.path(), &about, &found, || Ok(Beyond::default()))
-        .unwrap()
-        .write()
-        .unwrap();
+    let files = files_with(&about, &found, || Ok(Beyond::default())).unwrap();
+    write_files(folder.path(), files).unwrap();
     let page = folder.path().join("report.html");
     if let Ok(kept) = std::env::var("BUBBLETOUCH_PICTURES") {
         std::fs::copy(&page, format!("{kept}/study_page.html")).unwrap();

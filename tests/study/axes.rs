@@ -3,7 +3,7 @@
 use crate::command::Case;
 use crate::study::{self, Study};
 use bubbletouch::kinds::recognition::RecognitionStudy;
-use bubbletouch::report::folder::Folder;
+use bubbletouch::report::folder::{table_files, write_files};
 use bubbletouch::report::recognition::{read_tables, tables_of};
 use bubbletouch::study::pieces::PieceStudy;
 use bubbletouch::study::progress::Silent;
@@ -137,7 +137,7 @@ fn tables_of_a_study_with_axes_read_back_as_they_are() {
     )
     .unwrap();
     let made = tables_of(&tables).unwrap();
-    Folder::of_tables(folder.path(), &made).write().unwrap();
+    write_files(folder.path(), table_files(&made)).unwrap();
     let read = read_tables(folder.path()).unwrap();
     assert_eq!(read.len(), made.len());
     for (read, made) in read.iter().zip(&made) {

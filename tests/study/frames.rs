@@ -363,10 +363,10 @@ fn a_damper_pushes_back_on_taxels_that_move_and_not_on_saturated_ones() {
     let frames = simulate_array(&study.touched, &patch.into(), 1, &Silent);
     let frames = frames.to_array().unwrap();
     let samples = sample_frames(&study.plan, &study.sweep, &study.touched).unwrap();
-    assert_eq!(samples.frames.len(), study.touched.len());
+    assert_eq!(samples.shown.frames.len(), study.touched.len());
     let per_object = study.touched[0].touches.len();
     let (mut n_moving, mut n_saturated) = (0, 0);
-    for (object, (_, forces)) in samples.frames.iter().enumerate() {
+    for (object, (_, forces)) in samples.shown.frames.iter().enumerate() {
         for (&deflection, &force) in frames.row(object * per_object).iter().zip(forces) {
             let spring = 200.0 * deflection;
             let is_saturated = deflection == f64::from(patch.taxel.stroke as f32);

@@ -7,7 +7,7 @@ use bubbletouch::random::Seed;
 use bubbletouch::report::recognition::{charts, tables_of};
 use bubbletouch::signal::{Chain, Recording, Scratch, SensorError};
 use bubbletouch::study::progress::Silent;
-use bubbletouch::study::{Plan, StudySpec, cell_features, sample_frames};
+use bubbletouch::study::{Plan, StudySpec, sample_frames};
 use bubbletouch::world::Scene;
 use rand::Rng;
 use std::fs;
@@ -127,16 +127,8 @@ fn another_skin_reads_test_touches_and_nothing_else() {
     let signal =
         "steps = [\"gain\"]\ngain_std = 0.5\ntested_on = [\"same_skin\", \"another_skin\"]";
     let study = Study::new(&with_signal(signal));
-    let read = |cell, trial| {
-        cell_features(
-            &study.plan,
-            &study.sweep,
-            &study.touched,
-            (cell, trial),
-            &Silent,
-        )
-        .unwrap()
-    };
+    let items = study.of_items();
+    let read = |cell, trial| items.first().features((cell, trial), &Silent).unwrap();
     let (same, other) = (read(0, 0), read(1, 0));
     assert_eq!(same.split, other.split);
     let rows = |touches: &[usize], set: &bubbletouch::study::FeatureSet| {
@@ -195,13 +187,8 @@ fn a_touch_is_read_as_a_press_that_goes_on_after_another_touch() {
     ];
     let chain = Chain::new(&steps, &patch).unwrap();
     let trial = 1;
-    let read = cell_features(
-        &study.plan,
-        &study.sweep,
-        &study.touched,
-        (0, trial),
-        &Silent,
-    );
+    let items = study.of_items();
+    let read = items.first().features((0, trial), &Silent);
     let rows = read.unwrap().data.records;
     let names = Seed::new(2018).named("signal").numbered(trial as u64);
     for (row, &(object, (number, touch))) in touches.iter().enumerate() {
@@ -261,7 +248,12 @@ fn every_strength_gets_its_chart_and_every_imperfection_its_picture() {
     ];
     assert_eq!(names, expected);
     let samples = sample_frames(&study.plan, &study.sweep, &study.touched).unwrap();
-    let names: Vec<&str> = samples.frames.iter().map(|(name, _)| &name[..]).collect();
+    let names: Vec<&str> = samples
+        .shown
+        .frames
+        .iter()
+        .map(|(name, _)| &name[..])
+        .collect();
     let expected = [
         "ideal",
         "hysteresis 20 %",
@@ -273,8 +265,8 @@ fn every_strength_gets_its_chart_and_every_imperfection_its_picture() {
         "converter 2 bits",
     ];
     assert_eq!(names, expected);
-    for (name, frame) in &samples.frames[1..] {
-        assert_ne!(frame, &samples.frames[0].1, "{name}");
+    for (name, frame) in &samples.shown.frames[1..] {
+        assert_ne!(frame, &samples.shown.frames[0].1, "{name}");
     }
 }
 

@@ -218,7 +218,7 @@ fn the_noise_on_a_touch_does_not_depend_on_the_other_objects() {
     let sample = |text: &str| {
         let study = Study::new(text);
         let samples = sample_frames(&study.plan, &study.sweep, &study.touched).unwrap();
-        samples.frames[0].clone()
+        samples.shown.frames[0].clone()
     };
     let (name, frame) = sample(&text);
     assert_eq!(name, "power drill");

@@ -4,7 +4,7 @@ use crate::command::Case;
 use crate::study::{Study, laid_out};
 use bubbletouch::contact::{Approach, FrictionState, SkinWorkspace};
 use bubbletouch::study::progress::Silent;
-use bubbletouch::study::{cell_features, simulate_array};
+use bubbletouch::study::simulate_array;
 use bubbletouch::world::{Shear, Shears};
 use glam::{DVec2, DVec3};
 use ndarray::{Array2, Array4, s};
@@ -54,9 +54,9 @@ fn with(old: &str, new: &str) -> String {
 
 /// What a study of one cell gives its classifier: touches × numbers of a frame.
 fn read(text: &str) -> Array2<f64> {
-    let study = Study::new(text);
-    let features = cell_features(&study.plan, &study.sweep, &study.touched, (0, 0), &Silent);
-    features.unwrap().data.records().to_owned()
+    let study = laid_out(text).unwrap();
+    let features = study.first().features((0, 0), &Silent).unwrap();
+    features.data.records().to_owned()
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! What a split does to the accuracy, told from what the projection does.
 
 use crate::study::Study;
-use bubbletouch::report::folder::Folder;
+use bubbletouch::report::folder::{table_files, write_files};
 use bubbletouch::report::recognition::{read_tables, tables_of};
 use bubbletouch::study::table::{Cell, PStatus, Source, Tables, TrialScore, Variance};
 use bubbletouch::study::{Plan, StudySpec};
@@ -136,7 +136,7 @@ fn the_table_is_written_only_where_it_has_rows_and_is_read_again() {
     assert!(crossed.summary[0].1.bootstrap_low.unwrap() < crossed.summary[0].1.accuracy);
     let written = |folder: &Path, tables| {
         let made = tables_of(tables).unwrap();
-        Folder::of_tables(folder, &made).write().unwrap();
+        write_files(folder, table_files(&made)).unwrap();
         let read = read_tables(folder).unwrap();
         assert_eq!(read.len(), made.len());
         assert!(read.iter().zip(&made).all(|(a, b)| a.csv == b.csv));

@@ -2,23 +2,13 @@
 
 use super::scale::WayScale;
 use crate::study::spec::{
-    ObjectsSpec, RecognitionSpec, SensingSpec, SignalSpec, SkinSpec, TouchesSpec, default_seed,
+    ObjectsSpec, RecognitionSpec, SensingSpec, SignalSpec, SkinSpec, TouchesSpec,
 };
-use crate::toml_text::toml_file;
+use crate::toml_text::study_file;
 use serde::{Deserialize, Serialize};
 
-/// The file.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+study_file! {
 pub struct BreakingPointsSpec {
-    /// What the study asks, in a sentence.
-    pub question: String,
-    /// What the author expected before it ran.
-    #[serde(default)]
-    pub expected: String,
-    /// Root of all randomness.
-    #[serde(default = "default_seed")]
-    pub seed: u64,
     /// How often each value is repeated with a new split, projection and noise.
     pub trials: usize,
     /// What is touched.
@@ -36,7 +26,7 @@ pub struct BreakingPointsSpec {
     pub recognition: RecognitionSpec,
     /// Ways to drive the study until it breaks.
     pub breaking_points: Vec<WaySpec>,
-}
+} }
 
 /// `[[breaking_points]]`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -87,5 +77,3 @@ pub enum DrivenTouches {
     /// Those that test: what is met was not learned.
     Test,
 }
-
-toml_file!(BreakingPointsSpec);

@@ -8,12 +8,11 @@ use super::value::{ObjectSets, evaluate};
 use crate::error::Result;
 use crate::kinds::{About, Facts, Files, Kind, Source, found_and_cost, grouped};
 use crate::random::Seed;
-use crate::recognition::bootstrap::Bootstrap;
 use crate::study::Plan;
 use crate::study::object_files::{load_objects, objects_content};
 use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft, Scale};
 use crate::study::spec::ObjectsSpec;
-use crate::study::summary::score;
+use crate::study::summary::summarise;
 use crate::study::time_left::Piece;
 use crate::table::{File, Table};
 use rayon::prelude::*;
@@ -119,13 +118,9 @@ impl PieceStudy for BreakingPointsStudy {
 
     fn tables(&self, (rows, n_objects): DrivenRows) -> Result<Vec<Table>> {
         let n_objects: BTreeMap<String, usize> = n_objects.into_iter().collect();
-        let mut bootstrap = Bootstrap::default();
-        let cells = rows.chunk_by(|a, b| a.0 == b.0);
-        let summary = cells.map(|trials| {
-            let scores: Vec<&TrialScore> = trials.iter().map(|(_, score, _)| score).collect();
-            Ok((trials[0].0.clone(), score(&scores, &mut bootstrap)?))
-        });
-        let summary: Vec<(WayCell, CellScore)> = summary.collect::<Result<_>>()?;
+        let scores = rows.iter();
+        let scores = scores.map(|(cell, score, _)| (cell.clone(), score.clone()));
+        let summary = summarise(&scores.collect::<Vec<_>>())?;
         let mut breaks = Vec::new();
         for way in &self.plan.ways {
             let name = &way.spec.name;

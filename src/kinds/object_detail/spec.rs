@@ -3,22 +3,12 @@
 use crate::recognition::ClassifierKind;
 use crate::sensing::Ensemble;
 use crate::study::defaults::count;
-use crate::study::spec::{ObjectsSpec, SkinSpec, TouchesSpec, default_seed};
-use crate::toml_text::toml_file;
+use crate::study::spec::{ObjectsSpec, SkinSpec, TouchesSpec};
+use crate::toml_text::study_file;
 use serde::{Deserialize, Serialize};
 
-/// The file.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+study_file! {
 pub struct ObjectDetailStudySpec {
-    /// What the study asks, in a sentence.
-    pub question: String,
-    /// What the author expected before it ran.
-    #[serde(default)]
-    pub expected: String,
-    /// Root of all randomness.
-    #[serde(default = "default_seed")]
-    pub seed: u64,
     /// What is touched: meshes.
     pub objects: ObjectsSpec,
     /// What touches; one array.
@@ -27,7 +17,7 @@ pub struct ObjectDetailStudySpec {
     pub touches: TouchesSpec,
     /// What the meshes become.
     pub object_detail: ObjectDetailSpec,
-}
+} }
 
 /// `[object_detail]`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -85,8 +75,6 @@ pub enum DetailMethod {
     /// ([`medial_spheres`](crate::packing::medial_spheres)).
     MedialSpheres,
 }
-
-toml_file!(ObjectDetailStudySpec);
 
 fn default_ensemble() -> Ensemble {
     Ensemble::Sbhe

@@ -71,20 +71,12 @@ impl PieceStudy for ObjectDetailStudy {
     /// Of each object its models and their times; then each level and classifier, which all need all objects.
     fn pieces(&self) -> Vec<NamedPiece> {
         let mut pieces = Vec::new();
-        for (group, mesh) in self.meshes.iter().enumerate() {
+        for (group, NamedMesh { name, mesh, .. }) in self.meshes.iter().enumerate() {
+            let mut add = |name, work| pieces.push(NamedPiece::new(name, group, work));
             // To pack a larger surface takes longer.
-            let models = Piece::of_stage(0, MODELS_S_PER_M * mesh.mesh.area().sqrt());
-            pieces.push(NamedPiece::new(
-                format!("models of {}", mesh.name),
-                group,
-                models,
-            ));
-            let times = Piece::one_by_one(1, TIME_S);
-            pieces.push(NamedPiece::new(
-                format!("times of {}", mesh.name),
-                group,
-                times,
-            ));
+            let models = Piece::of_stage(0, MODELS_S_PER_M * mesh.area().sqrt());
+            add(format!("models of {name}"), models);
+            add(format!("times of {name}"), Piece::one_by_one(1, TIME_S));
         }
         let (group, work) = (self.meshes.len(), Piece::of_stage(2, RECOGNISE_S));
         let learned = Learned::all(&self.plan).into_iter();

@@ -5,14 +5,13 @@ use super::study::RecognitionStudy;
 use crate::error::Result;
 use crate::kinds::kind::{About, Facts, Findings, Kind};
 use crate::kinds::source::Source;
-use crate::report::page::{Section, Snapshots};
+use crate::report::page::Section;
 use crate::report::recognition;
 use crate::report::snapshots::snapshots;
 use crate::report::study_folder::NamedPicture;
-use crate::study::Samples;
 use crate::study::pieces::Scale;
+use crate::study::{GroupSpec, Samples, Snapshots, StudySpec};
 use crate::table::{ChartSpec, Table};
-use ndarray::Array2;
 use std::path::Path;
 
 /// How intervals and p-values are made, by table and columns. Everything is at 95 %.
@@ -73,12 +72,11 @@ impl Findings for RecognitionStudy {
     }
 
     fn pictures(&self, _tables: &[Table]) -> Result<Vec<NamedPicture>> {
-        let samples = self.samples()?;
-        let (pitch_mm, quantity) = (samples.pitch_mm, samples.quantity);
-        let picture = snapshots(&samples.frames, pitch_mm, quantity, &samples.caption)?;
+        let shown = &self.samples()?.shown;
+        let picture = snapshots(shown)?;
         Ok(vec![NamedPicture {
             name: "snapshots".to_owned(),
-            title: samples.caption.clone(),
+            title: shown.caption.clone(),
             png: picture.png()?,
             size: (picture.width / 2, picture.height / 2),
         }])
@@ -92,6 +90,7 @@ impl Findings for RecognitionStudy {
         settings.extend([
             row("Touches", first.sweep.labels.len().to_string()),
             row("Stroke", format!("{} mm", spec.skin.stroke_mm)),
+            row("Split", split_words(spec)),
             row("Trials", spec.trials.to_string()),
             row("Seed", spec.seed.to_string()),
         ]);
@@ -107,20 +106,26 @@ impl Findings for RecognitionStudy {
     }
 }
 
-/// Every object; before them what the picture shows, if that is something else.
-fn gallery(samples: &Samples) -> Vec<Snapshots> {
-    let shown = |frames: &[(String, Array2<f64>)], caption: &str| Snapshots {
-        frames: frames.to_vec(),
-        pitch_mm: samples.pitch_mm,
-        quantity: samples.quantity,
-        caption: caption.to_owned(),
+/// What the test touches have in common with those that are learned from.
+fn split_words(spec: &StudySpec) -> String {
+    let held_out = match spec.recognition.keep_together {
+        _ if spec.axes.has("recognition.keep_together") => return "as each row says".to_owned(),
+        None => {
+            return "random touches: most have neighbours in the pose that are learned".to_owned();
+        }
+        Some(GroupSpec::Pose) => "whole poses, whose neighbours are learned",
+        Some(GroupSpec::Offset) => "offsets that are never learned",
+        Some(GroupSpec::Yaw) => "yaws that are never learned",
+        Some(GroupSpec::Tilt) => "tilts that are never learned",
+        Some(GroupSpec::Rest) => "resting poses that are never learned",
+        Some(GroupSpec::Depth) => "depths that are never learned",
     };
-    let mut sets = Vec::new();
-    if samples.each.is_empty() || samples.caption != samples.each_caption {
-        sets.push(shown(&samples.frames, &samples.caption));
-    }
-    if !samples.each.is_empty() {
-        sets.push(shown(&samples.each, &samples.each_caption));
-    }
-    sets
+    held_out.to_owned()
+}
+
+/// Every object; before them what the picture shows, if that is something else.
+fn gallery(Samples { shown, each }: &Samples) -> Vec<Snapshots> {
+    let is_like = |each: &Snapshots| each.caption == shown.caption;
+    let shown = Some(shown).filter(|_| !each.as_ref().is_some_and(is_like));
+    shown.into_iter().chain(each).cloned().collect()
 }

@@ -12,4 +12,4 @@ mod study;
 pub use load::{load_study, read_plan};
 pub use rows::RecognitionRows;
 pub use scale::recognition_scale;
-pub use study::{RecognitionStudy, StudyPart};
+pub use study::RecognitionStudy;

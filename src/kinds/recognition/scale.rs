@@ -1,12 +1,12 @@
 //! How much of a recognition study is held at once: frames, measurements, the rows and matrices of training.
 
-use super::study::{RecognitionStudy, StudyPart};
+use super::study::RecognitionStudy;
 use crate::recognition::svm::{Multiclass, Solver};
 use crate::study::frames::{FramePlace, made_at_once, most_bytes};
 use crate::study::memory::solver_memory;
 use crate::study::pieces::Scale;
 use crate::study::plan::Plan;
-use crate::study::sweep::Group;
+use crate::study::sweep::{Group, StudyPart};
 use crate::study::table::Cell;
 use std::path::Path;
 

@@ -20,7 +20,7 @@ use crate::study::progress::Progress;
 use crate::study::published::{check_published, compare_with_published};
 use crate::study::short_hash;
 use crate::study::spec::ObjectsSpec;
-use crate::study::sweep::{Group, Sweep};
+use crate::study::sweep::{Group, StudyPart, Sweep};
 use crate::study::table::{Cell, StageTime, Tables};
 use crate::study::tabulate::tabulate;
 use crate::study::taxel_array::TaxelArray;
@@ -52,16 +52,6 @@ pub struct RecognitionStudy {
     pub(super) groups: Vec<PlacedGroup>,
     /// All families, group by group.
     pub(super) families: Vec<Family>,
-}
-
-/// What is run of one combination of a study's own axes.
-pub struct StudyPart {
-    /// What to run.
-    pub plan: Plan,
-    /// What is touched; the same for parts that touch the same.
-    pub touched: Arc<dyn TouchSet + Send>,
-    /// Splits and cells.
-    pub sweep: Sweep,
 }
 
 /// Touches of an array that are made, with so many frames each.

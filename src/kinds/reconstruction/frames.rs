@@ -6,8 +6,8 @@ use crate::error::Result;
 use crate::report::snapshots::snapshots;
 use crate::report::study_folder::NamedPicture;
 use crate::sensing::{Reconstructor, SensedDictionary};
-use crate::study::millimetres;
 use crate::study::progress::Silent;
+use crate::study::{Snapshots, millimetres};
 use crate::table::Table;
 use ndarray::Array2;
 
@@ -57,9 +57,12 @@ impl ReconstructionStudy {
         }
         let noise = noise_words(cells, shown.first().copied().unwrap_or(0));
         let words: Vec<String> = shown.iter().map(|&row| cell_words(cells, row)).collect();
-        let caption = format!("{noise}; {}", words.join("; "));
-        let pitch_mm = millimetres(self.plan.patch.grid.pitch);
-        let picture = snapshots(&frames, pitch_mm, self.plan.quantity(), &caption)?;
+        let picture = snapshots(&Snapshots {
+            frames,
+            pitch_mm: millimetres(self.plan.patch.grid.pitch),
+            quantity: self.plan.quantity(),
+            caption: format!("{noise}; {}", words.join("; ")),
+        })?;
         Ok(vec![NamedPicture {
             name: "frames".to_owned(),
             title: "Sample frames and what came back of them".to_owned(),

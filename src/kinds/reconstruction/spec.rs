@@ -2,24 +2,12 @@
 
 use crate::sensing::{Basis, Effort, Solver};
 use crate::study::defaults::count;
-use crate::study::{
-    Axis, ObjectsSpec, SensingSpec, SignalSpec, SkinSpec, TouchesSpec, default_seed,
-};
-use crate::toml_text::toml_file;
+use crate::study::{Axis, ObjectsSpec, SensingSpec, SignalSpec, SkinSpec, TouchesSpec};
+use crate::toml_text::study_file;
 use serde::{Deserialize, Serialize};
 
-/// The file.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+study_file! {
 pub struct ReconstructionStudySpec {
-    /// What the study asks, in a sentence.
-    pub question: String,
-    /// What the author expected before it ran.
-    #[serde(default)]
-    pub expected: String,
-    /// Root of all randomness.
-    #[serde(default = "default_seed")]
-    pub seed: u64,
     /// What is touched.
     pub objects: ObjectsSpec,
     /// What touches; one array.
@@ -33,7 +21,7 @@ pub struct ReconstructionStudySpec {
     pub sensing: SensingSpec,
     /// How a frame is reconstructed.
     pub reconstruction: ReconstructionSpec,
-}
+} }
 
 /// `[reconstruction]`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -67,8 +55,6 @@ pub struct ReconstructionSpec {
     #[serde(default = "count::<200>")]
     pub isometry_subsets: usize,
 }
-
-toml_file!(ReconstructionStudySpec);
 
 impl ReconstructionSpec {
     /// What bounds the solvers' work.

@@ -2,23 +2,13 @@
 
 use crate::recognition::ClassifierKind;
 use crate::sensing::Ensemble;
-use crate::study::spec::{ObjectsSpec, SkinSpec, TouchesSpec, default_seed};
-use crate::toml_text::toml_file;
+use crate::study::spec::{ObjectsSpec, SkinSpec, TouchesSpec};
+use crate::toml_text::study_file;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// The file.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+study_file! {
 pub struct SpeedAccuracyStudySpec {
-    /// What the study asks, in a sentence.
-    pub question: String,
-    /// What the author expected before it ran.
-    #[serde(default)]
-    pub expected: String,
-    /// Root of all randomness.
-    #[serde(default = "default_seed")]
-    pub seed: u64,
     /// What is touched: sets of solids, or closed meshes.
     pub objects: ObjectsSpec,
     /// What touches in the part on contact; the other parts take its stroke, and their own pitches.
@@ -27,7 +17,7 @@ pub struct SpeedAccuracyStudySpec {
     pub touches: TouchesSpec,
     /// What is swept.
     pub speed_accuracy: SpeedAccuracySpec,
-}
+} }
 
 /// `[speed_accuracy]`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -98,8 +88,6 @@ pub struct RecognitionSweepSpec {
     /// Touches whose way from contact to answer is timed.
     pub timed_touches: usize,
 }
-
-toml_file!(SpeedAccuracyStudySpec);
 
 impl RecognitionSweepSpec {
     /// Touches of each object, those that test included.

@@ -81,14 +81,15 @@ impl PieceStudy for StabilityPlan {
 
     /// By their settings: which cells there are depends on what the program was built with.
     fn pieces(&self) -> Vec<NamedPiece> {
-        let pieces = self.cells.iter().map(|(cell, taxel)| {
+        let pieces = self.cells.iter().enumerate();
+        let pieces = pieces.map(|(group, (cell, taxel))| {
             let settings = format!("{cell:?}");
             let settings = settings.trim_start_matches("StabilityCell ");
             let stroke_mm = millimetres(taxel.stroke);
             let name = format!("{settings} and a stroke of {stroke_mm} mm");
-            (name, Piece::of_stage(0, planned_s(cell)))
+            NamedPiece::new(name, group, Piece::of_stage(0, planned_s(cell)))
         });
-        NamedPiece::each_alone(pieces)
+        pieces.collect()
     }
 
     fn measure(&self, left: &PiecesLeft<Self::Rows>) -> Result<()> {

@@ -1,28 +1,17 @@
 //! A study of a whole body as it is written.
 
 use crate::sensing::Ensemble;
-use crate::study::default_seed;
 use crate::study::defaults::{count, number};
-use crate::toml_text::toml_file;
+use crate::toml_text::study_file;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// The file.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+study_file! {
 pub struct WholeBodyStudySpec {
-    /// What the study asks, in a sentence.
-    pub question: String,
-    /// What the author expected before it ran.
-    #[serde(default)]
-    pub expected: String,
-    /// Root of all randomness.
-    #[serde(default = "default_seed")]
-    pub seed: u64,
     /// Everything else.
     pub whole_body: WholeBodySpec,
-}
+} }
 
 /// `[whole_body]`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -210,8 +199,6 @@ impl BodyRecognitionSpec {
         self.objects.len() * self.of_each()
     }
 }
-
-toml_file!(WholeBodyStudySpec);
 
 fn default_surface_error_mm() -> f64 {
     0.25

@@ -1,8 +1,6 @@
 //! What a study says of itself, beside its tables.
 
-use crate::signal::Quantity;
 use crate::study::provenance::Manifest;
-use ndarray::Array2;
 
 /// What a study says of itself, beside its tables.
 #[derive(Clone, Debug, Default)]
@@ -23,17 +21,4 @@ pub struct StudyAbout {
     pub manifest: Option<Manifest>,
     /// Whether every chart is drawn as a file, however many there are.
     pub all_charts: bool,
-}
-
-/// Sample touches on one scale of colours.
-#[derive(Clone, Debug)]
-pub struct Snapshots {
-    /// Names and frames (ny × nx, row = y ascending).
-    pub frames: Vec<(String, Array2<f64>)>,
-    /// Millimetres between taxels.
-    pub pitch_mm: f64,
-    /// What the frames hold.
-    pub quantity: Quantity,
-    /// What was pressed how, and the noise.
-    pub caption: String,
 }

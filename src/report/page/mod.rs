@@ -12,7 +12,7 @@ mod provenance;
 mod study;
 mod touches;
 
-pub use about::{Snapshots, StudyAbout};
+pub use about::StudyAbout;
 pub use frame::Section;
 pub(super) use frame::definition;
 pub(super) use study::{Beside, page as study_page};

@@ -118,7 +118,11 @@ fn name_of(setting: &Setting) -> String {
 fn title(cells: &Table, x: &str, (used, fixed): (&[Setting], &[Setting]), row: usize) -> String {
     let along = cells.column(x).map_or(x, |(column, _)| &column.words);
     let mut title = format!("Accuracy by {along}");
-    let used: Vec<&str> = used.iter().map(|one| &one.column.words[..]).collect();
+    let each = used.iter().map(|one| match &one.column.words[..] {
+        "features" => "kind of features",
+        words => words,
+    });
+    let used: Vec<&str> = each.collect();
     if !used.is_empty() {
         title += &format!(", for each {}", used.join(" and "));
     }

@@ -4,8 +4,9 @@ use super::{CELLS, filled};
 use crate::error::Result;
 use crate::report::csv_tables::LIMITS_FILE;
 use crate::report::drawing::escape;
-use crate::report::page::{Section, Snapshots, definition, touches_html};
+use crate::report::page::{Section, definition, touches_html};
 use crate::report::swept::Swept;
+use crate::study::Snapshots;
 use crate::table::{Table, short_number};
 
 /// Sample touches, settings, limits.

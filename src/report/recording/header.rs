@@ -61,28 +61,25 @@ impl RecordedPatch {
     }
 
     fn check(&self) -> Result<()> {
-        let place = || format!("recording, patch {}", self.name);
+        let refuse = |given: String, allowed: &str| {
+            let place = format!("recording, patch {}", self.name);
+            Err(Error::input(place, given, allowed))
+        };
         let (n_centers, n_axes) = (self.centers.len(), self.axes.len());
         if n_centers == 0 || n_centers != n_axes {
-            return Err(Error::input(
-                place(),
-                format!("{n_centers} centres and {n_axes} axes"),
-                "at least one taxel, each with a centre and an axis",
-            ));
+            let given = format!("{n_centers} centres and {n_axes} axes");
+            return refuse(given, "at least one taxel, each with a centre and an axis");
         }
         if let Some(grid) = &self.grid {
             grid.check()?;
             if grid.n_taxels() != n_centers {
-                return Err(Error::input(
-                    place(),
-                    format!("{n_centers} taxels on a grid of {} × {}", grid.nx, grid.ny),
-                    "as many taxels as the grid has",
-                ));
+                let given = format!("{n_centers} taxels on a grid of {} × {}", grid.nx, grid.ny);
+                return refuse(given, "as many taxels as the grid has");
             }
         }
         let broken = |vector: &&DVec3| !vector.is_finite();
         match self.centers.iter().chain(&self.axes).find(broken) {
-            Some(vector) => Err(Error::input(place(), vector, "finite centres and axes")),
+            Some(vector) => refuse(vector.to_string(), "finite centres and axes"),
             None => Ok(()),
         }
     }
@@ -151,24 +148,19 @@ impl RecordingHeader {
     /// A patch that makes no sense, or a name that cannot be a member's.
     pub fn check(&self) -> Result<()> {
         self.patches.iter().try_for_each(RecordedPatch::check)?;
+        let refuse = |given: String, allowed: &str| Err(Error::input("recording", given, allowed));
         let mut seen = HashSet::new();
         let patches = self.patches.iter().map(|patch| &patch.name);
         for name in patches.chain(&self.objects) {
             let is_plain = |c: char| !matches!(c, '/' | '\\' | ':') && !c.is_control();
             let is_good = !name.is_empty() && !name.starts_with('.') && name.chars().all(is_plain);
             if !is_good {
-                return Err(Error::input(
-                    "recording",
-                    format!("the name {name:?}"),
-                    "a name without slashes, colons and control characters that does not start with a full stop",
-                ));
+                let allowed = "a name without slashes, colons and control characters that does not start with a full stop";
+                return refuse(format!("the name {name:?}"), allowed);
             }
             if !seen.insert(name) {
-                return Err(Error::input(
-                    "recording",
-                    format!("two patches or objects called {name}"),
-                    "names that differ",
-                ));
+                let given = format!("two patches or objects called {name}");
+                return refuse(given, "names that differ");
             }
         }
         Ok(())

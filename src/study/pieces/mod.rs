@@ -49,13 +49,6 @@ impl NamedPiece {
         }
     }
 
-    /// Pieces that share nothing: each a group of its own.
-    pub fn each_alone(pieces: impl IntoIterator<Item = (String, Piece)>) -> Vec<Self> {
-        let pieces = pieces.into_iter().enumerate();
-        let named = pieces.map(|(group, (name, work))| Self::new(name, group, work));
-        named.collect()
-    }
-
     /// What a journal calls it.
     fn key(&self) -> String {
         match self.content.is_empty() {

@@ -1,6 +1,6 @@
 //! How large a study of pieces is, told before it runs.
 
-use crate::spelling::counted;
+use crate::spelling::{counted, duration};
 use crate::study::memory::Bytes;
 use crate::study::time_left::Piece;
 
@@ -42,28 +42,19 @@ impl Scale {
         let (objects, touches) = (&self.objects, &self.touches);
         let configurations = counted(self.n_configurations, "configuration");
         let bytes = Bytes(self.bytes_at_once(n_threads));
-        let (seconds, threads) = (seconds(wall_s), counted(n_threads, "thread"));
+        let time = duration(wall_s.max(1.0));
+        let threads = counted(n_threads, "thread");
         [
             format!("  objects  {objects}"),
             format!("  touches  {touches}"),
             format!("  items    {n_items}, of {configurations}"),
             format!("  memory   about {bytes}"),
-            format!("  time     about {seconds} on {threads} (mostly right within a factor of 3)"),
+            format!("  time     about {time} on {threads} (mostly right within a factor of 3)"),
         ]
         .join("\n")
     }
 
     fn bytes_at_once(&self, n_items: usize) -> f64 {
         PROGRAM_BYTES + self.bytes + n_items as f64 * self.item_bytes
-    }
-}
-
-/// Seconds in words, without more digits than an estimate has.
-fn seconds(seconds: f64) -> String {
-    match seconds {
-        s if s < 1.0 => "1 s".to_owned(),
-        s if s < 100.0 => format!("{s:.0} s"),
-        s if s < 6000.0 => format!("{:.0} min", s / 60.0),
-        s => format!("{:.1} h", s / 3600.0),
     }
 }

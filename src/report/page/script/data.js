@@ -87,7 +87,8 @@ class Column {
     if (value === null || value === "") return this.names.get("") ?? "none";
     if (!this.isNumber) return this.names.get(value) ?? value.replaceAll("_", " ");
     const isWhole = this.unit === "" || this.unit === ":1" || this.seconds || this.names.has(short(value));
-    return isWhole ? this.tick(value) : `${this.tick(value)} ${this.unit}`;
+    const unit = this.unit === "bits" && value === 1 ? "bit" : this.unit;
+    return isWhole ? this.tick(value) : `${this.tick(value)} ${unit}`;
   }
 
   phrase(value) {
