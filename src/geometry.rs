@@ -109,6 +109,7 @@ impl Aabb {
     }
 
     /// The square of the distance from a point to the box, zero inside; m².
+    #[inline]
     pub fn distance_squared(&self, point: DVec3) -> f64 {
         let beyond = (self.min - point).max(point - self.max).max(DVec3::ZERO);
         beyond.length_squared()

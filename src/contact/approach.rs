@@ -1,21 +1,19 @@
 //! A skin of any shape moved along a line past first contact.
 
-use super::near_spheres::PlacedUnion;
+use super::instructions::{Instructions, for_instructions};
+use super::near_spheres::{PlacedUnion, needed_of_leaf};
 use super::skin_mesh::MeshAt;
-use super::skin_press::needed_anywhere;
 use super::way::{Way, meeting};
 use super::{FrictionState, NormalForce, SkinContact, SkinWorkspace, press_skin};
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::objects::{Model, Sphere, SphereUnion};
-use crate::world::{Layout, SkinPatch, Taxel, TaxelTree, Taxels};
+use crate::world::{Layout, Node, SkinPatch, Taxel, TaxelTree, Taxels};
 use glam::DVec3;
+use std::cell::Cell;
 
 /// A stroke that nothing ends, metres.
 const ENDLESS: f64 = 1e6;
-
-/// What rounding may take from the most that a sphere can push, metres: far above 1e-16 of a way, far below what leaves spheres to look at.
-const ROUNDING: f64 = 1e-9;
 
 /// The way of a patch along a direction.
 ///
@@ -134,22 +132,28 @@ impl<'a> Approach<'a> {
     }
 
     fn farthest_of(&self, placed: &PlacedUnion, numbers: &[u32], others: f64) -> f64 {
-        let mut farthest = others;
-        for &number in numbers {
-            let sphere = placed.at(number);
-            let Sphere { center, radius } = sphere;
-            if self.most(&sphere) > farthest {
-                self.travelling.each_near(center, radius, |taxel| {
-                    farthest = farthest.max(needed_anywhere(taxel, center, radius).0);
-                });
-            }
-        }
-        farthest
+        farthest_of_each(Instructions::Best, self, placed, numbers, others)
     }
 
     /// How far a ball (in the patch frame) can push a taxel as they travel, at most, metres.
+    #[inline(always)]
     fn most(&self, ball: &Sphere) -> f64 {
-        self.front + ball.radius - ball.center.dot(self.direction) + ROUNDING
+        self.front + ball.radius - ball.center.dot(self.direction)
+    }
+
+    /// The same of the taxels of a node: all that the ball meets are ahead of it, so that its way from their stretches is its way from their axes.
+    #[inline(always)]
+    fn most_of(&self, node: &Node, ball: &Sphere) -> f64 {
+        let room = node.room(ball.center, ball.radius);
+        let (least, largest) = (
+            node.bounds.min * self.direction,
+            node.bounds.max * self.direction,
+        );
+        let front = least.max(largest).element_sum();
+        match room >= 0.0 {
+            true => room.sqrt() + front - ball.center.dot(self.direction),
+            false => f64::NEG_INFINITY,
+        }
     }
 
     /// Presses to a depth (metres, positive) past first contact; `None` (and zero deflections) where the way misses all objects.
@@ -228,4 +232,38 @@ fn parts(length: f64, n: usize) -> impl Iterator<Item = f64> {
         true => length,
         false => length * number as f64 / n as f64,
     })
+}
+
+for_instructions! {
+    /// How far some spheres push the taxels of an approach, if that is more than others do.
+    fn farthest_of_each(
+        approach: &Approach,
+        placed: &PlacedUnion,
+        numbers: &[u32],
+        others: f64,
+    ) -> f64 = farthest_by_leaves
+}
+
+#[inline(always)]
+fn farthest_by_leaves(
+    approach: &Approach,
+    placed: &PlacedUnion,
+    numbers: &[u32],
+    others: f64,
+) -> f64 {
+    let farthest = Cell::new(others);
+    for &number in numbers {
+        let sphere = placed.at(number);
+        if approach.most(&sphere) <= farthest.get() {
+            continue;
+        }
+        approach.travelling.each_leaf(
+            |node| approach.most_of(node, &sphere) > farthest.get(),
+            |leaf| {
+                let [needed, _] = needed_of_leaf(leaf, &sphere);
+                farthest.set(needed.into_iter().fold(farthest.get(), f64::max));
+            },
+        );
+    }
+    farthest.get()
 }

@@ -1,14 +1,15 @@
 //! The indentation kernel of a skin patch of any layout: each taxel along its own axis, only those that a sphere reaches.
 
 use super::grid_lines::GridLines;
-use super::near_spheres::PlacedUnion;
+use super::instructions::{Instructions, for_instructions};
+use super::near_spheres::{PlacedUnion, needed_of_leaf};
 use super::placed_sphere::View;
 use super::skin_mesh::MeshAt;
 use super::taxel_contact::TaxelContact;
 use crate::geometry::Pose;
 use crate::mesh::Triangle;
 use crate::objects::{MeshModel, Model, Sphere, SphereUnion};
-use crate::world::{EvenGrid, PlacedTaxel, SkinPatch};
+use crate::world::{EvenGrid, LEAF, PlacedTaxel, SkinPatch};
 use glam::DVec3;
 
 /// What a press did, beside its deflections and contacts in the [`SkinWorkspace`].
@@ -90,13 +91,13 @@ impl SkinWorkspace {
     }
 
     /// Pushes a taxel as far as a part of an object needs; of parts that need the same the first counts.
-    #[inline]
-    fn push(&mut self, taxel: &PlacedTaxel, needed: f64, deciding: [u32; 2]) {
-        let number = taxel.number as usize;
+    #[inline(always)]
+    fn push(&mut self, taxel: u32, needed: f64, deciding: [u32; 2]) {
+        let number = taxel as usize;
         let deflection = &mut self.deflections[number];
         if needed > *deflection {
             if *deflection == 0.0 {
-                self.touched.push(taxel.number);
+                self.touched.push(taxel);
             }
             *deflection = needed;
             self.deciding[number] = deciding;
@@ -193,7 +194,12 @@ fn push(
                     Some(grid) => {
                         push_along_rows(grid, (number, union, &near), pose, workspace);
                     }
-                    None => push_by_spheres(patch, (number, &placed, &near), workspace),
+                    None => push_by_spheres(
+                        Instructions::Best,
+                        patch,
+                        (number, &placed, &near),
+                        workspace,
+                    ),
                 }
                 workspace.near = near;
             }
@@ -225,7 +231,7 @@ fn push_held(
             }
         };
         let deciding = [contact.object, contact.part].map(|number| number as u32);
-        workspace.push(&taxel, needed, deciding);
+        workspace.push(taxel.number, needed, deciding);
     }
     workspace.held = held;
 }
@@ -266,30 +272,41 @@ fn push_along_rows(
     touched.extend(numbers.filter_map(|(number, &d)| (d > 0.0).then_some(number as u32)));
 }
 
-fn push_by_spheres(
+for_instructions! {
+    /// Pushes the taxels by the near spheres of an object.
+    fn push_by_spheres(
+        patch: &SkinPatch,
+        placed: (usize, &PlacedUnion, &[u32]),
+        workspace: &mut SkinWorkspace,
+    ) = push_by_each
+}
+
+#[inline(always)]
+fn push_by_each(
     patch: &SkinPatch,
     (object, placed, near): (usize, &PlacedUnion, &[u32]),
     workspace: &mut SkinWorkspace,
 ) {
     for &number in near {
-        let Sphere { center, radius } = placed.at(number);
+        let sphere = placed.at(number);
         let deciding = [object as u32, number];
-        patch.tree().each_near(center, radius, |taxel| {
-            workspace.push(taxel, needed(taxel, center, radius), deciding);
-        });
+        patch.tree().each_leaf(
+            |node| node.is_near(sphere.center, sphere.radius),
+            |leaf| {
+                let [needed, heights] = needed_of_leaf(leaf, &sphere);
+                let pushes = |k: usize| (needed[k] > 0.0) & (heights[k] >= leaf.behind[k]);
+                if (0..LEAF).fold(false, |any, k| any | pushes(k)) {
+                    for k in (0..LEAF).filter(|&k| pushes(k)) {
+                        workspace.push(leaf.numbers[k], needed[k], deciding);
+                    }
+                }
+            },
+        );
     }
 }
 
-/// How far a sphere (in the patch frame) pushes a taxel, metres; zero or less if it does not.
-#[inline]
-fn needed(taxel: &PlacedTaxel, center: DVec3, radius: f64) -> f64 {
-    match needed_anywhere(taxel, center, radius) {
-        (needed, height) if height >= taxel.behind => needed,
-        _ => 0.0,
-    }
-}
-
-/// The same of a sphere that may be behind the substrate; and its height along the axis, metres.
+/// How far a sphere (in the patch frame), which may be behind the substrate, pushes a taxel, metres, zero or less if it does not; and its height
+/// along the axis, metres.
 ///
 /// The order of the operations is that of the grid kernel, so that both agree to the last bit on a grid.
 #[inline]
@@ -315,7 +332,7 @@ fn push_by_mesh(
     patch.tree().each_near(center, radius, |taxel| {
         if let Some(stop) = mesh.stop(taxel) {
             let deciding = [object as u32, stop.triangle as u32];
-            workspace.push(taxel, -stop.height, deciding);
+            workspace.push(taxel.number, -stop.height, deciding);
         }
     });
 }

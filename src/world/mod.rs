@@ -54,6 +54,6 @@ pub use scene::Scene;
 pub use shear::{Shear, Shears};
 pub(crate) use skin_patch::EvenGrid;
 pub use skin_patch::{SkinPatch, Taxels};
-pub(crate) use taxel_tree::{PlacedTaxel, TaxelTree};
+pub(crate) use taxel_tree::{LEAF, Leaf, Node, PlacedTaxel, TaxelTree};
 pub use touches::{MOST_TOUCHES, TouchSource, touches};
 pub use trajectory::{Phase, VelocityPlan};

@@ -7,10 +7,9 @@
 use super::{Layout, Taxels};
 use crate::geometry::Aabb;
 use glam::DVec3;
-use std::ops::Range;
 
-/// Taxels in a leaf, at most. More: taxels are looked at in vain; fewer: more boxes are.
-const LEAF: usize = 8;
+/// Taxels in a leaf, at most: what a vector instruction or two look at together. More: taxels are looked at in vain; fewer: more boxes are.
+pub(crate) const LEAF: usize = 8;
 /// What rounding may add to a reach, far above 1e-16 and far below what is felt.
 const ROUNDING: f64 = 1.0 + 1e-9;
 
@@ -19,7 +18,7 @@ const ROUNDING: f64 = 1.0 + 1e-9;
 pub(crate) struct TaxelTree {
     /// Each before all that are below it.
     nodes: Vec<Node>,
-    taxels: Vec<PlacedTaxel>,
+    leaves: Vec<Leaf>,
     /// The largest s + ρ, metres.
     depth: f64,
 }
@@ -41,31 +40,49 @@ pub(crate) struct PlacedTaxel {
     pub behind: f64,
 }
 
+/// Taxels that are neighbours, coordinate by coordinate; those behind the last are like the last, but that everything is behind them.
+#[derive(Clone, Debug)]
+pub(crate) struct Leaf {
+    pub numbers: [u32; LEAF],
+    /// p: x, y, z, metres.
+    pub centers: [[f64; LEAF]; 3],
+    /// Two unit vectors across each axis.
+    pub across: [[[f64; LEAF]; 3]; 2],
+    /// n, unit.
+    pub axes: [[f64; LEAF]; 3],
+    /// ρ, metres.
+    pub radii: [f64; LEAF],
+    /// −s − ρ, metres.
+    pub behind: [f64; LEAF],
+}
+
+/// The number of no taxel.
+const NONE: u32 = u32::MAX;
+
 /// A box around the stretches of some taxels.
 #[derive(Clone, Copy, Debug)]
-struct Node {
-    bounds: Aabb,
+pub(crate) struct Node {
+    pub bounds: Aabb,
     /// The largest ρ, metres.
-    radius: f64,
-    /// Taxels of a leaf; none for others.
-    first: u32,
-    n_taxels: u32,
+    pub radius: f64,
+    /// The leaf that it is, if it is one.
+    leaf: Option<u32>,
     /// The first node that is not below this one.
     next: u32,
 }
 
 impl TaxelTree {
     pub fn new(layout: &Layout, taxels: &Taxels) -> Self {
-        let all: Vec<PlacedTaxel> = (0..layout.n_taxels())
+        let mut all: Vec<PlacedTaxel> = (0..layout.n_taxels())
             .map(|number| PlacedTaxel::of(layout, taxels, number))
             .collect();
         let mut tree = Self {
             nodes: Vec::new(),
+            leaves: Vec::new(),
             depth: all.iter().map(|taxel| -taxel.behind).fold(0.0, f64::max),
-            taxels: all,
         };
-        if !tree.taxels.is_empty() {
-            tree.split(0..tree.taxels.len());
+        if !all.is_empty() {
+            tree.split(&mut all);
         }
         tree
     }
@@ -95,38 +112,85 @@ impl TaxelTree {
     /// Calls `visit` with each taxel that a ball can push, and with some others; metres, in the patch frame.
     #[inline]
     pub fn each_near(&self, center: DVec3, radius: f64, mut visit: impl FnMut(&PlacedTaxel)) {
+        self.each_leaf(
+            |node| node.is_near(center, radius),
+            |leaf| leaf.taxels().for_each(|taxel| visit(&taxel)),
+        );
+    }
+
+    /// Calls `visit` with each leaf that is below nodes that `may_count` alone.
+    #[inline(always)]
+    pub fn each_leaf(
+        &self,
+        mut may_count: impl FnMut(&Node) -> bool,
+        mut visit: impl FnMut(&Leaf),
+    ) {
         let mut index = 0;
         while let Some(node) = self.nodes.get(index) {
-            if !node.is_near(center, radius) {
+            if !may_count(node) {
                 index = node.next as usize;
                 continue;
             }
-            let taxels = &self.taxels[node.first as usize..][..node.n_taxels as usize];
-            taxels.iter().for_each(&mut visit);
+            if let Some(leaf) = node.leaf {
+                visit(&self.leaves[leaf as usize]);
+            }
             index += 1;
         }
     }
 
-    /// Makes the nodes of a range of taxels, halved across its longest side.
-    fn split(&mut self, range: Range<usize>) {
+    /// Makes the nodes of some taxels, halved across the longest side of what is around them.
+    fn split(&mut self, taxels: &mut [PlacedTaxel]) {
         let index = self.nodes.len();
-        self.nodes.push(Node::around(&self.taxels[range.clone()]));
-        if range.len() <= LEAF {
-            self.nodes[index].first = range.start as u32;
-            self.nodes[index].n_taxels = range.len() as u32;
+        self.nodes.push(Node::around(taxels));
+        if taxels.len() <= LEAF {
+            self.nodes[index].leaf = Some(self.leaves.len() as u32);
+            self.leaves.push(Leaf::of(taxels));
         } else {
             let side = self.nodes[index].bounds.size().max_position();
-            let taxels = &mut self.taxels[range.clone()];
             let half = taxels.len() / 2;
             // Ties by number: the tree depends on nothing but the taxels.
             taxels.select_nth_unstable_by(half, |a, b| {
                 let order = a.center[side].total_cmp(&b.center[side]);
                 order.then(a.number.cmp(&b.number))
             });
-            self.split(range.start..range.start + half);
-            self.split(range.start + half..range.end);
+            let (left, right) = taxels.split_at_mut(half);
+            self.split(left);
+            self.split(right);
         }
         self.nodes[index].next = self.nodes.len() as u32;
+    }
+}
+
+impl Leaf {
+    fn of(taxels: &[PlacedTaxel]) -> Self {
+        let at = |k: usize| &taxels[k.min(taxels.len() - 1)];
+        let lanes = |of: &dyn Fn(&PlacedTaxel) -> f64| std::array::from_fn(|k| of(at(k)));
+        let vectors = |of: &dyn Fn(&PlacedTaxel) -> DVec3| {
+            std::array::from_fn(|axis| lanes(&|taxel| of(taxel)[axis]))
+        };
+        Self {
+            numbers: std::array::from_fn(|k| taxels.get(k).map_or(NONE, |taxel| taxel.number)),
+            centers: vectors(&|taxel| taxel.center),
+            across: [0, 1].map(|side| vectors(&|taxel| taxel.across[side])),
+            axes: vectors(&|taxel| taxel.axis),
+            radii: lanes(&|taxel| taxel.radius),
+            behind: std::array::from_fn(|k| taxels.get(k).map_or(f64::INFINITY, |t| t.behind)),
+        }
+    }
+
+    /// One by one.
+    fn taxels(&self) -> impl Iterator<Item = PlacedTaxel> {
+        let vector = |of: &[[f64; LEAF]; 3], k: usize| DVec3::new(of[0][k], of[1][k], of[2][k]);
+        let numbers = self.numbers.iter().enumerate();
+        let numbers = numbers.take_while(|(_, number)| **number != NONE);
+        numbers.map(move |(k, &number)| PlacedTaxel {
+            number,
+            center: vector(&self.centers, k),
+            across: [vector(&self.across[0], k), vector(&self.across[1], k)],
+            axis: vector(&self.axes, k),
+            radius: self.radii[k],
+            behind: self.behind[k],
+        })
     }
 }
 
@@ -136,16 +200,22 @@ impl Node {
             bounds: Aabb::around(taxels.iter().map(PlacedTaxel::stretch))
                 .expect("no node is empty"),
             radius: taxels.iter().map(|t| t.radius).fold(0.0, f64::max),
-            first: 0,
-            n_taxels: 0,
+            leaf: None,
             next: 0,
         }
     }
 
-    #[inline]
-    fn is_near(&self, center: DVec3, radius: f64) -> bool {
+    /// Whether a ball can push one of its taxels.
+    #[inline(always)]
+    pub fn is_near(&self, center: DVec3, radius: f64) -> bool {
+        self.room(center, radius) >= 0.0
+    }
+
+    /// (R + ρ)² less the square of how far a ball's middle is from its stretches, m²; not less than what there is for any of its taxels.
+    #[inline(always)]
+    pub fn room(&self, center: DVec3, radius: f64) -> f64 {
         let reach = (self.radius + radius) * ROUNDING;
-        self.bounds.distance_squared(center) <= reach * reach
+        reach * reach - self.bounds.distance_squared(center)
     }
 }
 
@@ -219,7 +289,7 @@ mod tests {
                 is_visited[taxel.number as usize] = true
             });
             n_visited += is_visited.iter().filter(|&&v| v).count();
-            for taxel in &tree.taxels {
+            for taxel in tree.leaves.iter().flat_map(Leaf::taxels) {
                 let height = (center - taxel.center).dot(taxel.axis);
                 let beside2 = center.distance_squared(taxel.center) - height * height;
                 let q = (radius + taxel.radius).powi(2) - beside2;
@@ -243,6 +313,7 @@ mod tests {
             stroke: 5e-3,
         };
         let tree = TaxelTree::new(&layout, &Taxels::Equal(taxel));
-        assert_eq!(tree.taxels[0].across, [DVec3::X, DVec3::Y]);
+        let taxel = tree.leaves[0].taxels().next().unwrap();
+        assert_eq!(taxel.across, [DVec3::X, DVec3::Y]);
     }
 }

@@ -72,13 +72,13 @@ fn skinned_can(carrier: &str, patch: &str, can: &str) -> String {
         [[patches]]
         name = \"sleeve\"
         {patch}
-        layout = {{ cylinder = {{ radius_mm = 37.0, length_mm = 60.0, arc_deg = 360.0, pitch_mm = 3.0 }} }}
+        layout = {{ cylinder = {{ radius_mm = 34.0, length_mm = 60.0, arc_deg = 360.0, pitch_mm = 3.0 }} }}
         stroke_mm = 3.0
         {can}
         [[objects]]
         name = \"pear\"
         object = \"pear\"
-        at = {{ position_mm = [62.0, 0.0, -20.0] }}"
+        at = {{ position_mm = [60.0, 0.0, -20.0] }}"
     )
 }
 
@@ -98,11 +98,12 @@ fn skin_on_an_object_goes_with_it_and_does_not_feel_it() {
         "",
     );
     assert_same(&frames(&on_object), &frames(&on_robot));
-    // Beside it, skin of the world feels the can.
-    let beside = skinned_can("", "at = { position_mm = [0.0, 0.0, 80.0] }", &can);
-    assert_ne!(
-        frames(&beside)[0].patches[0].n_touched,
-        frames(&on_object)[0].patches[0].n_touched
+    // Skin of the world feels the can that comes into it.
+    let beside = skinned_can("", "at = { position_mm = [0.0, 40.0, 50.0] }", &can);
+    assert!(
+        frames(&beside)
+            .iter()
+            .any(|frame| frame.patches[0].n_touched > 0)
     );
 }
 
