@@ -13,10 +13,15 @@ const MOST_OPEN: usize = 200;
 /// What a text says; the error names `place` (the file), line and column.
 pub(crate) fn read<T: DeserializeOwned>(place: &str, text: &str) -> Result<T> {
     check_brackets(place, text)?;
-    let refused = |error| Error::toml(place, text, &error);
-    // A type may take whole numbers that no TOML table has.
-    text.parse::<toml::Table>().map_err(refused)?;
-    toml::from_str(text).map_err(refused)
+    check_numbers(place, text)?;
+    toml::from_str(text).map_err(|error| Error::toml(place, text, &error))
+}
+
+/// Refuses whole numbers that a type may take and no table has, so that it could not be written.
+pub(crate) fn check_numbers(place: &str, text: &str) -> Result<()> {
+    let read = text.parse::<toml::Table>();
+    read.map(drop)
+        .map_err(|error| Error::toml(place, text, &error))
 }
 
 /// What a file says, as a type that is read from its text.

@@ -11,7 +11,7 @@
 use super::check::MOST_VALUES;
 use crate::error::{Error, Result};
 use crate::table::{Column, Role, Scale};
-use crate::toml_text::{check_brackets, line_of};
+use crate::toml_text::{check_brackets, check_numbers, line_of};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -130,6 +130,7 @@ pub fn read<S: DeserializeOwned>(
     rules: AxisRules,
 ) -> Result<(S, StudyAxes)> {
     check_brackets(place, text)?;
+    check_numbers(place, text)?;
     let said = |error| Error::toml(place, text, &error);
     let mut table = DeTable::parse(text).map_err(said)?;
     let mut found = Vec::new();
