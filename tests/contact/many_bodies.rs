@@ -510,8 +510,8 @@ fn random_scene(
     let tilt = DQuat::from_rotation_x(random(-0.1, 0.1));
     let skins = [PlacedSkin::new(skin, Pose::from_rotation(tilt))];
     let table = [HalfSpace {
-        normal: DVec3::new(random(-0.02, 0.02), random(-0.02, 0.02), 1.0).normalize(),
-        height: -0.002,
+        normal: DVec3::Z,
+        height: -0.25,
     }];
     let ground = Ground {
         skins: &skins,

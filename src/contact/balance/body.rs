@@ -72,15 +72,18 @@ impl<'a> Body<'a> {
         of_force.max(torque.length() / (weight * self.arm()))
     }
 
+    /// How far it went from where it started, across its weight, metres.
+    pub fn way(&self) -> DVec3 {
+        (self.center - self.start).reject_from(self.weight)
+    }
+
     /// Where it went to from where it started, across its weight if it did.
     pub fn way_out(&self) -> DVec3 {
-        let down = self.weight.normalize();
-        let way = self.center - self.start;
-        let across = way - way.dot(down) * down;
-        if across.length() > 1e-9 * way.length() {
+        let across = self.way();
+        if across.length() > 1e-9 * self.center.distance(self.start) {
             across.normalize()
         } else {
-            down
+            self.weight.normalize()
         }
     }
 }

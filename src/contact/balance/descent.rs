@@ -21,6 +21,10 @@ const AT_REST: f64 = 1e-7;
 const PROMISED: f64 = 1e-6;
 /// [Looseness](super::energy::Energy::looseness) of ties and stops at which a pose is at rest.
 const TIGHT: f64 = 1e-7;
+/// Imbalance after a round of which forces say nothing of those at rest.
+const LOST: f64 = 0.1;
+/// So many of its radii across gravity an object slides on planes before it is said to do so for ever.
+const SLID: f64 = 200.0;
 /// Steps up to this share of the farthest are foreseen with all contacts that they make.
 const NEARBY: f64 = 0.04;
 /// Smoothing of ties as a share of the largest deflection, and of the one under which a taxel carries all the weight.
@@ -103,12 +107,21 @@ impl<'a, 'b> Descent<'a, 'b> {
         let mut looseness = f64::INFINITY;
         let mut n_tightened = 0;
         for _ in 0..MAX_ROUNDS {
+            // What stopped the last round may be gone with its smoothing.
+            self.reach = self.reach.max(self.nearby());
             match self.descend() {
                 End::Rest => {}
                 end => return end,
             }
+            if std::env::var("DBG").is_ok() {
+                let now = &self.balancer.now;
+                eprintln!("round: steps {} imb {:e} loose {:e} smooth {:e} kappa {:e} reach {:e} tight {} pairs {} groups {}", self.n_steps, self.imbalance(&now.pair_loads()), now.looseness(), self.smoothness.smoothing, self.smoothness.stop_stiffness, self.reach, n_tightened, now.pairs.all.len(), now.pairs.groups.len());
+            }
             if self.is_at_rest(AT_REST, TIGHT) {
                 return End::Rest;
+            }
+            if self.imbalance(&self.balancer.now.pair_loads()) > LOST {
+                return End::Exhausted;
             }
             let Some(deepest) = self.deepest() else {
                 // Less than the last bit above taxels that are too stiff to be pressed by it.
@@ -150,6 +163,10 @@ impl<'a, 'b> Descent<'a, 'b> {
                 }
                 self.fall(&together, way);
                 continue;
+            }
+            let gone = self.sliding();
+            if !gone.is_empty() {
+                return End::Endless(gone);
             }
             let (slope, step) = match self.best() {
                 Some(found) => found,
@@ -230,6 +247,19 @@ impl<'a, 'b> Descent<'a, 'b> {
         bodies
             .map(|(body, motion)| body.weight.dot(body.go(motion)))
             .sum()
+    }
+
+    /// Bodies that only planes touch, far from where they started: without friction nothing stops them on a slope.
+    fn sliding(&self) -> Vec<usize> {
+        let is_far = |slot: &usize| {
+            let body = &self.bodies[*slot];
+            body.way().length() > SLID * body.arm() && {
+                let pairs = self.balancer.now.pairs.all.iter();
+                let mut own = pairs.filter(|pair| pair.ends().any(|end| end.0 == *slot));
+                own.all(|pair| matches!(pair.key, Key::Rigid(_, Rigid::Plane(_))))
+            }
+        };
+        (0..self.bodies.len()).filter(is_far).collect()
     }
 
     /// How far bodies fall together at least, metres; `None` if something is so near that steps find the way.

@@ -12,7 +12,7 @@ use super::pairs::{Key, Part};
 use super::symmetric::{Symmetric, norm};
 use std::collections::BTreeMap;
 
-/// Motions at most; five to twenty are usual.
+/// Motions at most, of all objects together; five to twenty are usual.
 const MAX_MOTIONS: usize = 300;
 /// Motions that may get no shorter before they are cut.
 const PATIENCE: usize = 6;
@@ -56,7 +56,7 @@ impl Descent<'_, '_> {
         let mut forces = self.forces_of(&loads);
         let (mut limit, mut shortest, mut n_vain) = (self.nearby(), f64::INFINITY, 0);
         let mut damping = 0.0;
-        for _ in 0..MAX_MOTIONS {
+        for _ in 0..MAX_MOTIONS / self.bodies.len() {
             let around = self.around(&forces, damping);
             let Some(solution) = around.problem.solve() else {
                 damping = 10.0 * damping.max(1e-3);
