@@ -21,8 +21,6 @@ const AT_REST: f64 = 1e-7;
 const PROMISED: f64 = 1e-6;
 /// [Looseness](super::energy::Energy::looseness) of ties and stops at which a pose is at rest.
 const TIGHT: f64 = 1e-7;
-/// Imbalance after a round of which forces say nothing of those at rest.
-const LOST: f64 = 0.1;
 /// So many of its radii across gravity an object slides on planes before it is said to do so for ever.
 const SLID: f64 = 200.0;
 /// Steps up to this share of the farthest are foreseen with all contacts that they make.
@@ -119,9 +117,6 @@ impl<'a, 'b> Descent<'a, 'b> {
             }
             if self.is_at_rest(AT_REST, TIGHT) {
                 return End::Rest;
-            }
-            if self.imbalance(&self.balancer.now.pair_loads()) > LOST {
-                return End::Exhausted;
             }
             let Some(deepest) = self.deepest() else {
                 // Less than the last bit above taxels that are too stiff to be pressed by it.

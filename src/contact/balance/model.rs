@@ -11,6 +11,8 @@ use glam::DVec3;
 
 /// Steps inside the model, at most.
 const MAX_STEPS: usize = 40;
+/// Of a step's length: more takes more factorisations, and brings no better ones.
+const ACCURACY: f64 = 0.05;
 
 /// A model of the energy; a motion is six numbers a [body](Body).
 #[derive(Clone, Debug, Default)]
@@ -157,12 +159,13 @@ impl Model {
         let (mut motion, mut energy) = (vec![0.0; gradient.len()], start);
         let mut part = reach;
         for _ in 0..MAX_STEPS {
-            let (step, promised) = best_step(&gradient, &hessian, part);
+            let (step, promised) = best_step(&gradient, &hessian, part, ACCURACY);
             let mut next: Vec<f64> = motion.iter().zip(&step).map(|(a, b)| a + b).collect();
             let length = norm(&next);
-            let is_far = length > reach * (1.0 + 1e-6);
+            let is_far = length > reach * (1.0 - ACCURACY);
             if is_far {
-                next.iter_mut().for_each(|x| *x *= reach / length);
+                let shorter = (reach / length).min(1.0);
+                next.iter_mut().for_each(|x| *x *= shorter);
             }
             let after = self.energy_after(scene, pairs, &next);
             if after >= energy || energy - after < 0.1 * promised && !is_far {

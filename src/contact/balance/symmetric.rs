@@ -200,9 +200,14 @@ impl Factor {
 /// It solves `(H + σ) d = −g` with the least σ ≥ 0 for which H + σ is positive definite and d within reach: Newton's method for
 /// `1/|d| = 1/reach`. Where g has no part along the lowest eigenvector of an indefinite H (the hard case), that vector is added up to
 /// the edge of the ball.
-pub(super) fn best_step(gradient: &[f64], h: &Symmetric, reach: f64) -> (Vec<f64>, f64) {
-    /// How near to the edge of the ball a step is at it.
-    const NEAR: f64 = 1e-9;
+///
+/// `accuracy`: by so much of itself the radius of the ball may be another one, and σ, where it tends to the lowest eigenvalue.
+pub(super) fn best_step(
+    gradient: &[f64],
+    h: &Symmetric,
+    reach: f64,
+    accuracy: f64,
+) -> (Vec<f64>, f64) {
     /// The first σ of an indefinite H, as a share of the largest: most are on the way from there.
     const FIRST: f64 = 1e-3;
     let (size, slope) = (h.size(), norm(gradient));
@@ -225,7 +230,7 @@ pub(super) fn best_step(gradient: &[f64], h: &Symmetric, reach: f64) -> (Vec<f64
             Some(factor) => {
                 let step = factor.solve(&against);
                 let length = norm(&step);
-                let is_at_edge = (length - reach).abs() <= NEAR * reach;
+                let is_at_edge = (length - reach).abs() <= accuracy * reach;
                 if is_at_edge || (length <= reach && sigma == flat) {
                     return with_gain(gradient, h, step);
                 }
@@ -239,7 +244,7 @@ pub(super) fn best_step(gradient: &[f64], h: &Symmetric, reach: f64) -> (Vec<f64
                 }
             }
         }
-        if high <= low * (1.0 + 1e-12) {
+        if high <= low * (1.0 + accuracy) {
             break;
         }
         let is_between = next > low && next < high;
@@ -330,7 +335,7 @@ mod tests {
             }
             let mut rng = Seed::new(seed).named("others").rng();
             let reach = 10f64.powf(rng.gen_range(-3.0..1.0));
-            let (step, gain) = best_step(&g, &m, reach);
+            let (step, gain) = best_step(&g, &m, reach, 1e-9);
             assert!(norm(&step) <= reach * (1.0 + 1e-8));
             assert!((model(&g, &m, &step) + gain).abs() <= 1e-9 * (1.0 + gain.abs()));
             for _ in 0..200 {
