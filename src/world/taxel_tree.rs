@@ -73,16 +73,17 @@ pub(crate) struct Node {
 
 impl TaxelTree {
     pub fn new(layout: &Layout, taxels: &Taxels) -> Self {
-        let mut all: Vec<PlacedTaxel> = (0..layout.n_taxels())
-            .map(|number| PlacedTaxel::of(layout, taxels, number))
-            .collect();
+        let n_taxels = layout.n_taxels();
+        let depths =
+            (0..n_taxels).map(|number| taxels.at(number).stroke + taxels.at(number).radius);
         let mut tree = Self {
             nodes: Vec::new(),
-            leaves: Vec::new(),
-            depth: all.iter().map(|taxel| -taxel.behind).fold(0.0, f64::max),
+            leaves: Vec::with_capacity(n_taxels.div_ceil(LEAF)),
+            depth: depths.fold(0.0, f64::max),
         };
-        if !all.is_empty() {
-            tree.split(&mut all);
+        let mut numbers: Vec<u32> = (0..n_taxels as u32).collect();
+        if n_taxels > 0 {
+            tree.split((layout, taxels), &mut numbers);
         }
         tree
     }
@@ -138,26 +139,44 @@ impl TaxelTree {
         }
     }
 
-    /// Makes the nodes of some taxels, halved across the longest side of what is around them.
-    fn split(&mut self, taxels: &mut [PlacedTaxel]) {
+    /// Makes the nodes of some taxels, halved across the longest side of what is around their centres into full leaves; which is the first.
+    fn split(&mut self, of: (&Layout, &Taxels), numbers: &mut [u32]) -> usize {
+        let (layout, taxels) = of;
         let index = self.nodes.len();
-        self.nodes.push(Node::around(taxels));
-        if taxels.len() <= LEAF {
-            self.nodes[index].leaf = Some(self.leaves.len() as u32);
-            self.leaves.push(Leaf::of(taxels));
-        } else {
-            let side = self.nodes[index].bounds.size().max_position();
-            let half = taxels.len() / 2;
-            // Ties by number: the tree depends on nothing but the taxels.
-            taxels.select_nth_unstable_by(half, |a, b| {
-                let order = a.center[side].total_cmp(&b.center[side]);
-                order.then(a.number.cmp(&b.number))
-            });
-            let (left, right) = taxels.split_at_mut(half);
-            self.split(left);
-            self.split(right);
+        if numbers.len() <= LEAF {
+            let placed = numbers.iter();
+            let placed = placed.map(|&number| PlacedTaxel::of(layout, taxels, number as usize));
+            let placed: Vec<PlacedTaxel> = placed.collect();
+            let leaf = Some(self.leaves.len() as u32);
+            self.leaves.push(Leaf::of(&placed));
+            let node = Node::around(&placed);
+            let next = index as u32 + 1;
+            self.nodes.push(Node { leaf, next, ..node });
+            return index;
         }
-        self.nodes[index].next = self.nodes.len() as u32;
+        let center = |number: u32| layout.centers()[number as usize];
+        let all = || numbers.iter().map(|&number| center(number));
+        let low = all().fold(DVec3::INFINITY, DVec3::min);
+        let side = (all().fold(DVec3::NEG_INFINITY, DVec3::max) - low).max_position();
+        let half = (numbers.len() / 2).next_multiple_of(LEAF);
+        // Ties by number: the tree depends on nothing but the taxels.
+        numbers.select_nth_unstable_by(half, |&a, &b| {
+            let order = center(a)[side].total_cmp(&center(b)[side]);
+            order.then(a.cmp(&b))
+        });
+        let (left, right) = numbers.split_at_mut(half);
+        self.nodes.push(Node::EMPTY);
+        let parts = [self.split(of, left), self.split(of, right)].map(|part| self.nodes[part]);
+        self.nodes[index] = Node {
+            bounds: Aabb {
+                min: parts[0].bounds.min.min(parts[1].bounds.min),
+                max: parts[0].bounds.max.max(parts[1].bounds.max),
+            },
+            radius: parts[0].radius.max(parts[1].radius),
+            leaf: None,
+            next: self.nodes.len() as u32,
+        };
+        index
     }
 }
 
@@ -195,6 +214,17 @@ impl Leaf {
 }
 
 impl Node {
+    /// Before what is below it is known.
+    const EMPTY: Self = Self {
+        bounds: Aabb {
+            min: DVec3::ZERO,
+            max: DVec3::ZERO,
+        },
+        radius: 0.0,
+        leaf: None,
+        next: 0,
+    };
+
     fn around(taxels: &[PlacedTaxel]) -> Self {
         Self {
             bounds: Aabb::around(taxels.iter().map(PlacedTaxel::stretch))
