@@ -93,7 +93,7 @@ pub(crate) fn check_brackets(place: &str, text: &str) -> Result<()> {
         }
         let n_open = open[0] + open[1];
         if n_open > MOST_OPEN {
-            let line = 1 + text[..token.span().start()].matches('\n').count();
+            let line = line_of(text, token.span().start());
             return Err(Error::input(
                 format!("{place}:{line}"),
                 format!("{n_open} brackets that are still open"),

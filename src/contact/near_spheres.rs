@@ -58,28 +58,33 @@ impl<'a> PlacedUnion<'a> {
     }
 }
 
-/// How far a sphere (in the patch frame) needs the taxels of a leaf to be pushed, metres, zero or less if it does not meet them; and its height
-/// along their axes, metres.
+/// How far a sphere, which may be behind the substrate, needs a taxel to be pushed, metres, zero or less if it does not meet it; and the sphere's
+/// height along the taxel's axis, metres. `from`: the sphere's centre to the taxel's; `frame`: across the axis, twice, and along it, unit; `reach`: both
+/// radii, metres.
 ///
-/// The order of the operations is that of `needed_anywhere`, lane by lane.
+/// The order of the operations is that of the grid kernel, so that both agree to the last bit on a grid.
+#[inline(always)]
+pub(super) fn needed_along(from: DVec3, frame: [DVec3; 3], reach: f64) -> [f64; 2] {
+    let [across_x, across_y, axis] = frame;
+    let (dx, dy, height) = (from.dot(across_x), from.dot(across_y), -from.dot(axis));
+    let q = reach * reach - dy * dy - dx * dx;
+    let depth = q.max(0.0).sqrt() - height;
+    [if q > 0.0 { depth } else { 0.0 }, height]
+}
+
+/// The same of each taxel of a leaf and a sphere in the patch frame.
 #[inline(always)]
 pub(super) fn needed_of_leaf(leaf: &Leaf, sphere: &Sphere) -> [[f64; LEAF]; 2] {
     let [mut needed, mut heights] = [[0.0; LEAF]; 2];
-    let DVec3 { x, y, z } = sphere.center;
     for k in 0..LEAF {
-        let from = DVec3::new(
-            leaf.centers[0][k] - x,
-            leaf.centers[1][k] - y,
-            leaf.centers[2][k] - z,
-        );
-        let along =
-            |of: &[[f64; LEAF]; 3]| from.x * of[0][k] + from.y * of[1][k] + from.z * of[2][k];
-        let height = -along(&leaf.axes);
-        let [dx, dy] = [along(&leaf.across[0]), along(&leaf.across[1])];
-        let reach = leaf.radii[k] + sphere.radius;
-        let q = reach * reach - dy * dy - dx * dx;
-        let depth = q.max(0.0).sqrt() - height;
-        needed[k] = if q > 0.0 { depth } else { 0.0 };
+        let from = leaf.vector(&leaf.centers, k) - sphere.center;
+        let frame = [
+            leaf.vector(&leaf.across[0], k),
+            leaf.vector(&leaf.across[1], k),
+            leaf.vector(&leaf.axes, k),
+        ];
+        let [depth, height] = needed_along(from, frame, leaf.radii[k] + sphere.radius);
+        needed[k] = depth;
         heights[k] = height;
     }
     [needed, heights]

@@ -2,7 +2,7 @@
 
 use super::grid_lines::GridLines;
 use super::instructions::{Instructions, for_instructions};
-use super::near_spheres::{PlacedUnion, needed_of_leaf};
+use super::near_spheres::{PlacedUnion, needed_along, needed_of_leaf};
 use super::placed_sphere::View;
 use super::skin_mesh::MeshAt;
 use super::taxel_contact::TaxelContact;
@@ -223,7 +223,13 @@ fn push_held(
         let needed = match &objects[contact.object] {
             Model::Spheres(union) => {
                 let Sphere { center, radius } = union.spheres()[contact.part];
-                needed_anywhere(&taxel, pose.transform_point(center), radius).0
+                let from = taxel.center - pose.transform_point(center);
+                let [across_x, across_y] = taxel.across;
+                needed_along(
+                    from,
+                    [across_x, across_y, taxel.axis],
+                    taxel.radius + radius,
+                )[0]
             }
             Model::Mesh(mesh) => {
                 let stop = MeshAt::new(mesh, pose).stop_by(&taxel, contact.part);
@@ -303,21 +309,6 @@ fn push_by_each(
             },
         );
     }
-}
-
-/// How far a sphere (in the patch frame), which may be behind the substrate, pushes a taxel, metres, zero or less if it does not; and its height
-/// along the axis, metres.
-///
-/// The order of the operations is that of the grid kernel, so that both agree to the last bit on a grid.
-#[inline]
-pub(super) fn needed_anywhere(taxel: &PlacedTaxel, center: DVec3, radius: f64) -> (f64, f64) {
-    let from = taxel.center - center;
-    let height = -from.dot(taxel.axis);
-    let [dx, dy] = taxel.across.map(|across| from.dot(across));
-    let reach = taxel.radius + radius;
-    let q = reach * reach - dy * dy - dx * dx;
-    let needed = if q > 0.0 { q.sqrt() - height } else { 0.0 };
-    (needed, height)
 }
 
 fn push_by_mesh(

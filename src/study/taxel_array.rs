@@ -73,7 +73,8 @@ impl TaxelArray {
             shear.check()?;
         }
         (self.sensed, self.slide) = (sensed, slide);
-        if sensed.n_channels() > 1 || slide != DVec2::ZERO {
+        let needs_skin = sensed.n_channels() > 1 || slide != DVec2::ZERO;
+        if needs_skin && self.skin.is_none() {
             self.make_skin()?;
         }
         Ok(self)

@@ -197,16 +197,21 @@ impl Leaf {
         }
     }
 
+    /// Of one of its taxels.
+    #[inline(always)]
+    pub fn vector(&self, of: &[[f64; LEAF]; 3], k: usize) -> DVec3 {
+        DVec3::new(of[0][k], of[1][k], of[2][k])
+    }
+
     /// One by one.
     fn taxels(&self) -> impl Iterator<Item = PlacedTaxel> {
-        let vector = |of: &[[f64; LEAF]; 3], k: usize| DVec3::new(of[0][k], of[1][k], of[2][k]);
         let numbers = self.numbers.iter().enumerate();
         let numbers = numbers.take_while(|(_, number)| **number != NONE);
         numbers.map(move |(k, &number)| PlacedTaxel {
             number,
-            center: vector(&self.centers, k),
-            across: [vector(&self.across[0], k), vector(&self.across[1], k)],
-            axis: vector(&self.axes, k),
+            center: self.vector(&self.centers, k),
+            across: [0, 1].map(|side| self.vector(&self.across[side], k)),
+            axis: self.vector(&self.axes, k),
             radius: self.radii[k],
             behind: self.behind[k],
         })

@@ -10,8 +10,8 @@ use crate::study::touch_set::TouchSet;
 
 /// Seconds to make or to read a taxel of a frame.
 const TAXEL_S: f64 = 8e-9;
-/// Bringing an object to a skin takes so many times as long as to a grid: 20 to 60 in the studies of layouts and of shear.
-const SKIN: f64 = 35.0;
+/// Bringing an object to a skin takes so many times as long as to a grid: 8 to 12 in the study of layouts.
+const SKIN: f64 = 10.0;
 /// Seconds of a multiply-add of a product of matrices.
 const PRODUCT_S: f64 = 4e-11;
 /// Seconds of an SVM's solver for an entry of the kernel matrices of its binary problems; of linfa's.
