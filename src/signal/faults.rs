@@ -26,11 +26,7 @@ impl Faults {
     ///
     /// # Errors
     /// A fraction that is not from 0 to 1; fractions whose sum is above 1.
-    pub fn taxels(
-        &self,
-        n_taxels: usize,
-        [least, largest]: [f64; 2],
-    ) -> Result<Vec<(usize, f64)>> {
+    pub fn taxels(&self, n_taxels: usize, [least, largest]: [f64; 2]) -> Result<Vec<(usize, f64)>> {
         let dead = fraction("dead fraction", self.dead)?;
         let stuck = fraction("stuck fraction", self.stuck)?;
         if dead + stuck > 1.0 {
