@@ -2,7 +2,7 @@
 
 use bubbletouch::contact::balance::{Balancer, FreeObject, PlacedSkin};
 use bubbletouch::contact::{
-    Instructions, SkinWorkspace, Workspace, press_at_pose, press_skin, press_to_depth,
+    Instructions, Workspace, press_at_pose, press_to_depth, press_with_contacts,
 };
 use bubbletouch::geometry::Pose;
 use bubbletouch::mesh::{LengthUnit, MeshFormat, Surface, TriangleMesh};
@@ -12,13 +12,19 @@ use bubbletouch::objects::{
 use bubbletouch::packing::{Body, pack_mesh};
 use bubbletouch::random::Seed;
 use bubbletouch::scene::{ScenePlan, SceneSpec, Simulation, Stepping};
-use bubbletouch::world::{Grid, Layout, Patch, RestPoses, Scene, SkinPatch, Taxel, Taxels, Touch};
+use bubbletouch::world::{Grid, Layout, Patch, RestPoses, Taxel, Touch};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::{DQuat, DVec3};
 use rand::Rng;
 use std::fs::File;
 use std::hint::black_box;
 use std::io::BufReader;
+
+/// A patch and the objects that press it.
+struct Scene {
+    patch: Patch,
+    objects: Vec<Model>,
+}
 
 const DEPTH: f64 = 3e-3;
 
@@ -47,7 +53,7 @@ fn patch(n: usize) -> Patch {
         damping: 0.0,
         stroke: 5e-3,
     };
-    Patch::new(grid, taxel).expect("the grid has taxels")
+    Patch::grid(grid, taxel).expect("the grid has taxels")
 }
 
 fn zero_touch(object: &Model) -> Pose {
@@ -65,7 +71,8 @@ fn zero_touch(object: &Model) -> Pose {
 
 /// Every sphere against every taxel, at the travel that the kernel found.
 fn every_pair(scene: &Scene, pose: &Pose, travel: f64, deflections: &mut [f64]) {
-    let Patch { grid, taxel } = scene.patch;
+    let grid = scene.patch.layout().as_grid().expect("a grid");
+    let taxel = scene.patch.taxels().at(0);
     deflections.fill(0.0);
     let spheres = scene.objects[0]
         .spheres()
@@ -97,7 +104,15 @@ fn press(c: &mut Criterion) {
             let size = format!("{n_taxels}x{n_taxels}_taxels_{n_spheres}_spheres");
             let mut workspace = Workspace::new();
             group.bench_function(BenchmarkId::new("kernel", &size), |b| {
-                b.iter(|| press_to_depth(black_box(&scene), &[pose], DEPTH, &mut workspace));
+                b.iter(|| {
+                    press_to_depth(
+                        black_box(&scene.patch),
+                        &scene.objects,
+                        &[pose],
+                        DEPTH,
+                        &mut workspace,
+                    )
+                });
             });
         }
     }
@@ -106,8 +121,14 @@ fn press(c: &mut Criterion) {
         objects: vec![egg(8_000).into()],
     };
     let pose = zero_touch(&scene.objects[0]);
-    let travel = press_to_depth(&scene, &[pose], DEPTH, &mut Workspace::new())
-        .map_or(0.0, |contact| contact.travel);
+    let travel = press_to_depth(
+        &scene.patch,
+        &scene.objects,
+        &[pose],
+        DEPTH,
+        &mut Workspace::new(),
+    )
+    .map_or(0.0, |contact| contact.travel);
     let mut deflections = vec![0.0; 64 * 64];
     group.sample_size(10);
     group.bench_function("every_pair/64x64_taxels_8000_spheres", |b| {
@@ -133,7 +154,15 @@ fn catalogue(c: &mut Criterion) {
         let mut workspace = Workspace::new();
         let id = BenchmarkId::new(name, format!("{n_spheres}_spheres"));
         group.bench_function(id, |b| {
-            b.iter(|| press_to_depth(black_box(&scene), &[pose], DEPTH, &mut workspace));
+            b.iter(|| {
+                press_to_depth(
+                    black_box(&scene.patch),
+                    &scene.objects,
+                    &[pose],
+                    DEPTH,
+                    &mut workspace,
+                )
+            });
         });
     }
     group.finish();
@@ -221,7 +250,13 @@ fn touches(c: &mut Criterion) {
             group.bench_function(id, |b| {
                 b.iter(|| {
                     number = (number + 1) % poses.len();
-                    press_to_depth(black_box(&scene), &[poses[number]], DEPTH, &mut workspace)
+                    press_to_depth(
+                        black_box(&scene.patch),
+                        &scene.objects,
+                        &[poses[number]],
+                        DEPTH,
+                        &mut workspace,
+                    )
                 });
             });
         }
@@ -242,7 +277,15 @@ fn instructions(c: &mut Criterion) {
             let mut workspace = Workspace::with(instructions);
             let id = BenchmarkId::new(format!("{instructions:?}"), n_spheres);
             group.bench_function(id, |b| {
-                b.iter(|| press_to_depth(black_box(&scene), &[pose], DEPTH, &mut workspace));
+                b.iter(|| {
+                    press_to_depth(
+                        black_box(&scene.patch),
+                        &scene.objects,
+                        &[pose],
+                        DEPTH,
+                        &mut workspace,
+                    )
+                });
             });
         }
     }
@@ -269,7 +312,15 @@ fn mesh(c: &mut Criterion) {
             let mut workspace = Workspace::new();
             let id = BenchmarkId::new(name, format!("{n_triangles}_triangles"));
             group.bench_function(id, |b| {
-                b.iter(|| press_to_depth(black_box(&scene), &[pose], DEPTH, &mut workspace));
+                b.iter(|| {
+                    press_to_depth(
+                        black_box(&scene.patch),
+                        &scene.objects,
+                        &[pose],
+                        DEPTH,
+                        &mut workspace,
+                    )
+                });
             });
         }
     }
@@ -282,39 +333,51 @@ fn curved(c: &mut Criterion) {
     let radius = 64.0 * 4e-3 / std::f64::consts::TAU;
     let cylinder = Layout::cylinder(radius, 63.0 * 4e-3, std::f64::consts::TAU, 4e-3);
     let flat = patch(64);
-    let cylinder = SkinPatch::new(
+    let cylinder = Patch::new(
         "forearm",
         cylinder.expect("lengths are positive"),
-        Taxels::Equal(flat.taxel),
+        flat.taxels().clone(),
     )
     .expect("the taxel is a good one");
     let scene = Scene {
-        patch: flat,
+        patch: flat.clone(),
         objects: vec![egg(1_000).into()],
     };
     let pose = zero_touch(&scene.objects[0]);
-    let travel = press_to_depth(&scene, &[pose], DEPTH, &mut Workspace::new())
-        .map_or(0.0, |contact| contact.travel);
+    let travel = press_to_depth(
+        &scene.patch,
+        &scene.objects,
+        &[pose],
+        DEPTH,
+        &mut Workspace::new(),
+    )
+    .map_or(0.0, |contact| contact.travel);
     let down = Pose::from_translation(-travel * DVec3::Z).compose(&pose);
     // The egg's broad side on the cylinder.
     let beside = Pose::new(
         DQuat::from_rotation_y(std::f64::consts::FRAC_PI_2),
         DVec3::X * (radius + 0.03 + 2e-3 + 1e-3 - DEPTH),
     );
-    let mut workspace = SkinWorkspace::new();
-    let skins = [
-        ("cylinder", cylinder, beside),
-        ("plane", SkinPatch::from(flat), down),
-    ];
+    let mut workspace = Workspace::new();
+    let skins = [("cylinder", cylinder, beside), ("plane", flat, down)];
     for (name, skin, pose) in &skins {
         let id = format!("{name}_4096_taxels_1000_spheres");
         group.bench_function(id, |b| {
-            b.iter(|| press_skin(black_box(skin), &scene.objects, &[*pose], &mut workspace));
+            b.iter(|| {
+                press_with_contacts(black_box(skin), &scene.objects, &[*pose], &mut workspace)
+            });
         });
     }
     let mut workspace = Workspace::new();
     group.bench_function("grid_kernel_4096_taxels_1000_spheres", |b| {
-        b.iter(|| press_at_pose(black_box(&scene), &[down], &mut workspace));
+        b.iter(|| {
+            press_at_pose(
+                black_box(&scene.patch),
+                &scene.objects,
+                &[down],
+                &mut workspace,
+            )
+        });
     });
     group.finish();
 }
@@ -323,7 +386,7 @@ fn curved(c: &mut Criterion) {
 /// it was and with what was known of its forces.
 fn rest(c: &mut Criterion) {
     let mut group = c.benchmark_group("balance");
-    let skin = SkinPatch::from(patch(64));
+    let skin = patch(64);
     let egg = egg(1_000);
     let object = FreeObject::new(&egg, 0.3, DVec3::ZERO).expect("the mass is positive");
     let mut balancer = Balancer::new();

@@ -7,10 +7,16 @@ use bubbletouch::contact::{Workspace, press_at_pose};
 use bubbletouch::dynamics::{Drive, ImplicitEuler, Integrator, SemiImplicit, System, skin_sim};
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{Catalogue, Model};
-use bubbletouch::world::{Grid, Patch, RestPoses, Scene, SkinPatch, Taxel, Touch, VelocityPlan};
+use bubbletouch::world::{Grid, Patch, RestPoses, Taxel, Touch, VelocityPlan};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::DVec3;
 use std::hint::black_box;
+
+/// A patch and the objects that press it.
+struct Scene {
+    patch: Patch,
+    objects: Vec<Model>,
+}
 
 const DT: f64 = 1e-2;
 const N_STEPS: usize = 3;
@@ -32,7 +38,7 @@ fn patch(side: usize) -> Patch {
         damping: 2.0 * (stiffness * skin_sim::TAXEL_MASS).sqrt(),
         stroke: STROKE,
     };
-    Patch::new(grid, taxel).expect("a good patch")
+    Patch::grid(grid, taxel).expect("a good patch")
 }
 
 /// A built-in bottle within half a millimetre.
@@ -57,7 +63,13 @@ fn pressed(scene: &Scene) -> Pose {
     };
     let pose = touch.patch_from_object(&rest);
     let mut workspace = Workspace::new();
-    let contact = bubbletouch::contact::press_to_depth(scene, &[pose], DEPTH, &mut workspace);
+    let contact = bubbletouch::contact::press_to_depth(
+        &scene.patch,
+        &scene.objects,
+        &[pose],
+        DEPTH,
+        &mut workspace,
+    );
     let travel = contact.expect("the bottle is over the patch").travel;
     Pose::from_translation(-travel * DVec3::Z).compose(&pose)
 }
@@ -86,14 +98,24 @@ fn touch(c: &mut Criterion) {
     let bottle = bottle();
     for side in [8, 16, 32, 64] {
         let patch = patch(side);
-        let scene = Scene::of_one(&patch, &bottle);
+        let scene = Scene {
+            patch: patch.clone(),
+            objects: vec![bottle.clone()],
+        };
         let pose = pressed(&scene);
         let mut workspace = Workspace::new();
         group.bench_function(BenchmarkId::new("direct", side), |b| {
-            b.iter(|| press_at_pose(black_box(&scene), &[pose], &mut workspace));
+            b.iter(|| {
+                press_at_pose(
+                    black_box(&scene.patch),
+                    &scene.objects,
+                    &[pose],
+                    &mut workspace,
+                )
+            });
         });
         let right = workspace.deflections().to_vec();
-        let skin = SkinPatch::from(patch);
+        let skin = patch.clone();
         let still = VelocityPlan::new(pose, Vec::new()).expect("no phases are good phases");
         let system = System::new(
             &skin,

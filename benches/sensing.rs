@@ -56,7 +56,7 @@ fn signal(criterion: &mut Criterion) {
         damping: 0.0,
         stroke: 5e-3,
     };
-    let patch = Patch::new(grid, taxel).expect("the patch is valid");
+    let patch = Patch::grid(grid, taxel).expect("the patch is valid");
     let noise = SignalStep::Noise(Noise {
         std: 0.1,
         unit: NoiseUnit::FullScale,

@@ -3,17 +3,23 @@
 
 use bubbletouch::contact::{Workspace, press_at_pose, press_to_depth};
 use bubbletouch::geometry::Pose;
-use bubbletouch::objects::{Sphere, SphereUnion};
+use bubbletouch::objects::{Model, Sphere, SphereUnion};
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::dataset::dataset;
 use bubbletouch::recognition::kernel::Kernel;
 use bubbletouch::recognition::svm::{Multiclass, SvmParams};
 use bubbletouch::sensing::{Ensemble, Projection};
 use bubbletouch::whole_body::{BodyPatch, BodyState, SphereClusters, WholeBody};
-use bubbletouch::world::{Extrusion, Grid, Patch, Scene, Taxel};
+use bubbletouch::world::{Extrusion, Grid, Patch, Taxel};
 use glam::{DQuat, DVec3};
 use ndarray::{Array1, Array2, Axis};
 use rand::Rng;
+
+/// A patch and the objects that press it.
+struct Scene {
+    patch: Patch,
+    objects: Vec<Model>,
+}
 
 /// A path of computation that is gone over again and again.
 pub struct HotPath {
@@ -88,7 +94,7 @@ fn pose(step: usize, depth: f64) -> Pose {
 /// Of each sphere and taxel: dx (1), dx² (1), q = S² − dy² − dx² (1), √q, − h (1), the larger of two (1). Read: x, δ; written: δ.
 pub fn dense_press(n: usize, n_spheres: usize) -> HotPath {
     let scene = Scene {
-        patch: Patch::new(grid(n), taxel(0.02)).expect("the grid has taxels"),
+        patch: Patch::grid(grid(n), taxel(0.02)).expect("the grid has taxels"),
         objects: vec![large_spheres(n_spheres, n).into()],
     };
     let mut workspace = Workspace::new();
@@ -96,7 +102,13 @@ pub fn dense_press(n: usize, n_spheres: usize) -> HotPath {
     let mut number = 0;
     let mut step = move || {
         number += 1;
-        press_at_pose(&scene, &[pose(number, 4e-3)], &mut workspace).n_touched
+        press_at_pose(
+            &scene.patch,
+            &scene.objects,
+            &[pose(number, 4e-3)],
+            &mut workspace,
+        )
+        .n_touched
     };
     assert_eq!(step(), n * n, "all are touched");
     HotPath {
@@ -158,7 +170,7 @@ pub fn sparse_press() -> HotPath {
     });
     let egg = SphereUnion::new(spheres.collect()).expect("radii are positive");
     let scene = Scene {
-        patch: Patch::new(grid(64), taxel(5e-3)).expect("the grid has taxels"),
+        patch: Patch::grid(grid(64), taxel(5e-3)).expect("the grid has taxels"),
         objects: vec![egg.into()],
     };
     let mut workspace = Workspace::new();
@@ -167,7 +179,13 @@ pub fn sparse_press() -> HotPath {
         number += 1;
         let yaw = DQuat::from_rotation_z(0.17 * f64::from(number));
         let place = DVec3::new(2e-3 * f64::from(number % 6), 0.0, 0.1);
-        press_to_depth(&scene, &[Pose::new(yaw, place)], 3e-3, &mut workspace)
+        press_to_depth(
+            &scene.patch,
+            &scene.objects,
+            &[Pose::new(yaw, place)],
+            3e-3,
+            &mut workspace,
+        )
     };
     assert!(step().is_some_and(|contact| contact.n_touched > 50));
     HotPath {

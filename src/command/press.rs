@@ -15,7 +15,7 @@ use bubbletouch::report::pressure_map::pressure_text;
 use bubbletouch::report::terminal::Ink;
 use bubbletouch::signal::Quantity;
 use bubbletouch::study::{ModelSpec, ObjectsSpec, load_mesh, load_spheres, millimetres};
-use bubbletouch::world::{Grid, Patch, Scene, Taxel};
+use bubbletouch::world::{Grid, Patch, Taxel};
 use bubbletouch::{Error, Result};
 use ndarray::Array2;
 use std::path::PathBuf;
@@ -108,19 +108,22 @@ fn parse_taxels(text: &str) -> std::result::Result<(usize, usize), String> {
 pub fn press(args: &Args) -> Result<()> {
     let patch = args.patch()?;
     let (model, pose) = args.placed_object()?;
-    let scene = Scene {
-        patch,
-        objects: vec![model],
-    };
-    let depth = args.depth(&patch.taxel)?;
+    let objects = [model];
+    let depth = args.depth(patch.taxels().at(0))?;
     if let Some(path) = &args.many.poses {
-        return press_poses(&args.many, path, &scene, depth, args.out.as_deref());
+        return press_poses(
+            &args.many,
+            path,
+            (&patch, &objects),
+            depth,
+            args.out.as_deref(),
+        );
     }
     let mut workspace = Workspace::new();
     let contact = match (args.force_n, depth) {
-        (Some(force), _) => press_to_force(&scene, &[pose], force, &mut workspace)?,
-        (_, Some(depth)) => press_to_depth(&scene, &[pose], depth, &mut workspace),
-        (None, None) => Some(press_at_pose(&scene, &[pose], &mut workspace)),
+        (Some(force), _) => press_to_force(&patch, &objects, &[pose], force, &mut workspace)?,
+        (_, Some(depth)) => press_to_depth(&patch, &objects, &[pose], depth, &mut workspace),
+        (None, None) => Some(press_at_pose(&patch, &objects, &[pose], &mut workspace)),
     };
     let contact = contact.ok_or_else(|| {
         let allowed = "an offset that brings some of it over a taxel";
@@ -130,7 +133,7 @@ pub fn press(args: &Args) -> Result<()> {
     let frame = Array2::from_shape_vec((ny, nx), workspace.deflections().to_vec())
         .expect("a press gives one deflection a taxel");
     if let Some(path) = &args.out {
-        write_frame(path, &frame, &patch.grid)?;
+        write_frame(path, &frame, &args.grid())?;
     } else {
         let (pitch_mm, ink) = (args.pitch_mm, Ink::of_stdout());
         let (quantity, width) = (Quantity::Deflection, terminal_width());
@@ -139,7 +142,7 @@ pub fn press(args: &Args) -> Result<()> {
     }
     let deepest = frame.iter().fold(0.0_f64, |a, &b| a.max(b));
     let force = args.force_n.map_or(String::new(), |_| {
-        let force = patch.taxel.stiffness * frame.sum();
+        let force = patch.taxels().at(0).stiffness * frame.sum();
         format!("; {force:.3} N together")
     });
     note(format_args!(
@@ -153,20 +156,20 @@ pub fn press(args: &Args) -> Result<()> {
 }
 
 impl Args {
-    fn patch(&self) -> Result<Patch> {
+    fn grid(&self) -> Grid {
         let (nx, ny) = self.taxels;
-        let grid = Grid {
-            nx,
-            ny,
-            pitch: self.pitch_mm * MM,
-        };
+        let pitch = self.pitch_mm * MM;
+        Grid { nx, ny, pitch }
+    }
+
+    fn patch(&self) -> Result<Patch> {
         let taxel = Taxel {
             radius: self.taxel_radius(),
             stiffness: self.stiffness_n_per_m,
             damping: 0.0,
             stroke: self.stroke_mm * MM,
         };
-        Patch::new(grid, taxel)
+        Patch::grid(self.grid(), taxel)
     }
 
     /// Metres.

@@ -5,9 +5,10 @@ use super::streams::say;
 use bubbletouch::contact::{Contact, Workspace, press_at_pose, press_to_depth};
 use bubbletouch::files::table_error;
 use bubbletouch::geometry::Pose;
+use bubbletouch::objects::Model;
 use bubbletouch::quantile::quantile;
 use bubbletouch::study::write_npy;
-use bubbletouch::world::Scene;
+use bubbletouch::world::Patch;
 use bubbletouch::{Error, Result};
 use glam::{DQuat, DVec3};
 use ndarray::{Array3, ArrayView2};
@@ -61,7 +62,7 @@ struct Reading {
 pub fn press_poses(
     args: &Args,
     path: &Path,
-    scene: &Scene,
+    (patch, objects): (&Patch, &[Model; 1]),
     depth: Option<f64>,
     out: Option<&Path>,
 ) -> Result<()> {
@@ -71,12 +72,13 @@ pub fn press_poses(
     }
     check_ending(out, "npy")?;
     let poses = read_poses(path)?;
-    let grid = &scene.patch.grid;
-    let mut frames = Array3::zeros((poses.len(), grid.ny, grid.nx));
+    let grid = patch.layout().as_grid();
+    let (ny, nx) = grid.map_or((1, patch.n_taxels()), |grid| (grid.ny, grid.nx));
+    let mut frames = Array3::zeros((poses.len(), ny, nx));
     let mut workspace = Workspace::new();
     let press = |pose: &Pose, workspace: &mut Workspace| match depth {
-        None => Some(press_at_pose(scene, &[*pose], workspace)),
-        Some(depth) => press_to_depth(scene, &[*pose], depth, workspace),
+        None => Some(press_at_pose(patch, objects, &[*pose], workspace)),
+        Some(depth) => press_to_depth(patch, objects, &[*pose], depth, workspace),
     };
     let mut contacts: Vec<Option<Contact>> = Vec::with_capacity(poses.len());
     for (pose, mut frame) in poses.iter().zip(frames.outer_iter_mut()) {
@@ -103,11 +105,10 @@ pub fn press_poses(
         n_saturated: contact.map_or(0, |contact| contact.n_saturated),
         us: quantile(times, 0.5),
     });
-    tell(args, scene, &readings.collect::<Vec<_>>())
+    tell(args, &objects[0], &readings.collect::<Vec<_>>())
 }
 
-fn tell(args: &Args, scene: &Scene, readings: &[Reading]) -> Result<()> {
-    let model = &scene.objects[0];
+fn tell(args: &Args, model: &Model, readings: &[Reading]) -> Result<()> {
     let mut us: Vec<f64> = readings.iter().map(|reading| reading.us).collect();
     let us = quantile(&mut us, 0.5);
     if args.json {

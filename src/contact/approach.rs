@@ -4,16 +4,14 @@ use super::instructions::{Instructions, for_instructions};
 use super::near_spheres::{PlacedUnion, needed_of_leaf};
 use super::skin_mesh::MeshAt;
 use super::way::{Way, meeting};
-use super::{FrictionState, NormalForce, SkinContact, SkinWorkspace, press_skin};
+use super::{Contact, FrictionState, Workspace};
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::objects::{Model, Sphere, SphereUnion};
-use crate::world::{Layout, Node, SkinPatch, Taxel, TaxelTree, Taxels};
+use crate::world::{Node, Patch, TaxelTree};
 use glam::DVec3;
 use std::cell::Cell;
-
-/// A stroke that nothing ends, metres.
-const ENDLESS: f64 = 1e6;
+use std::sync::OnceLock;
 
 /// The way of a patch along a direction.
 ///
@@ -21,49 +19,49 @@ const ENDLESS: f64 = 1e6;
 /// places whose axes are the direction and whose strokes do not end, and the one that is pushed farthest in was met first.
 #[derive(Clone, Debug)]
 pub struct Approach<'a> {
-    patch: &'a SkinPatch,
+    patch: &'a Patch,
     direction: DVec3,
-    /// The taxels as they travel.
-    travelling: TaxelTree,
-    /// How far the foremost of them is along the direction, its radius included, metres.
-    front: f64,
-}
-
-/// Where a skin is on its way; its deflections and contacts are in the [`SkinWorkspace`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SkinTouch {
-    /// How far the patch went along the direction from where it was, metres; negative if it had to go back.
-    pub travel: f64,
-    /// What it touches there.
-    pub counts: SkinContact,
+    /// Made when it is asked for; that along z is the patch's.
+    travelling: OnceLock<TaxelTree>,
 }
 
 impl<'a> Approach<'a> {
-    /// Of a patch along a direction (unit, in the patch frame); about a microsecond a taxel.
+    /// Of a patch along a direction (unit, in the patch frame).
     ///
     /// # Errors
     /// A direction whose length is not one.
-    pub fn new(patch: &'a SkinPatch, direction: DVec3) -> Result<Self> {
+    pub fn new(patch: &'a Patch, direction: DVec3) -> Result<Self> {
         Way::check(direction)?;
-        let n_taxels = patch.n_taxels();
-        let taxels = (0..n_taxels).map(|number| Taxel {
-            stroke: ENDLESS,
-            ..*patch.taxels().at(number)
-        });
-        let taxels: Vec<Taxel> = taxels.collect();
-        let layout = Layout::new(patch.layout().centers().to_vec(), vec![direction; n_taxels])?;
-        let places = layout.centers().iter().zip(&taxels);
-        let fronts = places.map(|(center, taxel)| center.dot(direction) + taxel.radius);
-        Ok(Self {
+        Ok(Self::along(patch, direction))
+    }
+
+    /// Of a patch along its z.
+    pub(super) fn ahead(patch: &'a Patch) -> Self {
+        Self::along(patch, DVec3::Z)
+    }
+
+    fn along(patch: &'a Patch, direction: DVec3) -> Self {
+        Self {
             patch,
             direction,
-            front: fronts.fold(f64::NEG_INFINITY, f64::max),
-            travelling: TaxelTree::new(&layout, &Taxels::Each(taxels)),
-        })
+            travelling: OnceLock::new(),
+        }
+    }
+
+    /// The taxels as they travel.
+    fn travelling(&self) -> &TaxelTree {
+        if self.direction == DVec3::Z {
+            return self.patch.ahead();
+        }
+        let Self {
+            patch, direction, ..
+        } = self;
+        let make = || TaxelTree::travelling(patch.layout(), patch.taxels(), *direction);
+        self.travelling.get_or_init(make)
     }
 
     /// The patch.
-    pub fn patch(&self) -> &'a SkinPatch {
+    pub fn patch(&self) -> &'a Patch {
         self.patch
     }
 
@@ -100,7 +98,7 @@ impl<'a> Approach<'a> {
             Model::Mesh(mesh) => {
                 let mesh = MeshAt::new(mesh, pose);
                 let (center, radius) = mesh.ball();
-                self.travelling.each_near(center, radius, |taxel| {
+                self.travelling().each_near(center, radius, |taxel| {
                     let stop = mesh.stop(taxel);
                     farthest = stop.map_or(farthest, |stop| farthest.max(-stop.height));
                 });
@@ -111,11 +109,11 @@ impl<'a> Approach<'a> {
 
     /// The same of spheres: first those of the cluster that may push farthest, then of those that may push farther than these do.
     fn farthest_sphere(&self, union: &SphereUnion, pose: &Pose, others: f64) -> f64 {
-        let placed = PlacedUnion::new(union, pose);
+        let (placed, travelling) = (PlacedUnion::new(union, pose), self.travelling());
         let mut foremost = (others, None);
         for (cluster, ball) in placed.clusters() {
             let most = self.most(&ball);
-            if most > foremost.0 && self.travelling.is_near(ball.center, ball.radius) {
+            if most > foremost.0 && travelling.is_near(ball.center, ball.radius) {
                 foremost = (most, Some(cluster));
             }
         }
@@ -124,7 +122,7 @@ impl<'a> Approach<'a> {
         };
         let mut farthest = self.farthest_of(&placed, placed.of(first), others);
         for (cluster, ball) in placed.clusters() {
-            if self.most(&ball) > farthest && self.travelling.is_near(ball.center, ball.radius) {
+            if self.most(&ball) > farthest && travelling.is_near(ball.center, ball.radius) {
                 farthest = self.farthest_of(&placed, placed.of(cluster), farthest);
             }
         }
@@ -138,20 +136,15 @@ impl<'a> Approach<'a> {
     /// How far a ball (in the patch frame) can push a taxel as they travel, at most, metres.
     #[inline(always)]
     fn most(&self, ball: &Sphere) -> f64 {
-        self.front + ball.radius - ball.center.dot(self.direction)
+        self.travelling().front(self.direction) + ball.radius - ball.center.dot(self.direction)
     }
 
     /// The same of the taxels of a node: all that the ball meets are ahead of it, so that its way from their stretches is its way from their axes.
     #[inline(always)]
     fn most_of(&self, node: &Node, ball: &Sphere) -> f64 {
         let room = node.room(ball.center, ball.radius);
-        let (least, largest) = (
-            node.bounds.min * self.direction,
-            node.bounds.max * self.direction,
-        );
-        let front = least.max(largest).element_sum();
         match room >= 0.0 {
-            true => room.sqrt() + front - ball.center.dot(self.direction),
+            true => room.sqrt() + node.front(self.direction) - ball.center.dot(self.direction),
             false => f64::NEG_INFINITY,
         }
     }
@@ -167,8 +160,8 @@ impl<'a> Approach<'a> {
         objects: &[Model],
         patch_from_objects: &[Pose],
         depth: f64,
-        workspace: &mut SkinWorkspace,
-    ) -> Option<SkinTouch> {
+        workspace: &mut Workspace,
+    ) -> Option<Contact> {
         let motion = (depth, DVec3::ZERO);
         self.press_and_slide(objects, patch_from_objects, motion, None, workspace)
     }
@@ -183,55 +176,51 @@ impl<'a> Approach<'a> {
         objects: &[Model],
         patch_from_objects: &[Pose],
         (depth, slide): (f64, DVec3),
-        mut friction: Option<&mut FrictionState>,
-        workspace: &mut SkinWorkspace,
-    ) -> Option<SkinTouch> {
-        workspace.hold([]);
-        if let Some(friction) = &mut friction {
-            friction.step(self.patch, &[], &[], NormalForce::Springs);
+        friction: Option<&mut FrictionState>,
+        workspace: &mut Workspace,
+    ) -> Option<Contact> {
+        let first = self.first_contact(objects, patch_from_objects);
+        let travels = first.map(|first| [first, first + depth]);
+        let mut way = self.way(objects, patch_from_objects, workspace);
+        way.press_and_slide(travels, slide, friction)
+    }
+
+    /// Presses until the patch has gone so far (metres), as [`press_to_depth`](Self::press_to_depth) of this travel.
+    ///
+    /// # Panics
+    /// If there are not as many poses as objects.
+    pub fn press_to_travel(
+        &self,
+        objects: &[Model],
+        patch_from_objects: &[Pose],
+        travel: f64,
+        workspace: &mut Workspace,
+    ) -> Contact {
+        let first = self.first_contact(objects, patch_from_objects);
+        let travels = first.filter(|first| *first < travel);
+        let travels = travels.map(|first| [first, travel]);
+        let mut way = self.way(objects, patch_from_objects, workspace);
+        let contact = way.press_and_slide(travels, DVec3::ZERO, None);
+        Contact {
+            travel,
+            ..contact.unwrap_or_default()
         }
-        let Some(first) = self.first_contact(objects, patch_from_objects) else {
-            press_skin(self.patch, &[], &[], workspace);
-            return None;
-        };
-        let mut way = Way {
+    }
+
+    pub(super) fn way<'w>(
+        &'w self,
+        objects: &'w [Model],
+        patch_from_objects: &'w [Pose],
+        workspace: &'w mut Workspace,
+    ) -> Way<'w> {
+        Way {
             patch: self.patch,
             objects,
             patch_from_objects,
             direction: self.direction,
             workspace,
-        };
-        let n_steps = |length| match friction {
-            Some(_) => way.n_friction_steps(length),
-            None => way.n_steps(length),
-        };
-        let travel = first + depth;
-        let pressed = parts(depth, n_steps(depth)).map(|part| (first + part) * self.direction);
-        let length = slide.length();
-        let n_slides = if length > 0.0 { n_steps(length) } else { 0 };
-        let slid = parts(1.0, n_slides).map(|part| travel * self.direction + part * slide);
-        let mut counts = SkinContact::default();
-        for (number, place) in pressed.chain(slid).enumerate() {
-            if number > 0 {
-                way.workspace.hold_touched();
-            }
-            counts = way.press_at(place);
-            if let Some(friction) = &mut friction {
-                let (contacts, poses) = (way.workspace.contacts(), &way.workspace.poses);
-                friction.step(self.patch, contacts, poses, NormalForce::Springs);
-            }
         }
-        workspace.hold([]);
-        Some(SkinTouch { travel, counts })
     }
-}
-
-/// The ends of so many equal parts of a length; the last is the length.
-fn parts(length: f64, n: usize) -> impl Iterator<Item = f64> {
-    (1..=n).map(move |number| match number == n {
-        true => length,
-        false => length * number as f64 / n as f64,
-    })
 }
 
 for_instructions! {
@@ -257,7 +246,7 @@ fn farthest_by_leaves(
         if approach.most(&sphere) <= farthest.get() {
             continue;
         }
-        approach.travelling.each_leaf(
+        approach.travelling().each_leaf(
             |node| approach.most_of(node, &sphere) > farthest.get(),
             |leaf| {
                 let [needed, _] = needed_of_leaf(leaf, &sphere);

@@ -1,10 +1,11 @@
 //! How far a patch can go over a mesh: the height at which the mesh stops each taxel, only where it can be reached.
 
 use super::grid_lines::GridLines;
+use super::grid_press::{Goal, Placed};
 use super::swept_triangle::{SweptEdge, SweptFace, corner_height};
 use crate::geometry::{Aabb, Pose};
 use crate::mesh::Triangle;
-use crate::objects::{ContactFace, MeshModel};
+use crate::objects::{ContactFace, MeshModel, Model};
 use glam::{DMat3, DVec2, DVec3, Vec3Swizzles};
 use std::cell::Cell;
 
@@ -15,8 +16,6 @@ pub(super) struct Envelope {
     pub heights: Vec<f64>,
     /// The least of them.
     pub first: f64,
-    /// The meshes that counted in the last step of a time loop, by their number in the scene.
-    counted: Vec<bool>,
 }
 
 impl Envelope {
@@ -27,29 +26,36 @@ impl Envelope {
         self.first = f64::INFINITY;
     }
 
-    /// Whether a mesh counted in the last step.
-    pub fn has_counted(&self, mesh: usize) -> bool {
-        self.counted.get(mesh).is_some_and(|&counted| counted)
-    }
-
-    /// Takes down whether a mesh counts in this step.
-    pub fn count(&mut self, mesh: usize, counts: bool) {
-        if self.counted.len() <= mesh {
-            self.counted.resize(mesh + 1, false);
+    /// Looks where meshes stop the taxels, up to the goal; whether there is any mesh. `first`: the travel at which the spheres touch.
+    pub fn look(&mut self, placed: &Placed, (goal, first): (Goal, f64)) -> bool {
+        let pairs = placed.objects.iter().zip(placed.patch_from_objects);
+        let meshes = pairs.filter_map(|(object, pose)| match object {
+            Model::Mesh(mesh) => Some((mesh, pose)),
+            Model::Spheres(_) => None,
+        });
+        let mut meshes = meshes.peekable();
+        let has_meshes = meshes.peek().is_some();
+        let n_taxels = placed.lines.x.positions.len() * placed.lines.y.positions.len();
+        self.clear(if has_meshes { n_taxels } else { 0 });
+        let limit = match goal {
+            Goal::Travel(travel) => Limit::Travel(travel),
+            Goal::Depth(depth) => Limit::Past { depth, first },
+        };
+        for (mesh, pose) in meshes {
+            self.lower(mesh, pose, placed.radius, placed.lines, limit);
         }
-        self.counted[mesh] = counts;
+        has_meshes
     }
 
-    /// Lowers the heights to those of a mesh where they are below the limit; whether its box is over the patch and reaches the
-    /// limit.
-    pub fn lower(
+    /// Lowers the heights to those of a mesh where they are below the limit.
+    fn lower(
         &mut self,
         mesh: &MeshModel,
         pose: &Pose,
         radius: f64,
         lines: &GridLines,
         limit: Limit,
-    ) -> bool {
+    ) {
         let first = Cell::new(self.first);
         let sweep = Sweep {
             view: MeshView::new(pose, radius, lines),
@@ -61,7 +67,7 @@ impl Envelope {
         };
         let [low, high] = sweep.view.turned(&mesh.bounds());
         if sweep.view.is_beside(low, high) || low.z - radius >= sweep.limit() {
-            return false;
+            return;
         }
         mesh.bvh().search_places(
             sweep.limit(),
@@ -72,7 +78,6 @@ impl Envelope {
             },
         );
         self.first = first.get();
-        true
     }
 }
 

@@ -33,7 +33,7 @@ use super::coulomb::{Dragged, drag};
 use super::{DamperState, TaxelContact, Wrench};
 use crate::error::Result;
 use crate::geometry::Pose;
-use crate::world::{Shears, SkinPatch};
+use crate::world::{Patch, Shears};
 use glam::{DMat3, DVec2, DVec3, Vec3Swizzles};
 
 /// What a taxel's tip does.
@@ -87,24 +87,24 @@ pub struct FrictionLoad {
 /// The shear springs of one patch between steps.
 ///
 /// ```
-/// use bubbletouch::contact::{FrictionState, NormalForce, SkinWorkspace, press_skin};
+/// use bubbletouch::contact::{FrictionState, NormalForce, Workspace, press_with_contacts};
 /// use bubbletouch::geometry::Pose;
 /// use bubbletouch::objects::{Sphere, SphereUnion};
-/// use bubbletouch::world::{Layout, Shear, Shears, SkinPatch, Taxel, Taxels};
+/// use bubbletouch::world::{Layout, Shear, Shears, Patch, Taxel, Taxels};
 /// use glam::DVec3;
 ///
 /// let taxel = Taxel { radius: 1e-3, stiffness: 100.0, damping: 0.0, stroke: 5e-3 };
-/// let palm = SkinPatch::new("palm", Layout::disc(0.02, 2e-3)?, Taxels::Equal(taxel))?;
+/// let palm = Patch::new("palm", Layout::disc(0.02, 2e-3)?, Taxels::Equal(taxel))?;
 /// let shear = Shear { stiffness: 400.0, friction: 0.5 };
 /// let mut friction = FrictionState::at_rest(&palm, Shears::Equal(shear))?;
 ///
 /// // A ball is pressed 2 mm into the palm and then drawn 1 mm along x.
 /// let ball = Sphere { center: DVec3::ZERO, radius: 0.03 };
 /// let objects = [SphereUnion::new(vec![ball])?.into()];
-/// let mut workspace = SkinWorkspace::new();
+/// let mut workspace = Workspace::new();
 /// for step in 0..=10 {
 ///     let pose = Pose::from_translation(DVec3::new(1e-4 * f64::from(step), 0.0, 0.029));
-///     press_skin(&palm, &objects, &[pose], &mut workspace);
+///     press_with_contacts(&palm, &objects, &[pose], &mut workspace);
 ///     friction.step(&palm, workspace.contacts(), &[pose], NormalForce::Springs);
 /// }
 ///
@@ -145,7 +145,7 @@ impl FrictionState {
     ///
     /// # Errors
     /// Those of [`Shears::check`].
-    pub fn at_rest(patch: &SkinPatch, shears: Shears) -> Result<Self> {
+    pub fn at_rest(patch: &Patch, shears: Shears) -> Result<Self> {
         shears.check(patch)?;
         Ok(Self {
             shears,
@@ -192,7 +192,7 @@ impl FrictionState {
     /// If a contact has a taxel or an object that there is not.
     pub fn step(
         &mut self,
-        patch: &SkinPatch,
+        patch: &Patch,
         contacts: &[TaxelContact],
         patch_from_objects: &[Pose],
         normal: NormalForce,
@@ -247,7 +247,7 @@ impl FrictionState {
     /// Adds up what the taxels do to the objects after a step: those of all its contacts, or of those with one object.
     pub fn load<'a>(
         &self,
-        patch: &SkinPatch,
+        patch: &Patch,
         contacts: impl IntoIterator<Item = &'a TaxelContact>,
     ) -> FrictionLoad {
         let (mut springs, mut friction) = (Wrench::default(), Wrench::default());

@@ -1,12 +1,12 @@
 //! One object among others moved along a line so that a skin feels a force, no farther than it can go in a step.
 
 use super::crossing::{Sample, crossing};
-use super::press_force::ACCURACY;
+use super::grid_force::ACCURACY;
 use super::spring_load::spring_load;
-use super::{SkinWorkspace, press_skin};
+use super::{Workspace, press_with_contacts};
 use crate::geometry::Pose;
 use crate::objects::Model;
-use crate::world::SkinPatch;
+use crate::world::Patch;
 use glam::DVec3;
 
 /// Where an object is that is moved for a force.
@@ -22,7 +22,7 @@ pub struct HeldForce {
 #[derive(Clone, Copy, Debug)]
 pub struct MovedObject<'a> {
     /// The skin.
-    pub patch: &'a SkinPatch,
+    pub patch: &'a Patch,
     /// All objects.
     pub objects: &'a [Model],
     /// The number of the one that is moved.
@@ -46,7 +46,7 @@ impl MovedObject<'_> {
         poses: &mut [Pose],
         travels: [f64; 3],
         force: f64,
-        workspace: &mut SkinWorkspace,
+        workspace: &mut Workspace,
     ) -> HeldForce {
         let [back, here, ahead] = travels;
         let start = poses[self.moving].translation;
@@ -81,8 +81,8 @@ impl MovedObject<'_> {
     }
 
     /// Σ k δ in N, and its slope over the travel in N/m.
-    fn sample(&self, poses: &[Pose], workspace: &mut SkinWorkspace) -> Sample {
-        press_skin(self.patch, self.objects, poses, workspace);
+    fn sample(&self, poses: &[Pose], workspace: &mut Workspace) -> Sample {
+        press_with_contacts(self.patch, self.objects, poses, workspace);
         let contacts = workspace.contacts();
         let moved = contacts.iter().filter(|c| c.object == self.moving);
         let slopes = moved.map(|contact| {

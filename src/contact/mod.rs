@@ -1,4 +1,4 @@
-//! Contact: a [`Scene`](crate::world::Scene) and poses → deflections \[BT\].
+//! Contact: a [`Patch`](crate::world::Patch), objects and poses → deflections \[BT\].
 //!
 //! For taxel i (rest centre p, axis n, radius ρ) and sphere j (centre c, radius R): `S = ρ + R`, `h = (c − p)·n`,
 //! `b² = |c − p|² − h²`. If `b < S`, the sphere needs `δ_ij = √(S² − b²) − h`. The contact deflection is
@@ -11,31 +11,32 @@
 //! equations of its faces, edges and corners.
 //!
 //! **Behind the substrate.** A press comes from the front and stays there: to a depth, a travel or a force all counts, however deep,
-//! so that no taxel is deflected less the deeper it is pressed. At a pose without such a way ([`press_at_pose`], [`press_skin`]) a sphere
-//! whose centre is behind the substrate (`h < −s − ρ`) is on the far side of the skin and does not count, nor a mesh that lies there as
-//! a whole; of one around a curved skin, that goes for its parts. In a time loop, and on the way to a force on a curved skin, what
-//! counted in the step before goes on counting.
+//! so that no taxel of a flat patch is deflected less the deeper it is pressed. At a pose without such a way ([`press_at_pose`],
+//! [`press_with_contacts`]) a sphere whose centre is behind the substrate (`h < −s − ρ`) is on the far side of the skin and does not
+//! count, nor what of a mesh touches a taxel only there, unless the substrate is inside of the mesh. In a time loop, and on the way of
+//! a press, what pushed a taxel in the step before goes on pushing it.
 //!
 //! A taxel that would have to go further than its stroke s is saturated: counted in [`Contact`], never hidden.
 //!
-//! A **direct press** ([`press_to_depth`], [`press_to_travel`]) evaluates this once at the final pose. A **time loop**
-//! ([`simulate()`], [`DamperState`]) adds the damper: a taxel that nothing pushes relaxes, `k δ + c δ̇ = 0`. Without a damper both agree
-//! exactly, so a scene that has none needs no loop.
+//! A **direct press** ([`press_to_depth`], [`press_to_travel`], [`press_to_force`]; along other directions than z, and on from there
+//! sideways: [`Approach`]) evaluates this at the final pose. A **time loop** ([`simulate()`], [`DamperState`]) adds the damper: a taxel
+//! that nothing pushes relaxes, `k δ + c δ̇ = 0`. Without a damper both agree exactly, so a scene that has none needs no loop.
 //!
-//! A [`Patch`](crate::world::Patch) is a flat grid, and its kernel goes along rows. A [`SkinPatch`](crate::world::SkinPatch)
-//! has any layout: [`press_skin`] finds the taxels near each sphere in a tree, and also says which part of which object
-//! decides each taxel ([`TaxelContact`]); [`spring_load`] adds up what the springs carry.
+//! On a flat grid of taxels that go equally deep the kernel goes along rows; on any other layout it finds the taxels near each sphere in a
+//! tree. [`press_with_contacts`] also says which part of which object decides each taxel ([`TaxelContact`]); [`spring_load`] adds up
+//! what the springs carry.
 //!
 //! A free object rests where its weight and the forces of the taxels balance: [`balance`].
 //!
-//! A **touch to a force** ([`press_to_force`], [`press_skin_to_force`]) goes on until the springs carry Σ k δ = F together:
-//! exactly the press at the travel that it finds. [`MovedObject`] holds a force by one object among others.
+//! A **touch to a force** goes on until the springs carry Σ k δ = F together: exactly the press at the travel that it finds.
+//! [`MovedObject`] holds a force by one object among others.
 //!
-//! **Friction** is an option beside a `SkinPatch`: with [`Shear`](crate::world::Shear) springs the tips of its taxels are dragged along
-//! and slip, and each taxel feels a force in three dimensions ([`FrictionState`], which has the equations). Without it, and with μ = 0 to
-//! the bit, the forces are those of `spring_load`.
+//! **Friction** is an option: with [`Shear`](crate::world::Shear) springs the tips of the taxels are dragged along and slip, and each
+//! taxel feels a force in three dimensions ([`FrictionState`], which has the equations). Without it, and with μ = 0 to the bit, the forces
+//! are those of `spring_load`.
 
 mod approach;
+mod approach_force;
 pub mod balance;
 mod below;
 mod coulomb;
@@ -44,44 +45,43 @@ mod damper;
 mod envelope;
 pub mod flat_rows;
 mod friction;
+mod grid_force;
 mod grid_lines;
+mod grid_press;
 mod hold_force;
-mod indentation;
 mod instructions;
 mod near_spheres;
 mod placed_sphere;
-mod press_force;
+mod press;
 mod raise;
-mod scene_meshes;
 mod sheet;
 mod simulate;
-mod skin_force;
 mod skin_mesh;
-mod skin_press;
 mod sphere_search;
 mod spring_load;
 mod swept_triangle;
 mod taxel_contact;
+mod tree_press;
 mod way;
+mod workspace;
 
-pub use approach::{Approach, SkinTouch};
+pub use approach::Approach;
 pub(crate) use below::Below;
 pub(crate) use damper::Relaxation;
 pub use damper::{DamperState, relaxation_factor};
 pub use friction::{FrictionLoad, FrictionState, Grip, GripCounts, NormalForce};
 pub(crate) use grid_lines::Lines;
+pub(crate) use grid_press::saturation_limit;
 pub use hold_force::{HeldForce, MovedObject};
-pub(crate) use indentation::saturation_limit;
-pub use indentation::{
-    Contact, Workspace, first_contact, press_at_pose, press_to_depth, press_to_travel,
-};
 pub use instructions::Instructions;
 pub(crate) use instructions::for_instructions;
-pub use press_force::press_to_force;
+pub use press::{
+    Contact, first_contact, press_at_pose, press_to_depth, press_to_force, press_to_travel,
+    press_with_contacts,
+};
 pub(crate) use raise::{beats, raise};
 pub use simulate::{Recording, simulate};
-pub use skin_force::{SkinPress, press_skin_to_force};
-pub use skin_press::{SkinContact, SkinWorkspace, deflect_skin, press_skin};
 pub use spring_load::{AxialLoad, SpringLoad, Wrench, axial_load, spring_load};
 pub use swept_triangle::stopping_height;
 pub use taxel_contact::{GRAZING, TaxelContact};
+pub use workspace::Workspace;

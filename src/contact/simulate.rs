@@ -1,9 +1,10 @@
 //! The time loop: a moving patch over moving or fixed objects.
 
-use super::{DamperState, Workspace};
+use super::{DamperState, Workspace, press_with_contacts};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
-use crate::world::{Scene, Taxels, VelocityPlan};
+use crate::objects::Model;
+use crate::world::{Patch, VelocityPlan};
 use ndarray::{Array1, Array2};
 
 /// Frames over time.
@@ -22,15 +23,16 @@ pub struct Recording {
 /// Moves the patch and the objects along their plans from t = 0 and records every `dt` seconds until `n_frames` frames
 /// are made; frame k is at (k + 1) dt.
 ///
-/// What comes through the front of the patch goes on pressing behind the substrate, as in a direct press: a sphere, or a mesh, that
-/// lies behind it counts if it counted in the frame before.
+/// What comes through the front of the patch goes on pressing behind the substrate, as in a direct press: what pushed a taxel in the
+/// frame before pushes it there, too.
 ///
 /// `world_from_objects`: one plan an object; a fixed object's plan has no phases. Any `dt` is stable.
 ///
 /// # Errors
 /// The error names a `dt` that is not positive, or a number of plans that is not the number of objects.
 pub fn simulate(
-    scene: &Scene,
+    patch: &Patch,
+    objects: &[Model],
     world_from_patch: &VelocityPlan,
     world_from_objects: &[VelocityPlan],
     dt: f64,
@@ -43,39 +45,39 @@ pub fn simulate(
             "a positive number",
         ));
     }
-    if world_from_objects.len() != scene.objects.len() {
+    if world_from_objects.len() != objects.len() {
         return Err(Error::input(
             "object trajectories",
             format!(
                 "{} plans for {} objects",
                 world_from_objects.len(),
-                scene.objects.len()
+                objects.len()
             ),
             "one plan an object",
         ));
     }
-    let n_taxels = scene.patch.grid.n_taxels();
+    let n_taxels = patch.n_taxels();
     let mut recording = Recording {
         time: Array1::from_shape_fn(n_frames, |k| (k + 1) as f64 * dt),
         deflection: Array2::zeros((n_frames, n_taxels)),
         force: Array2::zeros((n_frames, n_taxels)),
         n_saturated: 0,
     };
-    let taxels = Taxels::Equal(scene.patch.taxel);
     let mut state = DamperState::at_rest(n_taxels);
     let mut workspace = Workspace::new();
-    let mut poses: Vec<Pose> = Vec::with_capacity(scene.objects.len());
+    let mut poses: Vec<Pose> = Vec::with_capacity(objects.len());
     for frame in 0..n_frames {
         let time = recording.time[frame];
-        let patch = world_from_patch.pose_at(time);
+        let world_from_patch = world_from_patch.pose_at(time);
         poses.clear();
         poses.extend(
             world_from_objects
                 .iter()
-                .map(|plan| plan.pose_at(time).seen_from(&patch)),
+                .map(|plan| plan.pose_at(time).seen_from(&world_from_patch)),
         );
-        let contact = workspace.follow(scene, &poses);
-        state.step(&taxels, dt, workspace.deflections());
+        let contact = press_with_contacts(patch, objects, &poses, &mut workspace);
+        workspace.hold_touched();
+        state.step(patch.taxels(), dt, workspace.deflections());
         recording.n_saturated += contact.n_saturated;
         copy_into(&mut recording.deflection, frame, &state.deflection);
         copy_into(&mut recording.force, frame, &state.force);

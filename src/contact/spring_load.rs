@@ -1,7 +1,7 @@
 //! What the springs of a skin patch carry: forces, torques, and where.
 
 use super::taxel_contact::TaxelContact;
-use crate::world::SkinPatch;
+use crate::world::Patch;
 use glam::DVec3;
 use std::ops::{Add, Neg};
 
@@ -82,7 +82,7 @@ pub struct AxialLoad {
 /// # Panics
 /// If a contact has a taxel that the patch does not have.
 pub fn axial_load<'a>(
-    patch: &SkinPatch,
+    patch: &Patch,
     contacts: impl IntoIterator<Item = &'a TaxelContact>,
     mut force_of: impl FnMut(&TaxelContact) -> f64,
 ) -> AxialLoad {
@@ -109,7 +109,7 @@ pub fn axial_load<'a>(
 /// # Panics
 /// If a contact has a taxel that the patch does not have.
 pub fn spring_load<'a>(
-    patch: &SkinPatch,
+    patch: &Patch,
     contacts: impl IntoIterator<Item = &'a TaxelContact>,
 ) -> SpringLoad {
     let mut saturated = 0.0;

@@ -1,7 +1,7 @@
 //! One taxel on one object: how far it is pushed, and along which way the object feels it.
 
 use super::Wrench;
-use super::indentation::saturation_limit;
+use super::grid_press::saturation_limit;
 use crate::world::Taxel;
 use glam::DVec3;
 

@@ -1,10 +1,10 @@
 //! A patch on its way along a line past objects.
 
-use super::{SkinContact, SkinWorkspace, press_skin};
+use super::{Contact, FrictionState, NormalForce, Workspace, press_at_pose, press_with_contacts};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::objects::Model;
-use crate::world::{SkinPatch, Taxel};
+use crate::world::{Patch, Taxel};
 use glam::DVec3;
 
 /// Steps in which the way is looked at are this part of the shortest stroke. Larger: a short peak of the force may be jumped
@@ -18,11 +18,11 @@ const MOST_STEPS: f64 = 4096.0;
 
 /// A patch, and where the objects are before it goes along a direction (unit, in the patch frame).
 pub(super) struct Way<'a> {
-    pub patch: &'a SkinPatch,
+    pub patch: &'a Patch,
     pub objects: &'a [Model],
     pub patch_from_objects: &'a [Pose],
     pub direction: DVec3,
-    pub workspace: &'a mut SkinWorkspace,
+    pub workspace: &'a mut Workspace,
 }
 
 impl Way<'_> {
@@ -59,12 +59,12 @@ impl Way<'_> {
     }
 
     /// Presses after a travel.
-    pub fn press(&mut self, travel: f64) -> SkinContact {
+    pub fn press(&mut self, travel: f64) -> Contact {
         self.press_at(travel * self.direction)
     }
 
     /// Presses where the patch is after it has moved (metres, in the patch frame), which is the objects' motion the other way.
-    pub fn press_at(&mut self, moved: DVec3) -> SkinContact {
+    pub fn press_at(&mut self, moved: DVec3) -> Contact {
         let mut poses = std::mem::take(&mut self.workspace.poses);
         poses.clear();
         let back = -moved;
@@ -72,15 +72,63 @@ impl Way<'_> {
             translation: pose.translation + back,
             ..*pose
         }));
-        let counts = press_skin(self.patch, self.objects, &poses, self.workspace);
+        let counts = press_with_contacts(self.patch, self.objects, &poses, self.workspace);
         self.workspace.poses = poses;
         counts
     }
+
+    /// Presses from one travel to another, `None` where nothing is met, and slides along a straight line.
+    pub fn press_and_slide(
+        &mut self,
+        travels: Option<[f64; 2]>,
+        slide: DVec3,
+        mut friction: Option<&mut FrictionState>,
+    ) -> Option<Contact> {
+        self.workspace.hold([]);
+        if let Some(friction) = &mut friction {
+            friction.step(self.patch, &[], &[], NormalForce::Springs);
+        }
+        let Some([first, travel]) = travels else {
+            press_at_pose(self.patch, &[], &[], self.workspace);
+            return None;
+        };
+        let n_steps = |length| match friction {
+            Some(_) => self.n_friction_steps(length),
+            None => self.n_steps(length),
+        };
+        let direction = self.direction;
+        let depth = travel - first;
+        let pressed = parts([first, travel], n_steps(depth)).map(|part| part * direction);
+        let length = slide.length();
+        let n_slides = if length > 0.0 { n_steps(length) } else { 0 };
+        let slid = parts([0.0, 1.0], n_slides).map(|part| travel * direction + part * slide);
+        let mut contact = Contact::default();
+        for (number, place) in pressed.chain(slid).enumerate() {
+            if number > 0 {
+                self.workspace.hold_touched();
+            }
+            contact = self.press_at(place);
+            if let Some(friction) = &mut friction {
+                let (contacts, poses) = (self.workspace.contacts(), &self.workspace.poses);
+                friction.step(self.patch, contacts, poses, NormalForce::Springs);
+            }
+        }
+        self.workspace.hold([]);
+        Some(Contact { travel, ..contact })
+    }
+}
+
+/// The ends of so many equal parts of a stretch; the last is its end.
+fn parts([start, end]: [f64; 2], n: usize) -> impl Iterator<Item = f64> {
+    (1..=n).map(move |number| match number == n {
+        true => end,
+        false => start + (end - start) * number as f64 / n as f64,
+    })
 }
 
 /// The travels between which the balls around a patch that goes along a direction and objects meet; `None` if none does.
 pub(super) fn meeting(
-    patch: &SkinPatch,
+    patch: &Patch,
     objects: &[Model],
     patch_from_objects: &[Pose],
     direction: DVec3,

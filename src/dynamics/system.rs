@@ -1,10 +1,10 @@
 //! What moves: taxels with mass, and an object on a guide.
 
-use crate::contact::{SkinWorkspace, press_skin};
+use crate::contact::{Workspace, press_with_contacts};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::objects::Model;
-use crate::world::{SkinPatch, VelocityPlan};
+use crate::world::{Patch, VelocityPlan};
 use glam::DVec3;
 
 /// What moves the object along its guide.
@@ -28,7 +28,7 @@ pub enum Drive {
 #[derive(Clone, Debug)]
 pub struct System<'a> {
     /// The skin; all its axes are +z.
-    pub patch: &'a SkinPatch,
+    pub patch: &'a Patch,
     /// m of each taxel, kg.
     pub taxel_mass: f64,
     /// The object.
@@ -46,7 +46,7 @@ impl<'a> System<'a> {
     /// # Errors
     /// The error names a mass, a gravity or a reach that is not positive, and the first taxel whose axis is not +z.
     pub fn new(
-        patch: &'a SkinPatch,
+        patch: &'a Patch,
         taxel_mass: f64,
         object: &'a Model,
         pose: Pose,
@@ -118,10 +118,10 @@ fn positive(place: &str, value: f64, unit: &str) -> Result<()> {
 }
 
 /// Along the axes a taxel that is pushed is pushed as much further as the object goes: one press at the end of the reach tells all.
-fn starts(patch: &SkinPatch, object: &Model, pose: &Pose, reach: f64) -> Vec<f64> {
-    let mut workspace = SkinWorkspace::new();
+fn starts(patch: &Patch, object: &Model, pose: &Pose, reach: f64) -> Vec<f64> {
+    let mut workspace = Workspace::new();
     let low = Pose::new(pose.rotation, pose.translation - reach * DVec3::Z);
-    press_skin(patch, std::slice::from_ref(object), &[low], &mut workspace);
+    press_with_contacts(patch, std::slice::from_ref(object), &[low], &mut workspace);
     let mut starts = vec![f64::INFINITY; patch.n_taxels()];
     for contact in workspace.contacts() {
         starts[contact.taxel] = reach - contact.needed;

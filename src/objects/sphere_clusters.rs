@@ -97,7 +97,6 @@ impl SphereClusters {
         let first = self.starts[cluster] as usize;
         let [x, y, z] = &self.centers;
         Cluster {
-            first,
             n_spheres: self.starts[cluster + 1] as usize - first,
             centers: [lanes(&x[first..]), lanes(&y[first..]), lanes(&z[first..])],
             radii: lanes(&self.radii[first..]),
@@ -108,8 +107,6 @@ impl SphereClusters {
 /// The spheres of a cluster; in the lanes behind the last, any others.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cluster<'a> {
-    /// How many spheres are in clusters before it.
-    pub first: usize,
     pub n_spheres: usize,
     /// x, y, z in the object's frame, metres.
     pub centers: [&'a [f64; MOST_IN_CLUSTER]; 3],

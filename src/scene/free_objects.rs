@@ -5,7 +5,7 @@ use super::plan::ScenePlan;
 use super::plan_object::Movement;
 use super::skin_state::{OUT_OF_REACH, PlacedObjects, SkinState};
 use crate::contact::balance::{Balancer, FreeObject, Outcome, PlacedSkin};
-use crate::contact::{SkinWorkspace, press_skin};
+use crate::contact::{Workspace, press_with_contacts};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use glam::DVec3;
@@ -27,7 +27,7 @@ pub(super) struct FreeObjects {
     all: Vec<Free>,
     /// How far the others push each taxel of each patch; empty where they push none.
     pushed: Vec<Vec<f64>>,
-    workspace: SkinWorkspace,
+    workspace: Workspace,
     /// Steps whose rounds ended before all were at rest together.
     pub n_unfinished: usize,
 }
@@ -64,7 +64,7 @@ impl FreeObjects {
         Self {
             all: all.collect(),
             pushed: vec![Vec::new(); plan.patches.len()],
-            workspace: SkinWorkspace::new(),
+            workspace: Workspace::new(),
             n_unfinished: 0,
         }
     }
@@ -229,13 +229,13 @@ fn push_by_others(
     skins: &[SkinState],
     objects: &PlacedObjects,
     pushed: &mut [Vec<f64>],
-    workspace: &mut SkinWorkspace,
+    workspace: &mut Workspace,
 ) {
     for ((patch, skin), pushed) in plan.patches.iter().zip(skins).zip(pushed) {
         pushed.clear();
         if objects.can_reach(patch, &skin.pose) {
             let poses: Vec<Pose> = objects.seen_by(patch, &skin.pose).collect();
-            press_skin(&patch.skin, &plan.models, &poses, workspace);
+            press_with_contacts(&patch.skin, &plan.models, &poses, workspace);
             pushed.extend_from_slice(workspace.deflections());
         }
     }

@@ -9,13 +9,13 @@ use crate::error::Result;
 use crate::mesh::SizeLimits;
 use crate::random::Seed;
 use crate::study::{positive, read_mesh_file};
-use crate::world::{Grid, Layout, Patch, Shears, SkinPatch, Taxels};
+use crate::world::{Grid, Layout, Patch, Shears};
 
 /// A patch and where it is mounted.
 #[derive(Clone, Debug)]
 pub struct PlannedPatch {
     /// The patch.
-    pub skin: SkinPatch,
+    pub skin: Patch,
     /// What carries it.
     pub mount: Mount,
     /// The shear springs of its taxels, if it has friction.
@@ -25,15 +25,6 @@ pub struct PlannedPatch {
 }
 
 impl PlannedPatch {
-    /// As a grid, if it is a flat one of equal taxels.
-    pub fn grid(&self) -> Option<Patch> {
-        let grid = *self.skin.layout().as_grid()?;
-        match *self.skin.taxels() {
-            Taxels::Equal(taxel) => Some(Patch { grid, taxel }),
-            Taxels::Each(_) => None,
-        }
-    }
-
     /// Whether what was before decides what it feels: dampers and friction remember.
     pub fn remembers(&self) -> bool {
         let mut taxels = self.skin.taxels().all().iter();
@@ -77,7 +68,7 @@ impl Reader<'_> {
         let layout_key = &format!("{key}.layout");
         let layout = self.layout(layout_key, &spec.layout, &seed.named(&spec.name))?;
         let (taxels, shears) = self.taxels(key, spec, layout.n_taxels())?;
-        let skin = self.under(key, SkinPatch::new(&spec.name, layout, taxels))?;
+        let skin = self.under(key, Patch::new(&spec.name, layout, taxels))?;
         if let Some(shears) = &shears {
             self.under(key, shears.check(&skin))?;
         }

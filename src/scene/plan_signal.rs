@@ -10,7 +10,7 @@ use crate::signal::{
 };
 use crate::spelling::nearest_names;
 use crate::study::{NOISES, not_negative};
-use crate::world::SkinPatch;
+use crate::world::Patch;
 
 /// The key of smoothing, beside those of [noise](NOISES) and of sensor errors.
 const SMOOTHING: &str = "smoothing_mm";
@@ -62,7 +62,7 @@ impl Reader<'_> {
         &self,
         key: &str,
         steps: &[SignalStepSpec],
-        skin: &SkinPatch,
+        skin: &Patch,
         seed: &Seed,
     ) -> Result<Option<PlannedSignal>> {
         let Some(first) = steps.first() else {

@@ -3,7 +3,7 @@
 use super::frame::{Held, ObjectReading};
 use super::plan::ScenePlan;
 use super::skin_state::{PlacedObjects, SkinState};
-use crate::contact::{HeldForce, MovedObject, SkinWorkspace, TaxelContact};
+use crate::contact::{HeldForce, MovedObject, TaxelContact, Workspace};
 use crate::geometry::Pose;
 
 /// The way of a step is looked at in parts of at most this share of the shortest stroke. Larger: a short peak of the force may be
@@ -19,7 +19,7 @@ pub(super) struct PressedObjects {
     all: Vec<Pressed>,
     /// `patch_from_object`, one an object.
     poses: Vec<Pose>,
-    workspace: SkinWorkspace,
+    workspace: Workspace,
 }
 
 /// One of them.
@@ -46,7 +46,7 @@ impl PressedObjects {
         Self {
             all: pressed.map(at_start).collect(),
             poses: Vec::new(),
-            workspace: SkinWorkspace::new(),
+            workspace: Workspace::new(),
         }
     }
 
@@ -122,7 +122,7 @@ impl Pressed {
         moved: &MovedObject,
         poses: &mut [Pose],
         [way, farthest]: [f64; 2],
-        workspace: &mut SkinWorkspace,
+        workspace: &mut Workspace,
     ) {
         let start = poses[self.object];
         let strokes = moved.patch.taxels().all().iter().map(|taxel| taxel.stroke);

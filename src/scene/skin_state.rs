@@ -4,8 +4,8 @@ use super::frame::PatchReading;
 use super::mount::Mount;
 use super::plan_patch::PlannedPatch;
 use crate::contact::{
-    DamperState, FrictionState, GripCounts, NormalForce, SkinContact, SkinWorkspace, TaxelContact,
-    Wrench, axial_load, deflect_skin, press_skin,
+    Contact, DamperState, FrictionState, GripCounts, NormalForce, TaxelContact, Workspace, Wrench,
+    axial_load, press_at_pose, press_with_contacts,
 };
 use crate::geometry::Pose;
 use crate::objects::Model;
@@ -69,7 +69,7 @@ pub(super) struct SkinState {
     damper: DamperState,
     /// Nothing pushes it, and all its taxels are out.
     is_idle: bool,
-    workspace: SkinWorkspace,
+    workspace: Workspace,
     /// Of a patch with friction.
     friction: Option<FrictionState>,
     grips: GripCounts,
@@ -77,7 +77,7 @@ pub(super) struct SkinState {
     poses: Vec<Pose>,
     /// One a taxel: what nothing pushes.
     untouched: Vec<f64>,
-    counts: SkinContact,
+    counts: Contact,
 }
 
 impl SkinState {
@@ -93,12 +93,12 @@ impl SkinState {
             pose: Pose::IDENTITY,
             damper: DamperState::at_rest(n_taxels),
             is_idle: true,
-            workspace: SkinWorkspace::new(),
+            workspace: Workspace::new(),
             friction: friction.map(at_rest),
             grips: GripCounts::default(),
             poses: Vec::new(),
             untouched: vec![0.0; n_taxels],
-            counts: SkinContact::default(),
+            counts: Contact::default(),
         }
     }
 
@@ -138,7 +138,10 @@ impl SkinState {
         reading.deflection.clone_from(&self.damper.deflection);
         reading.force.clone_from(&self.damper.force);
         reading.n_saturated = self.counts.n_saturated;
-        reading.n_grazing = self.counts.n_grazing;
+        reading.n_grazing = contacts
+            .iter()
+            .filter(|contact| contact.is_grazing())
+            .count();
         for (taxel, force) in stops {
             reading.force[taxel] += force;
             let is_counted = contacts
@@ -176,7 +179,7 @@ impl SkinState {
         detail: Detail,
     ) {
         if !self.workspace.holds_any() && !objects.can_reach(patch, &self.pose) {
-            self.counts = SkinContact::default();
+            self.counts = Contact::default();
             if !self.is_idle {
                 self.damper.step(patch.skin.taxels(), dt, &self.untouched);
                 self.grip(patch, &Pressed::Nowhere);
@@ -193,9 +196,9 @@ impl SkinState {
         self.poses.extend(objects.seen_by(patch, &self.pose));
         let workspace = &mut self.workspace;
         if self.friction.is_some() || detail == Detail::Contacts {
-            self.counts = press_skin(&patch.skin, models, &self.poses, workspace);
+            self.counts = press_with_contacts(&patch.skin, models, &self.poses, workspace);
         } else {
-            deflect_skin(&patch.skin, models, &self.poses, workspace);
+            press_at_pose(&patch.skin, models, &self.poses, workspace);
         }
         let pushed = self.workspace.deflections();
         self.damper.step(patch.skin.taxels(), dt, pushed);

@@ -1,13 +1,10 @@
 //! Signal steps in the order in which the study lists them.
 
-use super::read_skin::Shape;
 use super::surface_smoothing::SurfaceSmoothing;
-use super::{
-    Effect, Noise, Quantity, ReadSkin, SignalStep, Skin, Smoothing, TouchRead, force, noise,
-};
+use super::{Effect, Noise, Quantity, SignalStep, Skin, Smoothing, TouchRead, force, noise};
 use crate::error::{Error, Result};
 use crate::random::Seed;
-use crate::world::Taxel;
+use crate::world::{Patch, Taxel};
 use std::sync::Arc;
 
 /// Checked signal steps, prepared for one patch of any layout. The empty chain leaves deflections as they are.
@@ -73,27 +70,21 @@ enum Prepared {
 }
 
 impl Chain {
-    /// Checks the steps in their order and prepares them for the layout and the taxels of a patch: a [`Patch`](crate::world::Patch) or a
-    /// [`SkinPatch`](crate::world::SkinPatch).
+    /// Checks the steps in their order and prepares them for the layout and the taxels of a patch.
     ///
     /// # Errors
     /// Force listed twice; a noise level or unit that the frame does not have by then (see [`Noise::std_of`]); a
     /// strength out of its step's range (see each step's own type); taxels that do not read alike; a step that this layout cannot have.
-    pub fn new<'s>(steps: &[SignalStep], skin: impl Into<ReadSkin<'s>>) -> Result<Self> {
-        Self::of(steps, skin, Quantity::Deflection)
+    pub fn new(steps: &[SignalStep], patch: &Patch) -> Result<Self> {
+        Self::of(steps, patch, Quantity::Deflection)
     }
 
     /// The same of frames that are something else than deflections when they come.
     ///
     /// # Errors
     /// Those of [`new`](Self::new).
-    pub fn of<'s>(
-        steps: &[SignalStep],
-        skin: impl Into<ReadSkin<'s>>,
-        quantity: Quantity,
-    ) -> Result<Self> {
-        let skin = skin.into();
-        Self::at_rest(&skin, quantity, false)?.with(steps, &skin)
+    pub fn of(steps: &[SignalStep], patch: &Patch, quantity: Quantity) -> Result<Self> {
+        Self::at_rest(patch, quantity, false)?.with(steps, patch)
     }
 
     /// The same of forces across the axes of taxels that read these too: newtons of either sign, with the full scale of those along the axes.
@@ -101,32 +92,31 @@ impl Chain {
     ///
     /// # Errors
     /// Those of [`new`](Self::new).
-    pub fn of_shear<'s>(steps: &[SignalStep], skin: impl Into<ReadSkin<'s>>) -> Result<Self> {
-        let skin = skin.into();
+    pub fn of_shear(steps: &[SignalStep], patch: &Patch) -> Result<Self> {
         let mut steps = steps.to_vec();
         steps.retain(|step| *step != SignalStep::Force);
-        Self::at_rest(&skin, Quantity::Force, true)?.with(&steps, &skin)
+        Self::at_rest(patch, Quantity::Force, true)?.with(&steps, patch)
     }
 
     /// Without steps.
-    fn at_rest(skin: &ReadSkin, quantity: Quantity, is_signed: bool) -> Result<Self> {
+    fn at_rest(patch: &Patch, quantity: Quantity, is_signed: bool) -> Result<Self> {
         Ok(Self {
             steps: Vec::new(),
             n_remembering: 0,
-            n_taxels: skin.n_taxels(),
-            taxel: skin.taxel()?,
+            n_taxels: patch.n_taxels(),
+            taxel: read_alike(patch)?,
             quantity,
             is_signed,
             scratch_len: 0,
         })
     }
 
-    fn with(mut self, steps: &[SignalStep], skin: &ReadSkin) -> Result<Self> {
+    fn with(mut self, steps: &[SignalStep], patch: &Patch) -> Result<Self> {
         let mut n_noises = 0;
         for step in steps {
             n_noises += u64::from(matches!(step, SignalStep::Noise(_)));
             let n_before = self.steps.len();
-            let prepared = self.prepare(step, n_noises, skin)?;
+            let prepared = self.prepare(step, n_noises, patch)?;
             self.steps.extend(prepared);
             if self.steps.len() > n_before && step.remembers() {
                 self.n_remembering = self.steps.len();
@@ -238,12 +228,12 @@ impl Chain {
         &mut self,
         step: &SignalStep,
         n_noises: u64,
-        skin: &ReadSkin,
+        patch: &Patch,
     ) -> Result<Option<Prepared>> {
         Ok(Some(match step {
             SignalStep::Force => self.prepare_force()?,
             SignalStep::Noise(noise) => self.prepare_noise(noise, n_noises)?,
-            SignalStep::Smoothing { width } => self.prepare_smoothing(*width, skin)?,
+            SignalStep::Smoothing { width } => self.prepare_smoothing(*width, patch)?,
             SignalStep::Error { strengths, .. } if strengths.iter().all(|&s| s == 0.0) => {
                 return Ok(None);
             }
@@ -254,7 +244,7 @@ impl Chain {
             } => {
                 let full_scale = self.quantity.full_scale(&self.taxel);
                 let skin = Skin {
-                    taxels: *skin,
+                    patch,
                     full_scale,
                     least: if self.is_signed { -full_scale } else { 0.0 },
                     name: *name,
@@ -281,10 +271,10 @@ impl Chain {
         Ok(Prepared::Noise { std, place })
     }
 
-    fn prepare_smoothing(&mut self, width: f64, skin: &ReadSkin) -> Result<Prepared> {
-        let smoothing: Box<dyn Effect> = match skin.shape() {
-            Shape::Grid(grid) => Box::new(Smoothing::new(width, &grid)?),
-            Shape::Surface(surface) => Box::new(SurfaceSmoothing::new(width, surface)?),
+    fn prepare_smoothing(&mut self, width: f64, patch: &Patch) -> Result<Prepared> {
+        let smoothing: Box<dyn Effect> = match patch.layout().as_grid() {
+            Some(grid) => Box::new(Smoothing::new(width, grid)?),
+            None => Box::new(SurfaceSmoothing::new(width, patch)?),
         };
         Ok(self.prepare_effect(smoothing))
     }
@@ -292,6 +282,24 @@ impl Chain {
     fn prepare_effect(&mut self, effect: Box<dyn Effect>) -> Prepared {
         self.scratch_len = self.scratch_len.max(effect.scratch_len());
         Prepared::Effect(effect.into())
+    }
+}
+
+/// What every taxel of a patch is, but for its radius.
+///
+/// # Errors
+/// Taxels that differ in stroke, stiffness or damping: a share of the full scale would be another one of each.
+fn read_alike(patch: &Patch) -> Result<Taxel> {
+    let reads = |taxel: &Taxel| (taxel.stroke, taxel.stiffness, taxel.damping);
+    let first = *patch.taxels().at(0);
+    let mut others = patch.taxels().all().iter();
+    match others.all(|other| reads(other) == reads(&first)) {
+        true => Ok(first),
+        false => Err(Error::input(
+            format!("signal of skin patch {}", patch.name()),
+            "taxels of unlike stroke, stiffness or damping",
+            "taxels that read alike",
+        )),
     }
 }
 

@@ -6,7 +6,6 @@
 //! but adds none. Four neighbours and not eight, because coupling falls with distance: a diagonal one gets its share by
 //! leaking twice.
 
-use super::read_skin::Shape;
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use super::strength::fraction;
 use crate::error::Result;
@@ -58,11 +57,11 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout::new(
     "crosstalk",
     &[Strength::fraction("crosstalk", "crosstalk")],
     |&[leak, _], skin| {
-        Ok(match skin.taxels.shape() {
-            Shape::Grid(grid) => Box::new(Crosstalk::new(leak, &grid)?),
-            Shape::Surface(surface) => Box::new(SurfaceLeak {
+        Ok(match skin.patch.layout().as_grid() {
+            Some(grid) => Box::new(Crosstalk::new(leak, grid)?),
+            None => Box::new(SurfaceLeak {
                 leak: fraction("crosstalk", leak)?,
-                neighbours: Neighbours::of(surface),
+                neighbours: Neighbours::of(skin.patch),
             }),
         })
     },

@@ -103,7 +103,7 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
                 skin: skin.name,
             };
             Ok(Box::new(
-                drift.zeros(skin.taxels.n_taxels(), skin.full_scale)?,
+                drift.zeros(skin.patch.n_taxels(), skin.full_scale)?,
             ))
         },
     )

@@ -68,7 +68,7 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
                 skin: skin.name,
             };
             let range = [skin.least, skin.full_scale];
-            let taxels = faults.taxels(skin.taxels.n_taxels(), range)?;
+            let taxels = faults.taxels(skin.patch.n_taxels(), range)?;
             Ok(Box::new(Levels(taxels)))
         },
     )

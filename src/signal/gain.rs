@@ -49,7 +49,7 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
                 std,
                 skin: skin.name,
             };
-            Ok(Box::new(Gains(mismatch.gains(skin.taxels.n_taxels())?)))
+            Ok(Box::new(Gains(mismatch.gains(skin.patch.n_taxels())?)))
         },
     )
 };

@@ -14,7 +14,6 @@
 //!
 //! \[DA\] D'Alessio, *Measurement errors in the scanning of piezoresistive sensors arrays*, Sensors and Actuators A 72, 1999.
 
-use super::read_skin::Shape;
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use super::strength::not_negative;
 use crate::error::{Error, Result};
@@ -140,7 +139,7 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
             "zero or a positive part of the resistance of a fully pressed taxel",
         )],
         |&[resistance, _], skin| {
-            let Shape::Grid(grid) = skin.taxels.shape() else {
+            let Some(grid) = skin.patch.layout().as_grid() else {
                 let allowed = "a grid: a matrix has rows and columns";
                 return Err(Error::input(
                     "matrix readout",
@@ -152,7 +151,7 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
                 let allowed = "forces along the axes: a resistance has no sign";
                 return Err(Error::input("matrix readout", "shear", allowed));
             }
-            let readout = MatrixReadout::new(resistance, skin.full_scale, &grid)?;
+            let readout = MatrixReadout::new(resistance, skin.full_scale, grid)?;
             Ok(Box::new(readout))
         },
     )

@@ -38,7 +38,6 @@
 mod chain;
 mod force;
 mod noise;
-mod read_skin;
 #[macro_use]
 mod sensor_error;
 mod smoothing;
@@ -69,7 +68,6 @@ pub use hysteresis::Hysteresis;
 pub use matrix_readout::MatrixReadout;
 pub use noise::{Noise, NoiseUnit};
 pub use quantisation::Quantisation;
-pub use read_skin::{ReadSkin, Shape};
 pub use scan::Scan;
 pub use sensor_error::{Effect, ErrorAbout, MOST_STRENGTHS, Prepare, Skin, Strength, TouchRead};
 pub use smoothing::Smoothing;

@@ -1,8 +1,9 @@
 //! What a sensor error says of itself: its step, its strengths, what it belongs to, what it costs, and how it is made.
 
-use super::{ReadSkin, SENSOR_ERRORS, SensorError, SignalStep};
+use super::{SENSOR_ERRORS, SensorError, SignalStep};
 use crate::error::Result;
 use crate::random::Seed;
+use crate::world::Patch;
 use std::fmt::Debug;
 
 /// A number that says how strong a sensor error is; zero is none of it.
@@ -53,7 +54,7 @@ pub const MOST_STRENGTHS: usize = 2;
 #[derive(Clone, Copy, Debug)]
 pub struct Skin<'a> {
     /// Its taxels.
-    pub taxels: ReadSkin<'a>,
+    pub patch: &'a Patch,
     /// The value of a taxel at its stroke: metres, or newtons.
     pub full_scale: f64,
     /// The least value that it reads: zero, or minus the full scale of values that have a sign.

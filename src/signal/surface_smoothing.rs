@@ -5,7 +5,7 @@
 
 use super::sensor_error::{Effect, TouchRead};
 use crate::error::{Error, Result};
-use crate::world::{Neighbours, SkinPatch};
+use crate::world::{Neighbours, Patch};
 
 /// The kernel's reach in widths.
 const TRUNCATE: f64 = 4.0;
@@ -27,7 +27,7 @@ impl SurfaceSmoothing {
     ///
     /// # Errors
     /// A negative or non-finite width; one that reaches so many taxels that their weights have no room.
-    pub fn new(width: f64, skin: &SkinPatch) -> Result<Self> {
+    pub fn new(width: f64, skin: &Patch) -> Result<Self> {
         let refused =
             |allowed: &str| Error::input("smoothing width", format!("{width} m"), allowed);
         if !(width >= 0.0 && width.is_finite()) {

@@ -2,17 +2,16 @@
 
 use super::sensed::Sensed;
 use super::taxel_array::TaxelArray;
-use crate::contact::{Approach, Contact, FrictionState, SkinWorkspace, Workspace, press_to_depth};
+use crate::contact::{Approach, Contact, FrictionState, Workspace, press_to_depth};
 use crate::geometry::Pose;
 use crate::objects::Model;
-use crate::world::{Scene, Shears};
-use glam::DVec3;
+use crate::world::Shears;
+use glam::{DVec2, DVec3};
 
 /// What a thread touches in.
 #[derive(Debug, Default)]
 pub struct ArrayWorkspace {
-    grid: Workspace,
-    skin: SkinWorkspace,
+    press: Workspace,
     /// Of the array that it touches with.
     friction: Option<FrictionState>,
 }
@@ -20,28 +19,16 @@ pub struct ArrayWorkspace {
 /// An array and one object.
 pub struct ArrayPress<'a> {
     array: &'a TaxelArray,
-    ways: Ways<'a>,
-}
-
-enum Ways<'a> {
-    /// Of a square grid along its axis.
-    Grid(Scene),
-    /// Of a skin.
-    Skin(Box<Approach<'a>>, [Model; 1]),
+    object: [Model; 1],
 }
 
 impl TaxelArray {
     /// Brings it to one object.
     pub fn press<'a>(&'a self, object: &Model) -> ArrayPress<'a> {
-        let ways = match self.skin() {
-            None => Ways::Grid(Scene::of_one(self.square(), object)),
-            Some(skin) => {
-                let approach = Approach::new(skin, DVec3::Z);
-                let approach = approach.expect("an axis has length one");
-                Ways::Skin(Box::new(approach), [object.clone()])
-            }
-        };
-        ArrayPress { array: self, ways }
+        ArrayPress {
+            array: self,
+            object: [object.clone()],
+        }
     }
 }
 
@@ -54,27 +41,19 @@ impl ArrayPress<'_> {
         (depth, part): (f64, f64),
         workspace: &mut ArrayWorkspace,
     ) -> Option<Contact> {
-        let slide = self.array.slide();
+        let (patch, slide) = (self.array.patch(), self.array.slide());
         let way = part * (depth + slide.length());
-        match &self.ways {
-            Ways::Grid(scene) => press_to_depth(scene, &[pose], way, &mut workspace.grid),
-            Ways::Skin(approach, object) => {
-                let slid = (way - depth).max(0.0) * slide.normalize_or_zero();
-                let motion = (way.min(depth), slid.extend(0.0));
-                let ArrayWorkspace { skin, friction, .. } = workspace;
-                if let Sensed::Shear(shear) = *self.array.sensed() {
-                    let at_rest = || FrictionState::at_rest(approach.patch(), Shears::Equal(shear));
-                    friction.get_or_insert_with(|| at_rest().expect("checked shear springs"));
-                }
-                let touch =
-                    approach.press_and_slide(object, &[pose], motion, friction.as_mut(), skin)?;
-                Some(Contact {
-                    travel: touch.travel,
-                    n_touched: touch.counts.n_touched,
-                    n_saturated: touch.counts.n_saturated,
-                })
-            }
+        let ArrayWorkspace { press, friction } = workspace;
+        if let Sensed::Shear(shear) = *self.array.sensed() {
+            let at_rest = || FrictionState::at_rest(patch, Shears::Equal(shear));
+            friction.get_or_insert_with(|| at_rest().expect("checked shear springs"));
+        } else if slide == DVec2::ZERO {
+            return press_to_depth(patch, &self.object, &[pose], way, press);
         }
+        let slid = (way - depth).max(0.0) * slide.normalize_or_zero();
+        let motion = (way.min(depth), slid.extend(0.0));
+        let approach = Approach::new(patch, DVec3::Z).expect("an axis has length one");
+        approach.press_and_slide(&self.object, &[pose], motion, friction.as_mut(), press)
     }
 
     /// Where the object is at the end of a touch from a pose: in the patch frame.
@@ -88,14 +67,11 @@ impl ArrayPress<'_> {
     /// What the array reads of the last touch, channel by channel: [`n_values`](TaxelArray::n_values), metres of deflection, then newtons of
     /// shear.
     pub fn values<'w>(&self, workspace: &'w ArrayWorkspace) -> impl Iterator<Item = f64> + 'w {
-        let (deflections, forces) = match self.ways {
-            Ways::Grid(_) => (workspace.grid.deflections(), None),
-            Ways::Skin(..) => (workspace.skin.deflections(), workspace.friction.as_ref()),
-        };
+        let forces = workspace.friction.as_ref();
         let forces = forces.map_or(&[][..], FrictionState::force3);
         let across = [|force: &DVec3| force.x, |force: &DVec3| force.y];
         let across = across.into_iter();
         let across = across.flat_map(move |along| forces.iter().map(along));
-        deflections.iter().copied().chain(across)
+        workspace.press.deflections().iter().copied().chain(across)
     }
 }

@@ -5,7 +5,7 @@ use super::plan::{Plan, millimetres};
 use super::samples::{Samples, Snapshots, named_samples};
 use super::taxel_array::TaxelArray;
 use super::touch_set::TouchSet;
-use crate::contact::SkinWorkspace;
+use crate::contact::Workspace;
 use crate::error::{Error, Result};
 use crate::signal::Quantity;
 use ndarray::Array2;
@@ -22,18 +22,17 @@ const N_LOOKED_AT: usize = 10;
 pub fn human_samples(plan: &Plan, touches: &HumanTouches) -> Result<Samples> {
     let n_taxels = |array: &&TaxelArray| array.n_taxels();
     // The first of several.
-    let patch = plan.arrays.iter().rev().max_by_key(n_taxels);
-    let patch = *patch
-        .ok_or_else(|| Error::input("study", "no cells", "at least one value an axis"))?
-        .square();
-    let grid = patch.grid;
-    let skin = touches.spec.skin(&patch)?;
+    let array = plan.arrays.iter().rev().max_by_key(n_taxels);
+    let no_cells = || Error::input("study", "no cells", "at least one value an axis");
+    let array = array.ok_or_else(no_cells)?;
+    let grid = array.grid();
+    let skin = touches.spec.skin(array)?;
     let interval = touches.spec.interval();
     let mut frames = Vec::new();
     let chosen = named_samples(plan, &touches.class_names())?;
     for label in chosen.unwrap_or_else(|| (0..touches.spec.kinds.len()).collect()) {
         let first = touches.of(label).par_iter().take(N_LOOKED_AT);
-        let recorded = first.map_init(SkinWorkspace::new, |room, touch| {
+        let recorded = first.map_init(Workspace::new, |room, touch| {
             let mut rows = Array2::zeros((touches.spec.n_frames(), grid.n_taxels()));
             record_touch(&skin, touch, interval, rows.view_mut(), room);
             rows

@@ -10,11 +10,11 @@ use super::spec::HumanTouchSpec;
 use super::sweep::Sweep;
 use super::taxel_array::TaxelArray;
 use super::touch_set::TouchSet;
-use crate::contact::{SkinWorkspace, press_skin};
+use crate::contact::{Workspace, press_with_contacts};
 use crate::error::{Error, Result};
 use crate::objects::{Hand, Model};
 use crate::random::Seed;
-use crate::world::{HumanTouch, SkinPatch, TouchRanges};
+use crate::world::{HumanTouch, Patch, TouchRanges};
 use ndarray::ArrayViewMut2;
 use rand::Rng;
 use rayon::prelude::*;
@@ -77,11 +77,11 @@ impl HumanTouches {
 
 /// Records a touch into its frames, n_frames × n_taxels metres: whether it met nothing, and whether it saturated a taxel.
 pub fn record_touch(
-    skin: &SkinPatch,
+    skin: &Patch,
     touch: &RecordedTouch,
     interval: f64,
     mut rows: ArrayViewMut2<f32>,
-    workspace: &mut SkinWorkspace,
+    workspace: &mut Workspace,
 ) -> (bool, bool) {
     let (mut n_touched, mut n_saturated) = (0, 0);
     // Most hands only move, and keep their spheres.
@@ -91,7 +91,7 @@ pub fn record_touch(
         let known = shape.take().filter(|(hand, _)| *hand == state.hand);
         let (_, hand) =
             shape.insert(known.unwrap_or_else(|| (state.hand, [state.spheres().into()])));
-        let contact = press_skin(skin, hand, &[state.patch_from_hand], workspace);
+        let contact = press_with_contacts(skin, hand, &[state.patch_from_hand], workspace);
         n_touched += contact.n_touched;
         n_saturated += contact.n_saturated;
         for (to, &from) in row.into_iter().zip(workspace.deflections()) {
@@ -115,14 +115,14 @@ impl TouchSet for HumanTouches {
         place: &FramePlace,
         progress: &dyn Progress,
     ) -> Result<Frames> {
-        let skin = self.spec.skin(array.square());
+        let skin = self.spec.skin(array);
         let skin = skin.expect("the plan has checked that it fits");
         let interval = self.spec.interval();
         let mut frames = Frames::new((array.n_taxels(), n_frames), place)?;
         let record = |touch: &_, workspace: &mut _, rows: ArrayViewMut2<f32>| {
             record_touch(&skin, touch, interval, rows, workspace)
         };
-        frames.make(&self.touches, SkinWorkspace::new, record, progress)?;
+        frames.make(&self.touches, Workspace::new, record, progress)?;
         Ok(frames)
     }
 

@@ -5,7 +5,7 @@ use super::plan::{MM, MOST_FRAMES, millimetres};
 use super::spec::{HumanTouchSpec, ObjectsSpec, StudySpec, TouchesSpec};
 use super::taxel_array::TaxelArray;
 use crate::error::Result;
-use crate::world::{Layout, Patch, SkinPatch, Taxels};
+use crate::world::{Layout, Patch, Taxels};
 
 impl HumanTouchSpec {
     /// From the axis of the arm to the outside of its skin, metres.
@@ -32,10 +32,10 @@ impl HumanTouchSpec {
     ///
     /// # Errors
     /// An array that does not fit around the arm.
-    pub fn skin(&self, patch: &Patch) -> Result<SkinPatch> {
-        let radius = self.surface() - patch.taxel.radius;
-        let layout = Layout::bent_grid(&patch.grid, radius)?;
-        SkinPatch::new("forearm", layout, Taxels::Equal(patch.taxel))
+    pub fn skin(&self, array: &TaxelArray) -> Result<Patch> {
+        let taxel = *array.taxel();
+        let layout = Layout::bent_grid(array.grid(), self.surface() - taxel.radius)?;
+        Patch::new("forearm", layout, Taxels::Equal(taxel))
     }
 }
 
@@ -70,16 +70,16 @@ impl Check<'_> {
             return Err(self.error("human_touch", format!("{n_frames} frames a touch"), allowed));
         }
         let mut arrays = arrays.iter();
-        arrays.try_for_each(|array| self.fits_around(human, array.square()))
+        arrays.try_for_each(|array| self.fits_around(human, array))
     }
 
     /// An array leaves a gap of a pitch at least on the arm's other side, and no layout rounds its rows and columns.
-    fn fits_around(&self, human: &HumanTouchSpec, patch: &Patch) -> Result<()> {
-        let grid = &patch.grid;
-        let radius = human.surface() - patch.taxel.radius;
+    fn fits_around(&self, human: &HumanTouchSpec, array: &TaxelArray) -> Result<()> {
+        let grid = array.grid();
+        let radius = human.surface() - array.taxel().radius;
         let around = std::f64::consts::TAU * radius;
         let width = grid.nx as f64 * grid.pitch;
-        if radius > 0.0 && width <= around && human.skin(patch)?.n_taxels() == grid.n_taxels() {
+        if radius > 0.0 && width <= around && human.skin(array)?.n_taxels() == grid.n_taxels() {
             return Ok(());
         }
         let (pitch_mm, width_mm) = (millimetres(grid.pitch), width / MM);

@@ -9,7 +9,7 @@ use super::spec::{
 use super::taxel_array::TaxelArray;
 use crate::error::Result;
 use crate::mesh::SizeLimits;
-use crate::world::{Grid, Patch, Placement, Spread, Taxel};
+use crate::world::{Grid, Placement, Spread, Taxel};
 
 /// Taxels along a side of an array, at most.
 pub(super) const MOST_SIDE: usize = 4096;
@@ -41,9 +41,9 @@ impl ObjectsSpec {
     /// Says how large objects may be whose files have no unit.
     pub(crate) fn settle_sizes(&mut self, arrays: &[TaxelArray]) {
         let feels = |array: &TaxelArray| {
-            let patch = array.square();
-            let n = patch.grid.nx.max(patch.grid.ny);
-            (n as f64 * patch.grid.pitch, patch.taxel.radius)
+            let grid = array.grid();
+            let n = grid.nx.max(grid.ny);
+            (n as f64 * grid.pitch, array.taxel().radius)
         };
         self.sizes = Some(SizeLimits::of_arrays(arrays.iter().map(feels)));
     }
@@ -140,8 +140,9 @@ impl Check<'_> {
                     ny: n,
                     pitch: pitch_mm * MM,
                 };
-                let square = Patch::new(grid, taxel)?;
-                let array = TaxelArray::new(layout, square, radius);
+                grid.check()?;
+                taxel.check()?;
+                let array = TaxelArray::new(layout, (grid, taxel), radius);
                 let place = || format!("{}, key skin.curvature_radius_mm, ", self.place);
                 arrays.push(array.map_err(|error| error.under(place()))?);
             }
@@ -150,7 +151,7 @@ impl Check<'_> {
     }
 
     /// The arrays of a study that has square grids alone.
-    pub fn grids(&self, skin: &SkinSpec) -> Result<Vec<Patch>> {
+    pub fn grids(&self, skin: &SkinSpec) -> Result<Vec<TaxelArray>> {
         let only = |key: &str, what: &str| {
             let allowed = format!("no such key: only studies of recognition have {what}");
             Err(self.error(key, "given", allowed))
@@ -161,16 +162,15 @@ impl Check<'_> {
         if skin.sensed.is_some() || skin.friction.is_some() {
             return only("skin.sensed", "skins that read shear");
         }
-        let arrays = self.arrays(skin)?;
-        Ok(arrays.iter().map(|array| *array.square()).collect())
+        self.arrays(skin)
     }
 
     /// The array of a study that has no axis of arrays; `allowed` says so.
-    pub fn one_array(&self, skin: &SkinSpec, allowed: &str) -> Result<Patch> {
-        let arrays = self.grids(skin)?;
-        match arrays[..] {
-            [patch] => Ok(patch),
-            _ => Err(self.error("skin", format!("{} arrays", arrays.len()), allowed)),
+    pub fn one_array(&self, skin: &SkinSpec, allowed: &str) -> Result<TaxelArray> {
+        let mut arrays = self.grids(skin)?;
+        match (arrays.pop(), arrays.len()) {
+            (Some(array), 0) => Ok(array),
+            (_, n) => Err(self.error("skin", format!("{} arrays", n + 1), allowed)),
         }
     }
 

@@ -56,8 +56,8 @@ impl TaxelArray {
                 steps.insert(0, SignalStep::Force);
             }
             match channel {
-                0 => Chain::new(&steps, self),
-                _ => Chain::of_shear(&steps, self),
+                0 => Chain::new(&steps, self.patch()),
+                _ => Chain::of_shear(&steps, self.patch()),
             }
         };
         channels.map(chain).collect()

@@ -229,7 +229,7 @@ impl Sweep {
     fn add_group(&mut self, plan: &Plan, mut group: Group, train_touches: &[usize]) -> Result<()> {
         let array = &plan.arrays[group.array];
         let (ny, nx) = array.shape();
-        if array.skin().is_some() {
+        if !array.is_plain() {
             // A step that its layout cannot have is known before anything runs.
             let skin = skin(&Seed::new(plan.spec.seed), array);
             array.chains(&skin, |skin| signal_steps(plan, &group, skin))?;
@@ -257,7 +257,7 @@ impl Sweep {
                 pitch_mm: millimetres(array.pitch()),
                 nx,
                 ny,
-                size_mm: millimetres(array.pitch() * array.square().grid.nx as f64),
+                size_mm: millimetres(array.pitch() * array.grid().nx as f64),
                 noise_std: group.condition.noise,
                 noise_unit: plan.noise_unit,
                 smoothing_mm: millimetres(group.condition.smoothing),

@@ -3,8 +3,7 @@
 use super::plan::millimetres;
 use super::sensed::Sensed;
 use crate::error::Result;
-use crate::signal::ReadSkin;
-use crate::world::{ArrayLayout, Patch, SkinPatch, Taxel, Taxels};
+use crate::world::{ArrayLayout, Grid, Patch, Taxel, Taxels};
 use glam::DVec2;
 use ndarray::Array2;
 use std::sync::Arc;
@@ -15,53 +14,38 @@ const PICTURE_CELLS: f64 = 3.0;
 /// A square grid of taxels, or a layout that is made as dense and as large; what they read; and how they are drawn along what they touch.
 #[derive(Clone, Debug)]
 pub struct TaxelArray {
-    square: Patch,
+    grid: Grid,
+    taxel: Taxel,
     layout: ArrayLayout,
     /// Of curvature, metres; 0 of a flat layout.
     radius: f64,
     sensed: Sensed,
     slide: DVec2,
-    /// Its taxels one by one; none of a square grid that reads what pushes it in and does not slide.
-    skin: Option<Arc<SkinPatch>>,
-}
-
-impl From<Patch> for TaxelArray {
-    fn from(square: Patch) -> Self {
-        Self {
-            square,
-            layout: ArrayLayout::Grid,
-            radius: 0.0,
-            sensed: Sensed::Deflection,
-            slide: DVec2::ZERO,
-            skin: None,
-        }
-    }
-}
-
-impl<'a> From<&'a TaxelArray> for ReadSkin<'a> {
-    fn from(array: &'a TaxelArray) -> Self {
-        match array.skin() {
-            None => (&array.square).into(),
-            Some(skin) => skin.into(),
-        }
-    }
+    patch: Arc<Patch>,
 }
 
 impl TaxelArray {
     /// A layout in place of a square grid's; `radius`: of curvature, metres, of no use to a flat one.
     ///
     /// # Errors
-    /// A radius around which it does not fit.
-    pub fn new(layout: ArrayLayout, square: Patch, radius: f64) -> Result<Self> {
-        let mut array = Self {
+    /// A grid or a taxel that cannot be; a radius around which it does not fit.
+    pub fn new(layout: ArrayLayout, (grid, taxel): (Grid, Taxel), radius: f64) -> Result<Self> {
+        let patch = match layout {
+            ArrayLayout::Grid => Patch::grid(grid, taxel)?,
+            _ => {
+                let places = layout.taxels(&grid, radius)?;
+                Patch::new(layout.words(), places, Taxels::Equal(taxel))?
+            }
+        };
+        Ok(Self {
+            grid,
+            taxel,
             layout,
             radius: if layout.is_curved() { radius } else { 0.0 },
-            ..Self::from(square)
-        };
-        if layout != ArrayLayout::Grid {
-            array.make_skin()?;
-        }
-        Ok(array)
+            sensed: Sensed::Deflection,
+            slide: DVec2::ZERO,
+            patch: Arc::new(patch),
+        })
     }
 
     /// The same that reads something else, and slides along its own x and y (metres) once it is pressed.
@@ -73,24 +57,17 @@ impl TaxelArray {
             shear.check()?;
         }
         (self.sensed, self.slide) = (sensed, slide);
-        let needs_skin = sensed.n_channels() > 1 || slide != DVec2::ZERO;
-        if needs_skin && self.skin.is_none() {
-            self.make_skin()?;
-        }
         Ok(self)
     }
 
-    fn make_skin(&mut self) -> Result<()> {
-        let (square, layout) = (&self.square, self.layout);
-        let taxels = layout.taxels(&square.grid, self.radius)?;
-        let skin = SkinPatch::new(layout.words(), taxels, Taxels::Equal(square.taxel))?;
-        self.skin = Some(Arc::new(skin));
-        Ok(())
+    /// Its taxels.
+    pub fn patch(&self) -> &Patch {
+        &self.patch
     }
 
     /// The square grid: that it is, or that the layout is as dense and as large as.
-    pub fn square(&self) -> &Patch {
-        &self.square
+    pub fn grid(&self) -> &Grid {
+        &self.grid
     }
 
     /// How its taxels lie.
@@ -103,6 +80,13 @@ impl TaxelArray {
         &self.sensed
     }
 
+    /// Whether it is a square grid that reads what pushes it in and does not slide.
+    pub fn is_plain(&self) -> bool {
+        self.layout == ArrayLayout::Grid
+            && self.sensed.n_channels() == 1
+            && self.slide == DVec2::ZERO
+    }
+
     /// How far it goes along its own x and y once it is pressed, metres.
     pub fn slide(&self) -> DVec2 {
         self.slide
@@ -110,20 +94,12 @@ impl TaxelArray {
 
     /// What each of its taxels is.
     pub fn taxel(&self) -> &Taxel {
-        &self.square.taxel
-    }
-
-    /// Its taxels one by one; none of a square grid that reads what pushes it in and does not slide.
-    pub fn skin(&self) -> Option<&SkinPatch> {
-        self.skin.as_deref()
+        &self.taxel
     }
 
     /// How many taxels.
     pub fn n_taxels(&self) -> usize {
-        match self.skin() {
-            None => self.square.grid.n_taxels(),
-            Some(skin) => skin.n_taxels(),
-        }
+        self.patch.n_taxels()
     }
 
     /// How many numbers a frame has: one or more a taxel, channel by channel.
@@ -133,7 +109,7 @@ impl TaxelArray {
 
     /// Rows and columns; `None` where a layout has none.
     pub fn sides(&self) -> Option<(usize, usize)> {
-        self.layout().sides(&self.square.grid)
+        self.layout.sides(&self.grid)
     }
 
     /// Rows and columns; one row of all taxels where a layout has none.
@@ -149,7 +125,7 @@ impl TaxelArray {
 
     /// Metres between taxels of the square grid.
     pub fn pitch(&self) -> f64 {
-        self.square.grid.pitch
+        self.grid.pitch
     }
 
     /// In words: `64×64 at 2 mm`.
@@ -178,10 +154,10 @@ impl TaxelArray {
     /// of three cells a pitch, seen along the axis in the middle, and none where none is near.
     pub fn picture_cells(&self) -> Array2<Option<usize>> {
         let (ny, nx) = self.shape();
-        let Some(skin) = self.skin().filter(|_| self.is_drawn()) else {
+        if !self.is_drawn() {
             return Array2::from_shape_fn((ny, nx), |(row, column)| Some(row * nx + column));
-        };
-        let centers = skin.layout().centers();
+        }
+        let centers = self.patch.layout().centers();
         let widest = centers.iter().map(|c| c.x.abs().max(c.y.abs()));
         let half = widest.fold(0.0, f64::max) + 0.5 * self.pitch();
         let cell = self.pitch() / PICTURE_CELLS;
@@ -207,19 +183,20 @@ impl TaxelArray {
 
     /// Whether its pictures show other cells than rows and columns.
     fn is_drawn(&self) -> bool {
-        !matches!(self.layout(), ArrayLayout::Grid | ArrayLayout::Cylinder)
+        !matches!(self.layout, ArrayLayout::Grid | ArrayLayout::Cylinder)
     }
 
     /// All that its frames depend on.
     pub fn content(&self) -> String {
         let Self {
-            square,
+            grid,
+            taxel,
             layout,
             radius,
             sensed,
             slide,
-            skin: _,
+            patch: _,
         } = self;
-        format!("{square:?} {layout:?} {radius} {sensed:?} {slide}")
+        format!("{grid:?} {taxel:?} {layout:?} {radius} {sensed:?} {slide}")
     }
 }

@@ -189,10 +189,11 @@ pub fn write_touches(
 
 /// Where the taxels of a layout are that is no grid, and their axes.
 fn write_taxels(folder: &Path, array: &TaxelArray) -> Result<()> {
-    let Some(skin) = array.skin().filter(|_| array.layout() != ArrayLayout::Grid) else {
+    if array.layout() == ArrayLayout::Grid {
         return Ok(());
-    };
-    let (centers, axes) = (skin.layout().centers(), skin.layout().axes());
+    }
+    let layout = array.patch().layout();
+    let (centers, axes) = (layout.centers(), layout.axes());
     let mut file = NpyFile::create(&folder.join("taxels.npy"), "<f8", &[centers.len(), 6])?;
     for (center, axis) in centers.iter().zip(axes) {
         let numbers = center.to_array().into_iter().chain(axis.to_array());

@@ -3,7 +3,7 @@
 use super::Layout;
 use super::extrusion::check_angle;
 use super::layout::check_count;
-use super::patch::check_positive;
+use super::taxel::check_positive;
 use crate::error::Result;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};

@@ -4,8 +4,8 @@
 //! of taxels are made of them.
 
 use super::layout::check_count;
-use super::patch::check_positive;
 use super::ring::{Ring, ends_of_steps, n_steps};
+use super::taxel::check_positive;
 use super::{Grid, Layout};
 use crate::error::{Error, Result};
 use glam::{DMat3, DVec2, DVec3};

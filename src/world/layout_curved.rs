@@ -2,8 +2,8 @@
 
 use super::extrusion::check_angle;
 use super::layout::{Layout, check_count};
-use super::patch::check_positive;
 use super::ring::{Ring, n_steps};
+use super::taxel::check_positive;
 use super::{Extrusion, Grid};
 use crate::error::Result;
 use glam::DVec3;

@@ -1,7 +1,7 @@
 //! A layout draped over a triangle mesh: taxels at least so far apart, and no place without one nearby.
 
 use super::Layout;
-use super::patch::check_positive;
+use super::taxel::check_positive;
 use crate::error::{Error, Result};
 use crate::mesh::{Triangle, TriangleMesh};
 use crate::random::Seed;

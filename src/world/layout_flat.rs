@@ -1,8 +1,8 @@
 //! Flat layouts: taxels in the plane z = 0 with their axes along +z.
 
 use super::layout::{Layout, check_count};
-use super::patch::check_positive;
 use super::ring::{Ring, ends_of_steps, n_steps};
+use super::taxel::check_positive;
 use crate::error::{Error, Result};
 use glam::DVec3;
 

@@ -1,7 +1,7 @@
 //! World: taxels, layouts, touches and robots → what presses where.
 //!
-//! Frames: in the **patch frame** the taxels rest in the plane z = 0 with their axes along +z, away from the substrate.
-//! On a [`SkinPatch`] of another [`Layout`] each taxel has its own place and axis.
+//! Frames: in the **patch frame** the taxels of a flat [`Patch`] rest in the plane z = 0 with their axes along +z, away from the substrate;
+//! on another [`Layout`] each taxel has its own place and axis.
 //! In the **table frame** z points up and objects rest on z = 0.
 
 mod array_layout;
@@ -24,11 +24,10 @@ mod placement;
 mod rest;
 mod ring;
 mod robot;
-mod scene;
 mod settle;
 mod shear;
-mod skin_patch;
 mod support;
+mod taxel;
 mod taxel_tree;
 mod touches;
 mod trajectory;
@@ -42,7 +41,8 @@ pub use layout::{Layout, MOST_TAXELS};
 pub use mass::center_of_mass;
 pub use motion::{Interpolation, JointTrajectory, Motion, PoseTrajectory};
 pub use neighbours::Neighbours;
-pub use patch::{Grid, Patch, Taxel};
+pub(crate) use patch::EvenGrid;
+pub use patch::{Patch, Taxels};
 pub use per_taxel::PerTaxel;
 pub use placement::{Placement, RestPoses, Spread, Touch, TouchAxis};
 pub use rest::{RestPose, as_modelled, stable_poses, stable_poses_about};
@@ -50,10 +50,8 @@ pub use robot::{
     Coordinate, Dimension, Joint, JointKind, Limits, Link, LinkGeometry, LinkShape, Mimic, Robot,
     ShapeRole,
 };
-pub use scene::Scene;
 pub use shear::{Shear, Shears};
-pub(crate) use skin_patch::EvenGrid;
-pub use skin_patch::{SkinPatch, Taxels};
+pub use taxel::{Grid, Taxel};
 pub(crate) use taxel_tree::{LEAF, Leaf, Node, PlacedTaxel, TaxelTree};
 pub use touches::{MOST_TOUCHES, TouchSource, touches};
 pub use trajectory::{Phase, VelocityPlan};

@@ -7,7 +7,7 @@
 //! Along the surface the way from one taxel to another is the arc that turns as far as their axes do: chord · (θ/2) / sin(θ/2), θ the angle
 //! between the axes. It is exact on planes, on spheres, and across and along cylinders.
 
-use super::SkinPatch;
+use super::Patch;
 use glam::DVec3;
 
 /// Neighbours are looked for within so many times the distance of the nearest one. Smaller: sparse places of draped layouts lose some; larger:
@@ -30,7 +30,7 @@ pub struct Neighbours {
 
 impl Neighbours {
     /// Finds them; about a microsecond a taxel.
-    pub fn of(skin: &SkinPatch) -> Self {
+    pub fn of(skin: &Patch) -> Self {
         let mut pairs: Vec<[u32; 2]> = Vec::new();
         for taxel in 0..skin.n_taxels() {
             let around = around(skin, taxel);
@@ -72,7 +72,7 @@ impl Neighbours {
 
     /// The taxels that are no farther from one than `reach` metres along the surface, itself too, and how far: those that steps from
     /// neighbour to neighbour lead to without leaving that reach.
-    pub fn within(&self, skin: &SkinPatch, taxel: usize, reach: f64) -> Vec<(usize, f64)> {
+    pub fn within(&self, skin: &Patch, taxel: usize, reach: f64) -> Vec<(usize, f64)> {
         let mut found = vec![(taxel, 0.0)];
         let mut is_seen = std::collections::HashSet::from([taxel]);
         let mut next = 0;
@@ -90,7 +90,7 @@ impl Neighbours {
 }
 
 /// How far two taxels are from each other along the surface, metres.
-fn along_surface(skin: &SkinPatch, [a, b]: [usize; 2]) -> f64 {
+fn along_surface(skin: &Patch, [a, b]: [usize; 2]) -> f64 {
     let (centers, axes) = (skin.layout().centers(), skin.layout().axes());
     let half = 0.5 * axes[a].angle_between(axes[b]);
     let bent = if half > 0.0 { half / half.sin() } else { 1.0 };
@@ -98,7 +98,7 @@ fn along_surface(skin: &SkinPatch, [a, b]: [usize; 2]) -> f64 {
 }
 
 /// Others of the same side, as far as neighbours may be.
-fn around(skin: &SkinPatch, taxel: usize) -> Vec<usize> {
+fn around(skin: &Patch, taxel: usize) -> Vec<usize> {
     let center = skin.layout().centers()[taxel];
     let size = skin
         .tree()
@@ -118,7 +118,7 @@ fn around(skin: &SkinPatch, taxel: usize) -> Vec<usize> {
     }
 }
 
-fn others_within(skin: &SkinPatch, taxel: usize, radius: f64) -> Vec<usize> {
+fn others_within(skin: &Patch, taxel: usize, radius: f64) -> Vec<usize> {
     let (centers, axes) = (skin.layout().centers(), skin.layout().axes());
     let (center, axis) = (centers[taxel], axes[taxel]);
     let mut others = Vec::new();
@@ -133,7 +133,7 @@ fn others_within(skin: &SkinPatch, taxel: usize, radius: f64) -> Vec<usize> {
 }
 
 /// Whether none of some taxels is between two.
-fn is_free(skin: &SkinPatch, [a, b]: [usize; 2], around: &[usize]) -> bool {
+fn is_free(skin: &Patch, [a, b]: [usize; 2], around: &[usize]) -> bool {
     let centers = skin.layout().centers();
     let middle: DVec3 = 0.5 * (centers[a] + centers[b]);
     let square = 0.25 * centers[a].distance_squared(centers[b]) * ROUNDING;
@@ -159,8 +159,8 @@ mod tests {
         stroke: 5e-3,
     };
 
-    fn skin(layout: Layout) -> SkinPatch {
-        SkinPatch::new("skin", layout, Taxels::Equal(TAXEL)).unwrap()
+    fn skin(layout: Layout) -> Patch {
+        Patch::new("skin", layout, Taxels::Equal(TAXEL)).unwrap()
     }
 
     fn counts(neighbours: &Neighbours) -> Vec<usize> {

@@ -1,112 +1,197 @@
-//! A taxel, and a rectangular grid of them on a rigid substrate.
+//! A patch of skin of any shape.
 
+use super::taxel_tree::TaxelTree;
+use super::{Grid, Layout, PerTaxel, Taxel};
 use crate::error::{Error, Result};
+use glam::DVec3;
+use std::sync::OnceLock;
 
-/// One sensing element: a sphere on a spring and damper, sliding along one axis.
+/// A rigid substrate with taxels of any layout, equal or not.
+///
+/// Invariant: one taxel for all or one each; the trees are those of the layout and the taxels.
+#[derive(Clone, Debug)]
+pub struct Patch {
+    name: String,
+    layout: Layout,
+    taxels: Taxels,
+    even_grid: Option<EvenGrid>,
+    /// Made when they are asked for.
+    tree: OnceLock<TaxelTree>,
+    ahead: OnceLock<TaxelTree>,
+}
+
+/// A flat grid of taxels that objects push alike.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Taxel {
-    /// ρ, metres, positive.
+pub(crate) struct EvenGrid {
+    pub grid: Grid,
+    /// ρ of all, metres.
     pub radius: f64,
-    /// k, N/m, positive.
-    pub stiffness: f64,
-    /// c, N·s/m, zero or positive.
-    pub damping: f64,
-    /// s, metres, positive: how far it can be pushed in before it is saturated.
+    /// s of all, metres.
     pub stroke: f64,
 }
 
-impl Taxel {
-    /// Whether it can be.
-    ///
-    /// # Errors
-    /// The first property that is out of its range, by its name.
-    pub fn check(&self) -> Result<()> {
-        check_positive("taxel radius", self.radius, "m")?;
-        check_positive("taxel stiffness", self.stiffness, "N/m")?;
-        check_positive("taxel stroke", self.stroke, "m")?;
-        if self.damping.is_finite() && self.damping >= 0.0 {
-            return Ok(());
-        }
-        Err(Error::input(
-            "taxel damping",
-            format!("{} N·s/m", self.damping),
-            "zero or a positive number",
-        ))
-    }
-}
-
-/// A rectangular grid of rest positions, centred on the patch's origin.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Grid {
-    /// Columns, along patch x.
-    pub nx: usize,
-    /// Rows, along patch y.
-    pub ny: usize,
-    /// Metres between neighbours, positive.
-    #[serde(rename = "pitch_m")]
-    pub pitch: f64,
-}
-
-impl Grid {
-    /// How many taxels.
-    pub fn n_taxels(&self) -> usize {
-        self.nx * self.ny
-    }
-
-    /// x of a column, metres: `(column − (nx − 1)/2) · pitch`.
-    pub fn x(&self, column: usize) -> f64 {
-        (column as f64 - 0.5 * (self.nx as f64 - 1.0)) * self.pitch
-    }
-
-    /// y of a row, metres: `(row − (ny − 1)/2) · pitch`.
-    pub fn y(&self, row: usize) -> f64 {
-        (row as f64 - 0.5 * (self.ny as f64 - 1.0)) * self.pitch
-    }
-
-    /// Whether it can be.
-    ///
-    /// # Errors
-    /// The first property that is out of its range, by its name.
-    pub fn check(&self) -> Result<()> {
-        if self.nx == 0 || self.ny == 0 {
-            return Err(Error::input(
-                "taxel grid",
-                format!("{} × {} taxels", self.nx, self.ny),
-                "at least one taxel each way",
-            ));
-        }
-        check_positive("taxel pitch", self.pitch, "m")
-    }
-}
-
-/// A rigid substrate with a grid of equal taxels.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Patch {
-    /// Where the taxels rest.
-    pub grid: Grid,
-    /// What each of them is.
-    pub taxel: Taxel,
-}
+/// What the taxels of a patch are.
+pub type Taxels = PerTaxel<Taxel>;
 
 impl Patch {
-    /// Checks both parts.
+    /// Checks the taxels. What presses need is made at the first of them: about a microsecond a taxel.
     ///
     /// # Errors
-    /// Those of [`Grid::check`] and [`Taxel::check`].
-    pub fn new(grid: Grid, taxel: Taxel) -> Result<Self> {
-        grid.check()?;
+    /// The error names a property out of its range and its taxel (from 1), or the numbers of taxels and places if they
+    /// differ; it begins with the patch's name.
+    pub fn new(name: impl Into<String>, layout: Layout, taxels: Taxels) -> Result<Self> {
+        let name = name.into();
+        match &taxels {
+            Taxels::Equal(taxel) => taxel
+                .check()
+                .map_err(|error| error.under(format!("skin patch {name}, ")))?,
+            Taxels::Each(each) => check_each(&name, each, layout.n_taxels())?,
+        }
+        Ok(Self::of_checked(name, layout, taxels))
+    }
+
+    /// A flat rectangular grid of equal taxels, called `patch`.
+    ///
+    /// # Errors
+    /// Those of [`Grid::check`] and [`Taxel::check`]; too many taxels.
+    pub fn grid(grid: Grid, taxel: Taxel) -> Result<Self> {
+        let layout = Layout::grid(&grid)?;
         taxel.check()?;
-        Ok(Self { grid, taxel })
+        Ok(Self::of_checked(
+            "patch".to_owned(),
+            layout,
+            Taxels::Equal(taxel),
+        ))
+    }
+
+    fn of_checked(name: String, layout: Layout, taxels: Taxels) -> Self {
+        Self {
+            even_grid: EvenGrid::of(&layout, &taxels),
+            tree: OnceLock::new(),
+            ahead: OnceLock::new(),
+            name,
+            layout,
+            taxels,
+        }
+    }
+
+    /// What it is called.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Where the taxels rest.
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// What the taxels are.
+    pub fn taxels(&self) -> &Taxels {
+        &self.taxels
+    }
+
+    /// How many taxels.
+    pub fn n_taxels(&self) -> usize {
+        self.layout.n_taxels()
+    }
+
+    /// Its taxels, so that those near a ball are found.
+    pub(crate) fn tree(&self) -> &TaxelTree {
+        let make = || TaxelTree::new(&self.layout, &self.taxels);
+        self.tree.get_or_init(make)
+    }
+
+    /// Its taxels as they travel along z.
+    pub(crate) fn ahead(&self) -> &TaxelTree {
+        let make = || TaxelTree::travelling(&self.layout, &self.taxels, DVec3::Z);
+        self.ahead.get_or_init(make)
+    }
+
+    /// The grid that it is, if all its taxels are as large and go as deep.
+    pub(crate) fn even_grid(&self) -> Option<&EvenGrid> {
+        self.even_grid.as_ref()
     }
 }
 
-pub(super) fn check_positive(place: &str, value: f64, unit: &str) -> Result<()> {
-    if value.is_finite() && value > 0.0 {
-        return Ok(());
+impl EvenGrid {
+    fn of(layout: &Layout, taxels: &Taxels) -> Option<Self> {
+        let grid = *layout.as_grid()?;
+        let (first, others) = taxels.all().split_first()?;
+        let is_alike = |t: &Taxel| (t.radius, t.stroke) == (first.radius, first.stroke);
+        others.iter().all(is_alike).then_some(Self {
+            grid,
+            radius: first.radius,
+            stroke: first.stroke,
+        })
     }
-    Err(Error::input(
-        place,
-        format!("{value} {unit}"),
-        "a finite positive number",
-    ))
+
+    /// −s − ρ, metres: what is lower is behind the substrate.
+    pub fn behind(&self) -> f64 {
+        -self.stroke - self.radius
+    }
+}
+
+fn check_each(name: &str, taxels: &[Taxel], n_places: usize) -> Result<()> {
+    if taxels.len() != n_places {
+        return Err(Error::input(
+            format!("skin patch {name}"),
+            format!("{} taxels for {n_places} places", taxels.len()),
+            "one taxel a place, or one for all",
+        ));
+    }
+    for (index, taxel) in taxels.iter().enumerate() {
+        let place = || format!("skin patch {name}, taxel {}, ", index + 1);
+        taxel.check().map_err(|error| error.under(place()))?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TAXEL: Taxel = Taxel {
+        radius: 1e-3,
+        stiffness: 100.0,
+        damping: 0.0,
+        stroke: 5e-3,
+    };
+
+    #[test]
+    fn a_patch_that_is_a_grid_knows_it() {
+        let grid = Grid {
+            nx: 4,
+            ny: 3,
+            pitch: 2e-3,
+        };
+        let skin = Patch::grid(grid, TAXEL).unwrap();
+        assert_eq!((skin.name(), skin.n_taxels()), ("patch", 12));
+        assert_eq!(skin.layout().as_grid(), Some(&grid));
+        assert_eq!(skin.taxels().at(11), &TAXEL);
+    }
+
+    #[test]
+    fn bad_taxels_are_refused_with_the_patch_and_the_taxel() {
+        let layout = || Layout::new(vec![DVec3::ZERO, DVec3::X], vec![DVec3::Z; 2]).unwrap();
+        let message = |taxels| {
+            let skin = Patch::new("palm", layout(), taxels);
+            skin.unwrap_err().to_string()
+        };
+        assert_eq!(
+            message(Taxels::Each(vec![TAXEL])),
+            "skin patch palm: 1 taxels for 2 places; one taxel a place, or one for all"
+        );
+        let stiff = Taxel {
+            stiffness: -1.0,
+            ..TAXEL
+        };
+        assert_eq!(
+            message(Taxels::Each(vec![TAXEL, stiff])),
+            "skin patch palm, taxel 2, taxel stiffness: -1 N/m; a finite positive number"
+        );
+        assert_eq!(
+            message(Taxels::Equal(stiff)),
+            "skin patch palm, taxel stiffness: -1 N/m; a finite positive number"
+        );
+    }
 }

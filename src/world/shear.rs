@@ -1,10 +1,10 @@
 //! What a taxel's tip does sideways: a shear spring, and how well it grips.
 
-use super::patch::check_positive;
-use super::{PerTaxel, SkinPatch};
+use super::taxel::check_positive;
+use super::{Patch, PerTaxel};
 use crate::error::{Error, Result};
 
-/// A taxel's shear spring and its friction; an option beside a [`SkinPatch`], whose taxels slide along their axes without it.
+/// A taxel's shear spring and its friction; an option beside a [`Patch`], whose taxels slide along their axes without it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shear {
     /// k_t, N/m, positive: how stiff the tip is across its axis.
@@ -44,7 +44,7 @@ impl Shears {
     ///
     /// # Errors
     /// The error names a property out of its range and its taxel (from 1), or the numbers of shear springs and taxels if they differ.
-    pub fn check(&self, patch: &SkinPatch) -> Result<()> {
+    pub fn check(&self, patch: &Patch) -> Result<()> {
         match self {
             Self::Equal(equal) => equal.check(),
             Self::Each(each) if each.len() != patch.n_taxels() => Err(Error::input(

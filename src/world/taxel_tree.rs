@@ -4,12 +4,14 @@
 //! `(c − p)·n ≥ −s − ρ`, and from less than S = ρ + R beside its axis. So c is less than S away from the taxel's stretch, from
 //! p back to p − (s + ρ) n. The boxes are around stretches.
 
-use super::{Layout, Taxels};
+use super::{Layout, Taxel, Taxels};
 use crate::geometry::Aabb;
 use glam::DVec3;
 
 /// Taxels in a leaf, at most: what a vector instruction or two look at together. More: taxels are looked at in vain; fewer: more boxes are.
 pub(crate) const LEAF: usize = 8;
+/// A stroke that nothing ends, metres.
+const ENDLESS: f64 = 1e6;
 /// What rounding may add to a reach, far above 1e-16 and far below what is felt.
 const ROUNDING: f64 = 1.0 + 1e-9;
 
@@ -86,6 +88,30 @@ impl TaxelTree {
             tree.split((layout, taxels), &mut numbers);
         }
         tree
+    }
+
+    /// Taxels at the same places as they travel along a direction (unit): their axes are the direction, and their strokes do not end.
+    pub fn travelling(layout: &Layout, taxels: &Taxels, direction: DVec3) -> Self {
+        let endless = |taxel: &Taxel| Taxel {
+            stroke: ENDLESS,
+            ..*taxel
+        };
+        let taxels = match taxels {
+            Taxels::Equal(taxel) => Taxels::Equal(endless(taxel)),
+            Taxels::Each(each) => Taxels::Each(each.iter().map(endless).collect()),
+        };
+        let centers = layout.centers().iter();
+        Self::new(
+            &Layout::of_taxels(centers.map(|&center| (center, direction))),
+            &taxels,
+        )
+    }
+
+    /// How far the foremost point of any taxel is along the direction that they travel, at most, metres.
+    pub fn front(&self, direction: DVec3) -> f64 {
+        self.nodes.first().map_or(f64::NEG_INFINITY, |root| {
+            root.front(direction) + root.radius
+        })
     }
 
     /// The box around the stretches of all taxels, metres; `None` if there are none.
@@ -219,6 +245,13 @@ impl Leaf {
 }
 
 impl Node {
+    /// How far the foremost place of its taxels is along a direction, at most, metres.
+    #[inline(always)]
+    pub fn front(&self, direction: DVec3) -> f64 {
+        let (least, largest) = (self.bounds.min * direction, self.bounds.max * direction);
+        least.max(largest).element_sum()
+    }
+
     /// Before what is below it is known.
     const EMPTY: Self = Self {
         bounds: Aabb {

@@ -6,7 +6,6 @@ use bubbletouch::contact::{Workspace, press_at_pose};
 use bubbletouch::geometry::Pose;
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::simulate_array;
-use bubbletouch::world::Scene;
 use glam::{DQuat, DVec3};
 use ndarray::{Array1, Array2, Array3};
 use ndarray_npy::{ReadableElement, read_npy};
@@ -219,7 +218,6 @@ fn pressing_at_the_recorded_pose_reproduces_the_frame() {
     let case = written();
     let study = Study::new(STUDY);
     for (folder, array) in FOLDERS.iter().zip(&study.plan.arrays) {
-        let patch = array.square();
         let files = Files::read(&case.path(folder));
         let mut workspace = Workspace::new();
         for (touch, pose) in files.poses.outer_iter().enumerate() {
@@ -227,11 +225,8 @@ fn pressing_at_the_recorded_pose_reproduces_the_frame() {
             assert!((rotation.length() - 1.0).abs() < 1e-12);
             let pose = Pose::new(rotation, DVec3::new(pose[0], pose[1], pose[2]));
             let spheres = &study.touched[files.labels[touch] as usize].object.model;
-            let scene = Scene {
-                patch: *patch,
-                objects: vec![spheres.clone()],
-            };
-            let contact = press_at_pose(&scene, &[pose], &mut workspace);
+            let objects = [spheres.clone()];
+            let contact = press_at_pose(array.patch(), &objects, &[pose], &mut workspace);
             let row = &files.touches[touch];
             if row.n_touched == 0 {
                 assert!(

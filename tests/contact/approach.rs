@@ -1,9 +1,9 @@
 //! A skin of any layout moved past first contact: against the grid's own press, and against all pairs of spheres.
 
-use bubbletouch::contact::{Approach, SkinWorkspace, Workspace, press_skin, press_to_depth};
+use bubbletouch::contact::{Approach, Workspace, press_to_depth, press_with_contacts};
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{MeshModel, Model, Sphere, SphereUnion};
-use bubbletouch::world::{ArrayLayout, Grid, Patch, Scene, SkinPatch, Taxels};
+use bubbletouch::world::{ArrayLayout, Grid, Patch, Taxels};
 use glam::DVec3;
 use rand::Rng;
 
@@ -28,10 +28,9 @@ fn random_union(rng: &mut impl Rng) -> SphereUnion {
 #[test]
 fn on_a_grid_it_is_the_grids_own_press() {
     let mut rng = rng("approach", 0);
-    let patch = Patch::new(GRID, TAXEL).unwrap();
-    let skin = SkinPatch::from(patch);
-    let approach = Approach::new(&skin, DVec3::Z).unwrap();
-    let (mut workspace, mut of_grid) = (SkinWorkspace::new(), Workspace::new());
+    let patch = Patch::grid(GRID, TAXEL).unwrap();
+    let approach = Approach::new(&patch, DVec3::Z).unwrap();
+    let (mut workspace, mut of_grid) = (Workspace::new(), Workspace::new());
     let (mut n_touched, mut n_deep) = (0, 0);
     for case in 0..400 {
         let objects: Vec<Model> = match case % 4 {
@@ -48,15 +47,14 @@ fn on_a_grid_it_is_the_grids_own_press() {
             .collect();
         let depth = TAXEL.stroke * 10f64.powf(rng.gen_range(-2.0..0.5));
         let touch = approach.press_to_depth(&objects, &poses, depth, &mut workspace);
-        let scene = Scene { patch, objects };
-        let contact = press_to_depth(&scene, &poses, depth, &mut of_grid);
+        let contact = press_to_depth(&patch, &objects, &poses, depth, &mut of_grid);
         assert_eq!(touch.is_some(), contact.is_some(), "case {case}");
         for (own, grid) in workspace.deflections().iter().zip(of_grid.deflections()) {
             assert!((own - grid).abs() < 1e-12, "case {case}: {own} for {grid}");
         }
         if let (Some(touch), Some(contact)) = (touch, contact) {
             assert!((touch.travel - contact.travel).abs() < 1e-12, "case {case}");
-            assert_eq!(touch.counts.n_touched, contact.n_touched, "case {case}");
+            assert_eq!(touch.n_touched, contact.n_touched, "case {case}");
             n_touched += 1;
             n_deep += usize::from(depth > TAXEL.stroke);
         }
@@ -67,7 +65,7 @@ fn on_a_grid_it_is_the_grids_own_press() {
 #[test]
 fn first_contact_is_that_of_the_nearest_pair_of_spheres() {
     let mut rng = rng("approach", 1);
-    let mut workspace = SkinWorkspace::new();
+    let mut workspace = Workspace::new();
     let mut n_met = 0;
     for case in 0..120 {
         let layout = [
@@ -77,7 +75,7 @@ fn first_contact_is_that_of_the_nearest_pair_of_spheres() {
             ArrayLayout::Cap,
         ][case % 4];
         let layout = layout.taxels(&GRID, 0.02).unwrap();
-        let skin = SkinPatch::new("skin", layout, Taxels::Equal(TAXEL)).unwrap();
+        let skin = Patch::new("skin", layout, Taxels::Equal(TAXEL)).unwrap();
         let direction =
             DVec3::new(rng.gen_range(-0.3..0.3), rng.gen_range(-0.3..0.3), 1.0).normalize();
         let approach = Approach::new(&skin, direction).unwrap();
@@ -113,7 +111,7 @@ fn first_contact_is_that_of_the_nearest_pair_of_spheres() {
                 translation: pose.translation - travel * direction,
                 ..pose
             };
-            press_skin(&skin, &objects, &[moved], &mut workspace).n_touched
+            press_with_contacts(&skin, &objects, &[moved], &mut workspace).n_touched
         };
         assert!(n_touched(found + 1e-9) > 0, "case {case}");
     }
@@ -122,9 +120,9 @@ fn first_contact_is_that_of_the_nearest_pair_of_spheres() {
 
 #[test]
 fn what_was_pressed_goes_on_being_pressed_behind_the_substrate() {
-    let mut workspace = SkinWorkspace::new();
+    let mut workspace = Workspace::new();
     let layout = ArrayLayout::Cap.taxels(&GRID, 0.03).unwrap();
-    let skin = SkinPatch::new("cap", layout, Taxels::Equal(TAXEL)).unwrap();
+    let skin = Patch::new("cap", layout, Taxels::Equal(TAXEL)).unwrap();
     let approach = Approach::new(&skin, DVec3::Z).unwrap();
     let pin = Sphere {
         center: DVec3::ZERO,
@@ -133,8 +131,8 @@ fn what_was_pressed_goes_on_being_pressed_behind_the_substrate() {
     let objects = [SphereUnion::new(vec![pin]).unwrap().into()];
     let pose = Pose::from_translation(0.05 * DVec3::Z);
     let touch = approach.press_to_depth(&objects, &[pose], 3.0 * TAXEL.stroke, &mut workspace);
-    assert!(touch.unwrap().counts.n_saturated >= 1);
+    assert!(touch.unwrap().n_saturated >= 1);
     let moved = Pose::from_translation((0.05 - touch.unwrap().travel) * DVec3::Z);
-    let there = press_skin(&skin, &objects, &[moved], &mut workspace);
+    let there = press_with_contacts(&skin, &objects, &[moved], &mut workspace);
     assert_eq!(there.n_touched, 0, "without its way it is behind");
 }

@@ -1,11 +1,11 @@
 //! Laws of free objects: they rest where all forces balance, wherever the world is, or they are said to leave.
 
 use bubbletouch::contact::balance::{Balance, Balancer, FreeObject, Outcome, PlacedSkin};
-use bubbletouch::contact::{SkinWorkspace, press_skin, spring_load};
+use bubbletouch::contact::{Workspace, press_with_contacts, spring_load};
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{Model, Sphere, SphereUnion};
 use bubbletouch::random::Seed;
-use bubbletouch::world::{Grid, Layout, Patch, SkinPatch, Taxel, Taxels, center_of_mass};
+use bubbletouch::world::{Grid, Layout, Patch, Taxel, Taxels, center_of_mass};
 use glam::{DQuat, DVec3};
 use rand::Rng;
 use rayon::prelude::*;
@@ -23,16 +23,16 @@ fn taxel(stiffness: f64) -> Taxel {
 }
 
 /// n × n taxels, 2 mm apart.
-fn bed(n: usize, stiffness: f64) -> SkinPatch {
+fn bed(n: usize, stiffness: f64) -> Patch {
     let grid = Grid {
         nx: n,
         ny: n,
         pitch: 2e-3,
     };
-    SkinPatch::from(Patch::new(grid, taxel(stiffness)).unwrap())
+    Patch::grid(grid, taxel(stiffness)).unwrap()
 }
 
-fn placed(patch: &SkinPatch, world_from_patch: Pose) -> PlacedSkin<'_> {
+fn placed(patch: &Patch, world_from_patch: Pose) -> PlacedSkin<'_> {
     PlacedSkin {
         patch,
         world_from_patch,
@@ -125,8 +125,8 @@ fn the_skin_feels_the_weight_that_rests_on_it() {
     );
     assert_eq!(rest.outcome, Outcome::Settled);
     let objects = [Model::from(union.clone())];
-    let mut workspace = SkinWorkspace::new();
-    press_skin(&patch, &objects, &[rest.pose], &mut workspace);
+    let mut workspace = Workspace::new();
+    press_with_contacts(&patch, &objects, &[rest.pose], &mut workspace);
     let load = spring_load(&patch, workspace.contacts());
     // Taxels between two spheres: one of them is said to decide, so the sides may differ a little.
     assert!(
@@ -199,8 +199,8 @@ fn two_skins_in_a_v_carry_a_ball_together() {
         .iter()
         .map(|skin| {
             let pose = skin.world_from_patch.inverse().compose(&rest.pose);
-            let mut workspace = SkinWorkspace::new();
-            press_skin(
+            let mut workspace = Workspace::new();
+            press_with_contacts(
                 &patch,
                 &[Model::from(union.clone())],
                 &[pose],
@@ -259,7 +259,7 @@ fn what_misses_the_skin_falls_and_says_so() {
 #[test]
 fn a_ball_on_the_point_of_a_single_taxel_does_not_stay_there() {
     let layout = Layout::new(vec![DVec3::ZERO], vec![DVec3::Z]).unwrap();
-    let patch = SkinPatch::new("pin", layout, Taxels::Equal(taxel(100.0))).unwrap();
+    let patch = Patch::new("pin", layout, Taxels::Equal(taxel(100.0))).unwrap();
     let union = ball(0.02);
     let object = FreeObject::new(&union, 0.01, DVec3::ZERO).unwrap();
     // Exactly above it every force balances at some height; a saddle of the energy.
@@ -318,7 +318,7 @@ fn others_that_push_the_taxels_take_their_part() {
 }
 
 /// How far spheres push each taxel of a flat bed at the origin, straight from the formula, metres; `None` where one would go beyond its stroke.
-fn pushed(bed: &SkinPatch, spheres: &SphereUnion, pose: &Pose) -> Option<Vec<f64>> {
+fn pushed(bed: &Patch, spheres: &SphereUnion, pose: &Pose) -> Option<Vec<f64>> {
     let Taxel { radius, stroke, .. } = *bed.taxels().at(0);
     let places: Vec<(DVec3, f64)> = spheres
         .spheres()
@@ -345,7 +345,7 @@ fn pushed(bed: &SkinPatch, spheres: &SphereUnion, pose: &Pose) -> Option<Vec<f64
 
 /// Whether a taxel stands beside the widest part of a sphere, or nearly: its energy jumps there, since it springs up, or is pushed in at
 /// once, when the sphere moves sideways by nothing.
-fn stands_on_a_cliff(bed: &SkinPatch, spheres: &SphereUnion, pose: &Pose) -> bool {
+fn stands_on_a_cliff(bed: &Patch, spheres: &SphereUnion, pose: &Pose) -> bool {
     const NEAR: f64 = 2e-4;
     let radius = bed.taxels().at(0).radius;
     spheres.spheres().iter().any(|sphere| {
@@ -357,7 +357,7 @@ fn stands_on_a_cliff(bed: &SkinPatch, spheres: &SphereUnion, pose: &Pose) -> boo
 }
 
 /// What springs and height hold of a solid of spheres on a bed, joules; `None` where a stop is in the way.
-fn energy(bed: &SkinPatch, (spheres, mass): (&SphereUnion, f64), pose: &Pose) -> Option<f64> {
+fn energy(bed: &Patch, (spheres, mass): (&SphereUnion, f64), pose: &Pose) -> Option<f64> {
     let squares = pushed(bed, spheres, pose)?
         .iter()
         .map(|d| d * d)
@@ -369,7 +369,7 @@ fn energy(bed: &SkinPatch, (spheres, mass): (&SphereUnion, f64), pose: &Pose) ->
 /// Of an object at rest that no stop carries, and beside whose spheres no taxel stands: how many of 100 small motions were tried. None may lower the energy, but for what the balance is
 /// allowed to be off.
 fn assert_lowest(
-    bed: &SkinPatch,
+    bed: &Patch,
     (spheres, mass): (&SphereUnion, f64),
     pose: &Pose,
     case: u64,

@@ -4,7 +4,7 @@ use crate::random_scenes::{TAXEL, direction, rng};
 use bubbletouch::contact::balance::{Balance, Balancer, FreeObject, Outcome, PlacedSkin};
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{Sphere, SphereUnion};
-use bubbletouch::world::{Grid, Layout, Patch, SkinPatch, Taxel, Taxels};
+use bubbletouch::world::{Grid, Layout, Patch, Taxel, Taxels};
 use glam::{DQuat, DVec3};
 use rand::Rng;
 
@@ -12,14 +12,14 @@ const G: f64 = 9.81;
 const DOWN: DVec3 = DVec3::new(0.0, 0.0, -G);
 
 /// n × n taxels, 2 mm apart.
-fn bed(n: usize, stiffness: f64) -> SkinPatch {
+fn bed(n: usize, stiffness: f64) -> Patch {
     let grid = Grid {
         nx: n,
         ny: n,
         pitch: 2e-3,
     };
     let taxel = Taxel { stiffness, ..TAXEL };
-    SkinPatch::from(Patch::new(grid, taxel).unwrap())
+    Patch::grid(grid, taxel).unwrap()
 }
 
 fn union(places: impl IntoIterator<Item = DVec3>, radius: f64) -> SphereUnion {
@@ -27,7 +27,7 @@ fn union(places: impl IntoIterator<Item = DVec3>, radius: f64) -> SphereUnion {
     SphereUnion::new(spheres.collect()).unwrap()
 }
 
-fn settle_on(skin: &SkinPatch, at: Pose, object: &FreeObject, start: &Pose) -> Balance {
+fn settle_on(skin: &Patch, at: Pose, object: &FreeObject, start: &Pose) -> Balance {
     let skins = [PlacedSkin {
         patch: skin,
         world_from_patch: at,
@@ -36,7 +36,7 @@ fn settle_on(skin: &SkinPatch, at: Pose, object: &FreeObject, start: &Pose) -> B
     Balancer::new().settle(object, &skins, DOWN, start).unwrap()
 }
 
-fn settle(skin: &SkinPatch, object: &FreeObject, start: &Pose) -> Balance {
+fn settle(skin: &Patch, object: &FreeObject, start: &Pose) -> Balance {
     settle_on(skin, Pose::IDENTITY, object, start)
 }
 
@@ -45,7 +45,7 @@ fn height(z: f64) -> Pose {
 }
 
 /// How far some spheres push each taxel, straight from the formula, metres; 0 or less for those that they do not.
-fn needed(skin: &SkinPatch, spheres: &SphereUnion, pose: &Pose) -> impl Iterator<Item = f64> {
+fn needed(skin: &Patch, spheres: &SphereUnion, pose: &Pose) -> impl Iterator<Item = f64> {
     let centers = skin.layout().centers().iter().enumerate();
     centers.map(|(number, &taxel)| {
         let radius = skin.taxels().at(number).radius;
@@ -64,7 +64,7 @@ fn needed(skin: &SkinPatch, spheres: &SphereUnion, pose: &Pose) -> impl Iterator
 }
 
 /// What all springs carry, newtons.
-fn lift(skin: &SkinPatch, spheres: &SphereUnion, pose: &Pose) -> f64 {
+fn lift(skin: &Patch, spheres: &SphereUnion, pose: &Pose) -> f64 {
     let needed = needed(skin, spheres, pose).enumerate();
     needed
         .map(|(number, needed)| skin.taxels().at(number).stiffness * needed)
@@ -137,7 +137,7 @@ fn neighbours_a_trillion_times_as_stiff_share_a_load_as_they_must() {
             ..TAXEL
         });
         let taxels = Taxels::Each(taxels.collect());
-        let skin = SkinPatch::new("mixed", grid.layout().clone(), taxels).unwrap();
+        let skin = Patch::new("mixed", grid.layout().clone(), taxels).unwrap();
         let radius = rng.gen_range(4e-3..2e-2);
         let object = union(
             (0..8).map(|_| 8e-3 * direction(&mut rng).with_z(0.0)),
@@ -167,7 +167,7 @@ fn a_ball_rests_on_a_pattern_of_springs_at_the_height_of_the_formula() {
             ..TAXEL
         });
         let taxels = Taxels::Each(taxels.collect());
-        let skin = SkinPatch::new("mixed", bed(n, 1.0).layout().clone(), taxels).unwrap();
+        let skin = Patch::new("mixed", bed(n, 1.0).layout().clone(), taxels).unwrap();
         let ball = union([DVec3::ZERO], 0.02);
         for mass in [1e-3, 1.0, 1e3] {
             let body = FreeObject::new(&ball, mass, DVec3::ZERO).unwrap();
@@ -286,7 +286,7 @@ fn stops_carry_what_saturated_springs_do_not() {
 #[test]
 fn a_taxel_exactly_between_three_spheres_carries_what_hangs_on_them() {
     let layout = Layout::new(vec![DVec3::ZERO], vec![DVec3::Z]).unwrap();
-    let skin = SkinPatch::new("pin", layout, Taxels::Equal(TAXEL)).unwrap();
+    let skin = Patch::new("pin", layout, Taxels::Equal(TAXEL)).unwrap();
     let (radius, beside) = (5e-3, 4e-3);
     let places = [0.0, 2.0, 4.0].map(|third: f64| {
         let turn = DQuat::from_rotation_z(third * std::f64::consts::FRAC_PI_3);

@@ -7,7 +7,7 @@ use bubbletouch::dynamics::{
 };
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{Model, Sphere, SphereUnion};
-use bubbletouch::world::{Grid, Layout, Phase, SkinPatch, Taxel, Taxels, VelocityPlan};
+use bubbletouch::world::{Grid, Layout, Patch, Phase, Taxel, Taxels, VelocityPlan};
 use glam::DVec3;
 
 const RADIUS: f64 = 2e-3;
@@ -24,24 +24,24 @@ fn taxel(damping: f64) -> Taxel {
     }
 }
 
-fn skin(n: usize, taxel: Taxel) -> SkinPatch {
+fn skin(n: usize, taxel: Taxel) -> Patch {
     let grid = Grid {
         nx: n,
         ny: n,
         pitch: 4e-3,
     };
-    SkinPatch::new("skin", Layout::grid(&grid).unwrap(), Taxels::Equal(taxel)).unwrap()
+    Patch::new("skin", Layout::grid(&grid).unwrap(), Taxels::Equal(taxel)).unwrap()
 }
 
 /// Taxels that a ball meets all at once: it lies there stably, free to move aside as it is for the balance.
-fn bowl(n: usize, taxel: Taxel) -> SkinPatch {
+fn bowl(n: usize, taxel: Taxel) -> Patch {
     let flat = skin(n, taxel);
     let raised = flat.layout().centers().iter().map(|center| {
         let across = center.length_squared();
         *center + (TOUCHING - (TOUCHING * TOUCHING - across).sqrt()) * DVec3::Z
     });
     let layout = Layout::new(raised.collect(), vec![DVec3::Z; n * n]).unwrap();
-    SkinPatch::new("bowl", layout, Taxels::Equal(taxel)).unwrap()
+    Patch::new("bowl", layout, Taxels::Equal(taxel)).unwrap()
 }
 
 fn ball() -> Model {
@@ -69,7 +69,7 @@ fn far_away() -> Drive {
     Drive::Imposed(VelocityPlan::new(at(1.0), vec![]).unwrap())
 }
 
-fn system<'a>(patch: &'a SkinPatch, ball: &'a Model, mass: f64, drive: Drive) -> System<'a> {
+fn system<'a>(patch: &'a Patch, ball: &'a Model, mass: f64, drive: Drive) -> System<'a> {
     System::new(patch, mass, ball, at(TOUCHING), drive, 10e-3).unwrap()
 }
 
@@ -308,7 +308,7 @@ fn what_cannot_be_simulated_is_refused_by_its_name() {
     assert!(refused(1.0, free(f64::NAN), 1.0).contains("object mass: NaN kg"));
     assert!(refused(1.0, free(1.0), -1.0).contains("reach"));
     let tilted = Layout::new(vec![DVec3::ZERO], vec![DVec3::X]).unwrap();
-    let tilted = SkinPatch::new("side", tilted, Taxels::Equal(taxel(0.0))).unwrap();
+    let tilted = Patch::new("side", tilted, Taxels::Equal(taxel(0.0))).unwrap();
     let error = System::new(&tilted, 1.0, &ball, at(1.0), free(1.0), 1.0).unwrap_err();
     assert!(
         error

@@ -1,12 +1,12 @@
 //! Laws of friction on skins: the cone, dissipation, steps of any size, symmetry, and textbook slip.
 
 use bubbletouch::contact::{
-    DamperState, FrictionLoad, FrictionState, Grip, GripCounts, NormalForce, SkinWorkspace,
-    press_skin, press_skin_to_force, spring_load,
+    Approach, DamperState, FrictionLoad, FrictionState, Grip, GripCounts, NormalForce, Workspace,
+    press_with_contacts, spring_load,
 };
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{MeshModel, Model, Sphere, SphereUnion};
-use bubbletouch::world::{Grid, Layout, Patch, Shear, Shears, SkinPatch, Taxel, Taxels};
+use bubbletouch::world::{Grid, Layout, Patch, Shear, Shears, Taxel, Taxels};
 use glam::{DQuat, DVec2, DVec3};
 use rand::Rng;
 
@@ -18,13 +18,13 @@ const SHEAR: Shear = Shear {
     friction: 0.6,
 };
 
-fn flat(n: usize, pitch: f64) -> SkinPatch {
+fn flat(n: usize, pitch: f64) -> Patch {
     let grid = Grid {
         nx: n,
         ny: n,
         pitch,
     };
-    Patch::new(grid, TAXEL).unwrap().into()
+    Patch::grid(grid, TAXEL).unwrap()
 }
 
 /// A ball around its frame's origin.
@@ -42,24 +42,24 @@ fn block(size: DVec3) -> Model {
 
 /// A skin with a grip that objects move on.
 struct Bench {
-    skin: SkinPatch,
+    skin: Patch,
     objects: Vec<Model>,
     state: FrictionState,
-    workspace: SkinWorkspace,
+    workspace: Workspace,
 }
 
 impl Bench {
-    fn new(skin: SkinPatch, objects: Vec<Model>, shears: Shears) -> Self {
+    fn new(skin: Patch, objects: Vec<Model>, shears: Shears) -> Self {
         Self {
             state: FrictionState::at_rest(&skin, shears).unwrap(),
             skin,
             objects,
-            workspace: SkinWorkspace::new(),
+            workspace: Workspace::new(),
         }
     }
 
     fn step(&mut self, poses: &[Pose]) -> GripCounts {
-        press_skin(&self.skin, &self.objects, poses, &mut self.workspace);
+        press_with_contacts(&self.skin, &self.objects, poses, &mut self.workspace);
         let contacts = self.workspace.contacts();
         self.state
             .step(&self.skin, contacts, poses, NormalForce::Springs)
@@ -105,7 +105,7 @@ fn random_bench(name: &str, case: u64) -> (Bench, Vec<[Pose; 2]>) {
     };
     let middle = rng.gen_range(0..n);
     let (center, axis) = (layout.centers()[middle], layout.axes()[middle]);
-    let skin = SkinPatch::new("skin", layout, Taxels::Equal(TAXEL)).unwrap();
+    let skin = Patch::new("skin", layout, Taxels::Equal(TAXEL)).unwrap();
     let objects = vec![ball(0.015), block(DVec3::new(0.03, 0.01, 0.02))];
     let size = 10f64.powf(rng.gen_range(-6.0..-2.0));
     let mut pose = |reach: f64| {
@@ -243,10 +243,15 @@ fn a_pressed_block_sticks_to_its_springs_and_then_slides_with_mu_n() {
     let skin = flat(10, 3e-3);
     let plate = block(DVec3::new(0.2, 0.2, 0.01));
     let objects = vec![plate];
-    let mut workspace = SkinWorkspace::new();
+    let mut workspace = Workspace::new();
     let above = Pose::from_translation(0.01 * DVec3::Z);
     let weight = 12.0;
-    let pressed = press_skin_to_force(&skin, &objects, &[above], DVec3::Z, weight, &mut workspace);
+    let pressed = Approach::new(&skin, DVec3::Z).unwrap().press_to_force(
+        &objects,
+        &[above],
+        weight,
+        &mut workspace,
+    );
     let travel = pressed.unwrap().unwrap().travel;
     let mut bench = Bench::new(skin, objects, Shears::Equal(SHEAR));
     let n = bench.skin.n_taxels() as f64;
@@ -396,7 +401,7 @@ fn sliding_the_other_way_gives_mirrored_forces() {
 fn a_taxel_that_is_left_or_touched_by_another_object_forgets_its_shear() {
     let pair = vec![ball(0.03), ball(0.03)];
     let layout = Layout::new(vec![DVec3::ZERO], vec![DVec3::Z]).unwrap();
-    let skin = SkinPatch::new("one", layout, Taxels::Equal(TAXEL)).unwrap();
+    let skin = Patch::new("one", layout, Taxels::Equal(TAXEL)).unwrap();
     let mut bench = Bench::new(skin, pair, Shears::Equal(SHEAR));
     let on = |x: f64| Pose::from_translation(DVec3::new(x, 0.0, 0.029));
     let off = Pose::from_translation(DVec3::new(0.0, 0.0, 0.05));
@@ -417,7 +422,7 @@ fn a_taxel_that_is_left_or_touched_by_another_object_forgets_its_shear() {
 #[test]
 fn a_ball_that_rolls_drags_nothing_and_one_that_spins_in_place_neither() {
     let layout = || Layout::new(vec![DVec3::ZERO], vec![DVec3::Z]).unwrap();
-    let skin = || SkinPatch::new("one", layout(), Taxels::Equal(TAXEL)).unwrap();
+    let skin = || Patch::new("one", layout(), Taxels::Equal(TAXEL)).unwrap();
     let (radius, angle) = (0.03, 0.02_f64);
     let high = radius + TAXEL.radius - 1e-3;
     let mut bench = Bench::new(skin(), vec![ball(radius)], Shears::Equal(SHEAR));
@@ -433,7 +438,7 @@ fn a_ball_that_rolls_drags_nothing_and_one_that_spins_in_place_neither() {
     assert!(bench.state.displacement(0).length() < 1e-15);
     // A taxel beside the pivot of a plate is dragged along the tangent, neither inwards nor outwards.
     let layout = Layout::new(vec![5e-3 * DVec3::X], vec![DVec3::Z]).unwrap();
-    let skin = SkinPatch::new("beside", layout, Taxels::Equal(TAXEL)).unwrap();
+    let skin = Patch::new("beside", layout, Taxels::Equal(TAXEL)).unwrap();
     let plate = vec![block(DVec3::new(0.1, 0.1, 0.01))];
     let mut bench = Bench::new(skin, plate, Shears::Equal(SHEAR));
     for turn in [0.0, 0.02] {
@@ -453,16 +458,16 @@ fn a_damped_taxel_grips_with_all_that_presses_it() {
     for (damping, faster) in [(0.0, 1.0), (0.5, 1.5)] {
         let taxel = Taxel { damping, ..TAXEL };
         let layout = Layout::hexagonal(6, 6, 2e-3).unwrap();
-        let skin = SkinPatch::new("damped", layout, Taxels::Equal(taxel)).unwrap();
+        let skin = Patch::new("damped", layout, Taxels::Equal(taxel)).unwrap();
         let objects = vec![block(DVec3::new(0.2, 0.2, 0.01))];
         let mut state = FrictionState::at_rest(&skin, Shears::Equal(SHEAR)).unwrap();
         let mut damper = DamperState::at_rest(skin.n_taxels());
-        let mut workspace = SkinWorkspace::new();
+        let mut workspace = Workspace::new();
         for k in 0..5 {
             let step = f64::from(k);
             let place = DVec3::new(5e-3 * step, 0.0, -1e-3 - 0.5e-3 * step);
             let poses = [Pose::from_translation(place)];
-            press_skin(&skin, &objects, &poses, &mut workspace);
+            press_with_contacts(&skin, &objects, &poses, &mut workspace);
             damper.step(skin.taxels(), 1e-3, workspace.deflections());
             let normal = NormalForce::Dampers(&damper);
             state.step(&skin, workspace.contacts(), &poses, normal);

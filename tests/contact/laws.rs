@@ -1,5 +1,6 @@
 //! Laws of the contact stage, checked against a slow, obvious oracle.
 
+use crate::random_scenes::Scene;
 use bubbletouch::contact::{
     Workspace, first_contact, press_at_pose, press_to_depth, press_to_travel, simulate,
 };
@@ -8,7 +9,7 @@ use bubbletouch::mesh::LengthUnit;
 use bubbletouch::objects::{Catalogue, Model, Sphere, SphereUnion};
 use bubbletouch::random::Seed;
 use bubbletouch::study::{ModelSpec, ObjectsSpec, load_mesh};
-use bubbletouch::world::{Grid, Patch, Phase, RestPoses, Scene, Taxel, Touch, VelocityPlan};
+use bubbletouch::world::{Grid, Patch, Phase, RestPoses, Taxel, Touch, VelocityPlan};
 use glam::{DQuat, DVec3};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
@@ -37,7 +38,7 @@ fn random_scene(rng: &mut ChaCha8Rng) -> (Scene, Vec<Pose>) {
         })
         .collect();
     let poses = objects.iter().map(|_| random_pose(rng, 0.02)).collect();
-    let patch = Patch::new(grid, TAXEL).unwrap();
+    let patch = Patch::grid(grid, TAXEL).unwrap();
     (Scene { patch, objects }, poses)
 }
 
@@ -52,7 +53,7 @@ fn random_pose(rng: &mut ChaCha8Rng, distance: f64) -> Pose {
 /// Every sphere against every taxel, straight from the equations of the contact stage's title page; those with centres lower than
 /// `behind` do not count.
 fn oracle(scene: &Scene, poses: &[Pose], travel: f64, behind: f64) -> Vec<f64> {
-    let Patch { grid, taxel } = scene.patch;
+    let (grid, taxel) = scene.grid();
     let mut deflections = vec![0.0_f64; grid.n_taxels()];
     for (object, pose) in scene.objects.iter().zip(poses) {
         for sphere in object.spheres().unwrap().spheres() {
@@ -99,11 +100,12 @@ fn the_kernel_agrees_with_every_sphere_against_every_taxel() {
         };
         let (contact, behind) = match case % 4 {
             1 => {
-                let contact = press_at_pose(&scene, &poses, &mut workspace);
+                let contact = press_at_pose(&scene.patch, &scene.objects, &poses, &mut workspace);
                 (contact, -TAXEL.stroke - TAXEL.radius)
             }
             _ => {
-                let contact = press_to_travel(&scene, &poses, travel, &mut workspace);
+                let contact =
+                    press_to_travel(&scene.patch, &scene.objects, &poses, travel, &mut workspace);
                 (contact, f64::NEG_INFINITY)
             }
         };
@@ -140,10 +142,11 @@ fn what_an_earlier_press_touched_is_wiped() {
     let mut n_touched = 0;
     for case in 0..200 {
         let (mut scene, poses) = random_scene(&mut rng);
-        scene.patch = Patch::new(grid, TAXEL).unwrap();
+        scene.patch = Patch::grid(grid, TAXEL).unwrap();
         let depth = rng.gen_range(1e-4..1e-2);
         let mut fresh = Workspace::new();
-        let contacts = [&mut reused, &mut fresh].map(|w| press_to_depth(&scene, &poses, depth, w));
+        let contacts = [&mut reused, &mut fresh]
+            .map(|w| press_to_depth(&scene.patch, &scene.objects, &poses, depth, w));
         assert_eq!(contacts[0], contacts[1], "case {case}");
         assert_eq!(reused.deflections(), fresh.deflections(), "case {case}");
         n_touched += contacts[0].map_or(0, |contact| contact.n_touched);
@@ -158,15 +161,29 @@ fn first_contact_is_where_the_first_taxel_begins_to_move() {
     let mut n_met = 0;
     for _ in 0..1000 {
         let (scene, poses) = random_scene(&mut rng);
-        let Some(first) = first_contact(&scene, &poses, &mut workspace) else {
-            let contact = press_to_depth(&scene, &poses, 1e-3, &mut workspace);
+        let Some(first) = first_contact(&scene.patch, &scene.objects, &poses, &mut workspace)
+        else {
+            let contact =
+                press_to_depth(&scene.patch, &scene.objects, &poses, 1e-3, &mut workspace);
             assert!(contact.is_none() && workspace.deflections().iter().all(|&d| d == 0.0));
             continue;
         };
         n_met += 1;
-        let before = press_to_travel(&scene, &poses, first - 1e-9, &mut workspace);
+        let before = press_to_travel(
+            &scene.patch,
+            &scene.objects,
+            &poses,
+            first - 1e-9,
+            &mut workspace,
+        );
         assert_eq!(before.n_touched, 0);
-        let after = press_to_travel(&scene, &poses, first + 1e-9, &mut workspace);
+        let after = press_to_travel(
+            &scene.patch,
+            &scene.objects,
+            &poses,
+            first + 1e-9,
+            &mut workspace,
+        );
         assert!(after.n_touched > 0);
     }
     assert!(n_met > 300, "{n_met}");
@@ -179,7 +196,7 @@ fn the_deepest_taxel_of_a_press_is_at_the_depth() {
     for _ in 0..500 {
         let (scene, poses) = random_scene(&mut rng);
         let depth = rng.gen_range(1e-4..TAXEL.stroke);
-        if press_to_depth(&scene, &poses, depth, &mut workspace).is_some() {
+        if press_to_depth(&scene.patch, &scene.objects, &poses, depth, &mut workspace).is_some() {
             let deepest = workspace
                 .deflections()
                 .iter()
@@ -201,9 +218,9 @@ fn a_rigid_motion_of_the_world_changes_nothing() {
             .iter()
             .map(|pose| patch_from_world.compose(&world.compose(pose)))
             .collect();
-        press_at_pose(&scene, &poses, &mut workspace);
+        press_at_pose(&scene.patch, &scene.objects, &poses, &mut workspace);
         let here = workspace.deflections().to_vec();
-        press_at_pose(&scene, &moved, &mut workspace);
+        press_at_pose(&scene.patch, &scene.objects, &moved, &mut workspace);
         // Rounding of 1e-15 in a position is worth more at the vertical flank of a sphere; away from it, 1e-12 holds.
         let n_flank = here
             .iter()
@@ -236,10 +253,11 @@ fn the_direct_press_equals_the_time_loop_without_a_damper_however_deep() {
             .iter()
             .map(|&pose| VelocityPlan::new(pose, vec![]).unwrap())
             .collect();
-        let recording = simulate(&scene, &patch_plan, &fixed, 1e-3, 300).unwrap();
+        let recording =
+            simulate(&scene.patch, &scene.objects, &patch_plan, &fixed, 1e-3, 300).unwrap();
         let last = patch_plan.pose_at(recording.time[299]).inverse();
         let finals: Vec<Pose> = poses.iter().map(|pose| last.compose(pose)).collect();
-        let counted = press_to_travel(&scene, &finals, 0.0, &mut workspace);
+        let counted = press_to_travel(&scene.patch, &scene.objects, &finals, 0.0, &mut workspace);
         assert_eq!(
             recording.deflection.row(299).as_slice().unwrap(),
             workspace.deflections(),
@@ -247,7 +265,7 @@ fn the_direct_press_equals_the_time_loop_without_a_damper_however_deep() {
         );
         let spring = recording.deflection.row(299).mapv(|d| 100.0 * d);
         assert_eq!(recording.force.row(299), spring, "a spring alone");
-        let there = press_at_pose(&scene, &finals, &mut workspace);
+        let there = press_at_pose(&scene.patch, &scene.objects, &finals, &mut workspace);
         n_through += usize::from(there.n_touched < counted.n_touched);
     }
     assert!(n_through > 50, "some go through for real: {n_through}");
@@ -265,7 +283,7 @@ fn what_comes_up_from_behind_or_around_the_patch_does_not_press_in_the_time_loop
         radius: 0.01,
     };
     let scene = Scene {
-        patch: Patch::new(grid, TAXEL).unwrap(),
+        patch: Patch::grid(grid, TAXEL).unwrap(),
         objects: vec![SphereUnion::new(vec![ball]).unwrap().into()],
     };
     let still = VelocityPlan::new(Pose::IDENTITY, vec![]).unwrap();
@@ -278,7 +296,7 @@ fn what_comes_up_from_behind_or_around_the_patch_does_not_press_in_the_time_loop
     let way = [go(-DVec3::Z), go(DVec3::X), go(-DVec3::X)];
     let start = Pose::from_translation(DVec3::new(0.0, 0.0, 0.05));
     let plan = VelocityPlan::new(start, way.to_vec()).unwrap();
-    let recording = simulate(&scene, &still, &[plan], 1e-3, 300).unwrap();
+    let recording = simulate(&scene.patch, &scene.objects, &still, &[plan], 1e-3, 300).unwrap();
     let reads = |frame: usize| recording.deflection.row(frame).sum();
     assert_eq!(reads(30), 0.0, "still in front");
     assert_eq!(reads(99), 25.0 * TAXEL.stroke, "gone through");
@@ -286,7 +304,7 @@ fn what_comes_up_from_behind_or_around_the_patch_does_not_press_in_the_time_loop
     assert_eq!(reads(299), 0.0, "under it again");
     let below = Pose::from_translation(DVec3::new(0.0, 0.0, -0.05));
     let up = VelocityPlan::new(below, vec![go(0.4 * DVec3::Z)]).unwrap();
-    let recording = simulate(&scene, &still, &[up], 1e-3, 100).unwrap();
+    let recording = simulate(&scene.patch, &scene.objects, &still, &[up], 1e-3, 100).unwrap();
     assert_eq!(recording.deflection.row(99).sum(), 0.0, "from behind");
 }
 
@@ -303,11 +321,18 @@ fn a_ball_pressed_on_the_array_leaves_its_cap() {
         radius,
     };
     let scene = Scene {
-        patch: Patch::new(grid, TAXEL).unwrap(),
+        patch: Patch::grid(grid, TAXEL).unwrap(),
         objects: vec![SphereUnion::new(vec![ball]).unwrap().into()],
     };
     let mut workspace = Workspace::new();
-    let contact = press_to_depth(&scene, &[Pose::IDENTITY], depth, &mut workspace).unwrap();
+    let contact = press_to_depth(
+        &scene.patch,
+        &scene.objects,
+        &[Pose::IDENTITY],
+        depth,
+        &mut workspace,
+    )
+    .unwrap();
     assert!((contact.travel - (0.3 - radius - TAXEL.radius + depth)).abs() < 1e-15);
     let reach = radius + TAXEL.radius;
     for row in 0..33 {
@@ -332,14 +357,27 @@ fn saturation_is_counted_and_stops_at_the_stroke() {
         radius: 10.0,
     };
     let scene = Scene {
-        patch: Patch::new(grid, TAXEL).unwrap(),
+        patch: Patch::grid(grid, TAXEL).unwrap(),
         objects: vec![SphereUnion::new(vec![wall]).unwrap().into()],
     };
     let mut workspace = Workspace::new();
-    let at_stroke =
-        press_to_depth(&scene, &[Pose::IDENTITY], TAXEL.stroke, &mut workspace).unwrap();
+    let at_stroke = press_to_depth(
+        &scene.patch,
+        &scene.objects,
+        &[Pose::IDENTITY],
+        TAXEL.stroke,
+        &mut workspace,
+    )
+    .unwrap();
     assert_eq!(at_stroke.n_saturated, 0);
-    let beyond = press_to_depth(&scene, &[Pose::IDENTITY], 0.02, &mut workspace).unwrap();
+    let beyond = press_to_depth(
+        &scene.patch,
+        &scene.objects,
+        &[Pose::IDENTITY],
+        0.02,
+        &mut workspace,
+    )
+    .unwrap();
     assert_eq!((beyond.n_touched, beyond.n_saturated), (81, 81));
     assert!(workspace.deflections().iter().all(|&d| d == TAXEL.stroke));
 }
@@ -356,7 +394,7 @@ fn deeper_is_never_less(name: &str, model: &Model, workspace: &mut Workspace) {
         ny: 20,
         pitch: 5e-3,
     };
-    let scene = Scene::of_one(&Patch::new(grid, TAXEL).unwrap(), model);
+    let scene = Scene::of_one(&Patch::grid(grid, TAXEL).unwrap(), model);
     let rest = &RestPoses::AsModelled.of(model)[0];
     let touch = Touch {
         rest: 0,
@@ -370,7 +408,7 @@ fn deeper_is_never_less(name: &str, model: &Model, workspace: &mut Workspace) {
     let mut before = vec![0.0; grid.n_taxels()];
     let (mut n_touched, mut n_saturated) = (0, 0);
     for depth in DEPTHS {
-        let contact = press_to_depth(&scene, &[pose], depth, workspace);
+        let contact = press_to_depth(&scene.patch, &scene.objects, &[pose], depth, workspace);
         let contact = contact.unwrap_or_else(|| panic!("{name} is under the patch"));
         let now = workspace.deflections();
         let is_less = now.iter().zip(&before).any(|(now, before)| now < before);
@@ -436,7 +474,7 @@ fn an_object_on_the_far_side_of_the_skin_does_not_press() {
         pitch: 2e-3,
     };
     let scene = |z| Scene {
-        patch: Patch::new(grid, TAXEL).unwrap(),
+        patch: Patch::grid(grid, TAXEL).unwrap(),
         objects: vec![
             SphereUnion::new(vec![Sphere {
                 center: DVec3::new(0.0, 0.0, z),
@@ -447,9 +485,14 @@ fn an_object_on_the_far_side_of_the_skin_does_not_press() {
         ],
     };
     let mut workspace = Workspace::new();
-    let behind = press_at_pose(&scene(-0.0061), &[Pose::IDENTITY], &mut workspace);
+    let mut press = |z| {
+        let scene = scene(z);
+        let pose = [Pose::IDENTITY];
+        press_at_pose(&scene.patch, &scene.objects, &pose, &mut workspace)
+    };
+    let behind = press(-0.0061);
     assert_eq!(behind.n_touched, 0);
-    let before = press_at_pose(&scene(-0.0059), &[Pose::IDENTITY], &mut workspace);
+    let before = press(-0.0059);
     assert_eq!(before.n_saturated, 9);
 }
 
@@ -464,7 +507,7 @@ fn spheres_from_a_micrometre_to_a_kilometre_press_to_their_depth() {
     for exponent in -6..=3 {
         let radius = 10f64.powi(exponent);
         let scene = Scene {
-            patch: Patch::new(grid, TAXEL).unwrap(),
+            patch: Patch::grid(grid, TAXEL).unwrap(),
             objects: vec![
                 SphereUnion::new(vec![Sphere {
                     center: DVec3::ZERO,
@@ -474,7 +517,14 @@ fn spheres_from_a_micrometre_to_a_kilometre_press_to_their_depth() {
                 .into(),
             ],
         };
-        press_to_depth(&scene, &[Pose::IDENTITY], 1e-3, &mut workspace).unwrap();
+        press_to_depth(
+            &scene.patch,
+            &scene.objects,
+            &[Pose::IDENTITY],
+            1e-3,
+            &mut workspace,
+        )
+        .unwrap();
         let middle = workspace.deflections()[12];
         assert!(
             (middle - 1e-3).abs() < 1e-12 * radius.max(1.0),

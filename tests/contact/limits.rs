@@ -1,16 +1,14 @@
 //! Where contact could break: sizes, places and steps at their ends. Each case has the behaviour that `guide::limits` states.
 
 use crate::double_double::Double;
-use crate::random_scenes::{TAXEL, direction, random_pose, rng};
+use crate::random_scenes::{Scene, TAXEL, direction, random_pose, rng};
 use bubbletouch::contact::{
-    DamperState, GRAZING, SkinWorkspace, Workspace, press_at_pose, press_skin, press_to_depth,
-    press_to_force, relaxation_factor, simulate, spring_load,
+    DamperState, GRAZING, Workspace, press_at_pose, press_to_depth, press_to_force,
+    press_with_contacts, relaxation_factor, simulate, spring_load,
 };
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{Model, Sphere, SphereUnion};
-use bubbletouch::world::{
-    Grid, Layout, Patch, Phase, Scene, SkinPatch, Taxel, Taxels, VelocityPlan,
-};
+use bubbletouch::world::{Grid, Layout, Patch, Phase, Taxel, Taxels, VelocityPlan};
 use glam::{DQuat, DVec3};
 use rand::Rng;
 
@@ -30,7 +28,7 @@ fn sphere(center: DVec3, radius: f64) -> SphereUnion {
 
 fn scene(object: SphereUnion) -> Scene {
     Scene {
-        patch: Patch::new(GRID, TAXEL).unwrap(),
+        patch: Patch::grid(GRID, TAXEL).unwrap(),
         objects: vec![object.into()],
     }
 }
@@ -45,8 +43,8 @@ fn exactly_needed(taxel: DVec3, radius: f64, sphere: &Sphere) -> Option<f64> {
 
 #[test]
 fn spheres_from_a_micrometre_to_a_kilometre_press_right_to_the_last_digits_of_their_size() {
-    let skin = SkinPatch::from(Patch::new(GRID, TAXEL).unwrap());
-    let (mut workspace, mut of_skin) = (Workspace::new(), SkinWorkspace::new());
+    let skin = Patch::grid(GRID, TAXEL).unwrap();
+    let (mut workspace, mut of_skin) = (Workspace::new(), Workspace::new());
     let mut n_touched = [0; 9];
     for case in 0..4000 {
         let mut rng = rng("sizes", case);
@@ -62,8 +60,13 @@ fn spheres_from_a_micrometre_to_a_kilometre_press_right_to_the_last_digits_of_th
         let object = sphere(center, radius);
         let of_object = object.spheres()[0];
         let scene = scene(object);
-        press_at_pose(&scene, &[Pose::IDENTITY], &mut workspace);
-        press_skin(&skin, &scene.objects, &[Pose::IDENTITY], &mut of_skin);
+        press_at_pose(
+            &scene.patch,
+            &scene.objects,
+            &[Pose::IDENTITY],
+            &mut workspace,
+        );
+        press_with_contacts(&skin, &scene.objects, &[Pose::IDENTITY], &mut of_skin);
         for (taxel, &place) in skin.layout().centers().iter().enumerate() {
             let exact = exactly_needed(place, TAXEL.radius, &of_object).unwrap_or(0.0);
             // A last bit of S², seen along the flank: √(S² − b²) = δ + h.
@@ -102,7 +105,15 @@ fn a_million_metres_from_the_origin_a_press_is_the_same_to_the_bit() {
         let away = 1e6 * direction(&mut rng).round();
         let [here, there] = [DVec3::ZERO, away].map(|away| {
             let plans = [patch, object].map(|at| still(Pose::new(turn, at + away)));
-            simulate(&scene, &plans[0], &plans[1..], 1e-3, 1).unwrap()
+            simulate(
+                &scene.patch,
+                &scene.objects,
+                &plans[0],
+                &plans[1..],
+                1e-3,
+                1,
+            )
+            .unwrap()
         });
         assert!(here.deflection.iter().any(|&d| d > 0.0), "case {case}");
         assert_eq!(here, there, "case {case}");
@@ -116,7 +127,7 @@ fn a_step_of_any_length_takes_the_damper_where_the_closed_form_says() {
         damping: 0.3,
         ..TAXEL
     };
-    let patch = Patch::new(GRID, taxel).unwrap();
+    let patch = Patch::grid(GRID, taxel).unwrap();
     let taxels = Taxels::Equal(taxel);
     let ball = scene(sphere(DVec3::ZERO, 1e-2));
     let ball = Scene { patch, ..ball };
@@ -134,7 +145,12 @@ fn a_step_of_any_length_takes_the_damper_where_the_closed_form_says() {
             rng.gen_range(-6e-3..6e-3),
             height,
         );
-        press_at_pose(&ball, &[Pose::from_translation(place)], &mut workspace);
+        press_at_pose(
+            &ball.patch,
+            &ball.objects,
+            &[Pose::from_translation(place)],
+            &mut workspace,
+        );
         let is_behind = height < -taxel.stroke - taxel.radius;
         state.step(&taxels, dt, workspace.deflections());
         let left = relaxation_factor(&taxel, dt);
@@ -171,19 +187,28 @@ fn what_jumps_through_the_skin_between_two_frames_is_not_felt_and_what_is_seen_t
     let plans = [VelocityPlan::new(start, vec![fast]).unwrap()];
     let still = VelocityPlan::new(Pose::IDENTITY, Vec::new()).unwrap();
     let scene = scene(sphere(DVec3::ZERO, 1e-2));
-    let felt = |dt: f64, n_frames| simulate(&scene, &still, &plans, dt, n_frames).unwrap();
+    let felt = |dt: f64, n_frames| {
+        simulate(&scene.patch, &scene.objects, &still, &plans, dt, n_frames).unwrap()
+    };
     assert!(felt(1.0, 3).deflection.iter().all(|&d| d == 0.0));
     let fine = felt(0.01, 300);
     assert!(fine.n_saturated > 0 && fine.deflection.iter().any(|&d| d == TAXEL.stroke));
     let mut workspace = Workspace::new();
     let last = Pose::from_translation(DVec3::new(0.0, 0.0, -0.15));
-    press_at_pose(&scene, &[last], &mut workspace);
+    press_at_pose(&scene.patch, &scene.objects, &[last], &mut workspace);
     assert_eq!(
         workspace.deflections().iter().sum::<f64>(),
         0.0,
         "behind the substrate"
     );
-    press_to_depth(&scene, &[Pose::IDENTITY], 0.2, &mut workspace).unwrap();
+    press_to_depth(
+        &scene.patch,
+        &scene.objects,
+        &[Pose::IDENTITY],
+        0.2,
+        &mut workspace,
+    )
+    .unwrap();
     assert_eq!(
         fine.deflection.row(299).as_slice().unwrap(),
         workspace.deflections()
@@ -202,11 +227,25 @@ fn a_thin_needle_or_sheet_presses_as_deep_as_any() {
             radius,
         });
         let scene = scene(union(needle.collect()));
-        press_to_depth(&scene, &[Pose::IDENTITY], 2e-3, &mut workspace).unwrap();
+        press_to_depth(
+            &scene.patch,
+            &scene.objects,
+            &[Pose::IDENTITY],
+            2e-3,
+            &mut workspace,
+        )
+        .unwrap();
         let middle = workspace.deflections()[GRID.n_taxels() / 2];
         assert!((middle - 2e-3).abs() < 1e-15, "{thickness} m: {middle}");
         // Pressed past the stroke its tip is behind the substrate, the rest of it is not: still saturated.
-        let deep = press_to_depth(&scene, &[Pose::IDENTITY], 10e-3, &mut workspace).unwrap();
+        let deep = press_to_depth(
+            &scene.patch,
+            &scene.objects,
+            &[Pose::IDENTITY],
+            10e-3,
+            &mut workspace,
+        )
+        .unwrap();
         let middle = workspace.deflections()[GRID.n_taxels() / 2];
         assert_eq!(
             (middle, deep.n_saturated),
@@ -224,7 +263,13 @@ fn a_saturated_skin_is_counted_and_refuses_more_force_than_its_springs_have() {
     for radius in [0.5, 10.0, 1e3] {
         let scene = scene(sphere(DVec3::new(0.0, 0.0, radius + 0.01), radius));
         let press = |force, workspace: &mut Workspace| {
-            press_to_force(&scene, &[Pose::IDENTITY], force, workspace)
+            press_to_force(
+                &scene.patch,
+                &scene.objects,
+                &[Pose::IDENTITY],
+                force,
+                workspace,
+            )
         };
         for share in [1e-9, 0.3, 0.999, 1.0] {
             press(share * all, &mut workspace).unwrap().unwrap();
@@ -243,12 +288,19 @@ fn a_saturated_skin_is_counted_and_refuses_more_force_than_its_springs_have() {
             error.contains(&most) && error.contains("at their stroke"),
             "{error}"
         );
-        let deep = press_to_depth(&scene, &[Pose::IDENTITY], 0.1, &mut workspace).unwrap();
+        let deep = press_to_depth(
+            &scene.patch,
+            &scene.objects,
+            &[Pose::IDENTITY],
+            0.1,
+            &mut workspace,
+        )
+        .unwrap();
         assert_eq!((deep.n_touched, deep.n_saturated), (n, n));
-        let skin = SkinPatch::from(scene.patch);
-        let mut of_skin = SkinWorkspace::new();
+        let skin = scene.patch.clone();
+        let mut of_skin = Workspace::new();
         let pressed = Pose::from_translation(DVec3::new(0.0, 0.0, -deep.travel));
-        press_skin(&skin, &scene.objects, &[pressed], &mut of_skin);
+        press_with_contacts(&skin, &scene.objects, &[pressed], &mut of_skin);
         let load = spring_load(&skin, of_skin.contacts());
         assert_eq!(load.saturated_share, 1.0);
         assert!((load.spring_force / all - 1.0).abs() < 1e-12);
@@ -258,8 +310,8 @@ fn a_saturated_skin_is_counted_and_refuses_more_force_than_its_springs_have() {
 #[test]
 fn grazing_flanks_push_with_a_bounded_force_and_are_counted() {
     let layout = Layout::new(vec![DVec3::ZERO], vec![DVec3::Z]).unwrap();
-    let skin = SkinPatch::new("one", layout, Taxels::Equal(TAXEL)).unwrap();
-    let mut workspace = SkinWorkspace::new();
+    let skin = Patch::new("one", layout, Taxels::Equal(TAXEL)).unwrap();
+    let mut workspace = Workspace::new();
     let mut n_grazing = 0;
     for case in 0..2000 {
         let mut rng = rng("grazing", case);
@@ -274,7 +326,7 @@ fn grazing_flanks_push_with_a_bounded_force_and_are_counted() {
             continue;
         }
         let flank = Model::from(sphere(DVec3::new(beside, 0.0, height), radius));
-        let counts = press_skin(&skin, &[flank], &[Pose::IDENTITY], &mut workspace);
+        press_with_contacts(&skin, &[flank], &[Pose::IDENTITY], &mut workspace);
         // Rounding may take the shallowest flanks out of reach altogether.
         let [contact] = workspace.contacts() else {
             assert!(cosine < 1e-7, "case {case}: {cosine}");
@@ -290,8 +342,8 @@ fn grazing_flanks_push_with_a_bounded_force_and_are_counted() {
             // F = f n_c / (n_c·n): along the axis it is the spring's.
             assert!((push.z / force - 1.0).abs() < 1e-9, "case {case}: {push}");
         }
-        assert_eq!(counts.n_grazing, usize::from(contact.cosine < GRAZING));
-        n_grazing += counts.n_grazing;
+        assert_eq!(contact.is_grazing(), contact.cosine < GRAZING);
+        n_grazing += usize::from(contact.is_grazing());
     }
     assert!(n_grazing > 500, "{n_grazing}");
 }
@@ -299,8 +351,8 @@ fn grazing_flanks_push_with_a_bounded_force_and_are_counted() {
 #[test]
 fn a_taxel_exactly_between_two_spheres_is_pushed_as_far_as_each_of_them_needs() {
     let layout = Layout::new(vec![DVec3::ZERO], vec![DVec3::Z]).unwrap();
-    let skin = SkinPatch::new("one", layout, Taxels::Equal(TAXEL)).unwrap();
-    let mut workspace = SkinWorkspace::new();
+    let skin = Patch::new("one", layout, Taxels::Equal(TAXEL)).unwrap();
+    let mut workspace = Workspace::new();
     for case in 0..500 {
         let mut rng = rng("between", case);
         let radius = 10f64.powf(rng.gen_range(-3.0..1.0));
@@ -316,7 +368,7 @@ fn a_taxel_exactly_between_two_spheres_is_pushed_as_far_as_each_of_them_needs() 
         let pair = union(vec![at(beside), at(-beside)]);
         let exact = exactly_needed(DVec3::ZERO, TAXEL.radius, &pair.spheres()[0]);
         let exact = exact.unwrap().clamp(0.0, TAXEL.stroke);
-        press_skin(&skin, &[pair.into()], &[Pose::IDENTITY], &mut workspace);
+        press_with_contacts(&skin, &[pair.into()], &[Pose::IDENTITY], &mut workspace);
         let found = workspace.deflections()[0];
         assert!(
             (found - exact).abs() <= 8.0 * f64::EPSILON * reach,

@@ -3,11 +3,11 @@
 use bubbletouch::contact::{Instructions, Workspace, press_to_depth};
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{Sphere, SphereUnion};
-use bubbletouch::world::{Grid, Patch, Scene};
+use bubbletouch::world::{Grid, Patch};
 use glam::DVec3;
 use rand::Rng;
 
-use crate::random_scenes::{TAXEL, random_pose, rng};
+use crate::random_scenes::{Scene, TAXEL, random_pose, rng};
 
 /// Some unions of spheres of any size about a grid.
 fn random_scene(rng: &mut impl Rng) -> (Scene, Vec<Pose>) {
@@ -30,7 +30,7 @@ fn random_scene(rng: &mut impl Rng) -> (Scene, Vec<Pose>) {
         ny: rng.gen_range(1..50),
         pitch: rng.gen_range(5e-4..4e-3),
     };
-    let patch = Patch::new(grid, TAXEL).unwrap();
+    let patch = Patch::grid(grid, TAXEL).unwrap();
     (Scene { patch, objects }, poses)
 }
 
@@ -43,7 +43,8 @@ fn vector_instructions_change_no_bit() {
         let depth = rng.gen_range(1e-4..2e-2);
         let press = |instructions: Instructions| {
             let mut workspace = Workspace::with(instructions);
-            let contact = press_to_depth(&scene, &poses, depth, &mut workspace);
+            let contact =
+                press_to_depth(&scene.patch, &scene.objects, &poses, depth, &mut workspace);
             let deflections = workspace.deflections().iter();
             (
                 contact,

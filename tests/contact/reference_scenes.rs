@@ -5,7 +5,7 @@
 use bubbletouch::contact::{Workspace, press_at_pose};
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{Sphere, SphereUnion};
-use bubbletouch::world::{Grid, Patch, Scene, Taxel};
+use bubbletouch::world::{Grid, Patch, Taxel};
 use glam::{DMat3, DVec3};
 use serde_json::Value;
 use std::path::Path;
@@ -39,7 +39,7 @@ fn check_scene(folder: &Path) -> usize {
     let frames = json["frames"].as_array().unwrap();
     let patch = patch(&json["sensor"]);
     let finals = numbers(&folder.join("displacement_final.csv")).concat();
-    let last = deflections(&json, frames.last().unwrap(), &spheres, patch);
+    let last = deflections(&json, frames.last().unwrap(), &spheres, &patch);
     assert_same(&last, &finals, folder, frames.len() - 1);
     let every = folder.join("displacement_frames.csv");
     if !every.exists() {
@@ -48,7 +48,7 @@ fn check_scene(folder: &Path) -> usize {
     let recorded = numbers(&every);
     assert_eq!(recorded.len(), frames.len() - 1);
     for (index, row) in recorded.iter().enumerate() {
-        let computed = deflections(&json, &frames[index + 1], &spheres, patch);
+        let computed = deflections(&json, &frames[index + 1], &spheres, &patch);
         assert_same(&computed, row, folder, index + 1);
     }
     1 + recorded.len()
@@ -67,11 +67,11 @@ fn patch(sensor: &Value) -> Patch {
         damping: 0.0,
         stroke: number("maxz") - number("minz"),
     };
-    Patch::new(grid, taxel).unwrap()
+    Patch::grid(grid, taxel).unwrap()
 }
 
 /// The recorded orientation is not always a rotation, so the spheres are brought to the patch frame here.
-fn deflections(json: &Value, frame: &Value, spheres: &[Vec<f64>], patch: Patch) -> Vec<f64> {
+fn deflections(json: &Value, frame: &Value, spheres: &[Vec<f64>], patch: &Patch) -> Vec<f64> {
     let rows: Vec<DVec3> = frame["orientation"]
         .as_array()
         .unwrap()
@@ -96,7 +96,7 @@ fn deflections(json: &Value, frame: &Value, spheres: &[Vec<f64>], patch: Patch) 
     }
     let poses = vec![Pose::IDENTITY; objects.len()];
     let mut workspace = Workspace::new();
-    press_at_pose(&Scene { patch, objects }, &poses, &mut workspace);
+    press_at_pose(patch, &objects, &poses, &mut workspace);
     workspace.deflections().to_vec()
 }
 

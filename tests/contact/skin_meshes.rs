@@ -1,12 +1,12 @@
 //! Laws of contact of skins of any shape with meshes: against every triangle, the grid kernel, and a forearm on a table.
 
 use bubbletouch::contact::{
-    SkinWorkspace, Workspace, press_at_pose, press_skin, spring_load, stopping_height,
+    Workspace, press_to_travel, press_with_contacts, spring_load, stopping_height,
 };
 use bubbletouch::geometry::Pose;
 use bubbletouch::mesh::{Surface, Triangle, TriangleMesh};
 use bubbletouch::objects::{MeshModel, Model};
-use bubbletouch::world::{Grid, Layout, Patch, Scene, SkinPatch, Taxel, Taxels};
+use bubbletouch::world::{Grid, Layout, Patch, Taxel, Taxels};
 use glam::{DQuat, DVec2, DVec3};
 use rand::Rng;
 use std::f64::consts::TAU;
@@ -38,7 +38,7 @@ fn random_mesh(rng: &mut impl Rng, kind: u64) -> TriangleMesh {
 }
 
 /// A skin of one taxel each, and a mesh with its pose somewhere on it.
-fn random_scene(case: u64) -> (SkinPatch, TriangleMesh, Pose) {
+fn random_scene(case: u64) -> (Patch, TriangleMesh, Pose) {
     let mut rng = rng("scene", case);
     let layout = match case % 4 {
         0 => Layout::cylinder(0.02, 0.05, rng.gen_range(1.0..TAU), 4e-3),
@@ -58,7 +58,7 @@ fn random_scene(case: u64) -> (SkinPatch, TriangleMesh, Pose) {
     };
     let taxels = (0..layout.n_taxels()).map(one).collect();
     let middle = layout.centers()[rng.gen_range(0..layout.n_taxels())];
-    let skin = SkinPatch::new("skin", layout, Taxels::Each(taxels)).unwrap();
+    let skin = Patch::new("skin", layout, Taxels::Each(taxels)).unwrap();
     let mesh = random_mesh(&mut rng, case / 4);
     let corner = mesh.vertices()[rng.gen_range(0..mesh.vertices().len())];
     let rotation = random_turn(&mut rng);
@@ -124,12 +124,12 @@ fn every_triangle(mesh: &TriangleMesh, center: DVec3, axis: DVec3, taxel: &Taxel
 
 #[test]
 fn every_taxel_stops_where_every_triangle_says() {
-    let mut workspace = SkinWorkspace::new();
+    let mut workspace = Workspace::new();
     let (mut n_touched, mut n_saturated, mut n_edges) = (0, 0, 0);
     for case in 0..120 {
         let (skin, mesh, pose) = random_scene(case);
         let model = MeshModel::new(mesh.clone()).into();
-        let counts = press_skin(&skin, &[model], &[pose], &mut workspace);
+        let counts = press_with_contacts(&skin, &[model], &[pose], &mut workspace);
         let placed = mesh.moved(&pose);
         for taxel in 0..skin.n_taxels() {
             let (center, axis) = (skin.layout().centers()[taxel], skin.layout().axes()[taxel]);
@@ -150,11 +150,11 @@ fn every_taxel_stops_where_every_triangle_says() {
 
 #[test]
 fn a_contact_lies_on_its_triangle_a_radius_from_the_taxel() {
-    let mut workspace = SkinWorkspace::new();
+    let mut workspace = Workspace::new();
     for case in 0..120 {
         let (skin, mesh, pose) = random_scene(case);
         let placed = mesh.moved(&pose);
-        press_skin(
+        press_with_contacts(
             &skin,
             &[MeshModel::new(mesh).into()],
             &[pose],
@@ -174,7 +174,7 @@ fn a_contact_lies_on_its_triangle_a_radius_from_the_taxel() {
 
 #[test]
 fn a_flat_grid_meets_a_mesh_as_by_the_grid_kernel() {
-    let (mut workspace, mut grid_workspace) = (SkinWorkspace::new(), Workspace::new());
+    let (mut workspace, mut grid_workspace) = (Workspace::new(), Workspace::new());
     let mut n_pressed = 0;
     for case in 0..200 {
         let mut rng = rng("grid", case);
@@ -183,20 +183,16 @@ fn a_flat_grid_meets_a_mesh_as_by_the_grid_kernel() {
             ny: 11,
             pitch: rng.gen_range(1e-3..4e-3),
         };
-        let patch = Patch::new(grid, TAXEL).unwrap();
+        let patch = Patch::grid(grid, TAXEL).unwrap();
         let mesh = random_mesh(&mut rng, case);
         let turned = mesh.moved(&Pose::from_rotation(random_turn(&mut rng)));
         let lowest = turned.bounds().min.z;
-        // No deeper than the stroke: further on, the grid kernel counts a mesh as a whole, and a skin its parts.
+        // No deeper than the stroke: further on, parts of the mesh are behind the substrate.
         let up = TAXEL.radius - rng.gen_range(0.0..TAXEL.stroke);
         let pose = Pose::from_translation(DVec3::Z * (up - lowest));
-        let scene = Scene {
-            patch,
-            objects: vec![MeshModel::new(turned).into()],
-        };
-        press_at_pose(&scene, &[pose], &mut grid_workspace);
-        let skin = SkinPatch::from(patch);
-        press_skin(&skin, &scene.objects, &[pose], &mut workspace);
+        let objects = [MeshModel::new(turned).into()];
+        press_to_travel(&patch, &objects, &[pose], 0.0, &mut grid_workspace);
+        press_with_contacts(&patch, &objects, &[pose], &mut workspace);
         let pairs = workspace
             .deflections()
             .iter()
@@ -215,7 +211,7 @@ fn a_flat_grid_meets_a_mesh_as_by_the_grid_kernel() {
 #[test]
 fn balls_as_spheres_and_as_fine_meshes_press_nearly_the_same() {
     let layout = Layout::sphere_cap(0.02, 1.5, 2e-3).unwrap();
-    let skin = SkinPatch::new("fingertip", layout, Taxels::Equal(TAXEL)).unwrap();
+    let skin = Patch::new("fingertip", layout, Taxels::Equal(TAXEL)).unwrap();
     let radius = 0.03;
     let mesh = MeshModel::new(icosphere(radius, 6)).into();
     let ball = bubbletouch::objects::Sphere {
@@ -227,8 +223,8 @@ fn balls_as_spheres_and_as_fine_meshes_press_nearly_the_same() {
         .into();
     let pose = Pose::from_translation(DVec3::new(0.02, 0.01, 0.043));
     let [a, b] = [mesh, ball].map(|model: Model| {
-        let mut workspace = SkinWorkspace::new();
-        press_skin(&skin, &[model], &[pose], &mut workspace);
+        let mut workspace = Workspace::new();
+        press_with_contacts(&skin, &[model], &[pose], &mut workspace);
         let load = spring_load(&skin, workspace.contacts());
         (workspace.deflections().to_vec(), load)
     });
@@ -247,9 +243,9 @@ fn balls_as_spheres_and_as_fine_meshes_press_nearly_the_same() {
 }
 
 /// A closed skin around a forearm, its z axis level.
-fn forearm() -> SkinPatch {
+fn forearm() -> Patch {
     let layout = Layout::cylinder(0.03, 0.1, TAU, 5e-3).unwrap();
-    SkinPatch::new("forearm", layout, Taxels::Equal(TAXEL)).unwrap()
+    Patch::new("forearm", layout, Taxels::Equal(TAXEL)).unwrap()
 }
 
 #[test]
@@ -258,8 +254,8 @@ fn what_a_forearm_lies_on_does_not_press_its_other_side() {
     let table: Model = MeshModel::new(cuboid(DVec3::new(0.01, 1.0, 1.0))).into();
     // Its top is at x = −0.029: the taxels there, from x = −0.03 on and 1 mm round, are pushed by up to 2 mm.
     let pose = Pose::from_translation(DVec3::new(-0.039, 0.0, 0.0));
-    let mut workspace = SkinWorkspace::new();
-    let counts = press_skin(&skin, &[table], &[pose], &mut workspace);
+    let mut workspace = Workspace::new();
+    let counts = press_with_contacts(&skin, &[table], &[pose], &mut workspace);
     assert!(
         counts.n_touched > 50 && counts.n_saturated == 0,
         "{counts:?}"
@@ -287,9 +283,9 @@ fn walls_on_both_sides_of_a_forearm_press_only_their_own_sides() {
             .collect::<Vec<_>>()
     });
     let both = TriangleMesh::new("walls", corners.collect(), faces.collect()).unwrap();
-    let mut workspace = SkinWorkspace::new();
+    let mut workspace = Workspace::new();
     let model: Model = MeshModel::new(both).into();
-    let counts = press_skin(&skin, &[model], &[Pose::IDENTITY], &mut workspace);
+    let counts = press_with_contacts(&skin, &[model], &[Pose::IDENTITY], &mut workspace);
     assert!(
         counts.n_touched > 100 && counts.n_saturated == 0,
         "{counts:?}"
@@ -305,12 +301,12 @@ fn a_taxel_whose_substrate_is_inside_of_a_mesh_is_saturated() {
         ny: 5,
         pitch: 2e-3,
     });
-    let skin = SkinPatch::new("palm", layout.unwrap(), Taxels::Equal(TAXEL)).unwrap();
-    let mut workspace = SkinWorkspace::new();
+    let skin = Patch::new("palm", layout.unwrap(), Taxels::Equal(TAXEL)).unwrap();
+    let mut workspace = Workspace::new();
     for mesh in [cuboid(DVec3::splat(0.05)), icosphere(0.05, 3)] {
         assert!(Surface::new(mesh.clone()).contains(DVec3::ZERO));
         let model: Model = MeshModel::new(mesh).into();
-        let counts = press_skin(&skin, &[model], &[Pose::IDENTITY], &mut workspace);
+        let counts = press_with_contacts(&skin, &[model], &[Pose::IDENTITY], &mut workspace);
         assert_eq!((counts.n_touched, counts.n_saturated), (25, 25));
         assert!(workspace.contacts().iter().all(|c| c.needed > 0.04));
     }

@@ -1,9 +1,9 @@
 //! A skin that is pressed and then drawn along: closed forms, mirrors, and a way of many small steps.
 
-use bubbletouch::contact::{Approach, FrictionState, NormalForce, SkinWorkspace, press_skin};
+use bubbletouch::contact::{Approach, FrictionState, NormalForce, Workspace, press_with_contacts};
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{MeshModel, Model, Sphere, SphereUnion};
-use bubbletouch::world::{ArrayLayout, Grid, Shear, Shears, SkinPatch, Taxels};
+use bubbletouch::world::{ArrayLayout, Grid, Patch, Shear, Shears, Taxels};
 use glam::{DVec2, DVec3};
 
 use crate::mesh_shapes;
@@ -19,9 +19,9 @@ const SHEAR: Shear = Shear {
     friction: 0.6,
 };
 
-fn skin(layout: ArrayLayout) -> SkinPatch {
+fn skin(layout: ArrayLayout) -> Patch {
     let layout = layout.taxels(&GRID, 0.03).unwrap();
-    SkinPatch::new("skin", layout, Taxels::Equal(TAXEL)).unwrap()
+    Patch::new("skin", layout, Taxels::Equal(TAXEL)).unwrap()
 }
 
 fn ball(radius: f64) -> [Model; 1] {
@@ -33,10 +33,10 @@ fn ball(radius: f64) -> [Model; 1] {
 }
 
 /// Forces on all taxels after a press and a slide.
-fn forces(skin: &SkinPatch, objects: &[Model], pose: Pose, motion: (f64, DVec3)) -> Vec<DVec3> {
+fn forces(skin: &Patch, objects: &[Model], pose: Pose, motion: (f64, DVec3)) -> Vec<DVec3> {
     let approach = Approach::new(skin, DVec3::Z).unwrap();
     let mut friction = FrictionState::at_rest(skin, Shears::Equal(SHEAR)).unwrap();
-    let mut workspace = SkinWorkspace::new();
+    let mut workspace = Workspace::new();
     // What it did before is forgotten.
     let before = (2e-3, DVec3::new(1e-3, 2e-3, 0.0));
     for motion in [before, motion] {
@@ -98,13 +98,13 @@ fn the_shear_is_that_of_many_small_steps() {
         let approach = Approach::new(&skin, DVec3::Z).unwrap();
         let first = approach.first_contact(&objects, &[start]).unwrap();
         let mut friction = FrictionState::at_rest(&skin, Shears::Equal(SHEAR)).unwrap();
-        let mut workspace = SkinWorkspace::new();
+        let mut workspace = Workspace::new();
         let mut to = |moved: DVec3| {
             let pose = Pose {
                 translation: start.translation - moved,
                 ..start
             };
-            press_skin(&skin, &objects, &[pose], &mut workspace);
+            press_with_contacts(&skin, &objects, &[pose], &mut workspace);
             friction.step(&skin, workspace.contacts(), &[pose], NormalForce::Springs);
             friction.force3().to_vec()
         };

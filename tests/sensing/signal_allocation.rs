@@ -37,7 +37,7 @@ fn touches_after_the_first_allocate_nothing() {
         SensorError::Quantisation.step(&[8.0], skin),
         smoothing,
     ];
-    let chain = Chain::new(&steps, &Patch::new(grid, taxel).unwrap()).unwrap();
+    let chain = Chain::new(&steps, &Patch::grid(grid, taxel).unwrap()).unwrap();
     let mut frames = vec![1e-3; 3 * 64 * 48];
     let rates = vec![0.01; 3 * 64 * 48];
     let mut scratch = Scratch::default();

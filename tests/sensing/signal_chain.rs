@@ -15,7 +15,7 @@ fn patch(nx: usize, ny: usize) -> Patch {
         damping: 0.4,
         stroke: 5e-3,
     };
-    Patch::new(grid, taxel).unwrap()
+    Patch::grid(grid, taxel).unwrap()
 }
 
 fn noise(std: f64, unit: NoiseUnit) -> SignalStep {
@@ -78,10 +78,14 @@ fn smoothing_is_scipys_gaussian_filter_even_when_wider_than_the_array() {
 #[test]
 fn one_width_smooths_the_same_patch_of_skin_at_every_pitch() {
     let blurred_at_centre = |n: usize, pitch: f64| {
-        let mut patch = patch(n, n);
-        patch.grid.pitch = pitch;
+        let grid = Grid {
+            nx: n,
+            ny: n,
+            pitch,
+        };
+        let patch = Patch::grid(grid, *patch(1, 1).taxels().at(0)).unwrap();
         let bump = |row: usize, column: usize| {
-            let (x, y) = (patch.grid.x(column), patch.grid.y(row));
+            let (x, y) = (grid.x(column), grid.y(row));
             (-0.5 * (x * x + y * y) / 6e-3f64.powi(2)).exp()
         };
         let frame: Vec<f64> = (0..n * n).map(|i| bump(i / n, i % n)).collect();

@@ -22,7 +22,7 @@ fn patch() -> Patch {
         damping: 0.0,
         stroke: 5e-3,
     };
-    Patch::new(grid, taxel).unwrap()
+    Patch::grid(grid, taxel).unwrap()
 }
 
 fn skin() -> Seed {

@@ -2,9 +2,9 @@
 
 use bubbletouch::random::Seed;
 use bubbletouch::signal::{
-    Chain, Noise, NoiseUnit, ReadSkin, SENSOR_ERRORS, Scratch, SensorError, SignalStep,
+    Chain, Noise, NoiseUnit, SENSOR_ERRORS, Scratch, SensorError, SignalStep,
 };
-use bubbletouch::world::{Grid, Layout, Patch, SkinPatch, Taxel, Taxels};
+use bubbletouch::world::{Grid, Layout, Patch, Taxel, Taxels};
 use glam::{DQuat, DVec3};
 use std::f64::consts::TAU;
 
@@ -16,22 +16,22 @@ const TAXEL: Taxel = Taxel {
     stroke: 5e-3,
 };
 
-fn skin(layout: Layout) -> SkinPatch {
-    SkinPatch::new("palm", layout, Taxels::Equal(TAXEL)).unwrap()
+fn skin(layout: Layout) -> Patch {
+    Patch::new("palm", layout, Taxels::Equal(TAXEL)).unwrap()
 }
 
 fn grid(nx: usize, ny: usize) -> Patch {
     let pitch = PITCH;
-    Patch::new(Grid { nx, ny, pitch }, TAXEL).unwrap()
+    Patch::grid(Grid { nx, ny, pitch }, TAXEL).unwrap()
 }
 
 /// The taxels of a grid in a layout that does not know that it is one.
-fn scattered(patch: &Patch) -> SkinPatch {
-    let layout = Layout::grid(&patch.grid).unwrap();
+fn scattered(patch: &Patch) -> Patch {
+    let layout = patch.layout();
     skin(Layout::new(layout.centers().to_vec(), layout.axes().to_vec()).unwrap())
 }
 
-fn read<'s>(steps: &[SignalStep], skin: impl Into<ReadSkin<'s>>, frame: &[f64]) -> Vec<f64> {
+fn read(steps: &[SignalStep], skin: &Patch, frame: &[f64]) -> Vec<f64> {
     let chain = Chain::new(steps, skin).unwrap();
     let mut out = frame.to_vec();
     let touch = Seed::new(2018).numbered(3);
@@ -39,7 +39,7 @@ fn read<'s>(steps: &[SignalStep], skin: impl Into<ReadSkin<'s>>, frame: &[f64]) 
     out
 }
 
-fn refused<'s>(steps: &[SignalStep], skin: impl Into<ReadSkin<'s>>) -> String {
+fn refused(steps: &[SignalStep], skin: &Patch) -> String {
     Chain::new(steps, skin).unwrap_err().to_string()
 }
 
@@ -77,7 +77,7 @@ fn a_skin_that_is_a_grid_reads_the_bits_of_the_grid() {
         steps.push(error.step(&[strength], Seed::new(1)));
     }
     let of_grid = read(&steps, &patch, &frame(63));
-    assert_eq!(read(&steps, &SkinPatch::from(patch), &frame(63)), of_grid);
+    assert_eq!(read(&steps, &patch.clone(), &frame(63)), of_grid);
 }
 
 #[test]
@@ -185,10 +185,10 @@ fn what_a_layout_or_unlike_taxels_cannot_read_is_refused() {
     assert!(refused(&[bad], &skin(layout())).starts_with("smoothing width: -0.001 m"));
     let mut taxels = vec![TAXEL; layout().n_taxels()];
     taxels[3].radius = 0.5e-3;
-    let wide = SkinPatch::new("palm", layout(), Taxels::Each(taxels.clone())).unwrap();
+    let wide = Patch::new("palm", layout(), Taxels::Each(taxels.clone())).unwrap();
     assert!(Chain::new(&[smoothing(1.0)], &wide).is_ok());
     taxels[3].stiffness = 100.0;
-    let soft = SkinPatch::new("palm", layout(), Taxels::Each(taxels)).unwrap();
+    let soft = Patch::new("palm", layout(), Taxels::Each(taxels)).unwrap();
     assert_eq!(
         refused(&[], &soft),
         "signal of skin patch palm: taxels of unlike stroke, stiffness or damping; taxels that read alike"

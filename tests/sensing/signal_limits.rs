@@ -30,7 +30,7 @@ fn patch(n: usize) -> Patch {
         damping: 0.0,
         stroke: 5e-3,
     };
-    Patch::new(grid, taxel).unwrap()
+    Patch::grid(grid, taxel).unwrap()
 }
 
 fn applied(steps: &[SignalStep], patch: &Patch, frame: &[f64]) -> Vec<f64> {
@@ -43,13 +43,13 @@ fn applied(steps: &[SignalStep], patch: &Patch, frame: &[f64]) -> Vec<f64> {
 #[test]
 fn noise_of_ten_times_the_full_scale_is_neither_clipped_nor_bounded() {
     let patch = patch(128);
-    let full_scale = patch.taxel.stroke;
+    let full_scale = patch.taxels().at(0).stroke;
     for std in [0.1, 1.0, 10.0] {
         let noise = SignalStep::Noise(Noise {
             std,
             unit: NoiseUnit::FullScale,
         });
-        let n = patch.grid.n_taxels() as f64;
+        let n = patch.n_taxels() as f64;
         let noisy = applied(&[noise], &patch, &vec![0.5 * full_scale; n as usize]);
         let z: Vec<f64> = noisy
             .iter()
@@ -86,7 +86,7 @@ fn smoothing_wider_than_the_array_is_the_weighted_mean_of_the_mirrored_array() {
     let mut rng = Seed::new(2).named("frame").rng();
     let frame: Vec<f64> = (0..36).map(|_| rng.gen_range(0.0..5e-3)).collect();
     for pitches in [1.0, 3.0, 6.0, 20.0, 300.0, 1e4] {
-        let width = pitches * patch.grid.pitch;
+        let width = pitches * patch.layout().as_grid().unwrap().pitch;
         let found = applied(&[SignalStep::Smoothing { width }], &patch, &frame);
         // Slowly: every tap of the truncated Gaussian on the endlessly mirrored array.
         let reach = (4.0 * pitches + 0.5) as i64;

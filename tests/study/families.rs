@@ -13,7 +13,6 @@ use bubbletouch::recognition::fusion::fuse_rows;
 use bubbletouch::sensing::Projection;
 use bubbletouch::signal::{Chain, Noise, NoiseUnit, Scratch, SignalStep};
 use bubbletouch::study::table::{Cell, Tables, TrialScore};
-use bubbletouch::world::Scene;
 use ndarray::{Array1, Array2, Axis};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -61,16 +60,16 @@ const ALL_FEATURES: &str = r#"features = ["raw", "centred", "unit_norm", "centre
 
 /// The rows of a cell in a trial, one touch, one frame, one number after the other.
 fn slow_rows(study: &Study, cell: &Cell, trial: u64) -> Array2<f64> {
-    let patch = *study.plan.arrays[0].square();
+    let array = &study.plan.arrays[0];
     let seed = Seed::new(study.plan.spec.seed);
     let steps = [SignalStep::Noise(Noise {
         std: cell.noise_std,
         unit: NoiseUnit::FullScale,
     })];
-    let chain = Chain::new(&steps, &patch).unwrap();
+    let chain = Chain::new(&steps, array.patch()).unwrap();
     let projection = Projection::new(
         cell.ensemble,
-        (patch.grid.ny, patch.grid.nx),
+        array.shape(),
         cell.measurements,
         &seed.named("projection").numbered(trial),
     )
@@ -80,10 +79,7 @@ fn slow_rows(study: &Study, cell: &Cell, trial: u64) -> Array2<f64> {
     let mut rows = Array2::zeros((study.sweep.labels.len(), depths * m));
     let mut row = 0;
     for touched in &study.touched {
-        let scene = Scene {
-            patch,
-            objects: vec![touched.object.model.clone()],
-        };
+        let object = [touched.object.model.clone()];
         for (number, touch) in touched.touches.iter().enumerate() {
             let name = seed.named("signal").numbered(trial);
             let name = name.named(&touched.object.name).numbered(number as u64);
@@ -91,7 +87,7 @@ fn slow_rows(study: &Study, cell: &Cell, trial: u64) -> Array2<f64> {
                 let pose = touch.patch_from_object(&touched.rests[touch.rest]);
                 let depth = touch.depth * (frame as f64 / depths as f64);
                 let mut workspace = Workspace::new();
-                press_to_depth(&scene, &[pose], depth, &mut workspace);
+                press_to_depth(array.patch(), &object, &[pose], depth, &mut workspace);
                 let kept = workspace.deflections().iter().map(|&d| f64::from(d as f32));
                 let mut values: Vec<f64> = kept.collect();
                 let noise = match frame == depths {

@@ -4,8 +4,9 @@ use crate::study::Study;
 use bubbletouch::contact::{Workspace, press_to_depth};
 use bubbletouch::recognition::split::Split;
 use bubbletouch::study::progress::Silent;
+use bubbletouch::study::taxel_array::TaxelArray;
 use bubbletouch::study::{TouchedObject, sample_frames, simulate_array};
-use bubbletouch::world::{Patch, Scene, Touch, TouchAxis};
+use bubbletouch::world::{Touch, TouchAxis};
 use std::collections::BTreeSet;
 
 /// Some touches are beside the array, some deeper than its stroke.
@@ -40,20 +41,18 @@ classifier = "linear_svm"
 #[test]
 fn every_frame_is_its_touch_pressed_alone() {
     let study = Study::new(STUDY);
-    let patch = *study.plan.arrays[0].square();
-    let frames = simulate_array(&study.touched, &patch.into(), 1, &Silent);
+    let array = &study.plan.arrays[0];
+    let frames = simulate_array(&study.touched, array, 1, &Silent);
     let deflection = frames.to_array().unwrap();
     let mut row = 0;
     let (mut n_missed, mut n_saturated) = (0, 0);
     for object in &study.touched {
         for touch in &object.touches {
             let mut workspace = Workspace::new();
-            let scene = Scene {
-                patch,
-                objects: vec![object.object.model.clone()],
-            };
+            let model = [object.object.model.clone()];
             let pose = touch.patch_from_object(&object.rests[touch.rest]);
-            let contact = press_to_depth(&scene, &[pose], touch.depth, &mut workspace);
+            let contact =
+                press_to_depth(array.patch(), &model, &[pose], touch.depth, &mut workspace);
             let alone = workspace.deflections().iter();
             let alone: Vec<f64> = alone.map(|&d| f64::from(d as f32)).collect();
             assert_eq!(deflection.row(row).to_vec(), alone, "row {row}");
@@ -72,8 +71,8 @@ fn frames_without_a_deflection_are_counted_and_none_is_of_a_deep_touch() {
     let depths = |depths: &str| {
         let text = STUDY.replace("depth_mm = [2.0, 4.0]", depths);
         let study = Study::new(&text.replace(", 400.0]", "]"));
-        let patch = *study.plan.arrays[0].square();
-        let frames = simulate_array(&study.touched, &patch.into(), 3, &Silent);
+        let array = &study.plan.arrays[0];
+        let frames = simulate_array(&study.touched, array, 3, &Silent);
         let deflection = frames.to_array().unwrap();
         let empty = deflection.outer_iter().skip(2).step_by(3);
         let n_empty = empty.filter(|row| row.iter().all(|&d| d == 0.0)).count();
@@ -88,16 +87,16 @@ fn frames_without_a_deflection_are_counted_and_none_is_of_a_deep_touch() {
 }
 
 /// What the equations of contact give, taxel by taxel and sphere by sphere; `None` if no travel meets the object.
-fn by_the_equations(patch: &Patch, object: &TouchedObject, touch: &Touch) -> Option<Vec<f64>> {
+fn by_the_equations(array: &TaxelArray, object: &TouchedObject, touch: &Touch) -> Option<Vec<f64>> {
     let pose = touch.patch_from_object(&object.rests[touch.rest]);
-    let grid = &patch.grid;
+    let grid = array.grid();
     let spheres = object.object.model.spheres().unwrap().spheres();
     let needs: Vec<f64> = (0..grid.n_taxels())
         .map(|taxel| {
             let (x, y) = (grid.x(taxel % grid.nx), grid.y(taxel / grid.nx));
             spheres.iter().fold(f64::NEG_INFINITY, |deepest, sphere| {
                 let c = pose.transform_point(sphere.center);
-                let reach = patch.taxel.radius + sphere.radius;
+                let reach = array.taxel().radius + sphere.radius;
                 let b2 = (c.x - x).powi(2) + (c.y - y).powi(2);
                 match b2 < reach * reach {
                     true => deepest.max((reach * reach - b2).sqrt() - c.z),
@@ -116,9 +115,9 @@ fn by_the_equations(patch: &Patch, object: &TouchedObject, touch: &Touch) -> Opt
 #[test]
 fn missed_and_saturated_touches_are_counted_as_the_equations_say() {
     let study = Study::new(STUDY);
-    let patch = *study.plan.arrays[0].square();
-    let stroke = patch.taxel.stroke;
-    let frames = simulate_array(&study.touched, &patch.into(), 1, &Silent);
+    let array = &study.plan.arrays[0];
+    let stroke = array.taxel().stroke;
+    let frames = simulate_array(&study.touched, array, 1, &Silent);
     let deflection = frames.to_array().unwrap();
     let touches = study
         .touched
@@ -126,9 +125,9 @@ fn missed_and_saturated_touches_are_counted_as_the_equations_say() {
         .flat_map(|object| object.touches.iter().map(move |touch| (object, touch)));
     let (mut n_missed, mut n_saturated) = (0, 0);
     for (row, (object, touch)) in deflection.outer_iter().zip(touches) {
-        let expected = by_the_equations(&patch, object, touch);
+        let expected = by_the_equations(array, object, touch);
         n_missed += usize::from(expected.is_none());
-        let expected = expected.unwrap_or_else(|| vec![0.0; patch.grid.n_taxels()]);
+        let expected = expected.unwrap_or_else(|| vec![0.0; array.n_taxels()]);
         n_saturated += usize::from(expected.iter().any(|&d| d > stroke * (1.0 + 1e-9)));
         for (&simulated, expected) in row.iter().zip(expected) {
             let difference = (simulated - expected.min(stroke)).abs();
@@ -359,8 +358,8 @@ fn a_damper_pushes_back_on_taxels_that_move_and_not_on_saturated_ones() {
         .replace("[2.0, 4.0]\n", "4.0\nspeed_mm_per_s = 50.0\n")
         .replace("[sensing]", "[signal]\nsteps = [\"force\"]\n\n[sensing]");
     let study = Study::new(&text);
-    let patch = *study.plan.arrays[0].square();
-    let frames = simulate_array(&study.touched, &patch.into(), 1, &Silent);
+    let array = &study.plan.arrays[0];
+    let frames = simulate_array(&study.touched, array, 1, &Silent);
     let frames = frames.to_array().unwrap();
     let samples = sample_frames(&study.plan, &study.sweep, &study.touched).unwrap();
     assert_eq!(samples.shown.frames.len(), study.touched.len());
@@ -369,7 +368,7 @@ fn a_damper_pushes_back_on_taxels_that_move_and_not_on_saturated_ones() {
     for (object, (_, forces)) in samples.shown.frames.iter().enumerate() {
         for (&deflection, &force) in frames.row(object * per_object).iter().zip(forces) {
             let spring = 200.0 * deflection;
-            let is_saturated = deflection == f64::from(patch.taxel.stroke as f32);
+            let is_saturated = deflection == f64::from(array.taxel().stroke as f32);
             let is_moving = deflection > 0.0 && !is_saturated;
             let damper = if is_moving { 4.0 * 0.05 } else { 0.0 };
             assert!((force - spring - damper).abs() < 1e-6, "{force} N");

@@ -8,7 +8,6 @@ use bubbletouch::report::recognition::{charts, tables_of};
 use bubbletouch::signal::{Chain, Recording, Scratch, SensorError};
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::{Plan, StudySpec, sample_frames};
-use bubbletouch::world::Scene;
 use rand::Rng;
 use std::fs;
 
@@ -164,8 +163,8 @@ fn a_touch_is_read_as_a_press_that_goes_on_after_another_touch() {
     let signal =
         "steps = [\"hysteresis\", \"scan\"]\nhysteresis_full_scale = 0.2\nscan_time_ms = 30.0";
     let study = Study::new(&with_signal(signal));
-    let patch = *study.plan.arrays[0].square();
-    let n = patch.grid.n_taxels();
+    let array = &study.plan.arrays[0];
+    let n = array.n_taxels();
     let touches: Vec<_> = study
         .touched
         .iter()
@@ -174,9 +173,15 @@ fn a_touch_is_read_as_a_press_that_goes_on_after_another_touch() {
     let press = |number: usize, depth: f64| -> Vec<f64> {
         let (object, (_, touch)) = touches[number];
         let mut workspace = Workspace::new();
-        let scene = Scene::of_one(&patch, &object.object.model);
+        let model = [object.object.model.clone()];
         let pose = touch.patch_from_object(&object.rests[touch.rest]);
-        press_to_depth(&scene, &[pose], touch.depth * depth, &mut workspace);
+        press_to_depth(
+            array.patch(),
+            &model,
+            &[pose],
+            touch.depth * depth,
+            &mut workspace,
+        );
         let pressed = workspace.deflections();
         // Frames are kept in f32.
         pressed.iter().map(|&d| f64::from(d as f32)).collect()
@@ -185,7 +190,7 @@ fn a_touch_is_read_as_a_press_that_goes_on_after_another_touch() {
         SensorError::Hysteresis.step(&[0.2], Seed::new(1)),
         SensorError::Scan.step(&[30.0], Seed::new(1)),
     ];
-    let chain = Chain::new(&steps, &patch).unwrap();
+    let chain = Chain::new(&steps, array.patch()).unwrap();
     let trial = 1;
     let items = study.of_items();
     let read = items.first().features((0, trial), &Silent);

@@ -2,7 +2,7 @@
 
 use crate::command::Case;
 use crate::study::laid_out;
-use bubbletouch::contact::{Approach, SkinWorkspace};
+use bubbletouch::contact::{Approach, Workspace};
 use bubbletouch::kinds::recognition::RecognitionStudy;
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::simulate_array;
@@ -94,7 +94,7 @@ fn frames_are_those_of_the_skin_pressed_by_hand() {
     let study = study(&text);
     let part = study.first();
     let array = &part.plan.arrays[0];
-    let skin = array.skin().unwrap();
+    let skin = array.patch();
     let frames = simulate_array(part.touched.as_ref(), array, 2, &Silent);
     let frames = frames.to_array().unwrap();
     assert_eq!(frames.ncols(), skin.n_taxels());
@@ -105,7 +105,7 @@ fn frames_are_those_of_the_skin_pressed_by_hand() {
         &bubbletouch::random::Seed::new(part.plan.spec.seed),
     );
     let approach = Approach::new(skin, DVec3::Z).unwrap();
-    let mut workspace = SkinWorkspace::new();
+    let mut workspace = Workspace::new();
     let mut row = 0;
     for object in touched.unwrap() {
         for touch in &object.touches {
@@ -168,7 +168,7 @@ fn the_command_writes_where_the_taxels_are() {
     let taxels: ndarray::Array2<f64> =
         ndarray_npy::read_npy(case.path("touches/taxels.npy")).unwrap();
     let study = study(&text);
-    let skin = study.first().plan.arrays[0].skin().unwrap();
+    let skin = study.first().plan.arrays[0].patch();
     assert_eq!(taxels.dim(), (skin.n_taxels(), 6));
     for (row, center) in taxels.outer_iter().zip(skin.layout().centers()) {
         assert_eq!(row.to_vec()[..3], center.to_array());

@@ -2,7 +2,7 @@
 
 use crate::command::Case;
 use crate::study::{Study, laid_out};
-use bubbletouch::contact::{Approach, FrictionState, SkinWorkspace};
+use bubbletouch::contact::{Approach, FrictionState, Workspace};
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::simulate_array;
 use bubbletouch::world::{Shear, Shears};
@@ -71,10 +71,10 @@ fn frames_are_those_of_the_skin_pressed_and_drawn_by_hand() {
         stiffness: 300.0,
         friction: 0.4,
     };
-    let skin = array.skin().unwrap();
+    let skin = array.patch();
     let approach = Approach::new(skin, DVec3::Z).unwrap();
     let mut friction = FrictionState::at_rest(skin, Shears::Equal(shear)).unwrap();
-    let mut workspace = SkinWorkspace::new();
+    let mut workspace = Workspace::new();
     let along = DVec2::from_angle(30_f64.to_radians()).extend(0.0);
     let mut row = 0;
     for object in &study.touched {

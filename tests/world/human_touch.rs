@@ -1,7 +1,7 @@
 //! Human touches: what each kind does, and that a study can tell them apart by time.
 
 use crate::command::Case;
-use bubbletouch::contact::{SkinWorkspace, press_skin, spring_load};
+use bubbletouch::contact::{Workspace, press_with_contacts, spring_load};
 use bubbletouch::kinds::recognition::RecognitionStudy;
 use bubbletouch::objects::{FingerPose, Model};
 use bubbletouch::random::Seed;
@@ -11,7 +11,7 @@ use bubbletouch::study::{
     FramePlace, HumanTouches, Plan, StudySpec, Sweep, TouchSet, record_touch,
 };
 use bubbletouch::world::{
-    HandState, HumanTouch, Layout, SkinPatch, TOUCH_KINDS, Taxel, Taxels, TouchKind, TouchRanges,
+    HandState, HumanTouch, Layout, Patch, TOUCH_KINDS, Taxel, Taxels, TouchKind, TouchRanges,
 };
 use ndarray::Array2;
 use std::fs;
@@ -23,7 +23,7 @@ const STEP: f64 = 5e-3;
 /// Nothing of a hand is faster, m/s.
 const FASTEST: f64 = 2.0;
 
-fn forearm(pitch: f64) -> SkinPatch {
+fn forearm(pitch: f64) -> Patch {
     let taxel = Taxel {
         radius: 0.5 * pitch,
         stiffness: 100.0,
@@ -31,7 +31,7 @@ fn forearm(pitch: f64) -> SkinPatch {
         stroke: 6e-3,
     };
     let layout = Layout::cylinder(SURFACE - taxel.radius, 0.19, 4.6, pitch).unwrap();
-    SkinPatch::new("forearm", layout, Taxels::Equal(taxel)).unwrap()
+    Patch::new("forearm", layout, Taxels::Equal(taxel)).unwrap()
 }
 
 fn touch(kind: TouchKind, number: u64) -> HumanTouch {
@@ -46,10 +46,10 @@ fn film(touch: &HumanTouch) -> Vec<HandState> {
 }
 
 /// Σ k δ in newtons, and the place of the centre of pressure: metres along the arm, radians around it.
-fn felt(skin: &SkinPatch, state: &HandState) -> (f64, Option<(f64, f64)>) {
-    let mut workspace = SkinWorkspace::new();
+fn felt(skin: &Patch, state: &HandState) -> (f64, Option<(f64, f64)>) {
+    let mut workspace = Workspace::new();
     let hand: [Model; 1] = [state.spheres().into()];
-    press_skin(skin, &hand, &[state.patch_from_hand], &mut workspace);
+    press_with_contacts(skin, &hand, &[state.patch_from_hand], &mut workspace);
     let load = spring_load(skin, workspace.contacts());
     let place = load.center_of_pressure.map(|p| (p.z, p.y.atan2(p.x)));
     (load.spring_force, place)
@@ -134,13 +134,13 @@ fn a_hand_starts_and_ends_in_the_air_and_touches_in_between() {
 fn a_hand_goes_exactly_as_deep_as_it_says() {
     // Where taxels are dense, the deepest one is as deep as the hand.
     let skin = forearm(1.5e-3);
-    let mut workspace = SkinWorkspace::new();
+    let mut workspace = Workspace::new();
     for number in 0..10 {
         let touch = touch(TouchKind::Tap, number);
         let state = deepest(&touch);
         assert!((state.height + touch.depth).abs() < 1e-5 || touch.hold < STEP);
         let hand: [Model; 1] = [state.spheres().into()];
-        press_skin(&skin, &hand, &[state.patch_from_hand], &mut workspace);
+        press_with_contacts(&skin, &hand, &[state.patch_from_hand], &mut workspace);
         let most = workspace.deflections().iter().copied().fold(0.0, f64::max);
         assert!(most <= -state.height + 1e-9, "{most} for {}", state.height);
         assert!(most > -state.height - 3e-4, "{most} for {}", state.height);
@@ -239,9 +239,9 @@ fn a_grab_closes_its_fingers_around_the_arm_and_opens_them() {
     let skin = forearm(6e-3);
     let bent = |finger: &FingerPose| finger.knuckle + finger.middle + finger.end;
     let angles = |state: &HandState| {
-        let mut workspace = SkinWorkspace::new();
+        let mut workspace = Workspace::new();
         let hand: [Model; 1] = [state.spheres().into()];
-        press_skin(&skin, &hand, &[state.patch_from_hand], &mut workspace);
+        press_with_contacts(&skin, &hand, &[state.patch_from_hand], &mut workspace);
         let touched = workspace.contacts().iter();
         let angles: Vec<f64> = touched.map(|c| c.point.y.atan2(c.point.x)).collect();
         let most = angles.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -413,22 +413,18 @@ fn touches_are_balanced_and_alone_the_same() {
     assert_eq!(fewer.of(1), &touches.of(0)[..12]);
     // Frame by frame as pressed by hand, with new spheres each time.
     let human = plan.spec.human_touch.as_ref().unwrap();
-    let patch = *plan.arrays[0].square();
-    let skin = human.skin(&patch).unwrap();
-    let frames = touches.simulate(
-        (&patch.into(), human.n_frames()),
-        &FramePlace::Memory,
-        &Silent,
-    );
+    let array = &plan.arrays[0];
+    let skin = human.skin(array).unwrap();
+    let frames = touches.simulate((array, human.n_frames()), &FramePlace::Memory, &Silent);
     let deflection = frames.unwrap().to_array().unwrap();
     assert_eq!(deflection.dim(), (240 * 49, 1024));
-    let mut workspace = SkinWorkspace::new();
+    let mut workspace = Workspace::new();
     for number in [3, 100, 205] {
         let recorded = &touches.touches[number];
         for frame in 0..human.n_frames() {
             let state = recorded.touch.at(frame as f64 / 15.0 - recorded.onset);
             let hand: [Model; 1] = [state.spheres().into()];
-            press_skin(&skin, &hand, &[state.patch_from_hand], &mut workspace);
+            press_with_contacts(&skin, &hand, &[state.patch_from_hand], &mut workspace);
             let row = deflection.row(number * human.n_frames() + frame);
             for (&stored, &pressed) in row.iter().zip(workspace.deflections()) {
                 assert!((stored - pressed).abs() < 1e-8);
@@ -451,7 +447,7 @@ fn touches_are_balanced_and_alone_the_same() {
 #[test]
 fn rows_and_columns_of_the_array_run_along_and_around_the_arm() {
     let (plan, touches, _) = laid_out(&STUDY.replace("KINDS", "")).unwrap();
-    let skin = touches.spec.skin(plan.arrays[0].square()).unwrap();
+    let skin = touches.spec.skin(&plan.arrays[0]).unwrap();
     let centers = skin.layout().centers();
     let place = |row: usize, column: usize| {
         let p = centers[row * 32 + column];

@@ -1,6 +1,6 @@
 //! Laws of scenes with friction, with taxels that differ, and with objects that are pushed for a force.
 
-use bubbletouch::contact::{FrictionState, NormalForce, SkinWorkspace, press_skin};
+use bubbletouch::contact::{FrictionState, NormalForce, Workspace, press_with_contacts};
 use bubbletouch::geometry::Pose;
 use bubbletouch::report::scene_files::SceneFiles;
 use bubbletouch::scene::{
@@ -83,7 +83,7 @@ fn tips_are_dragged_from_step_to_step_as_by_hand() {
     let plan = plan(&drawn(ROUGH));
     let patch = &plan.patches[0];
     let mut state = FrictionState::at_rest(&patch.skin, patch.shears.clone().unwrap()).unwrap();
-    let mut workspace = SkinWorkspace::new();
+    let mut workspace = Workspace::new();
     let bubbletouch::scene::Movement::Imposed(motion) = &plan.objects[0].movement else {
         panic!("the pear goes where it is told")
     };
@@ -100,7 +100,7 @@ fn tips_are_dragged_from_step_to_step_as_by_hand() {
                 false => before + share * (frame.time - before),
             };
             let pose = Pose::IDENTITY.inverse().compose(&motion.pose_at(time));
-            press_skin(&patch.skin, &plan.models, &[pose], &mut workspace);
+            press_with_contacts(&patch.skin, &plan.models, &[pose], &mut workspace);
             let contacts = workspace.contacts();
             counts = state.step(&patch.skin, contacts, &[pose], NormalForce::Springs);
         }

@@ -1,12 +1,12 @@
 //! Laws of scenes: steps, frames of reference, shortcuts, free objects; each against a slower or simpler way.
 
 use bubbletouch::contact::balance::{Balancer, FreeObject, PlacedSkin};
-use bubbletouch::contact::{SkinWorkspace, Wrench, press_skin, simulate, spring_load};
+use bubbletouch::contact::{Workspace, Wrench, press_with_contacts, simulate, spring_load};
 use bubbletouch::geometry::Pose;
 use bubbletouch::scene::{
     Frame, Held, Mount, Movement, ScenePlan, SceneSpec, Simulation, Stepping,
 };
-use bubbletouch::world::{Motion, Phase, Scene, VelocityPlan};
+use bubbletouch::world::{Motion, Phase, VelocityPlan};
 use glam::{DQuat, DVec3};
 use std::path::{Path, PathBuf};
 
@@ -193,12 +193,9 @@ fn the_drill_scene_is_what_the_time_loop_of_one_patch_computes() {
         DVec3::new(0.02, 0.1, 0.031),
     );
     let still = VelocityPlan::new(Pose::IDENTITY, vec![]).unwrap();
-    let scene = Scene {
-        patch: plan.patches[0].grid().unwrap(),
-        objects: plan.models.clone(),
-    };
+    let (patch, objects) = (&plan.patches[0].skin, &plan.models);
     let drill = VelocityPlan::new(start, phases).unwrap();
-    let recording = simulate(&scene, &still, &[drill], 1e-3, 2000).unwrap();
+    let recording = simulate(patch, objects, &still, &[drill], 1e-3, 2000).unwrap();
     let frames = frames(&plan, Stepping::AsNeeded);
     assert_eq!(frames.len(), 201);
     for (number, frame) in frames.iter().enumerate().skip(1) {
@@ -226,14 +223,14 @@ fn the_drill_scene_is_what_the_time_loop_of_one_patch_computes() {
 fn what_is_out_of_reach_is_left_out_and_nothing_else() {
     let mut n_touching = 0;
     for plan in [read("arm_sweep.toml"), sliding(1.0, 0.0)] {
-        let mut workspace = SkinWorkspace::new();
+        let mut workspace = Workspace::new();
         for frame in frames(&plan, Stepping::AsNeeded) {
             for (reading, patch) in frame.patches.iter().zip(&plan.patches) {
                 let objects = frame.objects.iter();
                 let poses: Vec<Pose> = objects
                     .map(|object| object.pose.seen_from(&reading.pose))
                     .collect();
-                let counts = press_skin(&patch.skin, &plan.models, &poses, &mut workspace);
+                let counts = press_with_contacts(&patch.skin, &plan.models, &poses, &mut workspace);
                 assert_eq!(reading.deflection, workspace.deflections());
                 assert_eq!(reading.n_touched, counts.n_touched);
                 assert_eq!(reading.n_saturated, counts.n_saturated);
@@ -473,8 +470,8 @@ fn a_free_ball_comes_to_rest_in_the_hollow_that_an_imposed_one_makes() {
         panic!("the other ball is free")
     };
     let skin = &plan.patches[0].skin;
-    let mut workspace = SkinWorkspace::new();
-    press_skin(
+    let mut workspace = Workspace::new();
+    press_with_contacts(
         skin,
         &plan.models[..1],
         &[frame.objects[0].pose],

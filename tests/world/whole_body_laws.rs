@@ -1,12 +1,12 @@
 //! Laws of a whole body: what its kernel finds is what the kernel for skins of any shape finds, and nothing costs but touch.
 
-use bubbletouch::contact::{DamperState, SkinWorkspace, press_skin, relaxation_factor};
+use bubbletouch::contact::{DamperState, Workspace, press_with_contacts, relaxation_factor};
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{Model, Sphere, SphereUnion};
 use bubbletouch::whole_body::{
     AT_REST, BodyContact, BodyPatch, BodyState, CoveredRobot, SphereClusters, WholeBody,
 };
-use bubbletouch::world::{Dome, Extrusion, Grid, Robot, SkinPatch, Taxel, Taxels};
+use bubbletouch::world::{Dome, Extrusion, Grid, Patch, Robot, Taxel, Taxels};
 use glam::DVec3;
 use rand::Rng;
 use std::f64::consts::{PI, TAU};
@@ -65,9 +65,9 @@ fn random_union(rng: &mut impl Rng) -> SphereUnion {
 }
 
 /// The same patches as skins of any layout.
-fn as_skins(body: &WholeBody) -> Vec<SkinPatch> {
+fn as_skins(body: &WholeBody) -> Vec<Patch> {
     let skin = |patch: &BodyPatch| {
-        SkinPatch::new(patch.name(), patch.layout(), Taxels::Equal(*patch.taxel())).unwrap()
+        Patch::new(patch.name(), patch.layout(), Taxels::Equal(*patch.taxel())).unwrap()
     };
     body.patches().iter().map(skin).collect()
 }
@@ -102,7 +102,7 @@ impl Touch {
     }
 
     /// What the kernel for any skin finds on one patch: deflections and saturated taxels.
-    fn slowly(&self, patch: usize, skin: &SkinPatch) -> (Vec<f64>, usize) {
+    fn slowly(&self, patch: usize, skin: &Patch) -> (Vec<f64>, usize) {
         let models: Vec<Model> = self.unions.iter().cloned().map(Model::from).collect();
         let patch_from_world = self.patches[patch].inverse();
         let poses: Vec<Pose> = self
@@ -110,8 +110,8 @@ impl Touch {
             .iter()
             .map(|pose| patch_from_world.compose(pose))
             .collect();
-        let mut workspace = SkinWorkspace::new();
-        let contact = press_skin(skin, &models, &poses, &mut workspace);
+        let mut workspace = Workspace::new();
+        let contact = press_with_contacts(skin, &models, &poses, &mut workspace);
         (workspace.deflections().to_vec(), contact.n_saturated)
     }
 }

@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::objects::{Sphere, SphereUnion};
-use crate::world::SkinPatch;
+use crate::world::Patch;
 use glam::DVec3;
 
 /// A rigid object that only gravity and skins hold.
@@ -49,7 +49,7 @@ impl<'a> FreeObject<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct PlacedSkin<'a> {
     /// The skin.
-    pub patch: &'a SkinPatch,
+    pub patch: &'a Patch,
     /// Where it is.
     pub world_from_patch: Pose,
     /// How far other objects push each taxel, metres; empty if there are none.

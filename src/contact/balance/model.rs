@@ -229,7 +229,7 @@ mod tests {
     use crate::geometry::Pose;
     use crate::objects::{Sphere, SphereUnion};
     use crate::random::Seed;
-    use crate::world::{Grid, Patch, SkinPatch, Taxel};
+    use crate::world::{Grid, Patch, Taxel};
     use glam::DQuat;
     use rand::Rng;
 
@@ -247,7 +247,7 @@ mod tests {
             ny: 16,
             pitch: 2e-3,
         };
-        let patch = SkinPatch::from(Patch::new(grid, taxel).unwrap());
+        let patch = Patch::grid(grid, taxel).unwrap();
         let skins = [PlacedSkin {
             patch: &patch,
             world_from_patch: Pose::new(

@@ -8,7 +8,8 @@ use crate::objects::{Model, Object};
 use crate::quantile::quantile;
 use crate::random::Seed;
 use crate::study::simulation::draw_touches;
-use crate::world::{Patch, Placement, Scene};
+use crate::study::taxel_array::TaxelArray;
+use crate::world::Placement;
 use glam::DVec3;
 
 /// How far a model's deflections are from the exact ones, mm.
@@ -41,7 +42,7 @@ fn mean(errors: &[f64]) -> f64 {
 
 /// How an object was touched exactly, and what was read.
 pub(in crate::kinds) struct Truth {
-    patch: Patch,
+    array: TaxelArray,
     /// Touches that met it.
     pub readings: Vec<Reading>,
     /// Touches that met nothing.
@@ -70,23 +71,25 @@ impl Truth {
     /// Touches an exact model as every study would touch an object of this name.
     pub fn new(
         (name, exact): (&str, Model),
-        patch: &Patch,
+        array: &TaxelArray,
         placement: &Placement,
         seed: &Seed,
     ) -> Result<Self> {
         let object = Object::of_one_part(name, exact);
         let touched = draw_touches(vec![object], placement, seed)?.swap_remove(0);
-        let scene = Scene::of_one(patch, &touched.object.model);
+        let object = std::slice::from_ref(&touched.object.model);
         let mut workspace = Workspace::new();
         let mut truth = Self {
-            patch: *patch,
+            array: array.clone(),
             readings: Vec::new(),
             n_missed: 0,
             n_touched: 0,
         };
         for touch in &touched.touches {
             let pose = touch.patch_from_object(&touched.rests[touch.rest]);
-            let Some(contact) = press_to_depth(&scene, &[pose], touch.depth, &mut workspace) else {
+            let contact =
+                press_to_depth(array.patch(), object, &[pose], touch.depth, &mut workspace);
+            let Some(contact) = contact else {
                 truth.n_missed += 1;
                 continue;
             };
@@ -110,23 +113,22 @@ impl Truth {
 
     /// Of a model read where the object was, the patch drawn back by `offset` metres.
     pub fn error(&self, model: &Model, offset: f64) -> DeflectionError {
-        DeflectionError::of(self.errors(&Scene::of_one(&self.patch, model), offset))
+        DeflectionError::of(self.errors(model, offset))
     }
 
     /// Mean error of a model that is touched as far past its own first contact as the object past its: what a study feels that
     /// has no other model of the object.
     pub fn error_past_own_contact(&self, model: &Model) -> DeflectionError {
-        let scene = Scene::of_one(&self.patch, model);
+        let (patch, object) = (self.array.patch(), std::slice::from_ref(model));
         DeflectionError::of(self.errors_of(|pose, reading, workspace| {
-            press_to_depth(&scene, pose, reading.depth, workspace);
+            press_to_depth(patch, object, pose, reading.depth, workspace);
         }))
     }
 
     /// The constant offset, metres, with which the error is least: 0 or better.
     pub fn best_offset(&self, model: &Model) -> f64 {
-        let scene = Scene::of_one(&self.patch, model);
-        let cost = |offset| mean(&self.errors(&scene, offset));
-        let Some((low, high)) = self.offset_range(&scene) else {
+        let cost = |offset| mean(&self.errors(model, offset));
+        let Some((low, high)) = self.offset_range(model) else {
             return 0.0;
         };
         let step = (high - low) / (N_OFFSETS - 1) as f64;
@@ -140,11 +142,11 @@ impl Truth {
 
     /// Median time of a touch to its depth on one thread, seconds; 0 if nothing was met.
     pub fn seconds_per_touch(&self, model: &Model) -> f64 {
-        let scene = Scene::of_one(&self.patch, model);
+        let (patch, object) = (self.array.patch(), std::slice::from_ref(model));
         let mut workspace = Workspace::new();
         let mut press = |reading: &Reading| {
             let pose = [reading.patch_from_object];
-            press_to_depth(&scene, &pose, reading.depth, &mut workspace);
+            press_to_depth(patch, object, &pose, reading.depth, &mut workspace);
         };
         // Once before it counts: the workspace grows, and the model comes into the processor's memory.
         self.readings.iter().for_each(&mut press);
@@ -152,9 +154,10 @@ impl Truth {
     }
 
     /// |δ − δ*| of each taxel that either touches, all touches, the patch drawn back.
-    fn errors(&self, scene: &Scene, offset: f64) -> Vec<f64> {
+    fn errors(&self, model: &Model, offset: f64) -> Vec<f64> {
+        let (patch, object) = (self.array.patch(), std::slice::from_ref(model));
         self.errors_of(|pose, reading, workspace| {
-            press_to_travel(scene, pose, reading.travel - offset, workspace);
+            press_to_travel(patch, object, pose, reading.travel - offset, workspace);
         })
     }
 
@@ -170,10 +173,12 @@ impl Truth {
     }
 
     /// Offsets beyond these leave every touch either without contact or deeper than the mesh's everywhere.
-    fn offset_range(&self, scene: &Scene) -> Option<(f64, f64)> {
+    fn offset_range(&self, model: &Model) -> Option<(f64, f64)> {
+        let (patch, object) = (self.array.patch(), std::slice::from_ref(model));
         let mut workspace = Workspace::new();
         let ahead = self.readings.iter().filter_map(|reading| {
-            let first = first_contact(scene, &[reading.patch_from_object], &mut workspace)?;
+            let pose = [reading.patch_from_object];
+            let first = first_contact(patch, object, &pose, &mut workspace)?;
             let ahead = reading.travel - reading.depth - first;
             Some((ahead - reading.depth, ahead + reading.depth))
         });

@@ -29,7 +29,7 @@ impl<'a> Measured<'a> {
         let exact = (&mesh.name[..], variants[0].model.clone());
         let seed = Seed::new(plan.spec.seed);
         Ok(Self {
-            truth: Truth::new(exact, &plan.patch, &plan.placement, &seed)?,
+            truth: Truth::new(exact, &plan.array, &plan.placement, &seed)?,
             mesh,
             surface,
             variants,

@@ -3,7 +3,8 @@
 use super::spec::{DetailMethod, DetailRecognitionSpec, ObjectDetailStudySpec};
 use crate::error::Result;
 use crate::study::check::{Check, Range, TOUCHES};
-use crate::world::{Patch, Placement};
+use crate::study::taxel_array::TaxelArray;
+use crate::world::Placement;
 use std::path::PathBuf;
 
 /// Settings of a study of object detail, ready to run.
@@ -14,7 +15,7 @@ pub struct ObjectDetailPlan {
     /// The folder of meshes.
     pub meshes: PathBuf,
     /// The array.
-    pub patch: Patch,
+    pub array: TaxelArray,
     /// How touches are drawn.
     pub placement: Placement,
 }
@@ -52,8 +53,8 @@ impl ObjectDetailPlan {
             let allowed = "no such key: object_detail.methods says what the meshes become";
             return Err(check.error("objects.model", "a model", allowed));
         }
-        let patch = check.one_array(&spec.skin, "one pitch and one size")?;
-        spec.objects.settle_sizes(&[patch.into()]);
+        let array = check.one_array(&spec.skin, "one pitch and one size")?;
+        spec.objects.settle_sizes(std::slice::from_ref(&array));
         if spec.objects.surface_error_mm.is_some() {
             let allowed = "no such key: object_detail.tolerances_mm says how far spheres may be from the meshes";
             return Err(check.error("objects.surface_error_mm", "a surface error", allowed));
@@ -66,10 +67,10 @@ impl ObjectDetailPlan {
             return Err(check.error("object_detail.methods", "mesh", allowed));
         }
         let recognition = wanted.recognition.as_ref();
-        recognition.map_or(Ok(()), |wanted| check_recognition(&check, wanted, &patch))?;
+        recognition.map_or(Ok(()), |wanted| check_recognition(&check, wanted, &array))?;
         Ok(Self {
             meshes,
-            patch,
+            array,
             placement,
             spec,
         })
@@ -81,10 +82,14 @@ impl ObjectDetailPlan {
     }
 }
 
-fn check_recognition(check: &Check, wanted: &DetailRecognitionSpec, patch: &Patch) -> Result<()> {
+fn check_recognition(
+    check: &Check,
+    wanted: &DetailRecognitionSpec,
+    array: &TaxelArray,
+) -> Result<()> {
     let key = |name: &str| format!("object_detail.recognition.{name}");
     let n_measurements = wanted.measurements;
-    let n_taxels = patch.grid.n_taxels();
+    let n_taxels = array.n_taxels();
     if n_measurements > n_taxels {
         let allowed = format!("at most {n_taxels}, the taxels of the array");
         return Err(check.error(&key("measurements"), n_measurements, allowed));

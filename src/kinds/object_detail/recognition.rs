@@ -76,7 +76,7 @@ impl<'a> Sensor<'a> {
     /// For a study in which something learns.
     pub fn new(plan: &'a ObjectDetailPlan, spec: &'a DetailRecognitionSpec) -> Result<Self> {
         let seed = Seed::new(plan.spec.seed);
-        let grid = (plan.patch.grid.ny, plan.patch.grid.nx);
+        let grid = plan.array.shape();
         let stream = seed.named("object detail recognition");
         Ok(Self {
             plan,
@@ -98,7 +98,7 @@ impl<'a> Sensor<'a> {
         let mut touched = draw_touches(vec![object(&made.variants[0])], &placement, &self.seed)?;
         let measured = made.variants.iter().map(|variant| {
             touched[0].object = object(variant);
-            let frames = simulate_array(&touched, &self.plan.patch.into(), 1, &Silent);
+            let frames = simulate_array(&touched, &self.plan.array, 1, &Silent);
             Ok(Felt {
                 measurements: self.projection.measure(frames.to_array()?.view()),
                 own_contact_error_mm: made.truth.error_past_own_contact(&variant.model).mean_mm,

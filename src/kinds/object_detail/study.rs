@@ -212,7 +212,7 @@ impl Kind for ObjectDetailStudy {
         let learned = self.plan.recognition();
         let n_learned = learned.map_or(0, |learned| learned.n_touches());
         let n_classifiers = learned.map_or(0, |learned| learned.classifiers.len());
-        let n_taxels = self.plan.patch.grid.n_taxels();
+        let n_taxels = self.plan.array.n_taxels();
         let n_measurements = learned.map_or(0, |learned| learned.measurements);
         Scale {
             objects: format!("{n_objects} meshes, in {n_levels} models each"),

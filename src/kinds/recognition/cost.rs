@@ -27,9 +27,9 @@ pub(super) fn touch_s(
     // What a frame after the first takes, as a share of it.
     let frames = 1.0 + 0.25 * (n_frames as f64 - 1.0);
     let taxels = (n_touches * n_frames * array.n_taxels()) as f64;
-    let place_s = match array.skin() {
-        None => touched.place_s(),
-        Some(_) => SKIN * touched.place_s(),
+    let place_s = match array.is_plain() {
+        true => touched.place_s(),
+        false => SKIN * touched.place_s(),
     };
     frames * place_s + 0.5 * TAXEL_S * taxels
 }

@@ -59,7 +59,7 @@ impl ReconstructionStudy {
         let words: Vec<String> = shown.iter().map(|&row| cell_words(cells, row)).collect();
         let picture = snapshots(&Snapshots {
             frames,
-            pitch_mm: millimetres(self.plan.patch.grid.pitch),
+            pitch_mm: millimetres(self.plan.array.pitch()),
             quantity: self.plan.quantity(),
             caption: format!("{noise}; {}", words.join("; ")),
         })?;

@@ -10,8 +10,9 @@ use crate::study::check::{COUNT, Check, Range};
 use crate::study::pieces::Shared;
 use crate::study::plan::MM;
 use crate::study::sweep::nested;
+use crate::study::taxel_array::TaxelArray;
 use crate::study::{SignalSpec, StepSpec};
-use crate::world::{Grid, Patch, Placement};
+use crate::world::{Grid, Placement};
 
 /// Axes and settings of a reconstruction study, ready to run.
 #[derive(Clone, Debug)]
@@ -19,7 +20,7 @@ pub struct ReconstructionPlan {
     /// As it was written.
     pub spec: ReconstructionStudySpec,
     /// The array.
-    pub patch: Patch,
+    pub array: TaxelArray,
     /// How touches are drawn.
     pub placement: Placement,
     /// Approach speed at the moment of reading, m/s.
@@ -58,26 +59,27 @@ impl ReconstructionPlan {
         let check = Check { place };
         check.objects(&spec.objects)?;
         let allowed = "one pitch and one size: a dictionary is of one array";
-        let patch = check.one_array(&spec.skin, allowed)?;
-        spec.objects.settle_surface_error(&[patch.into()]);
+        let array = check.one_array(&spec.skin, allowed)?;
+        spec.objects
+            .settle_surface_error(std::slice::from_ref(&array));
         let placement = check.placement(&spec.touches)?;
         let (noise_unit, noise) = check.noise(&spec.signal, None)?;
         check.steps(&spec.signal)?;
         check.noise_is_last(&spec.signal)?;
-        check.sensing(&spec.sensing, &[patch.into()])?;
+        check.sensing(&spec.sensing, std::slice::from_ref(&array))?;
         let wanted = &spec.reconstruction;
         check.keys("reconstruction", wanted, KEYS)?;
-        let dictionaries = check.dictionaries(wanted, &patch.grid)?;
+        let dictionaries = check.dictionaries(wanted, array.grid())?;
         let axes = [
             spec.sensing.ensemble.values().len(),
-            spec.sensing.measurements_on(patch.grid.n_taxels()).len(),
+            spec.sensing.measurements_on(array.n_taxels()).len(),
             noise.len(),
             dictionaries.len(),
             wanted.solver.values().len(),
         ];
         check.configurations(axes.iter().map(|&n| n as f64).product())?;
         Ok(Self {
-            patch,
+            array,
             placement,
             speed: spec.touches.speed_mm_per_s * MM,
             noise_unit,
@@ -110,7 +112,7 @@ impl ReconstructionPlan {
 
     /// The measurements axis of an ensemble; identity has all taxels whatever is asked.
     pub fn measurement_counts(&self, ensemble: Ensemble) -> Vec<usize> {
-        let n = self.patch.grid.n_taxels();
+        let n = self.array.n_taxels();
         if ensemble == Ensemble::Identity {
             return vec![n];
         }
@@ -128,7 +130,7 @@ impl ReconstructionPlan {
 
     /// Of a frame: rows and columns.
     pub(super) fn shape(&self) -> (usize, usize) {
-        (self.patch.grid.ny, self.patch.grid.nx)
+        self.array.shape()
     }
 
     /// One for each dictionary, in their order.
@@ -145,7 +147,7 @@ impl ReconstructionPlan {
 
     /// All cells, those of an ensemble and m together; how many atoms a dictionary has is known once it is learned.
     pub fn cells(&self) -> Vec<ReconstructionCell> {
-        let n_taxels = self.patch.grid.n_taxels() as f64;
+        let n_taxels = self.array.n_taxels() as f64;
         let mut cells = Vec::new();
         nested! {
             ensemble in self.spec.sensing.ensemble.values();

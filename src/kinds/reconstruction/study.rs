@@ -93,7 +93,7 @@ impl Kind for ReconstructionStudy {
 
     fn scale(&self) -> Scale {
         let n_touches: usize = self.touched.iter().map(|t| t.touches.len()).sum();
-        let n_taxels = self.plan.patch.grid.n_taxels() as f64;
+        let n_taxels = self.plan.array.n_taxels() as f64;
         // Frames clean, read and reconstructed; one dictionary.
         let frames = 3.0 * n_touches as f64 * n_taxels;
         Scale {

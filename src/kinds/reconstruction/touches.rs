@@ -49,7 +49,7 @@ impl Touches {
     ) -> Result<Self> {
         let labels = touched.labels();
         progress.stage("touch", labels.len() as u64);
-        let frames = simulate_array(touched, &plan.patch.into(), 1, progress);
+        let frames = simulate_array(touched, &plan.array, 1, progress);
         let seed = Seed::new(plan.spec.seed);
         let fraction = plan.spec.reconstruction.test_fraction;
         let split = stratified_hold_out(labels.view(), fraction, &seed.named("split").numbered(0))?;
@@ -57,7 +57,7 @@ impl Touches {
         let read = |rows: &[usize], noise| read(plan, &frames, &touches, rows, noise);
         let test = read(&split.test, None)?;
         let unit = plan.noise_unit;
-        let std = |std, unit| Noise { std, unit }.std_of(plan.quantity(), &plan.patch.taxel);
+        let std = |std, unit| Noise { std, unit }.std_of(plan.quantity(), plan.array.taxel());
         let noisy = plan.noise.iter().map(|&level| {
             let frames = read(&split.test, Some(level))?;
             Ok(Noisy {
@@ -106,12 +106,15 @@ fn read(
     rows: &[usize],
     noise: Option<f64>,
 ) -> Result<Array2<f64>> {
-    let chains = [vec![Chain::new(&plan.signal_steps(noise), &plan.patch)?]];
+    let chains = [vec![Chain::new(
+        &plan.signal_steps(noise),
+        plan.array.patch(),
+    )?]];
     let projection = plan.projection(Ensemble::Identity, 1)?;
     let reading = Reading {
         chains: &chains,
         projection: &projection,
-        taxel: plan.patch.taxel,
+        taxel: *plan.array.taxel(),
         speed: plan.speed,
     };
     let touches: Vec<TouchToRead> = rows.iter().map(|&row| touches[row]).collect();

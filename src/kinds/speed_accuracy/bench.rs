@@ -16,7 +16,7 @@ use crate::signal::{Chain, Scratch};
 use crate::study::Frames;
 use crate::study::measurement::{Reading, TouchToRead, measure};
 use crate::study::simulation::TouchedObject;
-use crate::world::{Patch, Scene};
+use crate::study::taxel_array::TaxelArray;
 use ndarray::{Array2, Axis, s};
 use std::time::Instant;
 
@@ -24,7 +24,7 @@ use std::time::Instant;
 pub(super) struct Bench<'a> {
     pub spec: &'a RecognitionSweepSpec,
     pub seed: Seed,
-    pub patch: &'a Patch,
+    pub array: &'a TaxelArray,
     /// Objects of this detail.
     pub touched: &'a [TouchedObject],
     /// A frame a touch of them.
@@ -51,28 +51,31 @@ impl Bench<'_> {
     /// Median microseconds of a press.
     pub fn time_presses(&self) -> f64 {
         let per_object = self.spec.n_touches();
-        let scenes = self.touched.iter();
-        let scenes = scenes.map(|touched| Scene::of_one(self.patch, &touched.object.model));
-        let scenes: Vec<Scene> = scenes.collect();
         let mut workspace = Workspace::new();
         self.median_us(self.learned.n(), |touch| {
             let touched = &self.touched[touch / per_object];
             let place = &touched.touches[touch % per_object];
             let pose = place.patch_from_object(&touched.rests[place.rest]);
-            let scene = &scenes[touch / per_object];
-            press_to_depth(scene, &[pose], place.depth, &mut workspace);
+            let object = std::slice::from_ref(&touched.object.model);
+            press_to_depth(
+                self.array.patch(),
+                object,
+                &[pose],
+                place.depth,
+                &mut workspace,
+            );
         })
     }
 
     /// Measures all touches as a chain does.
     pub fn compress(&self, cell: &ChainCell, sense_us: f64) -> Result<Measured> {
-        let size = (self.patch.grid.ny, self.patch.grid.nx);
+        let size = self.array.shape();
         let stream = self.seed.named("speed accuracy projection");
         let projection = Projection::new(cell.ensemble, size, cell.measurements, &stream)?;
         let reading = Reading {
             chains: &[vec![self.chain.clone()]],
             projection: &projection,
-            taxel: self.patch.taxel,
+            taxel: *self.array.taxel(),
             speed: 0.0,
         };
         Ok(Measured {

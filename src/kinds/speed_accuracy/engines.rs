@@ -12,7 +12,8 @@ use crate::error::Result;
 use crate::geometry::Pose;
 use crate::kinds::object_detail::Reading;
 use crate::objects::Model;
-use crate::world::{Patch, Phase, Scene, SkinPatch, Taxel, VelocityPlan};
+use crate::study::taxel_array::TaxelArray;
+use crate::world::{Patch, Phase, Taxel, VelocityPlan};
 use glam::DVec3;
 
 /// Of the object on its way, m/s.
@@ -31,20 +32,21 @@ pub(super) const METHODS: &[ContactWay] = &[
     ContactWay::Rapier,
 ];
 
-/// Steps a patch through a touch of a model, by a method among [`METHODS`] with a time step (s); everything that it takes counts, scene and
-/// all. Deflections (n_taxels, metres; none where the motion diverged), and how many steps.
+/// The patch of an array of which each taxel has the damper that is best for it: critical, so that the slowest rate is √(k / m).
+pub(super) fn damped(array: &TaxelArray) -> Result<Patch> {
+    let taxel = *array.taxel();
+    let damping = 2.0 * (taxel.stiffness * skin_sim::TAXEL_MASS).sqrt();
+    Patch::grid(*array.grid(), Taxel { damping, ..taxel })
+}
+
+/// Steps a [damped] patch through a touch of a model, by a method among [`METHODS`] with a time step (s); everything that it takes
+/// counts, but for the patch. Deflections (n_taxels, metres; none where the motion diverged), and how many steps.
 pub(super) fn step_through(
     (patch, model): (&Patch, &Model),
     (method, dt): (ContactWay, f64),
     reading: &Reading,
 ) -> Result<(Option<Vec<f64>>, usize)> {
-    let (k, m) = (patch.taxel.stiffness, skin_sim::TAXEL_MASS);
-    let taxel = Taxel {
-        // Critical: the slowest rate is then √(k / m).
-        damping: 2.0 * (k * m).sqrt(),
-        ..patch.taxel
-    };
-    let patch = Patch { taxel, ..*patch };
+    let (k, m) = (patch.taxels().at(0).stiffness, skin_sim::TAXEL_MASS);
     let way = reading.depth / SPEED;
     let hold = DECAY / (k / m).sqrt();
     let n_steps = ((way + hold) / dt).ceil().max(LEAST_STEPS) as usize;
@@ -58,17 +60,16 @@ pub(super) fn step_through(
     };
     let plan = VelocityPlan::new(start, vec![down])?;
     if method == ContactWay::TimeSteps {
-        let scene = Scene::of_one(&patch, model);
+        let objects = [model.clone()];
         let still = VelocityPlan::new(Pose::IDENTITY, Vec::new())?;
-        let recording = simulate(&scene, &still, &[plan], dt, n_steps)?;
+        let recording = simulate(patch, &objects, &still, &[plan], dt, n_steps)?;
         let last = recording.deflection.row(n_steps - 1);
         return Ok((Some(last.to_vec()), n_steps));
     }
-    let skin = SkinPatch::from(patch);
     let drive = Drive::Imposed(plan);
     // No further: where an object comes is found by a press so deep, and small spheres would be behind the substrate by then.
     let reach = reading.depth;
-    let system = System::new(&skin, m, model, start, drive, reach)?;
+    let system = System::new(patch, m, model, start, drive, reach)?;
     let steps = Steps {
         dt,
         n: n_steps,

@@ -24,7 +24,7 @@ pub(super) struct FlatRows<'a> {
 impl<'a> FlatRows<'a> {
     /// Of a square patch with a whole number of blocks a side; of others there is none.
     pub fn new(patch: &'a Patch) -> Option<Self> {
-        let grid = &patch.grid;
+        let grid = patch.layout().as_grid()?;
         if grid.nx != grid.ny || !grid.nx.is_multiple_of(BLOCK) {
             return None;
         }
@@ -50,7 +50,7 @@ impl<'a> FlatRows<'a> {
 
     /// δ of the last press in this way, n_taxels, metres.
     pub fn deflections(&self, way: ContactWay) -> Vec<f64> {
-        let stroke = self.patch.taxel.stroke;
+        let stroke = self.patch.taxels().at(0).stroke;
         let (doubles, singles) = (&self.deflections, &self.rounded);
         match way {
             ContactWay::RowsInSingles => {
@@ -62,7 +62,7 @@ impl<'a> FlatRows<'a> {
 
     /// Those that reach the plane of the taxels, over the patch, and are not behind it.
     fn gather(&mut self, spheres: &[Sphere], pose: &Pose) {
-        let taxel = &self.patch.taxel;
+        let taxel = self.patch.taxels().at(0);
         let rotation = DMat3::from_quat(pose.rotation);
         let edge = self.places[self.places.len() - 1];
         let behind = -taxel.stroke - taxel.radius;

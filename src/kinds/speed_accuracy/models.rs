@@ -1,6 +1,6 @@
 //! An object in the part on contact: its models, the time of a touch of each, and how wrong it is.
 
-use super::engines::step_through;
+use super::engines::{damped, step_through};
 use super::flat_rows::FlatRows;
 use super::plan::SpeedAccuracyPlan;
 use super::rows::{ContactCell, ContactScore, ContactTime, ContactWay, Touched};
@@ -13,7 +13,7 @@ use crate::kinds::object_detail::{DeflectionError, Reading, Truth, in_mm};
 use crate::objects::Model;
 use crate::quantile::quantile;
 use crate::random::Seed;
-use crate::world::Patch;
+use crate::study::taxel_array::TaxelArray;
 use std::path::Path;
 use std::time::Instant;
 
@@ -25,7 +25,7 @@ pub(super) type ContactRow = (ContactCell, ContactScore, ContactTime);
 
 /// An object with its models and what exact contact says.
 pub(super) struct Models<'a> {
-    patch: &'a Patch,
+    array: &'a TaxelArray,
     touched: Touched,
     subject: &'a Subject,
     truth: Truth,
@@ -46,10 +46,10 @@ impl<'a> Models<'a> {
         let placement = plan.placement_of(spec.touches);
         let exact = (plan.finest(), &Seed::new(plan.spec.seed));
         Ok(Self {
-            patch: &plan.patch,
+            array: &plan.array,
             models: subject.models(&plan.levels, packings)?,
             middle: plan.levels.len() / 2,
-            truth: subject.truth(&plan.patch, &placement, exact)?,
+            truth: subject.truth(&plan.array, &placement, exact)?,
             touched,
             subject,
         })
@@ -71,7 +71,7 @@ impl<'a> Models<'a> {
     /// The packing of the middle detail by rows of a flat patch, in doubles and in singles; not on other patches.
     fn by_rows(&self) -> Option<[ContactRow; 2]> {
         let (_, tolerance_mm, model) = &self.models[self.middle];
-        let mut rows = FlatRows::new(self.patch)?;
+        let mut rows = FlatRows::new(self.array.patch())?;
         let spheres = model.spheres()?.spheres();
         let readings = &self.truth.readings;
         Some(
@@ -105,7 +105,7 @@ impl<'a> Models<'a> {
             return None;
         };
         let seconds = median_s(&self.truth.readings, |reading: &Reading| {
-            press_solid(self.patch, &entry.solid, &reading.pressed());
+            press_solid(self.array.patch(), &entry.solid, &reading.pressed());
         });
         let of = (ContactWay::SolidMarching, None, 0);
         Some(self.row(of, Some(DeflectionError::default()), seconds))
@@ -116,11 +116,12 @@ impl<'a> Models<'a> {
         let (_, tolerance_mm, model) = &self.models[self.middle];
         let readings = &self.truth.readings;
         let chosen = &readings[..n_touches.min(readings.len())];
+        let patch = damped(self.array)?;
         let (mut errors, mut seconds, mut n_steps) = (Vec::new(), Vec::new(), 0);
         let mut is_finite = true;
         for reading in chosen {
             let start = Instant::now();
-            let (felt, n) = step_through((self.patch, model), (method, 1e-3 * dt_ms), reading)?;
+            let (felt, n) = step_through((&patch, model), (method, 1e-3 * dt_ms), reading)?;
             seconds.push(start.elapsed().as_secs_f64());
             n_steps = n;
             is_finite &= felt.is_some();

@@ -5,7 +5,8 @@ use crate::error::Result;
 use crate::study::axis::Axis;
 use crate::study::check::{Check, Range, TOUCHES};
 use crate::study::spec::{ObjectsSpec, SkinSpec};
-use crate::world::{MOST_TOUCHES, Patch, Placement};
+use crate::study::taxel_array::TaxelArray;
+use crate::world::{MOST_TOUCHES, Placement};
 use std::path::{Path, PathBuf};
 
 /// Settings of such a study, ready to run.
@@ -14,7 +15,7 @@ pub struct SpeedAccuracyPlan {
     /// As it was written.
     pub spec: SpeedAccuracyStudySpec,
     /// The array of the part on contact.
-    pub patch: Patch,
+    pub array: TaxelArray,
     /// How touches are drawn, as many an object as a part asks for.
     pub placement: Placement,
     /// Levels of detail, mm, coarsest first.
@@ -22,7 +23,7 @@ pub struct SpeedAccuracyPlan {
     /// Where the rows of other programs on contact are.
     pub peers: Option<PathBuf>,
     /// The arrays of the part on recognition, one a pitch.
-    pub arrays: Vec<Patch>,
+    pub arrays: Vec<TaxelArray>,
 }
 
 /// What the numbers of `[speed_accuracy]` may be.
@@ -93,8 +94,8 @@ impl SpeedAccuracyPlan {
             let allowed = "no such key: speed_accuracy.tolerances_mm says how detailed objects are";
             return Err(check.error(keys, "a value", allowed));
         }
-        let patch = check.one_array(&spec.skin, "one pitch and one size")?;
-        spec.objects.settle_sizes(&[patch.into()]);
+        let array = check.one_array(&spec.skin, "one pitch and one size")?;
+        spec.objects.settle_sizes(std::slice::from_ref(&array));
         let placement = check.placement(&spec.touches)?;
         let wanted = &spec.speed_accuracy;
         check.keys("speed_accuracy", wanted, KEYS)?;
@@ -110,7 +111,7 @@ impl SpeedAccuracyPlan {
         }
         let peers = contact.and_then(|contact| contact.peers.as_ref());
         Ok(Self {
-            patch,
+            array,
             placement,
             peers: peers.map(|path| folder.join(path)),
             arrays,
@@ -133,7 +134,7 @@ fn check_recognition(
     skin: &SkinSpec,
     all_levels: &[f64],
     spec: &RecognitionSweepSpec,
-) -> Result<Vec<Patch>> {
+) -> Result<Vec<TaxelArray>> {
     let key = |name: &str| format!("speed_accuracy.recognition.{name}");
     let mut levels = spec.tolerances_mm.iter();
     if let Some(level) = levels.find(|level| !all_levels.contains(level)) {
@@ -147,7 +148,7 @@ fn check_recognition(
         taxel_radius_mm: None,
         ..skin.clone()
     })?;
-    let fewest = arrays.iter().map(|patch| patch.grid.n_taxels()).min();
+    let fewest = arrays.iter().map(TaxelArray::n_taxels).min();
     let fewest = fewest.unwrap_or(1) as f64;
     if let Some(ratio) = spec.ratio.iter().find(|&&ratio| ratio > fewest) {
         let allowed = format!("1 to {fewest}, the taxels of the coarsest array");

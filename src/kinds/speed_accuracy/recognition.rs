@@ -56,7 +56,7 @@ impl SpeedAccuracyStudy {
         };
         let levels = coarsest_first(&spec.tolerances_mm);
         nested! {
-            (array, patch) in self.plan.arrays.iter().enumerate();
+            (array, on) in self.plan.arrays.iter().enumerate();
             (level, &tolerance_mm) in levels.iter().enumerate();
             &ensemble in &spec.ensemble;
             &ratio in &spec.ratio;
@@ -65,12 +65,12 @@ impl SpeedAccuracyStudy {
                 array,
                 level,
                 cell: ChainCell {
-                    pitch_mm: millimetres(patch.grid.pitch),
-                    n_taxels: patch.grid.n_taxels(),
+                    pitch_mm: millimetres(on.pitch()),
+                    n_taxels: on.n_taxels(),
                     tolerance_mm,
                     ensemble,
                     ratio,
-                    measurements: (patch.grid.n_taxels() as f64 / ratio).round().max(1.0) as usize,
+                    measurements: (on.n_taxels() as f64 / ratio).round().max(1.0) as usize,
                     classifier,
                 },
             })
@@ -104,21 +104,21 @@ impl SpeedAccuracyStudy {
         let to_read = &touches_to_read(exact.classes(), &seed.named("speed accuracy signal"));
         let one_thread = &one_thread()?;
         for of_array in settings.chunk_by(|(_, a), (_, b)| a.array == b.array) {
-            let patch = &self.plan.arrays[of_array[0].1.array];
+            let array = &self.plan.arrays[of_array[0].1.array];
             let noise = SignalStep::Noise(Noise {
                 std: spec.noise_std_full_scale,
                 unit: NoiseUnit::FullScale,
             });
-            let chain = &Chain::new(&[noise], patch)?;
-            let tested = &simulate_array(&exact, &(*patch).into(), 1, &Silent);
+            let chain = &Chain::new(&[noise], array.patch())?;
+            let tested = &simulate_array(&exact, array, 1, &Silent);
             for of_level in of_array.chunk_by(|(_, a), (_, b)| a.level == b.level) {
                 let touched = &levels[of_level[0].1.level];
                 let bench = Bench {
                     spec,
                     seed,
-                    patch,
+                    array,
                     touched,
-                    learned: &simulate_array(touched, &(*patch).into(), 1, &Silent),
+                    learned: &simulate_array(touched, array, 1, &Silent),
                     tested,
                     to_read,
                     chain,

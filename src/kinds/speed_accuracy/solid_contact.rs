@@ -5,7 +5,7 @@
 
 use crate::geometry::Pose;
 use crate::objects::Solid;
-use crate::world::Patch;
+use crate::world::{Patch, Taxel};
 use glam::DVec3;
 
 /// Nearer than this is contact, metres.
@@ -17,17 +17,15 @@ const MOST_STEPS: usize = 2000;
 pub(super) fn press_solid(patch: &Patch, solid: &Solid, patch_from_object: &Pose) -> Vec<f64> {
     let object_from_patch = patch_from_object.inverse();
     let axis = object_from_patch.transform_vector(DVec3::Z);
-    let grid = &patch.grid;
-    let rows = (0..grid.ny).flat_map(|row| (0..grid.nx).map(move |column| (column, row)));
-    rows.map(|(column, row)| {
-        let rest = DVec3::new(grid.x(column), grid.y(row), 0.0);
-        deflection(patch, solid, object_from_patch.transform_point(rest), axis)
-    })
-    .collect()
+    let centers = patch.layout().centers().iter().enumerate();
+    let needed = centers.map(|(number, &rest)| {
+        let rest = object_from_patch.transform_point(rest);
+        deflection(patch.taxels().at(number), solid, rest, axis)
+    });
+    needed.collect()
 }
 
-fn deflection(patch: &Patch, solid: &Solid, rest: DVec3, axis: DVec3) -> f64 {
-    let taxel = &patch.taxel;
+fn deflection(taxel: &Taxel, solid: &Solid, rest: DVec3, axis: DVec3) -> f64 {
     let mut left = taxel.stroke;
     for _ in 0..MOST_STEPS {
         let free = solid.distance(rest - left * axis) - taxel.radius;
@@ -47,7 +45,7 @@ mod tests {
     use super::*;
     use crate::contact::{Workspace, press_at_pose};
     use crate::objects::{Shape, Sphere, SphereUnion};
-    use crate::world::{Grid, Scene, Taxel};
+    use crate::world::Grid;
 
     #[test]
     fn marching_to_a_ball_is_the_closed_form() {
@@ -62,7 +60,7 @@ mod tests {
             damping: 0.0,
             stroke: 5e-3,
         };
-        let patch = Patch::new(grid, taxel).unwrap();
+        let patch = Patch::grid(grid, taxel).unwrap();
         let solid = Solid::of(Shape::Ball { diameter: 0.03 }).unwrap();
         let pose = Pose::from_translation(DVec3::new(3e-3, -2e-3, 0.0125));
         let marched = press_solid(&patch, &solid, &pose);
@@ -72,9 +70,8 @@ mod tests {
             radius: 0.015,
         };
         let ball = SphereUnion::new(vec![ball]).unwrap();
-        let scene = Scene::of_one(&patch, &ball.into());
         let mut workspace = Workspace::new();
-        press_at_pose(&scene, &[pose], &mut workspace);
+        press_at_pose(&patch, &[ball.into()], &[pose], &mut workspace);
         let pairs = marched.iter().zip(workspace.deflections());
         let worst = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         // A ball that grazes is held by its last steps.

@@ -14,6 +14,7 @@ use crate::kinds::{About, Facts, Files, Kind, Source, found_and_cost};
 use crate::report::csv_tables::read_rows;
 use crate::study::objects_content;
 use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft, Scale};
+use crate::study::taxel_array::TaxelArray;
 use crate::table::{File, Table};
 use std::path::PathBuf;
 
@@ -162,7 +163,7 @@ impl Kind for SpeedAccuracyStudy {
         if let Some(sweep) = &parts.recognition {
             let per_object = sweep.n_touches();
             touches.push(format!("{per_object} of each in recognition"));
-            let n_taxels = self.plan.arrays.iter().map(|patch| patch.grid.n_taxels());
+            let n_taxels = self.plan.arrays.iter().map(TaxelArray::n_taxels);
             bytes = 8.0 * (sweep.objects * per_object * n_taxels.max().unwrap_or(0)) as f64;
         }
         Scale {

@@ -11,7 +11,8 @@ use crate::study::object_files::{NamedMesh, load_named_meshes, set_entries};
 use crate::study::packings::pack_within;
 use crate::study::plan::MM;
 use crate::study::spec::ObjectsSpec;
-use crate::world::{Patch, Placement};
+use crate::study::taxel_array::TaxelArray;
+use crate::world::Placement;
 use std::path::Path;
 
 /// An object before it has a model.
@@ -107,14 +108,14 @@ impl Subject {
     /// The touches that every study would draw for an object of this name, and what exact contact says of them.
     pub fn truth(
         &self,
-        patch: &Patch,
+        array: &TaxelArray,
         placement: &Placement,
         (finest_mm, seed): (f64, &Seed),
     ) -> Result<Truth> {
         let exact = (self.name(), self.exact(finest_mm)?);
-        let mut truth = Truth::new(exact, patch, placement, seed)?;
+        let mut truth = Truth::new(exact, array, placement, seed)?;
         if let Self::Solid(entry) = self {
-            truth.feel_instead(|pose| press_solid(patch, &entry.solid, pose));
+            truth.feel_instead(|pose| press_solid(array.patch(), &entry.solid, pose));
         }
         Ok(truth)
     }

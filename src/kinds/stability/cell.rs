@@ -4,7 +4,7 @@ use super::rows::{StabilityCell, StabilityScore, StabilityTime};
 use super::scene::{CellScene, GRAVITY};
 use super::spec::{ContactMethod, StabilityScene};
 use crate::contact::balance::{Balancer, FreeObject, Outcome as BalanceOutcome, PlacedSkin};
-use crate::contact::{DamperState, SkinWorkspace, deflect_skin, press_skin_to_force};
+use crate::contact::{Approach, DamperState, Workspace, press_at_pose, spring_load};
 use crate::dynamics::{
     Divergence, Drive, ImplicitEuler, Integrator, SemiImplicit, Steps, System, run,
 };
@@ -209,9 +209,9 @@ fn put_to_rest(scene: &CellScene, mass: f64) -> Result<Answer> {
     };
     let gravity = -GRAVITY * DVec3::Z;
     let balance = Balancer::new().settle(&ball, &[skin], gravity, &cradle.pose)?;
-    let mut workspace = SkinWorkspace::new();
+    let mut workspace = Workspace::new();
     let pose = [balance.pose];
-    deflect_skin(&cradle.patch, from_ref(&cradle.ball), &pose, &mut workspace);
+    press_at_pose(&cradle.patch, from_ref(&cradle.ball), &pose, &mut workspace);
     Ok(Answer {
         force_imbalance: match balance.outcome == BalanceOutcome::Settled {
             true => balance.imbalance,
@@ -229,17 +229,12 @@ fn press_to_weight(scene: &CellScene) -> Result<Answer> {
     let above = [Pose::from_translation(
         cradle.pose.translation + 1e-3 * DVec3::Z,
     )];
-    let mut workspace = SkinWorkspace::new();
-    let press = press_skin_to_force(
-        &cradle.patch,
-        ball,
-        &above,
-        DVec3::Z,
-        weight,
-        &mut workspace,
-    )?;
+    let mut workspace = Workspace::new();
+    let approach = Approach::new(&cradle.patch, DVec3::Z)?;
+    let press = approach.press_to_force(ball, &above, weight, &mut workspace)?;
+    let carried = spring_load(&cradle.patch, workspace.contacts()).spring_force;
     Ok(Answer {
-        force_imbalance: press.map_or(f64::INFINITY, |press| (press.force / weight - 1.0).abs()),
+        force_imbalance: press.map_or(f64::INFINITY, |_| (carried / weight - 1.0).abs()),
         deflection: workspace.deflections().to_vec(),
         ..Answer::default()
     })
@@ -250,14 +245,14 @@ fn press_and_release(cell: &StabilityCell, scene: &CellScene, plan: &VelocityPla
     let (dt, patch) = (cell.dt_s, &scene.cradle.patch);
     let frames = scene.frames(dt);
     let mut state = DamperState::at_rest(patch.n_taxels());
-    let mut workspace = SkinWorkspace::new();
+    let mut workspace = Workspace::new();
     let mut answer = Answer {
         n_steps: frames[frames.len() - 1],
         ..Answer::default()
     };
     for step in 1..=answer.n_steps {
         let pose = plan.pose_at(step as f64 * dt);
-        deflect_skin(patch, from_ref(&scene.cradle.ball), &[pose], &mut workspace);
+        press_at_pose(patch, from_ref(&scene.cradle.ball), &[pose], &mut workspace);
         state.step(patch.taxels(), dt, workspace.deflections());
         if step == frames[0] {
             let force: f64 = state.force.iter().sum();

@@ -7,7 +7,7 @@ use crate::dynamics::{Drive, Rest, System, rest, skin_sim};
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::objects::{Model, Sphere, SphereUnion};
-use crate::world::{Grid, Layout, Phase, SkinPatch, Taxel, Taxels, VelocityPlan};
+use crate::world::{Grid, Layout, Patch, Phase, Taxel, Taxels, VelocityPlan};
 use glam::DVec3;
 
 /// g, m/s².
@@ -30,7 +30,7 @@ const LEAST_TIME: f64 = 0.5;
 /// All taxels of a cradle under a ball; see the module's title page.
 #[derive(Clone, Debug)]
 pub(super) struct Cradle {
-    pub patch: SkinPatch,
+    pub patch: Patch,
     pub ball: Model,
     /// `patch_from_object` at first contact.
     pub pose: Pose,
@@ -80,7 +80,7 @@ impl Cradle {
         let innermost = DVec3::new(0.5 * grid.pitch, 0.5 * grid.pitch, 0.0).length_squared();
         let lift = reach - 0.25 * taxel.stroke * innermost / corner;
         Ok(Self {
-            patch: SkinPatch::new("cradle", layout, Taxels::Equal(taxel))?,
+            patch: Patch::new("cradle", layout, Taxels::Equal(taxel))?,
             ball: ball.into(),
             pose: Pose::from_translation(lift * DVec3::Z),
         })
@@ -110,7 +110,7 @@ impl CellScene {
             None => Self::of_imposed(cell, cradle, undamped)?,
         };
         let layout = scene.cradle.patch.layout().clone();
-        scene.cradle.patch = SkinPatch::new("cradle", layout, Taxels::Equal(scene.taxel))?;
+        scene.cradle.patch = Patch::new("cradle", layout, Taxels::Equal(scene.taxel))?;
         Ok(scene)
     }
 

@@ -79,7 +79,7 @@ pub enum StabilityScene {
 #[serde(rename_all = "snake_case")]
 pub enum ContactMethod {
     /// Ours: taxels without mass, in closed form ([`balance`](crate::contact::balance) at rest,
-    /// [`press_skin_to_force`](crate::contact::press_skin_to_force) under a plunger, [`DamperState`](crate::contact::DamperState) over time).
+    /// [`Approach::press_to_force`](crate::contact::Approach::press_to_force) under a plunger, [`DamperState`](crate::contact::DamperState) over time).
     QuasiStatic,
     /// [`SemiImplicit`](crate::dynamics::SemiImplicit), the better of two contact stiffnesses: one that lets nothing sink in by more than a
     /// 400th of its deflection or stroke, and the stiffest that the step carries.

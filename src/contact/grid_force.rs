@@ -1,68 +1,41 @@
-//! A grid patch pressed until it feels a force.
+//! A flat grid of equal taxels pressed along its axis until it feels a force.
 //!
 //! On a grid every taxel moves along the direction of travel t, so taxel i needs t − t_i, t_i being where it begins to move; the total
 //! force is `F(t) = k Σ min(s, max(0, t − t_i))`: continuous, piecewise linear, never falling. So the skin is pressed once,
 //! deeply, to know all t_i, and the travel for a force is found among them.
 
+use super::Contact;
 use super::crossing::{Sample, crossing};
-use super::indentation::Goal;
-use super::{Contact, Workspace};
+use super::grid_press::{Goal, GridPress};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
-use crate::world::{Patch, Scene, Taxel};
+use crate::objects::Model;
+use crate::world::EvenGrid;
 
 /// To which part of the force its travel is found, unless the last bit of the travel is more.
 pub(super) const ACCURACY: f64 = 1e-13;
 
-/// Presses until the springs carry `force` newtons together, Σ k δ: to within 1e-12 of it, or to the last bit of the travel.
-///
-/// `None` (and zero deflections) where the patch meets nothing. The travel may be negative, as that of
-/// [`press_to_depth`](super::press_to_depth): to the depth of this travel past [`first_contact`](super::first_contact) it is the same press.
-///
-/// # Errors
-/// A force that is not a positive number; one that is more than what the object can press into the taxels' strokes: the text
-/// says the largest force, and its travel.
-///
-/// # Panics
-/// If there are not as many poses as objects.
-///
-/// ```
-/// use bubbletouch::contact::{Workspace, press_to_force};
-/// use bubbletouch::geometry::Pose;
-/// use bubbletouch::objects::{Sphere, SphereUnion};
-/// use bubbletouch::world::{Grid, Patch, Scene, Taxel};
-/// use glam::DVec3;
-///
-/// let grid = Grid { nx: 32, ny: 32, pitch: 2e-3 };
-/// let taxel = Taxel { radius: 1e-3, stiffness: 100.0, damping: 0.0, stroke: 5e-3 };
-/// let patch = Patch::new(grid, taxel)?;
-/// let ball = Sphere { center: DVec3::new(0.0, 0.0, 0.1), radius: 0.03 };
-/// let scene = Scene { patch, objects: vec![SphereUnion::new(vec![ball])?.into()] };
-/// let mut workspace = Workspace::new();
-/// press_to_force(&scene, &[Pose::IDENTITY], 5.0, &mut workspace)?.expect("the ball is over the patch");
-/// let force = taxel.stiffness * workspace.deflections().iter().sum::<f64>();
-/// assert!((force - 5.0).abs() < 5e-12);
-/// # Ok::<(), bubbletouch::Error>(())
-/// ```
-pub fn press_to_force(
-    scene: &Scene,
+/// See [`press_to_force`](super::press_to_force); taxels of one stiffness, N/m.
+pub(super) fn press(
+    (grid, stiffness): (&EvenGrid, f64),
+    objects: &[Model],
     patch_from_objects: &[Pose],
     force: f64,
-    workspace: &mut Workspace,
+    press: &mut GridPress,
 ) -> Result<Option<Contact>> {
     check_force(force)?;
-    let Patch { taxel, .. } = scene.patch;
-    let gathered = workspace.gather(scene, patch_from_objects, Goal::Depth(taxel.stroke));
+    let stroke = grid.stroke;
+    let gathered = press.gather(grid, objects, patch_from_objects, Goal::Depth(stroke));
     let Some(first) = gathered else {
-        workspace.touch_nothing(&scene.patch);
+        press.touch_nothing(grid);
         return Ok(None);
     };
-    let mut curve = ForceCurve::of(workspace, &scene.patch, first + taxel.stroke);
+    let mut curve = ForceCurve::of(press, (grid, stiffness), first + stroke);
     if curve.largest() < force {
         // Not before the first taxel is saturated: then all that is there counts.
-        let depth = top(scene, patch_from_objects) + taxel.stroke - first;
-        workspace.gather(scene, patch_from_objects, Goal::Depth(depth));
-        curve = ForceCurve::of(workspace, &scene.patch, first + depth);
+        let depth = top(objects, patch_from_objects) + stroke - first;
+        press.gather(grid, objects, patch_from_objects, Goal::Depth(depth));
+        curve = ForceCurve::of(press, (grid, stiffness), first + depth);
     }
     let largest = curve.largest();
     if force > largest * (1.0 + ROUNDING) {
@@ -74,30 +47,32 @@ pub fn press_to_force(
         return Err(too_much(force, largest, &where_to));
     }
     let travel = curve.travel(force.min(largest));
-    Ok(Some(workspace.indent(&scene.patch, travel)))
+    Ok(Some(press.indent(grid, travel)))
 }
 
 /// What summing thousands of springs rounds a force by, as a share: far above 1e-16, far below what is felt.
 const ROUNDING: f64 = 1e-12;
 
-/// F(t) of a patch, up to a travel.
+/// F(t) of a grid, up to a travel.
 struct ForceCurve<'a> {
     /// t_i, metres.
     starts: &'a [f64],
     /// Where nothing changes any more, or nothing beyond is known; metres.
     end: f64,
-    taxel: Taxel,
+    stroke: f64,
+    stiffness: f64,
 }
 
 impl<'a> ForceCurve<'a> {
-    /// Of what the workspace has gathered, up to a travel.
-    fn of(workspace: &'a mut Workspace, patch: &Patch, travel: f64) -> Self {
-        let starts = workspace.starts(patch, travel);
+    /// Of what has been gathered, up to a travel.
+    fn of(press: &'a mut GridPress, (grid, stiffness): (&EvenGrid, f64), travel: f64) -> Self {
+        let starts = press.starts(grid, travel);
         let last = starts.iter().fold(f64::NEG_INFINITY, |a, &b| a.max(b));
         Self {
             starts,
-            end: travel.min(last + patch.taxel.stroke),
-            taxel: patch.taxel,
+            end: travel.min(last + grid.stroke),
+            stroke: grid.stroke,
+            stiffness,
         }
     }
 
@@ -106,12 +81,12 @@ impl<'a> ForceCurve<'a> {
         let (mut deflection, mut n_moving) = (0.0, 0);
         for start in self.starts {
             let needed = travel - start;
-            deflection += needed.clamp(0.0, self.taxel.stroke);
-            n_moving += usize::from(needed > 0.0 && needed < self.taxel.stroke);
+            deflection += needed.clamp(0.0, self.stroke);
+            n_moving += usize::from(needed > 0.0 && needed < self.stroke);
         }
         Sample {
-            value: self.taxel.stiffness * deflection,
-            slope: self.taxel.stiffness * n_moving as f64,
+            value: self.stiffness * deflection,
+            slope: self.stiffness * n_moving as f64,
         }
     }
 
@@ -153,8 +128,8 @@ pub(super) fn too_much(force: f64, largest: f64, where_to: &str) -> Error {
 }
 
 /// A height in the patch frame that no object reaches beyond, metres.
-fn top(scene: &Scene, patch_from_objects: &[Pose]) -> f64 {
-    let tops = scene.objects.iter().zip(patch_from_objects);
+fn top(objects: &[Model], patch_from_objects: &[Pose]) -> f64 {
+    let tops = objects.iter().zip(patch_from_objects);
     let tops = tops.map(|(object, pose)| {
         let bounds = object.bounds();
         pose.transform_point(bounds.center()).z + 0.5 * bounds.size().length()

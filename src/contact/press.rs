@@ -1,0 +1,214 @@
+//! Presses: of any patch on any objects, to a depth, a travel or a force along its z axis, or right at a pose.
+//!
+//! A flat grid of taxels that go equally deep is pressed row by row (`grid_press`, `grid_force`), any other patch taxel by taxel
+//! (`approach`); what both can do is the same, to rounding.
+
+use super::approach::Approach;
+use super::grid_press::Goal;
+use super::workspace::Workspace;
+use super::{grid_force, tree_press};
+use crate::error::Result;
+use crate::geometry::Pose;
+use crate::objects::Model;
+use crate::world::{Patch, Taxels};
+
+/// What a press did, beside what it left in the [`Workspace`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Contact {
+    /// How far the patch went along its way from the pose it was given, metres; negative if it had to go back.
+    pub travel: f64,
+    /// Taxels with a deflection above zero.
+    pub n_touched: usize,
+    /// Taxels at their stroke that an object would push further.
+    pub n_saturated: usize,
+}
+
+/// How far the patch must travel along z until the first taxel is touched, metres (negative: it already is); `None` where no
+/// travel would touch anything.
+///
+/// Poses are `patch_from_object`, one an object. Closed form: a taxel that travels along a line meets a sphere at a root.
+///
+/// # Panics
+/// If there are not as many poses as objects.
+pub fn first_contact(
+    patch: &Patch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    workspace: &mut Workspace,
+) -> Option<f64> {
+    match patch.even_grid() {
+        Some(grid) => {
+            let goal = Goal::Depth(0.0);
+            workspace
+                .on_grid()
+                .gather(grid, objects, patch_from_objects, goal)
+        }
+        None => Approach::ahead(patch).first_contact(objects, patch_from_objects),
+    }
+}
+
+/// Presses until the patch is `depth` metres past first contact; `None` (and zero deflections) where it meets nothing.
+///
+/// The patch comes from the front and all counts, however deep: past the stroke taxels are saturated. On a flat patch no taxel that is
+/// touched at a depth is deflected less at a larger one.
+///
+/// # Panics
+/// If there are not as many poses as objects.
+pub fn press_to_depth(
+    patch: &Patch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    depth: f64,
+    workspace: &mut Workspace,
+) -> Option<Contact> {
+    let Some(grid) = patch.even_grid() else {
+        return Approach::ahead(patch).press_to_depth(
+            objects,
+            patch_from_objects,
+            depth,
+            workspace,
+        );
+    };
+    let press = workspace.on_grid();
+    let first = press.gather(grid, objects, patch_from_objects, Goal::Depth(depth));
+    if first.is_none() {
+        press.touch_nothing(grid);
+    }
+    first.map(|first| press.indent(grid, first + depth))
+}
+
+/// Presses until the patch has moved `travel` metres along z from the pose given, from the front: the press of [`press_to_depth`]
+/// with this travel.
+///
+/// # Panics
+/// If there are not as many poses as objects.
+pub fn press_to_travel(
+    patch: &Patch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    travel: f64,
+    workspace: &mut Workspace,
+) -> Contact {
+    let Some(grid) = patch.even_grid() else {
+        return Approach::ahead(patch).press_to_travel(
+            objects,
+            patch_from_objects,
+            travel,
+            workspace,
+        );
+    };
+    let press = workspace.on_grid();
+    press.gather(grid, objects, patch_from_objects, Goal::Travel(travel));
+    press.indent(grid, travel)
+}
+
+/// Presses until the springs carry `force` newtons together, Σ k δ: to within 1e-12 of it, or to the last bit of the travel.
+///
+/// `None` (and zero deflections) where the patch meets nothing. The travel may be negative, as that of
+/// [`press_to_depth`]: to the depth of this travel past [`first_contact`] it is the same press.
+///
+/// # Errors
+/// A force that is not a positive number; one that is more than what the object can press into the taxels' strokes: the text
+/// says the largest force, and its travel.
+///
+/// # Panics
+/// If there are not as many poses as objects.
+///
+/// ```
+/// use bubbletouch::contact::{Workspace, press_to_force};
+/// use bubbletouch::geometry::Pose;
+/// use bubbletouch::objects::{Sphere, SphereUnion};
+/// use bubbletouch::world::{Grid, Patch, Taxel};
+/// use glam::DVec3;
+///
+/// let grid = Grid { nx: 32, ny: 32, pitch: 2e-3 };
+/// let taxel = Taxel { radius: 1e-3, stiffness: 100.0, damping: 0.0, stroke: 5e-3 };
+/// let patch = Patch::grid(grid, taxel)?;
+/// let ball = Sphere { center: DVec3::new(0.0, 0.0, 0.1), radius: 0.03 };
+/// let objects = [SphereUnion::new(vec![ball])?.into()];
+/// let mut workspace = Workspace::new();
+/// let contact = press_to_force(&patch, &objects, &[Pose::IDENTITY], 5.0, &mut workspace)?;
+/// assert!(contact.is_some(), "the ball is over the patch");
+/// let force = taxel.stiffness * workspace.deflections().iter().sum::<f64>();
+/// assert!((force - 5.0).abs() < 5e-12);
+/// # Ok::<(), bubbletouch::Error>(())
+/// ```
+pub fn press_to_force(
+    patch: &Patch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    force: f64,
+    workspace: &mut Workspace,
+) -> Result<Option<Contact>> {
+    match (patch.even_grid(), patch.taxels()) {
+        (Some(grid), Taxels::Equal(taxel)) => grid_force::press(
+            (grid, taxel.stiffness),
+            objects,
+            patch_from_objects,
+            force,
+            workspace.on_grid(),
+        ),
+        _ => Approach::ahead(patch).press_to_force(objects, patch_from_objects, force, workspace),
+    }
+}
+
+/// Presses a patch on objects, right where they are: poses are `patch_from_object`, one an object.
+///
+/// Each sphere counts as the contact stage's title page says, for each taxel by itself. A mesh counts with all triangles but
+/// those that touch the taxel only behind its substrate (lower than −s − ρ along its axis), unless the substrate is inside
+/// of the mesh there: so what a forearm rests on does not press on its other side. What has gone far past the stroke lies there, too,
+/// unless it is known how it came ([`press_to_depth`]). A single part decides each touched
+/// taxel; where two need the same, the object that comes first, and of a union the first of its spheres.
+///
+/// ```
+/// use bubbletouch::contact::{Workspace, press_with_contacts, spring_load};
+/// use bubbletouch::geometry::Pose;
+/// use bubbletouch::objects::{Sphere, SphereUnion};
+/// use bubbletouch::world::{Layout, Patch, Taxel, Taxels};
+/// use glam::DVec3;
+///
+/// // A fingertip: half a ball of 8 mm with a taxel every 1.5 mm.
+/// let layout = Layout::sphere_cap(8e-3, std::f64::consts::FRAC_PI_2, 1.5e-3)?;
+/// let taxel = Taxel { radius: 0.5e-3, stiffness: 100.0, damping: 0.0, stroke: 2e-3 };
+/// let fingertip = Patch::new("fingertip", layout, Taxels::Equal(taxel))?;
+///
+/// // A marble comes half a millimetre too near, from the side.
+/// let marble = Sphere { center: DVec3::ZERO, radius: 8e-3 };
+/// let objects = [SphereUnion::new(vec![marble])?.into()];
+/// let pose = Pose::from_translation(16e-3 * DVec3::new(0.6, 0.0, 0.8));
+/// let mut workspace = Workspace::new();
+/// let counts = press_with_contacts(&fingertip, &objects, &[pose], &mut workspace);
+/// assert!(counts.n_touched > 3 && counts.n_saturated == 0);
+///
+/// // The marble is pushed back the way it came.
+/// let load = spring_load(&fingertip, workspace.contacts());
+/// let force = load.on_object.force;
+/// assert!(force.normalize().dot(DVec3::new(0.6, 0.0, 0.8)) > 0.95);
+/// # Ok::<(), bubbletouch::Error>(())
+/// ```
+///
+/// # Panics
+/// If there are not as many poses as objects.
+pub fn press_with_contacts(
+    patch: &Patch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    workspace: &mut Workspace,
+) -> Contact {
+    tree_press::push(patch, objects, patch_from_objects, workspace);
+    tree_press::meet(patch, objects, patch_from_objects, workspace)
+}
+
+/// The deflections of [`press_with_contacts`] alone, where nobody wants to know what touches what.
+///
+/// # Panics
+/// If there are not as many poses as objects.
+pub fn press_at_pose(
+    patch: &Patch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    workspace: &mut Workspace,
+) -> Contact {
+    tree_press::push(patch, objects, patch_from_objects, workspace);
+    tree_press::stop(patch, workspace)
+}

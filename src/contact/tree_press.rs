@@ -1,0 +1,245 @@
+//! The kernel of any layout: each taxel along its own axis, only those that a sphere reaches.
+
+use super::grid_press::saturation_limit;
+use super::instructions::for_instructions;
+use super::near_spheres::{PlacedUnion, needed_along, needed_of_leaf};
+use super::placed_sphere::View;
+use super::skin_mesh::MeshAt;
+use super::taxel_contact::TaxelContact;
+use super::{Contact, Workspace};
+use crate::geometry::Pose;
+use crate::mesh::Triangle;
+use crate::objects::{MeshModel, Model, Sphere, SphereUnion};
+use crate::world::{EvenGrid, LEAF, Patch, PlacedTaxel};
+use glam::DVec3;
+
+/// Pushes each taxel as far as an object needs, without a stop.
+pub(super) fn push(
+    patch: &Patch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    workspace: &mut Workspace,
+) {
+    assert_eq!(
+        objects.len(),
+        patch_from_objects.len(),
+        "one pose an object"
+    );
+    workspace.clear(patch.n_taxels());
+    for (number, (object, pose)) in objects.iter().zip(patch_from_objects).enumerate() {
+        match object {
+            Model::Spheres(union) => {
+                let placed = PlacedUnion::new(union, pose);
+                let mut near = std::mem::take(&mut workspace.near);
+                let is_near = |ball: &Sphere| patch.tree().is_near(ball.center, ball.radius);
+                placed.gather(is_near, &mut near);
+                match patch.even_grid() {
+                    Some(grid) => {
+                        push_along_rows(grid, (number, union, &near), pose, workspace);
+                    }
+                    None => push_by_spheres(
+                        workspace.instructions(),
+                        patch,
+                        (number, &placed, &near),
+                        workspace,
+                    ),
+                }
+                workspace.near = near;
+            }
+            Model::Mesh(mesh) => push_by_mesh(patch, number, mesh, pose, workspace),
+        }
+    }
+    push_held(patch, objects, patch_from_objects, workspace);
+}
+
+/// Pushes the taxels by the parts that are held and lie behind the substrate; those in front of it push anyway.
+fn push_held(
+    patch: &Patch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    workspace: &mut Workspace,
+) {
+    let held = std::mem::take(&mut workspace.held);
+    for contact in &held {
+        let taxel = PlacedTaxel::of(patch.layout(), patch.taxels(), contact.taxel);
+        let pose = &patch_from_objects[contact.object];
+        let needed = match &objects[contact.object] {
+            Model::Spheres(union) => {
+                let Sphere { center, radius } = union.spheres()[contact.part];
+                let from = taxel.center - pose.transform_point(center);
+                let [across_x, across_y] = taxel.across;
+                let frame = [across_x, across_y, taxel.axis];
+                let [needed, height] = needed_along(from, frame, taxel.radius + radius);
+                if height >= taxel.behind {
+                    continue;
+                }
+                needed
+            }
+            Model::Mesh(mesh) => {
+                let stop = MeshAt::new(mesh, pose).stop_by(&taxel, contact.part);
+                stop.map_or(0.0, |stop| -stop.height)
+            }
+        };
+        let deciding = [contact.object, contact.part].map(|number| number as u32);
+        workspace.push(taxel.number, needed, deciding);
+    }
+    workspace.held = held;
+}
+
+/// The same as [`push_by_spheres`] to the bit, for taxels in rows: no search, and no look at spheres that are above all of them.
+fn push_along_rows(
+    grid: &EvenGrid,
+    (object, union, near): (usize, &SphereUnion, &[u32]),
+    pose: &Pose,
+    workspace: &mut Workspace,
+) {
+    let Workspace {
+        deflections,
+        deciding,
+        touched,
+        lines,
+        ..
+    } = workspace;
+    lines.lay(&grid.grid);
+    let view = View::new(grid.radius, lines, pose);
+    let behind = grid.behind();
+    let mut is_near = false;
+    for &number in near {
+        let Some(placed) = view.place(&union.spheres()[number as usize], 0.0) else {
+            continue;
+        };
+        if placed.center.z < behind {
+            continue;
+        }
+        is_near = true;
+        let mark = [object as u32, number];
+        placed.raise_and_mark(lines, deflections, mark, deciding);
+    }
+    if !is_near {
+        return;
+    }
+    touched.clear();
+    let numbers = deflections.iter().enumerate();
+    touched.extend(numbers.filter_map(|(number, &d)| (d > 0.0).then_some(number as u32)));
+}
+
+for_instructions! {
+    /// Pushes the taxels by the near spheres of an object.
+    fn push_by_spheres(
+        patch: &Patch,
+        placed: (usize, &PlacedUnion, &[u32]),
+        workspace: &mut Workspace,
+    ) = push_by_each
+}
+
+#[inline(always)]
+fn push_by_each(
+    patch: &Patch,
+    (object, placed, near): (usize, &PlacedUnion, &[u32]),
+    workspace: &mut Workspace,
+) {
+    for &number in near {
+        let sphere = placed.at(number);
+        let deciding = [object as u32, number];
+        patch.tree().each_leaf(
+            |node| node.is_near(sphere.center, sphere.radius),
+            |leaf| {
+                let [needed, heights] = needed_of_leaf(leaf, &sphere);
+                let pushes = |k: usize| (needed[k] > 0.0) & (heights[k] >= leaf.behind[k]);
+                if (0..LEAF).fold(false, |any, k| any | pushes(k)) {
+                    for k in (0..LEAF).filter(|&k| pushes(k)) {
+                        workspace.push(leaf.numbers[k], needed[k], deciding);
+                    }
+                }
+            },
+        );
+    }
+}
+
+fn push_by_mesh(
+    patch: &Patch,
+    object: usize,
+    mesh: &MeshModel,
+    pose: &Pose,
+    workspace: &mut Workspace,
+) {
+    let mesh = MeshAt::new(mesh, pose);
+    let (center, radius) = mesh.ball();
+    patch.tree().each_near(center, radius, |taxel| {
+        if let Some(stop) = mesh.stop(taxel) {
+            let deciding = [object as u32, stop.triangle as u32];
+            workspace.push(taxel.number, -stop.height, deciding);
+        }
+    });
+}
+
+/// Stops the touched taxels at their strokes.
+pub(super) fn stop(patch: &Patch, workspace: &mut Workspace) -> Contact {
+    let mut counts = Contact::default();
+    for &taxel in &workspace.touched {
+        let deflection = &mut workspace.deflections[taxel as usize];
+        let stroke = patch.taxels().at(taxel as usize).stroke;
+        counts.n_touched += 1;
+        counts.n_saturated += usize::from(*deflection > saturation_limit(stroke));
+        *deflection = deflection.min(stroke);
+    }
+    counts
+}
+
+/// The same, and says what each of them touches.
+pub(super) fn meet(
+    patch: &Patch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    workspace: &mut Workspace,
+) -> Contact {
+    workspace.touched.sort_unstable();
+    let mut counts = Contact::default();
+    for &number in &workspace.touched {
+        let taxel = number as usize;
+        let [object, part] = workspace.deciding[taxel].map(|number| number as usize);
+        let (center, axis) = (
+            patch.layout().centers()[taxel],
+            patch.layout().axes()[taxel],
+        );
+        let properties = patch.taxels().at(taxel);
+        let needed = workspace.deflections[taxel];
+        let pushed = center - needed * axis;
+        let pose = &patch_from_objects[object];
+        let (point, normal) = nearest_point(&objects[object], part, pose, pushed);
+        let normal = normal.normalize_or(-axis);
+        let contact = TaxelContact {
+            taxel,
+            object,
+            part,
+            deflection: needed.min(properties.stroke),
+            needed,
+            normal,
+            cosine: (-normal.dot(axis)).max(0.0),
+            point,
+        };
+        workspace.deflections[taxel] = contact.deflection;
+        counts.n_touched += 1;
+        counts.n_saturated += usize::from(contact.is_saturated(properties));
+        workspace.contacts.push(contact);
+    }
+    counts
+}
+
+/// The point of an object's part that is nearest to a place, and the direction from there to the place; in the patch frame.
+fn nearest_point(object: &Model, part: usize, pose: &Pose, place: DVec3) -> (DVec3, DVec3) {
+    match object {
+        Model::Spheres(union) => {
+            let Sphere { center, radius } = union.spheres()[part];
+            let center = pose.transform_point(center);
+            let away = place - center;
+            (center + radius * away.normalize_or_zero(), away)
+        }
+        Model::Mesh(mesh) => {
+            let corners = mesh.mesh().triangle(part).0;
+            let triangle = Triangle(corners.map(|corner| pose.transform_point(corner)));
+            let (point, _) = triangle.closest(place);
+            (point, place - point)
+        }
+    }
+}

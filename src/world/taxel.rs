@@ -1,0 +1,91 @@
+//! A taxel, and a rectangular grid of them.
+
+use crate::error::{Error, Result};
+
+/// One sensing element: a sphere on a spring and damper, sliding along one axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Taxel {
+    /// ρ, metres, positive.
+    pub radius: f64,
+    /// k, N/m, positive.
+    pub stiffness: f64,
+    /// c, N·s/m, zero or positive.
+    pub damping: f64,
+    /// s, metres, positive: how far it can be pushed in before it is saturated.
+    pub stroke: f64,
+}
+
+impl Taxel {
+    /// Whether it can be.
+    ///
+    /// # Errors
+    /// The first property that is out of its range, by its name.
+    pub fn check(&self) -> Result<()> {
+        check_positive("taxel radius", self.radius, "m")?;
+        check_positive("taxel stiffness", self.stiffness, "N/m")?;
+        check_positive("taxel stroke", self.stroke, "m")?;
+        if self.damping.is_finite() && self.damping >= 0.0 {
+            return Ok(());
+        }
+        Err(Error::input(
+            "taxel damping",
+            format!("{} N·s/m", self.damping),
+            "zero or a positive number",
+        ))
+    }
+}
+
+/// A rectangular grid of rest positions, centred on the patch's origin.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Grid {
+    /// Columns, along patch x.
+    pub nx: usize,
+    /// Rows, along patch y.
+    pub ny: usize,
+    /// Metres between neighbours, positive.
+    #[serde(rename = "pitch_m")]
+    pub pitch: f64,
+}
+
+impl Grid {
+    /// How many taxels.
+    pub fn n_taxels(&self) -> usize {
+        self.nx * self.ny
+    }
+
+    /// x of a column, metres: `(column − (nx − 1)/2) · pitch`.
+    pub fn x(&self, column: usize) -> f64 {
+        (column as f64 - 0.5 * (self.nx as f64 - 1.0)) * self.pitch
+    }
+
+    /// y of a row, metres: `(row − (ny − 1)/2) · pitch`.
+    pub fn y(&self, row: usize) -> f64 {
+        (row as f64 - 0.5 * (self.ny as f64 - 1.0)) * self.pitch
+    }
+
+    /// Whether it can be.
+    ///
+    /// # Errors
+    /// The first property that is out of its range, by its name.
+    pub fn check(&self) -> Result<()> {
+        if self.nx == 0 || self.ny == 0 {
+            return Err(Error::input(
+                "taxel grid",
+                format!("{} × {} taxels", self.nx, self.ny),
+                "at least one taxel each way",
+            ));
+        }
+        check_positive("taxel pitch", self.pitch, "m")
+    }
+}
+
+pub(super) fn check_positive(place: &str, value: f64, unit: &str) -> Result<()> {
+    if value.is_finite() && value > 0.0 {
+        return Ok(());
+    }
+    Err(Error::input(
+        place,
+        format!("{value} {unit}"),
+        "a finite positive number",
+    ))
+}
