@@ -2,8 +2,8 @@
 
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{Sphere, SphereUnion};
-use bubbletouch::whole_body::{BodyPatch, BodyState, Instructions, SphereClusters, WholeBody};
-use bubbletouch::world::{Extrusion, Grid, Layout, Taxel};
+use bubbletouch::whole_body::{BodyState, Instructions, SphereClusters, WholeBody};
+use bubbletouch::world::{Extrusion, Grid, Layout, Patch, Taxel};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -22,7 +22,7 @@ fn body(n_taxels: usize) -> (WholeBody, Vec<Pose>) {
     let sleeve = Extrusion::cylinder(0.065, 0.1, 0.5 * PI, PITCH).expect("lengths are positive");
     let n = n_taxels.div_ceil(sleeve.n_taxels());
     let patches = (0..n).map(|k| {
-        let patch = BodyPatch::new(format!("patch {k}"), sleeve.clone(), TAXEL);
+        let patch = Patch::new(format!("patch {k}"), sleeve.clone(), TAXEL);
         patch.expect("the taxel is a good one")
     });
     let pose = |k: usize| {
@@ -30,7 +30,7 @@ fn body(n_taxels: usize) -> (WholeBody, Vec<Pose>) {
         let (row, column) = ((k / 4 / 20) as f64, (k / 4 % 20) as f64);
         Pose::new(turn, 0.5 * DVec3::new(row, column, 0.0))
     };
-    let body = WholeBody::new(patches.collect()).expect("every patch has its name");
+    let body = WholeBody::new(&patches.collect::<Vec<_>>()).expect("every patch has its name");
     (body, (0..n).map(pose).collect())
 }
 
@@ -174,15 +174,15 @@ fn draped(c: &mut Criterion) {
         pitch: 1e-3,
     };
     let extrusion = Extrusion::grid(&grid).expect("the grid has taxels");
-    let (layout, _) = Layout::from(&extrusion).with_neighbours_together();
-    let rows = BodyPatch::new("rows", extrusion, TAXEL);
-    let draped = BodyPatch::draped("draped", &layout, TAXEL);
+    let (layout, _) = Layout::from(extrusion.clone()).with_neighbours_together();
+    let rows = Patch::new("rows", extrusion, TAXEL);
+    let draped = Patch::new("draped", layout.clone(), TAXEL);
     let object = [ball(1_000, 0.1)];
     let mut group = c.benchmark_group("body_draped_90000_taxels_1000_spheres");
     for patch in [rows, draped] {
         let patch = patch.expect("the taxel is a good one");
         let name = patch.name().to_owned();
-        let body = WholeBody::new(vec![patch]).expect("one name");
+        let body = WholeBody::new(&[patch]).expect("one name");
         let mut state = BodyState::at_rest(&body);
         let mut step = 0;
         group.bench_function(name, |b| {

@@ -9,7 +9,7 @@ use bubbletouch::recognition::dataset::dataset;
 use bubbletouch::recognition::kernel::Kernel;
 use bubbletouch::recognition::svm::{Multiclass, SvmParams};
 use bubbletouch::sensing::{Ensemble, Projection};
-use bubbletouch::whole_body::{BodyPatch, BodyState, SphereClusters, WholeBody};
+use bubbletouch::whole_body::{BodyState, SphereClusters, WholeBody};
 use bubbletouch::world::{Extrusion, Grid, Patch, Taxel};
 use glam::{DQuat, DVec3};
 use ndarray::{Array1, Array2, Axis};
@@ -131,8 +131,8 @@ pub fn dense_press(n: usize, n_spheres: usize) -> HotPath {
 /// written: δ.
 pub fn dense_body(n: usize, n_spheres: usize) -> HotPath {
     let extrusion = Extrusion::grid(&grid(n)).expect("the grid has taxels");
-    let patch = BodyPatch::new("patch", extrusion, taxel(0.02)).expect("the taxel is a good one");
-    let body = WholeBody::new(vec![patch]).expect("one name");
+    let patch = Patch::new("patch", extrusion, taxel(0.02)).expect("the taxel is a good one");
+    let body = WholeBody::new(&[patch]).expect("one name");
     let mut state = BodyState::at_rest(&body);
     let objects = [SphereClusters::new(&large_spheres(n_spheres, n))];
     let pairs = (n * n * n_spheres) as f64;
@@ -206,10 +206,10 @@ pub fn body_step() -> HotPath {
         ..taxel(2e-3)
     };
     let patches = (0..20).map(|k| {
-        let patch = BodyPatch::new(format!("patch {k}"), sleeve.clone(), skin);
+        let patch = Patch::new(format!("patch {k}"), sleeve.clone(), skin);
         patch.expect("the taxel is a good one")
     });
-    let body = WholeBody::new(patches.collect()).expect("every patch has its name");
+    let body = WholeBody::new(&patches.collect::<Vec<_>>()).expect("every patch has its name");
     let mut state = BodyState::at_rest(&body);
     let poses = (0..20).map(|k| {
         let turn = DQuat::from_rotation_z(0.5 * std::f64::consts::PI * f64::from(k % 4));

@@ -1,13 +1,13 @@
-//! A body: patches of skin whose taxels need few bytes of their own.
+//! A body: patches of skin as it keeps them, with few bytes a taxel.
 
 use super::dome_patch::DomePatch;
 use super::draped_patch::{self, DrapedPatch};
 use super::row_patch::RowPatch;
 use crate::error::{Error, Result};
 use crate::objects::Sphere;
-use crate::world::{Dome, Extrusion, Layout, Taxel};
+use crate::world::{Extrusion, Layout, Patch, Rule, Taxel, Taxels};
 
-/// A patch of a body: equal taxels, in rows or anywhere.
+/// A patch as a body keeps it, with few bytes a taxel.
 #[derive(Clone, Debug)]
 pub struct BodyPatch {
     name: String,
@@ -26,46 +26,32 @@ pub(super) enum Surface {
 }
 
 impl BodyPatch {
-    /// A flat patch or a part of a cylinder.
-    ///
     /// # Errors
-    /// The error names the patch and the property of its taxels that is out of its range.
-    pub fn new(name: impl Into<String>, extrusion: Extrusion, taxel: Taxel) -> Result<Self> {
-        let name = name.into();
-        check_taxel(&name, &taxel)?;
-        let surface = Surface::Rows(RowPatch::new(extrusion, taxel));
-        Ok(Self { name, surface })
-    }
-
-    /// A part of a sphere.
-    ///
-    /// # Errors
-    /// The error names the patch and the property of its taxels that is out of its range, or a sphere too small for their stroke.
-    pub fn dome(name: impl Into<String>, dome: Dome, taxel: Taxel) -> Result<Self> {
-        let name = name.into();
-        check_taxel(&name, &taxel)?;
+    /// Those of [`WholeBody::new`].
+    fn new(patch: &Patch) -> Result<Self> {
+        let name = patch.name().to_owned();
+        let refuse = |what: &str, given: String, allowed: String| {
+            Err(Error::input(
+                format!("body patch {name}, {what}"),
+                given,
+                allowed,
+            ))
+        };
+        let Taxels::Equal(taxel) = *patch.taxels() else {
+            let allowed = "one taxel for all places".to_owned();
+            return refuse("taxels", "one each".to_owned(), allowed);
+        };
         let depth = taxel.stroke + taxel.radius;
-        if dome.radius() < depth {
-            return Err(Error::input(
-                format!("body patch {name}, dome radius"),
-                format!("{} m", dome.radius()),
-                format!("at least {depth} m, a taxel's stroke and radius"),
-            ));
-        }
-        let surface = Surface::Dome(DomePatch::new(dome, taxel));
-        Ok(Self { name, surface })
-    }
-
-    /// Taxels anywhere, such as on a mesh ([`Layout::draped`]), numbered as in the layout.
-    ///
-    /// It is fast if neighbours have near numbers: see [`Layout::with_neighbours_together`].
-    ///
-    /// # Errors
-    /// The error names the patch and the property of its taxels that is out of its range.
-    pub fn draped(name: impl Into<String>, layout: &Layout, taxel: Taxel) -> Result<Self> {
-        let name = name.into();
-        check_taxel(&name, &taxel)?;
-        let surface = Surface::Draped(DrapedPatch::new(layout, taxel));
+        let surface = match patch.layout().rule() {
+            Rule::Grid(grid) => Surface::Rows(RowPatch::new(Extrusion::grid(grid)?, taxel)),
+            Rule::Rows(rows) => Surface::Rows(RowPatch::new(rows.clone(), taxel)),
+            Rule::Dome(dome) if dome.radius() < depth => {
+                let allowed = format!("at least {depth} m, a taxel's stroke and radius");
+                return refuse("dome radius", format!("{} m", dome.radius()), allowed);
+            }
+            Rule::Dome(dome) => Surface::Dome(DomePatch::new(dome.clone(), taxel)),
+            Rule::None => Surface::Draped(DrapedPatch::new(patch.layout(), taxel)),
+        };
         Ok(Self { name, surface })
     }
 
@@ -74,11 +60,11 @@ impl BodyPatch {
         &self.name
     }
 
-    /// Every taxel's place and axis, in the patch frame; 48 bytes a taxel.
+    /// Every taxel's place and axis, in the patch frame.
     pub fn layout(&self) -> Layout {
         match &self.surface {
-            Surface::Rows(rows) => rows.extrusion().into(),
-            Surface::Dome(dome) => dome.dome().into(),
+            Surface::Rows(rows) => rows.extrusion().clone().into(),
+            Surface::Dome(dome) => dome.dome().clone().into(),
             Surface::Draped(draped) => draped.layout(),
         }
     }
@@ -135,11 +121,6 @@ impl BodyPatch {
     }
 }
 
-fn check_taxel(patch: &str, taxel: &Taxel) -> Result<()> {
-    let place = |error: Error| error.under(format!("body patch {patch}, "));
-    taxel.check().map_err(place)
-}
-
 /// All patches of a body.
 ///
 /// Taxels are numbered patch by patch, each in the order of its [layout](BodyPatch::layout).
@@ -152,11 +133,14 @@ pub struct WholeBody {
 }
 
 impl WholeBody {
-    /// A body of patches.
+    /// A body of patches, each of equal taxels. One that is no grid, [`Extrusion`] or [`Dome`](crate::world::Dome) is fast if neighbours
+    /// have near numbers: see [`Layout::with_neighbours_together`].
     ///
     /// # Errors
-    /// A patch that has the name of another one.
-    pub fn new(patches: Vec<BodyPatch>) -> Result<Self> {
+    /// A patch that has the name of another one, or taxels of more than one kind; a dome smaller than their depth.
+    pub fn new(patches: &[Patch]) -> Result<Self> {
+        let patches = patches.iter().map(BodyPatch::new);
+        let patches = patches.collect::<Result<Vec<_>>>()?;
         let mut names: Vec<&str> = patches.iter().map(BodyPatch::name).collect();
         names.sort_unstable();
         if let Some(pair) = names.windows(2).find(|pair| pair[0] == pair[1]) {

@@ -1,11 +1,11 @@
 //! A robot covered in skin: patches on the sides of its cylinders, on the half balls or the flat ends of these, and on boxes.
 
-use super::body_patch::{BodyPatch, WholeBody};
+use super::body_patch::WholeBody;
 use super::flat_ends::{FlatEnd, flat_ends};
 use super::half_balls::{HalfBall, half_balls};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
-use crate::world::{Dome, Extrusion, Grid, Layout, LinkGeometry, Robot, ShapeRole, Taxel};
+use crate::world::{Dome, Extrusion, Grid, Layout, LinkGeometry, Patch, Robot, ShapeRole, Taxel};
 use glam::{DMat3, DQuat, DVec3};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -43,7 +43,7 @@ impl Cover {
 /// Patches so far.
 #[derive(Default)]
 struct Covered {
-    patches: Vec<BodyPatch>,
+    patches: Vec<Patch>,
     mounts: Vec<Mount>,
 }
 
@@ -121,7 +121,7 @@ impl CoveredRobot {
             ));
         }
         Ok(Self {
-            body: WholeBody::new(covered.patches)?,
+            body: WholeBody::new(&covered.patches)?,
             mounts: covered.mounts,
         })
     }
@@ -151,7 +151,7 @@ impl CoveredRobot {
 }
 
 impl Covered {
-    fn add(&mut self, patch: BodyPatch, link: usize, link_from_patch: Pose) {
+    fn add(&mut self, patch: Patch, link: usize, link_from_patch: Pose) {
         self.patches.push(patch);
         self.mounts.push(Mount {
             link,
@@ -173,7 +173,7 @@ impl Covered {
                 let turn = DQuat::from_rotation_z(TAU * place as f64 / n_around);
                 let cylinder_from_patch = Pose::new(turn, height * DVec3::Z);
                 let name = format!("{} {}.{}", on.name, ring + 1, place + 1);
-                let patch = BodyPatch::new(name, part.clone(), taxel)?;
+                let patch = Patch::new(name, part.clone(), taxel)?;
                 self.add(
                     patch,
                     on.link,
@@ -209,7 +209,7 @@ impl Covered {
                     let (x, y) = (place(column, n_x, width), place(row, n_y, height));
                     let face_from_patch = Pose::from_translation(DVec3::new(x, y, 0.0));
                     let name = format!("{name} {}.{}", row + 1, column + 1);
-                    let patch = BodyPatch::new(name, part.clone(), cover.taxel)?;
+                    let patch = Patch::new(name, part.clone(), cover.taxel)?;
                     self.add(patch, on.link, link_from_face.compose(&face_from_patch));
                 }
             }
@@ -223,7 +223,7 @@ impl Covered {
         let layout = Layout::disc(radius, cover.pitch);
         let layout = layout.map_err(|error| error.under(format!("skin of {name}, ")))?;
         let (layout, _) = layout.with_neighbours_together();
-        let patch = BodyPatch::draped(name, &layout, cover.taxel)?;
+        let patch = Patch::new(name, layout, cover.taxel)?;
         self.add(patch, end.link, end.link_from_end);
         Ok(())
     }
@@ -237,7 +237,7 @@ impl Covered {
         for place in 0..n_around as usize {
             let turn = DQuat::from_rotation_z(TAU * place as f64 / n_around);
             let name = format!("{name}.{}", place + 1);
-            let patch = BodyPatch::dome(name, part.clone(), taxel)?;
+            let patch = Patch::new(name, part.clone(), taxel)?;
             let link_from_patch = half.link_from_ball.compose(&Pose::from_rotation(turn));
             self.add(patch, half.link, link_from_patch);
         }

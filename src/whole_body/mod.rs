@@ -10,7 +10,7 @@
 //!    `δ = √(S² − b² − d²) − h`, with the first part once a column and sphere, the root once a taxel that it covers.
 //!    On a sphere of radius R around the origin ([`Dome`](crate::world::Dome)) taxels lie in rings, and all that a taxel's axis n
 //!    decides is t = c·n: `δ = √(t² − |c|² + S²) − (t − R)`, so that a sphere covers an interval of each ring. On any other surface
-//!    ([`BodyPatch::draped`]) taxels have their own axes, and are looked at by tiles of eight.
+//!    taxels have their own axes, and are looked at by tiles of eight.
 //!
 //! A patch remembers which columns of which rows it has touched: only these are wiped, relaxed and read
 //! ([`BodyState::touched`], [`BodyState::forces`]); [`WholeBody::frame`] makes a dense frame of them.
@@ -18,15 +18,15 @@
 //! ```
 //! use bubbletouch::geometry::Pose;
 //! use bubbletouch::objects::{Sphere, SphereUnion};
-//! use bubbletouch::whole_body::{BodyPatch, BodyState, SphereClusters, WholeBody};
-//! use bubbletouch::world::{Extrusion, Taxel};
+//! use bubbletouch::whole_body::{BodyState, SphereClusters, WholeBody};
+//! use bubbletouch::world::{Extrusion, Patch, Taxel};
 //! use glam::DVec3;
 //!
 //! // Two forearms of 8 cm across, with a taxel every 2 mm, 30 cm apart.
 //! let taxel = Taxel { radius: 1e-3, stiffness: 100.0, damping: 0.0, stroke: 2e-3 };
 //! let sleeve = Extrusion::cylinder(0.04, 0.25, 3.0, 2e-3)?;
-//! let patches = ["left", "right"].map(|name| BodyPatch::new(name, sleeve.clone(), taxel));
-//! let body = WholeBody::new(patches.into_iter().collect::<Result<_, _>>()?)?;
+//! let patches = ["left", "right"].map(|name| Patch::new(name, sleeve.clone(), taxel));
+//! let body = WholeBody::new(&patches.into_iter().collect::<Result<Vec<_>, _>>()?)?;
 //! let mut state = BodyState::at_rest(&body);
 //! state.place(&body, &[-0.15, 0.15].map(|y| Pose::from_translation(y * DVec3::Y)));
 //!

@@ -1,6 +1,5 @@
 //! Layouts on a part of a sphere: rings of taxels, each with as many as it has room for.
 
-use super::Layout;
 use super::extrusion::check_angle;
 use super::layout::check_count;
 use super::taxel::check_positive;
@@ -38,6 +37,12 @@ pub struct DomeRing {
 }
 
 impl Dome {
+    /// Rest centres and axes, ring by ring.
+    pub(super) fn taxels(&self) -> impl Iterator<Item = (DVec3, DVec3)> {
+        let axes = self.axes().map(DVec3::normalize);
+        axes.map(|axis| (self.radius * axis, axis))
+    }
+
     /// Covers a lune: `polar` radians from the pole (above 0 to π), `arc` radians wide (above 0 to 2π), its middle at +x.
     ///
     /// Rings are about `pitch` apart, and the taxels of a ring as well as whole numbers allow; half a step is left at every edge, so that taxels
@@ -109,16 +114,9 @@ impl Dome {
     }
 }
 
-/// Every taxel by itself, in the same order.
-impl From<&Dome> for Layout {
-    fn from(dome: &Dome) -> Self {
-        let axes = dome.axes().map(DVec3::normalize);
-        Self::of_taxels(axes.map(|axis| (dome.radius * axis, axis)))
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::Layout;
     use super::super::ring::nearest_distances;
     use super::*;
 
@@ -131,7 +129,7 @@ mod tests {
             (0.04, 1.0, 2.0),
             (0.03, PI, TAU),
         ] {
-            let layout = Layout::from(&Dome::new(radius, polar, arc, pitch).unwrap());
+            let layout = Layout::from(Dome::new(radius, polar, arc, pitch).unwrap());
             for distance in nearest_distances(&layout) {
                 // Three around a pole are as near as 0.86 of a pitch; the lone first of a narrow lune has none so near.
                 assert!((0.7..1.5).contains(&(distance / pitch)), "{distance}");
@@ -149,7 +147,7 @@ mod tests {
     #[test]
     fn lunes_make_a_whole_without_gap_or_overlap() {
         let (radius, pitch) = (0.05, 2e-3);
-        let lune = Layout::from(&Dome::new(radius, 0.5 * PI, TAU / 4.0, pitch).unwrap());
+        let lune = Layout::from(Dome::new(radius, 0.5 * PI, TAU / 4.0, pitch).unwrap());
         let turned = |k: usize| glam::DQuat::from_rotation_z(TAU * k as f64 / 4.0);
         let turn = |k: usize| lune.centers().iter().map(move |c| turned(k) * *c);
         let centers: Vec<DVec3> = (0..4).flat_map(turn).collect();

@@ -3,10 +3,10 @@
 //! Such a layout is known by one row and by where the rows are, whereas a [`Layout`] has 48 bytes a taxel: bodies of millions
 //! of taxels are made of them.
 
+use super::Grid;
 use super::layout::check_count;
 use super::ring::{Ring, ends_of_steps, n_steps};
 use super::taxel::check_positive;
-use super::{Grid, Layout};
 use crate::error::{Error, Result};
 use glam::{DMat3, DVec2, DVec3};
 use std::f64::consts::TAU;
@@ -24,7 +24,19 @@ pub struct Extrusion {
 }
 
 impl Extrusion {
-    /// The grid of [`Layout::grid`]: u, v, w are the patch's x, z, y.
+    /// Rest centres and axes, row by row.
+    pub(super) fn taxels(&self) -> impl Iterator<Item = (DVec3, DVec3)> {
+        let patch_from_uvw = self.uvw_from_patch.transpose();
+        self.rows.iter().flat_map(move |&w| {
+            let columns = self.places.iter().zip(&self.axes);
+            columns.map(move |(place, axis)| {
+                let (center, axis) = (place.extend(w), axis.extend(0.0));
+                (patch_from_uvw * center, patch_from_uvw * axis)
+            })
+        })
+    }
+
+    /// The grid of [`Layout::grid`](super::Layout::grid): u, v, w are the patch's x, z, y.
     ///
     /// # Errors
     /// The error names what is out of its range: see [`Grid::check`].
@@ -41,11 +53,11 @@ impl Extrusion {
         })
     }
 
-    /// A grid bent around a cylinder: what [`Layout::cylinder`] says of its taxels, arguments and errors. u, v, w are the
+    /// A grid bent around a cylinder: what [`Layout::cylinder`](super::Layout::cylinder) says of its taxels, arguments and errors. u, v, w are the
     /// patch's x, y, z.
     ///
     /// # Errors
-    /// Those of [`Layout::cylinder`].
+    /// Those of [`Layout::cylinder`](super::Layout::cylinder).
     pub fn cylinder(radius: f64, length: f64, arc: f64, pitch: f64) -> Result<Self> {
         check_positive("taxel pitch", pitch, "m")?;
         check_positive("cylinder radius", radius, "m")?;
@@ -109,21 +121,6 @@ impl Extrusion {
     }
 }
 
-/// Every taxel by itself, in the same order.
-impl From<&Extrusion> for Layout {
-    fn from(extrusion: &Extrusion) -> Self {
-        let patch_from_uvw = extrusion.uvw_from_patch.transpose();
-        let taxels = extrusion.rows.iter().flat_map(move |&w| {
-            let columns = extrusion.places.iter().zip(&extrusion.axes);
-            columns.map(move |(place, axis)| {
-                let (center, axis) = (place.extend(w), axis.extend(0.0));
-                (patch_from_uvw * center, patch_from_uvw * axis)
-            })
-        });
-        Self::of_taxels(taxels)
-    }
-}
-
 /// The error is an angle that is not above zero, or larger than `largest` radians.
 pub(super) fn check_angle(place: &str, angle: f64, largest: f64) -> Result<()> {
     if angle > 0.0 && angle <= largest {
@@ -138,6 +135,7 @@ pub(super) fn check_angle(place: &str, angle: f64, largest: f64) -> Result<()> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Layout;
     use super::*;
 
     #[test]
@@ -148,7 +146,7 @@ mod tests {
             pitch: 2e-3,
         };
         let extrusion = Extrusion::grid(&grid).unwrap();
-        let (layout, expected) = (Layout::from(&extrusion), Layout::grid(&grid).unwrap());
+        let (layout, expected) = (Layout::from(extrusion), Layout::grid(&grid).unwrap());
         assert_eq!(layout.centers(), expected.centers());
         assert_eq!(layout.axes(), expected.axes());
     }

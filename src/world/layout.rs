@@ -1,16 +1,18 @@
 //! Where the taxels of a skin rest, and which way they point.
 
-use super::Grid;
+use super::{Dome, Extrusion, Grid};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use glam::{DMat3, DVec3};
+use std::sync::OnceLock;
 
 /// Taxels of one layout, at most: more is a pitch in the wrong unit, and a hundred bytes each.
 pub const MOST_TAXELS: usize = 1 << 22;
 
 /// Rest centres and axes of taxels, in the patch frame.
 ///
-/// Invariant: as many axes as centres; all finite; axes of length one.
+/// Invariant: as many axes as centres; all finite; axes of length one. A layout that is a rule (a grid, an [`Extrusion`], a [`Dome`])
+/// remembers it, and has 48 bytes a taxel only once somebody asks for all of them.
 ///
 /// | family | shape | taxels |
 /// |---|---|---|
@@ -21,11 +23,36 @@ pub const MOST_TAXELS: usize = 1 << 22;
 /// | [`cylinder`](Self::cylinder) | forearm, finger | about arc · radius · length / pitch² |
 /// | [`sphere_cap`](Self::sphere_cap) | fingertip, elbow | about its area / pitch² |
 /// | [`draped`](Self::draped) | any triangle mesh | about its area / pitch² |
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Layout {
+    rule: Rule,
+    places: OnceLock<Places>,
+}
+
+/// How taxels lie.
+#[derive(Clone, Debug)]
+pub(crate) enum Rule {
+    /// In rows and columns.
+    Grid(Grid),
+    /// One row repeated along a line.
+    Rows(Extrusion),
+    /// Rings on a sphere.
+    Dome(Dome),
+    /// Anywhere.
+    None,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct Places {
     centers: Vec<DVec3>,
     axes: Vec<DVec3>,
-    grid: Option<Grid>,
+}
+
+/// The same taxels, numbered alike.
+impl PartialEq for Layout {
+    fn eq(&self, other: &Self) -> bool {
+        self.places() == other.places()
+    }
 }
 
 impl Layout {
@@ -60,11 +87,7 @@ impl Layout {
                 ));
             }
         }
-        Ok(Self {
-            centers,
-            axes,
-            grid: None,
-        })
+        Ok(Self::of_places(Places { centers, axes }))
     }
 
     /// A grid in the plane z = 0, row (patch y, ascending) by row; the layout remembers that it is one.
@@ -74,22 +97,41 @@ impl Layout {
     pub fn grid(grid: &Grid) -> Result<Self> {
         grid.check()?;
         check_count("taxel grid", grid.nx as f64 * grid.ny as f64)?;
-        Ok(Self::from(grid))
+        Ok(Self::of_rule(Rule::Grid(*grid)))
     }
 
     /// How many taxels.
     pub fn n_taxels(&self) -> usize {
-        self.centers.len()
+        match &self.rule {
+            Rule::Grid(grid) => grid.n_taxels(),
+            Rule::Rows(rows) => rows.n_taxels(),
+            Rule::Dome(dome) => dome.n_taxels(),
+            Rule::None => self.centers().len(),
+        }
     }
 
     /// n_taxels rest centres, metres.
     pub fn centers(&self) -> &[DVec3] {
-        &self.centers
+        &self.places().centers
     }
 
     /// n_taxels axes, unit, pointing away from the substrate.
     pub fn axes(&self) -> &[DVec3] {
-        &self.axes
+        &self.places().axes
+    }
+
+    fn places(&self) -> &Places {
+        self.places.get_or_init(|| match &self.rule {
+            Rule::Grid(grid) => grid.taxels().collect(),
+            Rule::Rows(rows) => rows.taxels().collect(),
+            Rule::Dome(dome) => dome.taxels().collect(),
+            Rule::None => unreachable!("places without a rule are there from the start"),
+        })
+    }
+
+    /// How its taxels lie.
+    pub(crate) fn rule(&self) -> &Rule {
+        &self.rule
     }
 
     /// The frame of one taxel: columns x, y (across its axis) and z (its axis) in the patch frame, a rotation.
@@ -102,20 +144,23 @@ impl Layout {
     /// # Panics
     /// If there are not that many.
     pub fn frame(&self, taxel: usize) -> DMat3 {
-        let axis = self.axes[taxel];
+        let axis = self.axes()[taxel];
         let (x, y) = axis.any_orthonormal_pair();
         DMat3::from_cols(x, y, axis)
     }
 
     /// The grid that it was made from, if it was.
     pub fn as_grid(&self) -> Option<&Grid> {
-        self.grid.as_ref()
+        match &self.rule {
+            Rule::Grid(grid) => Some(grid),
+            _ => None,
+        }
     }
 
     /// The same taxels elsewhere in the patch frame; no grid any more.
     #[must_use]
     pub fn moved(&self, pose: &Pose) -> Self {
-        let taxels = self.centers.iter().zip(&self.axes);
+        let taxels = self.centers().iter().zip(self.axes());
         Self::of_taxels(taxels.map(|(&center, &axis)| {
             let axis = (pose.rotation * axis).normalize();
             (pose.transform_point(center), axis)
@@ -124,26 +169,40 @@ impl Layout {
 
     /// What a family has made: taxels whose axes are all of length one.
     pub(super) fn of_taxels(taxels: impl IntoIterator<Item = (DVec3, DVec3)>) -> Self {
-        let (centers, axes) = taxels.into_iter().unzip();
+        Self::of_places(taxels.into_iter().collect())
+    }
+
+    fn of_places(places: Places) -> Self {
         Self {
-            centers,
-            axes,
-            grid: None,
+            rule: Rule::None,
+            places: places.into(),
+        }
+    }
+
+    fn of_rule(rule: Rule) -> Self {
+        Self {
+            rule,
+            places: OnceLock::new(),
         }
     }
 }
 
-/// Of a grid that has been checked.
-impl From<&Grid> for Layout {
-    fn from(grid: &Grid) -> Self {
-        let rows = (0..grid.ny).map(|row| grid.y(row));
-        let taxels = rows.flat_map(|y| {
-            (0..grid.nx).map(move |column| (DVec3::new(grid.x(column), y, 0.0), DVec3::Z))
-        });
-        Self {
-            grid: Some(*grid),
-            ..Self::of_taxels(taxels)
-        }
+impl FromIterator<(DVec3, DVec3)> for Places {
+    fn from_iter<T: IntoIterator<Item = (DVec3, DVec3)>>(taxels: T) -> Self {
+        let (centers, axes) = taxels.into_iter().unzip();
+        Self { centers, axes }
+    }
+}
+
+impl From<Extrusion> for Layout {
+    fn from(rows: Extrusion) -> Self {
+        Self::of_rule(Rule::Rows(rows))
+    }
+}
+
+impl From<Dome> for Layout {
+    fn from(dome: Dome) -> Self {
+        Self::of_rule(Rule::Dome(dome))
     }
 }
 

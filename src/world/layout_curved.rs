@@ -23,9 +23,7 @@ impl Layout {
     /// # Errors
     /// The error names an argument out of its range, or a layout of more than [`MOST_TAXELS`](super::MOST_TAXELS).
     pub fn cylinder(radius: f64, length: f64, arc: f64, pitch: f64) -> Result<Self> {
-        Ok(Self::from(&Extrusion::cylinder(
-            radius, length, arc, pitch,
-        )?))
+        Ok(Self::from(Extrusion::cylinder(radius, length, arc, pitch)?))
     }
 
     /// A square or oblong grid bent around a [`cylinder`](Self::cylinder) of this radius (of the rest centres, metres): its rows become

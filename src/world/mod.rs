@@ -37,6 +37,7 @@ pub use body::Body;
 pub use dome::{Dome, DomeRing};
 pub use extrusion::Extrusion;
 pub use human_touch::{HandState, HumanTouch, TOUCH_KINDS, TouchKind, TouchRanges};
+pub(crate) use layout::Rule;
 pub use layout::{Layout, MOST_TAXELS};
 pub use mass::center_of_mass;
 pub use motion::{Interpolation, JointTrajectory, Motion, PoseTrajectory};

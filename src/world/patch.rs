@@ -39,8 +39,12 @@ impl Patch {
     /// # Errors
     /// The error names a property out of its range and its taxel (from 1), or the numbers of taxels and places if they
     /// differ; it begins with the patch's name.
-    pub fn new(name: impl Into<String>, layout: Layout, taxels: Taxels) -> Result<Self> {
-        let name = name.into();
+    pub fn new(
+        name: impl Into<String>,
+        layout: impl Into<Layout>,
+        taxels: impl Into<Taxels>,
+    ) -> Result<Self> {
+        let (name, layout, taxels) = (name.into(), layout.into(), taxels.into());
         match &taxels {
             Taxels::Equal(taxel) => taxel
                 .check()

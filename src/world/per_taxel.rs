@@ -9,6 +9,12 @@ pub enum PerTaxel<T> {
     Each(Vec<T>),
 }
 
+impl<T> From<T> for PerTaxel<T> {
+    fn from(all: T) -> Self {
+        Self::Equal(all)
+    }
+}
+
 impl<T> PerTaxel<T> {
     /// That of one taxel.
     ///

@@ -1,6 +1,7 @@
 //! A taxel, and a rectangular grid of them.
 
 use crate::error::{Error, Result};
+use glam::DVec3;
 
 /// One sensing element: a sphere on a spring and damper, sliding along one axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,6 +62,14 @@ impl Grid {
     /// y of a row, metres: `(row − (ny − 1)/2) · pitch`.
     pub fn y(&self, row: usize) -> f64 {
         (row as f64 - 0.5 * (self.ny as f64 - 1.0)) * self.pitch
+    }
+
+    /// Rest centres and axes, row (patch y, ascending) by row.
+    pub(super) fn taxels(&self) -> impl Iterator<Item = (DVec3, DVec3)> {
+        let rows = (0..self.ny).map(|row| self.y(row));
+        rows.flat_map(move |y| {
+            (0..self.nx).map(move |column| (DVec3::new(self.x(column), y, 0.0), DVec3::Z))
+        })
     }
 
     /// Whether it can be.

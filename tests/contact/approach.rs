@@ -1,9 +1,12 @@
 //! A skin of any layout moved past first contact: against the grid's own press, and against all pairs of spheres.
 
-use bubbletouch::contact::{Approach, Workspace, press_to_depth, press_with_contacts};
+use bubbletouch::contact::{
+    Approach, Contact, Workspace, first_contact, press_to_depth, press_to_force, press_to_travel,
+    press_with_contacts,
+};
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{MeshModel, Model, Sphere, SphereUnion};
-use bubbletouch::world::{ArrayLayout, Grid, Patch, Taxels};
+use bubbletouch::world::{ArrayLayout, Grid, Layout, Patch, Taxels};
 use glam::DVec3;
 use rand::Rng;
 
@@ -135,4 +138,60 @@ fn what_was_pressed_goes_on_being_pressed_behind_the_substrate() {
     let moved = Pose::from_translation((0.05 - touch.unwrap().travel) * DVec3::Z);
     let there = press_with_contacts(&skin, &objects, &[moved], &mut workspace);
     assert_eq!(there.n_touched, 0, "without its way it is behind");
+}
+
+#[test]
+fn taxels_that_do_not_know_their_grid_are_pressed_alike() {
+    let grid = Patch::grid(GRID, TAXEL).unwrap();
+    let places = grid.layout();
+    let places = Layout::new(places.centers().to_vec(), places.axes().to_vec()).unwrap();
+    let loose = Patch::new("loose", places, Taxels::Equal(TAXEL)).unwrap();
+    let (mut of_grid, mut of_loose) = (Workspace::new(), Workspace::new());
+    let mut n_touched = [0; 3];
+    for case in 0..300 {
+        let mut rng = rng("loose", case);
+        let objects: Vec<Model> =
+            vec![random_union(&mut rng).into(), random_union(&mut rng).into()];
+        let poses = [0; 2].map(|_| random_pose(&mut rng, 0.03));
+        let mut same =
+            |a: Option<Contact>, b: Option<Contact>, of: [&Workspace; 2], goal: usize| {
+                assert_eq!(a.is_some(), b.is_some(), "case {case}");
+                let [a, b] = [a, b].map(Option::unwrap_or_default);
+                assert!(
+                    (a.travel - b.travel).abs() < 1e-12,
+                    "case {case}: {a:?} {b:?}"
+                );
+                assert_eq!(a.n_saturated, b.n_saturated, "case {case}");
+                for (own, grid) in of[1].deflections().iter().zip(of[0].deflections()) {
+                    assert!((own - grid).abs() < 1e-12, "case {case}: {own} for {grid}");
+                }
+                n_touched[goal] += a.n_touched;
+            };
+        let depth = TAXEL.stroke * 10f64.powf(rng.gen_range(-2.0..0.5));
+        let a = press_to_depth(&grid, &objects, &poses, depth, &mut of_grid);
+        let b = press_to_depth(&loose, &objects, &poses, depth, &mut of_loose);
+        same(a, b, [&of_grid, &of_loose], 0);
+        let first = first_contact(&grid, &objects, &poses, &mut of_grid);
+        let found = first_contact(&loose, &objects, &poses, &mut of_loose);
+        let (Some(first), Some(found)) = (first, found) else {
+            assert_eq!((first, found), (None, None), "case {case}");
+            continue;
+        };
+        assert!(
+            (first - found).abs() < 1e-12,
+            "case {case}: {first} {found}"
+        );
+        let travel = first + rng.gen_range(-1e-3..0.02);
+        let a = press_to_travel(&grid, &objects, &poses, travel, &mut of_grid);
+        let b = press_to_travel(&loose, &objects, &poses, travel, &mut of_loose);
+        same(Some(a), Some(b), [&of_grid, &of_loose], 1);
+        let force = 10f64.powf(rng.gen_range(-3.0..0.0));
+        let a = press_to_force(&grid, &objects, &poses, force, &mut of_grid);
+        let b = press_to_force(&loose, &objects, &poses, force, &mut of_loose);
+        assert_eq!(a.is_ok(), b.is_ok(), "case {case}: {force} N");
+        if let (Ok(a), Ok(b)) = (a, b) {
+            same(a, b, [&of_grid, &of_loose], 2);
+        }
+    }
+    assert!(n_touched.iter().all(|&n| n > 1_000), "{n_touched:?}");
 }

@@ -47,11 +47,11 @@ fn random_body(rng: &mut impl Rng, taxel: Taxel) -> WholeBody {
     let patches = (0..n).map(|k| {
         let name = format!("patch {k}");
         match rng.gen_bool(0.3) {
-            true => BodyPatch::dome(name, random_dome(rng), taxel),
-            false => BodyPatch::new(name, random_extrusion(rng), taxel),
+            true => Patch::new(name, random_dome(rng), taxel),
+            false => Patch::new(name, random_extrusion(rng), taxel),
         }
     });
-    WholeBody::new(patches.collect::<Result<_, _>>().unwrap()).unwrap()
+    WholeBody::new(&patches.collect::<Result<Vec<_>, _>>().unwrap()).unwrap()
 }
 
 /// Spheres from a tenth of a millimetre to centimetres.
@@ -295,8 +295,8 @@ fn without_dampers_the_force_is_that_of_the_spring() {
 #[test]
 fn threads_change_no_bit() {
     let sleeve = Extrusion::cylinder(0.04, 0.1, 3.0, 1e-3).unwrap();
-    let patches = (0..6).map(|k| BodyPatch::new(format!("{k}"), sleeve.clone(), TAXEL).unwrap());
-    let body = WholeBody::new(patches.collect()).unwrap();
+    let patches = (0..6).map(|k| Patch::new(format!("{k}"), sleeve.clone(), TAXEL).unwrap());
+    let body = WholeBody::new(&patches.collect::<Vec<_>>()).unwrap();
     let mut rng = rng("threads", 0);
     let spheres = (0..500).map(|_| Sphere {
         center: 0.05 * direction(&mut rng),
@@ -355,9 +355,8 @@ fn a_body_at_rest_has_a_few_bytes_a_taxel() {
     let (mut n_taxels, mut n_bytes, mut kept) = (0, 0, None);
     let bytes = peak_bytes(|| {
         let sleeve = Extrusion::cylinder(0.06, 0.2, 3.0, 1e-3).unwrap();
-        let patches =
-            (0..20).map(|k| BodyPatch::new(format!("{k}"), sleeve.clone(), TAXEL).unwrap());
-        let body = WholeBody::new(patches.collect()).unwrap();
+        let patches = (0..20).map(|k| Patch::new(format!("{k}"), sleeve.clone(), TAXEL).unwrap());
+        let body = WholeBody::new(&patches.collect::<Vec<_>>()).unwrap();
         let state = BodyState::at_rest(&body);
         (n_taxels, n_bytes) = (body.n_taxels(), body.n_bytes() + state.n_bytes());
         kept = Some(state);
@@ -384,13 +383,19 @@ fn bad_taxels_and_names_are_refused() {
         stiffness: 0.0,
         ..TAXEL
     };
-    let error = BodyPatch::new("palm", extrusion.clone(), soft).unwrap_err();
+    let error = Patch::new("palm", extrusion.clone(), soft).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "body patch palm, taxel stiffness: 0 N/m; a finite positive number"
+        "skin patch palm, taxel stiffness: 0 N/m; a finite positive number"
     );
-    let palm = BodyPatch::new("palm", extrusion, TAXEL).unwrap();
-    let error = WholeBody::new(vec![palm.clone(), palm]).unwrap_err();
+    let each = Patch::new("palm", extrusion.clone(), Taxels::Each(vec![TAXEL; 4])).unwrap();
+    let error = WholeBody::new(&[each]).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "body patch palm, taxels: one each; one taxel for all places"
+    );
+    let palm = Patch::new("palm", extrusion, TAXEL).unwrap();
+    let error = WholeBody::new(&[palm.clone(), palm]).unwrap_err();
     assert_eq!(
         error.to_string(),
         "body: two patches called `palm`; a name of its own for each"
@@ -477,7 +482,8 @@ fn a_robot_with_nothing_to_cover_and_a_pitch_that_is_none_are_refused() {
         "{bare}"
     );
     let tiny = Dome::new(1e-3, 1.0, 1.0, 1e-4).unwrap();
-    let error = BodyPatch::dome("pin", tiny, TAXEL).unwrap_err();
+    let pin = Patch::new("pin", tiny, TAXEL).unwrap();
+    let error = WholeBody::new(&[pin]).unwrap_err();
     assert!(
         error
             .to_string()

@@ -4,9 +4,9 @@
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{Sphere, SphereUnion};
 use bubbletouch::random::Seed;
-use bubbletouch::whole_body::{BodyContact, BodyPatch, BodyState, Instructions};
+use bubbletouch::whole_body::{BodyContact, BodyState, Instructions};
 use bubbletouch::whole_body::{SphereClusters, WORTH_THREADS, WholeBody};
-use bubbletouch::world::{Dome, Extrusion, Grid, Layout, Taxel};
+use bubbletouch::world::{Dome, Extrusion, Grid, Layout, Patch, Taxel};
 use glam::DVec3;
 use rand::Rng;
 use std::f64::consts::{PI, TAU};
@@ -47,14 +47,14 @@ fn body(rng: &mut impl Rng, taxel: Taxel, pitch: f64) -> WholeBody {
         pitch,
     )
     .unwrap();
-    let patches = vec![
-        BodyPatch::new("flat", Extrusion::grid(&grid).unwrap(), taxel),
-        BodyPatch::new("sleeve", sleeve.unwrap(), taxel),
-        BodyPatch::dome("dome", dome, taxel),
-        BodyPatch::draped("cap", &cap, taxel),
-        BodyPatch::draped("mixed", &mixed, taxel),
+    let patches = [
+        Patch::new("flat", Extrusion::grid(&grid).unwrap(), taxel),
+        Patch::new("sleeve", sleeve.unwrap(), taxel),
+        Patch::new("dome", dome, taxel),
+        Patch::new("cap", cap.clone(), taxel),
+        Patch::new("mixed", mixed.clone(), taxel),
     ];
-    WholeBody::new(patches.into_iter().collect::<Result<_, _>>().unwrap()).unwrap()
+    WholeBody::new(&patches.map(Result::unwrap)).unwrap()
 }
 
 fn gcd(a: usize, b: usize) -> usize {
@@ -228,9 +228,9 @@ fn every_variant_gives_the_same_bits_and_what_every_pair_gives() {
 fn a_draped_patch_has_61_bytes_a_taxel_at_rest_and_its_layout() {
     let layout = Layout::sphere_cap(0.05, PI, 1e-3).unwrap();
     let (layout, _) = layout.with_neighbours_together();
-    let patch = BodyPatch::draped("ball", &layout, TAXEL).unwrap();
-    assert_eq!(patch.layout(), layout);
-    let body = WholeBody::new(vec![patch]).unwrap();
+    let patch = Patch::new("ball", layout.clone(), TAXEL).unwrap();
+    let body = WholeBody::new(&[patch]).unwrap();
+    assert_eq!(body.patches()[0].layout(), layout);
     let bytes = body.n_bytes() + BodyState::at_rest(&body).n_bytes();
     let share = bytes as f64 / body.n_taxels() as f64;
     assert!(
@@ -241,8 +241,8 @@ fn a_draped_patch_has_61_bytes_a_taxel_at_rest_and_its_layout() {
         stroke: f64::NAN,
         ..TAXEL
     };
-    let error = BodyPatch::draped("ball", &layout, stiff).unwrap_err();
-    let said = "body patch ball, taxel stroke: NaN m; ";
+    let error = Patch::new("ball", layout.clone(), stiff).unwrap_err();
+    let said = "skin patch ball, taxel stroke: NaN m; ";
     assert!(error.to_string().starts_with(said), "{error}");
 }
 
@@ -250,8 +250,8 @@ fn a_draped_patch_has_61_bytes_a_taxel_at_rest_and_its_layout() {
 fn a_small_touch_of_a_large_draped_patch_evaluates_few_spheres() {
     let layout = Layout::sphere_cap(0.1, PI, 1e-3).unwrap();
     let (layout, _) = layout.with_neighbours_together();
-    let patch = BodyPatch::draped("ball", &layout, TAXEL).unwrap();
-    let body = WholeBody::new(vec![patch]).unwrap();
+    let patch = Patch::new("ball", layout.clone(), TAXEL).unwrap();
+    let body = WholeBody::new(&[patch]).unwrap();
     let mut rng = Seed::new(3).rng();
     let spheres = (0..2000).map(|_| Sphere {
         center: 0.05 * direction(&mut rng),

@@ -8,8 +8,8 @@ use super::rows::{Driven, Series};
 use super::spec::LaddersSpec;
 use crate::error::Result;
 use crate::geometry::Pose;
-use crate::whole_body::{BodyPatch, WholeBody};
-use crate::world::{Extrusion, Taxel};
+use crate::whole_body::WholeBody;
+use crate::world::{Extrusion, Patch, Taxel};
 use glam::{DQuat, DVec3};
 use std::f64::consts::TAU;
 
@@ -140,10 +140,13 @@ impl Sleeve {
         let (radius, length) = (self.radius(), self.side - pitch);
         let part = Extrusion::cylinder(radius, length, length / radius, pitch)?;
         let n_patches = (n_taxels as f64 / part.n_taxels() as f64).round().max(1.0) as usize;
-        let patches = (0..n_patches)
-            .map(|number| BodyPatch::new(format!("patch {number}"), part.clone(), taxel));
+        let patches =
+            (0..n_patches).map(|number| Patch::new(format!("patch {number}"), part.clone(), taxel));
         let poses = (0..n_patches).map(|number| self.pose(number)).collect();
-        Ok((WholeBody::new(patches.collect::<Result<_>>()?)?, poses))
+        Ok((
+            WholeBody::new(&patches.collect::<Result<Vec<_>>>()?)?,
+            poses,
+        ))
     }
 
     fn pose(&self, number: usize) -> Pose {
