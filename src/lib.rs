@@ -20,7 +20,7 @@
 //! use bubbletouch::report::terminal::Ink;
 //! use bubbletouch::sensing::{Ensemble, Projection};
 //! use bubbletouch::signal::{Chain, Noise, NoiseUnit, Quantity, Scratch, SignalStep};
-//! use bubbletouch::world::{Grid, Patch, Placement, RestPoses, Scene, Spread, Taxel, touches};
+//! use bubbletouch::world::{Grid, Patch, Placement, RestPoses, Spread, Taxel, touches};
 //! use ndarray::Array2;
 //!
 //! // An object: a mug of real size, as spheres that are within half a millimetre of its surface.
@@ -29,7 +29,7 @@
 //! // A patch: 32 × 32 taxels, 4 mm apart.
 //! let grid = Grid { nx: 32, ny: 32, pitch: 4e-3 };
 //! let taxel = Taxel { radius: 2e-3, stiffness: 100.0, damping: 0.0, stroke: 5e-3 };
-//! let patch = Patch::new(grid, taxel)?;
+//! let patch = Patch::grid(grid, taxel)?;
 //!
 //! // Touches: the mug stands as it does, 3 mm deep, at one of five offsets.
 //! let zero = || Spread::Values(vec![0.0]);
@@ -51,9 +51,9 @@
 //! // Press once: no time loop, since nothing in this scene needs one.
 //! let touch = &all[2];
 //! let pose = touch.patch_from_object(&rests[touch.rest]);
-//! let scene = Scene { patch, objects: vec![mug.model] };
 //! let mut workspace = Workspace::new();
-//! let contact = press_to_depth(&scene, &[pose], touch.depth, &mut workspace).expect("the mug is under the patch");
+//! let contact = press_to_depth(&patch, &[mug.model], &[pose], touch.depth, &mut workspace);
+//! let contact = contact.expect("the mug is under the patch");
 //! assert!(contact.n_touched > 50 && contact.n_saturated == 0);
 //! let mut frame = workspace.deflections().to_vec();
 //! let deepest = frame.iter().fold(0.0_f64, |a, &b| a.max(b));

@@ -3,12 +3,12 @@
 use super::instructions::{Instructions, for_instructions};
 use super::near_spheres::{PlacedUnion, needed_of_leaf};
 use super::skin_mesh::MeshAt;
-use super::way::{Way, meeting};
+use super::way::{Contacts, Way, meeting};
 use super::{Contact, FrictionState, Workspace};
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::objects::{Model, Sphere, SphereUnion};
-use crate::world::{Node, Patch, TaxelTree};
+use crate::world::{Ahead, Node, Patch, TaxelTree};
 use glam::DVec3;
 use std::cell::Cell;
 use std::sync::OnceLock;
@@ -51,7 +51,7 @@ impl<'a> Approach<'a> {
     /// The taxels as they travel.
     fn travelling(&self) -> &TaxelTree {
         if self.direction == DVec3::Z {
-            return self.patch.ahead();
+            return &self.patch.ahead().taxels;
         }
         let Self {
             patch, direction, ..
@@ -185,25 +185,26 @@ impl<'a> Approach<'a> {
         way.press_and_slide(travels, slide, friction)
     }
 
-    /// Presses until the patch has gone so far (metres), as [`press_to_depth`](Self::press_to_depth) of this travel.
-    ///
-    /// # Panics
-    /// If there are not as many poses as objects.
-    pub fn press_to_travel(
+    /// Of a patch along its z: the deflections of [`press_to_depth`](Self::press_to_depth) alone. Those of a flat patch need no steps: each taxel is pushed in as
+    /// far as it goes past what it met.
+    pub(super) fn deflect(
         &self,
         objects: &[Model],
         patch_from_objects: &[Pose],
-        travel: f64,
+        travels: Option<[f64; 2]>,
         workspace: &mut Workspace,
-    ) -> Contact {
-        let first = self.first_contact(objects, patch_from_objects);
-        let travels = first.filter(|first| *first < travel);
-        let travels = travels.map(|first| [first, travel]);
+    ) -> Option<Contact> {
         let mut way = self.way(objects, patch_from_objects, workspace);
-        let contact = way.press_and_slide(travels, DVec3::ZERO, None);
-        Contact {
-            travel,
-            ..contact.unwrap_or_default()
+        way.contacts = Contacts::Needless;
+        match (self.patch.ahead(), travels) {
+            (
+                Ahead {
+                    taxels,
+                    is_flat: true,
+                },
+                Some([_, travel]),
+            ) => Some(way.press_through(taxels, travel)),
+            _ => way.press_and_slide(travels, DVec3::ZERO, None),
         }
     }
 
@@ -218,6 +219,7 @@ impl<'a> Approach<'a> {
             objects,
             patch_from_objects,
             direction: self.direction,
+            contacts: Contacts::AtEnd,
             workspace,
         }
     }

@@ -39,6 +39,7 @@ impl Envelope {
         self.clear(if has_meshes { n_taxels } else { 0 });
         let limit = match goal {
             Goal::Travel(travel) => Limit::Travel(travel),
+            Goal::Pose => Limit::Travel(0.0),
             Goal::Depth(depth) => Limit::Past { depth, first },
         };
         for (mesh, pose) in meshes {

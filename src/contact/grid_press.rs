@@ -51,6 +51,7 @@ impl GridPress {
             objects,
             patch_from_objects,
             radius: grid.radius,
+            behind: grid.behind(),
             lines: &self.lines,
         };
         let mut first = search(self.instructions, &mut self.search, &placed, goal);
@@ -138,6 +139,8 @@ fn raise_each(spheres: &[PlacedSphere], lines: &GridLines, travel: f64, sheet: &
 pub(super) enum Goal {
     /// To this travel, metres, from the front: all counts.
     Travel(f64),
+    /// Nowhere: of spheres those whose centres are not behind the substrate.
+    Pose,
     /// To first contact and this far past it, metres, from the front: all counts.
     Depth(f64),
 }
@@ -149,6 +152,8 @@ pub(super) struct Placed<'a> {
     pub patch_from_objects: &'a [Pose],
     /// ρ, metres.
     pub radius: f64,
+    /// −s − ρ, metres.
+    pub behind: f64,
     /// Of the grid.
     pub lines: &'a GridLines,
 }

@@ -62,12 +62,10 @@ pub fn press_to_depth(
     workspace: &mut Workspace,
 ) -> Option<Contact> {
     let Some(grid) = patch.even_grid() else {
-        return Approach::ahead(patch).press_to_depth(
-            objects,
-            patch_from_objects,
-            depth,
-            workspace,
-        );
+        let approach = Approach::ahead(patch);
+        let first = approach.first_contact(objects, patch_from_objects);
+        let travels = first.map(|first| [first, first + depth]);
+        return approach.deflect(objects, patch_from_objects, travels, workspace);
     };
     let press = workspace.on_grid();
     let first = press.gather(grid, objects, patch_from_objects, Goal::Depth(depth));
@@ -90,12 +88,13 @@ pub fn press_to_travel(
     workspace: &mut Workspace,
 ) -> Contact {
     let Some(grid) = patch.even_grid() else {
-        return Approach::ahead(patch).press_to_travel(
-            objects,
-            patch_from_objects,
-            travel,
-            workspace,
-        );
+        let approach = Approach::ahead(patch);
+        let first = approach.first_contact(objects, patch_from_objects);
+        let travels = first.filter(|first| *first < travel);
+        let travels = travels.map(|first| [first, travel]);
+        let contact = approach.deflect(objects, patch_from_objects, travels, workspace);
+        let contact = contact.unwrap_or_default();
+        return Contact { travel, ..contact };
     };
     let press = workspace.on_grid();
     press.gather(grid, objects, patch_from_objects, Goal::Travel(travel));
@@ -209,6 +208,13 @@ pub fn press_at_pose(
     patch_from_objects: &[Pose],
     workspace: &mut Workspace,
 ) -> Contact {
-    tree_press::push(patch, objects, patch_from_objects, workspace);
-    tree_press::stop(patch, workspace)
+    let are_spheres = || objects.iter().all(|object| object.spheres().is_some());
+    match patch.even_grid() {
+        Some(grid) if are_spheres() && !workspace.holds_any() => {
+            let press = workspace.on_grid();
+            press.gather(grid, objects, patch_from_objects, Goal::Pose);
+            press.indent(grid, 0.0)
+        }
+        _ => tree_press::deflect(patch, objects, patch_from_objects, workspace),
+    }
 }

@@ -1,6 +1,6 @@
 //! The time loop: a moving patch over moving or fixed objects.
 
-use super::{DamperState, Workspace, press_with_contacts};
+use super::{DamperState, Workspace, tree_press};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::objects::Model;
@@ -75,7 +75,7 @@ pub fn simulate(
                 .iter()
                 .map(|plan| plan.pose_at(time).seen_from(&world_from_patch)),
         );
-        let contact = press_with_contacts(patch, objects, &poses, &mut workspace);
+        let contact = tree_press::deflect(patch, objects, &poses, &mut workspace);
         workspace.hold_touched();
         state.step(patch.taxels(), dt, workspace.deflections());
         recording.n_saturated += contact.n_saturated;

@@ -33,13 +33,19 @@ fn run(search: &mut SphereSearch, placed: &Placed, goal: Goal) -> f64 {
     search.lay(placed);
     match goal {
         Goal::Travel(travel) => {
-            search.gather(placed.objects, travel);
+            search.gather(placed.objects, travel, |_| true);
             f64::INFINITY
         }
         Goal::Depth(depth) => {
             let first = search.first_touch(placed);
-            search.gather(placed.objects, first + depth);
+            search.gather(placed.objects, first + depth, |_| true);
             first
+        }
+        Goal::Pose => {
+            search.gather(placed.objects, 0.0, |sphere| {
+                sphere.center.z >= placed.behind
+            });
+            f64::INFINITY
         }
     }
 }
@@ -95,9 +101,9 @@ impl SphereSearch {
         first
     }
 
-    /// Keeps the spheres that press before a travel.
+    /// Keeps the spheres that press before a travel and count.
     #[inline(always)]
-    fn gather(&mut self, objects: &[Model], limit: f64) {
+    fn gather(&mut self, objects: &[Model], limit: f64, counts: impl Fn(&PlacedSphere) -> bool) {
         let mut found = std::mem::take(&mut self.found);
         found.clear();
         for (union, view, starts) in self.unions(objects) {
@@ -105,7 +111,8 @@ impl SphereSearch {
                 for k in Below::of(starts, limit) {
                     let cluster = union.of(look * LOOK + k);
                     for sphere in Below::of(&view.starts(&cluster), limit) {
-                        found.extend(view.place(&cluster.at(sphere), limit));
+                        let placed = view.place(&cluster.at(sphere), limit);
+                        found.extend(placed.filter(&counts));
                     }
                 }
             }

@@ -6,11 +6,12 @@ use super::near_spheres::{PlacedUnion, needed_along, needed_of_leaf};
 use super::placed_sphere::View;
 use super::skin_mesh::MeshAt;
 use super::taxel_contact::TaxelContact;
+use super::workspace::Held;
 use super::{Contact, Workspace};
 use crate::geometry::Pose;
 use crate::mesh::Triangle;
 use crate::objects::{MeshModel, Model, Sphere, SphereUnion};
-use crate::world::{EvenGrid, LEAF, Patch, PlacedTaxel};
+use crate::world::{EvenGrid, LEAF, Patch, PlacedTaxel, TaxelTree};
 use glam::DVec3;
 
 /// Pushes each taxel as far as an object needs, without a stop.
@@ -20,36 +21,45 @@ pub(super) fn push(
     patch_from_objects: &[Pose],
     workspace: &mut Workspace,
 ) {
+    let taxels = (patch.tree(), patch.even_grid());
+    let placed = (objects, patch_from_objects);
+    push_tree(taxels, patch.n_taxels(), placed, workspace);
+    push_held(patch, objects, patch_from_objects, workspace);
+}
+
+/// The same of so many taxels in a tree, which may be an even grid, whatever is held.
+pub(super) fn push_tree(
+    (taxels, even_grid): (&TaxelTree, Option<&EvenGrid>),
+    n_taxels: usize,
+    (objects, patch_from_objects): (&[Model], &[Pose]),
+    workspace: &mut Workspace,
+) {
     assert_eq!(
         objects.len(),
         patch_from_objects.len(),
         "one pose an object"
     );
-    workspace.clear(patch.n_taxels());
+    workspace.clear(n_taxels);
     for (number, (object, pose)) in objects.iter().zip(patch_from_objects).enumerate() {
         match object {
             Model::Spheres(union) => {
                 let placed = PlacedUnion::new(union, pose);
                 let mut near = std::mem::take(&mut workspace.near);
-                let is_near = |ball: &Sphere| patch.tree().is_near(ball.center, ball.radius);
-                placed.gather(is_near, &mut near);
-                match patch.even_grid() {
-                    Some(grid) => {
-                        push_along_rows(grid, (number, union, &near), pose, workspace);
-                    }
+                placed.gather(|ball| taxels.is_near(ball.center, ball.radius), &mut near);
+                match even_grid {
+                    Some(grid) => push_along_rows(grid, (number, union, &near), pose, workspace),
                     None => push_by_spheres(
                         workspace.instructions(),
-                        patch,
+                        taxels,
                         (number, &placed, &near),
                         workspace,
                     ),
                 }
                 workspace.near = near;
             }
-            Model::Mesh(mesh) => push_by_mesh(patch, number, mesh, pose, workspace),
+            Model::Mesh(mesh) => push_by_mesh(taxels, number, mesh, pose, workspace),
         }
     }
-    push_held(patch, objects, patch_from_objects, workspace);
 }
 
 /// Pushes the taxels by the parts that are held and lie behind the substrate; those in front of it push anyway.
@@ -60,12 +70,13 @@ fn push_held(
     workspace: &mut Workspace,
 ) {
     let held = std::mem::take(&mut workspace.held);
-    for contact in &held {
-        let taxel = PlacedTaxel::of(patch.layout(), patch.taxels(), contact.taxel);
-        let pose = &patch_from_objects[contact.object];
-        let needed = match &objects[contact.object] {
+    for &Held { taxel, by } in &held {
+        let taxel = PlacedTaxel::of(patch.layout(), patch.taxels(), taxel as usize);
+        let [object, part] = by.map(|number| number as usize);
+        let pose = &patch_from_objects[object];
+        let needed = match &objects[object] {
             Model::Spheres(union) => {
-                let Sphere { center, radius } = union.spheres()[contact.part];
+                let Sphere { center, radius } = union.spheres()[part];
                 let from = taxel.center - pose.transform_point(center);
                 let [across_x, across_y] = taxel.across;
                 let frame = [across_x, across_y, taxel.axis];
@@ -76,12 +87,11 @@ fn push_held(
                 needed
             }
             Model::Mesh(mesh) => {
-                let stop = MeshAt::new(mesh, pose).stop_by(&taxel, contact.part);
+                let stop = MeshAt::new(mesh, pose).stop_by(&taxel, part);
                 stop.map_or(0.0, |stop| -stop.height)
             }
         };
-        let deciding = [contact.object, contact.part].map(|number| number as u32);
-        workspace.push(taxel.number, needed, deciding);
+        workspace.push(taxel.number, needed, by);
     }
     workspace.held = held;
 }
@@ -126,7 +136,7 @@ fn push_along_rows(
 for_instructions! {
     /// Pushes the taxels by the near spheres of an object.
     fn push_by_spheres(
-        patch: &Patch,
+        taxels: &TaxelTree,
         placed: (usize, &PlacedUnion, &[u32]),
         workspace: &mut Workspace,
     ) = push_by_each
@@ -134,14 +144,14 @@ for_instructions! {
 
 #[inline(always)]
 fn push_by_each(
-    patch: &Patch,
+    taxels: &TaxelTree,
     (object, placed, near): (usize, &PlacedUnion, &[u32]),
     workspace: &mut Workspace,
 ) {
     for &number in near {
         let sphere = placed.at(number);
         let deciding = [object as u32, number];
-        patch.tree().each_leaf(
+        taxels.each_leaf(
             |node| node.is_near(sphere.center, sphere.radius),
             |leaf| {
                 let [needed, heights] = needed_of_leaf(leaf, &sphere);
@@ -157,7 +167,7 @@ fn push_by_each(
 }
 
 fn push_by_mesh(
-    patch: &Patch,
+    taxels: &TaxelTree,
     object: usize,
     mesh: &MeshModel,
     pose: &Pose,
@@ -165,12 +175,23 @@ fn push_by_mesh(
 ) {
     let mesh = MeshAt::new(mesh, pose);
     let (center, radius) = mesh.ball();
-    patch.tree().each_near(center, radius, |taxel| {
+    taxels.each_near(center, radius, |taxel| {
         if let Some(stop) = mesh.stop(taxel) {
             let deciding = [object as u32, stop.triangle as u32];
             workspace.push(taxel.number, -stop.height, deciding);
         }
     });
+}
+
+/// Deflects the taxels, and leaves what pushes each of them.
+pub(super) fn deflect(
+    patch: &Patch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    workspace: &mut Workspace,
+) -> Contact {
+    push(patch, objects, patch_from_objects, workspace);
+    stop(patch, workspace)
 }
 
 /// Stops the touched taxels at their strokes.

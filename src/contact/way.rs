@@ -1,10 +1,11 @@
 //! A patch on its way along a line past objects.
 
-use super::{Contact, FrictionState, NormalForce, Workspace, press_at_pose, press_with_contacts};
+use super::tree_press;
+use super::{Contact, FrictionState, NormalForce, Workspace, press_with_contacts};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::objects::Model;
-use crate::world::{Patch, Taxel};
+use crate::world::{Patch, Taxel, TaxelTree};
 use glam::DVec3;
 
 /// Steps in which the way is looked at are this part of the shortest stroke. Larger: a short peak of the force may be jumped
@@ -22,7 +23,16 @@ pub(super) struct Way<'a> {
     pub objects: &'a [Model],
     pub patch_from_objects: &'a [Pose],
     pub direction: DVec3,
+    pub contacts: Contacts,
     pub workspace: &'a mut Workspace,
+}
+
+/// Whether anybody asks what touches what.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Contacts {
+    /// At the end of the way.
+    AtEnd,
+    Needless,
 }
 
 impl Way<'_> {
@@ -65,6 +75,31 @@ impl Way<'_> {
 
     /// Presses where the patch is after it has moved (metres, in the patch frame), which is the objects' motion the other way.
     pub fn press_at(&mut self, moved: DVec3) -> Contact {
+        self.at(moved, press_with_contacts)
+    }
+
+    /// Presses a flat patch along its axis by its taxels as they travel, from the front.
+    pub fn press_through(&mut self, taxels: &TaxelTree, travel: f64) -> Contact {
+        let contact = self.at(
+            travel * self.direction,
+            |patch, objects, poses, workspace| {
+                tree_press::push_tree(
+                    (taxels, None),
+                    patch.n_taxels(),
+                    (objects, poses),
+                    workspace,
+                );
+                tree_press::stop(patch, workspace)
+            },
+        );
+        Contact { travel, ..contact }
+    }
+
+    fn at(
+        &mut self,
+        moved: DVec3,
+        press: impl FnOnce(&Patch, &[Model], &[Pose], &mut Workspace) -> Contact,
+    ) -> Contact {
         let mut poses = std::mem::take(&mut self.workspace.poses);
         poses.clear();
         let back = -moved;
@@ -72,7 +107,7 @@ impl Way<'_> {
             translation: pose.translation + back,
             ..*pose
         }));
-        let counts = press_with_contacts(self.patch, self.objects, &poses, self.workspace);
+        let counts = press(self.patch, self.objects, &poses, self.workspace);
         self.workspace.poses = poses;
         counts
     }
@@ -89,7 +124,7 @@ impl Way<'_> {
             friction.step(self.patch, &[], &[], NormalForce::Springs);
         }
         let Some([first, travel]) = travels else {
-            press_at_pose(self.patch, &[], &[], self.workspace);
+            tree_press::deflect(self.patch, &[], &[], self.workspace);
             return None;
         };
         let n_steps = |length| match friction {
@@ -103,11 +138,17 @@ impl Way<'_> {
         let n_slides = if length > 0.0 { n_steps(length) } else { 0 };
         let slid = parts([0.0, 1.0], n_slides).map(|part| travel * direction + part * slide);
         let mut contact = Contact::default();
-        for (number, place) in pressed.chain(slid).enumerate() {
-            if number > 0 {
+        let mut places = pressed.chain(slid).peekable();
+        while let Some(place) = places.next() {
+            let is_last = places.peek().is_none();
+            let are_asked = is_last && self.contacts == Contacts::AtEnd;
+            contact = match are_asked || friction.is_some() {
+                true => self.press_at(place),
+                false => self.at(place, tree_press::deflect),
+            };
+            if !is_last {
                 self.workspace.hold_touched();
             }
-            contact = self.press_at(place);
             if let Some(friction) = &mut friction {
                 let (contacts, poses) = (self.workspace.contacts(), &self.workspace.poses);
                 friction.step(self.patch, contacts, poses, NormalForce::Springs);

@@ -27,9 +27,16 @@ pub struct Workspace {
     /// Of the touched taxels, in the same order.
     pub(super) contacts: Vec<TaxelContact>,
     /// What goes on pushing its taxel, behind the substrate too; see [`hold`](Self::hold).
-    pub(super) held: Vec<TaxelContact>,
+    pub(super) held: Vec<Held>,
     /// Of the objects on their way.
     pub(super) poses: Vec<Pose>,
+}
+
+/// A taxel that is held, and what it is held by: object and part.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Held {
+    pub taxel: u32,
+    pub by: [u32; 2],
 }
 
 impl Workspace {
@@ -67,12 +74,20 @@ impl Workspace {
     /// front of a patch an object goes on pressing what it has pressed.
     pub(crate) fn hold<'a>(&mut self, contacts: impl IntoIterator<Item = &'a TaxelContact>) {
         self.held.clear();
-        self.held.extend(contacts);
+        self.held.extend(contacts.into_iter().map(|contact| Held {
+            taxel: contact.taxel as u32,
+            by: [contact.object, contact.part].map(|number| number as u32),
+        }));
     }
 
     /// Holds what pushes the taxels of the last press.
     pub(super) fn hold_touched(&mut self) {
-        self.held.clone_from(&self.contacts);
+        let deciding = &self.deciding;
+        self.held.clear();
+        self.held.extend(self.touched.iter().map(|&taxel| Held {
+            taxel,
+            by: deciding[taxel as usize],
+        }));
     }
 
     /// Whether any part is held.

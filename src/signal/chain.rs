@@ -18,7 +18,7 @@ use std::sync::Arc;
 /// let taxel = Taxel { radius: 1e-3, stiffness: 200.0, damping: 0.0, stroke: 5e-3 };
 /// let noise = Noise { std: 0.1, unit: NoiseUnit::FullScale };
 /// let steps = [SignalStep::Noise(noise), SignalStep::Smoothing { width: 4e-3 }];
-/// let chain = Chain::new(&steps, &Patch::new(grid, taxel)?)?;
+/// let chain = Chain::new(&steps, &Patch::grid(grid, taxel)?)?;
 ///
 /// let mut frame = vec![1e-3; 64];
 /// chain.apply(&mut frame, None, &Seed::new(2018).named("mug").numbered(17), &mut Scratch::default());

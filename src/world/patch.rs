@@ -17,7 +17,7 @@ pub struct Patch {
     even_grid: Option<EvenGrid>,
     /// Made when they are asked for.
     tree: OnceLock<TaxelTree>,
-    ahead: OnceLock<TaxelTree>,
+    ahead: OnceLock<Ahead>,
 }
 
 /// A flat grid of taxels that objects push alike.
@@ -28,6 +28,14 @@ pub(crate) struct EvenGrid {
     pub radius: f64,
     /// s of all, metres.
     pub stroke: f64,
+}
+
+/// The taxels of a patch as they travel along z.
+#[derive(Clone, Debug)]
+pub(crate) struct Ahead {
+    pub taxels: TaxelTree,
+    /// Whether all their own axes are z: then each is pushed in as far as it travels past what it met.
+    pub is_flat: bool,
 }
 
 /// What the taxels of a patch are.
@@ -106,9 +114,11 @@ impl Patch {
     }
 
     /// Its taxels as they travel along z.
-    pub(crate) fn ahead(&self) -> &TaxelTree {
-        let make = || TaxelTree::travelling(&self.layout, &self.taxels, DVec3::Z);
-        self.ahead.get_or_init(make)
+    pub(crate) fn ahead(&self) -> &Ahead {
+        self.ahead.get_or_init(|| Ahead {
+            taxels: TaxelTree::travelling(&self.layout, &self.taxels, DVec3::Z),
+            is_flat: self.layout.axes().iter().all(|axis| *axis == DVec3::Z),
+        })
     }
 
     /// The grid that it is, if all its taxels are as large and go as deep.
