@@ -26,3 +26,4 @@ mod skin_layouts;
 mod skin_meshes;
 mod skins;
 mod slide;
+mod suite;
