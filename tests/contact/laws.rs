@@ -207,31 +207,6 @@ fn the_deepest_taxel_of_a_press_is_at_the_depth() {
 }
 
 #[test]
-fn a_rigid_motion_of_the_world_changes_nothing() {
-    let mut rng = Seed::new(4).rng();
-    let mut workspace = Workspace::new();
-    for _ in 0..300 {
-        let (scene, poses) = random_scene(&mut rng);
-        let world = random_pose(&mut rng, 10.0);
-        let patch_from_world = world.inverse();
-        let moved: Vec<Pose> = poses
-            .iter()
-            .map(|pose| patch_from_world.compose(&world.compose(pose)))
-            .collect();
-        press_at_pose(&scene.patch, &scene.objects, &poses, &mut workspace);
-        let here = workspace.deflections().to_vec();
-        press_at_pose(&scene.patch, &scene.objects, &moved, &mut workspace);
-        // Rounding of 1e-15 in a position is worth more at the vertical flank of a sphere; away from it, 1e-12 holds.
-        let n_flank = here
-            .iter()
-            .zip(workspace.deflections())
-            .filter(|(a, b)| (*a - *b).abs() > 1e-12)
-            .count();
-        assert!(n_flank <= here.len() / 200, "{n_flank} of {}", here.len());
-    }
-}
-
-#[test]
 fn the_direct_press_equals_the_time_loop_without_a_damper_however_deep() {
     let mut rng = Seed::new(5).rng();
     let mut workspace = Workspace::new();

@@ -6,7 +6,7 @@ use bubbletouch::contact::{GRAZING, Workspace, press_to_travel, press_with_conta
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{Model, Sphere, SphereUnion};
 use bubbletouch::world::{Grid, Layout, Patch, Taxel, Taxels};
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use rand::Rng;
 
 /// A layout of each family in turn, some 5 cm large.
@@ -320,47 +320,6 @@ fn the_contacts_of_a_grid_are_those_of_the_same_taxels_one_by_one() {
 }
 
 #[test]
-fn a_rigid_motion_of_the_skin_and_the_world_changes_nothing() {
-    let (mut here, mut there) = (Workspace::new(), Workspace::new());
-    let mut n_flanks = 0;
-    for case in 0..140 {
-        let (skin, objects, poses) = random_scene("rigid", case);
-        press_with_contacts(&skin, &objects, &poses, &mut here);
-        let motion = random_pose(&mut rng("motion", case), 0.5);
-        let centers = skin
-            .layout()
-            .centers()
-            .iter()
-            .map(|&c| motion.transform_point(c));
-        let axes = skin
-            .layout()
-            .axes()
-            .iter()
-            .map(|&a| motion.transform_vector(a).normalize());
-        let layout = Layout::new(centers.collect(), axes.collect()).unwrap();
-        let moved_skin = Patch::new("moved", layout, skin.taxels().clone()).unwrap();
-        let moved_poses: Vec<Pose> = poses.iter().map(|pose| motion.compose(pose)).collect();
-        press_with_contacts(&moved_skin, &objects, &moved_poses, &mut there);
-        let placed: Vec<Model> = objects
-            .iter()
-            .zip(&poses)
-            .map(|(o, p)| moved(o, p))
-            .collect();
-        let pairs = here.deflections().iter().zip(there.deflections());
-        for (taxel, (a, b)) in pairs.enumerate() {
-            if (a - b).abs() > 1e-12 {
-                n_flanks += 1;
-                assert!(
-                    is_on_a_flank(&skin, taxel, &placed, 1e-4),
-                    "{case} {taxel}: {a} {b}"
-                );
-            }
-        }
-    }
-    assert!(n_flanks < 10, "{n_flanks}");
-}
-
-#[test]
 fn a_mirrored_scene_gives_mirrored_deflections() {
     let mirror = |v: DVec3| DVec3::new(-v.x, v.y, v.z);
     let (mut here, mut there) = (Workspace::new(), Workspace::new());
@@ -414,70 +373,6 @@ fn a_mirrored_scene_gives_mirrored_deflections() {
             );
         }
     }
-}
-
-/// One ball near a skin whose taxels can go as far as they need.
-fn energy_scene(case: u64) -> (Patch, Vec<Model>, Pose) {
-    let mut rng = rng("energy", case);
-    let layout = random_layout(&mut rng, 1 + case % 5);
-    let taxel = Taxel {
-        stroke: 0.05,
-        ..TAXEL
-    };
-    let skin = Patch::new("skin", layout, Taxels::Equal(taxel)).unwrap();
-    let radius = rng.gen_range(0.01..0.1);
-    let middle = rng.gen_range(0..skin.n_taxels());
-    let center = skin.layout().centers()[middle];
-    let axis = skin.layout().axes()[middle];
-    let pose = Pose::from_translation(center + (radius - 1e-3) * axis);
-    let ball = Sphere {
-        center: DVec3::ZERO,
-        radius,
-    };
-    (
-        skin,
-        vec![SphereUnion::new(vec![ball]).unwrap().into()],
-        pose,
-    )
-}
-
-#[test]
-fn force_and_torque_are_minus_the_energy_gradient() {
-    let mut workspace = Workspace::new();
-    let mut n_checked = 0;
-    for case in 0..100 {
-        let (skin, objects, pose) = energy_scene(case);
-        let counts = press_with_contacts(&skin, &objects, &[pose], &mut workspace);
-        let is_grazing = workspace.contacts().iter().any(|c| c.cosine < 0.1);
-        if counts.n_touched < 2 || counts.n_saturated > 0 || is_grazing {
-            continue;
-        }
-        n_checked += 1;
-        let load = spring_load(&skin, workspace.contacts());
-        let mut energy = |motion: Pose| {
-            press_with_contacts(&skin, &objects, &[motion.compose(&pose)], &mut workspace);
-            let springs = workspace.deflections().iter();
-            springs.map(|d| 0.5 * TAXEL.stiffness * d * d).sum::<f64>()
-        };
-        let step = 1e-7;
-        for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
-            let shifted = |s: f64| Pose::from_translation(s * axis);
-            let slope = (energy(shifted(step)) - energy(shifted(-step))) / (2.0 * step);
-            let force = load.on_object.force;
-            let place = format!("case {case}: {slope} {force}");
-            assert!(
-                (force.dot(axis) + slope).abs() < 1e-5 * force.length(),
-                "{place}"
-            );
-            let turned = |a: f64| Pose::from_rotation(DQuat::from_scaled_axis(a * axis));
-            let slope = (energy(turned(step)) - energy(turned(-step))) / (2.0 * step);
-            let torque = load.on_object.torque;
-            let scale = force.length() * 0.1;
-            let place = format!("case {case}: {slope} {torque}");
-            assert!((torque.dot(axis) + slope).abs() < 1e-5 * scale, "{place}");
-        }
-    }
-    assert!(n_checked > 50, "{n_checked}");
 }
 
 #[test]
@@ -586,11 +481,17 @@ fn grazing_contact_is_counted_and_its_gradient_is_bounded() {
 
 #[test]
 fn presses_after_the_first_allocate_nothing() {
-    let (skin, objects, pose) = energy_scene(3);
+    let layout = Layout::cylinder(0.02, 0.05, 3.0, 3e-3).unwrap();
+    let skin = Patch::new("skin", layout, TAXEL).unwrap();
+    let (center, radius) = (DVec3::ZERO, 0.03);
+    let objects = [SphereUnion::new(vec![Sphere { center, radius }])
+        .unwrap()
+        .into()];
+    let pose = Pose::from_translation(0.049 * DVec3::X);
     let mut workspace = Workspace::new();
     let mut n_touched = Vec::with_capacity(50);
     let mut press = |step: u32| {
-        let motion = Pose::from_translation(1e-3 * f64::from(step) * DVec3::X);
+        let motion = Pose::from_translation(1e-4 * f64::from(step) * DVec3::X);
         allocations(|| {
             let counts =
                 press_with_contacts(&skin, &objects, &[motion.compose(&pose)], &mut workspace);

@@ -419,7 +419,7 @@ fn force_and_torque_are_minus_the_gradient_of_the_energy() {
                     .unwrap()
                     .into()
             }
-            _ => MeshModel::new(icosphere(radius, 3)).into(),
+            _ => MeshModel::new(icosphere(radius, 2)).into(),
         };
         let objects = [object];
         let pose = Pose::from_translation(place + (radius - 1e-3) * axis);
@@ -464,5 +464,5 @@ fn force_and_torque_are_minus_the_gradient_of_the_energy() {
             );
         }
     }
-    assert!(n_checked.iter().all(|&n| n > 50), "{n_checked:?}");
+    assert!(n_checked.iter().all(|&n| n > 40), "{n_checked:?}");
 }
