@@ -4,11 +4,11 @@
 //! frames, standardised. Ids end in the number of measurements m.
 
 use bubbletouch::random::Seed;
-use bubbletouch::recognition::choice::{Candidates, choose};
-use bubbletouch::recognition::dataset::{Dataset, dataset};
-use bubbletouch::recognition::kernel::{Gamma, Kernel};
-use bubbletouch::recognition::scaling::Scaling;
-use bubbletouch::recognition::split::stratified_k_fold;
+use bubbletouch::recognition::data::dataset::{Dataset, dataset};
+use bubbletouch::recognition::data::scaling::Scaling;
+use bubbletouch::recognition::data::split::stratified_k_fold;
+use bubbletouch::recognition::svm::cross_validation::choice::{Candidates, choose};
+use bubbletouch::recognition::svm::kernel::{Gamma, Kernel};
 use bubbletouch::recognition::svm::{Multiclass, Solver, SvmParams};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use linfa::DatasetBase;

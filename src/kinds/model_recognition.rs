@@ -3,9 +3,9 @@
 //! Every object has the same number of touches; the leading ones train, the others test.
 
 use crate::error::{Error, Result};
-use crate::recognition::classifier::TrainedClassifier;
-use crate::recognition::dataset::{Dataset, dataset};
-use crate::recognition::interval::Interval;
+use crate::recognition::classifiers::classifier::TrainedClassifier;
+use crate::recognition::data::dataset::{Dataset, dataset};
+use crate::recognition::statistics::interval::Interval;
 use crate::study::CONFIDENCE;
 use ndarray::{Array1, ArrayView2, Axis, concatenate, s};
 use std::ops::Range;

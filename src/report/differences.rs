@@ -5,8 +5,8 @@
 //! chance explains the difference. Of values with intervals it does not if the two are apart.
 
 use crate::error::{Error, Result};
-use crate::recognition::comparison::TrialSize;
-use crate::recognition::many_tests::holm_of_some;
+use crate::recognition::statistics::comparison::TrialSize;
+use crate::recognition::statistics::many_tests::holm_of_some;
 use crate::report::swept::Setting;
 use crate::row;
 use crate::study::CONFIDENCE;

@@ -3,8 +3,8 @@
 use super::axes::AxisValues;
 use super::sensor_errors::{Strengths, TestedOn, strength_columns};
 use crate::recognition::ClassifierKind;
-use crate::recognition::features::Features;
-use crate::recognition::over_time::OverTime;
+use crate::recognition::data::features::Features;
+use crate::recognition::data::over_time::OverTime;
 use crate::sensing::Ensemble;
 use crate::signal::NoiseUnit;
 use crate::table::{Column, Columns, Role, Scale};

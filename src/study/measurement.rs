@@ -10,7 +10,7 @@ use super::table::Cell;
 use super::touch_set::TouchSet;
 use crate::error::Result;
 use crate::random::Seed;
-use crate::recognition::split::Split;
+use crate::recognition::data::split::Split;
 use crate::sensing::Projection;
 use crate::signal::{Chain, Noise, Recording, Scratch, SignalStep};
 use crate::world::Taxel;

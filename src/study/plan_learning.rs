@@ -8,7 +8,7 @@ use super::spec::{RecognitionSpec, SensingSpec, StudySpec};
 use super::taxel_array::TaxelArray;
 use crate::error::Result;
 use crate::recognition::ClassifierKind;
-use crate::recognition::over_time::OverTime;
+use crate::recognition::data::over_time::OverTime;
 
 /// What a classifier may have a use for.
 type Has = fn(ClassifierKind) -> bool;

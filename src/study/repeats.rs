@@ -5,10 +5,10 @@ use super::evaluation::CONFIDENCE;
 use super::spec::StudySpec;
 use super::table::{PStatus, TrialScore};
 use crate::error::Result;
-use crate::recognition::comparison::{
+use crate::recognition::statistics::comparison::{
     Comparison, TrialSize, compare, compare_crossed, trials_needed,
 };
-use crate::recognition::interval::Interval;
+use crate::recognition::statistics::interval::Interval;
 use ndarray::Array2;
 use std::collections::BTreeSet;
 

@@ -4,7 +4,7 @@ use super::axis::Axis;
 use super::plan::Plan;
 use crate::error::{Error, Result};
 use crate::random::Seed;
-use crate::recognition::split::{
+use crate::recognition::data::split::{
     Split, group_hold_out, group_k_fold, stratified_hold_out, stratified_k_fold,
 };
 use ndarray::Array1;

@@ -7,10 +7,10 @@ use super::table::{
     Cell, CellScore, Comparison, Confused, Confusion, Pareto, TrialScore, TrialTime,
 };
 use crate::error::Result;
-use crate::recognition::bootstrap::Bootstrap;
-use crate::recognition::comparison::TrialSize;
-use crate::recognition::interval::Interval;
-use crate::recognition::many_tests::holm_of_some;
+use crate::recognition::statistics::bootstrap::Bootstrap;
+use crate::recognition::statistics::comparison::TrialSize;
+use crate::recognition::statistics::interval::Interval;
+use crate::recognition::statistics::many_tests::holm_of_some;
 use crate::table::front;
 use std::collections::BTreeMap;
 

@@ -150,7 +150,7 @@ pub struct Comparison {
     /// Why there is a p-value or none.
     #[serde(default)]
     p_status: PStatus => Outcome "test";
-    /// [Trials from which on](crate::recognition::comparison::trials_needed) there is one (with `projections_per_split`: all of so many splits);
+    /// [Trials from which on](crate::recognition::statistics::comparison::trials_needed) there is one (with `projections_per_split`: all of so many splits);
     /// empty where no number of them is enough, because too many rows are tested.
     #[serde(default)]
     n_trials_needed: Option<usize> => Note "trials needed": Linear;

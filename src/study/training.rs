@@ -5,11 +5,11 @@ use super::spec::RecognitionSpec;
 use crate::error::Result;
 use crate::random::Seed;
 use crate::recognition::ClassifierKind;
-use crate::recognition::choice::Candidates;
-use crate::recognition::classifier::{Classifier, TrainedClassifier};
-use crate::recognition::dataset::Dataset;
-use crate::recognition::kernel::Gamma;
-use crate::recognition::split::{Split, group_k_fold, stratified_k_fold};
+use crate::recognition::classifiers::classifier::{Classifier, TrainedClassifier};
+use crate::recognition::data::dataset::Dataset;
+use crate::recognition::data::split::{Split, group_k_fold, stratified_k_fold};
+use crate::recognition::svm::cross_validation::choice::Candidates;
+use crate::recognition::svm::kernel::Gamma;
 use ndarray::{Array1, s};
 use std::time::Instant;
 

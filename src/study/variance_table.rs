@@ -4,7 +4,7 @@ use super::evaluation::CONFIDENCE;
 use super::repeats::{Repeat, scores};
 use super::table::{Cell, TrialScore};
 use crate::error::Result;
-use crate::recognition::variance::{Component, components};
+use crate::recognition::statistics::variance::{Component, components};
 use crate::row;
 use serde::{Deserialize, Serialize};
 

@@ -3,8 +3,8 @@
 use crate::command::Case;
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::ClassifierKind;
-use bubbletouch::recognition::classifier::Classifier;
-use bubbletouch::recognition::dataset::dataset;
+use bubbletouch::recognition::classifiers::classifier::Classifier;
+use bubbletouch::recognition::data::dataset::dataset;
 use bubbletouch::study::read_features;
 use ndarray::{Array1, Array2, Axis};
 use ndarray_npy::read_npy;

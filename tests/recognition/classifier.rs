@@ -3,12 +3,12 @@
 use bubbletouch::Error;
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::ClassifierKind;
-use bubbletouch::recognition::choice::Candidates;
-use bubbletouch::recognition::classifier::{Classifier, Cost, predict_split};
-use bubbletouch::recognition::dataset::{Dataset, dataset, rows};
-use bubbletouch::recognition::scaling::Scaling;
-use bubbletouch::recognition::split::stratified_hold_out;
+use bubbletouch::recognition::classifiers::classifier::{Classifier, Cost, predict_split};
+use bubbletouch::recognition::data::dataset::{Dataset, dataset, rows};
+use bubbletouch::recognition::data::scaling::Scaling;
+use bubbletouch::recognition::data::split::stratified_hold_out;
 use bubbletouch::recognition::svm::SvmParams;
+use bubbletouch::recognition::svm::cross_validation::choice::Candidates;
 use linfa::traits::{Fit, Predict, PredictInplace};
 use ndarray::{Array1, Array2, Axis};
 use rand::Rng;
@@ -57,10 +57,11 @@ fn test_rows_cannot_influence_scaling_or_c() {
         let (a, b) = (train(&data), train(&shaken));
         assert_eq!(a.scaling(), b.scaling());
         assert_eq!(a.chosen(), b.chosen());
-        let decisions = |model: &bubbletouch::recognition::classifier::TrainedClassifier| {
-            let scaled = model.scaling().apply(data.records.view()).unwrap();
-            model.svm().unwrap().decision_values(scaled.view()).unwrap()
-        };
+        let decisions =
+            |model: &bubbletouch::recognition::classifiers::classifier::TrainedClassifier| {
+                let scaled = model.scaling().apply(data.records.view()).unwrap();
+                model.svm().unwrap().decision_values(scaled.view()).unwrap()
+            };
         assert_eq!(decisions(&a), decisions(&b));
     }
 }

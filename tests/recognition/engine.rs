@@ -2,12 +2,12 @@
 //! features, one kernel value at a time, whatever the solver kept, shared, shrank, cached or rounded on its way.
 
 use bubbletouch::random::Seed;
-use bubbletouch::recognition::choice::{Candidates, Chosen, choose};
-use bubbletouch::recognition::dataset::{Dataset, dataset, rows};
-use bubbletouch::recognition::kernel::{Gamma, Kernel};
-use bubbletouch::recognition::split::{Split, stratified_k_fold};
+use bubbletouch::recognition::data::dataset::{Dataset, dataset, rows};
+use bubbletouch::recognition::data::split::{Split, stratified_k_fold};
+use bubbletouch::recognition::svm::cross_validation::choice::{Candidates, Chosen, choose};
+use bubbletouch::recognition::svm::kernel::{Gamma, Kernel};
+use bubbletouch::recognition::svm::predict::svm_model::SvmModel;
 use bubbletouch::recognition::svm::{BinaryProblem, Multiclass, Solver, SvmParams};
-use bubbletouch::recognition::svm_model::SvmModel;
 use ndarray::{Array1, Array2, ArrayView1, Axis, concatenate};
 use rand::Rng;
 use rand_distr::StandardNormal;

@@ -1,7 +1,7 @@
 //! Sets on which support vector machines break: their outcome is known without another program.
 
-use bubbletouch::recognition::dataset::dataset;
-use bubbletouch::recognition::kernel::{Gamma, Kernel};
+use bubbletouch::recognition::data::dataset::dataset;
+use bubbletouch::recognition::svm::kernel::{Gamma, Kernel};
 use bubbletouch::recognition::svm::{Multiclass, SvmParams};
 use ndarray::{Array1, Array2, array};
 

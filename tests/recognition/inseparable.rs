@@ -2,8 +2,8 @@
 //! states it.
 
 use crate::svm_conditions::{kernel_value, violation};
-use bubbletouch::recognition::dataset::{Dataset, dataset};
-use bubbletouch::recognition::kernel::{Gamma, Kernel};
+use bubbletouch::recognition::data::dataset::{Dataset, dataset};
+use bubbletouch::recognition::svm::kernel::{Gamma, Kernel};
 use bubbletouch::recognition::svm::{BinaryProblem, Multiclass, SvmParams};
 use ndarray::{Array1, Array2};
 

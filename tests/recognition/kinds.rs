@@ -5,15 +5,15 @@
 
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::ClassifierKind;
-use bubbletouch::recognition::choice::Candidates;
-use bubbletouch::recognition::class_model::ClassModel;
-use bubbletouch::recognition::classifier::{Classifier, Cost, predict_split};
-use bubbletouch::recognition::dataset::{Dataset, dataset, rows};
-use bubbletouch::recognition::decision_tree::DecisionTree;
-use bubbletouch::recognition::k_nearest::KNearest;
-use bubbletouch::recognition::naive_bayes::NaiveBayes;
-use bubbletouch::recognition::random_forest::RandomForest;
-use bubbletouch::recognition::split::stratified_hold_out;
+use bubbletouch::recognition::classifiers::class_model::ClassModel;
+use bubbletouch::recognition::classifiers::classifier::{Classifier, Cost, predict_split};
+use bubbletouch::recognition::classifiers::decision_tree::DecisionTree;
+use bubbletouch::recognition::classifiers::k_nearest::KNearest;
+use bubbletouch::recognition::classifiers::naive_bayes::NaiveBayes;
+use bubbletouch::recognition::classifiers::random_forest::RandomForest;
+use bubbletouch::recognition::data::dataset::{Dataset, dataset, rows};
+use bubbletouch::recognition::data::split::stratified_hold_out;
+use bubbletouch::recognition::svm::cross_validation::choice::Candidates;
 use linfa::traits::Fit;
 use ndarray::{Array1, Array2, ArrayView1, Axis, array};
 use rand::Rng;

@@ -4,10 +4,10 @@
 //! made it and says how exact LIBSVM's solutions are: it keeps kernel values in 32 bits, and the file gives for every case
 //! the duality gap of its coefficients and what follows for its decision values.
 
-use bubbletouch::recognition::dataset::{Dataset, dataset};
-use bubbletouch::recognition::kernel::{Gamma, Kernel};
+use bubbletouch::recognition::data::dataset::{Dataset, dataset};
+use bubbletouch::recognition::svm::kernel::{Gamma, Kernel};
+use bubbletouch::recognition::svm::predict::svm_model::SvmModel;
 use bubbletouch::recognition::svm::{BinaryProblem, Multiclass, SvmParams};
-use bubbletouch::recognition::svm_model::SvmModel;
 use ndarray::{Array1, Array2, ArrayView1};
 use std::collections::BTreeMap;
 

@@ -5,12 +5,12 @@
 
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::ClassifierKind;
-use bubbletouch::recognition::choice::Candidates;
-use bubbletouch::recognition::class_model::ClassModel;
-use bubbletouch::recognition::classifier::{Classifier, Cost};
-use bubbletouch::recognition::dataset::{Dataset, dataset, rows};
-use bubbletouch::recognition::linear_svm::{LinearMargin, LinearSvm, LinearSvmParams};
-use bubbletouch::recognition::logistic_regression::LogisticParams;
+use bubbletouch::recognition::classifiers::class_model::ClassModel;
+use bubbletouch::recognition::classifiers::classifier::{Classifier, Cost};
+use bubbletouch::recognition::classifiers::linear_svm::{LinearMargin, LinearSvm, LinearSvmParams};
+use bubbletouch::recognition::classifiers::logistic_regression::LogisticParams;
+use bubbletouch::recognition::data::dataset::{Dataset, dataset, rows};
+use bubbletouch::recognition::svm::cross_validation::choice::Candidates;
 use bubbletouch::recognition::svm::{Multiclass, Solver};
 use linfa::traits::Fit;
 use ndarray::{Array1, Array2};

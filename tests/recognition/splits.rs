@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use bubbletouch::random::Seed;
-use bubbletouch::recognition::split::{
+use bubbletouch::recognition::data::split::{
     Split, group_hold_out, group_k_fold, stratified_hold_out, stratified_k_fold,
 };
 use ndarray::Array1;

@@ -1,8 +1,8 @@
 //! The support vector machines against scikit-learn's numbers, linfa-svm's own predictions and the optimality
 //! conditions, on easy and on hard sets.
 
-use bubbletouch::recognition::dataset::{Dataset, dataset};
-use bubbletouch::recognition::kernel::{Gamma, Kernel};
+use bubbletouch::recognition::data::dataset::{Dataset, dataset};
+use bubbletouch::recognition::svm::kernel::{Gamma, Kernel};
 use bubbletouch::recognition::svm::{BinaryProblem, Multiclass, Solver, SvmParams};
 use linfa::DatasetBase;
 use linfa::traits::{Fit, Predict};

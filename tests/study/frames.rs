@@ -2,7 +2,7 @@
 
 use crate::study::Study;
 use bubbletouch::contact::{Workspace, press_to_depth};
-use bubbletouch::recognition::split::Split;
+use bubbletouch::recognition::data::split::Split;
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::taxel_array::TaxelArray;
 use bubbletouch::study::{TouchedObject, sample_frames, simulate_array};

@@ -14,7 +14,7 @@ use crate::objects::Object;
 use crate::quantile::quantile;
 use crate::random::Seed;
 use crate::recognition::ClassifierKind;
-use crate::recognition::classifier::Classifier;
+use crate::recognition::classifiers::classifier::Classifier;
 use crate::sensing::Projection;
 use crate::study::progress::Silent;
 use crate::study::simulation::{draw_touches, simulate_array};

@@ -48,7 +48,7 @@ pub struct DetailRecognitionSpec {
     pub ensemble: Ensemble,
     /// To how many measurements.
     pub measurements: usize,
-    /// What learns; with the parameters of [`Classifier::new`](crate::recognition::classifier::Classifier::new).
+    /// What learns; with the parameters of [`Classifier::new`](crate::recognition::classifiers::classifier::Classifier::new).
     pub classifiers: Vec<ClassifierKind>,
 }
 

@@ -4,7 +4,7 @@ use super::plan::ReconstructionPlan;
 use super::score::{Truth, square_errors};
 use crate::error::Result;
 use crate::random::Seed;
-use crate::recognition::split::{Split, stratified_hold_out};
+use crate::recognition::data::split::{Split, stratified_hold_out};
 use crate::sensing::{Basis, Dictionary, Ensemble};
 use crate::signal::{Chain, Noise, NoiseUnit};
 use crate::study::measurement::{Reading, TouchToRead, measure, touches_to_read};

@@ -10,7 +10,7 @@ use crate::error::Result;
 use crate::kinds::median_time::median_s;
 use crate::kinds::model_recognition::{accuracy, touches_of};
 use crate::random::Seed;
-use crate::recognition::classifier::Classifier;
+use crate::recognition::classifiers::classifier::Classifier;
 use crate::sensing::Projection;
 use crate::signal::{Chain, Scratch};
 use crate::study::Frames;

@@ -77,7 +77,7 @@ pub struct RecognitionSweepSpec {
     pub ensemble: Vec<Ensemble>,
     /// Taxels per measurement.
     pub ratio: Vec<f64>,
-    /// What learns, with the parameters of [`Classifier::new`](crate::recognition::classifier::Classifier::new).
+    /// What learns, with the parameters of [`Classifier::new`](crate::recognition::classifiers::classifier::Classifier::new).
     pub classifier: Vec<ClassifierKind>,
     /// Standard deviation of the noise, as a share of the full scale.
     pub noise_std_full_scale: f64,

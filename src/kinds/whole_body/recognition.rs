@@ -10,7 +10,7 @@ use crate::geometry::Pose;
 use crate::kinds::model_recognition::{accuracy, touches_of};
 use crate::random::Seed;
 use crate::recognition::ClassifierKind;
-use crate::recognition::classifier::{Classifier, TrainedClassifier};
+use crate::recognition::classifiers::classifier::{Classifier, TrainedClassifier};
 use crate::sensing::{Columns, Ensemble, Projection};
 use crate::study::MM;
 use crate::study::progress::Progress;

@@ -1,0 +1,119 @@
+//! What a kind of classifier says of itself.
+
+use super::ClassifierKind;
+use super::class_model::ClassModel;
+use super::classifier::Classifier;
+use crate::error::Result;
+use crate::random::Seed;
+use crate::recognition::data::dataset::Dataset;
+use crate::recognition::svm::kernel::Kernel;
+use std::fmt;
+use std::sync::Arc;
+
+/// A kind of classifier.
+pub struct ClassifierAbout {
+    /// What people call it.
+    pub words: &'static str,
+    /// Whether it has a soft-margin penalty C.
+    pub has_c: bool,
+    /// Whether it has a kernel with a γ.
+    pub has_gamma: bool,
+    /// Whether it has a number of neighbours.
+    pub has_neighbours: bool,
+    /// Whether it has a number of trees.
+    pub has_trees: bool,
+    /// Whether its trees have a largest depth.
+    pub has_depth: bool,
+    /// The kernel of a kernel SVM: several C are then solved together, and kernel values are held.
+    pub kernel: Option<fn(&Classifier) -> Kernel>,
+    /// About how many seconds training takes, by training rows, features and classes; of a kernel SVM its solver says.
+    pub train_s: fn(f64, f64, f64) -> f64,
+    /// The same of a test row.
+    pub test_s: fn(f64, f64, f64) -> f64,
+    /// Trains on scaled rows, with a C where it has one, and draws from the seed.
+    pub train: Train,
+}
+
+/// What trains a classifier without a kernel.
+pub type Train = fn(&Classifier, &Dataset, f64, &Seed) -> Result<Arc<dyn ClassModel>>;
+
+/// Seconds of a multiply-add of a product of matrices.
+pub(crate) const PRODUCT_S: f64 = 4e-11;
+
+impl ClassifierAbout {
+    /// One without parameters that looks at each number once to train, and at each once a class to test.
+    pub(crate) const fn new(words: &'static str, train: Train) -> Self {
+        Self {
+            words,
+            has_c: false,
+            has_gamma: false,
+            has_neighbours: false,
+            has_trees: false,
+            has_depth: false,
+            kernel: None,
+            train_s: |n_train, m, _| 2e-8 * n_train * m,
+            test_s: |_, m, n_classes| n_classes * n_classes * (PRODUCT_S * m + 5e-9),
+            train,
+        }
+    }
+
+    /// An SVM of a kernel.
+    pub(crate) const fn svm(words: &'static str, kernel: fn(&Classifier) -> Kernel) -> Self {
+        Self {
+            has_c: true,
+            has_gamma: true,
+            kernel: Some(kernel),
+            test_s: |n_train, m, n_classes| n_train * PRODUCT_S * (m + n_classes + 25.0),
+            ..Self::new(words, |classifier, scaled, c, seed| {
+                classifier.train_kernel_free(scaled, c, seed)
+            })
+        }
+    }
+}
+
+impl fmt::Debug for ClassifierAbout {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(self.words)
+    }
+}
+
+impl ClassifierKind {
+    /// Whether it has a C: the soft-margin SVMs and logistic regression. The others train the same whatever C is given.
+    pub fn has_c(self) -> bool {
+        self.about().has_c
+    }
+
+    /// Whether it has a kernel with a γ.
+    pub fn has_gamma(self) -> bool {
+        self.about().has_gamma
+    }
+}
+
+/// Says of each classifier which file tells of it: its name in a study.
+macro_rules! classifiers {
+    ($($name:ident $file:ident $doc:literal;)*) => {
+        $(pub mod $file;)*
+
+        /// A classifier that a study can sweep.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+        #[serde(rename_all = "snake_case")]
+        pub enum ClassifierKind {
+            $(#[doc = $doc] $name,)*
+        }
+
+        impl ClassifierKind {
+            /// All of them.
+            pub const ALL: &[Self] = &[$(Self::$name),*];
+
+            /// The name in a study, and what people call it.
+            pub const NAMES: &[(&str, &str)] = &[$((stringify!($file), $file::ABOUT.words)),*];
+
+            /// What it says of itself.
+            pub const fn about(self) -> &'static ClassifierAbout {
+                match self {
+                    $(Self::$name => &$file::ABOUT,)*
+                }
+            }
+        }
+    };
+}

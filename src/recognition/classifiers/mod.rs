@@ -1,0 +1,29 @@
+//! The classifiers that a study can sweep, each trained and asked the same way.
+
+use serde::{Deserialize, Serialize};
+
+#[macro_use]
+mod classifier_about;
+pub mod class_model;
+pub mod classifier;
+pub(crate) mod coordinate_descent;
+pub(crate) mod crammer_singer;
+pub(crate) mod lbfgs;
+pub mod linear_model;
+pub(crate) mod ranked;
+pub mod trained_classifier;
+
+pub use classifier_about::{ClassifierAbout, Train};
+
+// Everything that a study may say of a classifier follows from its line here and from the file that it names.
+classifiers! {
+    LinearSvm linear_svm "Soft-margin SVM, linear kernel.";
+    RbfSvm rbf_svm "Soft-margin SVM, Gaussian kernel `exp(−γ|x − z|²)`.";
+    PolynomialSvm polynomial_svm "Soft-margin SVM, polynomial kernel `(γ x·z + c₀)^d`.";
+    LogisticRegression logistic_regression "Multinomial [logistic regression](logistic_regression).";
+    KNearest k_nearest "[k nearest neighbours](k_nearest).";
+    NearestCentroid nearest_centroid "The class whose mean is nearest: [nearest centroid](nearest_centroid).";
+    NaiveBayes naive_bayes "Gaussian [naive Bayes](naive_bayes).";
+    DecisionTree decision_tree "A single [classification tree](decision_tree).";
+    RandomForest random_forest "A [random forest](random_forest).";
+}

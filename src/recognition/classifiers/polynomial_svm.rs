@@ -1,0 +1,11 @@
+//! Soft-margin SVM of a polynomial kernel; see [`svm`](crate::recognition::svm).
+
+use super::classifier_about::ClassifierAbout;
+use crate::recognition::svm::kernel::Kernel;
+
+pub(crate) const ABOUT: ClassifierAbout =
+    ClassifierAbout::svm("polynomial SVM", |classifier| Kernel::Polynomial {
+        gamma: classifier.gamma,
+        coef0: classifier.coef0,
+        degree: classifier.degree,
+    });

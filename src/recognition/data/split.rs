@@ -1,0 +1,293 @@
+//! Which rows train and which test: seeded splits, stratified by class, or keeping whole groups apart.
+//!
+//! Every split puts every row exactly once into `train` or `test`, and every class into both. Rows are drawn by
+//! named streams (one per class), so one class's split does not depend on the others' rows.
+
+use std::collections::BTreeMap;
+
+use ndarray::ArrayView1;
+use rand::seq::SliceRandom;
+
+use crate::random::Seed;
+use crate::recognition::data::dataset::check_labels;
+use crate::{Error, Result};
+
+/// Rows to train on and rows to test on, by index.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Split {
+    /// Training rows in drawing order: one of each class in turn, each class's rows shuffled. So a smaller training
+    /// set is a prefix of a larger one; see [`at_most`](Split::at_most).
+    pub train: Vec<usize>,
+    /// Test rows, ascending.
+    pub test: Vec<usize>,
+}
+
+impl Split {
+    /// The split with only the first `per_class` training rows of each class; the test rows stay.
+    ///
+    /// The training rows are a prefix of this split's, so the sets of a learning curve are nested.
+    /// `labels` holds the label of every row of the data set.
+    ///
+    /// # Errors
+    /// `per_class` is 0 or above the number of training rows of some class.
+    pub fn at_most(&self, labels: ArrayView1<usize>, per_class: usize) -> Result<Split> {
+        let mut counts = BTreeMap::<usize, usize>::new();
+        for &row in &self.train {
+            *counts.entry(labels[row]).or_default() += 1;
+        }
+        let fewest = counts.values().copied().min().unwrap_or(0);
+        if per_class == 0 || per_class > fewest {
+            return Err(Error::input(
+                "training touches per object",
+                per_class,
+                format!("1 to {fewest} is allowed, the fewest training rows of a class"),
+            ));
+        }
+        let n_train = per_class * counts.len();
+        Ok(Split {
+            train: self.train[..n_train].to_vec(),
+            test: self.test.clone(),
+        })
+    }
+
+    /// A split of this split's training rows (such as a validation split), given in positions within `train`, as
+    /// rows of the whole data set.
+    ///
+    /// # Panics
+    /// If `inner` holds a position beyond the training rows.
+    pub fn within_train(&self, inner: &Split) -> Split {
+        let whole = |positions: &[usize]| positions.iter().map(|&i| self.train[i]).collect();
+        let mut test: Vec<usize> = whole(&inner.test);
+        test.sort_unstable();
+        Split {
+            train: whole(&inner.train),
+            test,
+        }
+    }
+}
+
+/// Stratified hold-out: of each class's n rows, `test_fraction · n` rounded (1 to n − 1) are tested.
+///
+/// # Errors
+/// A fraction outside 0 < f < 1, or a class with a single row.
+pub fn stratified_hold_out(
+    labels: ArrayView1<usize>,
+    test_fraction: f64,
+    seed: &Seed,
+) -> Result<Split> {
+    check_fraction(test_fraction)?;
+    let mut is_test = vec![false; labels.len()];
+    let drawn = draw_rows(labels, seed);
+    for (class, rows) in &drawn {
+        check_class_size(*class, rows.len(), 2)?;
+        for &row in &rows[..share(rows.len(), test_fraction)] {
+            is_test[row] = true;
+        }
+    }
+    split(labels, &drawn, &is_test)
+}
+
+/// Stratified k-fold: k splits whose test rows are disjoint and cover all rows; a class's rows, and all rows, spread
+/// over the folds as evenly as can be (counts differ by at most 1).
+///
+/// # Errors
+/// k below 2, or a class with fewer than k rows.
+pub fn stratified_k_fold(labels: ArrayView1<usize>, k: usize, seed: &Seed) -> Result<Vec<Split>> {
+    check_folds(k)?;
+    let drawn = draw_rows(labels, seed);
+    let mut fold_of = vec![0; labels.len()];
+    let mut next = 0;
+    for (class, rows) in &drawn {
+        check_class_size(*class, rows.len(), k)?;
+        for &row in rows {
+            fold_of[row] = next % k;
+            next += 1;
+        }
+    }
+    folds(labels, &drawn, &fold_of, k)
+}
+
+/// Group hold-out: whole groups (a pose, an offset, all copies of one touch) are tested, none of their rows trained on.
+///
+/// Groups that hold the same set of classes form a stratum; of its n groups, `test_fraction · n` rounded (1 to n − 1)
+/// are tested. Strata of a single group are pooled. `groups` holds one number per row.
+///
+/// # Errors
+/// A fraction outside 0 < f < 1, another number of groups than labels, or a class that is left with no training or no
+/// test row.
+pub fn group_hold_out(
+    labels: ArrayView1<usize>,
+    groups: ArrayView1<usize>,
+    test_fraction: f64,
+    seed: &Seed,
+) -> Result<Split> {
+    check_fraction(test_fraction)?;
+    check_labels(labels.len(), groups)?;
+    let mut is_test_group = BTreeMap::new();
+    for (stratum, mut members) in strata(labels, groups).into_iter().enumerate() {
+        let stream = seed.named("groups").numbered(stratum as u64);
+        members.shuffle(&mut stream.rng());
+        let n_test = share(members.len(), test_fraction);
+        for (rank, group) in members.into_iter().enumerate() {
+            is_test_group.insert(group, rank < n_test);
+        }
+    }
+    let is_test: Vec<bool> = groups.iter().map(|group| is_test_group[group]).collect();
+    split(labels, &draw_rows(labels, seed), &is_test)
+}
+
+/// Group k-fold: k splits whose test rows are disjoint and cover all rows, each group tested in exactly one fold.
+///
+/// Groups go in random order, larger ones first, to the fold that holds the fewest rows so far.
+///
+/// # Errors
+/// k below 2, fewer than k groups, another number of groups than labels, or a class that is left with no training or
+/// no test row in some fold.
+pub fn group_k_fold(
+    labels: ArrayView1<usize>,
+    groups: ArrayView1<usize>,
+    k: usize,
+    seed: &Seed,
+) -> Result<Vec<Split>> {
+    check_folds(k)?;
+    check_labels(labels.len(), groups)?;
+    let mut sizes = BTreeMap::<usize, usize>::new();
+    for &group in groups {
+        *sizes.entry(group).or_default() += 1;
+    }
+    if sizes.len() < k {
+        return Err(Error::input(
+            "folds",
+            k,
+            format!("at most the number of groups, {}, is allowed", sizes.len()),
+        ));
+    }
+    let mut order: Vec<(usize, usize)> = sizes.into_iter().collect();
+    order.shuffle(&mut seed.named("groups").rng());
+    order.sort_by_key(|&(_, size)| std::cmp::Reverse(size));
+    let mut n_rows = vec![0; k];
+    let mut fold_of_group = BTreeMap::new();
+    for (group, size) in order {
+        let fold = (0..k).min_by_key(|&fold| n_rows[fold]).unwrap_or(0);
+        n_rows[fold] += size;
+        fold_of_group.insert(group, fold);
+    }
+    let fold_of: Vec<usize> = groups.iter().map(|group| fold_of_group[group]).collect();
+    folds(labels, &draw_rows(labels, seed), &fold_of, k)
+}
+
+/// Each class's rows, shuffled by the class's own stream.
+fn draw_rows(labels: ArrayView1<usize>, seed: &Seed) -> BTreeMap<usize, Vec<usize>> {
+    let mut drawn = BTreeMap::<usize, Vec<usize>>::new();
+    for (row, &class) in labels.iter().enumerate() {
+        drawn.entry(class).or_default().push(row);
+    }
+    for (&class, rows) in &mut drawn {
+        rows.shuffle(&mut seed.named("class").numbered(class as u64).rng());
+    }
+    drawn
+}
+
+/// Groups by the set of classes they hold; strata of one group are pooled into the last.
+fn strata(labels: ArrayView1<usize>, groups: ArrayView1<usize>) -> Vec<Vec<usize>> {
+    let mut classes_of = BTreeMap::<usize, Vec<usize>>::new();
+    for (&class, &group) in labels.iter().zip(groups) {
+        classes_of.entry(group).or_default().push(class);
+    }
+    let mut by_classes = BTreeMap::<Vec<usize>, Vec<usize>>::new();
+    for (group, mut classes) in classes_of {
+        classes.sort_unstable();
+        classes.dedup();
+        by_classes.entry(classes).or_default().push(group);
+    }
+    let (mut strata, single): (Vec<_>, Vec<_>) = by_classes
+        .into_values()
+        .partition(|members| members.len() > 1);
+    let pooled: Vec<usize> = single.into_iter().flatten().collect();
+    if !pooled.is_empty() {
+        strata.push(pooled);
+    }
+    strata
+}
+
+/// How many of `n` are tested: `n · fraction` rounded, but at least 1 and at most n − 1.
+fn share(n: usize, fraction: f64) -> usize {
+    ((n as f64 * fraction).round() as usize).clamp(1.min(n - 1), n - 1)
+}
+
+fn folds(
+    labels: ArrayView1<usize>,
+    drawn: &BTreeMap<usize, Vec<usize>>,
+    fold_of: &[usize],
+    k: usize,
+) -> Result<Vec<Split>> {
+    (0..k)
+        .map(|fold| {
+            let is_test: Vec<bool> = fold_of.iter().map(|&f| f == fold).collect();
+            split(labels, drawn, &is_test)
+        })
+        .collect()
+}
+
+/// The split in its stated order; refuses one that leaves a class without a training or without a test row.
+fn split(
+    labels: ArrayView1<usize>,
+    drawn: &BTreeMap<usize, Vec<usize>>,
+    is_test: &[bool],
+) -> Result<Split> {
+    let mut ranked = Vec::new();
+    for (&class, rows) in drawn {
+        let train: Vec<usize> = rows.iter().copied().filter(|&row| !is_test[row]).collect();
+        let n_test = rows.len() - train.len();
+        if train.is_empty() || n_test == 0 {
+            return Err(Error::input(
+                format!("split, class {class}"),
+                format!("{} training and {n_test} test rows", train.len()),
+                "every class needs at least one of each: more rows, more groups or another fraction",
+            ));
+        }
+        ranked.extend(train.into_iter().enumerate());
+    }
+    // The sort is stable: within a rank the classes stay ascending.
+    ranked.sort_by_key(|&(rank, _)| rank);
+    if ranked.is_empty() {
+        return Err(Error::input(
+            "labels",
+            "no rows",
+            "at least two rows are needed",
+        ));
+    }
+    Ok(Split {
+        train: ranked.into_iter().map(|(_, row)| row).collect(),
+        test: (0..labels.len()).filter(|&row| is_test[row]).collect(),
+    })
+}
+
+fn check_fraction(test_fraction: f64) -> Result<()> {
+    if test_fraction > 0.0 && test_fraction < 1.0 {
+        return Ok(());
+    }
+    Err(Error::input(
+        "test fraction",
+        test_fraction,
+        "a number between 0 and 1, both excluded, is allowed",
+    ))
+}
+
+fn check_folds(k: usize) -> Result<()> {
+    if k >= 2 {
+        return Ok(());
+    }
+    Err(Error::input("folds", k, "2 or more are allowed"))
+}
+
+fn check_class_size(class: usize, n_rows: usize, at_least: usize) -> Result<()> {
+    if n_rows >= at_least {
+        return Ok(());
+    }
+    Err(Error::input(
+        format!("labels, class {class}"),
+        format!("{n_rows} rows"),
+        format!("at least {at_least} rows are needed for this split"),
+    ))
+}

@@ -1,0 +1,4 @@
+//! What predicted labels are worth, of one touch and of several.
+
+pub mod fusion;
+pub mod metrics;

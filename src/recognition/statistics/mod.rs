@@ -1,0 +1,8 @@
+//! How sure scores are: intervals, comparisons, and what each source of chance brings.
+
+pub mod bootstrap;
+pub mod comparison;
+pub mod interval;
+pub mod many_tests;
+pub(crate) mod mean_squares;
+pub mod variance;

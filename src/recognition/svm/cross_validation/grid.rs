@@ -1,0 +1,216 @@
+//! Cross-validation of a whole grid of C and kernels on one matrix of products.
+//!
+//! All folds and all candidates share the products of rows with each other: a pair's part of a kernel is made of them once for
+//! all folds, which [leave rows out](crate::recognition::svm::cross_validation::fold_path). Along C each solution starts from the last, that of a pair
+//! at the first C from all multipliers at their bounds and, from the second fold on,
+//! [from that of the fold before](crate::recognition::svm::cross_validation::seed) where that is nearer. Validation rows are
+//! [judged](crate::recognition::svm::cross_validation::judgement) by their own class's problems first.
+
+use ndarray::Array2;
+
+use crate::recognition::data::split::Split;
+use crate::recognition::svm::Multiclass;
+use crate::recognition::svm::cross_validation::fold_path::{FoldPath, FoldSolution};
+use crate::recognition::svm::cross_validation::judgement::Judgement;
+use crate::recognition::svm::gram::class_columns::ClassColumns;
+use crate::recognition::svm::gram::class_products::ClassProducts;
+use crate::recognition::svm::gram::later_products::LaterProducts;
+use crate::recognition::svm::gram::product_kernel::ProductKernel;
+use crate::recognition::svm::gram::sorted::Sorted;
+use crate::recognition::svm::kernel::KernelFunction;
+use crate::recognition::svm::linalg::scalar::Scalar;
+use crate::recognition::svm::smo::Dense;
+use crate::recognition::svm::training::Goal;
+
+/// Folds whose solutions are held at once: as many as are usual, so that many take no more memory.
+const FOLDS_AT_ONCE: usize = 8;
+
+/// Neighbouring classes whose pairs with as many others come together: of 140 rows each, kernel values of 5 MB.
+const CLASSES_AT_ONCE: usize = 8;
+
+/// Training rows and their division into folds.
+pub(crate) struct Grid<'a, T> {
+    /// The rows, by class.
+    pub sorted: &'a Sorted<T>,
+    /// How they are divided, by their own numbers; a row counts once in a fold.
+    pub folds: &'a [Split],
+    /// One-vs-one or one-vs-rest.
+    pub multiclass: Multiclass,
+}
+
+/// A fold in terms of sorted rows.
+struct Fold {
+    /// Whether each row is trained on.
+    is_training: Vec<bool>,
+    /// Whether any row of each class is.
+    is_class: Vec<bool>,
+    validation: Vec<usize>,
+}
+
+impl<T: Scalar> Grid<'_, T> {
+    /// Validation rows recognised, over all folds, per kernel and C (kernels.len() × path.len()), and solves stopped at the
+    /// iteration cap.
+    pub fn n_correct(&self, kernels: &[KernelFunction], goal: Goal) -> (Array2<usize>, usize) {
+        let (points, ranges) = (self.sorted.points(), self.sorted.ranges());
+        let products = ClassProducts::new(points.all(), ranges);
+        let folds: Vec<Fold> = self.folds.iter().map(|split| self.fold(split)).collect();
+        let mut counts = Array2::zeros((kernels.len(), goal.path.len()));
+        let mut n_capped = 0;
+        let columns = ClassColumns::new(ranges);
+        let (mut rooms, mut later) = (Vec::new(), LaterProducts::new(&products));
+        for (&kernel, mut counts) in kernels.iter().zip(counts.rows_mut()) {
+            let kernel = ProductKernel::new(points, &products, kernel);
+            for folds in folds.chunks(FOLDS_AT_ONCE) {
+                rooms.resize(folds.len(), Vec::new());
+                let judgements = self.judge(folds, (&columns, &mut rooms), &kernel, goal);
+                for class in 0..ranges.len() {
+                    let doubtful = judgements.iter().map(|judgement| judgement.doubtful(class));
+                    later.gather(class, doubtful.flatten());
+                }
+                for (judgement, room) in judgements.into_iter().zip(&mut rooms) {
+                    n_capped += judgement.n_capped();
+                    for class in 0..ranges.len() {
+                        let write = |row, to: &mut _| {
+                            kernel.write_row((class, row), later.of_row(row), to);
+                        };
+                        let both = counts.iter_mut().zip(judgement.n_right(class, write));
+                        both.for_each(|(count, n_right)| *count += n_right);
+                    }
+                    *room = judgement.into_room();
+                }
+            }
+        }
+        (counts, n_capped)
+    }
+
+    fn fold(&self, split: &Split) -> Fold {
+        let place = self.sorted.place();
+        let mut is_training = vec![false; place.len()];
+        split
+            .train
+            .iter()
+            .for_each(|&row| is_training[place[row]] = true);
+        let ranges = self.sorted.ranges().iter();
+        let mut validation: Vec<usize> = split.test.iter().map(|&row| place[row]).collect();
+        validation.sort_unstable();
+        Fold {
+            is_class: ranges
+                .map(|range| is_training[range.clone()].contains(&true))
+                .collect(),
+            is_training,
+            validation,
+        }
+    }
+
+    /// Solves all problems of some folds, and judges their validation rows.
+    fn judge<'c>(
+        &self,
+        folds: &[Fold],
+        (columns, rooms): (&'c ClassColumns, &mut [Vec<T>]),
+        kernel: &ProductKernel<T>,
+        goal: Goal,
+    ) -> Vec<Judgement<'c, T>> {
+        let folds_and_rooms = folds.iter().zip(rooms);
+        let judgement = |(fold, room)| self.judgement(fold, (columns, room), goal);
+        let mut judgements: Vec<Judgement<T>> = folds_and_rooms.map(judgement).collect();
+        let mut gram = Dense::default();
+        if self.multiclass == Multiclass::OneVsRest {
+            kernel.write_all(&mut gram);
+        }
+        let problems = self.problems();
+        for &problem in &problems {
+            if let (positive, Some(negative)) = problem {
+                kernel.write_pair((positive, negative), &mut gram);
+            }
+            let takes_part = |fold: &Fold, class: usize| fold.is_class[class];
+            let both = folds.iter().zip(&mut judgements).filter(|(fold, _)| {
+                takes_part(fold, problem.0) && problem.1.is_none_or(|class| takes_part(fold, class))
+            });
+            let (folds, judgements): (Vec<&Fold>, Vec<_>) = both.unzip();
+            let labels = self.labels(problem, &folds);
+            let mut judgements = judgements.into_iter();
+            let judge = |path: &FoldPath| {
+                let judgement = judgements.next().expect("each fold has one");
+                take(judgement, problem, path, columns);
+            };
+            match problem.1 {
+                Some(_) => {
+                    let positive = 0..self.sorted.ranges()[problem.0].len();
+                    FoldPath::of_pair(&mut gram, (labels, &positive), goal, judge);
+                }
+                None => FoldPath::of_class(&mut gram, labels, goal, judge),
+            }
+        }
+        judgements
+    }
+
+    fn judgement<'c>(
+        &self,
+        fold: &Fold,
+        (columns, room): (&'c ClassColumns, &mut Vec<T>),
+        goal: Goal,
+    ) -> Judgement<'c, T> {
+        let ranges = self.sorted.ranges();
+        let of_class = |row: &usize| ranges.partition_point(|range| range.end <= *row);
+        let rows = fold.validation.iter().map(|row| (*row, of_class(row)));
+        let known = rows.filter(|(_, class)| fold.is_class[*class]).collect();
+        let n_path = goal.path.len();
+        let room = std::mem::take(room);
+        let fold = (known, &fold.is_class[..]);
+        Judgement::new(fold, (columns, room), self.multiclass, n_path)
+    }
+
+    /// All problems; pairs of neighbouring classes come together, so that their part of the kernel stays in the cache.
+    fn problems(&self) -> Vec<(usize, Option<usize>)> {
+        let mut problems = self.multiclass.problems(self.sorted.ranges().len());
+        let group = |class: usize| class / CLASSES_AT_ONCE;
+        problems.sort_by_key(|&(a, b)| (group(a), b.map(group)));
+        problems
+    }
+
+    /// The labels of a problem's rows in each fold, 0 where it holds a row out.
+    fn labels(
+        &self,
+        (positive, negative): (usize, Option<usize>),
+        folds: &[&Fold],
+    ) -> Vec<Vec<f64>> {
+        let ranges = self.sorted.ranges();
+        let all = 0..self.sorted.points().len();
+        let rows = match negative {
+            Some(negative) => ranges[positive].clone().chain(ranges[negative].clone()),
+            None => all.chain(0..0),
+        };
+        let label = |fold: &Fold, row: usize| match fold.is_training[row] {
+            false => 0.0,
+            true if ranges[positive].contains(&row) => 1.0,
+            true => -1.0,
+        };
+        let of_fold = |fold: &&Fold| rows.clone().map(|row| label(fold, row)).collect();
+        folds.iter().map(of_fold).collect()
+    }
+}
+
+/// Judges the validation rows of a fold by its solutions of a problem.
+fn take<T: Scalar>(
+    judgement: &mut Judgement<T>,
+    problem: (usize, Option<usize>),
+    path: &FoldPath,
+    columns: &ClassColumns,
+) {
+    let mut last: Option<&FoldSolution> = None;
+    for solution in &path.solutions {
+        if let (positive, Some(negative)) = problem {
+            let [first, second] = [positive, negative].map(|at| &columns.ranges()[at]);
+            let place = |row: usize| match first.contains(&row) {
+                true => row - first.start,
+                false => first.len() + row - second.start,
+            };
+            let sum = |row: usize| -solution.f[place(row)];
+            let numbers = solution.numbers.clone();
+            judgement.look((positive, negative), numbers, (sum, solution.rho));
+        }
+        let is_last = last.is_some_and(|last| last.beta == solution.beta);
+        judgement.take(problem, solution, is_last);
+        last = Some(solution);
+    }
+}

@@ -1,0 +1,113 @@
+//! Kernel values between classes, computed for many classes at once.
+
+use std::ops::Range;
+
+use ndarray::ArrayViewMut2;
+
+use crate::recognition::svm::gram::sorted::Sorted;
+use crate::recognition::svm::linalg::packed::Packed;
+use crate::recognition::svm::linalg::scalar::Scalar;
+
+/// Rows of a group of classes, at least, while classes last: enough that a product's time goes into its multiplications.
+const GROUP_ROWS: usize = 512;
+
+/// The classes whose rows these are, in groups of about [`GROUP_ROWS`] rows.
+pub(crate) fn groups(ranges: &[Range<usize>]) -> Vec<Range<usize>> {
+    let mut groups: Vec<Range<usize>> = Vec::new();
+    for class in 0..ranges.len() {
+        match groups.last_mut() {
+            Some(group) if ranges[class].start - ranges[group.start].start < GROUP_ROWS => {
+                group.end = class + 1;
+            }
+            _ => groups.push(class..class + 1),
+        }
+    }
+    groups
+}
+
+/// Each pair of classes, the smaller first, of one group or across two.
+pub(crate) fn pairs(
+    own: Range<usize>,
+    other: Range<usize>,
+) -> impl Iterator<Item = (usize, usize)> {
+    own.flat_map(move |a| other.clone().filter(move |&b| b > a).map(move |b| (a, b)))
+}
+
+/// A group of classes: its rows, and their kernel values.
+pub(crate) struct Group<'a, T> {
+    sorted: &'a Sorted<T>,
+    rows: Range<usize>,
+    /// Its rows, packed for products with those of others.
+    packed: Packed<'a, T>,
+    /// Those of its rows with each other, row by row.
+    own: Vec<T>,
+}
+
+impl<'a, T: Scalar> Group<'a, T> {
+    /// Of these classes.
+    pub fn new(sorted: &'a Sorted<T>, classes: &Range<usize>) -> Self {
+        let rows = sorted.rows_of(classes);
+        let points = sorted.points().range(rows.clone());
+        let packed = points.packed();
+        let mut own = packed.own_products();
+        points.apply(own.view_mut(), points, &sorted.kernel());
+        Self {
+            sorted,
+            rows,
+            packed,
+            own: own.into_raw_vec_and_offset().0,
+        }
+    }
+
+    /// Bytes that groups take, with the kernel values between two of them.
+    pub fn bytes(sorted: &Sorted<T>, groups: &[Range<usize>]) -> usize {
+        let sizes = || groups.iter().map(|group| sorted.rows_of(group).len());
+        let squares: usize = sizes().map(|n| n * n).sum();
+        let largest = sizes().max().unwrap_or(0);
+        let values = (squares + largest * largest) * size_of::<T>();
+        let n_features = sorted.centre().len();
+        let packed = sizes().map(|n| Packed::<T>::bytes(n, n_features));
+        values + packed.sum::<usize>()
+    }
+
+    /// Kernel values of another group's rows with these: row by row, in the memory of the last ones.
+    pub fn with(&self, other: &Self, values: &mut Vec<T>) {
+        let size = (other.rows.len(), self.rows.len());
+        values.resize(size.0 * size.1, T::zero());
+        let values = ArrayViewMut2::from_shape(size, values);
+        let mut values = values.expect("room for all values was made");
+        let [own, others] =
+            [self, other].map(|group| self.sorted.points().range(group.rows.clone()));
+        self.packed.multiply(others.values, values.view_mut());
+        others.apply(values, own, &self.sorted.kernel());
+    }
+
+    /// Of kernel values with this group those of some rows with some of its own, row by row; all rows begin with `first`.
+    fn part<'v>(
+        &self,
+        (values, first): (&'v [T], usize),
+        rows: &Range<usize>,
+        columns: &Range<usize>,
+    ) -> Vec<&'v [T]> {
+        let columns = columns.start - self.rows.start..columns.end - self.rows.start;
+        let width = self.rows.len();
+        let rows = rows.start - first..rows.end - first;
+        rows.map(|row| &values[row * width..][columns.clone()])
+            .collect()
+    }
+
+    /// Kernel values of some of its rows with others of its, row by row.
+    pub fn own_part(&self, rows: &Range<usize>, columns: &Range<usize>) -> Vec<&[T]> {
+        self.part((&self.own, self.rows.start), rows, columns)
+    }
+
+    /// Kernel values of another group's rows with its own, of those that [`with`](Self::with) gave.
+    pub fn part_with<'v>(
+        &self,
+        other: &Self,
+        values: &'v [T],
+        (rows, columns): (&Range<usize>, &Range<usize>),
+    ) -> Vec<&'v [T]> {
+        self.part((values, other.rows.start), rows, columns)
+    }
+}

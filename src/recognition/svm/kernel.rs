@@ -1,0 +1,194 @@
+//! Kernels of the support vector machines.
+
+use ndarray::{ArrayView1, ArrayView2};
+use serde::{Deserialize, Serialize};
+
+use crate::recognition::svm::gram::extent::Extent;
+use crate::{Error, Result};
+
+/// The width parameter γ of a kernel, in inverse squared feature units.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Gamma {
+    /// `1 / (m · var(X))`, the variance taken over all training features; 1 where that is 0 (scikit-learn's default).
+    Scale,
+    /// A number above 0.
+    Value(f64),
+}
+
+/// The kernel `K(x, z)` of a support vector machine.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kernel {
+    /// `x·z`.
+    Linear,
+    /// `exp(−γ|x − z|²)`.
+    Rbf {
+        /// γ.
+        gamma: Gamma,
+    },
+    /// `(γ x·z + c₀)^d`.
+    Polynomial {
+        /// γ.
+        gamma: Gamma,
+        /// c₀ ≥ 0 (a negative one makes the dual problem non-convex).
+        coef0: f64,
+        /// d ≥ 1.
+        degree: u32,
+    },
+}
+
+impl Kernel {
+    /// The same kernel with another γ; a linear one has none.
+    pub fn with_gamma(self, gamma: Gamma) -> Self {
+        match self {
+            Self::Linear => Self::Linear,
+            Self::Rbf { .. } => Self::Rbf { gamma },
+            Self::Polynomial { coef0, degree, .. } => Self::Polynomial {
+                gamma,
+                coef0,
+                degree,
+            },
+        }
+    }
+
+    /// The kernel with γ as a number, taken from the training features (n_rows × m) of this extent.
+    pub(crate) fn resolve(
+        &self,
+        features: ArrayView2<f64>,
+        extent: &Extent,
+    ) -> Result<KernelFunction> {
+        let function = match *self {
+            Self::Linear => KernelFunction::Linear,
+            Self::Rbf { gamma } => KernelFunction::Rbf {
+                gamma: gamma.resolve(features)?,
+            },
+            Self::Polynomial {
+                gamma,
+                coef0,
+                degree,
+            } => {
+                if !(coef0 >= 0.0 && coef0.is_finite()) {
+                    let allowed = "a finite number of at least 0 is allowed";
+                    return Err(Error::input("coef0", coef0, allowed));
+                }
+                if !(1..=20).contains(&degree) {
+                    return Err(Error::input("degree", degree, "1 to 20 is allowed"));
+                }
+                KernelFunction::Polynomial {
+                    gamma: gamma.resolve(features)?,
+                    coef0,
+                    degree: degree as i32,
+                }
+            }
+        };
+        function.check(extent.largest_norm)?;
+        Ok(function)
+    }
+}
+
+impl Gamma {
+    pub(crate) fn resolve(self, features: ArrayView2<f64>) -> Result<f64> {
+        match self {
+            Self::Value(gamma) if gamma > 0.0 && gamma.is_finite() => Ok(gamma),
+            Self::Value(gamma) => Err(Error::input(
+                "gamma",
+                gamma,
+                "'scale' or a finite number above 0 is allowed",
+            )),
+            Self::Scale => {
+                // Two plain passes; ndarray's own variance divides at every value.
+                let n = features.len() as f64;
+                let mean = features.sum() / n;
+                let of_row = |row: ArrayView1<f64>| match row.as_slice() {
+                    Some(row) => squares_about(mean, row),
+                    None => squares_about(mean, &row.to_vec()),
+                };
+                let squares: f64 = features.rows().into_iter().map(of_row).sum();
+                let scale = features.ncols() as f64 * squares / n;
+                Ok(if scale > 0.0 { 1.0 / scale } else { 1.0 })
+            }
+        }
+    }
+}
+
+/// `Σ (x − mean)²`.
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
+fn squares_about(mean: f64, values: &[f64]) -> f64 {
+    let (lanes, last) = values.as_chunks::<8>();
+    let mut squares = [0.0; 8];
+    for values in lanes {
+        for lane in 0..8 {
+            squares[lane] += (values[lane] - mean) * (values[lane] - mean);
+        }
+    }
+    let last = last.iter().map(|value| (value - mean) * (value - mean));
+    squares.iter().sum::<f64>() + last.sum::<f64>()
+}
+
+/// A kernel with every parameter a number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum KernelFunction {
+    Linear,
+    Rbf { gamma: f64 },
+    Polynomial { gamma: f64, coef0: f64, degree: i32 },
+}
+
+impl KernelFunction {
+    /// Refuses rows whose largest squared norm is so large that some kernel value is infinite. None exceeds those of a row
+    /// with itself, nor a squared distance four times the largest squared norm.
+    fn check(&self, norm: f64) -> Result<()> {
+        let largest = match *self {
+            Self::Linear | Self::Rbf { .. } => 4.0 * norm,
+            Self::Polynomial {
+                gamma,
+                coef0,
+                degree,
+            } => (gamma * norm + coef0).powi(degree),
+        };
+        if largest.is_finite() {
+            return Ok(());
+        }
+        Err(Error::input(
+            "features",
+            format!("a row of squared length {norm:e}"),
+            "its kernel value must be a finite number: scale the features, or take a smaller gamma or degree",
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::{Array2, array};
+
+    #[test]
+    fn gamma_scale_is_the_inverse_of_columns_times_variance() {
+        let features = array![[1.0, 3.0], [5.0, 7.0]];
+        assert_eq!(
+            Gamma::Scale.resolve(features.view()).unwrap(),
+            1.0 / (2.0 * 5.0)
+        );
+        assert_eq!(
+            Gamma::Scale.resolve(Array2::ones((3, 2)).view()).unwrap(),
+            1.0
+        );
+    }
+
+    #[test]
+    fn parameters_out_of_range_are_refused() {
+        let features = array![[1.0]];
+        for gamma in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(Gamma::Value(gamma).resolve(features.view()).is_err());
+        }
+        for (coef0, degree) in [(-1.0, 2), (f64::NAN, 2), (0.0, 0), (0.0, 21)] {
+            let gamma = Gamma::Scale;
+            let kernel = Kernel::Polynomial {
+                gamma,
+                coef0,
+                degree,
+            };
+            let extent = Extent::of(features.view()).unwrap();
+            assert!(kernel.resolve(features.view(), &extent).is_err());
+        }
+    }
+}

@@ -1,0 +1,232 @@
+//! Factors `L D Lᵀ` of a symmetric matrix, kept as rows of `D Lᵀ`: what they are made from, solved by, and changed with.
+//!
+//! Rows are stored in pieces, 0 up to and on the diagonal, with 1 over D beside them, which is 0 for a row that takes no part.
+
+/// Values handled side by side: four registers, so that no addition waits for the one before.
+pub(crate) const LANES: usize = 32;
+/// Values of a side that are found one from the other.
+const BLOCK: usize = 8;
+/// What is left of a row's own value when those before are taken from it, as a multiple of the ridge: of one that depends on them
+/// about the ridge is left, more where they nearly depend on each other.
+const INDEPENDENT_FROM: f64 = 10.0;
+
+/// A piece of a row.
+pub(crate) type Piece = [f64; LANES];
+
+/// Makes a symmetric matrix with a ridge, given on and right of its diagonal, into `D Lᵀ` and 1 over D, row by row.
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
+pub(crate) fn eliminate(rows: &mut [Piece], width: usize, inverse: &mut [f64], ridge: f64) {
+    let n = inverse.len();
+    let n_pieces = n.div_ceil(LANES);
+    let mut factors = vec![0.0; n];
+    for i in 0..n {
+        let (piece, lane) = (i / LANES, i % LANES);
+        for j in 0..i {
+            factors[j] = rows[j * width + piece][lane] * inverse[j];
+        }
+        for at in piece..n_pieces {
+            let mut own = rows[i * width + at];
+            for j in 0..i {
+                let above = &rows[j * width + at];
+                for lane in 0..LANES {
+                    own[lane] -= factors[j] * above[lane];
+                }
+            }
+            rows[i * width + at] = own;
+        }
+        let pivot = rows[i * width + piece][lane];
+        let is_independent = pivot > INDEPENDENT_FROM * ridge;
+        inverse[i] = if is_independent {
+            1.0 / (pivot + ridge)
+        } else {
+            0.0
+        };
+        rows[i * width + piece][..=lane].fill(0.0);
+    }
+}
+
+/// Solves `L v = side` in place, for each of some sides: a piece after another, what those before take from it first.
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
+pub(crate) fn substitute<const N: usize>(
+    rows: &[Piece],
+    width: usize,
+    inverse: &[f64],
+    sides: &mut [[Piece; N]],
+) {
+    let n = inverse.len();
+    let mut factors = vec![[0.0; N]; n];
+    for piece in 0..n.div_ceil(LANES) {
+        let mut own = sides[piece];
+        let start = piece * LANES;
+        for (row, factors) in rows.chunks_exact(width).zip(&factors[..start]) {
+            take_product(&mut own, factors, &row[piece]);
+        }
+        for at in start..n.min(start + LANES) {
+            for side in 0..N {
+                factors[at][side] = own[side][at - start] * inverse[at];
+            }
+            take_product(&mut own, &factors[at], &rows[at * width + piece]);
+        }
+        sides[piece] = own;
+    }
+}
+
+/// Takes the product of a piece of a row and a factor from each side.
+#[inline(always)]
+fn take_product<const N: usize>(own: &mut [Piece; N], factors: &[f64; N], row: &Piece) {
+    for side in 0..N {
+        for lane in 0..LANES {
+            own[side][lane] -= factors[side] * row[lane];
+        }
+    }
+}
+
+/// Solves `D Lᵀ x = side` in place: a few places after another from the last, what those after take from them first.
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
+pub(crate) fn substitute_back(rows: &[Piece], width: usize, inverse: &[f64], side: &mut [f64]) {
+    let n_blocks = inverse.len().div_ceil(BLOCK);
+    let (blocks, _) = side.as_chunks_mut::<BLOCK>();
+    for block in (0..n_blocks).rev() {
+        let (before, after) = blocks[..n_blocks].split_at_mut(block + 1);
+        let own = &mut before[block];
+        let start = block * BLOCK;
+        let places = start..inverse.len().min(start + BLOCK);
+        let row = |at: usize| rows[at * width..][..width].as_flattened();
+        for at in places.clone() {
+            let (row, _) = row(at)[start + BLOCK..].as_chunks::<BLOCK>();
+            let mut sums = [0.0; BLOCK];
+            for (row, known) in row.iter().zip(&*after) {
+                for lane in 0..BLOCK {
+                    sums[lane] += row[lane] * known[lane];
+                }
+            }
+            own[at - start] -= sums.iter().sum::<f64>();
+        }
+        for at in places.rev() {
+            let row = &row(at)[start..][..BLOCK];
+            let mut value = own[at - start];
+            for later in at - start + 1..BLOCK {
+                value -= row[later] * own[later];
+            }
+            own[at - start] = value * inverse[at];
+        }
+    }
+}
+
+/// Adds `weight · own ownᵀ` to the matrix whose factors are these rows, of which the first has the place `first`; `own` is used
+/// up.
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
+pub(crate) fn add_product(
+    rows: &mut [Piece],
+    own: &mut [Piece],
+    (first, mut weight): (usize, f64),
+    inverse: &mut [f64],
+) {
+    let (n, width) = (inverse.len(), own.len());
+    let n_pieces = n.div_ceil(LANES);
+    let own = &mut own[..n_pieces];
+    for i in first..n {
+        let (piece, lane) = (i / LANES, i % LANES);
+        let value = std::mem::take(&mut own[piece][lane]);
+        if inverse[i] == 0.0 || value == 0.0 {
+            continue;
+        }
+        let row = &mut rows[(i - first) * width..][..n_pieces];
+        let (to_row, to_own) = (weight * value, value * inverse[i]);
+        for at in piece..n_pieces {
+            for lane in 0..LANES {
+                let before = row[at][lane];
+                row[at][lane] = before + to_row * own[at][lane];
+                own[at][lane] -= to_own * before;
+            }
+        }
+        let pivot = 1.0 / inverse[i];
+        let changed = pivot + to_row * value;
+        weight *= pivot / changed;
+        inverse[i] = 1.0 / changed;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const N: usize = 75;
+    const WIDTH: usize = 3;
+    const RIDGE: f64 = 1e-3;
+
+    /// A symmetric matrix without pattern whose diagonal prevails, with the ridge.
+    fn matrix() -> Vec<[f64; N]> {
+        let value = |i: usize, j: usize| (((i.min(j) * N + i.max(j)) as f64).sin() * 1e4).fract();
+        let entry = |i: usize, j: usize| if i == j { 40.0 + RIDGE } else { value(i, j) };
+        let row = |i: usize| std::array::from_fn(|j| entry(i, j));
+        (0..N).map(row).collect()
+    }
+
+    fn factors() -> (Vec<Piece>, Vec<f64>) {
+        let mut rows = vec![[0.0; LANES]; N * WIDTH];
+        for (i, values) in matrix().iter().enumerate() {
+            let row = rows[i * WIDTH..][..WIDTH].as_flattened_mut();
+            row[i..N].copy_from_slice(&values[i..]);
+            row[i] -= RIDGE;
+        }
+        let mut inverse = vec![0.0; N];
+        eliminate(&mut rows, WIDTH, &mut inverse, RIDGE);
+        (rows, inverse)
+    }
+
+    fn side(number: usize) -> Vec<Piece> {
+        let mut side = vec![[0.0; LANES]; WIDTH];
+        let values = side.as_flattened_mut()[..N].iter_mut().enumerate();
+        values.for_each(|(i, value)| *value = ((i + 31 * number) as f64 * 0.7).cos());
+        side
+    }
+
+    /// What is solved for, times the matrix, is the side.
+    fn assert_solves((rows, inverse): &(Vec<Piece>, Vec<f64>), matrix: &[[f64; N]]) {
+        let both = |(a, b): (Piece, Piece)| [a, b];
+        let mut sides: Vec<[Piece; 2]> = side(0).into_iter().zip(side(1)).map(both).collect();
+        substitute(rows, WIDTH, inverse, &mut sides);
+        for number in 0..2 {
+            let mut x: Vec<Piece> = sides.iter().map(|side| side[number]).collect();
+            substitute_back(rows, WIDTH, inverse, x.as_flattened_mut());
+            let expected = side(number);
+            for (i, row) in matrix.iter().enumerate() {
+                let products = row.iter().zip(x.as_flattened()).map(|(a, x)| a * x);
+                let left = products.sum::<f64>() - expected.as_flattened()[i];
+                assert!(left.abs() < 1e-12, "{i}: {left}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_solved_for_times_the_matrix_is_the_side() {
+        assert_solves(&factors(), &matrix());
+    }
+
+    #[test]
+    fn a_product_that_is_added_is_in_the_factors() {
+        let (mut rows, mut inverse) = factors();
+        let mut changed = matrix();
+        // Of the places from 40 on.
+        let mut own = side(2);
+        own.as_flattened_mut()[..40].fill(0.0);
+        for (i, row) in changed.iter_mut().enumerate() {
+            for (j, value) in row.iter_mut().enumerate() {
+                *value += 2.5 * own.as_flattened()[i] * own.as_flattened()[j];
+            }
+        }
+        add_product(&mut rows[40 * WIDTH..], &mut own, (40, 2.5), &mut inverse);
+        assert_solves(&(rows, inverse), &changed);
+    }
+
+    #[test]
+    fn a_row_that_depends_on_one_before_takes_no_part() {
+        let mut rows = vec![[0.0; LANES]; 2];
+        (rows[0][0], rows[0][1], rows[1][1]) = (2.0, 4.0, 8.0);
+        let mut inverse = vec![0.0; 2];
+        eliminate(&mut rows, 1, &mut inverse, 1e-6);
+        assert_eq!(inverse[1], 0.0);
+        assert!((inverse[0] - 0.5).abs() < 1e-6);
+    }
+}

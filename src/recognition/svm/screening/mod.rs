@@ -1,0 +1,6 @@
+//! One-vs-one problems solved on the rows near their margins.
+
+pub(crate) mod first_rows;
+pub(crate) mod margin_pair;
+pub(crate) mod margin_rows;
+pub(crate) mod near_margin;
