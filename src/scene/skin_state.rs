@@ -3,6 +3,7 @@
 use super::frame::PatchReading;
 use super::mount::Mount;
 use super::plan_patch::PlannedPatch;
+use crate::contact::balance::TaxelLoad;
 use crate::contact::{
     DamperState, FrictionState, GripCounts, NormalForce, SkinContact, SkinWorkspace, TaxelContact,
     Wrench, axial_load, deflect_skin, press_skin,
@@ -118,14 +119,19 @@ impl SkinState {
         self.feel(patch, models, objects, dt, Detail::Deflections);
     }
 
-    /// The same, and reports; `stops`: what stops carry of free objects, a taxel and newtons each.
+    /// How far its taxels are in, metres.
+    pub fn deflection(&self) -> &[f64] {
+        &self.damper.deflection
+    }
+
+    /// The same, and reports; `loads`: what its taxels carry of free objects, taxel by taxel.
     pub fn step_and_read(
         &mut self,
         patch: &PlannedPatch,
         models: &[Model],
         objects: &PlacedObjects,
         dt: f64,
-        stops: impl Iterator<Item = (usize, f64)>,
+        loads: &[&TaxelLoad],
         reading: &mut PatchReading,
     ) {
         self.feel(patch, models, objects, dt, Detail::Contacts);
@@ -139,8 +145,14 @@ impl SkinState {
         reading.force.clone_from(&self.damper.force);
         reading.n_saturated = self.counts.n_saturated;
         reading.n_grazing = self.counts.n_grazing;
-        for (taxel, force) in stops {
-            reading.force[taxel] += force;
+        reading.stop_force = loads.iter().map(|load| load.stop).sum();
+        for of_taxel in loads.chunk_by(|a, b| a.taxel == b.taxel) {
+            let taxel = of_taxel[0].taxel;
+            let stop: f64 = of_taxel.iter().map(|load| load.stop).sum();
+            if stop == 0.0 {
+                continue;
+            }
+            reading.force[taxel] += stop;
             let is_counted = contacts
                 .binary_search_by_key(&taxel, |contact| contact.taxel)
                 .is_ok_and(|at| contacts[at].is_saturated(patch.skin.taxels().at(taxel)));
@@ -149,8 +161,19 @@ impl SkinState {
         let forces = &reading.force;
         reading.n_touched = forces.iter().filter(|&&force| force > 0.0).count();
         let load = axial_load(&patch.skin, contacts, |contact| forces[contact.taxel]);
-        reading.wrench = on_patch(load.on_object);
         reading.center_of_pressure = load.center_of_pressure;
+        // Spheres that share a taxel push it along several ways, of which a contact is one: the balance knows what each has of its force.
+        let rest = |contact: &TaxelContact| {
+            let first = loads.partition_point(|load| load.taxel < contact.taxel);
+            let own = loads[first..].iter();
+            let own = own.take_while(|load| load.taxel == contact.taxel);
+            forces[contact.taxel] - own.map(|load| load.force).sum::<f64>()
+        };
+        let mut on_object = axial_load(&patch.skin, contacts, rest).on_object;
+        for load in loads {
+            on_object = on_object + load.on_object;
+        }
+        reading.wrench = on_patch(on_object);
         if let (Some(state), Some(friction)) = (&self.friction, &mut reading.friction) {
             let load = state.load(&patch.skin, contacts);
             reading.wrench = on_patch(load.on_object);

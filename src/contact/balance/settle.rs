@@ -1,11 +1,13 @@
-//! The balance of a free object, and who finds it.
+//! The balance of free objects, and who finds it.
 
-use super::descent::Descent;
-use super::energy::Energy;
-use super::free_object::{FreeObject, PlacedSkin};
+use super::body::Body;
+use super::descent::{Descent, End};
+use super::energy::{Energy, PairLoad, wrenches};
+use super::free_object::{FreeObject, Ground, HalfSpace, Obstacle, PlacedSkin};
 use super::loads::Multipliers;
 use super::model::Model;
-use super::pairs::Key;
+use super::pairs::{Key, OTHERS};
+use super::reports::{TaxelLoad, Touch};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use glam::DVec3;
@@ -20,7 +22,7 @@ pub enum Outcome {
         /// Where to from where it started: unit, in the world; across gravity, unless it fell straight down.
         direction: DVec3,
     },
-    /// Neither within the largest number of steps.
+    /// Neither within the largest number of steps: of all objects that were looked at together.
     Unsettled,
 }
 
@@ -31,7 +33,7 @@ pub struct Balance {
     pub pose: Pose,
     /// Whether it rests there.
     pub outcome: Outcome,
-    /// What the skins put on it, newtons, in the world: k δ of each taxel, and its stop's force.
+    /// What all that it touches puts on it, newtons, in the world: k δ of each taxel, and its stop's force; and what is rigid.
     pub force: DVec3,
     /// About the centre of mass, N·m.
     pub torque: DVec3,
@@ -40,45 +42,18 @@ pub struct Balance {
     pub imbalance: f64,
     /// Taxels that carry it.
     pub n_touched: usize,
-    /// Taxels whose stops carry.
+    /// Taxels whose stops carry it.
     pub n_saturated: usize,
     /// Taxels pushed along a flank as good as parallel to their axis: see [`GRAZING`](crate::contact::GRAZING).
     pub n_grazing: usize,
-    /// Poses that were looked at.
+    /// Poses that were looked at, of all objects together.
     pub n_steps: usize,
 }
 
-/// What one taxel carries of an object.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TaxelLoad {
-    /// The skin's number in the list that the object was put to rest on.
-    pub skin: usize,
-    /// The taxel's number in its layout.
-    pub taxel: usize,
-    /// What the object puts on it along its axis, newtons, above 0.
-    pub force: f64,
-    /// The part of that force which the spring at its stroke does not carry, newtons: the reaction of the stop, the multiplier of
-    /// δ ≤ s in the balance; 0 before the stroke.
-    pub stop: f64,
-}
-
-impl TaxelLoad {
-    /// Of a taxel whose stop carries if `is_stopped`.
-    pub(super) fn new(
-        (skin, taxel): Key,
-        force: f64,
-        is_stopped: bool,
-        skins: &[PlacedSkin],
-    ) -> Self {
-        let (skin, taxel) = (skin as usize, taxel as usize);
-        let spring = skins[skin].patch.taxels().at(taxel);
-        let past = force - spring.stiffness * spring.stroke;
-        Self {
-            skin,
-            taxel,
-            force,
-            stop: if is_stopped { past.max(0.0) } else { 0.0 },
-        }
+impl Balance {
+    /// Whether it did not escape.
+    pub fn is_there(&self) -> bool {
+        !matches!(self.outcome, Outcome::Escaped { .. })
     }
 }
 
@@ -89,7 +64,10 @@ pub struct Balancer {
     pub(super) next: Energy,
     pub(super) model: Model,
     pub(super) multipliers: Multipliers,
-    pub(super) carried: Vec<TaxelLoad>,
+    loads: Vec<TaxelLoad>,
+    touches: Vec<Touch>,
+    /// Of the objects that it put to rest last, those that did not escape.
+    there: Vec<usize>,
 }
 
 impl Balancer {
@@ -98,59 +76,258 @@ impl Balancer {
         Self::default()
     }
 
-    /// What carries the object that was put to rest last, taxel by taxel, in the order of skins and taxels; empty of one that escaped.
-    /// Its forces are those of the last [`Balance`]: Σ f n_c / (n_c·n) is the balance's force.
+    /// What taxels carry of the objects that were put to rest last, in the order of skins and taxels; nothing of those that escaped.
+    /// Its forces are those of the last [`Balance`]s, with the [touches](Self::touches)'.
     pub fn loads(&self) -> &[TaxelLoad] {
-        &self.carried
+        &self.loads
     }
 
-    /// Puts an object to rest from a pose (`world_from_object`), under `gravity` (m/s², in the world).
-    ///
-    /// It goes to the rest that lies downhill; from a pose at rest it does not move. The skins do not move meanwhile, and their dampers do not
-    /// count.
+    /// What rigid things put on them.
+    pub fn touches(&self) -> &[Touch] {
+        &self.touches
+    }
+
+    /// Puts one object to rest on skins, from a pose (`world_from_object`), under `gravity` (m/s², in the world).
     ///
     /// # Errors
-    /// The error names a gravity that is zero or not finite, and a pose that is not finite.
-    pub fn settle<'s>(
+    /// Those of [`settle_all`](Self::settle_all).
+    pub fn settle(
         &mut self,
         object: &FreeObject,
-        skins: &[PlacedSkin<'s>],
+        skins: &[PlacedSkin],
         gravity: DVec3,
         start: &Pose,
     ) -> Result<Balance> {
-        if !(gravity.is_finite() && gravity != DVec3::ZERO) {
-            return Err(Error::input(
-                "gravity",
-                format!("{gravity} m/s²"),
-                "finite, and not zero for a free object",
-            ));
-        }
-        if !(start.translation.is_finite() && start.rotation.is_finite()) {
-            return Err(Error::input(
-                "object pose",
-                start.translation,
-                "finite numbers",
-            ));
-        }
-        // Where the object is, is the origin: far from the world's, places have too few digits to balance stiff springs.
-        let origin = start.translation;
+        let ground = Ground {
+            skins,
+            ..Ground::default()
+        };
+        let balances = self.settle_all(&[*object], &ground, gravity, &[*start])?;
+        Ok(balances[0])
+    }
+
+    /// Puts objects to rest together, from their poses (`world_from_object`, one an object), under `gravity` (m/s², in the world).
+    ///
+    /// They go to the rest that lies downhill; from poses at rest they do not move. The ground does not move meanwhile.
+    ///
+    /// # Errors
+    /// The error names a gravity that is zero or not finite, and a pose that is not finite.
+    ///
+    /// # Panics
+    /// If there are not as many poses as objects.
+    pub fn settle_all(
+        &mut self,
+        objects: &[FreeObject],
+        ground: &Ground,
+        gravity: DVec3,
+        starts: &[Pose],
+    ) -> Result<Vec<Balance>> {
+        assert_eq!(objects.len(), starts.len());
+        check(gravity, starts)?;
+        // Where the objects are, is the origin: far from the world's, places have too few digits to balance stiff springs.
+        let origin = starts.first().map_or(DVec3::ZERO, |pose| pose.translation);
+        let near = Near::of(ground, origin);
+        let ground = Ground {
+            skins: &near.skins,
+            planes: &near.planes,
+            obstacles: &near.obstacles,
+        };
         let from_there = |pose: &Pose| Pose::new(pose.rotation, pose.translation - origin);
-        let near = |skin: &PlacedSkin<'s>| PlacedSkin {
+        let bodies = objects.iter().zip(starts);
+        let bodies = bodies.map(|(object, start)| Body::new(*object, gravity, &from_there(start)));
+        let mut balances = self.settle_bodies(bodies.collect(), &ground);
+        for balance in &mut balances {
+            balance.pose.translation += origin;
+        }
+        for touch in &mut self.touches {
+            touch.point += origin;
+        }
+        Ok(balances)
+    }
+
+    fn settle_bodies<'s>(
+        &mut self,
+        mut bodies: Vec<Body<'s>>,
+        ground: &'s Ground<'s>,
+    ) -> Vec<Balance> {
+        let mut there: Vec<usize> = (0..bodies.len()).collect();
+        let mut balances = vec![None; bodies.len()];
+        let mut n_steps = 0;
+        self.loads.clear();
+        self.touches.clear();
+        if self.there != there {
+            self.multipliers = Multipliers::default();
+        }
+        while !bodies.is_empty() {
+            let mut descent = Descent::new(self, bodies, ground);
+            let end = descent.run();
+            let (outcome, loads) = match end {
+                End::Endless(gone) => {
+                    n_steps += descent.n_steps;
+                    bodies = descent.bodies;
+                    self.multipliers = Multipliers::default();
+                    for slot in gone.into_iter().rev() {
+                        let number = there.remove(slot);
+                        balances[number] = Some(escaped(&bodies.remove(slot), n_steps));
+                    }
+                    continue;
+                }
+                End::Rest => (Outcome::Settled, descent.balancer.now.pair_loads()),
+                End::Exhausted => match descent.finish() {
+                    Some(loads) => (Outcome::Settled, loads),
+                    None => (Outcome::Unsettled, descent.balancer.now.pair_loads()),
+                },
+            };
+            n_steps += descent.n_steps;
+            let multipliers = std::mem::take(&mut descent.multipliers);
+            let settled = std::mem::take(&mut descent.bodies);
+            self.multipliers = multipliers;
+            self.report(&settled, &loads, &there, ground.skins);
+            let found = self.balances(&settled, &loads, ground.skins, (outcome, n_steps));
+            for (number, balance) in there.iter().zip(found) {
+                balances[*number] = Some(balance);
+            }
+            break;
+        }
+        self.there = there;
+        balances
+            .into_iter()
+            .map(|balance| balance.expect("each is there or has escaped"))
+            .collect()
+    }
+
+    fn balances(
+        &self,
+        bodies: &[Body],
+        loads: &[PairLoad],
+        skins: &[PlacedSkin],
+        (outcome, n_steps): (Outcome, usize),
+    ) -> Vec<Balance> {
+        let pairs = &self.now.pairs.all;
+        let wrenches = wrenches(loads, pairs, bodies, skins);
+        let of_body = |(slot, (body, wrench)): (usize, (&Body, (DVec3, DVec3)))| {
+            let own = loads.iter().filter(|load| {
+                let pair = &pairs[load.pair];
+                matches!(pair.key, Key::Taxel(..)) && pair.part.0 as usize == slot
+            });
+            let own: Vec<&PairLoad> = own.collect();
+            let taxels = own.chunk_by(|a, b| pairs[a.pair].key == pairs[b.pair].key);
+            let is_stopped = |of: &&[&PairLoad]| of.iter().any(|load| load.stop > 0.0);
+            Balance {
+                pose: body.pose(),
+                outcome,
+                force: wrench.0,
+                torque: wrench.1,
+                imbalance: body.imbalance_of(wrench),
+                n_touched: taxels.clone().count(),
+                n_saturated: taxels.filter(is_stopped).count(),
+                n_grazing: own
+                    .iter()
+                    .filter(|load| pairs[load.pair].is_grazing())
+                    .count(),
+                n_steps,
+            }
+        };
+        bodies
+            .iter()
+            .zip(wrenches)
+            .enumerate()
+            .map(of_body)
+            .collect()
+    }
+
+    /// What carries, by the numbers of the objects.
+    fn report(
+        &mut self,
+        bodies: &[Body],
+        loads: &[PairLoad],
+        there: &[usize],
+        skins: &[PlacedSkin],
+    ) {
+        let number = |slot: u32| there[slot as usize];
+        for load in loads {
+            let pair = &self.now.pairs.all[load.pair];
+            if pair.part == OTHERS {
+                continue;
+            }
+            let body = &bodies[pair.part.0 as usize];
+            match pair.key {
+                Key::Taxel(skin, taxel) => {
+                    let taxel = (skin as usize, taxel as usize);
+                    let object = number(pair.part.0);
+                    let found = TaxelLoad::new(taxel, object, pair, load, body, skins);
+                    self.loads.push(found);
+                }
+                Key::Rigid(_, rigid) => {
+                    self.touches
+                        .push(Touch::new(pair, rigid, load, body, number));
+                }
+            }
+        }
+    }
+}
+
+fn escaped(body: &Body, n_steps: usize) -> Balance {
+    Balance {
+        pose: body.pose(),
+        outcome: Outcome::Escaped {
+            direction: body.way_out(),
+        },
+        force: DVec3::ZERO,
+        torque: DVec3::ZERO,
+        imbalance: 1.0,
+        n_touched: 0,
+        n_saturated: 0,
+        n_grazing: 0,
+        n_steps,
+    }
+}
+
+fn check(gravity: DVec3, starts: &[Pose]) -> Result<()> {
+    if !(gravity.is_finite() && gravity != DVec3::ZERO) {
+        return Err(Error::input(
+            "gravity",
+            format!("{gravity} m/s²"),
+            "finite, and not zero for a free object",
+        ));
+    }
+    let is_odd = |pose: &&Pose| !(pose.translation.is_finite() && pose.rotation.is_finite());
+    match starts.iter().find(is_odd) {
+        Some(odd) => Err(Error::input(
+            "object pose",
+            odd.translation,
+            "finite numbers",
+        )),
+        None => Ok(()),
+    }
+}
+
+/// The ground, seen from another origin.
+struct Near<'a> {
+    skins: Vec<PlacedSkin<'a>>,
+    planes: Vec<HalfSpace>,
+    obstacles: Vec<Obstacle<'a>>,
+}
+
+impl<'a> Near<'a> {
+    fn of(ground: &Ground<'a>, origin: DVec3) -> Self {
+        let from_there = |pose: &Pose| Pose::new(pose.rotation, pose.translation - origin);
+        let skins = ground.skins.iter().map(|skin| PlacedSkin {
             world_from_patch: from_there(&skin.world_from_patch),
             ..*skin
-        };
-        let skins: Vec<PlacedSkin> = skins.iter().map(near).collect();
-        let mut descent = Descent::new(self, object, &skins, gravity, &from_there(start));
-        let (outcome, held) = match descent.run() {
-            Outcome::Unsettled => match descent.finish() {
-                Some(held) => (Outcome::Settled, Some(held)),
-                None => (Outcome::Unsettled, None),
-            },
-            outcome => (outcome, None),
-        };
-        let mut balance = descent.balance(outcome, held);
-        self.multipliers = descent.multipliers;
-        balance.pose.translation += origin;
-        Ok(balance)
+        });
+        let planes = ground.planes.iter().map(|plane| HalfSpace {
+            height: plane.height - plane.normal.dot(origin),
+            ..*plane
+        });
+        let obstacles = ground.obstacles.iter().map(|obstacle| Obstacle {
+            pose: from_there(&obstacle.pose),
+            ..*obstacle
+        });
+        Self {
+            skins: skins.collect(),
+            planes: planes.collect(),
+            obstacles: obstacles.collect(),
+        }
     }
 }
