@@ -1,6 +1,7 @@
 //! Laws of several free objects at once: all forces balance, by geometry alone, and nothing enters anything.
 
 use crate::reference_data;
+use bubbletouch::contact::GRAZING;
 use bubbletouch::contact::balance::{
     Balance, Balancer, FreeObject, Ground, HalfSpace, Obstacle, Outcome, PlacedSkin, Touched,
 };
@@ -21,28 +22,51 @@ const BALANCED: f64 = 1e-6;
 /// What may be inside of what is rigid, metres.
 const INSIDE: f64 = 1e-9;
 
+/// An object that is free.
+#[derive(Clone, Copy)]
+struct Free<'a> {
+    union: &'a SphereUnion,
+    mass: f64,
+    /// Of mass, in its own frame.
+    center: DVec3,
+    /// From there to its farthest point.
+    reach: f64,
+}
+
+impl<'a> Free<'a> {
+    fn new(union: &'a SphereUnion, mass: f64) -> Self {
+        let center = center_of_mass(union);
+        Self {
+            union,
+            mass,
+            center,
+            reach: union.reach_from(center),
+        }
+    }
+
+    fn weight(&self) -> f64 {
+        self.mass * G
+    }
+}
+
 /// A scene as it ended.
 struct Rest<'a> {
     ground: Ground<'a>,
-    objects: Vec<(&'a SphereUnion, f64)>,
+    objects: Vec<Free<'a>>,
     balances: Vec<Balance>,
     balancer: Balancer,
 }
 
-fn settle<'a>(
-    ground: Ground<'a>,
-    objects: Vec<(&'a SphereUnion, f64)>,
-    starts: &[Pose],
-) -> Rest<'a> {
+fn settle<'a>(ground: Ground<'a>, objects: &[Free<'a>], starts: &[Pose]) -> Rest<'a> {
     let free = objects
         .iter()
-        .map(|(union, mass)| FreeObject::new(union, *mass, center_of_mass(union)).unwrap());
+        .map(|object| FreeObject::new(object.union, object.mass, object.center).unwrap());
     let free: Vec<_> = free.collect();
     let mut balancer = Balancer::new();
     let balances = balancer.settle_all(&free, &ground, DOWN, starts).unwrap();
     Rest {
         ground,
-        objects,
+        objects: objects.to_vec(),
         balances,
         balancer,
     }
@@ -62,65 +86,68 @@ impl Rest<'_> {
     }
 
     fn sphere(&self, poses: &[Pose], (object, sphere): Part) -> Sphere {
-        let sphere = self.objects[object].0.spheres()[sphere];
+        let sphere = self.objects[object].union.spheres()[sphere];
         Sphere {
             center: poses[object].transform_point(sphere.center),
             ..sphere
         }
     }
 
-    fn weight(&self, object: usize) -> f64 {
-        self.objects[object].1 * G
-    }
-
     fn weights(&self) -> f64 {
-        self.there().map(|object| self.weight(object)).sum()
+        self.there()
+            .map(|object| self.objects[object].weight())
+            .sum()
     }
 
-    /// How far a sphere needs a taxel to be in, straight from the formula, metres; and what a newton along the axis is on the sphere. `None` if
-    /// it does not touch it.
+    /// How far a sphere needs a taxel to be in, straight from the formula, metres, on a grazing flank along its tangent; and what a newton along
+    /// the axis is on the sphere. `None` from behind.
     fn needed(&self, (skin, taxel): Part, sphere: &Sphere) -> Option<(f64, DVec3)> {
         let skin = &self.ground.skins[skin];
-        let [center, axis] =
-            [skin.patch.layout().centers(), skin.patch.layout().axes()].map(|v| v[taxel]);
-        let center = skin.world_from_patch.transform_point(center);
-        let axis = skin.world_from_patch.rotation * axis;
+        let layout = skin.patch.layout();
+        let center = skin
+            .world_from_patch
+            .transform_point(layout.centers()[taxel]);
+        let axis = skin.world_from_patch.rotation * layout.axes()[taxel];
         let Taxel { radius, stroke, .. } = *skin.patch.taxels().at(taxel);
         let from = sphere.center - center;
         let (height, reach) = (from.dot(axis), sphere.radius + radius);
-        let left = reach * reach - (from - height * axis).length_squared();
-        if left <= 0.0 || height < -stroke - radius {
+        let beside = from - height * axis;
+        let left = (reach * reach - beside.length_squared()).max(0.0).sqrt();
+        if height < -stroke - radius {
             return None;
         }
-        let beside = from - height * axis;
-        Some((left.sqrt() - height, axis + beside / left.sqrt()))
+        let least = GRAZING * reach;
+        if left >= least {
+            return Some((left - height, axis + beside / left));
+        }
+        let edge = (reach * reach - least * least).sqrt();
+        let slope = edge / least;
+        let needed = least - slope * (beside.length() - edge) - height;
+        Some((needed, axis + slope * beside.normalize()))
     }
 
-    /// All pairs of a taxel and a sphere that touch, or nearly.
+    /// All pairs of a taxel and a sphere that touch, or would after a motion of `margin` metres.
     fn near(&self, margin: f64) -> BTreeMap<Part, Vec<Part>> {
         let poses = self.poses();
         let mut near: BTreeMap<Part, Vec<Part>> = BTreeMap::new();
         for (number, skin) in self.ground.skins.iter().enumerate() {
-            let taxels: Vec<DVec3> = skin
-                .patch
-                .layout()
-                .centers()
-                .iter()
-                .map(|center| skin.world_from_patch.transform_point(*center))
-                .collect();
-            let (radius, stroke) = {
-                let taxel = skin.patch.taxels().at(0);
-                (taxel.radius, taxel.stroke)
-            };
+            let centers = skin.patch.layout().centers().iter();
+            let taxels = centers.map(|center| skin.world_from_patch.transform_point(*center));
+            let taxels: Vec<DVec3> = taxels.collect();
+            let Taxel { radius, stroke, .. } = *skin.patch.taxels().at(0);
             for object in self.there() {
-                for index in 0..self.objects[object].0.n_spheres() {
+                for index in 0..self.objects[object].union.n_spheres() {
                     let sphere = self.sphere(&poses, (object, index));
                     let reach = sphere.radius + radius + stroke + margin;
                     for (taxel, center) in taxels.iter().enumerate() {
-                        if center.distance_squared(sphere.center) < reach * reach {
-                            near.entry((number, taxel))
-                                .or_default()
-                                .push((object, index));
+                        if center.distance_squared(sphere.center) > reach * reach {
+                            continue;
+                        }
+                        let needed = self.needed((number, taxel), &sphere);
+                        let (needed, way) = needed.unwrap_or((0.0, DVec3::X));
+                        if needed > -margin * (1.0 + way.length()) {
+                            let parts = near.entry((number, taxel)).or_default();
+                            parts.push((object, index));
                         }
                     }
                 }
@@ -133,18 +160,20 @@ impl Rest<'_> {
     fn rigid_pairs(&self, margin: f64) -> Vec<(Part, Touched)> {
         let poses = self.poses();
         let mut pairs = Vec::new();
-        let parts: Vec<Vec<(Part, Sphere)>> = (0..self.objects.len())
-            .map(|object| {
-                let all = 0..self.objects[object].0.n_spheres();
-                all.map(|index| ((object, index), self.sphere(&poses, (object, index))))
-                    .collect()
-            })
-            .collect();
+        let parts = |object: usize| {
+            let all = 0..self.objects[object].union.n_spheres();
+            all.map(move |index| (object, index))
+        };
+        let ball = |object: usize| {
+            let Free { center, reach, .. } = self.objects[object];
+            (poses[object].transform_point(center), reach)
+        };
         for object in self.there() {
-            for (part, sphere) in &parts[object] {
+            for part in parts(object) {
+                let sphere = self.sphere(&poses, part);
                 let mut add = |touched| {
-                    if self.gap(sphere, &touched, &poses) < margin {
-                        pairs.push((*part, touched));
+                    if self.gap(&sphere, &touched, &poses) < margin {
+                        pairs.push((part, touched));
                     }
                 };
                 (0..self.ground.planes.len()).for_each(|plane| add(Touched::Plane(plane)));
@@ -153,8 +182,9 @@ impl Rest<'_> {
                     all.for_each(|index| add(Touched::Obstacle(number, index)));
                 }
                 for other in self.there().filter(|other| *other > object) {
-                    for (part, _) in &parts[other] {
-                        add(Touched::Object(part.0, part.1));
+                    let (center, radius) = ball(other);
+                    if sphere.center.distance(center) < sphere.radius + radius + margin.abs() {
+                        parts(other).for_each(|(other, index)| add(Touched::Object(other, index)));
                     }
                 }
             }
@@ -193,9 +223,12 @@ impl Rest<'_> {
         self.check_taxels(&poses, &mut on_object, &mut faults);
         self.check_touches(&poses, &mut on_object, &mut faults);
         for object in self.there() {
-            let (union, mass) = self.objects[object];
-            let center = center_of_mass(union);
-            let reach = union.reach_from(center);
+            let Free {
+                mass,
+                center,
+                reach,
+                ..
+            } = self.objects[object];
             let middle = poses[object].transform_point(center);
             let [force, moment] = on_object[object];
             let torque = moment - middle.cross(force);
@@ -224,7 +257,7 @@ impl Rest<'_> {
         let enough = 1e-7 * self.weights();
         let lightest = self
             .there()
-            .map(|object| self.weight(object))
+            .map(|object| self.objects[object].weight())
             .fold(f64::INFINITY, f64::min);
         for (key, parts) in &near {
             let needed = |part: &Part| {
@@ -314,9 +347,9 @@ impl Rest<'_> {
         }
     }
 
-    /// How many of `n` small motions of all objects were tried; none may lower what springs and heights hold. What enters something rigid
-    /// costs more than it can gain.
-    fn try_motions(&self, n: usize, case: u64, faults: &mut Vec<String>) -> usize {
+    /// None of `n` small motions of all objects may lower what springs and heights hold. What enters something rigid costs more than it can
+    /// gain.
+    fn try_motions(&self, n: usize, case: u64, faults: &mut Vec<String>) {
         const LONGEST: f64 = 1e-4;
         let near = self.near(LONGEST);
         let poses = self.poses();
@@ -327,25 +360,17 @@ impl Rest<'_> {
         let met = |gap: f64| if gap.abs() < INSIDE { gap } else { 0.0 };
         let gaps: Vec<f64> = rigid.iter().map(|pair| met(gap(&poses, pair))).collect();
         let steep = 10.0 * self.weights();
-        let energy = |poses: &[Pose]| -> Option<f64> {
+        let energy = |poses: &[Pose]| -> f64 {
             let mut energy = 0.0;
             for (key, parts) in &near {
                 let Taxel {
-                    stiffness,
-                    stroke,
-                    radius,
-                    ..
+                    stiffness, stroke, ..
                 } = *self.ground.skins[key.0].patch.taxels().at(key.1);
                 let mut deepest = 0.0_f64;
                 for part in parts {
                     let sphere = self.sphere(poses, *part);
-                    if let Some((needed, way)) = self.needed(*key, &sphere) {
-                        // Beside the widest part of a sphere energy jumps, or its slope is bounded.
-                        if way.length() * (radius + 1e-4) > sphere.radius + radius {
-                            return None;
-                        }
-                        deepest = deepest.max(needed);
-                    }
+                    let needed = self.needed(*key, &sphere);
+                    deepest = deepest.max(needed.map_or(0.0, |needed| needed.0));
                 }
                 let past = deepest - stroke;
                 energy += 0.5 * stiffness * deepest.min(stroke).powi(2);
@@ -355,41 +380,32 @@ impl Rest<'_> {
                 energy += steep * (reference - gap(poses, pair)).max(0.0);
             }
             for object in self.there() {
-                let (union, mass) = self.objects[object];
-                let middle = poses[object].transform_point(center_of_mass(union));
+                let Free { mass, center, .. } = self.objects[object];
+                let middle = poses[object].transform_point(center);
                 energy -= mass * DOWN.dot(middle);
             }
-            Some(energy)
+            energy
         };
-        let Some(lowest) = energy(&poses) else {
-            return 0;
-        };
+        let lowest = energy(&poses);
         let mut rng = Seed::new(case).named("motions").rng();
         let mut random = || rng.gen_range(-1.0..1.0);
-        let mut n_tried = 0;
         for _ in 0..n {
             let step = 10f64.powf(-5.5 + random());
-            let moved = poses.iter().zip(&self.objects).map(|(pose, (union, _))| {
-                let center = center_of_mass(union);
-                let reach = union.reach_from(center);
-                let turn = step / reach * DVec3::new(random(), random(), random());
+            let moved = poses.iter().zip(&self.objects).map(|(pose, object)| {
+                let turn = step / object.reach * DVec3::new(random(), random(), random());
                 let rotation = DQuat::from_scaled_axis(turn) * pose.rotation;
                 let shift = step * DVec3::new(random(), random(), random());
-                let middle = pose.transform_point(center) + shift;
-                Pose::new(rotation, middle - rotation * center)
+                let middle = pose.transform_point(object.center) + shift;
+                Pose::new(rotation, middle - rotation * object.center)
             });
             let moved: Vec<Pose> = moved.collect();
-            let Some(there) = energy(&moved) else {
-                continue;
-            };
-            n_tried += 1;
-            let allowed = self.weights() * (4e-6 * step + 4.0 * INSIDE) + 1e-14 * lowest.abs();
+            let there = energy(&moved);
+            let allowed = self.weights() * (4e-6 * step + INSIDE) + 1e-14 * lowest.abs();
             if there < lowest - allowed {
                 let by = lowest - there;
                 faults.push(format!("{step} m lower {lowest} J by {by}"));
             }
         }
-        n_tried
     }
 }
 
@@ -449,9 +465,7 @@ fn scanned() -> Vec<SphereUnion> {
         "011_banana",
         "012_strawberry",
         "014_lemon",
-        "025_mug",
         "040_large_marker",
-        "061_foam_brick",
         "062_dice",
         "077_rubiks_cube",
     ];
@@ -467,12 +481,14 @@ fn scanned() -> Vec<SphereUnion> {
     packed.collect()
 }
 
-/// Everything of one scene; what is wrong with it, how many objects are there, have left, and motions were tried.
+static SETTLE: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(0);
+
+/// Everything of one scene; what is wrong with it, how many objects are there, and have left.
 fn random_scene(
     case: u64,
     scans: &[SphereUnion],
     bowls: &[SkinPatch],
-) -> (Vec<String>, [usize; 3]) {
+) -> (Vec<String>, [usize; 2]) {
     let mut rng = Seed::new(case).named("many bodies").rng();
     let mut random = |a: f64, b: f64| rng.gen_range(a..b);
     let n = random(2.0, 9.0) as usize;
@@ -488,7 +504,7 @@ fn random_scene(
         let across = DVec3::new(random(-0.06, 0.06), random(-0.06, 0.06), height);
         starts.push(Pose::new(DQuat::from_xyzw(x, y, z, w).normalize(), across));
         height += reach + 0.005;
-        objects.push((union, 10f64.powf(random(-2.0, 0.0))));
+        objects.push(Free::new(union, 10f64.powf(random(-2.0, 0.0))));
     }
     let skin = &bowls[case as usize % bowls.len()];
     let tilt = DQuat::from_rotation_x(random(-0.1, 0.1));
@@ -503,11 +519,16 @@ fn random_scene(
         planes: if case.is_multiple_of(2) { &table } else { &[] },
         obstacles: &[],
     };
-    let rest = settle(ground, objects, &starts);
+    let t0 = std::time::Instant::now();
+    let rest = settle(ground, &objects, &starts);
+    SETTLE.fetch_add(
+        t0.elapsed().as_micros() as u64,
+        std::sync::atomic::Ordering::Relaxed,
+    );
     let mut faults = rest.faults();
-    let n_tried = rest.try_motions(100, case, &mut faults);
+    rest.try_motions(100, case, &mut faults);
     let n_there = rest.there().count();
-    (faults, [n_there, n - n_there, n_tried])
+    (faults, [n_there, n - n_there])
 }
 
 #[test]
@@ -541,7 +562,11 @@ fn a_thousand_scenes_of_several_objects_in_a_bowl_settle_or_leave() {
     println!("{:?}", start.elapsed());
     let faults: Vec<String> = results.iter().flat_map(|result| result.0.clone()).collect();
     let sum = |k: usize| results.iter().map(|result| result.1[k]).sum::<usize>();
-    println!("there, left, tried: {:?}", [0, 1, 2].map(sum));
+    println!(
+        "settle {} s",
+        SETTLE.load(std::sync::atomic::Ordering::Relaxed) as f64 * 1e-6
+    );
+    println!("there, left: {:?}", [0, 1].map(sum));
     assert!(
         faults.is_empty(),
         "{} faults:\n{}",
@@ -568,7 +593,7 @@ fn two_balls_on_the_same_taxels_carry_both_weights() {
                     0.02 + 0.02 * side,
                 ))
             });
-            let rest = settle(ground, masses.map(|mass| (&ball, mass)).to_vec(), &starts);
+            let rest = settle(ground, &masses.map(|mass| Free::new(&ball, mass)), &starts);
             let case = format!("{masses:?}, {apart} m");
             assert_eq!(rest.faults(), [String::new(); 0], "{case}");
             assert_eq!(rest.there().count(), 2, "{case}");
@@ -591,8 +616,8 @@ fn a_pyramid_of_balls_stands_in_a_corner_of_planes_and_says_what_each_touch_carr
         height: 0.0,
     }];
     planes.extend((0..3).map(|k| HalfSpace {
-        normal: -side(k),
-        height: -beside - radius,
+        normal: side(k),
+        height: -0.5 * beside - radius,
     }));
     let ground = Ground {
         planes: &planes,
@@ -602,7 +627,7 @@ fn a_pyramid_of_balls_stands_in_a_corner_of_planes_and_says_what_each_touch_carr
         .map(|k| Pose::from_translation(beside * side(k) + (radius + 1e-3 * k as f64) * DVec3::Z))
         .collect();
     starts.push(Pose::from_translation(DVec3::new(1e-4, 2e-4, 0.1)));
-    let rest = settle(ground, vec![(&unions[0], 0.1); 4], &starts);
+    let rest = settle(ground, &[Free::new(&unions[0], 0.1); 4], &starts);
     assert_eq!(rest.faults(), [String::new(); 0]);
     let touches = rest.balancer.touches().iter();
     let on_top: Vec<f64> = touches
@@ -618,24 +643,30 @@ fn a_pyramid_of_balls_stands_in_a_corner_of_planes_and_says_what_each_touch_carr
 }
 
 #[test]
-fn a_ball_lies_on_an_obstacle_beside_a_wall() {
-    let unions = [ball(0.02), ball(0.03)];
-    let planes = [HalfSpace {
-        normal: DVec3::X,
-        height: -0.02,
-    }];
-    let obstacles = [Obstacle {
-        spheres: &unions[1],
-        pose: Pose::from_translation(DVec3::new(0.02, 0.0, 0.0)),
-    }];
-    let ground = Ground {
-        planes: &planes,
-        obstacles: &obstacles,
-        ..Ground::default()
-    };
-    let start = [Pose::from_translation(DVec3::new(0.0, 0.0, 0.1))];
-    let rest = settle(ground, vec![(&unions[0], 0.1)], &start);
-    assert_eq!(rest.faults(), [String::new(); 0]);
-    // Exactly above in y it is a ridge that it does not stay on.
-    assert_eq!(rest.there().count(), 0);
+fn a_ball_lies_in_the_valley_of_an_obstacle_beside_a_wall_but_not_on_its_ridge() {
+    let [ball, one] = [ball(0.02), ball(0.03)];
+    let two = [-1.0, 1.0].map(|side| Sphere {
+        center: DVec3::new(0.0, 0.02 * side, 0.0),
+        radius: 0.03,
+    });
+    let two = SphereUnion::new(two.to_vec()).unwrap();
+    for (spheres, n_there) in [(&one, 0), (&two, 1)] {
+        let planes = [HalfSpace {
+            normal: DVec3::X,
+            height: -0.02,
+        }];
+        let obstacles = [Obstacle {
+            spheres,
+            pose: Pose::from_translation(DVec3::new(0.02, 0.0, 0.0)),
+        }];
+        let ground = Ground {
+            planes: &planes,
+            obstacles: &obstacles,
+            ..Ground::default()
+        };
+        let start = [Pose::from_translation(DVec3::new(0.0, 0.0, 0.1))];
+        let rest = settle(ground, &[Free::new(&ball, 0.1)], &start);
+        assert_eq!(rest.faults(), [String::new(); 0]);
+        assert_eq!(rest.there().count(), n_there);
+    }
 }

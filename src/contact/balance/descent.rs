@@ -6,7 +6,7 @@ use super::fall::{Fall, airborne, fall};
 use super::free_object::Ground;
 use super::loads::{Multipliers, Smoothness};
 use super::model::{Scene, Step};
-use super::pairs::{Key, Part};
+use super::pairs::{Key, Pair, Part, Rigid};
 use super::settle::Balancer;
 use super::symmetric::{Symmetric, norm};
 use glam::DVec3;
@@ -143,12 +143,13 @@ impl<'a, 'b> Descent<'a, 'b> {
     /// Down to a stationary point of the smooth energy that is no saddle.
     fn descend(&mut self) -> End {
         while self.n_steps < MAX_STEPS * self.bodies.len() {
-            let airborne = airborne(&self.balancer.now.pairs, self.bodies.len());
-            if let Some(together) = airborne.into_iter().next() {
-                match self.fall(&together) {
-                    true => continue,
-                    false => return End::Endless(together),
+            let mut airborne = airborne(&self.balancer.now, self.bodies.len()).into_iter();
+            if let Some((together, way)) = airborne.find_map(|all| self.room_below(all)) {
+                if way == f64::INFINITY {
+                    return End::Endless(together);
                 }
+                self.fall(&together, way);
+                continue;
             }
             let (slope, step) = match self.best() {
                 Some(found) => found,
@@ -231,22 +232,33 @@ impl<'a, 'b> Descent<'a, 'b> {
             .sum()
     }
 
-    /// Bodies fall together towards what is next, not deeper into it than to where they are no worse off; whether there is anything.
-    fn fall(&mut self, together: &[usize]) -> bool {
+    /// How far bodies fall together at least, metres; `None` if something is so near that steps find the way.
+    fn room_below(&self, together: Vec<usize>) -> Option<(Vec<usize>, f64)> {
         let down = self.bodies[0].weight.normalize();
         let others = (0..self.bodies.len()).filter(|other| !together.contains(other));
         let others: Vec<&Body> = others.map(|other| &self.bodies[other]).collect();
         let mut way = f64::INFINITY;
-        for &body in together {
+        for &body in &together {
             match fall(&self.bodies[body], self.ground, &others, down) {
                 Fall::Endless => {}
                 Fall::Free(free) => way = way.min(free.max(self.farthest)),
+                Fall::Near if self.is_near_ground(body) => return None,
                 Fall::Near => way = way.min(self.farthest),
             }
         }
-        if way == f64::INFINITY {
-            return false;
-        }
+        Some((together, way))
+    }
+
+    fn is_near_ground(&self, body: usize) -> bool {
+        let pairs = self.balancer.now.pairs.all.iter();
+        let is_of = |pair: &Pair| pair.ends().any(|end| end.0 == body);
+        let mut ground = pairs.filter(|pair| !matches!(pair.key, Key::Rigid(_, Rigid::Body(_))));
+        ground.any(is_of)
+    }
+
+    /// Bodies fall together, not deeper into what is below than to where they are no worse off.
+    fn fall(&mut self, together: &[usize], mut way: f64) {
+        let down = self.bodies[0].weight.normalize();
         let above: Vec<DVec3> = self.bodies.iter().map(|body| body.center).collect();
         let weight: f64 = together
             .iter()
@@ -261,7 +273,7 @@ impl<'a, 'b> Descent<'a, 'b> {
             self.look(&behind);
             let gain = before - self.balancer.now.loads.elastic + 0.5 * weight * way;
             if gain >= 0.0 || way <= self.same_place() {
-                return true;
+                return;
             }
             way *= 0.5;
         }

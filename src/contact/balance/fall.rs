@@ -1,9 +1,13 @@
 //! Bodies in the air: how far they certainly fall before they meet something.
 
 use super::body::Body;
+use super::energy::Energy;
 use super::free_object::Ground;
-use super::pairs::{Key, Pairs, Rigid};
+use super::pairs::{Key, Pair, Rigid};
 use glam::DVec3;
+
+/// Less of the way down than this is along a wall.
+const STEEP: f64 = 1e-9;
 
 /// What is below a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,7 +40,8 @@ pub(super) fn fall(body: &Body, ground: &Ground, others: &[&Body], down: DVec3) 
     }
     for plane in ground.planes {
         let gap = body.center.dot(plane.normal) - plane.height - body.arm();
-        if gap <= 0.0 || down.dot(plane.normal) < 0.0 {
+        // Along a wall it falls for ever.
+        if down.dot(plane.normal) < -STEEP {
             way = way.min(gap);
         }
     }
@@ -61,20 +66,23 @@ pub(super) fn fall(body: &Body, ground: &Ground, others: &[&Body], down: DVec3) 
     }
 }
 
-/// Bodies that nothing but one another is near to: those that fall together, list by list.
-pub(super) fn airborne(pairs: &Pairs, n_bodies: usize) -> Vec<Vec<usize>> {
+/// Bodies that nothing but one another carries, list by list of those that fall together.
+pub(super) fn airborne(energy: &Energy, n_bodies: usize) -> Vec<Vec<usize>> {
     let mut leader: Vec<usize> = (0..n_bodies).collect();
     let mut is_held = vec![false; n_bodies];
-    for pair in &pairs.all {
-        match pair.key {
+    let Energy { pairs, loads, .. } = energy;
+    for (group, load) in pairs.groups.iter().zip(&loads.all) {
+        match group.key {
             Key::Rigid((one, _), Rigid::Body((other, _))) => {
                 let [one, other] = [one, other].map(|body| leader[body as usize]);
-                leader
-                    .iter_mut()
-                    .filter(|l| **l == other)
-                    .for_each(|l| *l = one);
+                let others = leader.iter_mut().filter(|leader| **leader == other);
+                others.for_each(|leader| *leader = one);
             }
-            _ => pair.ends().for_each(|(body, ..)| is_held[body] = true),
+            _ if load.force > 0.0 => {
+                let ends = pairs.all[group.pairs.clone()].iter().flat_map(Pair::ends);
+                ends.for_each(|(body, ..)| is_held[body] = true);
+            }
+            _ => {}
         }
     }
     let together = (0..n_bodies).map(|first| {
