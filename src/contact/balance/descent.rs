@@ -2,7 +2,7 @@
 
 use super::body::Body;
 use super::energy::{PairLoad, wrenches};
-use super::fall::{Fall, airborne, fall};
+use super::fall::Loose;
 use super::free_object::Ground;
 use super::loads::{Multipliers, Smoothness};
 use super::model::{Scene, Step};
@@ -143,12 +143,14 @@ impl<'a, 'b> Descent<'a, 'b> {
     /// Down to a stationary point of the smooth energy that is no saddle.
     fn descend(&mut self) -> End {
         while self.n_steps < MAX_STEPS * self.bodies.len() {
-            let mut airborne = airborne(&self.balancer.now, self.bodies.len()).into_iter();
-            if let Some((together, way)) = airborne.find_map(|all| self.room_below(all)) {
-                if way == f64::INFINITY {
-                    return End::Endless(together);
+            if let Some((loose, way, room)) = self.loose() {
+                match room.is_finite() {
+                    true => self.fall(&loose, room * way),
+                    false => {
+                        self.shift(&loose, self.farthest * way);
+                        return End::Endless(loose.bodies);
+                    }
                 }
-                self.fall(&together, way);
                 continue;
             }
             let (slope, step) = match self.best() {
@@ -232,51 +234,42 @@ impl<'a, 'b> Descent<'a, 'b> {
             .sum()
     }
 
-    /// How far bodies fall together at least, metres; `None` if something is so near that steps find the way.
-    fn room_below(&self, together: Vec<usize>) -> Option<(Vec<usize>, f64)> {
+    /// Bodies that nothing holds, if there are any, their way down (unit), and how far they may go, metres.
+    fn loose(&self) -> Option<(Loose, DVec3, f64)> {
         let down = self.bodies[0].weight.normalize();
-        let others = (0..self.bodies.len()).filter(|other| !together.contains(other));
-        let others: Vec<&Body> = others.map(|other| &self.bodies[other]).collect();
-        let mut way = f64::INFINITY;
-        for &body in &together {
-            match fall(&self.bodies[body], self.ground, &others, down) {
-                Fall::Endless => {}
-                Fall::Free(free) => way = way.min(free.max(self.farthest)),
-                Fall::Near if self.is_near_ground(body) => return None,
-                Fall::Near => way = way.min(self.farthest),
-            }
-        }
-        Some((together, way))
+        let all = Loose::all(&self.balancer.now.pairs, self.bodies.len());
+        all.into_iter().find_map(|loose| {
+            let way = loose.way(self.ground, down)?;
+            let room = match loose.room(&self.bodies, self.ground, way) {
+                // Steps find the way along a plane, with what is near.
+                None if loose.slides() => return None,
+                room => room.unwrap_or(0.0).max(self.farthest),
+            };
+            Some((loose, way, room))
+        })
     }
 
-    fn is_near_ground(&self, body: usize) -> bool {
-        let pairs = self.balancer.now.pairs.all.iter();
-        let is_of = |pair: &Pair| pair.ends().any(|end| end.0 == body);
-        let mut ground = pairs.filter(|pair| !matches!(pair.key, Key::Rigid(_, Rigid::Body(_))));
-        ground.any(is_of)
-    }
-
-    /// Bodies fall together, not deeper into what is below than to where they are no worse off.
-    fn fall(&mut self, together: &[usize], mut way: f64) {
-        let down = self.bodies[0].weight.normalize();
-        let above: Vec<DVec3> = self.bodies.iter().map(|body| body.center).collect();
-        let weight: f64 = together
-            .iter()
-            .map(|&body| self.bodies[body].weight.length())
-            .sum();
+    /// Bodies go a way together, not deeper into what is below than to where they are no worse off.
+    fn fall(&mut self, loose: &Loose, mut way: DVec3) {
+        let weights = loose.bodies.iter().map(|&body| self.bodies[body].weight);
+        let weight: DVec3 = weights.sum();
         let before = self.balancer.now.loads.elastic;
         let behind = std::mem::take(&mut self.balancer.now.pairs.behind);
+        self.shift(loose, way);
         loop {
-            for &body in together {
-                self.bodies[body].center = above[body] + way * down;
-            }
             self.look(&behind);
-            let gain = before - self.balancer.now.loads.elastic + 0.5 * weight * way;
-            if gain >= 0.0 || way <= self.same_place() {
+            let gain = before - self.balancer.now.loads.elastic + 0.5 * weight.dot(way);
+            if gain >= 0.0 || way.length() <= self.same_place() {
                 return;
             }
             way *= 0.5;
+            self.shift(loose, -way);
         }
+    }
+
+    fn shift(&mut self, loose: &Loose, by: DVec3) {
+        let bodies = loose.bodies.iter();
+        bodies.for_each(|&body| self.bodies[body].center += by);
     }
 
     /// Metres that are none.

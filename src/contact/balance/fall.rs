@@ -1,95 +1,123 @@
-//! Bodies in the air: how far they certainly fall before they meet something.
+//! Bodies in the air, and on planes that do not hold them: how far they certainly fall or slide before they meet something.
 
 use super::body::Body;
-use super::energy::Energy;
 use super::free_object::Ground;
-use super::pairs::{Key, Pair, Rigid};
+use super::pairs::{Key, Pairs, Rigid};
 use glam::DVec3;
+use std::collections::BTreeSet;
 
-/// Less of the way down than this is along a wall.
-const STEEP: f64 = 1e-9;
+/// Slopes up to this hold, as a share of the weight: that much less than what a pose at rest is allowed.
+const FLAT: f64 = 1e-8;
 
-/// What is below a body.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Fall {
-    /// Something is too near to say.
-    Near,
-    /// Nothing for this far, metres.
-    Free(f64),
-    /// Nothing at all.
-    Endless,
+/// Bodies that nothing is near to but one another and planes.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Loose {
+    pub bodies: Vec<usize>,
+    planes: BTreeSet<u32>,
+    is_held: bool,
 }
 
-/// What a body meets on its way `down` (unit): skin, what is rigid, and `others`.
-pub(super) fn fall(body: &Body, ground: &Ground, others: &[&Body], down: DVec3) -> Fall {
-    let mut way = f64::INFINITY;
-    for skin in ground.skins {
-        let Some(bounds) = skin.patch.tree().bounds() else {
-            continue;
-        };
-        let to_patch = skin.world_from_patch.inverse();
-        let center = to_patch.transform_point(body.center);
-        let reach = body.arm() + skin.patch.tree().largest_radius();
-        let gap = bounds.distance_squared(center).sqrt() - reach;
-        let entry = bounds
-            .widened(reach)
-            .entry(center, to_patch.transform_vector(down), 0.0);
-        if gap <= 0.0 || entry.is_finite() {
-            way = way.min(gap);
-        }
-    }
-    for plane in ground.planes {
-        let gap = body.center.dot(plane.normal) - plane.height - body.arm();
-        // Along a wall it falls for ever.
-        if down.dot(plane.normal) < -STEEP {
-            way = way.min(gap);
-        }
-    }
-    let obstacles = ground.obstacles.iter().map(|obstacle| {
-        let center = obstacle.spheres.bounds().center();
-        let radius = obstacle.spheres.reach_from(center);
-        (obstacle.pose.transform_point(center), radius)
-    });
-    let others = others.iter().map(|other| (other.center, other.arm()));
-    for (center, radius) in obstacles.chain(others) {
-        let (to, reach) = (center - body.center, radius + body.arm());
-        let gap = to.length() - reach;
-        let beside = (to - to.dot(down) * down).length();
-        if gap <= 0.0 || beside < reach && to.dot(down) > 0.0 {
-            way = way.min(gap);
-        }
-    }
-    match way {
-        f64::INFINITY => Fall::Endless,
-        way if way <= 0.0 => Fall::Near,
-        way => Fall::Free(way),
-    }
-}
-
-/// Bodies that nothing but one another carries, list by list of those that fall together.
-pub(super) fn airborne(energy: &Energy, n_bodies: usize) -> Vec<Vec<usize>> {
-    let mut leader: Vec<usize> = (0..n_bodies).collect();
-    let mut is_held = vec![false; n_bodies];
-    let Energy { pairs, loads, .. } = energy;
-    for (group, load) in pairs.groups.iter().zip(&loads.all) {
-        match group.key {
-            Key::Rigid((one, _), Rigid::Body((other, _))) => {
+impl Loose {
+    /// All there are, of `n_bodies` at these pairs.
+    pub fn all(pairs: &Pairs, n_bodies: usize) -> Vec<Self> {
+        let mut leader: Vec<usize> = (0..n_bodies).collect();
+        for pair in &pairs.all {
+            if let Key::Rigid((one, _), Rigid::Body((other, _))) = pair.key {
                 let [one, other] = [one, other].map(|body| leader[body as usize]);
-                let others = leader.iter_mut().filter(|leader| **leader == other);
-                others.for_each(|leader| *leader = one);
+                let leaders = leader.iter_mut().filter(|leader| **leader == other);
+                leaders.for_each(|leader| *leader = one);
             }
-            _ if load.force > 0.0 => {
-                let ends = pairs.all[group.pairs.clone()].iter().flat_map(Pair::ends);
-                ends.for_each(|(body, ..)| is_held[body] = true);
-            }
-            _ => {}
         }
+        let mut all = vec![Self::default(); n_bodies];
+        for (body, &leader) in leader.iter().enumerate() {
+            all[leader].bodies.push(body);
+        }
+        for pair in &pairs.all {
+            for (body, ..) in pair.ends() {
+                let group = &mut all[leader[body]];
+                match pair.key {
+                    Key::Rigid(_, Rigid::Body(_)) => {}
+                    Key::Rigid(_, Rigid::Plane(plane)) => {
+                        group.planes.insert(plane);
+                    }
+                    _ => group.is_held = true,
+                }
+            }
+        }
+        all.retain(|group| !group.bodies.is_empty() && !group.is_held);
+        all
     }
-    let together = (0..n_bodies).map(|first| {
-        let all = (0..n_bodies).filter(|&body| leader[body] == first);
-        all.collect::<Vec<_>>()
-    });
-    together
-        .filter(|all| !all.is_empty() && !all.iter().any(|&body| is_held[body]))
-        .collect()
+
+    /// Where its weight takes it, unit: `down`, along the planes that it touches; `None` if these hold it.
+    pub fn way(&self, ground: &Ground, down: DVec3) -> Option<DVec3> {
+        let normals = self.planes.iter().map(|&plane| ground.planes[plane as usize].normal);
+        let normals: Vec<DVec3> = normals.collect();
+        // Of down what is along none, one, or two of them; the longest that leads into none is the nearest to it.
+        let along_one = normals.iter().map(|normal| down.reject_from_normalized(*normal));
+        let along_two = normals.iter().enumerate().flat_map(|(k, one)| {
+            let lines = normals[..k].iter().map(|other| one.cross(*other));
+            lines.filter_map(DVec3::try_normalize).map(|line| down.project_onto_normalized(line))
+        });
+        let all = std::iter::once(down).chain(along_one).chain(along_two);
+        let outside = all.filter(|way| normals.iter().all(|normal| way.dot(*normal) >= -FLAT));
+        let way = outside.max_by(|a, b| a.length().total_cmp(&b.length()))?;
+        (way.length() > FLAT).then(|| way.normalize())
+    }
+
+    /// How far it goes its `way` (unit) at least before it meets skin, obstacles, `bodies` that are not its own, and planes that it does not
+    /// touch, metres; endless if nothing is on the way, `None` if something is too near to say.
+    pub fn room(&self, bodies: &[Body], ground: &Ground, way: DVec3) -> Option<f64> {
+        let others = bodies.iter().enumerate();
+        let others = others.filter(|(other, _)| !self.bodies.contains(other));
+        let others: Vec<&Body> = others.map(|other| other.1).collect();
+        let each = self.bodies.iter();
+        let gaps = each.map(|&body| self.gap(&bodies[body], ground, &others, way));
+        let nearest = gaps.fold(f64::INFINITY, f64::min);
+        (nearest > 0.0).then_some(nearest)
+    }
+
+    /// Whether it touches planes.
+    pub fn slides(&self) -> bool {
+        !self.planes.is_empty()
+    }
+
+    /// Between one of its bodies and the nearest thing on its way, metres.
+    fn gap(&self, body: &Body, ground: &Ground, others: &[&Body], way: DVec3) -> f64 {
+        let mut nearest = f64::INFINITY;
+        let mut meet = |gap: f64, is_on_way: bool| {
+            if gap <= 0.0 || is_on_way {
+                nearest = nearest.min(gap);
+            }
+        };
+        for skin in ground.skins {
+            let Some(bounds) = skin.patch.tree().bounds() else {
+                continue;
+            };
+            let to_patch = skin.world_from_patch.inverse();
+            let center = to_patch.transform_point(body.center);
+            let reach = body.arm() + skin.patch.tree().largest_radius();
+            let entry = bounds
+                .widened(reach)
+                .entry(center, to_patch.transform_vector(way), 0.0);
+            meet(bounds.distance_squared(center).sqrt() - reach, entry.is_finite());
+        }
+        for (plane, number) in ground.planes.iter().zip(0..) {
+            if !self.planes.contains(&number) {
+                let gap = body.center.dot(plane.normal) - plane.height - body.arm();
+                meet(gap, way.dot(plane.normal) < 0.0);
+            }
+        }
+        let obstacles = ground.obstacles.iter().map(|obstacle| {
+            let center = obstacle.spheres.bounds().center();
+            let radius = obstacle.spheres.reach_from(center);
+            (obstacle.pose.transform_point(center), radius)
+        });
+        let others = others.iter().map(|other| (other.center, other.arm()));
+        for (center, radius) in obstacles.chain(others) {
+            let (to, reach) = (center - body.center, radius + body.arm());
+            let is_beside = to.reject_from_normalized(way).length() >= reach;
+            meet(to.length() - reach, !is_beside && to.dot(way) > 0.0);
+        }
+        nearest
+    }
 }

@@ -3,8 +3,24 @@
 /// Three translations, three rotations of one body.
 pub(super) type Six = [f64; 6];
 
+/// Written by numbers, as the parts of an iterator that are compiled elsewhere would be called, and with sums beside one another, which a
+/// processor adds at once.
+#[inline(always)]
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
+    let n = a.len().min(b.len());
+    let (a, b) = (&a[..n], &b[..n]);
+    let (mut sums, mut at) = ([0.0; 4], 0);
+    while at + 4 <= n {
+        for k in 0..4 {
+            sums[k] += a[at + k] * b[at + k];
+        }
+        at += 4;
+    }
+    while at < n {
+        sums[0] += a[at] * b[at];
+        at += 1;
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3])
 }
 
 pub(super) fn norm(a: &[f64]) -> f64 {
@@ -48,10 +64,10 @@ impl Symmetric {
 
     /// Adds `factor · x yᵀ` to the block of the ways of body a (rows) and b (columns).
     pub fn add_block(&mut self, [a, b]: [usize; 2], factor: f64, x: &Six, y: &Six) {
-        for (i, x) in x.iter().enumerate() {
-            let row = self.part_mut(6 * a + i, 6 * b);
-            for (entry, y) in row.iter_mut().zip(y) {
-                *entry += factor * x * y;
+        for i in 0..6 {
+            let row = &mut self.part_mut(6 * a + i, 6 * b)[..6];
+            for j in 0..6 {
+                row[j] += factor * x[i] * y[j];
             }
         }
     }
@@ -89,17 +105,25 @@ impl Symmetric {
         rows.fold(0.0, f64::max)
     }
 
-    /// Cholesky's factor with `shift` added to the diagonal; `None` if that is not positive definite.
+    /// Cholesky's factor with `shift` added to the diagonal; `None` if that is not positive definite. What is zero before the first entry of a
+    /// row stays so: bodies that do not touch cost nothing.
     pub fn factor(&self, shift: f64) -> Option<Factor> {
         let n = self.n;
         let mut rows = self.entries.clone();
+        let mut first = vec![0; n];
         for i in 0..n {
             let (above, row) = rows.split_at_mut(i * n);
-            for j in 0..i {
-                let other = &above[j * n..][..n];
-                row[j] = (row[j] - dot(&row[..j], &other[..j])) / other[j];
+            let mut from = 0;
+            while from < i && row[from] == 0.0 {
+                from += 1;
             }
-            let left = row[i] + shift - dot(&row[..i], &row[..i]);
+            first[i] = from;
+            for j in from..i {
+                let other = &above[j * n..][..n];
+                let both = from.max(first[j]).min(j);
+                row[j] = (row[j] - dot(&row[both..j], &other[both..j])) / other[j];
+            }
+            let left = row[i] + shift - dot(&row[from..i], &row[from..i]);
             // Also false of what is no number.
             if !(left > 0.0 && left.is_finite()) {
                 return None;
@@ -149,9 +173,8 @@ impl Factor {
         for i in (0..self.n).rev() {
             let row = self.row(i);
             x[i] /= row[i];
-            let (head, tail) = x.split_at_mut(i);
-            for (x, entry) in head.iter_mut().zip(row) {
-                *x -= entry * tail[0];
+            for j in 0..i {
+                x[j] -= row[j] * x[i];
             }
         }
         x
@@ -180,16 +203,25 @@ impl Factor {
 pub(super) fn best_step(gradient: &[f64], h: &Symmetric, reach: f64) -> (Vec<f64>, f64) {
     /// How near to the edge of the ball a step is at it.
     const NEAR: f64 = 1e-9;
+    /// The first σ of an indefinite H, as a share of the largest: most are on the way from there.
+    const FIRST: f64 = 1e-3;
     let (size, slope) = (h.size(), norm(gradient));
     let flat = 1e-14 * size.max(slope / reach);
     let against: Vec<f64> = gradient.iter().map(|g| -g).collect();
     let (mut low, mut high) = (flat, size + slope / reach + 2.0 * flat);
+    let mut n_failed = 0;
     let mut sigma = flat;
     let mut inside: Option<(Factor, Vec<f64>)> = None;
     for _ in 0..200 {
         let mut next = f64::NAN;
         match h.factor(sigma) {
-            None => low = sigma,
+            None => {
+                low = sigma;
+                n_failed += 1;
+                if n_failed == 1 {
+                    next = FIRST * high;
+                }
+            }
             Some(factor) => {
                 let step = factor.solve(&against);
                 let length = norm(&step);
