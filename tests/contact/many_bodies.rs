@@ -275,6 +275,13 @@ impl Rest<'_> {
             let expected = taxel.stiffness * deepest.min(taxel.stroke);
             if (spring - expected).abs() > 1e-7 * lightest {
                 faults.push(format!("taxel {key:?}: {spring} N of {expected} N"));
+                for part in parts {
+                    let sphere = self.sphere(poses, *part);
+                    let layout = self.ground.skins[key.0].patch.layout();
+                    let c = self.ground.skins[key.0].world_from_patch.inverse().transform_point(sphere.center) - layout.centers()[key.1];
+                    let h = c.dot(layout.axes()[key.1]);
+                    println!("part {part:?} S {} h {h} b {} dist {} needed {}", sphere.radius + 3e-3, (c - h * layout.axes()[key.1]).length(), c.length(), needed(part));
+                }
             }
             if stop > 0.0 && deepest < taxel.stroke - INSIDE {
                 faults.push(format!(

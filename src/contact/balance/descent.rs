@@ -6,7 +6,7 @@ use super::fall::Loose;
 use super::free_object::Ground;
 use super::loads::{Multipliers, Smoothness};
 use super::model::{Scene, Step};
-use super::pairs::{Key, Pair, Part, Rigid};
+use super::pairs::{Key, Part};
 use super::settle::Balancer;
 use super::symmetric::{Symmetric, norm};
 use glam::DVec3;
@@ -106,6 +106,10 @@ impl<'a, 'b> Descent<'a, 'b> {
             match self.descend() {
                 End::Rest => {}
                 end => return end,
+            }
+            if std::env::var("DBG").is_ok() {
+                let now = &self.balancer.now;
+                eprintln!("round: steps {} imb {:e} loose {:e} smooth {:e} load {:e} kappa {:e} reach {:e} tight {} pairs {} groups {} behind {}", self.n_steps, self.imbalance(&now.pair_loads()), now.looseness(), self.smoothness.smoothing, self.smoothness.load, self.smoothness.stop_stiffness, self.reach, n_tightened, now.pairs.all.len(), now.pairs.groups.len(), now.pairs.behind.len());
             }
             if self.is_at_rest(AT_REST, TIGHT) {
                 return End::Rest;

@@ -71,15 +71,19 @@ impl Energy {
     /// largest force of a spring, and what is rigid as if it were [so](RIGID_MISS) stiff; 0 where there is none.
     pub fn looseness(&self) -> f64 {
         let (mut worst, mut largest, mut rigid): (f64, f64, f64) = (0.0, 0.0, 0.0);
-        for (group, load) in self.loads.carrying(&self.pairs.groups) {
+        for (group, load) in self.pairs.groups.iter().zip(&self.loads.all) {
             let past = load.deepest - group.stroke;
             let mut loose: f64 = if load.stop > 0.0 { past.abs() } else { past };
             if let Key::Rigid(..) = group.key {
                 rigid = rigid.max(RIGID_MISS * loose);
                 continue;
             }
+            if load.force == 0.0 {
+                // Pressed, and below the smoothed maximum about shares that another pose had.
+                loose = loose.max(load.deepest);
+            }
             for at in group.pairs.clone() {
-                if self.loads.shares[at] > 1e-9 {
+                if load.force > 0.0 && self.loads.shares[at] > 1e-9 {
                     loose = loose.max(load.deepest - self.pairs.all[at].deflection);
                 }
             }
