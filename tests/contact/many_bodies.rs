@@ -278,9 +278,19 @@ impl Rest<'_> {
                 for part in parts {
                     let sphere = self.sphere(poses, *part);
                     let layout = self.ground.skins[key.0].patch.layout();
-                    let c = self.ground.skins[key.0].world_from_patch.inverse().transform_point(sphere.center) - layout.centers()[key.1];
+                    let c = self.ground.skins[key.0]
+                        .world_from_patch
+                        .inverse()
+                        .transform_point(sphere.center)
+                        - layout.centers()[key.1];
                     let h = c.dot(layout.axes()[key.1]);
-                    println!("part {part:?} S {} h {h} b {} dist {} needed {}", sphere.radius + 3e-3, (c - h * layout.axes()[key.1]).length(), c.length(), needed(part));
+                    println!(
+                        "part {part:?} S {} h {h} b {} dist {} needed {}",
+                        sphere.radius + 3e-3,
+                        (c - h * layout.axes()[key.1]).length(),
+                        c.length(),
+                        needed(part)
+                    );
                 }
             }
             if stop > 0.0 && deepest < taxel.stroke - INSIDE {
@@ -502,7 +512,11 @@ fn skins() -> [SkinPatch; 3] {
 
 /// Two to eight objects one above the other over a skin, half of them balls and half scans: in every second scene beside the skin, too, and
 /// with a table below it, level or not. What is wrong when they rest, how many are there, and have left.
-fn random_scene(case: u64, scans: &[SphereUnion], skins: &[SkinPatch]) -> (Vec<String>, [usize; 2]) {
+fn random_scene(
+    case: u64,
+    scans: &[SphereUnion],
+    skins: &[SkinPatch],
+) -> (Vec<String>, [usize; 2]) {
     let mut rng = Seed::new(case).named("many bodies").rng();
     let mut random = |a: f64, b: f64| rng.gen_range(a..b);
     let n = random(2.0, 9.0) as usize;
@@ -611,6 +625,83 @@ fn two_balls_on_the_same_taxels_carry_both_weights() {
             let taxels: f64 = rest.balancer.loads().iter().map(|load| load.force).sum();
             let weights = (masses[0] + masses[1]) * G;
             assert!((taxels / weights - 1.0).abs() < 1e-6, "{case}: {taxels} N");
+        }
+    }
+}
+
+#[test]
+fn stacks_of_two_and_four_balls_come_down_between_walls_and_in_a_bowl_and_the_skin_carries_all() {
+    let ball = ball(0.015);
+    let walls = [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y].map(|normal| HalfSpace {
+        normal,
+        height: -0.019,
+    });
+    let skins = [bed(40, 300.0), bowl(0.05, 1.0, 4e-3, taxel(300.0))];
+    for (skin, planes) in skins.iter().zip([&walls[..], &[]]) {
+        for n in [2, 4] {
+            let skins = [PlacedSkin::new(skin, Pose::IDENTITY)];
+            let ground = Ground {
+                skins: &skins,
+                planes,
+                ..Ground::default()
+            };
+            let place = |k| Pose::from_translation(f64::from(k) * 0.031 * DVec3::Z + 0.02 * DVec3::Z);
+            let starts: Vec<Pose> = (0..n).map(place).collect();
+            let rest = settle(ground, &vec![Free::new(&ball, 0.05); starts.len()], &starts);
+            assert_eq!(rest.faults(), [String::new(); 0], "{n}");
+            assert_eq!(rest.there().count(), starts.len());
+            let mut faults = Vec::new();
+            rest.try_motions(100, 0, &mut faults);
+            assert_eq!(faults, [String::new(); 0], "{n}");
+            let loads = rest.balancer.loads().iter();
+            let carried: DVec3 = loads.map(|load| load.on_object.force).sum();
+            let weights = f64::from(n) * 0.05 * G;
+            assert!((carried.z / weights - 1.0).abs() < 1e-6, "{n}: {carried}");
+        }
+    }
+}
+
+#[test]
+fn what_has_no_room_is_said_not_to_rest_and_what_does_not_touch_it_rests() {
+    // A table, and a ceiling 30 mm above it.
+    let planes = [(DVec3::Z, 0.0), (DVec3::NEG_Z, -0.03)];
+    let planes = planes.map(|(normal, height)| HalfSpace { normal, height });
+    let ground = Ground {
+        planes: &planes,
+        ..Ground::default()
+    };
+    let [large, small] = [ball(0.02), ball(0.01)];
+    let objects = [Free::new(&large, 0.1), Free::new(&small, 0.1)];
+    let starts = [0.0, 0.1].map(|x| Pose::from_translation(DVec3::new(x, 0.0, 0.012)));
+    let rest = settle(ground, &objects, &starts);
+    let outcomes = [0, 1].map(|object| rest.balances[object].outcome);
+    assert_eq!(outcomes, [Outcome::Unsettled, Outcome::Settled]);
+    assert!(rest.balances[0].imbalance > BALANCED || rest.faults().len() > 1);
+}
+
+#[test]
+fn what_slides_on_a_slope_escapes_down_it_and_what_lies_in_a_gutter_of_planes_stays() {
+    let union = ball(0.02);
+    let tilted = |x: f64, y: f64| HalfSpace {
+        normal: DVec3::new(x, y, 1.0).normalize(),
+        height: 0.0,
+    };
+    let slope = [tilted(1e-4, 0.0)];
+    let falling = [tilted(1.0, 1e-3), tilted(-1.0, 1e-3)];
+    let level = [tilted(1.0, 0.0), tilted(-1.0, 0.0)];
+    let start = [Pose::from_translation(DVec3::new(0.0, 0.0, 0.05))];
+    for (planes, way) in [(&slope[..], Some(DVec3::X)), (&falling, Some(DVec3::Y)), (&level, None)] {
+        let ground = Ground {
+            planes,
+            ..Ground::default()
+        };
+        let rest = settle(ground, &[Free::new(&union, 0.1)], &start);
+        match (rest.balances[0].outcome, way) {
+            (Outcome::Settled, None) => assert_eq!(rest.faults(), [String::new(); 0]),
+            (Outcome::Escaped { direction }, Some(way)) => {
+                assert!(direction.dot(way) > 0.999, "{direction}");
+            }
+            other => panic!("{other:?}"),
         }
     }
 }

@@ -107,10 +107,6 @@ impl<'a, 'b> Descent<'a, 'b> {
                 End::Rest => {}
                 end => return end,
             }
-            if std::env::var("DBG").is_ok() {
-                let now = &self.balancer.now;
-                eprintln!("round: steps {} imb {:e} loose {:e} smooth {:e} load {:e} kappa {:e} reach {:e} tight {} pairs {} groups {} behind {}", self.n_steps, self.imbalance(&now.pair_loads()), now.looseness(), self.smoothness.smoothing, self.smoothness.load, self.smoothness.stop_stiffness, self.reach, n_tightened, now.pairs.all.len(), now.pairs.groups.len(), now.pairs.behind.len());
-            }
             if self.is_at_rest(AT_REST, TIGHT) {
                 return End::Rest;
             }
@@ -120,12 +116,13 @@ impl<'a, 'b> Descent<'a, 'b> {
             };
             let now = &self.balancer.now;
             self.multipliers = now.loads.multipliers(&now.pairs);
+            let islands = now.pairs.islands(self.bodies.len());
+            let now = now.looseness(&islands).into_iter().fold(0.0, f64::max);
             if deepest > 0.0 {
                 self.smoothness.smoothing = self.smoothness.smoothing.min(SMOOTHING * deepest);
             }
             // Where the energy bends down between ties, multipliers need steeper sides to converge.
-            let (before, now) = (looseness, now.looseness());
-            if now > TIGHT.max(0.25 * before) && n_tightened < MOST_TIGHTENED {
+            if now > TIGHT.max(0.25 * looseness) && n_tightened < MOST_TIGHTENED {
                 n_tightened += 1;
                 self.smoothness.tighten(0.2);
                 self.smoothness.stop_stiffness *= 5.0;
@@ -140,8 +137,36 @@ impl<'a, 'b> Descent<'a, 'b> {
     }
 
     fn is_at_rest(&self, imbalance: f64, looseness: f64) -> bool {
+        let resting = self.resting(imbalance, looseness);
+        resting.iter().all(|&is_resting| is_resting)
+    }
+
+    /// Which bodies are, with all that they touch, so well in balance.
+    fn resting(&self, imbalance: f64, looseness: f64) -> Vec<bool> {
         let now = &self.balancer.now;
-        self.imbalance(&now.pair_loads()) <= imbalance && now.looseness() <= looseness
+        let islands = now.pairs.islands(self.bodies.len());
+        let mut resting: Vec<bool> = now
+            .looseness(&islands)
+            .into_iter()
+            .map(|loose| loose <= looseness)
+            .collect();
+        for (body, imbalance_of) in self.imbalances(&now.pair_loads()).into_iter().enumerate() {
+            resting[islands[body]] &= imbalance_of <= imbalance;
+        }
+        islands.into_iter().map(|island| resting[island]).collect()
+    }
+
+    /// Which bodies have come to rest although not all have.
+    pub(super) fn settled(&mut self) -> Vec<bool> {
+        let (_, hessian) = self.derivatives();
+        let islands = self.balancer.now.pairs.islands(self.bodies.len());
+        let mut settled = self.resting(PROMISED, 1e3 * TIGHT);
+        for (body, is_settled) in settled.iter_mut().enumerate() {
+            let together = |other: &usize| islands[*other] == islands[body];
+            let together: Vec<usize> = (0..islands.len()).filter(together).collect();
+            *is_settled &= hessian.of_bodies(&together).is_convex();
+        }
+        settled
     }
 
     /// Down to a stationary point of the smooth energy that is no saddle.
@@ -181,7 +206,7 @@ impl<'a, 'b> Descent<'a, 'b> {
     fn best(&mut self) -> Option<(f64, Step)> {
         let (gradient, hessian) = self.derivatives();
         let slope = self.scene().slope(&gradient);
-        if slope <= 0.1 * AT_REST && hessian.factor(1e-9 * hessian.size()).is_some() {
+        if slope <= 0.1 * AT_REST && hessian.is_convex() {
             return None;
         }
         let mut model = std::mem::take(&mut self.balancer.model);
@@ -318,13 +343,18 @@ impl<'a, 'b> Descent<'a, 'b> {
             .reduce(f64::max)
     }
 
-    /// The largest of all bodies with these loads.
-    pub(super) fn imbalance(&self, loads: &[PairLoad]) -> f64 {
+    /// Of each body with these loads.
+    fn imbalances(&self, loads: &[PairLoad]) -> Vec<f64> {
         let pairs = &self.balancer.now.pairs.all;
         let wrenches = wrenches(loads, pairs, &self.bodies, self.ground.skins);
         let each = self.bodies.iter().zip(wrenches);
         each.map(|(body, wrench)| body.imbalance_of(wrench))
-            .fold(0.0, f64::max)
+            .collect()
+    }
+
+    /// The largest of these.
+    pub(super) fn imbalance(&self, loads: &[PairLoad]) -> f64 {
+        self.imbalances(loads).into_iter().fold(0.0, f64::max)
     }
 
     /// Newtons.

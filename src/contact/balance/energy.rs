@@ -2,9 +2,9 @@
 
 use super::body::Body;
 use super::free_object::PlacedSkin;
-use super::loads::Loads;
+use super::loads::{Load, Loads};
 use super::model::Scene;
-use super::pairs::{Key, Kind, Margins, Pair, Pairs, Part};
+use super::pairs::{Group, Key, Kind, Margins, Pair, Pairs, Part};
 use glam::DVec3;
 
 /// What misses of rigid things count as in [`Energy::looseness`], per metre: a nanometre is a hundred-thousandth.
@@ -68,29 +68,48 @@ impl Energy {
 
     /// How far shares and stops are from what they say: spheres that share a taxel should push it equally far, and a stop that
     /// carries should be met exactly, and none passed. As what the taxel's spring makes of that distance, as a share of the
-    /// largest force of a spring, and what is rigid as if it were [so](RIGID_MISS) stiff; 0 where there is none.
-    pub fn looseness(&self) -> f64 {
-        let (mut worst, mut largest, mut rigid): (f64, f64, f64) = (0.0, 0.0, 0.0);
+    /// largest force of a spring, and what is rigid as if it were [so](RIGID_MISS) stiff; 0 where there is none. Of each
+    /// [island](Pairs::islands), at its number.
+    pub fn looseness(&self, islands: &[usize]) -> Vec<f64> {
+        let (mut loose, mut largest) = (vec![0.0_f64; islands.len()], vec![0.0_f64; islands.len()]);
+        let mut rigid = loose.clone();
         for (group, load) in self.pairs.groups.iter().zip(&self.loads.all) {
-            let past = load.deepest - group.stroke;
-            let mut loose: f64 = if load.stop > 0.0 { past.abs() } else { past };
-            if let Key::Rigid(..) = group.key {
-                rigid = rigid.max(RIGID_MISS * loose);
+            let mut ends = self.pairs.all[group.pairs.clone()]
+                .iter()
+                .flat_map(Pair::ends);
+            let Some((body, ..)) = ends.next() else {
                 continue;
+            };
+            let island = islands[body];
+            let miss = self.miss(group, load);
+            if let Key::Rigid(..) = group.key {
+                rigid[island] = rigid[island].max(RIGID_MISS * miss);
+            } else {
+                loose[island] = loose[island].max(group.stiffness * miss);
+                largest[island] = largest[island].max(group.stiffness * load.deepest);
             }
-            if load.force == 0.0 {
-                // Pressed, and below the smoothed maximum about shares that another pose had.
-                loose = loose.max(load.deepest);
-            }
-            for at in group.pairs.clone() {
-                if load.force > 0.0 && self.loads.shares[at] > 1e-9 {
-                    loose = loose.max(load.deepest - self.pairs.all[at].deflection);
-                }
-            }
-            worst = worst.max(group.stiffness * loose);
-            largest = largest.max(group.stiffness * load.deepest);
         }
-        rigid.max(if largest > 0.0 { worst / largest } else { 0.0 })
+        for (island, rigid) in rigid.into_iter().enumerate() {
+            let largest = largest[island].max(f64::MIN_POSITIVE);
+            loose[island] = rigid.max(loose[island] / largest);
+        }
+        loose
+    }
+
+    /// What makes the [looseness](Self::looseness) of one taxel or rigid thing, metres.
+    fn miss(&self, group: &Group, load: &Load) -> f64 {
+        let past = load.deepest - group.stroke;
+        let of_stop: f64 = if load.stop > 0.0 { past.abs() } else { past };
+        if load.force == 0.0 {
+            // Pressed, and below the smoothed maximum about shares that another pose had.
+            return of_stop.max(load.deepest);
+        }
+        let sharing = group
+            .pairs
+            .clone()
+            .filter(|&at| self.loads.shares[at] > 1e-9);
+        let apart = sharing.map(|at| load.deepest - self.pairs.all[at].deflection);
+        apart.fold(of_stop, f64::max)
     }
 }
 

@@ -20,21 +20,14 @@ pub(super) struct Loose {
 impl Loose {
     /// All there are, of `n_bodies` at these pairs.
     pub fn all(pairs: &Pairs, n_bodies: usize) -> Vec<Self> {
-        let mut leader: Vec<usize> = (0..n_bodies).collect();
-        for pair in &pairs.all {
-            if let Key::Rigid((one, _), Rigid::Body((other, _))) = pair.key {
-                let [one, other] = [one, other].map(|body| leader[body as usize]);
-                let leaders = leader.iter_mut().filter(|leader| **leader == other);
-                leaders.for_each(|leader| *leader = one);
-            }
-        }
+        let islands = pairs.islands(n_bodies);
         let mut all = vec![Self::default(); n_bodies];
-        for (body, &leader) in leader.iter().enumerate() {
-            all[leader].bodies.push(body);
+        for (body, &island) in islands.iter().enumerate() {
+            all[island].bodies.push(body);
         }
         for pair in &pairs.all {
             for (body, ..) in pair.ends() {
-                let group = &mut all[leader[body]];
+                let group = &mut all[islands[body]];
                 match pair.key {
                     Key::Rigid(_, Rigid::Body(_)) => {}
                     Key::Rigid(_, Rigid::Plane(plane)) => {
@@ -50,13 +43,20 @@ impl Loose {
 
     /// Where its weight takes it, unit: `down`, along the planes that it touches; `None` if these hold it.
     pub fn way(&self, ground: &Ground, down: DVec3) -> Option<DVec3> {
-        let normals = self.planes.iter().map(|&plane| ground.planes[plane as usize].normal);
+        let normals = self
+            .planes
+            .iter()
+            .map(|&plane| ground.planes[plane as usize].normal);
         let normals: Vec<DVec3> = normals.collect();
         // Of down what is along none, one, or two of them; the longest that leads into none is the nearest to it.
-        let along_one = normals.iter().map(|normal| down.reject_from_normalized(*normal));
+        let along_one = normals
+            .iter()
+            .map(|normal| down.reject_from_normalized(*normal));
         let along_two = normals.iter().enumerate().flat_map(|(k, one)| {
             let lines = normals[..k].iter().map(|other| one.cross(*other));
-            lines.filter_map(DVec3::try_normalize).map(|line| down.project_onto_normalized(line))
+            lines
+                .filter_map(DVec3::try_normalize)
+                .map(|line| down.project_onto_normalized(line))
         });
         let all = std::iter::once(down).chain(along_one).chain(along_two);
         let outside = all.filter(|way| normals.iter().all(|normal| way.dot(*normal) >= -FLAT));
@@ -99,7 +99,10 @@ impl Loose {
             let entry = bounds
                 .widened(reach)
                 .entry(center, to_patch.transform_vector(way), 0.0);
-            meet(bounds.distance_squared(center).sqrt() - reach, entry.is_finite());
+            meet(
+                bounds.distance_squared(center).sqrt() - reach,
+                entry.is_finite(),
+            );
         }
         for (plane, number) in ground.planes.iter().zip(0..) {
             if !self.planes.contains(&number) {

@@ -243,6 +243,25 @@ impl Pairs {
         }
     }
 
+    /// Of each of `n_bodies` the number of one that stands for all which it touches or shares taxels with.
+    pub fn islands(&self, n_bodies: usize) -> Vec<usize> {
+        let mut islands: Vec<usize> = (0..n_bodies).collect();
+        for group in &self.groups {
+            let mut bodies = self.all[group.pairs.clone()].iter().flat_map(Pair::ends);
+            let Some((first, ..)) = bodies.next() else {
+                continue;
+            };
+            for (other, ..) in bodies {
+                let [one, other] = [first, other].map(|body| islands[body]);
+                if one != other {
+                    let joined = islands.iter_mut().filter(|island| **island == other);
+                    joined.for_each(|island| *island = one);
+                }
+            }
+        }
+        islands
+    }
+
     fn gather(
         &mut self,
         bodies: &[Body],

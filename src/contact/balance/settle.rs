@@ -22,7 +22,7 @@ pub enum Outcome {
         /// Where to from where it started: unit, in the world; across gravity, unless it fell straight down.
         direction: DVec3,
     },
-    /// Neither within the largest number of steps: of all objects that were looked at together.
+    /// Neither it, nor what it touches, within the largest number of steps.
     Unsettled,
 }
 
@@ -161,7 +161,7 @@ impl Balancer {
         while !bodies.is_empty() {
             let mut descent = Descent::new(self, bodies, ground);
             let end = descent.run();
-            let (outcome, loads) = match end {
+            let (settled, loads) = match end {
                 End::Endless(gone) => {
                     n_steps += descent.n_steps;
                     bodies = descent.bodies;
@@ -172,18 +172,18 @@ impl Balancer {
                     }
                     continue;
                 }
-                End::Rest => (Outcome::Settled, descent.balancer.now.pair_loads()),
+                End::Rest => (vec![true; there.len()], descent.balancer.now.pair_loads()),
                 End::Exhausted => match descent.finish() {
-                    Some(loads) => (Outcome::Settled, loads),
-                    None => (Outcome::Unsettled, descent.balancer.now.pair_loads()),
+                    Some(loads) => (vec![true; there.len()], loads),
+                    None => (descent.settled(), descent.balancer.now.pair_loads()),
                 },
             };
             n_steps += descent.n_steps;
             let multipliers = std::mem::take(&mut descent.multipliers);
-            let settled = std::mem::take(&mut descent.bodies);
+            bodies = std::mem::take(&mut descent.bodies);
             self.multipliers = multipliers;
-            self.report(&settled, &loads, &there, ground.skins);
-            let found = self.balances(&settled, &loads, ground.skins, (outcome, n_steps));
+            self.report(&bodies, &loads, &there, ground.skins);
+            let found = self.balances(&bodies, &loads, ground.skins, (&settled, n_steps));
             for (number, balance) in there.iter().zip(found) {
                 balances[*number] = Some(balance);
             }
@@ -201,7 +201,7 @@ impl Balancer {
         bodies: &[Body],
         loads: &[PairLoad],
         skins: &[PlacedSkin],
-        (outcome, n_steps): (Outcome, usize),
+        (settled, n_steps): (&[bool], usize),
     ) -> Vec<Balance> {
         let pairs = &self.now.pairs.all;
         let wrenches = wrenches(loads, pairs, bodies, skins);
@@ -215,7 +215,11 @@ impl Balancer {
             let is_stopped = |of: &&[&PairLoad]| of.iter().any(|load| load.stop > 0.0);
             Balance {
                 pose: body.pose(),
-                outcome,
+                outcome: if settled[slot] {
+                    Outcome::Settled
+                } else {
+                    Outcome::Unsettled
+                },
                 force: wrench.0,
                 torque: wrench.1,
                 imbalance: body.imbalance_of(wrench),
