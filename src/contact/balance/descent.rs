@@ -137,36 +137,26 @@ impl<'a, 'b> Descent<'a, 'b> {
     }
 
     fn is_at_rest(&self, imbalance: f64, looseness: f64) -> bool {
-        let resting = self.resting(imbalance, looseness);
-        resting.iter().all(|&is_resting| is_resting)
-    }
-
-    /// Which bodies are, with all that they touch, so well in balance.
-    fn resting(&self, imbalance: f64, looseness: f64) -> Vec<bool> {
         let now = &self.balancer.now;
         let islands = now.pairs.islands(self.bodies.len());
-        let mut resting: Vec<bool> = now
-            .looseness(&islands)
-            .into_iter()
-            .map(|loose| loose <= looseness)
-            .collect();
-        for (body, imbalance_of) in self.imbalances(&now.pair_loads()).into_iter().enumerate() {
-            resting[islands[body]] &= imbalance_of <= imbalance;
-        }
-        islands.into_iter().map(|island| resting[island]).collect()
+        let is_tight = |of: &f64| *of <= looseness;
+        self.imbalance(&now.pair_loads()) <= imbalance
+            && now.looseness(&islands).iter().all(is_tight)
     }
 
-    /// Which bodies have come to rest although not all have.
-    pub(super) fn settled(&mut self) -> Vec<bool> {
-        let (_, hessian) = self.derivatives();
-        let islands = self.balancer.now.pairs.islands(self.bodies.len());
-        let mut settled = self.resting(PROMISED, 1e3 * TIGHT);
-        for (body, is_settled) in settled.iter_mut().enumerate() {
-            let together = |other: &usize| islands[*other] == islands[body];
-            let together: Vec<usize> = (0..islands.len()).filter(together).collect();
-            *is_settled &= hessian.of_bodies(&together).is_convex();
+    /// Of bodies that touch one another, those that are farthest from rest.
+    pub(super) fn most_restless(&self) -> Vec<usize> {
+        let now = &self.balancer.now;
+        let islands = now.pairs.islands(self.bodies.len());
+        let mut unrest = now.looseness(&islands);
+        for (body, imbalance) in self.imbalances(&now.pair_loads()).into_iter().enumerate() {
+            let unrest = &mut unrest[islands[body]];
+            *unrest = unrest.max(imbalance);
         }
-        settled
+        let most = |one: &&usize, other: &&usize| unrest[**one].total_cmp(&unrest[**other]);
+        let worst = islands.iter().max_by(most).copied();
+        let all = 0..islands.len();
+        all.filter(|&body| Some(islands[body]) == worst).collect()
     }
 
     /// Down to a stationary point of the smooth energy that is no saddle.

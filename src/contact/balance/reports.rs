@@ -23,6 +23,8 @@ pub struct TaxelLoad {
     /// The part of that force which the spring at its stroke does not carry, newtons: its share in the reaction of the stop, the
     /// multiplier of δ ≤ s in the balance; 0 before the stroke.
     pub stop: f64,
+    /// Whether the sphere's flank is as good as parallel to the axis: see [`GRAZING`](crate::contact::GRAZING).
+    pub is_grazing: bool,
     /// What the taxel puts on the object, in the patch frame: force n_c / (n_c·n).
     pub on_object: Wrench,
 }
@@ -71,6 +73,7 @@ impl TaxelLoad {
             sphere: pair.part.1 as usize,
             force: load.force,
             stop: load.stop,
+            is_grazing: pair.is_grazing(),
             on_object: Wrench::at(center, pair.push(load.force)),
         }
     }

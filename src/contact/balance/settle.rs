@@ -6,7 +6,7 @@ use super::energy::{Energy, PairLoad, wrenches};
 use super::free_object::{FreeObject, Ground, HalfSpace, Obstacle, PlacedSkin};
 use super::loads::Multipliers;
 use super::model::Model;
-use super::pairs::{Key, OTHERS};
+use super::pairs::Key;
 use super::reports::{TaxelLoad, Touch};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
@@ -22,7 +22,7 @@ pub enum Outcome {
         /// Where to from where it started: unit, in the world; across gravity, unless it fell straight down.
         direction: DVec3,
     },
-    /// Neither it, nor what it touches, within the largest number of steps.
+    /// Neither within the largest number of steps: it and what it touches. The others are at rest as if these were not there.
     Unsettled,
 }
 
@@ -66,8 +66,8 @@ pub struct Balancer {
     pub(super) multipliers: Multipliers,
     loads: Vec<TaxelLoad>,
     touches: Vec<Touch>,
-    /// Of the objects that it put to rest last, those that did not escape.
-    there: Vec<usize>,
+    /// Of the objects that it put to rest last, those that its multipliers are of.
+    numbers: Vec<usize>,
 }
 
 impl Balancer {
@@ -145,113 +145,99 @@ impl Balancer {
         Ok(balances)
     }
 
+    /// Pass by pass: what leaves, and what finds no rest, is taken out, and the others go on.
     fn settle_bodies<'s>(
         &mut self,
         mut bodies: Vec<Body<'s>>,
         ground: &'s Ground<'s>,
     ) -> Vec<Balance> {
-        let mut there: Vec<usize> = (0..bodies.len()).collect();
+        let mut numbers: Vec<usize> = (0..bodies.len()).collect();
         let mut balances = vec![None; bodies.len()];
         let mut n_steps = 0;
         self.loads.clear();
         self.touches.clear();
-        if self.there != there {
-            self.multipliers = Multipliers::default();
-        }
         while !bodies.is_empty() {
+            if self.numbers != numbers {
+                self.multipliers = Multipliers::default();
+                self.numbers.clone_from(&numbers);
+            }
             let mut descent = Descent::new(self, bodies, ground);
-            let end = descent.run();
-            let (settled, loads) = match end {
-                End::Endless(gone) => {
-                    n_steps += descent.n_steps;
-                    bodies = descent.bodies;
-                    self.multipliers = Multipliers::default();
-                    for slot in gone.into_iter().rev() {
-                        let number = there.remove(slot);
-                        balances[number] = Some(escaped(&bodies.remove(slot), n_steps));
-                    }
-                    continue;
+            let all = 0..numbers.len();
+            let (done, outcome, loads) = match descent.run() {
+                End::Endless(gone) => (gone, None, Vec::new()),
+                End::Rest => {
+                    let loads = descent.balancer.now.pair_loads();
+                    (all.collect(), Some(Outcome::Settled), loads)
                 }
-                End::Rest => (vec![true; there.len()], descent.balancer.now.pair_loads()),
                 End::Exhausted => match descent.finish() {
-                    Some(loads) => (vec![true; there.len()], loads),
-                    None => (descent.settled(), descent.balancer.now.pair_loads()),
+                    Some(loads) => (all.collect(), Some(Outcome::Settled), loads),
+                    None => {
+                        let loads = descent.balancer.now.pair_loads();
+                        (descent.most_restless(), Some(Outcome::Unsettled), loads)
+                    }
                 },
             };
             n_steps += descent.n_steps;
             let multipliers = std::mem::take(&mut descent.multipliers);
             bodies = std::mem::take(&mut descent.bodies);
             self.multipliers = multipliers;
-            self.report(&bodies, &loads, &there, ground.skins);
-            let found = self.balances(&bodies, &loads, ground.skins, (&settled, n_steps));
-            for (number, balance) in there.iter().zip(found) {
-                balances[*number] = Some(balance);
+            self.report(&bodies, &loads, (&numbers, &done), ground.skins);
+            let wrenches = wrenches(&loads, &self.now.pairs.all, &bodies, ground.skins);
+            for slot in done.into_iter().rev() {
+                let number = numbers.remove(slot);
+                let body = bodies.remove(slot);
+                let outcome = outcome.unwrap_or(Outcome::Escaped {
+                    direction: body.way_out(),
+                });
+                balances[number] =
+                    Some(self.balance((&body, number), wrenches[slot], outcome, n_steps));
             }
-            break;
         }
-        self.there = there;
+        let own = |load: &TaxelLoad| (load.skin, load.taxel, load.object, load.sphere);
+        self.loads.sort_by_key(own);
         balances
             .into_iter()
-            .map(|balance| balance.expect("each is there or has escaped"))
+            .map(|balance| balance.expect("each rests, has escaped, or does neither"))
             .collect()
     }
 
-    fn balances(
+    /// Of an object whose loads have been reported.
+    fn balance(
         &self,
-        bodies: &[Body],
-        loads: &[PairLoad],
-        skins: &[PlacedSkin],
-        (settled, n_steps): (&[bool], usize),
-    ) -> Vec<Balance> {
-        let pairs = &self.now.pairs.all;
-        let wrenches = wrenches(loads, pairs, bodies, skins);
-        let of_body = |(slot, (body, wrench)): (usize, (&Body, (DVec3, DVec3)))| {
-            let own = loads.iter().filter(|load| {
-                let pair = &pairs[load.pair];
-                matches!(pair.key, Key::Taxel(..)) && pair.part.0 as usize == slot
-            });
-            let own: Vec<&PairLoad> = own.collect();
-            let taxels = own.chunk_by(|a, b| pairs[a.pair].key == pairs[b.pair].key);
-            let is_stopped = |of: &&[&PairLoad]| of.iter().any(|load| load.stop > 0.0);
-            Balance {
-                pose: body.pose(),
-                outcome: if settled[slot] {
-                    Outcome::Settled
-                } else {
-                    Outcome::Unsettled
-                },
-                force: wrench.0,
-                torque: wrench.1,
-                imbalance: body.imbalance_of(wrench),
-                n_touched: taxels.clone().count(),
-                n_saturated: taxels.filter(is_stopped).count(),
-                n_grazing: own
-                    .iter()
-                    .filter(|load| pairs[load.pair].is_grazing())
-                    .count(),
-                n_steps,
-            }
-        };
-        bodies
-            .iter()
-            .zip(wrenches)
-            .enumerate()
-            .map(of_body)
-            .collect()
+        (body, number): (&Body, usize),
+        wrench: (DVec3, DVec3),
+        outcome: Outcome,
+        n_steps: usize,
+    ) -> Balance {
+        let own = self.loads.iter().filter(|load| load.object == number);
+        let own: Vec<&TaxelLoad> = own.collect();
+        let taxels = own.chunk_by(|a, b| (a.skin, a.taxel) == (b.skin, b.taxel));
+        let is_stopped = |of: &&[&TaxelLoad]| of.iter().any(|load| load.stop > 0.0);
+        Balance {
+            pose: body.pose(),
+            outcome,
+            force: wrench.0,
+            torque: wrench.1,
+            imbalance: body.imbalance_of(wrench),
+            n_touched: taxels.clone().count(),
+            n_saturated: taxels.filter(is_stopped).count(),
+            n_grazing: own.iter().filter(|load| load.is_grazing).count(),
+            n_steps,
+        }
     }
 
-    /// What carries, by the numbers of the objects.
+    /// What carries those bodies that are `done`, by the numbers of the objects.
     fn report(
         &mut self,
         bodies: &[Body],
         loads: &[PairLoad],
-        there: &[usize],
+        (numbers, done): (&[usize], &[usize]),
         skins: &[PlacedSkin],
     ) {
-        let number = |slot: u32| there[slot as usize];
+        let number = |slot: u32| numbers[slot as usize];
         for load in loads {
             let pair = &self.now.pairs.all[load.pair];
-            if pair.part == OTHERS {
+            if !done.contains(&(pair.part.0 as usize)) {
                 continue;
             }
             let body = &bodies[pair.part.0 as usize];
@@ -268,22 +254,6 @@ impl Balancer {
                 }
             }
         }
-    }
-}
-
-fn escaped(body: &Body, n_steps: usize) -> Balance {
-    Balance {
-        pose: body.pose(),
-        outcome: Outcome::Escaped {
-            direction: body.way_out(),
-        },
-        force: DVec3::ZERO,
-        torque: DVec3::ZERO,
-        imbalance: 1.0,
-        n_touched: 0,
-        n_saturated: 0,
-        n_grazing: 0,
-        n_steps,
     }
 }
 

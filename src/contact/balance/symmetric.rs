@@ -82,17 +82,6 @@ impl Symmetric {
         }
     }
 
-    /// The part of some bodies alone.
-    pub fn of_bodies(&self, bodies: &[usize]) -> Self {
-        let ways = || bodies.iter().flat_map(|body| 6 * body..6 * body + 6);
-        Self {
-            n: 6 * bodies.len(),
-            entries: ways()
-                .flat_map(|i| ways().map(move |j| self.row(i)[j]))
-                .collect(),
-        }
-    }
-
     /// Whether all eigenvalues are above 0, but for rounding.
     pub fn is_convex(&self) -> bool {
         self.factor(1e-9 * self.size()).is_some()
