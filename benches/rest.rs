@@ -102,7 +102,7 @@ fn settle(criterion: &mut Criterion) {
                 Pose::from_translation(height * DVec3::Z),
             )];
             let ground = Ground {
-                skins: &skins,
+                skins: skins.to_vec(),
                 ..Ground::default()
             };
             let objects = vec![object; n];

@@ -10,14 +10,16 @@ use crate::contact::balance::{
 use crate::contact::{SkinWorkspace, press_skin};
 use crate::error::Result;
 use crate::geometry::Pose;
+use crate::objects::SphereUnion;
 
 /// All free objects of a scene.
 #[derive(Clone, Debug)]
 pub(super) struct FreeObjects {
     all: Vec<Free>,
-    /// The numbers in the scene of those that its balancer put to rest last, and of what did not move.
+    /// The scene's numbers of those that its balancer put to rest last.
     there: Vec<usize>,
-    fixed: Vec<usize>,
+    /// And of the objects that go where they are told.
+    obstacles: Vec<usize>,
     balancer: Balancer,
     /// How far the others push each taxel of each patch; empty where they push none.
     pushed: Vec<Vec<f64>>,
@@ -36,6 +38,8 @@ struct Free {
 impl FreeObjects {
     pub fn of(plan: &ScenePlan) -> Self {
         let objects = plan.objects.iter().enumerate();
+        let is_free =
+            |object: usize| matches!(plan.objects[object].movement, Movement::Free { .. });
         let all = objects.filter_map(|(object, planned)| match planned.movement {
             Movement::Imposed(_) | Movement::Carried(_) => None,
             Movement::Free {
@@ -56,7 +60,9 @@ impl FreeObjects {
         Self {
             all: all.collect(),
             there: Vec::new(),
-            fixed: Vec::new(),
+            obstacles: (0..plan.objects.len())
+                .filter(|&object| !is_free(object))
+                .collect(),
             balancer: Balancer::new(),
             pushed: vec![Vec::new(); plan.patches.len()],
             workspace: SkinWorkspace::new(),
@@ -90,30 +96,18 @@ impl FreeObjects {
         let is_there = |free: &&mut Free| !matches!(free.reading.held, Held::Escaped { .. });
         let mut there: Vec<&mut Free> = self.all.iter_mut().filter(is_there).collect();
         let bodies = there.iter().map(|free| {
-            let spheres = plan.models[free.object].spheres();
-            let spheres = spheres.expect("the plan lets only unions of spheres be free");
-            FreeObject::new(spheres, free.mass, free.center_of_mass)
+            FreeObject::new(spheres(plan, free.object), free.mass, free.center_of_mass)
         });
         let bodies = bodies.collect::<Result<Vec<_>>>()?;
         let starts: Vec<Pose> = there.iter().map(|free| free.reading.pose).collect();
-        self.fixed.clear();
-        let mut obstacles = Vec::new();
-        for (object, planned) in plan.objects.iter().enumerate() {
-            if matches!(planned.movement, Movement::Free { .. }) {
-                continue;
-            }
-            if let Some(spheres) = plan.models[object].spheres() {
-                self.fixed.push(object);
-                obstacles.push(Obstacle {
-                    spheres,
-                    pose: objects.poses[object],
-                });
-            }
-        }
+        let obstacles = self.obstacles.iter().map(|&object| Obstacle {
+            spheres: spheres(plan, object),
+            pose: objects.poses[object],
+        });
         let ground = Ground {
-            skins: &skins,
-            planes: &plan.planes,
-            obstacles: &obstacles,
+            skins,
+            planes: plan.planes.clone(),
+            obstacles: obstacles.collect(),
         };
         let balances = self
             .balancer
@@ -141,7 +135,9 @@ impl FreeObjects {
         self.balancer.touches().iter().map(|touch| Touch {
             object: self.there[touch.object],
             other: match touch.other {
-                Touched::Obstacle(number, sphere) => Touched::Object(self.fixed[number], sphere),
+                Touched::Obstacle(number, sphere) => {
+                    Touched::Object(self.obstacles[number], sphere)
+                }
                 Touched::Object(number, sphere) => Touched::Object(self.there[number], sphere),
                 plane => plane,
             },
@@ -168,6 +164,11 @@ impl FreeObjects {
             readings[free.object] = free.reading;
         }
     }
+}
+
+fn spheres(plan: &ScenePlan, object: usize) -> &SphereUnion {
+    let spheres = plan.models[object].spheres();
+    spheres.expect("the plan lets only unions of spheres be beside free ones")
 }
 
 fn reading(balance: Balance, time: f64) -> ObjectReading {

@@ -498,16 +498,17 @@ fn a_free_ball_comes_to_rest_in_the_hollow_that_an_imposed_one_makes_and_on_it()
             ..PlacedSkin::new(skin, Pose::IDENTITY)
         }];
         let ground = Ground {
-            skins: &skins,
+            skins: skins.to_vec(),
             obstacles,
             ..Ground::default()
         };
         let balances = Balancer::new().settle_all(&[ball], &ground, plan.gravity, &[start]);
         balances.unwrap()[0].pose
     };
-    let both = settled(workspace.deflections(), &obstacles);
+    let both = settled(workspace.deflections(), obstacles.to_vec());
     assert_eq!(frame.objects[1].pose, both);
-    let [alone, hollow] = [&[][..], workspace.deflections()].map(|pushed| settled(pushed, &[]));
+    let [alone, hollow] =
+        [&[][..], workspace.deflections()].map(|pushed| settled(pushed, Vec::new()));
     assert!(both.translation.distance(alone.translation) > 1e-4);
     assert!(both.translation.distance(hollow.translation) > 1e-4);
     let [touch] = frame.touches[..] else {

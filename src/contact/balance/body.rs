@@ -3,8 +3,7 @@
 use super::free_object::FreeObject;
 use super::symmetric::Six;
 use crate::geometry::Pose;
-use crate::objects::Sphere;
-use glam::{DMat3, DQuat, DVec3};
+use glam::{DQuat, DVec3};
 
 /// Where a free object is; its motions are three translations of the centre of mass along the world's axes, and three rotations about them
 /// through it, times its arm (metres).
@@ -48,21 +47,6 @@ impl<'a> Body<'a> {
         let turn = DQuat::from_scaled_axis(turn / self.arm());
         self.rotation = (turn * self.rotation).normalize();
         shift
-    }
-
-    /// Its spheres in the world, with their numbers: those that a ball meets.
-    pub fn spheres_near(&self, center: DVec3, radius: f64) -> impl Iterator<Item = (u32, Sphere)> {
-        let rotation = DMat3::from_quat(self.rotation);
-        let origin = self.center - rotation * self.object.center_of_mass;
-        let placed = self.object.spheres.iter().zip(0..);
-        let placed = placed.map(move |(sphere, number)| {
-            let center = rotation * sphere.center + origin;
-            (number, Sphere { center, ..*sphere })
-        });
-        placed.filter(move |(_, sphere)| {
-            let reach = sphere.radius + radius;
-            sphere.center.distance_squared(center) <= reach * reach
-        })
     }
 
     /// What is left of a force (N) and a torque (N·m) with the weight: see [`Balance::imbalance`](super::Balance::imbalance).

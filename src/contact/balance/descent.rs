@@ -61,7 +61,7 @@ impl<'a, 'b> Descent<'a, 'b> {
     /// Of at least one body.
     pub fn new(balancer: &'b mut Balancer, bodies: Vec<Body<'a>>, ground: &'a Ground<'a>) -> Self {
         let (mut stroke, mut stiffness) = (f64::INFINITY, 0.0_f64);
-        for skin in ground.skins {
+        for skin in &ground.skins {
             for (number, taxel) in skin.patch.taxels().all().iter().enumerate() {
                 stroke = stroke.min(taxel.stroke);
                 stiffness = stiffness.max(skin.stiffness(number));
@@ -103,6 +103,8 @@ impl<'a, 'b> Descent<'a, 'b> {
         let mut looseness = f64::INFINITY;
         let mut n_tightened = 0;
         for _ in 0..MAX_ROUNDS {
+            // What made the last steps of a round short may be gone with its smoothing.
+            self.reach = self.reach.max(self.nearby());
             match self.descend() {
                 End::Rest => {}
                 end => return end,
@@ -116,8 +118,7 @@ impl<'a, 'b> Descent<'a, 'b> {
             };
             let now = &self.balancer.now;
             self.multipliers = now.loads.multipliers(&now.pairs);
-            let islands = now.pairs.islands(self.bodies.len());
-            let now = now.looseness(&islands).into_iter().fold(0.0, f64::max);
+            let now = self.looseness();
             if deepest > 0.0 {
                 self.smoothness.smoothing = self.smoothness.smoothing.min(SMOOTHING * deepest);
             }
@@ -138,10 +139,14 @@ impl<'a, 'b> Descent<'a, 'b> {
 
     fn is_at_rest(&self, imbalance: f64, looseness: f64) -> bool {
         let now = &self.balancer.now;
+        self.imbalance(&now.pair_loads()) <= imbalance && self.looseness() <= looseness
+    }
+
+    /// The largest of all islands.
+    fn looseness(&self) -> f64 {
+        let now = &self.balancer.now;
         let islands = now.pairs.islands(self.bodies.len());
-        let is_tight = |of: &f64| *of <= looseness;
-        self.imbalance(&now.pair_loads()) <= imbalance
-            && now.looseness(&islands).iter().all(is_tight)
+        now.looseness(&islands).into_iter().fold(0.0, f64::max)
     }
 
     /// Of bodies that touch one another, those that are farthest from rest.
@@ -237,12 +242,22 @@ impl<'a, 'b> Descent<'a, 'b> {
             }
             false => gain >= 1e-4 * step.gain,
         };
-        if is_better {
+        if is_better && !self.has_passed_through() {
             return Some(if is_noise { 1.0 } else { gain / step.gain });
         }
         std::mem::swap(&mut self.balancer.now, &mut self.balancer.next);
         self.bodies = bodies;
         None
+    }
+
+    /// Whether a sphere that pressed a taxel before is behind its substrate now: the step was too long for the stop to hold it.
+    fn has_passed_through(&self) -> bool {
+        let before = &self.balancer.next.pairs.all;
+        let pressed = |of: &(Key, Part)| {
+            let at = before.binary_search_by_key(of, |pair| (pair.key, pair.part));
+            at.is_ok_and(|at| before[at].deflection > 0.0)
+        };
+        self.balancer.now.pairs.behind.iter().any(pressed)
     }
 
     /// Moves the bodies; what their weights do by that, joules.
@@ -336,7 +351,7 @@ impl<'a, 'b> Descent<'a, 'b> {
     /// Of each body with these loads.
     fn imbalances(&self, loads: &[PairLoad]) -> Vec<f64> {
         let pairs = &self.balancer.now.pairs.all;
-        let wrenches = wrenches(loads, pairs, &self.bodies, self.ground.skins);
+        let wrenches = wrenches(loads, pairs, &self.bodies, &self.ground.skins);
         let each = self.bodies.iter().zip(wrenches);
         each.map(|(body, wrench)| body.imbalance_of(wrench))
             .collect()

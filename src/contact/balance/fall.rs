@@ -4,7 +4,7 @@ use super::body::Body;
 use super::free_object::Ground;
 use super::pairs::{Key, Pairs, Rigid};
 use glam::DVec3;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Slopes up to this hold, as a share of the weight: that much less than what a pose at rest is allowed.
 const FLAT: f64 = 1e-8;
@@ -18,7 +18,7 @@ pub(super) struct Loose {
 }
 
 impl Loose {
-    /// All there are, of `n_bodies` at these pairs.
+    /// All there are, of `n_bodies` at these pairs, with their unions.
     pub fn all(pairs: &Pairs, n_bodies: usize) -> Vec<Self> {
         let islands = pairs.islands(n_bodies);
         let mut all = vec![Self::default(); n_bodies];
@@ -38,6 +38,20 @@ impl Loose {
             }
         }
         all.retain(|group| !group.bodies.is_empty() && !group.is_held);
+        // Last what goes the same way, all together: side by side they may be in one another's way for ever.
+        let mut unions: BTreeMap<BTreeSet<u32>, Vec<usize>> = BTreeMap::new();
+        for group in &all {
+            let union = unions.entry(group.planes.clone()).or_default();
+            union.extend(&group.bodies);
+        }
+        all.extend(unions.into_iter().map(|(planes, mut bodies)| {
+            bodies.sort_unstable();
+            Self {
+                bodies,
+                planes,
+                is_held: false,
+            }
+        }));
         all
     }
 
@@ -89,7 +103,7 @@ impl Loose {
                 nearest = nearest.min(gap);
             }
         };
-        for skin in ground.skins {
+        for skin in &ground.skins {
             let Some(bounds) = skin.patch.tree().bounds() else {
                 continue;
             };

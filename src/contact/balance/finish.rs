@@ -105,7 +105,7 @@ impl Descent<'_, '_> {
             let pair = &pairs.all[at];
             forces.get(&(pair.key, pair.part)).copied().unwrap_or(0.0)
         };
-        let skins = self.ground.skins;
+        let skins = &self.ground.skins;
         let slopes = &mut problem.slopes;
         slopes.lay(&self.bodies, skins, pairs, &mut curvature, force_of);
         let deflections = pairs.all.iter().map(|pair| pair.deflection / unit);

@@ -107,12 +107,29 @@ pub struct Obstacle<'a> {
 }
 
 /// What free objects rest on.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Ground<'a> {
     /// Elastic.
-    pub skins: &'a [PlacedSkin<'a>],
+    pub skins: Vec<PlacedSkin<'a>>,
     /// Rigid.
-    pub planes: &'a [HalfSpace],
+    pub planes: Vec<HalfSpace>,
     /// Rigid.
-    pub obstacles: &'a [Obstacle<'a>],
+    pub obstacles: Vec<Obstacle<'a>>,
+}
+
+impl Ground<'_> {
+    /// The same as seen from another origin.
+    pub(super) fn seen_from(&self, origin: DVec3) -> Self {
+        let mut near = self.clone();
+        for skin in &mut near.skins {
+            skin.world_from_patch.translation -= origin;
+        }
+        for plane in &mut near.planes {
+            plane.height -= plane.normal.dot(origin);
+        }
+        for obstacle in &mut near.obstacles {
+            obstacle.pose.translation -= origin;
+        }
+        near
+    }
 }

@@ -63,7 +63,7 @@ impl Model {
         let Self {
             slopes, curvature, ..
         } = self;
-        let skins = scene.ground.skins;
+        let skins = &scene.ground.skins;
         slopes.lay(scene.bodies, skins, pairs, curvature, |at| force_of[at]);
     }
 
@@ -259,12 +259,12 @@ mod tests {
         let at = |x: f64| world_from_patch.transform_point(DVec3::new(x, 1e-3, 6e-3));
         let normal = DVec3::new(0.3, 0.1, 0.9).normalize();
         let ground = Ground {
-            skins: &skins,
-            planes: &[HalfSpace {
+            skins: skins.to_vec(),
+            planes: vec![HalfSpace {
                 normal,
                 height: normal.dot(at(0.0)) - 8e-3,
             }],
-            obstacles: &[Obstacle {
+            obstacles: vec![Obstacle {
                 spheres: &unions[2],
                 pose: Pose::from_translation(at(-5e-3)),
             }],

@@ -3,7 +3,7 @@
 use super::body::Body;
 use super::descent::{Descent, End};
 use super::energy::{Energy, PairLoad, wrenches};
-use super::free_object::{FreeObject, Ground, HalfSpace, Obstacle, PlacedSkin};
+use super::free_object::{FreeObject, Ground, PlacedSkin};
 use super::loads::Multipliers;
 use super::model::Model;
 use super::pairs::Key;
@@ -99,7 +99,7 @@ impl Balancer {
         start: &Pose,
     ) -> Result<Balance> {
         let ground = Ground {
-            skins,
+            skins: skins.to_vec(),
             ..Ground::default()
         };
         let balances = self.settle_all(&[*object], &ground, gravity, &[*start])?;
@@ -126,12 +126,7 @@ impl Balancer {
         check(gravity, starts)?;
         // Where the objects are, is the origin: far from the world's, places have too few digits to balance stiff springs.
         let origin = starts.first().map_or(DVec3::ZERO, |pose| pose.translation);
-        let near = Near::of(ground, origin);
-        let ground = Ground {
-            skins: &near.skins,
-            planes: &near.planes,
-            obstacles: &near.obstacles,
-        };
+        let ground = ground.seen_from(origin);
         let from_there = |pose: &Pose| Pose::new(pose.rotation, pose.translation - origin);
         let bodies = objects.iter().zip(starts);
         let bodies = bodies.map(|(object, start)| Body::new(*object, gravity, &from_there(start)));
@@ -181,8 +176,8 @@ impl Balancer {
             let multipliers = std::mem::take(&mut descent.multipliers);
             bodies = std::mem::take(&mut descent.bodies);
             self.multipliers = multipliers;
-            self.report(&bodies, &loads, (&numbers, &done), ground.skins);
-            let wrenches = wrenches(&loads, &self.now.pairs.all, &bodies, ground.skins);
+            self.report(&bodies, &loads, (&numbers, &done), &ground.skins);
+            let wrenches = wrenches(&loads, &self.now.pairs.all, &bodies, &ground.skins);
             for slot in done.into_iter().rev() {
                 let number = numbers.remove(slot);
                 let body = bodies.remove(slot);
@@ -273,35 +268,5 @@ fn check(gravity: DVec3, starts: &[Pose]) -> Result<()> {
             "finite numbers",
         )),
         None => Ok(()),
-    }
-}
-
-/// The ground, seen from another origin.
-struct Near<'a> {
-    skins: Vec<PlacedSkin<'a>>,
-    planes: Vec<HalfSpace>,
-    obstacles: Vec<Obstacle<'a>>,
-}
-
-impl<'a> Near<'a> {
-    fn of(ground: &Ground<'a>, origin: DVec3) -> Self {
-        let from_there = |pose: &Pose| Pose::new(pose.rotation, pose.translation - origin);
-        let skins = ground.skins.iter().map(|skin| PlacedSkin {
-            world_from_patch: from_there(&skin.world_from_patch),
-            ..*skin
-        });
-        let planes = ground.planes.iter().map(|plane| HalfSpace {
-            height: plane.height - plane.normal.dot(origin),
-            ..*plane
-        });
-        let obstacles = ground.obstacles.iter().map(|obstacle| Obstacle {
-            pose: from_there(&obstacle.pose),
-            ..*obstacle
-        });
-        Self {
-            skins: skins.collect(),
-            planes: planes.collect(),
-            obstacles: obstacles.collect(),
-        }
     }
 }

@@ -3,24 +3,20 @@
 /// Three translations, three rotations of one body.
 pub(super) type Six = [f64; 6];
 
-/// Written by numbers, as the parts of an iterator that are compiled elsewhere would be called, and with sums beside one another, which a
-/// processor adds at once.
+/// With sums beside one another, which a processor adds at once.
 #[inline(always)]
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let n = a.len().min(b.len());
-    let (a, b) = (&a[..n], &b[..n]);
-    let (mut sums, mut at) = ([0.0; 4], 0);
-    while at + 4 <= n {
+    let (a, rest_of_a) = a[..n].as_chunks::<4>();
+    let (b, rest_of_b) = b[..n].as_chunks::<4>();
+    let mut sums = [0.0; 4];
+    for (a, b) in a.iter().zip(b) {
         for k in 0..4 {
-            sums[k] += a[at + k] * b[at + k];
+            sums[k] += a[k] * b[k];
         }
-        at += 4;
     }
-    while at < n {
-        sums[0] += a[at] * b[at];
-        at += 1;
-    }
-    (sums[0] + sums[1]) + (sums[2] + sums[3])
+    let rest: f64 = rest_of_a.iter().zip(rest_of_b).map(|(x, y)| x * y).sum();
+    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }
 
 pub(super) fn norm(a: &[f64]) -> f64 {
@@ -208,13 +204,12 @@ impl Factor {
 pub(super) fn best_step(gradient: &[f64], h: &Symmetric, reach: f64) -> (Vec<f64>, f64) {
     /// How near to the edge of the ball a step is at it.
     const NEAR: f64 = 1e-9;
-    /// The first σ of an indefinite H, as a share of the largest: most are on the way from there.
+    /// The first σ that is tried for an indefinite H, as a share of the largest: from larger and smaller ones the way is longer.
     const FIRST: f64 = 1e-3;
     let (size, slope) = (h.size(), norm(gradient));
     let flat = 1e-14 * size.max(slope / reach);
     let against: Vec<f64> = gradient.iter().map(|g| -g).collect();
     let (mut low, mut high) = (flat, size + slope / reach + 2.0 * flat);
-    let mut n_failed = 0;
     let mut sigma = flat;
     let mut inside: Option<(Factor, Vec<f64>)> = None;
     for _ in 0..200 {
@@ -222,8 +217,7 @@ pub(super) fn best_step(gradient: &[f64], h: &Symmetric, reach: f64) -> (Vec<f64
         match h.factor(sigma) {
             None => {
                 low = sigma;
-                n_failed += 1;
-                if n_failed == 1 {
+                if sigma == flat {
                     next = FIRST * high;
                 }
             }

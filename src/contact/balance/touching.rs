@@ -1,8 +1,9 @@
 //! Spheres of free objects on what is rigid: planes, obstacles, and one another.
 
 use super::body::Body;
-use super::free_object::Ground;
+use super::free_object::{Ground, HalfSpace};
 use super::pairs::{Key, Kind, Pair, Part, Rigid};
+use crate::geometry::Pose;
 use crate::objects::Sphere;
 use glam::{DMat3, DVec3};
 
@@ -26,118 +27,130 @@ impl Touching {
     }
 }
 
+/// Spheres that one of a body may touch.
+struct Others<'a> {
+    spheres: &'a [Sphere],
+    pose: Pose,
+    /// The number and the centre of mass of the body that they are of.
+    body: Option<(u32, DVec3)>,
+}
+
 /// Appends the pairs of all spheres that are inside of something rigid, or nearer to it than each may move, metres; sorted.
 pub(super) fn gather(pairs: &mut Vec<Pair>, bodies: &[Body], ground: &Ground, may_move: f64) {
     let first = pairs.len();
-    for (slot, body) in bodies.iter().enumerate() {
+    for (body, slot) in bodies.iter().zip(0..) {
         for (plane, number) in ground.planes.iter().zip(0..) {
-            let above = |center: DVec3| center.dot(plane.normal) - plane.height;
-            if above(body.center) >= body.arm() + may_move {
-                continue;
-            }
-            for (index, sphere) in body.spheres_near(body.center, f64::INFINITY) {
-                let deflection = sphere.radius - above(sphere.center);
-                if deflection > -may_move {
-                    pairs.push(Pair {
-                        key: Key::Rigid((slot as u32, index), Rigid::Plane(number)),
-                        part: (slot as u32, index),
-                        deflection,
-                        kind: Kind::Rigid(Touching {
-                            normal: plane.normal,
-                            distance: f64::INFINITY,
-                            other: None,
-                        }),
-                        arm: sphere.center - body.center,
-                    });
-                }
-            }
+            gather_plane(pairs, (slot, body), (number, plane), may_move);
         }
         for (obstacle, number) in ground.obstacles.iter().zip(0..) {
-            let spheres = obstacle.spheres.spheres().iter().zip(0..);
-            let placed = spheres.filter_map(|(sphere, index)| {
-                let center = obstacle.pose.transform_point(sphere.center);
-                let reach = sphere.radius + body.arm() + may_move;
-                let is_near = center.distance_squared(body.center) <= reach * reach;
-                is_near.then_some((index, Sphere { center, ..*sphere }))
-            });
-            let placed: Vec<_> = placed.collect();
-            // Those of the body that meet the ball around what is near of the obstacle: all, since that is about the body.
-            let own: Vec<_> = body.spheres_near(body.center, f64::INFINITY).collect();
-            each_touching(&own, &placed, may_move, |own, other| {
-                let rigid = Rigid::Obstacle(number, other.0);
-                pairs.push(touch((slot as u32, body), own, other, rigid, None));
-            });
+            let others = Others {
+                spheres: obstacle.spheres.spheres(),
+                pose: obstacle.pose,
+                body: None,
+            };
+            let rigid = |sphere| Rigid::Obstacle(number, sphere);
+            gather_spheres(pairs, (slot, body), &others, rigid, may_move);
         }
-        for (other_slot, other) in bodies.iter().enumerate().skip(slot + 1) {
+        for (other, number) in bodies.iter().zip(0..).skip(slot as usize + 1) {
             let reach = body.arm() + other.arm() + 2.0 * may_move;
             if body.center.distance_squared(other.center) > reach * reach {
                 continue;
             }
-            let own: Vec<_> = body
-                .spheres_near(other.center, other.arm() + 2.0 * may_move)
-                .collect();
-            let others: Vec<_> = other
-                .spheres_near(body.center, body.arm() + 2.0 * may_move)
-                .collect();
-            each_touching(&own, &others, 2.0 * may_move, |own, sphere| {
-                let part = (other_slot as u32, sphere.0);
-                let arm = Some((other_slot as u32, sphere.1.center - other.center));
-                let rigid = Rigid::Body(part);
-                pairs.push(touch((slot as u32, body), own, sphere, rigid, arm));
-            });
+            let others = Others {
+                spheres: other.object.spheres,
+                pose: other.pose(),
+                body: Some((number, other.center)),
+            };
+            let rigid = |sphere| Rigid::Body((number, sphere));
+            gather_spheres(pairs, (slot, body), &others, rigid, 2.0 * may_move);
         }
     }
     pairs[first..].sort_unstable_by_key(|pair| pair.key);
 }
 
-fn touch(
+fn gather_plane(
+    pairs: &mut Vec<Pair>,
     (slot, body): (u32, &Body),
-    (index, own): (u32, Sphere),
-    (_, sphere): (u32, Sphere),
-    rigid: Rigid,
-    other: Option<(u32, DVec3)>,
-) -> Pair {
-    let between = own.center - sphere.center;
-    let part: Part = (slot, index);
-    Pair {
-        key: Key::Rigid(part, rigid),
-        part,
-        deflection: own.radius + sphere.radius - between.length(),
-        kind: Kind::Rigid(Touching {
-            // Of two in the same place, whichever.
-            normal: between.try_normalize().unwrap_or(DVec3::Z),
-            distance: between.length().max(f64::MIN_POSITIVE),
-            other,
-        }),
-        arm: own.center - body.center,
+    (number, plane): (u32, &HalfSpace),
+    may_move: f64,
+) {
+    let above = |center: DVec3| center.dot(plane.normal) - plane.height;
+    if above(body.center) >= body.arm() + may_move {
+        return;
+    }
+    for (index, sphere) in placed(body.object.spheres, &body.pose()) {
+        let deflection = sphere.radius - above(sphere.center);
+        if deflection > -may_move {
+            pairs.push(Pair {
+                key: Key::Rigid((slot, index), Rigid::Plane(number)),
+                part: (slot, index),
+                deflection,
+                kind: Kind::Rigid(Touching {
+                    normal: plane.normal,
+                    distance: f64::INFINITY,
+                    other: None,
+                }),
+                arm: sphere.center - body.center,
+            });
+        }
     }
 }
 
-/// Visits all pairs of spheres that are less than `gap` apart: sorted along the way from the middle of one list to that of the other,
-/// where most are past each other.
-fn each_touching(
-    one: &[(u32, Sphere)],
-    other: &[(u32, Sphere)],
+/// Those less than `gap` apart, sorted along the way from the body to the middle of what is near of the others: there most are past each other.
+fn gather_spheres(
+    pairs: &mut Vec<Pair>,
+    (slot, body): (u32, &Body),
+    others: &Others,
+    rigid: impl Fn(u32) -> Rigid,
     gap: f64,
-    mut visit: impl FnMut((u32, Sphere), (u32, Sphere)),
 ) {
-    let middle = |all: &[(u32, Sphere)]| {
-        let sum: DVec3 = all.iter().map(|(_, sphere)| sphere.center).sum();
-        sum / all.len().max(1) as f64
+    let is_near = |(_, sphere): &(u32, Sphere)| {
+        let reach = sphere.radius + body.arm() + gap;
+        sphere.center.distance_squared(body.center) <= reach * reach
     };
-    let way = (middle(other) - middle(one))
-        .try_normalize()
-        .unwrap_or(DVec3::Z);
+    let mut near: Vec<_> = placed(others.spheres, &others.pose)
+        .filter(is_near)
+        .collect();
+    let middle = near.iter().map(|other| other.1.center).sum::<DVec3>() / near.len() as f64;
+    let Some(way) = (middle - body.center).try_normalize() else {
+        return;
+    };
     let begin = |sphere: &Sphere| sphere.center.dot(way) - sphere.radius;
-    let mut sorted: Vec<_> = other.iter().map(|part| (begin(&part.1), part)).collect();
-    sorted.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-    for own in one {
-        let end = own.1.center.dot(way) + own.1.radius + gap;
-        for (_, part) in sorted.iter().take_while(|(begin, _)| *begin < end) {
-            let reach = own.1.radius + part.1.radius + gap;
-            if own.1.center.distance_squared(part.1.center) < reach * reach {
-                visit(*own, **part);
+    near.sort_unstable_by(|a, b| begin(&a.1).total_cmp(&begin(&b.1)));
+    for (index, own) in placed(body.object.spheres, &body.pose()) {
+        let end = own.center.dot(way) + own.radius + gap;
+        for (number, other) in near.iter().take_while(|other| begin(&other.1) < end) {
+            let between = own.center - other.center;
+            let distance = between.length();
+            let deflection = own.radius + other.radius - distance;
+            if deflection > -gap {
+                let part: Part = (slot, index);
+                let touching = Touching {
+                    // Of two in the same place, whichever.
+                    normal: between.try_normalize().unwrap_or(DVec3::Z),
+                    distance: distance.max(f64::MIN_POSITIVE),
+                    other: others
+                        .body
+                        .map(|(body, middle)| (body, other.center - middle)),
+                };
+                pairs.push(Pair {
+                    key: Key::Rigid(part, rigid(*number)),
+                    part,
+                    deflection,
+                    kind: Kind::Rigid(touching),
+                    arm: own.center - body.center,
+                });
             }
         }
     }
+}
+
+/// In the world, with their numbers.
+fn placed(spheres: &[Sphere], pose: &Pose) -> impl Iterator<Item = (u32, Sphere)> {
+    let (rotation, origin) = (DMat3::from_quat(pose.rotation), pose.translation);
+    let all = spheres.iter().zip(0..);
+    all.map(move |(sphere, number)| {
+        let center = rotation * sphere.center + origin;
+        (number, Sphere { center, ..*sphere })
+    })
 }
