@@ -100,7 +100,8 @@ impl Rest<'_> {
     }
 
     /// How far a sphere needs a taxel to be in, straight from the formula, metres, on a grazing flank along its tangent; and what a newton along
-    /// the axis is on the sphere. `None` from behind.
+    /// the axis is on the sphere. `None` past where
+    /// its stop would hold it: there it is only if it has come from behind.
     fn needed(&self, (skin, taxel): Part, sphere: &Sphere) -> Option<(f64, DVec3)> {
         let skin = &self.ground.skins[skin];
         let layout = skin.patch.layout();
@@ -113,17 +114,17 @@ impl Rest<'_> {
         let (height, reach) = (from.dot(axis), sphere.radius + radius);
         let beside = from - height * axis;
         let left = (reach * reach - beside.length_squared()).max(0.0).sqrt();
-        if height < -stroke - radius {
-            return None;
-        }
         let least = GRAZING * reach;
-        if left >= least {
-            return Some((left - height, axis + beside / left));
-        }
         let edge = (reach * reach - least * least).sqrt();
         let slope = edge / least;
-        let needed = least - slope * (beside.length() - edge) - height;
-        Some((needed, axis + slope * beside.normalize()))
+        let (needed, way) = if left >= least {
+            (left - height, axis + beside / left)
+        } else {
+            let needed = least - slope * (beside.length() - edge) - height;
+            (needed, axis + slope * beside.normalize())
+        };
+        let is_behind = height < -stroke && needed > stroke + INSIDE;
+        (!is_behind).then_some((needed, way))
     }
 
     /// All pairs of a taxel and a sphere that touch, or would after a motion of `margin` metres.

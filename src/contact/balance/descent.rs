@@ -103,8 +103,6 @@ impl<'a, 'b> Descent<'a, 'b> {
         let mut looseness = f64::INFINITY;
         let mut n_tightened = 0;
         for _ in 0..MAX_ROUNDS {
-            // What made the last steps of a round short may be gone with its smoothing.
-            self.reach = self.reach.max(self.nearby());
             match self.descend() {
                 End::Rest => {}
                 end => return end,
@@ -242,22 +240,12 @@ impl<'a, 'b> Descent<'a, 'b> {
             }
             false => gain >= 1e-4 * step.gain,
         };
-        if is_better && !self.has_passed_through() {
+        if is_better {
             return Some(if is_noise { 1.0 } else { gain / step.gain });
         }
         std::mem::swap(&mut self.balancer.now, &mut self.balancer.next);
         self.bodies = bodies;
         None
-    }
-
-    /// Whether a sphere that pressed a taxel before is behind its substrate now: the step was too long for the stop to hold it.
-    fn has_passed_through(&self) -> bool {
-        let before = &self.balancer.next.pairs.all;
-        let pressed = |of: &(Key, Part)| {
-            let at = before.binary_search_by_key(of, |pair| (pair.key, pair.part));
-            at.is_ok_and(|at| before[at].deflection > 0.0)
-        };
-        self.balancer.now.pairs.behind.iter().any(pressed)
     }
 
     /// Moves the bodies; what their weights do by that, joules.
