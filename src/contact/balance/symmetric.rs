@@ -60,10 +60,10 @@ impl Symmetric {
 
     /// Adds `factor · x yᵀ` to the block of the ways of body a (rows) and b (columns).
     pub fn add_block(&mut self, [a, b]: [usize; 2], factor: f64, x: &Six, y: &Six) {
-        for i in 0..6 {
+        for (i, x) in x.iter().enumerate() {
             let row = &mut self.part_mut(6 * a + i, 6 * b)[..6];
-            for j in 0..6 {
-                row[j] += factor * x[i] * y[j];
+            for (entry, y) in row.iter_mut().zip(y) {
+                *entry += factor * x * y;
             }
         }
     }
