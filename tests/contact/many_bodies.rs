@@ -102,8 +102,8 @@ impl Rest<'_> {
     }
 
     /// How far a sphere needs a taxel to be in, straight from the formula, metres, on a grazing flank along its tangent; and what a newton along
-    /// the axis is on the sphere. `None` past where
-    /// its stop would hold it: there it is only if it has come from behind.
+    /// the axis is on the sphere. `None` behind the
+    /// substrate, and past where the stop would hold it: there it is only if it has come from behind.
     fn needed(&self, (skin, taxel): Part, sphere: &Sphere) -> Option<(f64, DVec3)> {
         let skin = &self.ground.skins[skin];
         let layout = skin.patch.layout();
@@ -125,7 +125,7 @@ impl Rest<'_> {
             let needed = least - slope * (beside.length() - edge) - height;
             (needed, axis + slope * beside.normalize())
         };
-        let is_behind = height < -stroke && needed > stroke + INSIDE;
+        let is_behind = height < -stroke - radius || height < -stroke && needed > stroke + INSIDE;
         (!is_behind).then_some((needed, way))
     }
 
@@ -278,23 +278,6 @@ impl Rest<'_> {
             let expected = taxel.stiffness * deepest.min(taxel.stroke);
             if (spring - expected).abs() > 1e-7 * lightest {
                 faults.push(format!("taxel {key:?}: {spring} N of {expected} N"));
-                for part in parts {
-                    let sphere = self.sphere(poses, *part);
-                    let layout = self.ground.skins[key.0].patch.layout();
-                    let c = self.ground.skins[key.0]
-                        .world_from_patch
-                        .inverse()
-                        .transform_point(sphere.center)
-                        - layout.centers()[key.1];
-                    let h = c.dot(layout.axes()[key.1]);
-                    println!(
-                        "part {part:?} S {} h {h} b {} dist {} needed {}",
-                        sphere.radius + 3e-3,
-                        (c - h * layout.axes()[key.1]).length(),
-                        c.length(),
-                        needed(part)
-                    );
-                }
             }
             if stop > 0.0 && deepest < taxel.stroke - INSIDE {
                 faults.push(format!(
