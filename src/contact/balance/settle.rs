@@ -148,7 +148,7 @@ impl Balancer {
     ) -> Vec<Balance> {
         let mut numbers: Vec<usize> = (0..bodies.len()).collect();
         let mut balances = vec![None; bodies.len()];
-        let mut n_steps = 0;
+        let (mut n_steps, mut is_second) = (0, false);
         self.loads.clear();
         self.touches.clear();
         while !bodies.is_empty() {
@@ -166,6 +166,8 @@ impl Balancer {
                 }
                 End::Exhausted => match descent.finish() {
                     Some(loads) => (all.collect(), Some(Outcome::Settled), loads),
+                    // Once more from there: forces of a round that went astray lead the next ones astray, too.
+                    None if !is_second => (Vec::new(), None, Vec::new()),
                     None => {
                         let loads = descent.balancer.now.pair_loads();
                         (descent.most_restless(), Some(Outcome::Unsettled), loads)
@@ -175,7 +177,12 @@ impl Balancer {
             n_steps += descent.n_steps;
             let multipliers = std::mem::take(&mut descent.multipliers);
             bodies = std::mem::take(&mut descent.bodies);
-            self.multipliers = multipliers;
+            is_second = done.is_empty();
+            self.multipliers = if is_second {
+                Multipliers::default()
+            } else {
+                multipliers
+            };
             self.report(&bodies, &loads, (&numbers, &done), &ground.skins);
             let wrenches = wrenches(&loads, &self.now.pairs.all, &bodies, &ground.skins);
             for slot in done.into_iter().rev() {
