@@ -123,13 +123,13 @@ fn a_free_ball_is_carried_by_skin_on_an_object_that_rides_a_link() {
         [[patches]]
         name = \"tray\"
         object = \"base\"
-        at = { position_mm = [0.0, 0.0, 45.0] }
+        at = { position_mm = [0.0, 0.0, 80.0] }
         layout = { grid = { nx = 24, ny = 24, pitch_mm = 3.0 } }
         stroke_mm = 6.0
         [[objects]]
         name = \"ball\"
         object = \"golf\"
-        at = { position_mm = [1.0, 2.0, 80.0] }
+        at = { position_mm = [1.0, 2.0, 90.0] }
         free = { mass_kg = 0.046 }";
     let weight = 0.046 * 9.81;
     for frame in frames(text) {
