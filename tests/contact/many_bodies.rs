@@ -570,7 +570,7 @@ fn random_scenes_of_several_objects_settle_or_leave() {
 /// But for those that find no rest and say so, and those where a small sphere of a scan came through between taxels: it counts as behind
 /// their substrate until it is out again, which the oracle knows only of spheres farther back.
 #[test]
-#[ignore = "takes four minutes"]
+#[ignore = "takes seven minutes"]
 fn a_thousand_random_scenes_of_several_objects_settle_or_leave() {
     all_settle_or_leave(0..1000, 4);
 }
