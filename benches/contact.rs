@@ -391,11 +391,10 @@ fn rest(c: &mut Criterion) {
     let object = FreeObject::new(&egg, 0.3, DVec3::ZERO).expect("the mass is positive");
     let mut balancer = Balancer::new();
     let mut settle = |height: f64, start: &Pose| {
-        let skins = [PlacedSkin {
-            patch: &skin,
-            world_from_patch: Pose::from_translation(height * DVec3::Z),
-            pushed: &[],
-        }];
+        let skins = [PlacedSkin::new(
+            &skin,
+            Pose::from_translation(height * DVec3::Z),
+        )];
         let balance = balancer.settle(&object, &skins, -9.81 * DVec3::Z, start);
         balance.expect("the start is finite")
     };

@@ -1,9 +1,12 @@
-//! Time to find the resting poses of an object of 3,000 spheres.
+//! Time to find the resting poses of an object of 3,000 spheres, and to put free objects to rest again.
 
+use bubbletouch::contact::balance::{Balancer, FreeObject, Ground, Outcome, PlacedSkin};
+use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{Sphere, SphereUnion};
-use bubbletouch::world::{center_of_mass, stable_poses};
+use bubbletouch::world::{Grid, Patch, Taxel, center_of_mass, stable_poses};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::DVec3;
+use std::hint::black_box;
 
 /// Spheres of 3 mm on an ellipsoid with these half axes, in a spiral.
 fn ellipsoid(n: usize, axes: DVec3) -> SphereUnion {
@@ -72,5 +75,57 @@ fn rest(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, rest);
+/// Four eggs of 1,000 spheres, side by side on 4,096 taxels so that they touch, put to rest again after the skin has moved by a fifth of a
+/// millimetre; and one of them.
+fn settle(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("settled_step_4096_taxels_1000_spheres");
+    let grid = Grid {
+        nx: 64,
+        ny: 64,
+        pitch: 2e-3,
+    };
+    let taxel = Taxel {
+        radius: 1e-3,
+        stiffness: 100.0,
+        damping: 0.0,
+        stroke: 5e-3,
+    };
+    let skin = Patch::grid(grid, taxel).expect("the grid is valid");
+    let egg = ellipsoid(1000, DVec3::new(0.017, 0.021, 0.019));
+    let object = FreeObject::new(&egg, 0.1, DVec3::new(1e-3, 0.0, -3e-3));
+    let object = object.expect("the mass is positive");
+    for n in [1, 2, 4] {
+        let mut balancer = Balancer::new();
+        let mut settle = |height: f64, starts: &[Pose]| {
+            let skins = [PlacedSkin::new(
+                &skin,
+                Pose::from_translation(height * DVec3::Z),
+            )];
+            let ground = Ground {
+                skins: skins.to_vec(),
+                ..Ground::default()
+            };
+            let objects = vec![object; n];
+            let found = balancer.settle_all(&objects, &ground, -9.81 * DVec3::Z, starts);
+            let found = found.expect("the starts are finite");
+            assert!(found.iter().all(|b| b.outcome == Outcome::Settled));
+            found.iter().map(|b| b.pose).collect::<Vec<_>>()
+        };
+        let start = |k: usize| {
+            let side = |bit: usize| if bit == 0 { -0.021 } else { 0.021 };
+            Pose::from_translation(DVec3::new(side(k & 1), side(k >> 1), 0.05))
+        };
+        let mut height = 0.0;
+        let mut poses = settle(height, &(0..n).map(start).collect::<Vec<_>>());
+        group.bench_function(BenchmarkId::new("objects", n), |bencher| {
+            bencher.iter(|| {
+                height = 2e-4 - height;
+                poses = settle(black_box(height), &poses);
+            });
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, rest, settle);
 criterion_main!(benches);

@@ -58,10 +58,10 @@ pub fn simulate(args: &Args) -> Result<()> {
     progress.finish(&format!("{n_steps} steps, {each_us:.0} µs each"));
     if !args.quiet {
         write_out(scene_table(&plan, &summary).as_bytes())?;
-        if simulation.n_unfinished() > 0 {
-            let n = simulation.n_unfinished();
+        if simulation.n_unsettled() > 0 {
+            let n = simulation.n_unsettled();
             say(format_args!(
-                "\nFree objects were not at rest together in {n} of {n_steps} steps."
+                "\nFree objects were not at rest in {n} of {n_steps} steps."
             ))?;
         }
         say(format_args!("\nResults in {}", args.out.display()))?;

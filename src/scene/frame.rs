@@ -1,6 +1,7 @@
 //! What a scene is like at one instant, and who wants to know.
 
 use crate::contact::Wrench;
+use crate::contact::balance::{Balance, Touch};
 use crate::error::Result;
 use crate::geometry::Pose;
 use glam::DVec3;
@@ -14,6 +15,8 @@ pub struct Frame {
     pub patches: Vec<PatchReading>,
     /// One an object, in the plan's order.
     pub objects: Vec<ObjectReading>,
+    /// What planes and objects put on free objects, by the plan's numbers of both.
+    pub touches: Vec<Touch>,
 }
 
 /// What a patch feels, and where it is.
@@ -34,6 +37,8 @@ pub struct PatchReading {
     pub n_saturated: usize,
     /// Taxels whose contact is grazing: see [`GRAZING`](crate::contact::GRAZING).
     pub n_grazing: usize,
+    /// What the stops of taxels carry of free objects, newtons, of all together; it is in the forces above.
+    pub stop_force: f64,
     /// What the objects put on the patch, in its frame, by the forces above; friction with it.
     pub wrench: Wrench,
     /// Of a patch with friction.
@@ -63,6 +68,8 @@ pub struct ObjectReading {
     pub pose: Pose,
     /// What decides that.
     pub held: Held,
+    /// Of a free object that is there: what holds it, and how well that balances its weight.
+    pub balance: Option<Balance>,
 }
 
 /// What holds an object.
@@ -79,9 +86,9 @@ pub enum Held {
         /// What it is to be, N.
         wanted: f64,
     },
-    /// Skin: it is at rest.
+    /// What it touches: it is at rest.
     AtRest,
-    /// Skin, but no rest was found within the largest number of steps, or none together with the other free objects.
+    /// What it touches, but within the largest number of steps no rest was found for all free objects together.
     Unsettled,
     /// Nothing: it left the skin, and touches none any more.
     Escaped {

@@ -11,8 +11,9 @@
 //!    that is recorded is the one that is wanted; with them it is more while taxels go in, less while they come out, and
 //!    the same when all rest. A force that is not reached is no error: the object waits at the end of its travel, and each frame
 //!    says what it carries;
-//! 3. free objects go to rest on the skin that is there, each from where it was ([`balance`](crate::contact::balance)); several of them
-//!    in turn, until none moves. What carries them is their springs and, at the end of a stroke, the reaction of the rigid stop, which
+//! 3. free objects go to rest on the skin that is there, on planes ([`PlaneSpec`]), on imposed objects and on one another, all together and each from
+//!    where it was ([`balance`](crate::contact::balance)). What carries them on skin is its springs, with what dampers add to them
+//!    within the step, and, at the end of a stroke, the reaction of the rigid stop, which
 //!    follows from the balance and counts in the forces of the patch;
 //! 4. each patch is pressed, unless no object is within its reach: what nothing pushes relaxes
 //!    ([`DamperState`](crate::contact::DamperState)), and the tips of a patch with friction are dragged along
@@ -21,8 +22,8 @@
 //! A scene begins as if it had stood as it does at t = 0 for long. One without dampers, friction, free and pushed objects remembers
 //! nothing, so it is evaluated at its frames only, with the same result.
 //!
-//! What is not modelled: free objects on a skin with friction are refused, since their balance holds no shear forces; objects do not touch each other, only skin (two free ones may
-//! slide into one another; where they come to rest on the same taxel, that is an error that names both); free objects neither swing nor bounce (\[BT\] is quasi-static); an
+//! What is not modelled: free objects on a skin with friction are refused, since their balance holds no shear forces; planes and
+//! objects hold free ones without friction; imposed objects touch free ones and skin, not each other or planes; free objects neither swing nor bounce (\[BT\] is quasi-static); an
 //! object that has escaped touches nothing any more.
 //!
 //! ```
@@ -77,7 +78,6 @@ mod spec_patch;
 mod summary;
 
 pub use frame::{Frame, FrameSink, FrictionReading, Held, ObjectReading, PatchReading};
-pub use free_objects::{MOST_ROUNDS, ROUND_TOLERANCE};
 pub use mount::Mount;
 pub use plan::ScenePlan;
 pub use plan_object::{Movement, PlannedObject};

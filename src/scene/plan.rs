@@ -6,6 +6,7 @@ use super::plan_press::PlannedPress;
 use super::plan_robot::PlannedRobot;
 use super::reader::{MM, Reader};
 use super::spec::SceneSpec;
+use crate::contact::balance::HalfSpace;
 use crate::error::{Error, Result};
 use crate::objects::Model;
 use crate::random::Seed;
@@ -40,6 +41,8 @@ pub struct ScenePlan {
     pub objects: Vec<PlannedObject>,
     /// What each object is made of.
     pub models: Vec<Model>,
+    /// Tables.
+    pub planes: Vec<HalfSpace>,
 }
 
 impl ScenePlan {
@@ -82,11 +85,15 @@ impl ScenePlan {
             objects.collect::<Result<Vec<_>>>()?.into_iter().unzip();
         check_presses(&reader.check, &spec)?;
         let gravity = reader.vector("gravity_m_per_s2", spec.gravity_m_per_s2, 1.0)?;
-        let is_free = |object: &PlannedObject| matches!(object.movement, Movement::Free { .. });
-        if gravity == DVec3::ZERO && objects.iter().any(is_free) {
+        let is_free = |object: &&PlannedObject| matches!(object.movement, Movement::Free { .. });
+        let free = objects.iter().find(is_free);
+        if gravity == DVec3::ZERO && free.is_some() {
             let allowed = "not zero in a scene with a free object";
             return Err(reader.check.error("gravity_m_per_s2", gravity, allowed));
         }
+        check_rigid(&reader.check, &spec, free, &models)?;
+        let planes = spec.planes.iter().map(|plane| reader.plane(plane));
+        let planes = planes.collect::<Result<Vec<_>>>()?;
         let duration = *spec
             .duration_s
             .get_or_insert_with(|| end(&robots, &objects));
@@ -106,6 +113,7 @@ impl ScenePlan {
             patches,
             objects,
             models,
+            planes,
         })
     }
 
@@ -192,15 +200,42 @@ fn check_names(check: &Check, spec: &SceneSpec) -> Result<()> {
     let robots = spec.robots.iter().map(|robot| ("robots", &robot.name));
     let patches = spec.patches.iter().map(|patch| ("patches", &patch.name));
     let objects = spec.objects.iter().map(|object| ("objects", &object.name));
+    let planes = spec.planes.iter().map(|plane| ("planes", &plane.name));
     let mut seen = BTreeSet::new();
-    for (key, name) in robots.chain(patches).chain(objects) {
+    for (key, name) in robots.chain(patches).chain(objects).chain(planes) {
         if name.trim().is_empty() {
             return Err(check.error(key, "an empty name", "a name"));
         }
         if !seen.insert(name) {
             let given = format!("a second thing called `{name}`");
-            let allowed = "each name once over robots, patches and objects";
+            let allowed = "each name once over robots, patches, objects and planes";
             return Err(check.error(key, given, allowed));
+        }
+    }
+    Ok(())
+}
+
+/// Planes are for free objects, and what free objects touch is made of spheres.
+fn check_rigid(
+    check: &Check,
+    spec: &SceneSpec,
+    free: Option<&PlannedObject>,
+    models: &[Model],
+) -> Result<()> {
+    let Some(free) = free else {
+        let Some(plane) = spec.planes.first() else {
+            return Ok(());
+        };
+        let given = format!("plane `{}` in a scene without free objects", plane.name);
+        let allowed = "planes beside free objects: nothing else rests on them";
+        return Err(check.error("planes", given, allowed));
+    };
+    for (object, model) in spec.objects.iter().zip(models) {
+        if model.spheres().is_none() {
+            let given = format!("triangles beside the free object `{}`", free.name);
+            let allowed =
+                "model = \"packed\" or \"vertex_spheres\": free objects touch spheres only";
+            return Err(check.error(&format!("objects.{}.model", object.name), given, allowed));
         }
     }
     Ok(())

@@ -1,6 +1,7 @@
 //! What all parts of a plan need: errors with file and key, poses, motions, files beside the scene's.
 
-use super::spec::{MotionSpec, PoseSpec};
+use super::spec::{MotionSpec, PlaneSpec, PoseSpec};
+use crate::contact::balance::HalfSpace;
 use crate::error::Result;
 use crate::geometry::{Pose, rotation_from_rpy};
 use crate::study::{Check, not_negative};
@@ -60,6 +61,21 @@ impl Reader<'_> {
         let degree = 1f64.to_radians();
         let rpy = self.vector(&format!("{key}.rpy_deg"), pose.rpy_deg, degree)?;
         Ok(Pose::new(rotation_from_rpy(rpy), position))
+    }
+
+    pub fn plane(&self, plane: &PlaneSpec) -> Result<HalfSpace> {
+        let key = format!("planes.{}", plane.name);
+        let point = self.vector(&format!("{key}.point_mm"), plane.point_mm, MM)?;
+        let key = format!("{key}.normal");
+        let normal = self.vector(&key, plane.normal, 1.0)?;
+        let Some(normal) = normal.try_normalize() else {
+            let allowed = "a direction of any length above zero";
+            return Err(self.check.error(&key, normal, allowed));
+        };
+        Ok(HalfSpace {
+            normal,
+            height: normal.dot(point),
+        })
     }
 
     /// How what is under `key` moves.

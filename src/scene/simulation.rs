@@ -36,6 +36,7 @@ pub struct Simulation<'p> {
     scratch: Scratch,
     next_frame: usize,
     n_steps: usize,
+    n_unsettled: usize,
 }
 
 impl<'p> Simulation<'p> {
@@ -45,11 +46,13 @@ impl<'p> Simulation<'p> {
         let imposed = ObjectReading {
             pose: Pose::IDENTITY,
             held: Held::Imposed,
+            balance: None,
         };
         let frame = Frame {
             time: 0.0,
             patches: skins.clone().map(untouched).collect(),
             objects: vec![imposed; plan.objects.len()],
+            touches: Vec::new(),
         };
         Self {
             stepping,
@@ -65,6 +68,7 @@ impl<'p> Simulation<'p> {
             scratch: Scratch::default(),
             next_frame: 0,
             n_steps: 0,
+            n_unsettled: 0,
             plan,
         }
     }
@@ -85,7 +89,7 @@ impl<'p> Simulation<'p> {
     /// Goes to the next frame; `None` after the last.
     ///
     /// # Errors
-    /// A pose beyond all numbers, or two free objects that rest on one taxel.
+    /// A pose beyond all numbers.
     pub fn next_frame(&mut self) -> Result<Option<&Frame>> {
         let plan = self.plan;
         if self.next_frame == plan.n_frames {
@@ -118,9 +122,9 @@ impl<'p> Simulation<'p> {
         self.n_steps
     }
 
-    /// Steps in which several free objects were not at rest together after [`MOST_ROUNDS`](super::MOST_ROUNDS) rounds.
-    pub fn n_unfinished(&self) -> usize {
-        self.free.n_unfinished
+    /// Steps, frames included, in which free objects were not at rest.
+    pub fn n_unsettled(&self) -> usize {
+        self.n_unsettled
     }
 
     fn n_substeps(&self) -> usize {
@@ -150,7 +154,11 @@ impl<'p> Simulation<'p> {
         for (number, skin) in self.skins.iter_mut().enumerate() {
             skin.hold(self.pressed.contacts_on(plan, number));
         }
-        self.free.settle(plan, &self.skins, &mut self.objects, time)
+        let is_settled = self
+            .free
+            .settle(plan, &self.skins, &mut self.objects, [time, dt])?;
+        self.n_unsettled += usize::from(!is_settled);
+        Ok(())
     }
 
     /// Patches feel a step of which nobody is told.
@@ -169,8 +177,8 @@ impl<'p> Simulation<'p> {
         let patches = self.skins.iter_mut().zip(&plan.patches);
         let patches = patches.zip(&mut self.frame.patches).enumerate();
         for (number, ((skin, patch), reading)) in patches {
-            let stops = self.free.stops(number);
-            skin.step_and_read(patch, &plan.models, &self.objects, dt, stops, reading);
+            let loads: Vec<_> = self.free.on_patch(number).collect();
+            skin.step_and_read(patch, &plan.models, &self.objects, dt, &loads, reading);
             if let Some(signal) = &patch.signal {
                 let share = self.next_frame as f64 / (plan.n_frames - 1).max(1) as f64;
                 signal.read(reading, (self.next_frame, share), &mut self.scratch);
@@ -181,6 +189,8 @@ impl<'p> Simulation<'p> {
         }
         self.pressed.read(&mut self.frame.objects);
         self.free.read(&mut self.frame.objects);
+        self.frame.touches.clear();
+        self.frame.touches.extend(self.free.touches());
     }
 }
 
@@ -194,6 +204,7 @@ fn untouched(patch: &PlannedPatch) -> PatchReading {
         n_touched: 0,
         n_saturated: 0,
         n_grazing: 0,
+        stop_force: 0.0,
         wrench: Wrench::default(),
         friction: patch.shears.as_ref().map(|_| FrictionReading::default()),
         center_of_pressure: None,

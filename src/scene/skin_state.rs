@@ -3,6 +3,7 @@
 use super::frame::PatchReading;
 use super::mount::Mount;
 use super::plan_patch::PlannedPatch;
+use crate::contact::balance::TaxelLoad;
 use crate::contact::{
     Contact, DamperState, FrictionState, GripCounts, NormalForce, TaxelContact, Workspace, Wrench,
     axial_load, press_at_pose, press_with_contacts,
@@ -118,14 +119,19 @@ impl SkinState {
         self.feel(patch, models, objects, dt, Detail::Deflections);
     }
 
-    /// The same, and reports; `stops`: what stops carry of free objects, a taxel and newtons each.
+    /// How far its taxels are in, metres.
+    pub fn deflection(&self) -> &[f64] {
+        &self.damper.deflection
+    }
+
+    /// The same, and reports; `loads`: what its taxels carry of free objects, taxel by taxel.
     pub fn step_and_read(
         &mut self,
         patch: &PlannedPatch,
         models: &[Model],
         objects: &PlacedObjects,
         dt: f64,
-        stops: impl Iterator<Item = (usize, f64)>,
+        loads: &[&TaxelLoad],
         reading: &mut PatchReading,
     ) {
         self.feel(patch, models, objects, dt, Detail::Contacts);
@@ -142,18 +148,12 @@ impl SkinState {
             .iter()
             .filter(|contact| contact.is_grazing())
             .count();
-        for (taxel, force) in stops {
-            reading.force[taxel] += force;
-            let is_counted = contacts
-                .binary_search_by_key(&taxel, |contact| contact.taxel)
-                .is_ok_and(|at| contacts[at].is_saturated(patch.skin.taxels().at(taxel)));
-            reading.n_saturated += usize::from(!is_counted);
-        }
+        add_stops(patch, contacts, loads, reading);
         let forces = &reading.force;
         reading.n_touched = forces.iter().filter(|&&force| force > 0.0).count();
         let load = axial_load(&patch.skin, contacts, |contact| forces[contact.taxel]);
-        reading.wrench = on_patch(load.on_object);
         reading.center_of_pressure = load.center_of_pressure;
+        reading.wrench = on_patch(on_objects(patch, contacts, loads, forces));
         if let (Some(state), Some(friction)) = (&self.friction, &mut reading.friction) {
             let load = state.load(&patch.skin, contacts);
             reading.wrench = on_patch(load.on_object);
@@ -216,6 +216,47 @@ impl SkinState {
             self.grips = friction.step(&patch.skin, contacts, &self.poses, normal);
         }
     }
+}
+
+/// Adds to a reading what stops carry of free objects.
+fn add_stops(
+    patch: &PlannedPatch,
+    contacts: &[TaxelContact],
+    loads: &[&TaxelLoad],
+    reading: &mut PatchReading,
+) {
+    reading.stop_force = loads.iter().map(|load| load.stop).sum();
+    for of_taxel in loads.chunk_by(|a, b| a.taxel == b.taxel) {
+        let taxel = of_taxel[0].taxel;
+        let stop: f64 = of_taxel.iter().map(|load| load.stop).sum();
+        if stop > 0.0 {
+            reading.force[taxel] += stop;
+            let contact = contacts.binary_search_by_key(&taxel, |contact| contact.taxel);
+            let spring = patch.skin.taxels().at(taxel);
+            let is_counted = contact.is_ok_and(|at| contacts[at].is_saturated(spring));
+            reading.n_saturated += usize::from(!is_counted);
+        }
+    }
+}
+
+/// What taxels with these forces put on objects. Spheres that share one push it along several ways, of which a contact is one: of free objects the
+/// loads say what each has of its force.
+fn on_objects(
+    patch: &PlannedPatch,
+    contacts: &[TaxelContact],
+    loads: &[&TaxelLoad],
+    forces: &[f64],
+) -> Wrench {
+    let of_others = |contact: &TaxelContact| {
+        let first = loads.partition_point(|load| load.taxel < contact.taxel);
+        let own = loads[first..].iter();
+        let own = own.take_while(|load| load.taxel == contact.taxel);
+        forces[contact.taxel] - own.map(|load| load.force).sum::<f64>()
+    };
+    let on_others = axial_load(&patch.skin, contacts, of_others).on_object;
+    loads
+        .iter()
+        .fold(on_others, |sum, load| sum + load.on_object)
 }
 
 /// What presses a patch in a step.

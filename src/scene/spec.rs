@@ -41,6 +41,23 @@ pub struct SceneSpec {
     /// `[[objects]]`
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub objects: Vec<ObjectSpec>,
+    /// `[[planes]]`
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub planes: Vec<PlaneSpec>,
+}
+
+/// `[[planes]]`: a table, or any half-space that free objects do not enter.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlaneSpec {
+    /// Its name in this scene.
+    pub name: String,
+    /// A point of its surface, in the world.
+    #[serde(default)]
+    pub point_mm: [f64; 3],
+    /// Out of it, in the world; of any length.
+    #[serde(default = "up")]
+    pub normal: [f64; 3],
 }
 
 /// `[[robots]]`: what carries patches.
@@ -177,6 +194,10 @@ impl SceneSpec {
         });
         robots.chain(patches).chain(objects).flatten()
     }
+}
+
+fn up() -> [f64; 3] {
+    [0.0, 0.0, 1.0]
 }
 
 fn one() -> f64 {

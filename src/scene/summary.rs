@@ -35,6 +35,8 @@ pub struct Summary {
     pub objects: Vec<Held>,
     /// Frames in which each object was unsettled.
     pub n_unsettled: Vec<usize>,
+    /// The most of each free object's [imbalance](crate::contact::balance::Balance::imbalance) in any frame; 0 of others.
+    pub imbalance: Vec<f64>,
     /// Frames in which each object was pressed with another force than was wanted.
     pub n_off: Vec<usize>,
 }
@@ -63,6 +65,10 @@ impl FrameSink for Summary {
         self.n_unsettled.resize(frame.objects.len(), 0);
         for (count, object) in self.n_unsettled.iter_mut().zip(&frame.objects) {
             *count += usize::from(object.held == Held::Unsettled);
+        }
+        self.imbalance.resize(frame.objects.len(), 0.0);
+        for (most, object) in self.imbalance.iter_mut().zip(&frame.objects) {
+            *most = most.max(object.balance.map_or(0.0, |balance| balance.imbalance));
         }
         self.n_off.resize(frame.objects.len(), 0);
         for (count, object) in self.n_off.iter_mut().zip(&frame.objects) {

@@ -33,11 +33,7 @@ fn bed(n: usize, stiffness: f64) -> Patch {
 }
 
 fn placed(patch: &Patch, world_from_patch: Pose) -> PlacedSkin<'_> {
-    PlacedSkin {
-        patch,
-        world_from_patch,
-        pushed: &[],
-    }
+    PlacedSkin::new(patch, world_from_patch)
 }
 
 fn ball(radius: f64) -> SphereUnion {

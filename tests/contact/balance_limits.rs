@@ -28,11 +28,7 @@ fn union(places: impl IntoIterator<Item = DVec3>, radius: f64) -> SphereUnion {
 }
 
 fn settle_on(skin: &Patch, at: Pose, object: &FreeObject, start: &Pose) -> Balance {
-    let skins = [PlacedSkin {
-        patch: skin,
-        world_from_patch: at,
-        pushed: &[],
-    }];
+    let skins = [PlacedSkin::new(skin, at)];
     Balancer::new().settle(object, &skins, DOWN, start).unwrap()
 }
 

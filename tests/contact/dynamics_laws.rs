@@ -163,11 +163,7 @@ fn a_ball_on_its_guide_comes_to_the_rest_of_the_quasi_static_balance() {
     let system = system(&patch, &ball, 1e-4, free(mass));
     let found = rest(&system).unwrap();
     let object = FreeObject::new(ball.spheres().unwrap(), mass, DVec3::ZERO).unwrap();
-    let skin = PlacedSkin {
-        patch: &patch,
-        world_from_patch: Pose::IDENTITY,
-        pushed: &[],
-    };
+    let skin = PlacedSkin::new(&patch, Pose::IDENTITY);
     let gravity = -9.81 * DVec3::Z;
     let mut balancer = Balancer::new();
     let balance = balancer

@@ -19,6 +19,7 @@ mod force;
 mod friction;
 mod laws;
 mod limits;
+mod many_bodies;
 mod mesh;
 mod press_variants;
 mod reference_scenes;

@@ -189,6 +189,31 @@ fn a_free_object_has_mass_gravity_and_spheres_and_no_motion() {
 }
 
 #[test]
+fn what_is_rigid_is_for_free_objects_and_made_of_spheres() {
+    let table = |lines: &str| {
+        let text = format!("{}[[planes]]\nname = \"table\"\n{lines}", good());
+        plan(&text).map(|plan| plan.planes[0])
+    };
+    let tilted = table("point_mm = [0.0, 0.0, 7.0]\nnormal = [0.0, 3.0, 4.0]").unwrap();
+    assert!((tilted.height - 5.6e-3).abs() < 1e-15 && (tilted.normal.z - 0.8).abs() < 1e-15);
+    let flat = table("normal = [0.0, 0.0, 0.0]").unwrap_err().to_string();
+    says(
+        &flat,
+        &[
+            "key planes.table.normal",
+            "a direction of any length above zero",
+        ],
+    );
+    let text = good().replace("free = { mass_kg = 0.058 }", "[[planes]]\nname = \"table\"");
+    let alone = plan(&text).unwrap_err().to_string();
+    says(&alone, &["plane `table` in a scene without free objects"]);
+    let twice = table("[[planes]]\nname = \"table\"")
+        .unwrap_err()
+        .to_string();
+    says(&twice, &["a second thing called `table`"]);
+}
+
+#[test]
 fn two_things_of_one_name_and_files_that_are_not_there_are_refused() {
     let said = refused("name = \"ball\"", "name = \"skin\"");
     says(

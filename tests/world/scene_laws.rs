@@ -1,6 +1,6 @@
 //! Laws of scenes: steps, frames of reference, shortcuts, free objects; each against a slower or simpler way.
 
-use bubbletouch::contact::balance::{Balancer, FreeObject, PlacedSkin};
+use bubbletouch::contact::balance::{Balancer, FreeObject, Ground, Obstacle, PlacedSkin, Touched};
 use bubbletouch::contact::{Workspace, Wrench, press_with_contacts, simulate, spring_load};
 use bubbletouch::geometry::Pose;
 use bubbletouch::scene::{
@@ -264,11 +264,7 @@ fn a_mug_on_a_bed_is_where_the_balance_of_one_object_puts_it_and_rises_with_the_
     else {
         panic!("the mug is free")
     };
-    let skin = PlacedSkin {
-        patch: &plan.patches[0].skin,
-        world_from_patch: Pose::IDENTITY,
-        pushed: &[],
-    };
+    let skin = PlacedSkin::new(&plan.patches[0].skin, Pose::IDENTITY);
     let spheres = plan.models[0].spheres().unwrap();
     let mug = FreeObject::new(spheres, mass, center_of_mass).unwrap();
     let settled = Balancer::new().settle(&mug, &[skin], plan.gravity, &start);
@@ -330,7 +326,7 @@ fn two_free_balls_are_carried_side_by_side() {
     );
     let force = frame.patches[0].wrench.force.z;
     assert!((force + 0.258 * 9.81).abs() < 1e-4, "{force} N");
-    assert_eq!(simulation.n_unfinished(), 0);
+    assert_eq!(simulation.n_unsettled(), 0);
 }
 
 #[test]
@@ -435,30 +431,40 @@ fn what_rests_on_stops_is_carried_by_the_forces_of_the_frame_on_flat_and_on_curv
 }
 
 #[test]
-fn two_free_balls_that_come_to_rest_on_the_same_taxels_are_refused_by_name() {
+fn two_free_balls_that_come_to_rest_on_the_same_taxels_are_carried_together_and_touch() {
     for masses in [[0.2, 0.2], [0.2, 0.1], [50.0, 0.2]] {
         let [one, other] = masses.map(|mass| format!("free = {{ mass_kg = {mass} }}"));
+        // Inside of one another at the start: they come apart.
         let plan = two_balls(5.0, &one, &other);
         let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);
-        let error = simulation.next_frame().unwrap_err();
-        assert_eq!(error.exit_code(), 2);
-        let said = error.to_string();
-        for word in [
-            "test.toml",
-            "`one`",
-            "`other`",
-            "at 0 s",
-            "`bed`",
-            "--until-s",
-        ] {
-            assert!(said.contains(word), "{masses:?}: no '{word}' in: {said}");
-        }
+        let frame = simulation.next_frame().unwrap().unwrap();
+        let places = [0, 1].map(|object| {
+            let reading = frame.objects[object];
+            assert_eq!(reading.held, Held::AtRest, "{masses:?}");
+            assert!(reading.balance.unwrap().imbalance < 1e-6, "{masses:?}");
+            let [ball] = plan.models[object].spheres().unwrap().spheres() else {
+                panic!("a ball is one sphere")
+            };
+            (reading.pose.transform_point(ball.center), ball.radius)
+        });
+        let [(one, radius), (other, _)] = places;
+        assert!(one.distance(other) > 2.0 * radius - 1e-9, "{masses:?}");
+        let on_patch = frame.patches[0].wrench;
+        let weights = masses.map(|mass| -9.81 * mass * DVec3::Z);
+        let torque = one.cross(weights[0]) + other.cross(weights[1]);
+        let lightest = 9.81 * masses[1];
+        assert!((on_patch.force - weights[0] - weights[1]).length() < 1e-5 * lightest);
+        assert!((on_patch.torque - torque).length() < 1e-5 * lightest * radius);
+        let stops = frame.patches[0].stop_force;
+        assert_eq!(stops > 0.0, masses[0] > 1.0, "{masses:?}: {stops} N");
     }
 }
 
 #[test]
-fn a_free_ball_comes_to_rest_in_the_hollow_that_an_imposed_one_makes() {
-    let plan = two_balls(10.0, "", "free = { mass_kg = 0.058 }");
+fn a_free_ball_comes_to_rest_in_the_hollow_that_an_imposed_one_makes_and_on_it() {
+    let mut plan = two_balls(32.0, "", "free = { mass_kg = 0.058 }");
+    // Towards the other, so little that it does not slip past it.
+    plan.gravity = DVec3::new(-0.5, 0.0, -9.8);
     let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);
     let frame = simulation.next_frame().unwrap().unwrap().clone();
     let Movement::Free {
@@ -479,18 +485,86 @@ fn a_free_ball_comes_to_rest_in_the_hollow_that_an_imposed_one_makes() {
     );
     let ball = plan.models[1].spheres().unwrap();
     let ball = FreeObject::new(ball, mass, center_of_mass).unwrap();
-    let settled = |pushed| {
-        let skin = PlacedSkin {
-            patch: skin,
-            world_from_patch: Pose::IDENTITY,
+    let obstacles = [Obstacle {
+        spheres: plan.models[0].spheres().unwrap(),
+        pose: frame.objects[0].pose,
+    }];
+    let settled = |pushed, obstacles| {
+        let skins = [PlacedSkin {
             pushed,
+            ..PlacedSkin::new(skin, Pose::IDENTITY)
+        }];
+        let ground = Ground {
+            skins: skins.to_vec(),
+            obstacles,
+            ..Ground::default()
         };
-        let balance = Balancer::new().settle(&ball, &[skin], plan.gravity, &start);
-        balance.unwrap().pose
+        let balances = Balancer::new().settle_all(&[ball], &ground, plan.gravity, &[start]);
+        balances.unwrap()[0].pose
     };
-    assert_eq!(frame.objects[1].pose, settled(workspace.deflections()));
-    let alone = settled(&[]).translation;
-    assert!(frame.objects[1].pose.translation.distance(alone) > 1e-3);
+    let both = settled(workspace.deflections(), obstacles.to_vec());
+    assert_eq!(frame.objects[1].pose, both);
+    let [alone, hollow] =
+        [&[][..], workspace.deflections()].map(|pushed| settled(pushed, Vec::new()));
+    assert!(both.translation.distance(alone.translation) > 1e-4);
+    assert!(both.translation.distance(hollow.translation) > 1e-4);
+    let [touch] = frame.touches[..] else {
+        panic!("{:?}", frame.touches)
+    };
+    assert_eq!((touch.object, touch.other), (1, Touched::Object(0, 0)));
+}
+
+#[test]
+fn a_damped_bed_carries_the_whole_weight_while_a_ball_sinks_and_after() {
+    let plan = parse(
+        r#"
+        title = "A plate of skin comes up to a ball on a table, and carries it"
+        output_hz = 50.0
+        dt_ms = 2.0
+        [[robots]]
+        name = "lift"
+        floating = true
+        at = { position_mm = [0.0, 0.0, -6.0] }
+        motion = { phases = [
+            { duration_s = 0.3, linear_mm_per_s = [0.0, 0.0, 35.0] },
+            { duration_s = 0.5 },
+        ] }
+        [[patches]]
+        name = "bed"
+        robot = "lift"
+        layout = { grid = { nx = 20, ny = 20, pitch_mm = 4.0 } }
+        stroke_mm = 12.0
+        stiffness_n_per_m = 20.0
+        damping_n_s_per_m = 4.0
+        [[objects]]
+        name = "ball"
+        object = "tennis"
+        at = { position_mm = [0.3, -0.2, 40.0] }
+        free = { mass_kg = 0.3 }
+        [[planes]]
+        name = "table"
+        "#,
+    );
+    let weight = 0.3 * 9.81;
+    let (mut n_carried, mut n_both) = (0, 0);
+    let mut deepest = Vec::new();
+    for frame in frames(&plan, Stepping::AsNeeded) {
+        assert_eq!(frame.objects[0].held, Held::AtRest, "{} s", frame.time);
+        let on_patch = frame.patches[0].wrench.force;
+        let of_table: DVec3 = frame.touches.iter().map(|touch| touch.force).sum();
+        let left = on_patch - of_table + weight * DVec3::Z;
+        assert!(left.length() < 1e-6 * weight, "{} s: {left}", frame.time);
+        n_both += usize::from(of_table.z > 0.0 && on_patch.z < 0.0);
+        if frame.touches.is_empty() {
+            n_carried += 1;
+            let all = frame.patches[0].deflection.iter();
+            deepest.push(all.copied().fold(0.0, f64::max));
+        }
+    }
+    // For a while both carry it; then it sinks more and more slowly.
+    assert!(n_both > 0 && n_carried > 20, "{n_both} {n_carried}");
+    let n = deepest.len();
+    assert!(deepest[n - 1] > deepest[n - 20] + 1e-6, "{deepest:?}");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! What rides along: skin on an object, and objects on a robot's links, against the same things that move by themselves.
 
-use bubbletouch::scene::{Frame, ScenePlan, SceneSpec, Simulation, Stepping};
+use bubbletouch::scene::{Frame, Held, ScenePlan, SceneSpec, Simulation, Stepping};
 use std::path::Path;
 
 const MOTION: &str = "motion = { phases = [
@@ -105,6 +105,39 @@ fn skin_on_an_object_goes_with_it_and_does_not_feel_it() {
             .iter()
             .any(|frame| frame.patches[0].n_touched > 0)
     );
+}
+
+#[test]
+fn a_free_ball_is_carried_by_skin_on_an_object_that_rides_a_link() {
+    let text = "title = \"a tray\"
+        output_hz = 20.0
+        duration_s = 0.5
+        [[robots]]
+        name = \"hand\"
+        floating = true
+        motion = { phases = [{ duration_s = 0.5, linear_mm_per_s = [10.0, 5.0, 40.0] }] }
+        [[objects]]
+        name = \"base\"
+        object = \"tennis\"
+        robot = \"hand\"
+        [[patches]]
+        name = \"tray\"
+        object = \"base\"
+        at = { position_mm = [0.0, 0.0, 80.0] }
+        layout = { grid = { nx = 24, ny = 24, pitch_mm = 3.0 } }
+        stroke_mm = 6.0
+        [[objects]]
+        name = \"ball\"
+        object = \"golf\"
+        at = { position_mm = [1.0, 2.0, 90.0] }
+        free = { mass_kg = 0.046 }";
+    let weight = 0.046 * 9.81;
+    for frame in frames(text) {
+        assert_eq!(frame.objects[1].held, Held::AtRest, "{} s", frame.time);
+        let carried = frame.patches[0].wrench.force;
+        assert!((carried.z + weight).abs() < 1e-6 * weight, "{carried}");
+        assert!(frame.touches.is_empty());
+    }
 }
 
 #[test]

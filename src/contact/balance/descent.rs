@@ -1,17 +1,17 @@
 //! Down the energy to a pose at rest.
 
-use super::fall::{Fall, fall};
-use super::finish::Held;
-use super::free_object::{FreeObject, PlacedSkin};
+use super::body::Body;
+use super::energy::{PairLoad, wrenches};
+use super::fall::Loose;
+use super::free_object::Ground;
 use super::loads::{Multipliers, Smoothness};
 use super::model::{Scene, Step};
-use super::pairs::Key;
-use super::settle::{Balance, Balancer, Outcome};
-use super::six::{Six, SixBySix, eigen, norm};
-use crate::geometry::Pose;
-use glam::{DQuat, DVec3};
+use super::pairs::{Key, Part};
+use super::settle::Balancer;
+use super::symmetric::{Symmetric, norm};
+use glam::DVec3;
 
-/// Poses looked at, at most: an object that rolls across a whole skin takes some hundreds.
+/// Poses looked at for each body, at most: one that rolls across a whole skin takes some hundreds.
 const MAX_STEPS: usize = 4000;
 /// Rounds of multipliers, at most; three to six are usual.
 const MAX_ROUNDS: usize = 40;
@@ -19,7 +19,7 @@ const MAX_ROUNDS: usize = 40;
 const AT_REST: f64 = 1e-7;
 /// Imbalance that a pose at rest never has more of, even where flanks are so steep that nothing nearby is better.
 const PROMISED: f64 = 1e-6;
-/// Looseness of ties and stops at which a pose is at rest, in springs' forces, as a share of the largest of them.
+/// [Looseness](super::energy::Energy::looseness) of ties and stops at which a pose is at rest.
 const TIGHT: f64 = 1e-7;
 /// Steps up to this share of the farthest are foreseen with all contacts that they make.
 const NEARBY: f64 = 0.04;
@@ -32,67 +32,54 @@ const MOST_TIGHTENED: usize = 12;
 /// Places closer than this share of the object's size and way are the same.
 const SAME_PLACE: f64 = 1e-15;
 
-/// One object on its way down.
-pub(super) struct Descent<'a> {
-    pub balancer: &'a mut Balancer,
-    object: &'a FreeObject<'a>,
-    pub skins: &'a [PlacedSkin<'a>],
-    /// m g, newtons.
-    pub weight: DVec3,
-    /// Rotations count by how far they move a point this far from the centre of mass, metres.
-    pub arm: f64,
+/// Bodies on their way down.
+pub(super) struct Descent<'a, 'b> {
+    pub balancer: &'b mut Balancer,
+    pub ground: &'a Ground<'a>,
+    pub bodies: Vec<Body<'a>>,
     /// No step is longer, metres.
     pub farthest: f64,
-    start: DVec3,
-    pub center: DVec3,
-    pub rotation: DQuat,
     smoothness: Smoothness,
     /// What is known of the forces inside taxels; better from round to round.
     pub multipliers: Multipliers,
     /// The longest step that is trusted now, metres.
     pub reach: f64,
-    n_steps: usize,
+    pub n_steps: usize,
 }
 
-/// Why a descent stopped.
-enum Stop {
+/// How a descent ended.
+pub(super) enum End {
+    /// All are at rest.
     Rest,
-    Endless,
+    /// There is nothing below these any more.
+    Endless(Vec<usize>),
+    /// Neither within the largest number of steps.
     Exhausted,
 }
 
-impl<'a> Descent<'a> {
-    pub fn new(
-        balancer: &'a mut Balancer,
-        object: &'a FreeObject,
-        skins: &'a [PlacedSkin],
-        gravity: DVec3,
-        start: &Pose,
-    ) -> Self {
-        let taxels = || skins.iter().flat_map(|skin| skin.patch.taxels().all());
-        let stroke = taxels().map(|t| t.stroke).fold(f64::INFINITY, f64::min);
-        let stiffness = taxels().map(|t| t.stiffness).fold(0.0, f64::max);
-        let weight = object.mass * gravity;
-        let center = start.transform_point(object.center_of_mass);
-        let stroke = if stroke.is_finite() {
-            stroke
-        } else {
-            object.radius
-        };
+impl<'a, 'b> Descent<'a, 'b> {
+    /// Of at least one body.
+    pub fn new(balancer: &'b mut Balancer, bodies: Vec<Body<'a>>, ground: &'a Ground<'a>) -> Self {
+        let (mut stroke, mut stiffness) = (f64::INFINITY, 0.0_f64);
+        for skin in &ground.skins {
+            for (number, taxel) in skin.patch.taxels().all().iter().enumerate() {
+                stroke = stroke.min(taxel.stroke);
+                stiffness = stiffness.max(skin.stiffness(number));
+            }
+        }
+        let smallest = bodies.iter().map(Body::arm).fold(f64::INFINITY, f64::min);
+        let stroke = if stroke.is_finite() { stroke } else { smallest };
+        let weight = total_weight(&bodies);
+        let size = bodies.iter().map(Body::arm).fold(0.0, f64::max);
         Self {
-            object,
-            skins,
-            weight,
-            arm: object.radius,
+            ground,
+            bodies,
             farthest: 0.5 * stroke,
-            start: center,
-            center,
-            rotation: start.rotation,
             smoothness: Smoothness {
                 smoothing: 1e-3 * stroke,
-                load: SMOOTHING * weight.length(),
-                least: LAST_BITS * f64::EPSILON * object.radius,
-                stop_stiffness: (1e3 * stiffness).max(weight.length() / (1e-3 * stroke)),
+                load: SMOOTHING,
+                least: LAST_BITS * f64::EPSILON * size,
+                stop_stiffness: (1e3 * stiffness).max(weight / (1e-3 * stroke)),
             },
             multipliers: std::mem::take(&mut balancer.multipliers),
             reach: 0.125 * stroke,
@@ -103,43 +90,38 @@ impl<'a> Descent<'a> {
 
     fn scene(&self) -> Scene<'_> {
         Scene {
-            skins: self.skins,
+            bodies: &self.bodies,
+            ground: self.ground,
             multipliers: &self.multipliers,
             smoothness: self.smoothness,
-            weight: self.weight,
-            arm: self.arm,
         }
     }
 
     /// Rounds of descents, each with better multipliers.
-    pub fn run(&mut self) -> Outcome {
+    pub fn run(&mut self) -> End {
         self.look(&[]);
         let mut looseness = f64::INFINITY;
         let mut n_tightened = 0;
         for _ in 0..MAX_ROUNDS {
             match self.descend() {
-                Stop::Rest => {}
-                Stop::Endless => {
-                    return Outcome::Escaped {
-                        direction: self.way_out(),
-                    };
-                }
-                Stop::Exhausted => return Outcome::Unsettled,
+                End::Rest => {}
+                end => return end,
             }
-            if self.imbalance() <= AT_REST && self.looseness() <= TIGHT {
-                return Outcome::Settled;
+            if self.is_at_rest(AT_REST, TIGHT) {
+                return End::Rest;
             }
-            let deepest = self.deepest();
-            if deepest == 0.0 {
+            let Some(deepest) = self.deepest() else {
                 // Less than the last bit above taxels that are too stiff to be pressed by it.
-                return Outcome::Unsettled;
-            }
+                return End::Exhausted;
+            };
             let now = &self.balancer.now;
-            self.multipliers = now.loads.multipliers(&now.pairs.all);
-            self.smoothness.smoothing = self.smoothness.smoothing.min(SMOOTHING * deepest);
+            self.multipliers = now.loads.multipliers(&now.pairs);
+            let now = self.looseness();
+            if deepest > 0.0 {
+                self.smoothness.smoothing = self.smoothness.smoothing.min(SMOOTHING * deepest);
+            }
             // Where the energy bends down between ties, multipliers need steeper sides to converge.
-            let (before, now) = (looseness, self.looseness());
-            if now > TIGHT.max(0.25 * before) && n_tightened < MOST_TIGHTENED {
+            if now > TIGHT.max(0.25 * looseness) && n_tightened < MOST_TIGHTENED {
                 n_tightened += 1;
                 self.smoothness.tighten(0.2);
                 self.smoothness.stop_stiffness *= 5.0;
@@ -147,29 +129,59 @@ impl<'a> Descent<'a> {
             looseness = now;
             self.look_again();
         }
-        let is_tight = self.looseness() <= 1e3 * TIGHT;
-        match self.imbalance() <= PROMISED && is_tight {
-            true => Outcome::Settled,
-            false => Outcome::Unsettled,
+        match self.is_at_rest(PROMISED, 1e3 * TIGHT) {
+            true => End::Rest,
+            false => End::Exhausted,
         }
     }
 
+    fn is_at_rest(&self, imbalance: f64, looseness: f64) -> bool {
+        let now = &self.balancer.now;
+        self.imbalance(&now.pair_loads()) <= imbalance && self.looseness() <= looseness
+    }
+
+    /// The largest of all islands.
+    fn looseness(&self) -> f64 {
+        let now = &self.balancer.now;
+        let islands = now.pairs.islands(self.bodies.len());
+        now.looseness(&islands).into_iter().fold(0.0, f64::max)
+    }
+
+    /// Of bodies that touch one another, those that are farthest from rest.
+    pub(super) fn most_restless(&self) -> Vec<usize> {
+        let now = &self.balancer.now;
+        let islands = now.pairs.islands(self.bodies.len());
+        let mut unrest = now.looseness(&islands);
+        for (body, imbalance) in self.imbalances(&now.pair_loads()).into_iter().enumerate() {
+            let unrest = &mut unrest[islands[body]];
+            *unrest = unrest.max(imbalance);
+        }
+        let most = |one: &&usize, other: &&usize| unrest[**one].total_cmp(&unrest[**other]);
+        let worst = islands.iter().max_by(most).copied();
+        let all = 0..islands.len();
+        all.filter(|&body| Some(islands[body]) == worst).collect()
+    }
+
     /// Down to a stationary point of the smooth energy that is no saddle.
-    fn descend(&mut self) -> Stop {
-        while self.n_steps < MAX_STEPS {
-            if self.balancer.now.pairs.all.is_empty() {
-                match self.fall() {
-                    true => continue,
-                    false => return Stop::Endless,
+    fn descend(&mut self) -> End {
+        while self.n_steps < MAX_STEPS * self.bodies.len() {
+            if let Some((loose, way, room)) = self.loose() {
+                match room.is_finite() {
+                    true => self.fall(&loose, room * way),
+                    false => {
+                        self.shift(&loose, self.farthest * way);
+                        return End::Endless(loose.bodies);
+                    }
                 }
+                continue;
             }
             let (slope, step) = match self.best() {
                 Some(found) => found,
-                None => return Stop::Rest,
+                None => return End::Rest,
             };
             let length = norm(&step.motion);
             if length <= self.same_place() {
-                return Stop::Rest;
+                return End::Rest;
             }
             match self.attempt(&step, slope) {
                 Some(ratio) if ratio > 0.75 && length > 0.8 * self.reach => {
@@ -180,109 +192,124 @@ impl<'a> Descent<'a> {
                 None => self.reach = 0.25 * length,
             }
         }
-        Stop::Exhausted
+        End::Exhausted
     }
 
-    /// The length of the energy's gradient, N, and the best step; `None` at a stationary point that is no saddle.
+    /// The [slope](Scene::slope) of the energy, and the best step; `None` at a stationary point that is no saddle.
     fn best(&mut self) -> Option<(f64, Step)> {
         let (gradient, hessian) = self.derivatives();
-        let parts = eigen(&hessian);
-        let lowest = parts.0.iter().copied().fold(f64::INFINITY, f64::min);
-        let largest = parts.0.iter().map(|v| v.abs()).fold(0.0, f64::max);
-        let slope = norm(&gradient);
-        let is_rest = slope <= 0.1 * AT_REST * self.weight.length() && lowest >= -1e-9 * largest;
-        if is_rest {
+        let slope = self.scene().slope(&gradient);
+        if slope <= 0.1 * AT_REST && hessian.is_convex() {
             return None;
         }
         let mut model = std::mem::take(&mut self.balancer.model);
         let (scene, now) = (self.scene(), &self.balancer.now);
-        let step = model.best(&scene, &now.pairs.all, (&gradient, &parts), self.reach);
+        let step = model.best(&scene, &now.pairs, (gradient, hessian), self.reach);
         self.balancer.model = model;
         Some((slope, step))
     }
 
     /// Lays the model at the pose that was looked at last; gradient (N) and Hessian (N/m) there.
-    fn derivatives(&mut self) -> (Six, SixBySix) {
+    fn derivatives(&mut self) -> (Vec<f64>, Symmetric) {
         let mut model = std::mem::take(&mut self.balancer.model);
         let (scene, now) = (self.scene(), &self.balancer.now);
-        model.lay(&scene, &now.pairs.all, &now.loads);
-        let found = model.at_pose(&scene, &now.pairs.all);
+        model.lay(&scene, &now.pairs, &now.loads);
+        let found = model.at_pose(&scene, &now.pairs);
         self.balancer.model = model;
         found
     }
 
     /// Goes a step if it leads down; how much of the promised gain it brought, `None` if it was not gone.
     fn attempt(&mut self, step: &Step, slope: f64) -> Option<f64> {
-        let (center, rotation) = (self.center, self.rotation);
-        let shift = self.go(&step.motion);
+        let bodies = self.bodies.clone();
+        let fallen = self.go(&step.motion);
         let before = self.balancer.now.loads.elastic;
         std::mem::swap(&mut self.balancer.now, &mut self.balancer.next);
         let behind = std::mem::take(&mut self.balancer.next.pairs.behind);
         self.look(&behind);
         self.balancer.next.pairs.behind = behind;
         let after = self.balancer.now.loads.elastic;
-        let gain = before - after + self.weight.dot(shift);
+        let gain = before - after + fallen;
         // So little that the energies' last digits decide: the slope then says whether this is the right way.
-        let noise = 1e-14 * (before.abs() + after.abs() + self.weight.dot(shift).abs());
+        let noise = 1e-14 * (before.abs() + after.abs() + fallen.abs());
         let is_noise = step.gain <= 100.0 * noise;
         let is_better = match is_noise {
-            true => norm(&self.derivatives().0) < slope,
+            true => {
+                let (gradient, _) = self.derivatives();
+                self.scene().slope(&gradient) < slope
+            }
             false => gain >= 1e-4 * step.gain,
         };
         if is_better {
             return Some(if is_noise { 1.0 } else { gain / step.gain });
         }
         std::mem::swap(&mut self.balancer.now, &mut self.balancer.next);
-        (self.center, self.rotation) = (center, rotation);
+        self.bodies = bodies;
         None
     }
 
-    /// Moves the object; its way, metres.
-    pub(super) fn go(&mut self, motion: &Six) -> DVec3 {
-        let [x, y, z, turn_x, turn_y, turn_z] = *motion;
-        let (shift, turn) = (
-            DVec3::new(x, y, z),
-            DVec3::new(turn_x, turn_y, turn_z) / self.arm,
-        );
-        self.center += shift;
-        self.rotation = (DQuat::from_scaled_axis(turn) * self.rotation).normalize();
-        shift
+    /// Moves the bodies; what their weights do by that, joules.
+    pub(super) fn go(&mut self, motion: &[f64]) -> f64 {
+        let bodies = self.bodies.iter_mut().zip(motion.chunks(6));
+        bodies
+            .map(|(body, motion)| body.weight.dot(body.go(motion)))
+            .sum()
     }
 
-    /// Falls towards the next skin, not deeper into it than to where it is no worse off; whether there is one.
-    fn fall(&mut self) -> bool {
-        let down = self.weight.normalize();
-        let mut way = match fall(self.object, self.skins, self.center, down) {
-            Fall::Endless => return false,
-            Fall::Free(way) => way.max(self.farthest),
-            Fall::Near => self.farthest,
-        };
-        let above = self.center;
+    /// Bodies that nothing holds, if there are any, their way down (unit), and how far they may go, metres.
+    fn loose(&self) -> Option<(Loose, DVec3, f64)> {
+        let down = self.bodies[0].weight.normalize();
+        let all = Loose::all(&self.balancer.now.pairs, self.bodies.len());
+        all.into_iter().find_map(|loose| {
+            let way = loose.way(self.ground, down)?;
+            let room = match loose.room(&self.bodies, self.ground, way) {
+                // Steps find the way along a plane, with what is near.
+                None if loose.slides() => return None,
+                room => room.unwrap_or(0.0).max(self.farthest),
+            };
+            Some((loose, way, room))
+        })
+    }
+
+    /// Bodies go a way together, not deeper into what is below than to where they are no worse off.
+    fn fall(&mut self, loose: &Loose, mut way: DVec3) {
+        let weights = loose.bodies.iter().map(|&body| self.bodies[body].weight);
+        let weight: DVec3 = weights.sum();
+        let before = self.balancer.now.loads.elastic;
         let behind = std::mem::take(&mut self.balancer.now.pairs.behind);
+        self.shift(loose, way);
         loop {
-            self.center = above + way * down;
             self.look(&behind);
-            let is_no_worse = self.balancer.now.loads.elastic <= 0.5 * self.weight.length() * way;
-            if is_no_worse || way <= self.same_place() {
-                return true;
+            let gain = before - self.balancer.now.loads.elastic + 0.5 * weight.dot(way);
+            if gain >= 0.0 || way.length() <= self.same_place() {
+                return;
             }
             way *= 0.5;
+            self.shift(loose, -way);
         }
+    }
+
+    fn shift(&mut self, loose: &Loose, by: DVec3) {
+        let bodies = loose.bodies.iter();
+        bodies.for_each(|&body| self.bodies[body].center += by);
     }
 
     /// Metres that are none.
     fn same_place(&self) -> f64 {
-        SAME_PLACE * (self.arm + self.center.length())
+        let sizes = self
+            .bodies
+            .iter()
+            .map(|body| body.arm() + body.center.length());
+        SAME_PLACE * sizes.fold(f64::INFINITY, f64::min)
     }
 
     /// Looks at the pose; `behind`: the spheres that were behind taxels where it comes from.
-    fn look(&mut self, behind: &[(Key, u32)]) {
+    fn look(&mut self, behind: &[(Key, Part)]) {
         self.n_steps += 1;
-        let pose = self.pose();
         let mut now = std::mem::take(&mut self.balancer.now);
         // Of far steps not all is foreseen: that would be most spheres.
         let step = self.reach.min(self.nearby());
-        now.look(self.object, &self.scene(), &pose, step, behind);
+        now.look(&self.scene(), step, behind);
         self.balancer.now = now;
     }
 
@@ -297,74 +324,38 @@ impl<'a> Descent<'a> {
         NEARBY * self.farthest
     }
 
-    fn pose(&self) -> Pose {
-        let from_origin = self.rotation * self.object.center_of_mass;
-        Pose::new(self.rotation, self.center - from_origin)
-    }
-
-    fn deepest(&self) -> f64 {
-        let carrying = self.balancer.now.loads.carrying();
-        carrying.map(|load| load.deepest).fold(0.0, f64::max)
-    }
-
-    fn looseness(&self) -> f64 {
-        self.balancer.now.looseness(self.skins)
-    }
-
-    pub(super) fn imbalance(&self) -> f64 {
-        let (force, torque) = self.balancer.now.wrench(self.skins);
-        self.imbalance_of(force, torque)
-    }
-
-    /// What is left of a force (N) and a torque (N·m) with the weight: see [`Balance::imbalance`].
-    pub(super) fn imbalance_of(&self, force: DVec3, torque: DVec3) -> f64 {
-        let weight = self.weight.length();
-        let of_force = (force + self.weight).length() / weight;
-        of_force.max(torque.length() / (weight * self.object.radius))
-    }
-
-    fn way_out(&self) -> DVec3 {
-        let down = self.weight.normalize();
-        let way = self.center - self.start;
-        let across = way - way.dot(down) * down;
-        if across.length() > 1e-9 * way.length() {
-            across.normalize()
-        } else {
-            down
-        }
-    }
-
-    /// What there is to say of the pose that it has come to, and of what holds it there, if that is known better than by deflections.
-    pub fn balance(&mut self, outcome: Outcome, held: Option<Held>) -> Balance {
-        if let Outcome::Escaped { .. } = outcome {
-            self.balancer.carried.clear();
-        } else if held.is_none() {
-            self.balancer.carried = self.balancer.now.carried(self.skins);
-        }
+    /// How far the farthest taxel is pushed, metres; 0 where only what is rigid carries, `None` if nothing does.
+    fn deepest(&self) -> Option<f64> {
         let now = &self.balancer.now;
-        let by_deflections = || {
-            let (force, torque) = now.wrench(self.skins);
-            Held {
-                force,
-                torque,
-                n_saturated: now.loads.carrying().filter(|load| load.stop > 0.0).count(),
-            }
-        };
-        let Held {
-            force,
-            torque,
-            n_saturated,
-        } = held.unwrap_or_else(by_deflections);
-        Balance {
-            pose: self.pose(),
-            outcome,
-            force,
-            torque,
-            imbalance: self.imbalance_of(force, torque),
-            n_touched: now.loads.carrying().count(),
-            n_saturated,
-            n_grazing: now.n_grazing(),
-            n_steps: self.n_steps,
-        }
+        let carrying = now.loads.carrying(&now.pairs.groups);
+        carrying
+            .map(|(group, load)| match group.key {
+                Key::Taxel(..) => load.deepest,
+                Key::Rigid(..) => 0.0,
+            })
+            .reduce(f64::max)
     }
+
+    /// Of each body with these loads.
+    fn imbalances(&self, loads: &[PairLoad]) -> Vec<f64> {
+        let pairs = &self.balancer.now.pairs.all;
+        let wrenches = wrenches(loads, pairs, &self.bodies, &self.ground.skins);
+        let each = self.bodies.iter().zip(wrenches);
+        each.map(|(body, wrench)| body.imbalance_of(wrench))
+            .collect()
+    }
+
+    /// The largest of these.
+    pub(super) fn imbalance(&self, loads: &[PairLoad]) -> f64 {
+        self.imbalances(loads).into_iter().fold(0.0, f64::max)
+    }
+
+    /// Newtons.
+    pub(super) fn total_weight(&self) -> f64 {
+        total_weight(&self.bodies)
+    }
+}
+
+fn total_weight(bodies: &[Body]) -> f64 {
+    bodies.iter().map(|body| body.weight.length()).sum()
 }

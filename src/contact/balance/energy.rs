@@ -1,14 +1,17 @@
-//! Elastic energy of the skins that a free object presses at one pose, and the forces there.
+//! Elastic energy of the skins that free objects press where they are, and the forces there.
 
-use super::free_object::{FreeObject, PlacedSkin};
-use super::loads::Loads;
+use super::body::Body;
+use super::free_object::PlacedSkin;
+use super::loads::{Load, Loads};
 use super::model::Scene;
-use super::pairs::{Key, Margins, Pairs};
-use super::settle::TaxelLoad;
-use crate::geometry::Pose;
+use super::pairs::{Group, Key, Kind, Margins, Pair, Pairs, Part};
 use glam::DVec3;
 
-/// The energy at one pose, and all that its model is made of. Reused: nothing is allocated once it has seen the most pairs.
+/// What misses of rigid things count as in [`Energy::looseness`], per metre: a nanometre is a hundred-thousandth.
+const RIGID_MISS: f64 = 1e-7 / 3e-10;
+
+/// The energy at one place of all bodies, and all that its model is made of. Reused: nothing is allocated once it has seen the most
+/// pairs.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Energy {
     pub pairs: Pairs,
@@ -16,101 +19,134 @@ pub(super) struct Energy {
     deflections: Vec<f64>,
 }
 
+/// What one pair puts on its taxel, or on something rigid.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PairLoad {
+    /// Its number.
+    pub pair: usize,
+    /// Newtons along the axis; with the stop's.
+    pub force: f64,
+    /// The stop's part.
+    pub stop: f64,
+}
+
 impl Energy {
-    /// Looks at the object at a pose (`world_from_object`), and at what it would press after a motion of `step` metres;
-    /// `behind`: the spheres that were behind taxels before.
-    pub fn look(
-        &mut self,
-        object: &FreeObject,
-        scene: &Scene,
-        pose: &Pose,
-        step: f64,
-        behind: &[(Key, u32)],
-    ) {
+    /// Looks at bodies where they are, and at what they would press after a motion of `step` metres; `behind`: the spheres that were
+    /// behind taxels before.
+    pub fn look(&mut self, scene: &Scene, step: f64, behind: &[(Key, Part)]) {
         let margins = Margins {
             step,
             window: 2.0 * scene.smoothness.smoothing + 4.0 * step,
         };
-        self.pairs.look(object, scene.skins, pose, margins, behind);
+        self.pairs.look(scene.bodies, scene.ground, margins, behind);
         self.deflections.clear();
         self.deflections
             .extend(self.pairs.all.iter().map(|pair| pair.deflection));
         self.loads.weigh(
-            &self.pairs.all,
+            &self.pairs,
             &self.deflections,
-            scene.skins,
             scene.multipliers,
             scene.smoothness,
         );
     }
 
-    /// Force (N) and torque about the centre of mass (N·m) that the taxels put on the object, in the world, if each carries k
-    /// times its deflection and what its stop carries.
-    pub fn wrench(&self, skins: &[PlacedSkin]) -> (DVec3, DVec3) {
-        let (mut force, mut torque) = (DVec3::ZERO, DVec3::ZERO);
-        for load in self.loads.carrying() {
-            let skin = &skins[load.key.0 as usize];
-            let taxel = skin.patch.taxels().at(load.key.1 as usize);
-            let carried = taxel.stiffness * load.deepest.min(taxel.stroke) + load.stop;
-            for at in load.pairs.clone() {
-                let (pair, share) = (&self.pairs.all[at], self.loads.shares[at]);
-                if let Some(reach) = pair.reach.filter(|_| share > 0.0) {
-                    let on_object = -share * carried * reach.derivatives().gradient;
-                    force += skin.world_from_patch.rotation * on_object;
-                    torque += skin.world_from_patch.rotation * pair.arm.cross(on_object);
-                }
-            }
+    /// What each pair carries, if each taxel carries k times its deflection and what its stop carries.
+    pub fn pair_loads(&self) -> Vec<PairLoad> {
+        let mut all = Vec::new();
+        for (group, load) in self.loads.carrying(&self.pairs.groups) {
+            let force = group.stiffness * load.deepest.clamp(0.0, group.stroke) + load.stop;
+            let sharing = group.pairs.clone().map(|at| (at, self.loads.shares[at]));
+            let sharing = sharing.filter(|(_, share)| *share > 0.0);
+            all.extend(sharing.map(|(pair, share)| PairLoad {
+                pair,
+                force: share * force,
+                stop: share * load.stop,
+            }));
         }
-        (force, torque)
-    }
-
-    /// What each taxel carries of the object: of the forces of [`wrench`](Self::wrench), without what other objects have of them.
-    pub fn carried(&self, skins: &[PlacedSkin]) -> Vec<TaxelLoad> {
-        let carried = self.loads.carrying().map(|load| {
-            let is_own = |at: &usize| self.pairs.all[*at].reach.is_some();
-            let own = load.pairs.clone().filter(is_own);
-            let share: f64 = own.map(|at| self.loads.shares[at]).sum();
-            let taxel = skins[load.key.0 as usize].patch.taxels();
-            let taxel = taxel.at(load.key.1 as usize);
-            let force = taxel.stiffness * load.deepest.min(taxel.stroke) + load.stop;
-            TaxelLoad::new(load.key, share * force, load.stop > 0.0, skins)
-        });
-        carried.filter(|load| load.force > 0.0).collect()
+        all
     }
 
     /// How far shares and stops are from what they say: spheres that share a taxel should push it equally far, and a stop that
     /// carries should be met exactly, and none passed. As what the taxel's spring makes of that distance, as a share of the
-    /// largest force of a spring; 0 where there is none.
-    pub fn looseness(&self, skins: &[PlacedSkin]) -> f64 {
-        let (mut worst, mut largest): (f64, f64) = (0.0, 0.0);
-        for load in self.loads.carrying() {
-            let taxels = skins[load.key.0 as usize].patch.taxels();
-            let taxel = taxels.at(load.key.1 as usize);
-            let past = load.deepest - taxel.stroke;
-            let mut loose: f64 = if load.stop > 0.0 { past.abs() } else { past };
-            for at in load.pairs.clone() {
-                if self.loads.shares[at] > 1e-9 {
-                    loose = loose.max(load.deepest - self.pairs.all[at].deflection);
-                }
+    /// largest force of a spring, and what is rigid as if it were [so](RIGID_MISS) stiff; 0 where there is none. Of each
+    /// [island](Pairs::islands), at its number.
+    pub fn looseness(&self, islands: &[usize]) -> Vec<f64> {
+        let (mut loose, mut largest) = (vec![0.0_f64; islands.len()], vec![0.0_f64; islands.len()]);
+        let mut rigid = loose.clone();
+        for (group, load) in self.pairs.groups.iter().zip(&self.loads.all) {
+            let mut ends = self.pairs.all[group.pairs.clone()]
+                .iter()
+                .flat_map(Pair::ends);
+            let Some((body, ..)) = ends.next() else {
+                continue;
+            };
+            let island = islands[body];
+            let miss = self.miss(group, load);
+            if let Key::Rigid(..) = group.key {
+                rigid[island] = rigid[island].max(RIGID_MISS * miss);
+            } else {
+                loose[island] = loose[island].max(group.stiffness * miss);
+                largest[island] = largest[island].max(group.stiffness * load.deepest);
             }
-            worst = worst.max(taxel.stiffness * loose);
-            largest = largest.max(taxel.stiffness * load.deepest);
         }
-        if largest > 0.0 { worst / largest } else { 0.0 }
+        for (island, rigid) in rigid.into_iter().enumerate() {
+            let largest = largest[island].max(f64::MIN_POSITIVE);
+            loose[island] = rigid.max(loose[island] / largest);
+        }
+        loose
     }
 
-    /// How many taxels are pushed along a flank that is as good as parallel to their axis.
-    pub fn n_grazing(&self) -> usize {
-        let is_grazing = |&at: &usize| {
-            let reach = self.pairs.all[at]
-                .reach
-                .filter(|_| self.loads.shares[at] > 0.0);
-            reach.is_some_and(|reach| reach.derivatives().is_grazing)
-        };
-        let carrying = self.loads.carrying();
-        carrying
-            .flat_map(|load| load.pairs.clone())
-            .filter(is_grazing)
-            .count()
+    /// What makes the [looseness](Self::looseness) of one taxel or rigid thing, metres.
+    fn miss(&self, group: &Group, load: &Load) -> f64 {
+        let past = load.deepest - group.stroke;
+        let of_stop: f64 = if load.stop > 0.0 { past.abs() } else { past };
+        if load.force == 0.0 {
+            // Pressed, and below the smoothed maximum about shares that another pose had.
+            return of_stop.max(load.deepest);
+        }
+        let sharing = group
+            .pairs
+            .clone()
+            .filter(|&at| self.loads.shares[at] > 1e-9);
+        let apart = sharing.map(|at| load.deepest - self.pairs.all[at].deflection);
+        apart.fold(of_stop, f64::max)
     }
+}
+
+impl Pair {
+    /// What a force (N) along the axis of the taxel is on the sphere, newtons; in the frame of its arm.
+    pub fn push(&self, force: f64) -> DVec3 {
+        let gradient = self.derivatives().map(|(gradient, _)| gradient);
+        -force * gradient.unwrap_or(DVec3::ZERO)
+    }
+
+    pub fn is_grazing(&self) -> bool {
+        match &self.kind {
+            Kind::Taxel(reach) => reach.derivatives().is_grazing,
+            _ => false,
+        }
+    }
+}
+
+/// Force (N) and torque about the centre of mass (N·m) that loads of pairs put on each body, in the world.
+pub(super) fn wrenches(
+    loads: &[PairLoad],
+    pairs: &[Pair],
+    bodies: &[Body],
+    skins: &[PlacedSkin],
+) -> Vec<(DVec3, DVec3)> {
+    let mut all = vec![(DVec3::ZERO, DVec3::ZERO); bodies.len()];
+    for load in loads {
+        let pair = &pairs[load.pair];
+        let push = pair.push(load.force);
+        let to_world = |v: DVec3| match pair.key {
+            Key::Taxel(skin, _) => skins[skin as usize].world_from_patch.rotation * v,
+            Key::Rigid(..) => v,
+        };
+        for (body, sign, arm) in pair.ends() {
+            all[body].0 += to_world(sign * push);
+            all[body].1 += to_world(arm.cross(sign * push));
+        }
+    }
+    all
 }

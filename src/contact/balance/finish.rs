@@ -5,12 +5,11 @@
 //! that a last bit of the object's place is more than its load, place and stiffness alone cannot say it.
 
 use super::descent::Descent;
+use super::energy::PairLoad;
 use super::interior::{Problem, Solution, Spring};
-use super::model::{add_curvature, add_turning, ways};
-use super::pairs::Key;
-use super::settle::TaxelLoad;
-use super::six::{SixBySix, eigen, norm};
-use glam::DVec3;
+use super::loads::Multipliers;
+use super::pairs::{Key, Part};
+use super::symmetric::{Symmetric, norm};
 use std::collections::BTreeMap;
 
 /// Motions at most; five to twenty are usual.
@@ -21,6 +20,8 @@ const PATIENCE: usize = 6;
 const AT_REST: f64 = 1e-7;
 /// Looseness of ties and stops at which it is, in springs' forces as a share of the largest of them; less than a descent's at its end.
 const LOOSE: f64 = 1e-5;
+/// How far from something rigid what carries may be, metres.
+const RIGID: f64 = 3e-10;
 /// Places may be off by so many last bits of the object's size and way.
 const LAST_BITS: f64 = 64.0;
 /// Shares of the weight up to this carry nothing.
@@ -28,41 +29,31 @@ const NOTHING: f64 = 1e-9;
 /// Above this share of the weight a tie must hold.
 const SOMETHING: f64 = 1e-7;
 
-/// What holds an object.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Held {
-    /// On the object, in the world, newtons.
-    pub force: DVec3,
-    /// About the centre of mass, N·m.
-    pub torque: DVec3,
-    /// Taxels whose stops carry.
-    pub n_saturated: usize,
-}
-
 /// A problem around a pose, and the curvature of the energy there, with its negative eigenvalues.
 struct Around {
     problem: Problem,
-    curvature: SixBySix,
+    curvature: Symmetric,
 }
 
-type Forces = BTreeMap<(Key, u32), f64>;
+type Forces = BTreeMap<(Key, Part), f64>;
 
-impl Descent<'_> {
-    /// Goes on from a pose that is nearly at rest; `None`, and the pose as it was, if that leads nowhere.
-    pub(super) fn finish(&mut self) -> Option<Held> {
-        let before = (self.center, self.rotation);
+impl Descent<'_, '_> {
+    /// Goes on from a pose that is nearly at rest, to what carries there; `None`, and the pose as it was, if that leads nowhere.
+    pub(super) fn finish(&mut self) -> Option<Vec<PairLoad>> {
+        let before = self.bodies.clone();
         let found = self.newton();
         if found.is_none() {
-            (self.center, self.rotation) = before;
+            self.bodies = before;
             self.look_again();
         }
         found
     }
 
-    fn newton(&mut self) -> Option<Held> {
+    fn newton(&mut self) -> Option<Vec<PairLoad>> {
         self.reach = self.nearby();
         self.look_again();
-        let mut forces = self.forces_of_loads();
+        let loads = self.balancer.now.pair_loads();
+        let mut forces = self.forces_of(&loads);
         let (mut limit, mut shortest, mut n_vain) = (self.nearby(), f64::INFINITY, 0);
         let mut damping = 0.0;
         for _ in 0..MAX_MOTIONS {
@@ -71,17 +62,16 @@ impl Descent<'_> {
                 damping = 10.0 * damping.max(1e-3);
                 continue;
             };
-            forces = self.forces_of(&solution);
-            if let Some(held) = self.held(&around, &solution) {
+            let loads = self.loads_of(&around, &solution);
+            forces = self.forces_of(&loads);
+            if self.holds(&around, &solution, &loads) {
                 let Some(way) = around.problem.way_down(&solution, &around.curvature) else {
-                    self.remember(&solution);
-                    return Some(held);
+                    self.remember(&loads);
+                    return Some(loads);
                 };
                 // A saddle: down its side.
-                let part = 0.5 * limit;
                 (shortest, n_vain) = (f64::INFINITY, 0);
-                self.go(&way.map(|x| part * x));
-                self.look_again();
+                self.go_part(&way, 0.5 * limit);
                 continue;
             }
             let unit = self.stroke();
@@ -94,152 +84,126 @@ impl Descent<'_> {
             if n_vain > PATIENCE {
                 (n_vain, limit, damping) = (0, 0.25 * limit, 4.0 * damping.max(1e-4));
             }
-            let scale = unit * (limit / length).min(1.0);
-            self.go(&solution.motion.map(|x| scale * x));
-            self.look_again();
+            self.go_part(&solution.motion, unit * (limit / length).min(1.0));
         }
         None
     }
 
-    /// The problem in units that make weight and stroke 1.
+    fn go_part(&mut self, motion: &[f64], part: f64) {
+        let motion: Vec<f64> = motion.iter().map(|x| part * x).collect();
+        self.go(&motion);
+        self.look_again();
+    }
+
+    /// The problem in units that make all weights together and the stroke 1.
     fn around(&self, forces: &Forces, damping: f64) -> Around {
-        let (unit, weight) = (self.stroke(), self.weight.length());
-        let now = &self.balancer.now;
+        let (unit, weight) = (self.stroke(), self.total_weight());
+        let pairs = &self.balancer.now.pairs;
         let mut problem = Problem::default();
-        let mut curvature = [[0.0; 6]; 6];
-        for of_taxel in now.pairs.all.chunk_by(|a, b| a.key == b.key) {
-            let key = of_taxel[0].key;
-            let skin = &self.skins[key.0 as usize];
-            let taxel = skin.patch.taxels().at(key.1 as usize);
-            let to_patch = skin.world_from_patch.rotation.conjugate();
-            let axes = DVec3::AXES.map(|axis| to_patch * axis);
-            let first = problem.slopes.len();
-            for pair in of_taxel {
-                problem.deflections.push(pair.deflection / unit);
-                let Some(reach) = pair.reach else {
-                    problem.slopes.push([0.0; 6]);
-                    continue;
-                };
-                let (ways, found) = (ways(&axes, pair.arm, self.arm), reach.derivatives());
-                problem.slopes.push(ways.map(|way| found.gradient.dot(way)));
-                let force = forces.get(&(key, pair.sphere)).copied().unwrap_or(0.0);
-                if force > 0.0 {
-                    let turning = force / (self.arm * self.arm);
-                    add_curvature(&mut curvature, force, &ways, found.curvature);
-                    add_turning(&mut curvature, turning, &axes, pair.arm, found.gradient);
-                }
-            }
-            problem.springs.push(Spring {
-                stiffness: taxel.stiffness * unit / weight,
-                stroke: taxel.stroke / unit,
-                pairs: first..problem.slopes.len(),
-            });
-        }
-        let curvature = curvature.map(|row| row.map(|x| x * unit / weight));
-        let (values, vectors) = eigen(&curvature);
-        let largest = values.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
-        let lowest = values.iter().copied().fold(0.0, f64::min);
-        let shift = -1.1 * lowest + 1e-9 * largest + 1e-12 + damping;
-        problem.curvature = (values.map(|value| value + shift), vectors);
-        let [x, y, z] = (self.weight / weight).to_array();
-        problem.weight = [x, y, z, 0.0, 0.0, 0.0];
+        let mut curvature = Symmetric::default();
+        let force_of = |at: usize| {
+            let pair = &pairs.all[at];
+            forces.get(&(pair.key, pair.part)).copied().unwrap_or(0.0)
+        };
+        let skins = &self.ground.skins;
+        let slopes = &mut problem.slopes;
+        slopes.lay(&self.bodies, skins, pairs, &mut curvature, force_of);
+        let deflections = pairs.all.iter().map(|pair| pair.deflection / unit);
+        problem.deflections = deflections.collect();
+        let springs = pairs.groups.iter().map(|group| Spring {
+            stiffness: group.stiffness * unit / weight,
+            stroke: group.stroke / unit,
+            pairs: group.pairs.clone(),
+        });
+        problem.springs = springs.collect();
+        curvature.scale(unit / weight);
+        let least = 1e-9 * curvature.size() + 1e-12;
+        let lowest = curvature.lowest_below(least).map_or(0.0, |lowest| lowest.0);
+        problem.curvature = curvature.clone();
+        problem
+            .curvature
+            .shift(2.0 * least - 1.1 * lowest + damping);
+        let weights = self.bodies.iter().flat_map(|body| {
+            let [x, y, z] = (body.weight / weight).to_array();
+            [x, y, z, 0.0, 0.0, 0.0]
+        });
+        problem.weight = weights.collect();
         Around { problem, curvature }
     }
 
-    /// What carries, if it is as the problem says.
-    fn held(&self, around: &Around, solution: &Solution) -> Option<Held> {
-        let (unit, weight) = (self.stroke(), self.weight.length());
-        let now = &self.balancer.now;
-        let bits = LAST_BITS * f64::EPSILON * (self.arm + self.center.length()) / unit;
+    /// Whether what carries is as the problem says.
+    fn holds(&self, around: &Around, solution: &Solution, loads: &[PairLoad]) -> bool {
+        let unit = self.stroke();
+        let farthest =
+            |size: f64, body: &super::body::Body| size.max(body.arm() + body.center.length());
+        let size = self.bodies.iter().fold(0.0, farthest);
+        let bits = LAST_BITS * f64::EPSILON * size / unit;
         let springs = &around.problem.springs;
         let largest = solution.forces.iter().copied().fold(0.0, f64::max);
         for (i, spring) in springs.iter().enumerate() {
-            let loose = bits.max(LOOSE * largest / spring.stiffness);
+            let loose = match spring.stiffness {
+                0.0 => RIGID / unit,
+                stiffness => LOOSE * largest / stiffness,
+            };
+            let loose = bits.max(loose);
             for j in spring.pairs.clone() {
                 let past = around.problem.deflections[j] - solution.inwards[i];
                 let carries = solution.forces[j] > SOMETHING;
                 if past > loose || carries && past < -loose {
-                    return None;
+                    return false;
                 }
             }
         }
-        let (mut force, mut torque) = (DVec3::ZERO, DVec3::ZERO);
-        for (pair, carried) in now.pairs.all.iter().zip(&solution.forces) {
-            if let Some(reach) = pair.reach {
-                let rotation = self.skins[pair.key.0 as usize].world_from_patch.rotation;
-                let on_object = -carried * weight * reach.derivatives().gradient;
-                force += rotation * on_object;
-                torque += rotation * pair.arm.cross(on_object);
-            }
+        self.imbalance(loads) <= AT_REST
+    }
+
+    fn forces_of(&self, loads: &[PairLoad]) -> Forces {
+        let pairs = &self.balancer.now.pairs.all;
+        let all = loads.iter().map(|load| {
+            let pair = &pairs[load.pair];
+            ((pair.key, pair.part), load.force)
+        });
+        all.collect()
+    }
+
+    /// What each pair carries in a solution.
+    fn loads_of(&self, around: &Around, solution: &Solution) -> Vec<PairLoad> {
+        let weight = self.total_weight();
+        let mut loads = Vec::new();
+        for (spring, stop) in around.problem.springs.iter().zip(&solution.stops) {
+            let carrying = |j: &usize| solution.forces[*j] > NOTHING;
+            let all: f64 = solution.forces[spring.pairs.clone()].iter().sum();
+            // The reaction is what the spring at its stroke does not carry.
+            let past = (all - spring.stiffness * spring.stroke).max(0.0) / all;
+            let stopped = if *stop > NOTHING { past } else { 0.0 };
+            loads.extend(spring.pairs.clone().filter(carrying).map(|pair| PairLoad {
+                pair,
+                force: weight * solution.forces[pair],
+                stop: stopped * weight * solution.forces[pair],
+            }));
         }
-        let held = Held {
-            force,
-            torque,
-            n_saturated: solution
-                .stops
-                .iter()
-                .filter(|&&stop| stop > NOTHING)
-                .count(),
-        };
-        (self.imbalance_of(force, torque) <= AT_REST).then_some(held)
+        loads
     }
 
-    fn forces_of_loads(&self) -> Forces {
-        let now = &self.balancer.now;
-        let mut forces = Forces::new();
-        for load in now.loads.carrying() {
-            for at in load.pairs.clone() {
-                let pair = &now.pairs.all[at];
-                forces.insert((pair.key, pair.sphere), now.loads.shares[at] * load.force);
+    /// The multipliers for the next rest nearby.
+    fn remember(&mut self, loads: &[PairLoad]) {
+        let pairs = &self.balancer.now.pairs.all;
+        let mut multipliers = Multipliers::default();
+        for of_key in loads.chunk_by(|a, b| pairs[a.pair].key == pairs[b.pair].key) {
+            let key = pairs[of_key[0].pair].key;
+            let stop: f64 = of_key.iter().map(|load| load.stop).sum();
+            if stop > 0.0 {
+                multipliers.stops.insert(key, stop);
             }
-        }
-        forces
-    }
-
-    fn forces_of(&self, solution: &Solution) -> Forces {
-        let weight = self.weight.length();
-        let pairs = self.balancer.now.pairs.all.iter().zip(&solution.forces);
-        let carrying = pairs.filter(|(_, force)| **force > NOTHING);
-        carrying
-            .map(|(pair, force)| ((pair.key, pair.sphere), weight * force))
-            .collect()
-    }
-
-    /// What carries, and the multipliers for the next rest nearby.
-    fn remember(&mut self, solution: &Solution) {
-        let weight = self.weight.length();
-        let (mut stops, mut shares) = (BTreeMap::new(), BTreeMap::new());
-        let mut carried = Vec::new();
-        let pairs = self.balancer.now.pairs.all.iter().zip(&solution.forces);
-        let pairs: Vec<_> = pairs.collect();
-        for (of_taxel, stop) in pairs
-            .chunk_by(|a, b| a.0.key == b.0.key)
-            .zip(&solution.stops)
-        {
-            let key = of_taxel[0].0.key;
-            let own = of_taxel.iter().filter(|(pair, _)| pair.reach.is_some());
-            let force: f64 = own.map(|(_, force)| weight * **force).sum();
-            if force > NOTHING * weight {
-                carried.push(TaxelLoad::new(key, force, *stop > NOTHING, self.skins));
-            }
-            if *stop > NOTHING {
-                stops.insert(key, weight * stop);
-            }
-            let carrying: Vec<_> = of_taxel
-                .iter()
-                .filter(|(_, force)| **force > NOTHING)
-                .collect();
-            let all: f64 = carrying.iter().map(|(_, force)| **force).sum();
-            if carrying.len() > 1 {
-                let share = carrying
+            let all: f64 = of_key.iter().map(|load| load.force).sum();
+            if of_key.len() > 1 {
+                let shares = of_key
                     .iter()
-                    .map(|(pair, force)| (pair.sphere, **force / all));
-                shares.insert(key, share.collect());
+                    .map(|load| (pairs[load.pair].part, load.force / all));
+                multipliers.shares.insert(key, shares.collect());
             }
         }
-        self.multipliers.stops = stops;
-        self.multipliers.shares = shares;
-        self.balancer.carried = carried;
+        self.multipliers = multipliers;
     }
 
     fn stroke(&self) -> f64 {

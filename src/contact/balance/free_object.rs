@@ -1,12 +1,13 @@
 //! What is to be put to rest, and on what.
 
+use crate::contact::relaxation_factor;
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::objects::{Sphere, SphereUnion};
 use crate::world::Patch;
 use glam::DVec3;
 
-/// A rigid object that only gravity and skins hold.
+/// A rigid object that only gravity and what it touches hold.
 #[derive(Clone, Copy, Debug)]
 pub struct FreeObject<'a> {
     pub(super) spheres: &'a [Sphere],
@@ -52,6 +53,83 @@ pub struct PlacedSkin<'a> {
     pub patch: &'a Patch,
     /// Where it is.
     pub world_from_patch: Pose,
-    /// How far other objects push each taxel, metres; empty if there are none.
+    /// How far objects that are not free push each taxel, metres; empty if there are none.
     pub pushed: &'a [f64],
+    /// How far each taxel was in a step ago, metres, and that step, seconds: what its damper holds in. `None` if all stood like this for
+    /// long, or without dampers.
+    pub before: Option<(&'a [f64], f64)>,
+}
+
+impl<'a> PlacedSkin<'a> {
+    /// A skin that nothing else has pushed or pushes.
+    pub fn new(patch: &'a Patch, world_from_patch: Pose) -> Self {
+        Self {
+            patch,
+            world_from_patch,
+            pushed: &[],
+            before: None,
+        }
+    }
+
+    /// How far a taxel is in if nothing pushes it, metres: what its damper has left.
+    pub(super) fn relaxed(&self, taxel: usize) -> f64 {
+        self.before.map_or(0.0, |(deflections, dt)| {
+            deflections[taxel] * relaxation_factor(self.patch.taxels().at(taxel), dt)
+        })
+    }
+
+    /// What a taxel puts against each metre more than [relaxed](Self::relaxed) within the step: k / (1 − φ), N/m.
+    pub(super) fn stiffness(&self, taxel: usize) -> f64 {
+        let taxel = self.patch.taxels().at(taxel);
+        match self.before {
+            Some((_, dt)) => crate::contact::Relaxation::of(taxel, dt).force(0.0, 1.0),
+            None => taxel.stiffness,
+        }
+    }
+}
+
+/// A half-space that nothing enters, a table: the points x with x·normal < height.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HalfSpace {
+    /// Unit, out of it, in the world.
+    pub normal: DVec3,
+    /// Of its surface along the normal, from the origin, metres.
+    pub height: f64,
+}
+
+/// An object that stays where it is, whatever rests on it.
+#[derive(Clone, Copy, Debug)]
+pub struct Obstacle<'a> {
+    /// What it is made of.
+    pub spheres: &'a SphereUnion,
+    /// `world_from_object`.
+    pub pose: Pose,
+}
+
+/// What free objects rest on.
+#[derive(Clone, Debug, Default)]
+pub struct Ground<'a> {
+    /// Elastic.
+    pub skins: Vec<PlacedSkin<'a>>,
+    /// Rigid.
+    pub planes: Vec<HalfSpace>,
+    /// Rigid.
+    pub obstacles: Vec<Obstacle<'a>>,
+}
+
+impl Ground<'_> {
+    /// The same as seen from another origin.
+    pub(super) fn seen_from(&self, origin: DVec3) -> Self {
+        let mut near = self.clone();
+        for skin in &mut near.skins {
+            skin.world_from_patch.translation -= origin;
+        }
+        for plane in &mut near.planes {
+            plane.height -= plane.normal.dot(origin);
+        }
+        for obstacle in &mut near.obstacles {
+            obstacle.pose.translation -= origin;
+        }
+        near
+    }
 }

@@ -5,49 +5,55 @@
 //!
 //! \[CH\] Cox, Higham, *Stability of Householder QR factorization for weighted least squares problems*, 1998.
 
-use super::six::Six;
+use super::symmetric::dot;
 
 /// R of `P A Π = Q R`, and Qᵀb, of rows (aᵀ, b).
 #[derive(Clone, Debug, Default)]
 pub(super) struct GradedRows {
-    rows: Vec<(Six, f64)>,
+    n: usize,
+    /// n entries of a, and b.
+    rows: Vec<Vec<f64>>,
     /// Column k of R is column `order[k]` of A.
-    order: [usize; 6],
+    order: Vec<usize>,
 }
 
 impl GradedRows {
-    /// No rows yet; those of a rank of 6 must come.
-    pub fn clear(&mut self) {
+    /// No rows of n yet; those of a rank of n must come.
+    pub fn clear(&mut self, n: usize) {
+        self.n = n;
         self.rows.clear();
     }
 
     /// Adds the row √weight · aᵀ with the right side `b / √weight`, so that `AᵀA` grows by weight · a aᵀ and `Aᵀb` by b · a.
-    pub fn add(&mut self, weight: f64, a: &Six, b: f64) {
+    pub fn add(&mut self, weight: f64, a: impl Iterator<Item = f64>, b: f64) {
         let root = weight.sqrt();
         if root > 0.0 {
-            self.rows.push((a.map(|x| root * x), b / root));
+            let mut row = Vec::with_capacity(self.n + 1);
+            row.extend(a.map(|x| root * x));
+            row.push(b / root);
+            self.rows.push(row);
         }
     }
 
     /// Makes R.
     pub fn factorise(&mut self) {
-        let Self { rows, order } = self;
-        let largest = |row: &Six| row.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-        rows.sort_by(|a, b| largest(&b.0).total_cmp(&largest(&a.0)));
-        *order = [0, 1, 2, 3, 4, 5];
-        while rows.len() < 6 {
-            rows.push(([0.0; 6], 0.0));
+        let Self { n, rows, order } = self;
+        let n = *n;
+        let largest = |row: &[f64]| row[..n].iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        rows.sort_by(|a, b| largest(b).total_cmp(&largest(a)));
+        order.clear();
+        order.extend(0..n);
+        while rows.len() < n {
+            rows.push(vec![0.0; n + 1]);
         }
-        for k in 0..6 {
-            let size = |column: usize| {
-                rows[k..]
-                    .iter()
-                    .map(|(a, _)| a[column] * a[column])
-                    .sum::<f64>()
-            };
-            let sizes: Six =
-                std::array::from_fn(|column| if column < k { 0.0 } else { size(column) });
-            let pivot = (k..6).fold(k, |best, column| {
+        for k in 0..n {
+            let mut sizes = vec![0.0; n];
+            for row in &rows[k..] {
+                for column in k..n {
+                    sizes[column] += row[column] * row[column];
+                }
+            }
+            let pivot = (k..n).fold(k, |best, column| {
                 if sizes[column] > sizes[best] {
                     column
                 } else {
@@ -55,12 +61,12 @@ impl GradedRows {
                 }
             });
             if pivot != k {
-                rows.iter_mut().for_each(|(a, _)| a.swap(k, pivot));
+                rows.iter_mut().for_each(|row| row.swap(k, pivot));
                 order.swap(k, pivot);
             }
             // The largest entry of the column to the diagonal: the reflection then takes no small row through a large one.
             let below = (k..rows.len()).fold(k, |best, row| {
-                if rows[row].0[k].abs() > rows[best].0[k].abs() {
+                if rows[row][k].abs() > rows[best][k].abs() {
                     row
                 } else {
                     best
@@ -69,22 +75,26 @@ impl GradedRows {
             rows.swap(k, below);
             reflect(&mut rows[k..], k);
         }
-        rows.truncate(6);
+        rows.truncate(n);
     }
 
     /// d of `AᵀA d = Aᵀb + r`.
-    pub fn solve(&self, r: &Six) -> Six {
-        let Self { rows, order } = self;
+    pub fn solve(&self, r: &[f64]) -> Vec<f64> {
+        let Self { n, rows, order } = self;
         // Rᵀ z = Πᵀ r, then R x = Qᵀb + z.
-        let mut z = [0.0; 6];
-        for k in 0..6 {
-            let known: f64 = (0..k).map(|i| rows[i].0[k] * z[i]).sum();
-            z[k] = over(r[order[k]] - known, rows[k].0[k]);
+        let mut z = vec![0.0; *n];
+        for k in 0..*n {
+            let known: f64 = (0..k).map(|i| rows[i][k] * z[i]).sum();
+            z[k] = over(r[order[k]] - known, rows[k][k]);
         }
-        let mut found = [0.0; 6];
-        for k in (0..6).rev() {
-            let known: f64 = (k + 1..6).map(|j| rows[k].0[j] * found[order[j]]).sum();
-            found[order[k]] = over(rows[k].1 + z[k] - known, rows[k].0[k]);
+        let mut x = vec![0.0; *n];
+        for k in (0..*n).rev() {
+            let known = dot(&rows[k][k + 1..*n], &x[k + 1..]);
+            x[k] = over(rows[k][*n] + z[k] - known, rows[k][k]);
+        }
+        let mut found = vec![0.0; *n];
+        for (x, &column) in x.iter().zip(order) {
+            found[column] = *x;
         }
         found
     }
@@ -99,48 +109,40 @@ fn over(value: f64, diagonal: f64) -> f64 {
 }
 
 /// Makes column k below the first of these rows zero.
-fn reflect(rows: &mut [(Six, f64)], k: usize) {
+fn reflect(rows: &mut [Vec<f64>], k: usize) {
     let largest = rows
         .iter()
-        .fold(0.0, |most: f64, (a, _)| most.max(a[k].abs()));
+        .fold(0.0, |most: f64, row| most.max(row[k].abs()));
     if largest == 0.0 {
         return;
     }
-    let length = largest
-        * rows
-            .iter()
-            .map(|(a, _)| (a[k] / largest).powi(2))
-            .sum::<f64>()
-            .sqrt();
-    let first = rows[0].0[k];
+    let squares = rows.iter().map(|row| (row[k] / largest).powi(2));
+    let length = largest * squares.sum::<f64>().sqrt();
+    let first = rows[0][k];
     let diagonal = if first > 0.0 { -length } else { length };
     // v = column − diagonal e₁; vᵀv = 2 · length · (length + |first|).
-    let head = first - diagonal;
+    rows[0][k] = first - diagonal;
     let half = length * (length + first.abs());
-    for column in k + 1..7 {
-        let entry = |row: &(Six, f64)| if column < 6 { row.0[column] } else { row.1 };
-        let along = head * entry(&rows[0])
-            + rows[1..]
-                .iter()
-                .map(|row| row.0[k] * entry(row))
-                .sum::<f64>();
-        let factor = along / half;
-        for (number, row) in rows.iter_mut().enumerate() {
-            let v = if number == 0 { head } else { row.0[k] };
-            match column {
-                6 => row.1 -= factor * v,
-                _ => row.0[column] -= factor * v,
-            }
+    let mut factors = vec![0.0; rows[0].len()];
+    for row in rows.iter().filter(|row| row[k] != 0.0) {
+        for (factor, entry) in factors.iter_mut().zip(row).skip(k + 1) {
+            *factor += row[k] / half * entry;
         }
     }
-    rows[0].0[k] = diagonal;
-    rows[1..].iter_mut().for_each(|row| row.0[k] = 0.0);
+    for row in rows.iter_mut().filter(|row| row[k] != 0.0) {
+        let head = row[k];
+        for (entry, factor) in row.iter_mut().zip(&factors).skip(k + 1) {
+            *entry -= factor * head;
+        }
+        row[k] = 0.0;
+    }
+    rows[0][k] = diagonal;
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::balance::six::{dot, norm};
+    use crate::contact::balance::symmetric::{Six, dot, norm};
     use crate::random::Seed;
     use rand::Rng;
 
@@ -152,11 +154,12 @@ mod tests {
             // Three stiff directions and three soft ones: d is known by what rows say of it.
             let wanted = random();
             let mut rows = GradedRows::default();
+            rows.clear(6);
             let all: Vec<(f64, Six)> = (0..9)
                 .map(|k| (if k < 3 { 1e14 } else { 1e-6 }, random()))
                 .collect();
             for (weight, a) in &all {
-                rows.add(*weight, a, weight * dot(a, &wanted));
+                rows.add(*weight, a.iter().copied(), weight * dot(a, &wanted));
             }
             rows.factorise();
             let found = rows.solve(&[0.0; 6]);
@@ -173,8 +176,9 @@ mod tests {
             let all: Vec<Six> = (0..8).map(|_| random()).collect();
             let r = random();
             let mut rows = GradedRows::default();
+            rows.clear(6);
             for a in &all {
-                rows.add(2.0, a, 0.5);
+                rows.add(2.0, a.iter().copied(), 0.5);
             }
             rows.factorise();
             let d = rows.solve(&r);

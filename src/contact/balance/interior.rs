@@ -1,17 +1,18 @@
-//! The best motion where deflections go linearly with it, with ties and stops as they are: a convex problem in six unknowns, and in how far
-//! each taxel is in.
+//! The best motion where deflections go linearly with it, with ties and stops as they are: a convex problem in six unknowns a body, and in
+//! how far each taxel is in.
 //!
 //! ```text
 //! min over d, u of  ½ dᵀBd − w·d + Σ ½ k u²   with  u ≥ δ + g·d for each pair of the taxel,  u ≤ s
 //! ```
 //!
 //! By Mehrotra's interior-point method \[ME\]: all forces are positive on the way, and what they are in the end says who carries. Nothing is
-//! smoothed, and no spring is too stiff: every step is a least-squares problem in d ([`GradedRows`]).
+//! smoothed, and no spring is too stiff, nor what is rigid (k = s = 0): every step is a least-squares problem in d ([`GradedRows`]).
 //!
 //! \[ME\] Mehrotra, *On the implementation of a primal–dual interior point method*, 1992.
 
 use super::graded_rows::GradedRows;
-use super::six::{Six, SixBySix, add_outer, dot, eigen, norm};
+use super::pairs::Slopes;
+use super::symmetric::{Factor, Symmetric, norm};
 use std::ops::Range;
 
 /// Steps at most; fifteen to thirty are usual.
@@ -36,23 +37,23 @@ pub(super) struct Spring {
 /// The problem; everything in such units.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Problem {
-    /// B: eigenvalues, none of them negative, and eigenvectors.
-    pub curvature: (Six, SixBySix),
+    /// B, positive definite.
+    pub curvature: Symmetric,
     /// w.
-    pub weight: Six,
+    pub weight: Vec<f64>,
     /// Taxels, in the order of their pairs.
     pub springs: Vec<Spring>,
     /// δ of each pair.
     pub deflections: Vec<f64>,
     /// g of each pair.
-    pub slopes: Vec<Six>,
+    pub slopes: Slopes,
 }
 
 /// The best motion, and what carries there.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Solution {
     /// d.
-    pub motion: Six,
+    pub motion: Vec<f64>,
     /// Of each pair.
     pub forces: Vec<f64>,
     /// Of the stop of each taxel.
@@ -63,7 +64,7 @@ pub(super) struct Solution {
 
 /// A point inside, where all forces and gaps are above zero; or a step from one.
 struct Variables {
-    motion: Six,
+    motion: Vec<f64>,
     /// u of each taxel.
     inwards: Vec<f64>,
     /// λ and its gap, of each pair.
@@ -77,6 +78,7 @@ struct Variables {
 impl Problem {
     /// Solves it; `None` if that takes too many steps.
     pub fn solve(&self) -> Option<Solution> {
+        let root = self.curvature.factor(0.0)?;
         let mut at = self.start();
         let mut rows = GradedRows::default();
         let mut least = (f64::INFINITY, None);
@@ -92,14 +94,14 @@ impl Problem {
                 break;
             }
             let mean = at.mean_product();
-            self.lay(&at, &mut rows, |_| 0.0, |_| 0.0);
+            self.lay(&at, (&mut rows, &root), |_| 0.0, |_| 0.0);
             let ahead = self.step(&at, &rows, |_| 0.0, |_| 0.0);
             let share = at.room_for(&ahead, 1.0);
             let after = at.mean_product_after(&ahead, share);
             let aim = mean * (after / mean).powi(3);
             let of_pair = |j: usize| aim - ahead.forces[j] * ahead.gaps[j];
             let of_stop = |i: usize| aim - ahead.stops[i] * ahead.rooms[i];
-            self.lay(&at, &mut rows, of_pair, of_stop);
+            self.lay(&at, (&mut rows, &root), of_pair, of_stop);
             let step = self.step(&at, &rows, of_pair, of_stop);
             let share = at.room_for(&step, NEARLY);
             at.go(&step, share);
@@ -115,7 +117,7 @@ impl Problem {
         };
         let n_pairs = self.deflections.len();
         let mut at = Variables {
-            motion: [0.0; 6],
+            motion: vec![0.0; self.weight.len()],
             inwards: Vec::new(),
             forces: vec![1.0 / n; n_pairs],
             gaps: vec![0.0; n_pairs],
@@ -151,18 +153,23 @@ impl Problem {
     }
 
     /// B d − w + Σ λ g.
-    fn unbalanced(&self, at: &Variables) -> Six {
-        let (values, vectors) = &self.curvature;
-        let along: Six = std::array::from_fn(|k| values[k] * dot(&vectors[k], &at.motion));
-        let mut left: Six = std::array::from_fn(|i| {
-            (0..6).map(|k| along[k] * vectors[k][i]).sum::<f64>() - self.weight[i]
-        });
-        for (slope, force) in self.slopes.iter().zip(&at.forces) {
-            for (left, slope) in left.iter_mut().zip(slope) {
-                *left += force * slope;
-            }
+    fn unbalanced(&self, at: &Variables) -> Vec<f64> {
+        let mut left = self.curvature.times(&at.motion);
+        for (left, weight) in left.iter_mut().zip(&self.weight) {
+            *left -= weight;
+        }
+        for (pair, force) in at.forces.iter().enumerate() {
+            self.add_slope(pair, *force, &mut left);
         }
         left
+    }
+
+    /// Adds `factor · g` of a pair.
+    fn add_slope(&self, pair: usize, factor: f64, to: &mut [f64]) {
+        for (body, slope) in self.slopes.of(pair) {
+            let to = to[6 * *body as usize..].iter_mut();
+            to.zip(slope).for_each(|(to, slope)| *to += factor * slope);
+        }
     }
 
     /// k u − Σ λ + τ.
@@ -174,24 +181,24 @@ impl Problem {
 
     /// u − δ − g·d, less the gap.
     fn gap_error(&self, at: &Variables, i: usize, j: usize) -> f64 {
-        at.inwards[i] - self.deflections[j] - dot(&self.slopes[j], &at.motion) - at.gaps[j]
+        at.inwards[i] - self.deflections[j] - self.slopes.dot(j, &at.motion) - at.gaps[j]
     }
 
     /// Lays and factorises the rows of a step whose products aim at `of_pair` and `of_stop` above their own.
     fn lay(
         &self,
         at: &Variables,
-        rows: &mut GradedRows,
+        (rows, root): (&mut GradedRows, &Factor),
         of_pair: impl Fn(usize) -> f64,
         of_stop: impl Fn(usize) -> f64,
     ) {
-        rows.clear();
-        let (values, vectors) = &self.curvature;
-        for (value, vector) in values.iter().zip(vectors) {
-            rows.add(*value, vector, 0.0);
+        let n = self.weight.len();
+        rows.clear(n);
+        for k in 0..n {
+            rows.add(1.0, (0..n).map(|i| root.row(i)[k]), 0.0);
         }
         for (i, spring) in self.springs.iter().enumerate() {
-            let (mut mean, mut all, mut push) = ([0.0; 6], 0.0, 0.0);
+            let (mut mean, mut all, mut push) = (vec![0.0; n], 0.0, 0.0);
             let asked = |j: usize| {
                 let weight = at.forces[j] / at.gaps[j];
                 let product = of_pair(j) - at.forces[j] * at.gaps[j];
@@ -204,27 +211,31 @@ impl Problem {
                 let (weight, ask) = asked(j);
                 all += weight;
                 push += ask;
-                for (sum, slope) in mean.iter_mut().zip(&self.slopes[j]) {
-                    *sum += weight * slope;
-                }
+                self.add_slope(j, weight, &mut mean);
             }
-            mean = mean.map(|x| x / all);
+            mean.iter_mut().for_each(|x| *x /= all);
             if spring.pairs.len() > 1 {
                 for j in spring.pairs.clone() {
                     let (weight, ask) = asked(j);
-                    let apart: Six = std::array::from_fn(|k| self.slopes[j][k] - mean[k]);
-                    rows.add(weight, &apart, ask);
+                    rows.add(weight, self.apart(j, &mean).into_iter(), ask);
                 }
             }
             let (firm, rest) = self.firm(at, i, &of_stop);
             let total = firm + all;
             rows.add(
                 all * firm / total,
-                &mean,
+                mean.into_iter(),
                 (push * firm + all * rest) / total,
             );
         }
         rows.factorise();
+    }
+
+    /// g of a pair less a mean.
+    fn apart(&self, pair: usize, mean: &[f64]) -> Vec<f64> {
+        let mut apart: Vec<f64> = mean.iter().map(|x| -x).collect();
+        self.add_slope(pair, 1.0, &mut apart);
+        apart
     }
 
     /// k + φ of a taxel, φ the weight of its stop; and what its own equation asks for.
@@ -244,10 +255,11 @@ impl Problem {
         of_pair: impl Fn(usize) -> f64,
         of_stop: impl Fn(usize) -> f64,
     ) -> Variables {
-        let motion = rows.solve(&self.unbalanced(at).map(|x| -x));
+        let left: Vec<f64> = self.unbalanced(at).iter().map(|x| -x).collect();
+        let motion = rows.solve(&left);
         let (n, n_pairs) = (self.springs.len(), self.deflections.len());
         let mut step = Variables {
-            motion,
+            motion: motion.clone(),
             inwards: vec![0.0; n],
             forces: vec![0.0; n_pairs],
             gaps: vec![0.0; n_pairs],
@@ -261,14 +273,14 @@ impl Problem {
                 let weight = at.forces[j] / at.gaps[j];
                 let product = of_pair(j) - at.forces[j] * at.gaps[j];
                 all += weight;
-                pulled += weight * (dot(&self.slopes[j], &motion) - self.gap_error(at, i, j));
+                pulled += weight * (self.slopes.dot(j, &motion) - self.gap_error(at, i, j));
                 pulled += product / at.gaps[j];
             }
             let inwards = pulled / (firm + all);
             step.inwards[i] = inwards;
             for j in spring.pairs.clone() {
                 let product = of_pair(j) - at.forces[j] * at.gaps[j];
-                let gap = inwards - dot(&self.slopes[j], &motion) + self.gap_error(at, i, j);
+                let gap = inwards - self.slopes.dot(j, &motion) + self.gap_error(at, i, j);
                 step.gaps[j] = gap;
                 step.forces[j] = (product - at.forces[j] * gap) / at.gaps[j];
             }
@@ -282,7 +294,7 @@ impl Problem {
 
     fn solution(&self, at: &Variables) -> Solution {
         Solution {
-            motion: at.motion,
+            motion: at.motion.clone(),
             forces: at.forces.clone(),
             stops: at.stops.clone(),
             inwards: at.inwards.clone(),
@@ -291,41 +303,28 @@ impl Problem {
 
     /// The motion of length 1 that lowers the energy at a solution, ties and stops kept, if there is one: `curvature` is B with its negative
     /// eigenvalues.
-    pub fn way_down(&self, found: &Solution, curvature: &SixBySix) -> Option<Six> {
-        let mut hessian = *curvature;
-        let size = curvature
-            .iter()
-            .flatten()
-            .fold(0.0, |most: f64, x| most.max(x.abs()));
+    pub fn way_down(&self, found: &Solution, curvature: &Symmetric) -> Option<Vec<f64>> {
+        let mut hessian = curvature.clone();
+        let (n, size) = (self.weight.len(), curvature.size());
         let stiff = 1e6 * size.max(1.0);
         for (i, spring) in self.springs.iter().enumerate() {
-            let carrying: Vec<usize> = spring
-                .pairs
-                .clone()
-                .filter(|&j| found.forces[j] > 1e-9)
-                .collect();
+            let is_carrying = |j: &usize| found.forces[*j] > 1e-9;
+            let carrying: Vec<usize> = spring.pairs.clone().filter(is_carrying).collect();
             let firm = if found.stops[i] > 1e-9 {
                 stiff
             } else {
                 spring.stiffness.min(stiff)
             };
-            let weight = 1.0 / carrying.len().max(1) as f64;
-            let mean: Six =
-                std::array::from_fn(|k| carrying.iter().map(|&j| weight * self.slopes[j][k]).sum());
-            if !carrying.is_empty() {
-                add_outer(&mut hessian, firm, &mean, &mean);
+            let mut mean = vec![0.0; n];
+            for &j in &carrying {
+                self.add_slope(j, 1.0 / carrying.len() as f64, &mut mean);
             }
+            hessian.add_outer(firm, &mean);
             for &j in carrying.iter().filter(|_| carrying.len() > 1) {
-                let apart: Six = std::array::from_fn(|k| self.slopes[j][k] - mean[k]);
-                add_outer(&mut hessian, stiff, &apart, &apart);
+                hessian.add_outer(stiff, &self.apart(j, &mean));
             }
         }
-        let (values, vectors) = eigen(&hessian);
-        let lowest = (0..6).fold(
-            0,
-            |least, k| if values[k] < values[least] { k } else { least },
-        );
-        (values[lowest] < -1e-6 * size).then_some(vectors[lowest])
+        hessian.lowest_below(1e-6 * size).map(|(_, vector)| vector)
     }
 }
 

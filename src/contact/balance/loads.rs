@@ -6,14 +6,14 @@
 //! E = Σ ½ k ψ² + (max(0, λ + κ (ψ − s))² − λ²) / 2κ
 //! ```
 //!
+//! (ψ from where the taxel is if nothing pushes it, with k as stiff as its damper makes it within the step; k = s = 0 of what is rigid)
+//!
 //! the second part being the augmented Lagrangian of the rigid stop ψ ≤ s \[RW\]: with the right λ the stop holds exactly, and
 //! λ is what it carries.
 
-use super::free_object::PlacedSkin;
-use super::pairs::{Key, Pair};
+use super::pairs::{Group, Key, Pair, Pairs, Part};
 use super::tied_max::tied_max;
 use std::collections::BTreeMap;
-use std::ops::Range;
 
 /// What is known of the forces inside taxels.
 #[derive(Clone, Debug, Default)]
@@ -21,7 +21,7 @@ pub(super) struct Multipliers {
     /// λ: what stops carry, newtons.
     pub stops: BTreeMap<Key, f64>,
     /// w⁰ of taxels that several spheres share.
-    pub shares: BTreeMap<Key, Vec<(u32, f64)>>,
+    pub shares: BTreeMap<Key, Vec<(Part, f64)>>,
 }
 
 /// How the energy is made smooth.
@@ -29,7 +29,7 @@ pub(super) struct Multipliers {
 pub(super) struct Smoothness {
     /// μ of soft taxels, metres.
     pub smoothing: f64,
-    /// μ k of stiff ones, newtons: a smoothing that is little on a soft taxel is more than what its stiff neighbour goes.
+    /// μ k of stiff ones, as a share of the weight: a smoothing that is little on a soft taxel is more than what its stiff neighbour goes.
     pub load: f64,
     /// The least μ, metres: less than rounding of deflections would decide ties.
     pub least: f64,
@@ -38,9 +38,10 @@ pub(super) struct Smoothness {
 }
 
 impl Smoothness {
-    /// μ of a taxel of this stiffness (N/m), metres.
-    fn of(&self, stiffness: f64) -> f64 {
-        self.smoothing.min(self.load / stiffness).max(self.least)
+    /// μ of a taxel, metres.
+    fn of(&self, group: &Group) -> f64 {
+        let of_load = self.load * group.weight / group.stiffness;
+        self.smoothing.min(of_load).max(self.least)
     }
 
     /// Ties are steeper by this factor below 1.
@@ -50,11 +51,9 @@ impl Smoothness {
     }
 }
 
-/// A taxel and the pairs that it is in.
+/// What a group of pairs puts on a taxel.
 #[derive(Clone, Debug)]
 pub(super) struct Load {
-    pub key: Key,
-    pub pairs: Range<usize>,
     /// Pairs with a share above zero.
     pub n_sharing: usize,
     /// max δ, metres; negative if nothing touches it.
@@ -69,9 +68,10 @@ pub(super) struct Load {
     pub tangent: f64,
 }
 
-/// The loads of all taxels that pairs are about.
+/// The loads of all groups of pairs.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Loads {
+    /// One a group.
     pub all: Vec<Load>,
     /// One a pair.
     pub shares: Vec<f64>,
@@ -82,26 +82,22 @@ pub(super) struct Loads {
 }
 
 impl Loads {
-    /// Of pairs (sorted by taxel) whose deflections are these.
+    /// Of pairs whose deflections are these.
     pub fn weigh(
         &mut self,
-        pairs: &[Pair],
+        pairs: &Pairs,
         deflections: &[f64],
-        skins: &[PlacedSkin],
         multipliers: &Multipliers,
         smoothness: Smoothness,
     ) {
         self.all.clear();
         self.shares.clear();
         self.elastic = 0.0;
-        let mut first = 0;
-        for of_taxel in pairs.chunk_by(|a, b| a.key == b.key) {
-            let places = first..first + of_taxel.len();
-            first = places.end;
+        for group in &pairs.groups {
+            let places = group.pairs.clone();
             self.weigh_one(
-                of_taxel,
-                (places.clone(), &deflections[places]),
-                skins,
+                group,
+                (&pairs.all[places.clone()], &deflections[places]),
                 multipliers,
                 smoothness,
             );
@@ -110,40 +106,28 @@ impl Loads {
 
     fn weigh_one(
         &mut self,
-        pairs: &[Pair],
-        (places, deflections): (Range<usize>, &[f64]),
-        skins: &[PlacedSkin],
+        group: &Group,
+        (pairs, deflections): (&[Pair], &[f64]),
         multipliers: &Multipliers,
         smoothness: Smoothness,
     ) {
-        let key = pairs[0].key;
-        self.known.clear();
-        let known = multipliers.shares.get(&key);
+        let known = multipliers.shares.get(&group.key);
         if let Some(known) = known {
-            let of = |p: &Pair| {
-                known
-                    .iter()
-                    .find(|(s, _)| *s == p.sphere)
-                    .map_or(0.0, |k| k.1)
-            };
+            let of = |p: &Pair| known.iter().find(|k| k.0 == p.part).map_or(0.0, |k| k.1);
+            self.known.clear();
             self.known.extend(pairs.iter().map(of));
         }
         let known = known.map(|known| (&self.known[..], known.iter().map(|k| k.1 * k.1).sum()));
-        let (skin, number) = (&skins[key.0 as usize], key.1 as usize);
-        let taxel = skin.patch.taxels().at(number);
-        let smoothing = smoothness.of(taxel.stiffness);
+        let smoothing = smoothness.of(group);
         let max = tied_max(deflections, known, smoothing, &mut self.sharing);
         self.shares.extend_from_slice(&self.sharing);
-        let others = skin.pushed.get(number).copied().unwrap_or(0.0);
-        let lambda = multipliers.stops.get(&key).copied().unwrap_or(0.0);
-        let (k, kappa) = (taxel.stiffness, smoothness.stop_stiffness);
-        let stop = (lambda + kappa * (max.value - taxel.stroke)).max(0.0);
+        let lambda = multipliers.stops.get(&group.key).copied().unwrap_or(0.0);
+        let (k, kappa) = (group.stiffness, smoothness.stop_stiffness);
+        let stop = (lambda + kappa * (max.value - group.stroke)).max(0.0);
         let value = max.value.max(0.0);
-        self.elastic += 0.5 * k * (value.powi(2) - others.powi(2))
+        self.elastic += 0.5 * k * (value.powi(2) - group.others.powi(2))
             + 0.5 * (stop * stop - lambda * lambda) / kappa;
         self.all.push(Load {
-            key,
-            pairs: places,
             n_sharing: max.n_sharing,
             deepest: deflections
                 .iter()
@@ -156,22 +140,26 @@ impl Loads {
         });
     }
 
-    /// The loads that are not zero.
-    pub fn carrying(&self) -> impl Iterator<Item = &Load> {
-        self.all.iter().filter(|load| load.force > 0.0)
+    /// Those that are not zero, with what they are of.
+    pub fn carrying<'a>(
+        &'a self,
+        groups: &'a [Group],
+    ) -> impl Iterator<Item = (&'a Group, &'a Load)> {
+        let all = groups.iter().zip(&self.all);
+        all.filter(|(_, load)| load.force > 0.0)
     }
 
     /// The multipliers that make a pose at rest one at rest without smoothing.
-    pub fn multipliers(&self, pairs: &[Pair]) -> Multipliers {
+    pub fn multipliers(&self, pairs: &Pairs) -> Multipliers {
         let mut multipliers = Multipliers::default();
-        for load in self.carrying() {
+        for (group, load) in self.carrying(&pairs.groups) {
             if load.stop > 0.0 {
-                multipliers.stops.insert(load.key, load.stop);
+                multipliers.stops.insert(group.key, load.stop);
             }
             if load.n_sharing > 1 {
-                let shares = load.pairs.clone().filter(|&at| self.shares[at] > 0.0);
-                let shares = shares.map(|at| (pairs[at].sphere, self.shares[at]));
-                multipliers.shares.insert(load.key, shares.collect());
+                let shares = group.pairs.clone().filter(|&at| self.shares[at] > 0.0);
+                let shares = shares.map(|at| (pairs.all[at].part, self.shares[at]));
+                multipliers.shares.insert(group.key, shares.collect());
             }
         }
         multipliers

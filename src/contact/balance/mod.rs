@@ -1,21 +1,30 @@
-//! The resting pose of a free object: where the taxels that it presses carry it.
+//! The resting poses of free objects: where the taxels that they press, tables, and one another carry them.
 //!
-//! Without friction the forces of the taxels are −∇ of their elastic energy, so an object is at rest where
-//! `E = Σ ½ k δ² − m g·x` is stationary, and stays there where it is a minimum \[BT\]. [`Balancer::settle`] goes down from a
-//! pose by a trust-region Newton method with closed-form derivatives: never uphill, and out of saddles, too, since negative
-//! curvature is followed. What finds no minimum leaves the skins: it [escapes](Outcome::Escaped).
+//! Without friction the forces of the taxels are −∇ of their elastic energy, so objects are at rest where
+//! `E = Σ ½ k δ² − Σ m g·x` is stationary, and stay there where it is a minimum \[BT\]: one problem of six unknowns an object, since δ is
+//! the largest that any of them needs. [`Balancer::settle_all`] goes down from their poses by a trust-region Newton method with
+//! closed-form derivatives: never uphill, and out of saddles, too, since negative curvature is followed. What finds no minimum leaves:
+//! it [escapes](Outcome::Escaped), and the others go on without it.
 //!
-//! Two things make E rough, and both are kept exactly: a taxel between two spheres (`tied_max`), and the rigid stop of a
-//! taxel at its stroke. Both are constraints with multipliers: the shares of the spheres, and the force of the stop.
+//! Three things make E rough, and all are kept exactly: a taxel between two spheres (`tied_max`), be they of one object or of two; the
+//! rigid stop of a taxel at its stroke; and what is rigid itself, which spheres do not enter: half-spaces ([`HalfSpace`]), objects that
+//! do not move ([`Obstacle`]), and the spheres of other free objects. They are constraints with multipliers: the shares of the spheres, and
+//! the forces of stops and touches.
+//!
+//! A damper holds its taxel in: within a step of Δt it comes out to φ δ at most (φ = e^(−k Δt / c)), and what pushes it further finds a spring
+//! of k / (1 − φ) from there on. So in a step E = Σ ½ k/(1 − φ) (δ − φ δ_before)², and the forces are those of
+//! [`DamperState`](crate::contact::DamperState).
 //!
 //! Where both are so many, or springs so unlike, that this does not get there, an interior-point method ends it (`finish`): there the
-//! forces are unknowns of their own.
+//! forces are unknowns of their own. It is our own because springs may be 10¹² times as stiff as their
+//! neighbours: normal equations lose the soft ones, an orthogonal factorisation with its rows sorted does not (`graded_rows`).
 //!
 //! # Sources
 //!
 //! - `[MS]` Moré, Sorensen, *Computing a trust region step*, 1983.
 //! - `[RW]` Rockafellar, *Augmented Lagrangians and applications of the proximal point algorithm in convex programming*, 1976.
 
+mod body;
 mod descent;
 mod energy;
 mod fall;
@@ -27,9 +36,12 @@ mod loads;
 mod model;
 mod pairs;
 mod reach;
+mod reports;
 mod settle;
-mod six;
+mod symmetric;
 mod tied_max;
+mod touching;
 
-pub use free_object::{FreeObject, PlacedSkin};
-pub use settle::{Balance, Balancer, Outcome, TaxelLoad};
+pub use free_object::{FreeObject, Ground, HalfSpace, Obstacle, PlacedSkin};
+pub use reports::{TaxelLoad, Touch, Touched};
+pub use settle::{Balance, Balancer, Outcome};

@@ -1,28 +1,75 @@
-//! The spheres of a free object and the taxels that they push, or could after a small step.
+//! The spheres of free objects and what they push, or could after a small step: taxels, and rigid things.
+//!
+//! What is rigid is a taxel without a spring, at the end of its stroke: a sphere pushes it by how far it is inside, and what it carries
+//! is the force of its stop. So both are pairs, and everything else sees no difference.
 
 use super::super::taxel_contact::GRAZING;
-use super::free_object::{FreeObject, PlacedSkin};
+use super::body::{Body, along, ways};
+use super::free_object::{Ground, PlacedSkin};
 use super::reach::Reach;
-use crate::geometry::Pose;
+use super::symmetric::{Six, Symmetric};
+use super::touching::Touching;
 use glam::{DMat3, DVec3};
+use std::ops::Range;
 
-/// A skin's number and a taxel's in it.
-pub(super) type Key = (u32, u32);
+/// A body's place among those on their way, and the number of one of its spheres.
+pub(super) type Part = (u32, u32);
 
-/// The sphere of a pair that is none of the free object's: how far other objects push the taxel.
-pub(super) const OTHERS: u32 = u32::MAX;
+/// What is pushed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Key {
+    /// A skin's number and a taxel's in it.
+    Taxel(u32, u32),
+    /// Something rigid, by one sphere.
+    Rigid(Part, Rigid),
+}
 
-/// A sphere and a taxel.
+/// Something rigid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Rigid {
+    Plane(u32),
+    /// An obstacle's number and a sphere's.
+    Obstacle(u32, u32),
+    Body(Part),
+}
+
+/// The part of a pair that is none of a free object: how far others push the taxel.
+pub(super) const OTHERS: Part = (u32::MAX, u32::MAX);
+
+/// A sphere and what it pushes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pair {
     pub key: Key,
-    pub sphere: u32,
-    /// Metres; negative if they do not touch yet.
+    pub part: Part,
+    /// Past where it is without anything that pushes it, metres; negative if they do not touch yet.
     pub deflection: f64,
-    /// `None` of other objects.
-    pub reach: Option<Reach>,
-    /// From the centre of mass to the sphere's centre, in the patch frame.
+    pub kind: Kind,
+    /// From the centre of mass to the sphere's centre; in the patch frame, or of rigid things in the world.
     pub arm: DVec3,
+}
+
+/// How the deflection of a pair changes.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Kind {
+    Taxel(Reach),
+    Rigid(Touching),
+    /// Not at all: what others push.
+    Fixed,
+}
+
+/// A taxel, or something rigid, and the pairs that push it.
+#[derive(Clone, Debug)]
+pub(super) struct Group {
+    pub key: Key,
+    pub pairs: Range<usize>,
+    /// N/m; 0 of what is rigid.
+    pub stiffness: f64,
+    /// From where it is if nothing pushes it, metres; 0 of what is rigid.
+    pub stroke: f64,
+    /// What others push, metres.
+    pub others: f64,
+    /// Of the lightest body that pushes it, newtons.
+    pub weight: f64,
 }
 
 /// How much more than what presses is looked at.
@@ -34,110 +81,313 @@ pub(super) struct Margins {
     pub window: f64,
 }
 
-/// Pairs at one pose.
+/// Pairs at one place of all bodies.
 ///
 /// A sphere behind a taxel's substrate does not push it. It also does not while it comes up from there: else it would meet a
 /// cliff where the substrate is, on which an object could hang. So such pairs are remembered until they are apart.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Pairs {
-    /// Those that push or could, sorted by taxel and sphere.
+    /// Those that push or could, sorted by what they push and by sphere.
     pub all: Vec<Pair>,
+    pub groups: Vec<Group>,
     /// Those that do not since the sphere came from behind; sorted.
-    pub behind: Vec<(Key, u32)>,
+    pub behind: Vec<(Key, Part)>,
     deepest: Vec<f64>,
 }
 
+impl Pair {
+    /// `gradient` and curvature of its deflection by a motion of the sphere, relative to what else moves; `None` of others.
+    pub fn derivatives(&self) -> Option<(DVec3, DMat3)> {
+        match &self.kind {
+            Kind::Taxel(reach) => {
+                let found = reach.derivatives();
+                Some((found.gradient, found.curvature))
+            }
+            Kind::Rigid(touching) => Some(touching.derivatives()),
+            Kind::Fixed => None,
+        }
+    }
+
+    /// The bodies that its deflection depends on: which, which way their points count, and where these are from their centres of mass.
+    pub fn ends(&self) -> impl Iterator<Item = (usize, f64, DVec3)> {
+        let other = match &self.kind {
+            Kind::Rigid(touching) => touching.other,
+            _ => None,
+        };
+        let own = (self.part != OTHERS).then_some((self.part.0 as usize, 1.0, self.arm));
+        let other = other.map(|(body, arm)| (body as usize, -1.0, arm));
+        own.into_iter().chain(other)
+    }
+}
+
+/// ∂δ of each pair by the motions of the bodies that it depends on.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Slopes {
+    /// Where those of each pair begin, and the end of the last.
+    first: Vec<u32>,
+    all: Vec<(u32, Six)>,
+}
+
+impl Slopes {
+    pub fn of(&self, pair: usize) -> &[(u32, Six)] {
+        &self.all[self.first[pair] as usize..self.first[pair + 1] as usize]
+    }
+
+    /// How much more of a pair's deflection a motion is.
+    pub fn dot(&self, pair: usize, motion: &[f64]) -> f64 {
+        let of = self.of(pair).iter();
+        of.map(|(body, slope)| super::symmetric::dot(slope, &motion[6 * *body as usize..]))
+            .sum()
+    }
+
+    /// Those at these pairs, and the energy's curvature where pair k carries `force_of(k)` newtons.
+    pub fn lay(
+        &mut self,
+        bodies: &[Body],
+        skins: &[PlacedSkin],
+        pairs: &Pairs,
+        curvature: &mut Symmetric,
+        force_of: impl Fn(usize) -> f64,
+    ) {
+        curvature.clear(6 * bodies.len());
+        self.all.clear();
+        self.first.clear();
+        self.first.push(0);
+        for group in &pairs.groups {
+            let axes = match group.key {
+                Key::Taxel(skin, _) => {
+                    let rotation = skins[skin as usize].world_from_patch.rotation;
+                    DVec3::AXES.map(|axis| rotation.conjugate() * axis)
+                }
+                Key::Rigid(..) => DVec3::AXES,
+            };
+            for at in group.pairs.clone() {
+                self.lay_one(bodies, &axes, &pairs.all[at], curvature, force_of(at));
+            }
+        }
+    }
+
+    fn lay_one(
+        &mut self,
+        bodies: &[Body],
+        axes: &[DVec3; 3],
+        pair: &Pair,
+        curvature: &mut Symmetric,
+        force: f64,
+    ) {
+        if let Some((gradient, bending)) = pair.derivatives() {
+            for (body, sign, arm) in pair.ends() {
+                let own = ways(axes, arm, bodies[body].arm());
+                self.all.push((body as u32, along(&own, sign * gradient)));
+                if force <= 0.0 {
+                    continue;
+                }
+                let bent = own.map(|way| sign * force * (bending * way));
+                for (other, other_sign, arm) in pair.ends() {
+                    let ways = ways(axes, arm, bodies[other].arm());
+                    for (i, bent) in bent.iter().enumerate() {
+                        let row = curvature.part_mut(6 * body + i, 6 * other);
+                        for (entry, way) in row.iter_mut().zip(&ways) {
+                            *entry += other_sign * bent.dot(*way);
+                        }
+                    }
+                }
+                let turning = force / bodies[body].arm().powi(2);
+                add_turning(curvature, body, turning, axes, [arm, sign * gradient]);
+            }
+        }
+        self.first.push(self.all.len() as u32);
+    }
+}
+
+/// Second order of a rotation θ, which takes r to r + θ × r + ½ θ × (θ × r): a·½ θ × (θ × r) = ½ ((a·θ)(r·θ) − (a·r) θ²).
+fn add_turning(
+    curvature: &mut Symmetric,
+    body: usize,
+    force: f64,
+    axes: &[DVec3; 3],
+    [r, a]: [DVec3; 2],
+) {
+    for i in 0..3 {
+        let row = curvature.part_mut(6 * body + 3 + i, 6 * body + 3);
+        for j in 0..3 {
+            let both = 0.5 * (a.dot(axes[i]) * r.dot(axes[j]) + r.dot(axes[i]) * a.dot(axes[j]));
+            let same = if i == j { a.dot(r) } else { 0.0 };
+            row[j] += force * (both - same);
+        }
+    }
+}
+
 impl Pairs {
-    /// Looks at the object at a pose (`world_from_object`); `behind`: what was behind before.
+    /// Looks at bodies where they are; `behind`: what was behind before.
     pub fn look(
         &mut self,
-        object: &FreeObject,
-        skins: &[PlacedSkin],
-        pose: &Pose,
+        bodies: &[Body],
+        ground: &Ground,
         margins: Margins,
-        behind: &[(Key, u32)],
+        behind: &[(Key, Part)],
     ) {
         self.all.clear();
         self.behind.clear();
-        for (number, skin) in skins.iter().enumerate() {
-            self.gather(object, (number as u32, skin), pose, margins, behind);
+        for (number, skin) in ground.skins.iter().enumerate() {
+            self.gather(bodies, (number as u32, skin), margins, behind);
         }
         self.behind.sort_unstable();
+        super::touching::gather(&mut self.all, bodies, ground, 2.0 * margins.step);
+        self.groups.clear();
+        let mut first = 0;
+        for of_key in self.all.chunk_by(|a, b| a.key == b.key) {
+            let pairs = first..first + of_key.len();
+            first = pairs.end;
+            self.groups.push(group(of_key, pairs, bodies, ground));
+        }
+    }
+
+    /// Of each of `n_bodies` the number of one that stands for all which it touches or shares taxels with.
+    pub fn islands(&self, n_bodies: usize) -> Vec<usize> {
+        let mut islands: Vec<usize> = (0..n_bodies).collect();
+        for group in &self.groups {
+            let mut bodies = self.all[group.pairs.clone()].iter().flat_map(Pair::ends);
+            let Some((first, ..)) = bodies.next() else {
+                continue;
+            };
+            for (other, ..) in bodies {
+                let [one, other] = [first, other].map(|body| islands[body]);
+                if one != other {
+                    let joined = islands.iter_mut().filter(|island| **island == other);
+                    joined.for_each(|island| *island = one);
+                }
+            }
+        }
+        islands
     }
 
     fn gather(
         &mut self,
-        object: &FreeObject,
+        bodies: &[Body],
         (number, skin): (u32, &PlacedSkin),
-        pose: &Pose,
         margins: Margins,
-        behind: &[(Key, u32)],
+        behind: &[(Key, Part)],
+    ) {
+        let tree = skin.patch.tree();
+        let Some(bounds) = tree.bounds() else { return };
+        // A sphere may move by twice the step: along it, and by turning.
+        let more = GRAZING * tree.depth() + 2.0 * margins.step;
+        let to_patch = skin.world_from_patch.inverse();
+        let is_near = |body: &Body| {
+            let away = bounds.distance_squared(to_patch.transform_point(body.center));
+            away.sqrt() <= body.arm() + tree.largest_radius() + more
+        };
+        if !bodies.iter().any(is_near) {
+            return;
+        }
+        let first = self.all.len();
+        self.deepest.clear();
+        self.deepest.resize(skin.patch.n_taxels(), 0.0);
+        for (slot, body) in bodies.iter().enumerate() {
+            if is_near(body) {
+                self.gather_body((slot as u32, body), (number, skin), (margins, more), behind);
+            }
+        }
+        self.gather_others(number, skin);
+        let Self { all, deepest, .. } = self;
+        let mut kept = first;
+        for index in first..all.len() {
+            let pair = all[index];
+            let Key::Taxel(_, taxel) = pair.key else {
+                continue;
+            };
+            // Of a taxel that nothing pushes yet, all that could.
+            let deepest = deepest[taxel as usize];
+            if deepest == 0.0 || pair.deflection >= deepest - margins.window {
+                all[kept] = pair;
+                kept += 1;
+            }
+        }
+        all.truncate(kept);
+        all[first..].sort_unstable_by_key(|pair| (pair.key, pair.part));
+    }
+
+    fn gather_body(
+        &mut self,
+        (slot, body): (u32, &Body),
+        (number, skin): (u32, &PlacedSkin),
+        (margins, more): (Margins, f64),
+        behind: &[(Key, Part)],
     ) {
         let Self {
             all: pairs,
             behind: now_behind,
             deepest,
+            ..
         } = self;
-        let patch_from_object = pose.seen_from(&skin.world_from_patch);
+        let patch_from_object = body.pose().seen_from(&skin.world_from_patch);
         let rotation = DMat3::from_quat(patch_from_object.rotation);
-        let center_of_mass = patch_from_object.transform_point(object.center_of_mass);
+        let center_of_mass = patch_from_object.transform_point(body.object.center_of_mass);
         let tree = skin.patch.tree();
-        let Some(bounds) = tree.bounds() else { return };
-        // A sphere may move by twice the step: along it, and by turning.
-        let more = GRAZING * tree.depth() + 2.0 * margins.step;
-        let away = bounds.distance_squared(center_of_mass).sqrt();
-        if away > object.radius + tree.largest_radius() + more {
-            return;
-        }
-        let first = pairs.len();
-        deepest.clear();
-        deepest.resize(skin.patch.n_taxels(), 0.0);
-        for (index, sphere) in object.spheres.iter().enumerate() {
+        for (sphere, index) in body.object.spheres.iter().zip(0..) {
             let center = rotation * sphere.center + patch_from_object.translation;
             tree.each_near(center, sphere.radius + more, |taxel| {
                 let found = Reach::new(center, sphere.radius, taxel, 2.0 * margins.step);
                 let Some(reach) = found else { return };
-                let (key, index) = ((number, taxel.number), index as u32);
-                if reach.is_behind(taxel, center) || behind.binary_search(&(key, index)).is_ok() {
-                    now_behind.push((key, index));
+                let (key, part) = (Key::Taxel(number, taxel.number), (slot, index));
+                if reach.is_behind(taxel, center) || behind.binary_search(&(key, part)).is_ok() {
+                    now_behind.push((key, part));
                     return;
                 }
-                let deepest = &mut deepest[taxel.number as usize];
-                if reach.deflection >= *deepest - margins.window {
-                    *deepest = deepest.max(reach.deflection);
+                let at = taxel.number as usize;
+                let deflection = reach.deflection - skin.relaxed(at);
+                if deflection >= deepest[at] - margins.window {
+                    deepest[at] = deepest[at].max(deflection);
                     pairs.push(Pair {
                         key,
-                        sphere: index,
-                        deflection: reach.deflection,
-                        reach: Some(reach),
+                        part,
+                        deflection,
+                        kind: Kind::Taxel(reach),
                         arm: center - center_of_mass,
                     });
                 }
             });
         }
-        for (taxel, (deepest, &others)) in deepest.iter_mut().zip(skin.pushed).enumerate() {
+    }
+
+    /// What others push of taxels that a free object pushes, too.
+    fn gather_others(&mut self, number: u32, skin: &PlacedSkin) {
+        let deepest = self.deepest.iter_mut().zip(skin.pushed);
+        for (taxel, (deepest, others)) in deepest.enumerate() {
+            let others = others - skin.relaxed(taxel);
             if *deepest > 0.0 && others > 0.0 {
                 *deepest = deepest.max(others);
-                pairs.push(Pair {
-                    key: (number, taxel as u32),
-                    sphere: OTHERS,
+                self.all.push(Pair {
+                    key: Key::Taxel(number, taxel as u32),
+                    part: OTHERS,
                     deflection: others,
-                    reach: None,
+                    kind: Kind::Fixed,
                     arm: DVec3::ZERO,
                 });
             }
         }
-        let mut kept = first;
-        for index in first..pairs.len() {
-            let pair = pairs[index];
-            // Of a taxel that nothing pushes yet, all that could.
-            let deepest = deepest[pair.key.1 as usize];
-            if deepest == 0.0 || pair.deflection >= deepest - margins.window {
-                pairs[kept] = pair;
-                kept += 1;
-            }
-        }
-        pairs.truncate(kept);
-        pairs[first..].sort_unstable_by_key(|pair| (pair.key, pair.sphere));
+    }
+}
+
+fn group(pairs: &[Pair], places: Range<usize>, bodies: &[Body], ground: &Ground) -> Group {
+    let all = pairs.iter().flat_map(Pair::ends);
+    let weights = all.map(|(body, ..)| bodies[body].weight.length());
+    let (mut stiffness, mut stroke, mut others) = (0.0, 0.0, 0.0);
+    if let Key::Taxel(skin, taxel) = pairs[0].key {
+        let (skin, taxel) = (&ground.skins[skin as usize], taxel as usize);
+        let relaxed = skin.relaxed(taxel);
+        stiffness = skin.stiffness(taxel);
+        stroke = skin.patch.taxels().at(taxel).stroke - relaxed;
+        let pushed = skin.pushed.get(taxel).copied().unwrap_or(0.0);
+        others = (pushed - relaxed).max(0.0);
+    }
+    Group {
+        key: pairs[0].key,
+        pairs: places,
+        stiffness,
+        stroke,
+        others,
+        weight: weights.fold(f64::INFINITY, f64::min),
     }
 }

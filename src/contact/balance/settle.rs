@@ -1,11 +1,13 @@
-//! The balance of a free object, and who finds it.
+//! The balance of free objects, and who finds it.
 
-use super::descent::Descent;
-use super::energy::Energy;
-use super::free_object::{FreeObject, PlacedSkin};
+use super::body::Body;
+use super::descent::{Descent, End};
+use super::energy::{Energy, PairLoad, wrenches};
+use super::free_object::{FreeObject, Ground, PlacedSkin};
 use super::loads::Multipliers;
 use super::model::Model;
 use super::pairs::Key;
+use super::reports::{TaxelLoad, Touch};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use glam::DVec3;
@@ -20,7 +22,7 @@ pub enum Outcome {
         /// Where to from where it started: unit, in the world; across gravity, unless it fell straight down.
         direction: DVec3,
     },
-    /// Neither within the largest number of steps.
+    /// Neither within the largest number of steps: it and what it touches. The others are at rest as if these were not there.
     Unsettled,
 }
 
@@ -31,7 +33,7 @@ pub struct Balance {
     pub pose: Pose,
     /// Whether it rests there.
     pub outcome: Outcome,
-    /// What the skins put on it, newtons, in the world: k δ of each taxel, and its stop's force.
+    /// What all that it touches puts on it, newtons, in the world: k δ of each taxel, and its stop's force; and what is rigid.
     pub force: DVec3,
     /// About the centre of mass, N·m.
     pub torque: DVec3,
@@ -40,45 +42,18 @@ pub struct Balance {
     pub imbalance: f64,
     /// Taxels that carry it.
     pub n_touched: usize,
-    /// Taxels whose stops carry.
+    /// Taxels whose stops carry it.
     pub n_saturated: usize,
     /// Taxels pushed along a flank as good as parallel to their axis: see [`GRAZING`](crate::contact::GRAZING).
     pub n_grazing: usize,
-    /// Poses that were looked at.
+    /// Poses that were looked at, of all objects together.
     pub n_steps: usize,
 }
 
-/// What one taxel carries of an object.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TaxelLoad {
-    /// The skin's number in the list that the object was put to rest on.
-    pub skin: usize,
-    /// The taxel's number in its layout.
-    pub taxel: usize,
-    /// What the object puts on it along its axis, newtons, above 0.
-    pub force: f64,
-    /// The part of that force which the spring at its stroke does not carry, newtons: the reaction of the stop, the multiplier of
-    /// δ ≤ s in the balance; 0 before the stroke.
-    pub stop: f64,
-}
-
-impl TaxelLoad {
-    /// Of a taxel whose stop carries if `is_stopped`.
-    pub(super) fn new(
-        (skin, taxel): Key,
-        force: f64,
-        is_stopped: bool,
-        skins: &[PlacedSkin],
-    ) -> Self {
-        let (skin, taxel) = (skin as usize, taxel as usize);
-        let spring = skins[skin].patch.taxels().at(taxel);
-        let past = force - spring.stiffness * spring.stroke;
-        Self {
-            skin,
-            taxel,
-            force,
-            stop: if is_stopped { past.max(0.0) } else { 0.0 },
-        }
+impl Balance {
+    /// Whether it did not escape.
+    pub fn is_there(&self) -> bool {
+        !matches!(self.outcome, Outcome::Escaped { .. })
     }
 }
 
@@ -89,7 +64,10 @@ pub struct Balancer {
     pub(super) next: Energy,
     pub(super) model: Model,
     pub(super) multipliers: Multipliers,
-    pub(super) carried: Vec<TaxelLoad>,
+    loads: Vec<TaxelLoad>,
+    touches: Vec<Touch>,
+    /// Of the objects that it put to rest last, those that its multipliers are of.
+    numbers: Vec<usize>,
 }
 
 impl Balancer {
@@ -98,59 +76,204 @@ impl Balancer {
         Self::default()
     }
 
-    /// What carries the object that was put to rest last, taxel by taxel, in the order of skins and taxels; empty of one that escaped.
-    /// Its forces are those of the last [`Balance`]: Σ f n_c / (n_c·n) is the balance's force.
+    /// What taxels carry of the objects that were put to rest last, in the order of skins and taxels; nothing of those that escaped.
+    /// Its forces are those of the last [`Balance`]s, with the [touches](Self::touches)'.
     pub fn loads(&self) -> &[TaxelLoad] {
-        &self.carried
+        &self.loads
     }
 
-    /// Puts an object to rest from a pose (`world_from_object`), under `gravity` (m/s², in the world).
-    ///
-    /// It goes to the rest that lies downhill; from a pose at rest it does not move. The skins do not move meanwhile, and their dampers do not
-    /// count.
+    /// What rigid things put on them.
+    pub fn touches(&self) -> &[Touch] {
+        &self.touches
+    }
+
+    /// Puts one object to rest on skins, from a pose (`world_from_object`), under `gravity` (m/s², in the world).
     ///
     /// # Errors
-    /// The error names a gravity that is zero or not finite, and a pose that is not finite.
-    pub fn settle<'s>(
+    /// Those of [`settle_all`](Self::settle_all).
+    pub fn settle(
         &mut self,
         object: &FreeObject,
-        skins: &[PlacedSkin<'s>],
+        skins: &[PlacedSkin],
         gravity: DVec3,
         start: &Pose,
     ) -> Result<Balance> {
-        if !(gravity.is_finite() && gravity != DVec3::ZERO) {
-            return Err(Error::input(
-                "gravity",
-                format!("{gravity} m/s²"),
-                "finite, and not zero for a free object",
-            ));
-        }
-        if !(start.translation.is_finite() && start.rotation.is_finite()) {
-            return Err(Error::input(
-                "object pose",
-                start.translation,
-                "finite numbers",
-            ));
-        }
-        // Where the object is, is the origin: far from the world's, places have too few digits to balance stiff springs.
-        let origin = start.translation;
+        let ground = Ground {
+            skins: skins.to_vec(),
+            ..Ground::default()
+        };
+        let balances = self.settle_all(&[*object], &ground, gravity, &[*start])?;
+        Ok(balances[0])
+    }
+
+    /// Puts objects to rest together, from their poses (`world_from_object`, one an object), under `gravity` (m/s², in the world).
+    ///
+    /// They go to the rest that lies downhill; from poses at rest they do not move. The ground does not move meanwhile.
+    ///
+    /// # Errors
+    /// The error names a gravity that is zero or not finite, and a pose that is not finite.
+    ///
+    /// # Panics
+    /// If there are not as many poses as objects.
+    pub fn settle_all(
+        &mut self,
+        objects: &[FreeObject],
+        ground: &Ground,
+        gravity: DVec3,
+        starts: &[Pose],
+    ) -> Result<Vec<Balance>> {
+        assert_eq!(objects.len(), starts.len());
+        check(gravity, starts)?;
+        // Where the objects are, is the origin: far from the world's, places have too few digits to balance stiff springs.
+        let origin = starts.first().map_or(DVec3::ZERO, |pose| pose.translation);
+        let ground = ground.seen_from(origin);
         let from_there = |pose: &Pose| Pose::new(pose.rotation, pose.translation - origin);
-        let near = |skin: &PlacedSkin<'s>| PlacedSkin {
-            world_from_patch: from_there(&skin.world_from_patch),
-            ..*skin
-        };
-        let skins: Vec<PlacedSkin> = skins.iter().map(near).collect();
-        let mut descent = Descent::new(self, object, &skins, gravity, &from_there(start));
-        let (outcome, held) = match descent.run() {
-            Outcome::Unsettled => match descent.finish() {
-                Some(held) => (Outcome::Settled, Some(held)),
-                None => (Outcome::Unsettled, None),
-            },
-            outcome => (outcome, None),
-        };
-        let mut balance = descent.balance(outcome, held);
-        self.multipliers = descent.multipliers;
-        balance.pose.translation += origin;
-        Ok(balance)
+        let bodies = objects.iter().zip(starts);
+        let bodies = bodies.map(|(object, start)| Body::new(*object, gravity, &from_there(start)));
+        let mut balances = self.settle_bodies(bodies.collect(), &ground);
+        for balance in &mut balances {
+            balance.pose.translation += origin;
+        }
+        for touch in &mut self.touches {
+            touch.point += origin;
+        }
+        Ok(balances)
+    }
+
+    /// Pass by pass: what leaves, and what finds no rest, is taken out, and the others go on.
+    fn settle_bodies<'s>(
+        &mut self,
+        mut bodies: Vec<Body<'s>>,
+        ground: &'s Ground<'s>,
+    ) -> Vec<Balance> {
+        let mut numbers: Vec<usize> = (0..bodies.len()).collect();
+        let mut balances = vec![None; bodies.len()];
+        let (mut n_steps, mut is_second) = (0, false);
+        self.loads.clear();
+        self.touches.clear();
+        while !bodies.is_empty() {
+            if self.numbers != numbers {
+                self.multipliers = Multipliers::default();
+                self.numbers.clone_from(&numbers);
+            }
+            let mut descent = Descent::new(self, bodies, ground);
+            let all = 0..numbers.len();
+            let (done, outcome, loads) = match descent.run() {
+                End::Endless(gone) => (gone, None, Vec::new()),
+                End::Rest => {
+                    let loads = descent.balancer.now.pair_loads();
+                    (all.collect(), Some(Outcome::Settled), loads)
+                }
+                End::Exhausted => match descent.finish() {
+                    Some(loads) => (all.collect(), Some(Outcome::Settled), loads),
+                    // Once more from there: forces of a round that went astray lead the next ones astray, too.
+                    None if !is_second => (Vec::new(), None, Vec::new()),
+                    None => {
+                        let loads = descent.balancer.now.pair_loads();
+                        (descent.most_restless(), Some(Outcome::Unsettled), loads)
+                    }
+                },
+            };
+            n_steps += descent.n_steps;
+            let multipliers = std::mem::take(&mut descent.multipliers);
+            bodies = std::mem::take(&mut descent.bodies);
+            is_second = done.is_empty();
+            self.multipliers = if is_second {
+                Multipliers::default()
+            } else {
+                multipliers
+            };
+            self.report(&bodies, &loads, (&numbers, &done), &ground.skins);
+            let wrenches = wrenches(&loads, &self.now.pairs.all, &bodies, &ground.skins);
+            for slot in done.into_iter().rev() {
+                let number = numbers.remove(slot);
+                let body = bodies.remove(slot);
+                let outcome = outcome.unwrap_or(Outcome::Escaped {
+                    direction: body.way_out(),
+                });
+                balances[number] =
+                    Some(self.balance((&body, number), wrenches[slot], outcome, n_steps));
+            }
+        }
+        let own = |load: &TaxelLoad| (load.skin, load.taxel, load.object, load.sphere);
+        self.loads.sort_by_key(own);
+        balances
+            .into_iter()
+            .map(|balance| balance.expect("each rests, has escaped, or does neither"))
+            .collect()
+    }
+
+    /// Of an object whose loads have been reported.
+    fn balance(
+        &self,
+        (body, number): (&Body, usize),
+        wrench: (DVec3, DVec3),
+        outcome: Outcome,
+        n_steps: usize,
+    ) -> Balance {
+        let own = self.loads.iter().filter(|load| load.object == number);
+        let own: Vec<&TaxelLoad> = own.collect();
+        let taxels = own.chunk_by(|a, b| (a.skin, a.taxel) == (b.skin, b.taxel));
+        let is_stopped = |of: &&[&TaxelLoad]| of.iter().any(|load| load.stop > 0.0);
+        Balance {
+            pose: body.pose(),
+            outcome,
+            force: wrench.0,
+            torque: wrench.1,
+            imbalance: body.imbalance_of(wrench),
+            n_touched: taxels.clone().count(),
+            n_saturated: taxels.filter(is_stopped).count(),
+            n_grazing: own.iter().filter(|load| load.is_grazing).count(),
+            n_steps,
+        }
+    }
+
+    /// What carries those bodies that are `done`, by the numbers of the objects.
+    fn report(
+        &mut self,
+        bodies: &[Body],
+        loads: &[PairLoad],
+        (numbers, done): (&[usize], &[usize]),
+        skins: &[PlacedSkin],
+    ) {
+        let number = |slot: u32| numbers[slot as usize];
+        for load in loads {
+            let pair = &self.now.pairs.all[load.pair];
+            if !done.contains(&(pair.part.0 as usize)) {
+                continue;
+            }
+            let body = &bodies[pair.part.0 as usize];
+            match pair.key {
+                Key::Taxel(skin, taxel) => {
+                    let taxel = (skin as usize, taxel as usize);
+                    let object = number(pair.part.0);
+                    let found = TaxelLoad::new(taxel, object, pair, load, body, skins);
+                    self.loads.push(found);
+                }
+                Key::Rigid(_, rigid) => {
+                    self.touches
+                        .push(Touch::new(pair, rigid, load, body, number));
+                }
+            }
+        }
+    }
+}
+
+fn check(gravity: DVec3, starts: &[Pose]) -> Result<()> {
+    if !(gravity.is_finite() && gravity != DVec3::ZERO) {
+        return Err(Error::input(
+            "gravity",
+            format!("{gravity} m/s²"),
+            "finite, and not zero for a free object",
+        ));
+    }
+    let is_odd = |pose: &&Pose| !(pose.translation.is_finite() && pose.rotation.is_finite());
+    match starts.iter().find(is_odd) {
+        Some(odd) => Err(Error::input(
+            "object pose",
+            odd.translation,
+            "finite numbers",
+        )),
+        None => Ok(()),
     }
 }

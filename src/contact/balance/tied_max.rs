@@ -27,6 +27,13 @@ pub(super) fn tied_max(
 ) -> TiedMax {
     let about = |j: usize| known.map_or(0.0, |(known, _)| known[j]);
     shares.clear();
+    if let ([alone], None) = (deflections, known) {
+        shares.push(1.0);
+        return TiedMax {
+            value: *alone,
+            n_sharing: 1,
+        };
+    }
     let at = |j: usize| about(j) + deflections[j] / smoothing;
     let highest = (0..deflections.len())
         .map(at)

@@ -202,11 +202,7 @@ fn put_to_rest(scene: &CellScene, mass: f64) -> Result<Answer> {
     let cradle = &scene.cradle;
     let spheres = cradle.ball.spheres().expect("a ball is a sphere");
     let ball = FreeObject::new(spheres, mass, DVec3::ZERO)?;
-    let skin = PlacedSkin {
-        patch: &cradle.patch,
-        world_from_patch: Pose::IDENTITY,
-        pushed: &[],
-    };
+    let skin = PlacedSkin::new(&cradle.patch, Pose::IDENTITY);
     let gravity = -GRAVITY * DVec3::Z;
     let balance = Balancer::new().settle(&ball, &[skin], gravity, &cradle.pose)?;
     let mut workspace = Workspace::new();
