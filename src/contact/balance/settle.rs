@@ -70,6 +70,19 @@ pub struct Balancer {
     numbers: Vec<usize>,
 }
 
+/// What a descent has come to.
+struct Pass<'s> {
+    /// All bodies, where they are now.
+    bodies: Vec<Body<'s>>,
+    /// Those of them that are taken out, ascending.
+    done: Vec<usize>,
+    /// Theirs; `None`: they have left.
+    outcome: Option<Outcome>,
+    /// Of all.
+    loads: Vec<PairLoad>,
+    n_steps: usize,
+}
+
 impl Balancer {
     /// A balancer that knows nothing yet.
     pub fn new() -> Self {
@@ -148,7 +161,7 @@ impl Balancer {
     ) -> Vec<Balance> {
         let mut numbers: Vec<usize> = (0..bodies.len()).collect();
         let mut balances = vec![None; bodies.len()];
-        let (mut n_steps, mut is_second) = (0, false);
+        let mut n_steps = 0;
         self.loads.clear();
         self.touches.clear();
         while !bodies.is_empty() {
@@ -156,39 +169,15 @@ impl Balancer {
                 self.multipliers = Multipliers::default();
                 self.numbers.clone_from(&numbers);
             }
-            let mut descent = Descent::new(self, bodies, ground);
-            let all = 0..numbers.len();
-            let (done, outcome, loads) = match descent.run() {
-                End::Endless(gone) => (gone, None, Vec::new()),
-                End::Rest => {
-                    let loads = descent.balancer.now.pair_loads();
-                    (all.collect(), Some(Outcome::Settled), loads)
-                }
-                End::Exhausted => match descent.finish() {
-                    Some(loads) => (all.collect(), Some(Outcome::Settled), loads),
-                    // Once more from there: forces of a round that went astray lead the next ones astray, too.
-                    None if !is_second => (Vec::new(), None, Vec::new()),
-                    None => {
-                        let loads = descent.balancer.now.pair_loads();
-                        (descent.most_restless(), Some(Outcome::Unsettled), loads)
-                    }
-                },
-            };
-            n_steps += descent.n_steps;
-            let multipliers = std::mem::take(&mut descent.multipliers);
-            bodies = std::mem::take(&mut descent.bodies);
-            is_second = done.is_empty();
-            self.multipliers = if is_second {
-                Multipliers::default()
-            } else {
-                multipliers
-            };
-            self.report(&bodies, &loads, (&numbers, &done), &ground.skins);
-            let wrenches = wrenches(&loads, &self.now.pairs.all, &bodies, &ground.skins);
-            for slot in done.into_iter().rev() {
+            let pass = self.descend(bodies, ground);
+            bodies = pass.bodies;
+            n_steps += pass.n_steps;
+            self.report(&bodies, &pass.loads, (&numbers, &pass.done), &ground.skins);
+            let wrenches = wrenches(&pass.loads, &self.now.pairs.all, &bodies, &ground.skins);
+            for slot in pass.done.into_iter().rev() {
                 let number = numbers.remove(slot);
                 let body = bodies.remove(slot);
-                let outcome = outcome.unwrap_or(Outcome::Escaped {
+                let outcome = pass.outcome.unwrap_or(Outcome::Escaped {
                     direction: body.way_out(),
                 });
                 balances[number] =
@@ -201,6 +190,36 @@ impl Balancer {
             .into_iter()
             .map(|balance| balance.expect("each rests, has escaped, or does neither"))
             .collect()
+    }
+
+    /// Downhill, until all rest, some have left, or there are no steps left.
+    fn descend<'s>(&mut self, bodies: Vec<Body<'s>>, ground: &'s Ground<'s>) -> Pass<'s> {
+        let all = (0..bodies.len()).collect();
+        let mut descent = Descent::new(self, bodies, ground);
+        let (done, outcome, loads) = match descent.run() {
+            End::Endless(gone) => (gone, None, Vec::new()),
+            End::Rest => {
+                let loads = descent.balancer.now.pair_loads();
+                (all, Some(Outcome::Settled), loads)
+            }
+            End::Exhausted => match descent.finish() {
+                Some(loads) => (all, Some(Outcome::Settled), loads),
+                None => {
+                    let loads = descent.balancer.now.pair_loads();
+                    (descent.most_restless(), Some(Outcome::Unsettled), loads)
+                }
+            },
+        };
+        let pass = Pass {
+            done,
+            outcome,
+            loads,
+            n_steps: descent.n_steps,
+            bodies: std::mem::take(&mut descent.bodies),
+        };
+        let multipliers = std::mem::take(&mut descent.multipliers);
+        self.multipliers = multipliers;
+        pass
     }
 
     /// Of an object whose loads have been reported.
