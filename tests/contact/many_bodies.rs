@@ -496,7 +496,7 @@ fn skins() -> [Patch; 3] {
     [soft, stiff, bed.clone()]
 }
 
-/// Two to eight objects one above the other over a skin, half of them balls and half scans: in every second scene beside the skin, too, and
+/// Two to eight objects one above the other over a skin, half of them balls and half scans (all balls without the scans): in every second scene beside the skin, too, and
 /// with a table below it, level or not. What is wrong when they rest, how many are there, and have left.
 fn random_scene(case: u64, scans: &[SphereUnion], skins: &[Patch]) -> (Vec<String>, [usize; 2]) {
     let mut rng = Seed::new(case).named("many bodies").rng();
@@ -508,7 +508,7 @@ fn random_scene(case: u64, scans: &[SphereUnion], skins: &[Patch]) -> (Vec<Strin
     let wide = if is_wide { 0.13 } else { 0.06 };
     let mut height = 0.05;
     for ball in &balls {
-        let at = random(0.0, 2.0 * scans.len() as f64) as usize;
+        let at = random(0.0, 2.0 * scans.len().max(1) as f64) as usize;
         let union = scans.get(at).unwrap_or(ball);
         let reach = union.reach_from(DVec3::ZERO);
         height += reach;
