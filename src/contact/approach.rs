@@ -149,7 +149,8 @@ impl<'a> Approach<'a> {
         }
     }
 
-    /// Presses to a depth (metres, positive) past first contact; `None` (and zero deflections) where the way misses all objects.
+    /// Presses to a depth (metres, positive) past first contact; `None` (and zero deflections) where the way misses all objects. The
+    /// workspace then says what touches what.
     ///
     /// What pushes a taxel goes on pushing it behind the substrate: nothing passes through the skin.
     ///
