@@ -192,8 +192,23 @@ impl Balancer {
             .collect()
     }
 
-    /// Downhill, until all rest, some have left, or there are no steps left.
+    /// Downhill; where no rest is found, once more from there with forces known anew: those of a round that went astray lead the next ones
+    /// astray, too.
     fn descend<'s>(&mut self, bodies: Vec<Body<'s>>, ground: &'s Ground<'s>) -> Pass<'s> {
+        let pass = self.descend_once(bodies, ground);
+        if pass.outcome != Some(Outcome::Unsettled) {
+            return pass;
+        }
+        self.multipliers = Multipliers::default();
+        let again = self.descend_once(pass.bodies, ground);
+        Pass {
+            n_steps: pass.n_steps + again.n_steps,
+            ..again
+        }
+    }
+
+    /// Until all rest, some have left, or there are no steps left.
+    fn descend_once<'s>(&mut self, bodies: Vec<Body<'s>>, ground: &'s Ground<'s>) -> Pass<'s> {
         let all = (0..bodies.len()).collect();
         let mut descent = Descent::new(self, bodies, ground);
         let (done, outcome, loads) = match descent.run() {
@@ -217,8 +232,7 @@ impl Balancer {
             n_steps: descent.n_steps,
             bodies: std::mem::take(&mut descent.bodies),
         };
-        let multipliers = std::mem::take(&mut descent.multipliers);
-        self.multipliers = multipliers;
+        self.multipliers = std::mem::take(&mut descent.multipliers);
         pass
     }
 
