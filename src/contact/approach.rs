@@ -8,7 +8,7 @@ use super::{Contact, FrictionState, Workspace};
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::objects::{Model, Sphere, SphereUnion};
-use crate::world::{Ahead, Node, Patch, TaxelTree};
+use crate::world::{Node, Patch, Travelling};
 use glam::DVec3;
 use std::cell::Cell;
 use std::sync::OnceLock;
@@ -22,7 +22,7 @@ pub struct Approach<'a> {
     patch: &'a Patch,
     direction: DVec3,
     /// Made when it is asked for; that along z is the patch's.
-    travelling: OnceLock<TaxelTree>,
+    travelling: OnceLock<Travelling>,
 }
 
 impl<'a> Approach<'a> {
@@ -49,14 +49,11 @@ impl<'a> Approach<'a> {
     }
 
     /// The taxels as they travel.
-    fn travelling(&self) -> &TaxelTree {
+    fn travelling(&self) -> &Travelling {
         if self.direction == DVec3::Z {
-            return &self.patch.ahead().taxels;
+            return self.patch.ahead();
         }
-        let Self {
-            patch, direction, ..
-        } = self;
-        let make = || TaxelTree::travelling(patch.layout(), patch.taxels(), *direction);
+        let make = || Travelling::new(self.patch, self.direction);
         self.travelling.get_or_init(make)
     }
 
@@ -98,7 +95,7 @@ impl<'a> Approach<'a> {
             Model::Mesh(mesh) => {
                 let mesh = MeshAt::new(mesh, pose);
                 let (center, radius) = mesh.ball();
-                self.travelling().each_near(center, radius, |taxel| {
+                self.travelling().taxels.each_near(center, radius, |taxel| {
                     let stop = mesh.stop(taxel);
                     farthest = stop.map_or(farthest, |stop| farthest.max(-stop.height));
                 });
@@ -109,7 +106,7 @@ impl<'a> Approach<'a> {
 
     /// The same of spheres: first those of the cluster that may push farthest, then of those that may push farther than these do.
     fn farthest_sphere(&self, union: &SphereUnion, pose: &Pose, others: f64) -> f64 {
-        let (placed, travelling) = (PlacedUnion::new(union, pose), self.travelling());
+        let (placed, travelling) = (PlacedUnion::new(union, pose), &self.travelling().taxels);
         let mut foremost = (others, None);
         for (cluster, ball) in placed.clusters() {
             let most = self.most(&ball);
@@ -136,7 +133,7 @@ impl<'a> Approach<'a> {
     /// How far a ball (in the patch frame) can push a taxel as they travel, at most, metres.
     #[inline(always)]
     fn most(&self, ball: &Sphere) -> f64 {
-        self.travelling().front(self.direction) + ball.radius - ball.center.dot(self.direction)
+        self.travelling().front + ball.radius - ball.center.dot(self.direction)
     }
 
     /// The same of the taxels of a node: all that the ball meets are ahead of it, so that its way from their stretches is its way from their axes.
@@ -186,8 +183,8 @@ impl<'a> Approach<'a> {
         way.press_and_slide(travels, slide, friction)
     }
 
-    /// Of a patch along its z: the deflections of [`press_to_depth`](Self::press_to_depth) alone. Those of a flat patch need no steps: each taxel is pushed in as
-    /// far as it goes past what it met.
+    /// The deflections alone, from one travel to another; `None` of none. Those of taxels along the direction need no steps: each is pushed in as far
+    /// as it goes past what it met.
     pub(super) fn deflect(
         &self,
         objects: &[Model],
@@ -197,14 +194,10 @@ impl<'a> Approach<'a> {
     ) -> Option<Contact> {
         let mut way = self.way(objects, patch_from_objects, workspace);
         way.contacts = Contacts::Needless;
-        match (self.patch.ahead(), travels) {
-            (
-                Ahead {
-                    taxels,
-                    is_flat: true,
-                },
-                Some([_, travel]),
-            ) => Some(way.press_through(taxels, travel)),
+        match travels {
+            Some([_, travel]) if self.travelling().is_flat => {
+                Some(way.press_through(&self.travelling().taxels, travel))
+            }
             _ => way.press_and_slide(travels, DVec3::ZERO, None),
         }
     }
@@ -249,7 +242,7 @@ fn farthest_by_leaves(
         if approach.most(&sphere) <= farthest.get() {
             continue;
         }
-        approach.travelling().each_leaf(
+        approach.travelling().taxels.each_leaf(
             |node| approach.most_of(node, &sphere) > farthest.get(),
             |leaf| {
                 let [needed, _] = needed_of_leaf(leaf, &sphere);

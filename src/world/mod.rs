@@ -42,7 +42,7 @@ pub use layout::{Layout, MOST_TAXELS};
 pub use mass::center_of_mass;
 pub use motion::{Interpolation, JointTrajectory, Motion, PoseTrajectory};
 pub use neighbours::Neighbours;
-pub(crate) use patch::{Ahead, EvenGrid};
+pub(crate) use patch::{EvenGrid, Travelling};
 pub use patch::{Patch, Taxels};
 pub use per_taxel::PerTaxel;
 pub use placement::{Placement, RestPoses, Spread, Touch, TouchAxis};

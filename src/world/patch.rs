@@ -17,7 +17,7 @@ pub struct Patch {
     even_grid: Option<EvenGrid>,
     /// Made when they are asked for.
     tree: OnceLock<TaxelTree>,
-    ahead: OnceLock<Ahead>,
+    ahead: OnceLock<Travelling>,
 }
 
 /// A flat grid of taxels that objects push alike.
@@ -30,12 +30,28 @@ pub(crate) struct EvenGrid {
     pub stroke: f64,
 }
 
-/// The taxels of a patch as they travel along z.
+/// The taxels of a patch as they travel along a direction.
 #[derive(Clone, Debug)]
-pub(crate) struct Ahead {
+pub(crate) struct Travelling {
     pub taxels: TaxelTree,
-    /// Whether all their own axes are z: then each is pushed in as far as it travels past what it met.
+    /// How far the foremost of them is along the direction, its radius included, metres.
+    pub front: f64,
+    /// Whether all their own axes are the direction: then each is pushed in as far as it travels past what it met.
     pub is_flat: bool,
+}
+
+impl Travelling {
+    /// Along a unit vector.
+    pub fn new(patch: &Patch, direction: DVec3) -> Self {
+        let (layout, taxels) = (&patch.layout, &patch.taxels);
+        let places = layout.centers().iter().enumerate();
+        let fronts = places.map(|(taxel, center)| center.dot(direction) + taxels.at(taxel).radius);
+        Self {
+            front: fronts.fold(f64::NEG_INFINITY, f64::max),
+            is_flat: layout.axes().iter().all(|axis| *axis == direction),
+            taxels: TaxelTree::travelling(layout, taxels, direction),
+        }
+    }
 }
 
 /// What the taxels of a patch are.
@@ -114,11 +130,8 @@ impl Patch {
     }
 
     /// Its taxels as they travel along z.
-    pub(crate) fn ahead(&self) -> &Ahead {
-        self.ahead.get_or_init(|| Ahead {
-            taxels: TaxelTree::travelling(&self.layout, &self.taxels, DVec3::Z),
-            is_flat: self.layout.axes().iter().all(|axis| *axis == DVec3::Z),
-        })
+    pub(crate) fn ahead(&self) -> &Travelling {
+        self.ahead.get_or_init(|| Travelling::new(self, DVec3::Z))
     }
 
     /// The grid that it is, if all its taxels are as large and go as deep.

@@ -107,13 +107,6 @@ impl TaxelTree {
         )
     }
 
-    /// How far the foremost point of any taxel is along the direction that they travel, at most, metres.
-    pub fn front(&self, direction: DVec3) -> f64 {
-        self.nodes.first().map_or(f64::NEG_INFINITY, |root| {
-            root.front(direction) + root.radius
-        })
-    }
-
     /// The box around the stretches of all taxels, metres; `None` if there are none.
     pub fn bounds(&self) -> Option<&Aabb> {
         self.nodes.first().map(|root| &root.bounds)
