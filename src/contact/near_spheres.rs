@@ -77,7 +77,7 @@ pub(super) fn needed_along(from: DVec3, frame: [DVec3; 3], reach: f64, behind: f
 #[inline(always)]
 pub(super) fn needed_of_leaf(leaf: &Leaf, sphere: &Sphere) -> [f64; LEAF] {
     let mut needed = [0.0; LEAF];
-    for k in 0..LEAF {
+    for (k, needed) in needed.iter_mut().enumerate() {
         let from = leaf.vector(&leaf.centers, k) - sphere.center;
         let frame = [
             leaf.vector(&leaf.across[0], k),
@@ -85,7 +85,7 @@ pub(super) fn needed_of_leaf(leaf: &Leaf, sphere: &Sphere) -> [f64; LEAF] {
             leaf.vector(&leaf.axes, k),
         ];
         let reach = leaf.radii[k] + sphere.radius;
-        needed[k] = needed_along(from, frame, reach, leaf.behind[k]);
+        *needed = needed_along(from, frame, reach, leaf.behind[k]);
     }
     needed
 }

@@ -7,6 +7,7 @@ use super::axis::Axis;
 use super::cell::Cell;
 use super::defaults::{count, number};
 pub use super::spec_human::*;
+pub use super::spec_recorded::*;
 pub use super::spec_scene::*;
 pub use super::spec_signal::*;
 use crate::error::Result;
@@ -47,6 +48,8 @@ pub struct StudySpec {
     pub touches: TouchesSpec,
     /// Instead of objects and how they are touched: which kind of touch is it?
     pub human_touch: Option<HumanTouchSpec>,
+    /// Instead of objects and how they are touched: what a skin has read.
+    pub recorded: Option<RecordedSpec>,
     /// What happens to a frame before it is sensed.
     #[serde(default)]
     pub signal: SignalSpec,
@@ -245,6 +248,11 @@ impl StudySpec {
     pub fn parse(place: &str, text: &str) -> Result<Self> {
         let (spec, axes) = axes::read::<Self>(place, text, AXIS_RULES)?;
         Ok(Self { axes, ..spec })
+    }
+
+    /// Whether it touches objects that it places.
+    pub fn places_objects(&self) -> bool {
+        self.human_touch.is_none() && self.recorded.is_none()
     }
 
     /// How many values each key has that is an axis where it stands, but for those of the signal, which may be combined in another way.

@@ -122,9 +122,10 @@ impl Sweep {
         named_samples(plan, &classes)?;
         let n_classes = classes.len();
         if n_classes < 2 {
-            let (place, given, allowed) = match plan.spec.human_touch {
-                Some(_) => ("key human_touch.kinds", "kind", "kinds"),
-                None => ("objects", "object", "objects"),
+            let (place, given, allowed) = match (&plan.spec.human_touch, &plan.spec.recorded) {
+                (Some(_), _) => ("key human_touch.kinds", "kind", "kinds"),
+                (_, Some(_)) => ("key recorded.labels", "class", "classes"),
+                _ => ("objects", "object", "objects"),
             };
             let given = format!("{n_classes} {given}");
             let allowed = format!("at least two, since recognition tells {allowed} apart");
@@ -133,7 +134,7 @@ impl Sweep {
         let labels = touched.labels();
         let together = plan.keep_together.as_ref();
         let keys = together.map(|together| touched.group_keys(together));
-        let keys = keys.transpose()?;
+        let keys = keys.transpose()?.or_else(|| touched.own_groups());
         let split = |trial| draw_split(plan, &labels, keys.as_ref(), trial);
         let splits = (0..plan.spec.trials).map(split);
         let splits = splits.collect::<Result<Vec<_>>>()?;

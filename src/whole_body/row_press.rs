@@ -137,13 +137,9 @@ impl Share {
             *square -= along2;
         }
         if self.is_behind {
-            for k in 0..LANES {
-                let gap = (behind - self.heights[k]).max(0.0);
-                squares[k] = if squares[k] <= gap * gap {
-                    -1.0
-                } else {
-                    squares[k]
-                };
+            for (square, height) in squares.iter_mut().zip(&self.heights) {
+                let gap = (behind - height).max(0.0);
+                *square = if *square <= gap * gap { -1.0 } else { *square };
             }
         }
         if is_small || beats(&squares, &self.heights, taxels) {

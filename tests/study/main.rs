@@ -14,6 +14,7 @@ mod hardware;
 mod layouts;
 mod memory;
 mod quickstart;
+mod recorded;
 mod repeatability;
 mod shear;
 mod variance;

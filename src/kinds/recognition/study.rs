@@ -19,7 +19,7 @@ use crate::study::plan::{Plan, millimetres};
 use crate::study::progress::Progress;
 use crate::study::published::{check_published, compare_with_published};
 use crate::study::short_hash;
-use crate::study::spec::ObjectsSpec;
+use crate::study::spec::{ObjectsSpec, RecordedSpec};
 use crate::study::sweep::{Group, StudyPart, Sweep};
 use crate::study::table::{Cell, StageTime, Tables};
 use crate::study::tabulate::tabulate;
@@ -199,11 +199,14 @@ impl RecognitionStudy {
     /// A file of an object cannot be read.
     pub fn content(&self) -> Result<BTreeMap<String, String>> {
         let mut all = BTreeMap::new();
-        let objects = self.parts.iter().map(|part| &part.plan.spec.objects);
-        let mut objects: Vec<&ObjectsSpec> = objects.collect();
-        objects.dedup();
-        for objects in objects {
-            for (name, hash) in objects_content(objects)? {
+        let specs = self.parts.iter().map(|part| &part.plan.spec);
+        let mut made_of: Vec<(&ObjectsSpec, &Option<RecordedSpec>)> =
+            specs.map(|spec| (&spec.objects, &spec.recorded)).collect();
+        made_of.dedup();
+        for (objects, recorded) in made_of {
+            let recorded = recorded.as_ref().map(RecordedSpec::content).transpose()?;
+            let content = objects_content(objects)?.into_iter();
+            for (name, hash) in content.chain(recorded.into_iter().flatten()) {
                 let known = all.entry(name.clone()).or_insert_with(|| hash.clone());
                 if *known != hash {
                     all.insert(format!("{name} of {}", &hash[..12]), hash);
