@@ -82,6 +82,7 @@ impl Plan {
             _ => spec.touches.frames.values(),
         };
         check.recognition(&spec.recognition)?;
+        check.images(&spec.recognition, &arrays)?;
         check.over_time(&spec.recognition, &frames)?;
         check.folds(&spec)?;
         check.repeats(&spec)?;
