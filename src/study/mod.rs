@@ -21,6 +21,7 @@ mod feature_files;
 pub(crate) mod frames;
 mod human_samples;
 mod human_touches;
+mod images;
 pub mod journal;
 pub(crate) mod measurement;
 pub mod memory;

@@ -79,6 +79,7 @@ impl Plan {
             None => spec.touches.frames.values(),
         };
         check.recognition(&spec.recognition)?;
+        check.images(&spec.recognition, &arrays)?;
         check.over_time(&spec.recognition, &frames)?;
         check.folds(&spec)?;
         check.repeats(&spec)?;

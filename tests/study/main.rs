@@ -11,6 +11,7 @@ mod experiments;
 mod families;
 mod frames;
 mod hardware;
+mod images;
 mod layouts;
 mod memory;
 mod quickstart;

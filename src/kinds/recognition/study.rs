@@ -310,15 +310,17 @@ fn measured_content(plan: &Plan, group: &Group) -> String {
     let array = plan.arrays[group.array].content();
     let steps = signal_steps(plan, group, &Seed::new(plan.spec.seed));
     let recognition = &plan.spec.recognition;
-    // Test touches are read by another skin only where there is one.
-    let split = (group.tested_on != TestedOn::SameSkin).then_some((
+    // Test touches are read by another skin only where there is one, and training touches learned from where anything is learned.
+    let has_split = group.learns() || group.tested_on != TestedOn::SameSkin;
+    let split = has_split.then_some((
         plan.keep_together,
         recognition.folds,
         recognition.test_fraction,
     ));
     let drawn = (plan.spec.seed, plan.spec.projections_per_split, plan.speed);
     let (ensemble, m) = (group.ensemble, group.projected());
-    format!("{array} {steps:?} {split:?} {drawn:?} {ensemble:?} {m:?}")
+    let images = group.counts_of_images();
+    format!("{array} {steps:?} {split:?} {drawn:?} {ensemble:?} {m:?} {images:?}")
 }
 
 impl RecognitionStudy {
