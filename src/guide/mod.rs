@@ -6,6 +6,9 @@ pub mod first_study {}
 #[doc = include_str!("../../guide/study_file.md")]
 pub mod study_file {}
 
+#[doc = include_str!("../../guide/one_touch.md")]
+pub mod one_touch {}
+
 #[doc = include_str!("../../guide/sensor_errors.md")]
 pub mod sensor_errors {}
 

@@ -1,6 +1,7 @@
 //! The settings of a cell: every axis of a study at one value. The first columns of a row of results.
 
 use super::axes::AxisValues;
+use super::images::FeaturesOfImages;
 use super::sensor_errors::{Strengths, TestedOn, strength_columns};
 use crate::recognition::ClassifierKind;
 use crate::recognition::data::over_time::OverTime;
@@ -158,6 +159,15 @@ impl Cell {
     pub fn n_frame_features(&self) -> usize {
         let shape = (self.ny, self.nx);
         self.features.n_values(self.measurements, shape)
+    }
+
+    /// What it learns from, where that is made of images.
+    pub(crate) fn of_images(&self) -> Option<FeaturesOfImages> {
+        Some(FeaturesOfImages {
+            join: self.features.of_image()?,
+            foremost: self.foremost_full_scale,
+            measurements: self.measurements,
+        })
     }
 
     /// Numbers that a touch is told by.

@@ -1,15 +1,25 @@
 //! Features of images: from measurements of a trial by way of an estimate of the frame.
 
-use super::measurement::Measurements;
 use crate::error::Result;
 use crate::random::Seed;
 use crate::recognition::features::{Cut, ImageFeatures, Join, Workspace};
 use crate::sensing::{ImageEstimate, Projection, Readings};
-use ndarray::{Array2, ArrayViewMut2, Axis, s};
+use ndarray::{Array2, ArrayView2, Axis, s};
 use rayon::prelude::*;
 
 /// Frames estimated together: one matrix product. Fixed, so that results do not depend on the number of threads.
 const BLOCK: usize = 64;
+
+/// What cells of a group learn from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FeaturesOfImages {
+    /// Which.
+    pub join: Join,
+    /// Of what is so far behind the foremost point, as a fraction of the full scale.
+    pub foremost: Option<f64>,
+    /// From how many measurements.
+    pub measurements: usize,
+}
 
 /// Images of the frames of a group, from so many measurements as its cells have.
 #[derive(Clone, Debug)]
@@ -43,43 +53,75 @@ impl Images {
         })
     }
 
-    /// Features of all frames of some touches, one after the other, from their leading m measurements, into n × F·k; of what is so far behind
-    /// the foremost point, as a fraction of the full scale.
+    /// Whether it makes images of so many measurements.
+    pub fn is_of(&self, measurements: usize) -> bool {
+        self.estimates.iter().any(|(m, _)| *m == measurements)
+    }
+
+    /// Features of all frames of measurements: for each that is wanted n_touches × F·k, k numbers a frame. An image is estimated once for all that is
+    /// wanted of it, and cells that learn from the same share them.
     ///
     /// # Panics
-    /// An m that it was not made for; rows of another length.
+    /// An m that it was not made for.
     pub fn features(
         &self,
-        (join, foremost, m): (Join, Option<f64>, usize),
-        (measured, touches): (&Measurements, &[usize]),
-        mut rows: ArrayViewMut2<f64>,
-    ) {
-        let mut estimates = self.estimates.iter();
-        let estimate = estimates.find(|(of, _)| *of == m);
-        let (_, estimate) = estimate.expect("an estimate for each m of the group's cells");
-        let level = noise_level(estimate.noise_std(), self.shape.0 * self.shape.1);
-        let cut = Cut {
-            level,
-            foremost: foremost.map(|share| share * self.full_scale),
+        (values, n_frames): (ArrayView2<f64>, usize),
+        wanted: &[FeaturesOfImages],
+    ) -> Vec<Array2<f64>> {
+        let n_touches = values.nrows() / n_frames.max(1);
+        let empty = |w: &FeaturesOfImages| {
+            Array2::zeros((n_touches, n_frames * w.join.n_values(self.shape)))
         };
-        let features = ImageFeatures::new(join, self.shape, self.full_scale, cut);
-        let (n_frames, k) = (measured.n_frames, join.n_values(self.shape));
-        let blocks = rows.axis_chunks_iter_mut(Axis(0), BLOCK).into_par_iter();
-        let blocks = blocks.zip(touches.par_chunks(BLOCK));
-        blocks.for_each_init(Workspace::default, |workspace, (mut rows, touches)| {
-            for frame in 0..n_frames {
-                let places: Vec<usize> = touches.iter().map(|t| t * n_frames + frame).collect();
-                let values = measured.values.slice(s![.., ..m]).select(Axis(0), &places);
-                let images: Array2<f64> = estimate.images(values.view());
-                let mut own = rows.slice_mut(s![.., frame * k..(frame + 1) * k]);
-                for (image, mut out) in images.outer_iter().zip(own.outer_iter_mut()) {
-                    let image = image.as_standard_layout();
-                    let (image, out) = (image.as_slice(), out.as_slice_mut());
-                    let (image, out) = image.zip(out).expect("rows are whole");
-                    features.write(image, workspace, out);
-                }
+        let mut all: Vec<Array2<f64>> = wanted.iter().map(empty).collect();
+        for (m, estimate) in &self.estimates {
+            let of_m = wanted
+                .iter()
+                .zip(&mut all)
+                .filter(|(w, _)| w.measurements == *m);
+            let (of_m, mut rows): (Vec<_>, Vec<_>) = of_m
+                .map(|(w, rows)| (self.prepared(w, estimate), rows.view_mut()))
+                .unzip();
+            let mut blocks = Vec::new();
+            for start in (0..n_touches).step_by(BLOCK) {
+                let n = BLOCK.min(n_touches - start);
+                let cut = rows.into_iter().map(|rows| rows.split_at(Axis(0), n));
+                let (own, rest): (Vec<_>, Vec<_>) = cut.unzip();
+                rows = rest;
+                let frames = start * n_frames..(start + n) * n_frames;
+                blocks.push((values.slice(s![frames, ..*m]), own));
             }
-        });
+            let blocks = blocks.into_par_iter();
+            blocks.for_each_init(Workspace::default, |workspace, (values, mut rows)| {
+                let images = estimate.images(values);
+                for (features, rows) in of_m.iter().zip(&mut rows) {
+                    let k = rows.ncols() / n_frames;
+                    let touches = rows.outer_iter_mut();
+                    for (mut row, frames) in touches.zip(images.axis_chunks_iter(Axis(0), n_frames))
+                    {
+                        let parts = row
+                            .as_slice_mut()
+                            .expect("rows are whole")
+                            .chunks_exact_mut(k);
+                        for (out, image) in parts.zip(frames.outer_iter()) {
+                            let image = image.as_standard_layout();
+                            features.write(
+                                image.as_slice().expect("rows are whole"),
+                                workspace,
+                                out,
+                            );
+                        }
+                    }
+                }
+            });
+        }
+        all
+    }
+
+    fn prepared(&self, wanted: &FeaturesOfImages, estimate: &ImageEstimate) -> ImageFeatures {
+        let foremost = wanted.foremost.map(|share| share * self.full_scale);
+        let level = noise_level(estimate.noise_std(), self.shape.0 * self.shape.1);
+        let cut = Cut { level, foremost };
+        ImageFeatures::new(wanted.join, self.shape, self.full_scale, cut)
     }
 }
 

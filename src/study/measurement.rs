@@ -1,7 +1,7 @@
 //! Frames → signal → measurements, for one condition of the signal, ensemble and trial.
 
 use super::frames::Frames;
-use super::images::Images;
+use super::images::{FeaturesOfImages, Images};
 use super::plan::Plan;
 use super::sensed::of_channel;
 use super::sensor_errors::{TestedOn, skin};
@@ -34,6 +34,8 @@ pub struct Measurements {
     pub of_ones: Array1<f64>,
     /// Φ, and how images are made of measurements.
     pub sensed: Arc<SensedBy>,
+    /// Features of images, n_touches × F·k each.
+    pub of_images: Vec<(FeaturesOfImages, Array2<f64>)>,
     /// Processor-seconds, summed over threads.
     pub cpu_s: f64,
 }
@@ -83,9 +85,14 @@ impl Measurements {
     /// All frames of some touches one after the other, as the cell's kind of features: n × F·m.
     fn read_into(&self, cell: &Cell, touches: &[usize], mut rows: ArrayViewMut2<f64>) {
         let m = cell.measurements;
-        if let (Some(join), Some(images)) = (cell.features.of_image(), &self.sensed.images) {
-            let wanted = (join, cell.foremost_full_scale, m);
-            return images.features(wanted, (self, touches), rows);
+        if let Some(wanted) = cell.of_images() {
+            let mut made = self.of_images.iter();
+            let made = made.find(|(known, _)| *known == wanted);
+            let (_, made) = made.expect("features of all cells of the group");
+            for (mut row, touch) in rows.outer_iter_mut().zip(touches) {
+                row.assign(&made.row(*touch));
+            }
+            return;
         }
         for (mut row, touch) in rows.outer_iter_mut().zip(touches) {
             for (frame, mut part) in row.exact_chunks_mut(m).into_iter().enumerate() {
@@ -187,12 +194,22 @@ pub fn measure_group(
         ..reading
     };
     let (values, cpu_s) = measure(reading, frames, &touches)?;
+    let of_images = match &sensed.images {
+        None => Vec::new(),
+        Some(images) => {
+            let mut wanted = group.features_of_images();
+            wanted.retain(|one| images.is_of(one.measurements));
+            let made = images.features((values.view(), n_frames), &wanted);
+            wanted.into_iter().zip(made).collect()
+        }
+    };
     let ones = Array2::ones((1, array.n_values()));
     Ok(Measurements {
         values,
         n_frames,
         of_ones: sensed.projection.measure(ones.view()).row(0).to_owned(),
         sensed,
+        of_images,
         cpu_s,
     })
 }

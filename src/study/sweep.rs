@@ -10,6 +10,7 @@
 
 use super::axes::AxisValues;
 use super::axis::Axis;
+use super::images::FeaturesOfImages;
 use super::measurement::signal_steps;
 use super::plan::{Plan, millimetres};
 use super::plan_signal::Condition;
@@ -101,9 +102,7 @@ impl Group {
 
     /// Whether any cell's features are of images.
     pub fn needs_images(&self) -> bool {
-        self.cells
-            .iter()
-            .any(|cell| cell.features.of_image().is_some())
+        self.cells.iter().any(|cell| cell.of_images().is_some())
     }
 
     /// Whether anything is learned from training touches before they are measured.
@@ -111,13 +110,23 @@ impl Group {
         self.ensemble.is_learned() || self.needs_images()
     }
 
+    /// What its cells learn from that is made of images, each once.
+    pub fn features_of_images(&self) -> Vec<FeaturesOfImages> {
+        let mut all: Vec<FeaturesOfImages> =
+            self.cells.iter().filter_map(Cell::of_images).collect();
+        let mut known = Vec::new();
+        all.retain(|one| {
+            let is_new = !known.contains(one);
+            known.push(*one);
+            is_new
+        });
+        all
+    }
+
     /// The measurements that images are made of, each once, rising.
     pub fn counts_of_images(&self) -> Vec<usize> {
-        let cells = self
-            .cells
-            .iter()
-            .filter(|cell| cell.features.of_image().is_some());
-        let mut counts: Vec<usize> = cells.map(|cell| cell.measurements).collect();
+        let all = self.features_of_images().into_iter();
+        let mut counts: Vec<usize> = all.map(|one| one.measurements).collect();
         counts.sort_unstable();
         counts.dedup();
         counts

@@ -2,7 +2,7 @@
 //! those that finished.
 
 use crate::recognition::svm::{Multiclass, Solver};
-use crate::sensing::N_COMPONENTS;
+use crate::sensing::{N_COMPONENTS, N_STEPS};
 use crate::study::measurement::LEARNED_FRAMES;
 use crate::study::plan::Plan;
 use crate::study::sweep::Group;
@@ -48,7 +48,9 @@ pub(super) fn measure_s(plan: &Plan, group: &Group, (n_touches, m): (usize, usiz
         true => LEARNING_PRODUCTS * PRODUCT_S * (LEARNED_FRAMES * n_values * N_COMPONENTS) as f64,
         false => 0.0,
     };
-    (n_touches * group.frames * n_values) as f64 * (TAXEL_S + project_s) + learn_s
+    let n_frames = (n_touches * group.frames) as f64;
+    let frame_s = n_values as f64 * (TAXEL_S + project_s) + image_s(plan, group);
+    n_frames * frame_s + learn_s
 }
 
 /// A fit in one trial, with what it chooses, and its test.
@@ -80,21 +82,20 @@ pub(super) fn fit_s(plan: &Plan, cell: &Cell, (n_classes, n_touches): (f64, f64)
         }
     };
     let test_s = (cell.classifier.about().test_s)(n_train, cell.n_features() as f64, n_classes);
-    let n_rows = (n_train + n_test) * cell.frames as f64;
-    choose_s + train_s(plan, cell, n_train, n_classes) + n_test * test_s + n_rows * image_s(cell)
+    choose_s + train_s(plan, cell, n_train, n_classes) + n_test * test_s
 }
 
 /// To make features of a frame, by way of its image.
-fn image_s(cell: &Cell) -> f64 {
-    let n = (cell.nx * cell.ny) as f64;
-    let estimate_s = match cell.ensemble.about().is_whole_frame {
-        true => 0.0,
-        false => 0.5 * PRODUCT_S * n * cell.measurements.min(N_COMPONENTS) as f64,
+fn image_s(plan: &Plan, group: &Group) -> f64 {
+    let n = plan.arrays[group.array].n_values() as f64;
+    let n_steps = match (group.ensemble.about().is_whole_frame, group.condition.noise) {
+        (true, _) => 0,
+        (false, 0.0) => 2 * N_STEPS + 1,
+        (false, _) => 1,
     };
-    match cell.features.of_image() {
-        Some(_) => estimate_s + n * FEATURE_S,
-        None => 0.0,
-    }
+    let counts = group.counts_of_images().into_iter();
+    let estimates = counts.map(|m| 0.5 * PRODUCT_S * n * (n_steps * m) as f64);
+    estimates.sum::<f64>() + FEATURE_S * n * group.features_of_images().len() as f64
 }
 
 fn train_s(plan: &Plan, cell: &Cell, n_train: f64, n_classes: f64) -> f64 {

@@ -34,7 +34,11 @@ pub fn recognition_scale(
     let m = |group: &Group| group.projected().into_iter().max().unwrap_or(0) as f64;
     let measured = |on: Placed| {
         let matrix = on.1.ensemble.about().bytes;
-        let learned = learned_bytes(on.1, n_values(on) as f64);
+        let of_images = on.1.features_of_images().into_iter();
+        let shape = on.0.plan.arrays[on.1.array].frame_shape();
+        let numbers: usize = of_images.map(|one| one.join.n_values(shape)).sum();
+        let learned =
+            learned_bytes(on.1, n_values(on) as f64) + 8.0 * n_frames(on) * numbers as f64;
         8.0 * n_frames(on) * m(on.1) + matrix(m(on.1), n_values(on) as f64) + learned
     };
     let groups = || {
