@@ -1,0 +1,58 @@
+//! `bubbletouch._core`: the library for Python.
+//!
+//! Python's own side (`python/bubbletouch`) names what is here, and documents it in `_core.pyi`. Nothing here computes: arguments are checked
+//! and taken from arrays, the library is called without the interpreter's lock, results are put into arrays.
+
+mod arrays;
+mod batch;
+mod catalogue;
+mod contacts;
+mod errors;
+mod goal;
+mod mesh;
+mod model;
+mod patch;
+mod picture;
+mod placement;
+mod poses;
+mod press;
+mod projection;
+mod signal;
+mod sphere_union;
+mod threads;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+mod _core {
+    use super::*;
+
+    #[pymodule_export]
+    use catalogue::{Catalogue, Solid};
+    #[pymodule_export]
+    use contacts::Contacts;
+    #[pymodule_export]
+    use errors::{_panic, InternalError};
+    #[pymodule_export]
+    use mesh::Mesh;
+    #[pymodule_export]
+    use patch::Patch;
+    #[pymodule_export]
+    use picture::write_frame;
+    #[pymodule_export]
+    use placement::touch_poses;
+    #[pymodule_export]
+    use press::_kernel_pace;
+    #[pymodule_export]
+    use projection::Projection;
+    #[pymodule_export]
+    use signal::{Chain, Step};
+    #[pymodule_export]
+    use sphere_union::SphereUnion;
+
+    #[pymodule_init]
+    fn init(_module: &Bound<'_, PyModule>) -> PyResult<()> {
+        errors::keep_panics();
+        Ok(())
+    }
+}
