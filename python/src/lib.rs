@@ -19,6 +19,7 @@ mod press;
 mod projection;
 mod signal;
 mod sphere_union;
+mod svm;
 mod threads;
 
 use pyo3::prelude::*;
@@ -49,6 +50,8 @@ mod _core {
     use signal::{Chain, Step};
     #[pymodule_export]
     use sphere_union::SphereUnion;
+    #[pymodule_export]
+    use svm::{KernelSvm, LinearModel, choose_svm};
 
     #[pymodule_init]
     fn init(_module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -1,13 +1,16 @@
-"""The same bits from Python as from the command."""
+"""The same bits from Python as from the command and the library."""
 
 from __future__ import annotations
 
 import csv
+import os
+import subprocess
 from pathlib import Path
 
 import bubbletouch as bt
 import numpy as np
 import pytest
+from bubbletouch.learning import SVC, LinearSVC
 
 from conftest import Command
 
@@ -81,3 +84,80 @@ def test_where_an_object_lies(tmp_path: Path, command: Command) -> None:
     frame = bt.Patch.grid(64, 64, 2 * MM, 5 * MM).press(mug, pose, force=2)
     written = np.load(tmp_path / "frame.npz")
     np.testing.assert_array_equal(frame, written[written.files[0]].reshape(64, 64))
+
+
+N = 120
+
+
+def balls(apart: float) -> bt.SphereUnion:
+    return bt.SphereUnion([[k * apart, 0, 0.03] for k in (-1, 0, 1)], 0.012)
+
+
+@pytest.fixture(scope="module")
+def reference(tmp_path_factory: pytest.TempPathFactory) -> dict[str, np.ndarray]:  # type: ignore[type-arg]
+    """What reference/main.rs computes."""
+    built = Path(__file__).resolve().parents[2] / "target" / "release" / "bubbletouch-reference"
+    path = os.environ.get("BUBBLETOUCH_REFERENCE_BINARY") or (str(built) if built.exists() else None)
+    if path is None:
+        pytest.skip("nothing to compare with: cargo build --release -p bubbletouch-python --bin bubbletouch-reference")
+    folder = tmp_path_factory.mktemp("reference")
+    subprocess.run([path, str(folder)], check=True)
+    return {file.stem: np.load(file) for file in folder.glob("*.npy")}
+
+
+@pytest.fixture(scope="module")
+def poses() -> np.ndarray:  # type: ignore[type-arg]
+    numbers = np.arange(N)
+    x, y, zero = (numbers - 60.0) / 8192.0, (numbers % 7) / 1024.0, np.zeros(N)
+    return np.stack([x, y, zero, zero + 0.8, zero, zero, zero + 0.6], 1)
+
+
+def pressed(patch: bt.Patch, poses: np.ndarray, **goal: float) -> np.ndarray:  # type: ignore[type-arg]
+    frames = np.empty((N, patch.n_taxels))
+    for which, apart in enumerate((0.014, 0.016, 0.02)):
+        some = patch.press(balls(apart), poses[which::3], **goal)  # type: ignore[call-overload]
+        frames[which::3] = some.reshape(-1, patch.n_taxels)
+    return frames
+
+
+def test_presses_of_the_library(reference, poses) -> None:  # type: ignore[no-untyped-def]
+    patches = {
+        "grid": bt.Patch.grid(20, 24, 2e-3, 5e-3),
+        "hexagonal": bt.Patch.hexagonal(20, 24, 2e-3, 5e-3),
+    }
+    here = poses.copy()
+    here[:, 2] = -0.02
+    for name, patch in patches.items():
+        depth, force = pressed(patch, poses, depth=3e-3), pressed(patch, poses, force=2.0)
+        np.testing.assert_array_equal(depth, reference[f"{name}_depth"])
+        np.testing.assert_array_equal(force, reference[f"{name}_force"])
+        np.testing.assert_array_equal(pressed(patch, here), reference[f"{name}_here"])
+        assert min(frames.max(axis=1).min() for frames in (depth, force)) > 0
+
+
+@pytest.mark.filterwarnings("ignore:.*stopped at max_iter")
+def test_chains_projections_and_svms_of_the_library(reference, poses) -> None:  # type: ignore[no-untyped-def]
+    patch = bt.Patch.grid(20, 24, 2e-3, 5e-3)
+    error = bt.Step.error
+    steps = [
+        error("hysteresis", hysteresis_full_scale=0.1),
+        error("gain", gain_std=0.05),
+        error("drift", drift_std_full_scale=0.02),
+        error("faults", dead_fraction=0.01, stuck_fraction=0.02),
+        bt.Step.noise(0.02),
+        bt.Step.smoothing(4e-3),
+        error("quantisation", adc_bits=10),
+    ]
+    frames = bt.Chain(steps, patch, skin_seed=7)(reference["grid_depth"], seed=2018)
+    np.testing.assert_array_equal(frames, reference["chain"])
+    names = sorted(set(reference) & {"gaussian", "bernoulli", "circulant", "sparse", "sbhe", "block_average", "subsample", "identity"})
+    assert len(names) == 8
+    for name in names:
+        measured = bt.Projection(name, (20, 24), 32, seed=11)(frames)
+        np.testing.assert_array_equal(measured, reference[name])
+    features, labels = 1e3 * reference["sbhe"], np.arange(N) % 3
+    for kernel in ("linear", "rbf"):
+        values = SVC(kernel=kernel).fit(features, labels).decision_values(features)
+        np.testing.assert_array_equal(values, reference[f"svc_{kernel}"])
+    scores = LinearSVC().fit(features, labels).decision_function(features)
+    np.testing.assert_array_equal(scores, reference["linear_svc"])

@@ -33,7 +33,7 @@ def documented() -> Iterator[tuple[str, object, str]]:
 def test_help_says_what_the_stub_says() -> None:
     seen = 0
     for name, there, text in documented():
-        if name.endswith((".__len__", "InternalError")):
+        if ".__" in name or name == "InternalError":
             continue
         assert inspect.getdoc(there) == text, name
         seen += 1
@@ -51,7 +51,8 @@ def test_everything_public_is_documented() -> None:
 
 def test_stubs_are_those_of_the_module() -> None:
     pytest.importorskip("mypy")
-    checked = [sys.executable, "-m", "mypy.stubtest", "--ignore-disjoint-bases", "bubbletouch._core"]
+    module = ["--ignore-disjoint-bases", "bubbletouch._core"]
+    checked = [sys.executable, "-m", "mypy.stubtest", *module]
     done = subprocess.run(checked, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
 

@@ -2,10 +2,30 @@
 
 from collections.abc import Sequence
 from os import PathLike
-from typing import Literal, TypeAlias, TypeVar, final, overload
+from typing import Any, Literal, TypeAlias, TypeVar, final, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
+
+__all__ = [
+    "Catalogue",
+    "Chain",
+    "Contacts",
+    "InternalError",
+    "KernelSvm",
+    "LinearModel",
+    "Mesh",
+    "Patch",
+    "Projection",
+    "Solid",
+    "SphereUnion",
+    "Step",
+    "_kernel_pace",
+    "_panic",
+    "choose_svm",
+    "touch_poses",
+    "write_frame",
+]
 
 _Path: TypeAlias = str | PathLike[str]
 _Unit: TypeAlias = Literal["m", "cm", "mm", "in"]
@@ -558,6 +578,77 @@ class Projection:
         """m."""
 
     def __getnewargs__(self) -> tuple[str, tuple[int, int], int, int]: ...
+
+@final
+class KernelSvm:
+    """A trained SVM with a kernel, on labels 0, 1, …: what bubbletouch.learning.SVC fits. Pickled as its training rows, and trained again."""
+
+    @staticmethod
+    def train(features: ArrayLike, labels: ArrayLike, params: dict[str, Any]) -> KernelSvm:
+        """Trains on features (n, m) and labels (n,). Raises ValueError."""
+
+    def labels(self, features: ArrayLike) -> NDArray[np.int64]:
+        """(n,): of features (n, m); of equally many votes the lowest label."""
+
+    def decision_values(self, features: ArrayLike) -> NDArray[np.float64]:
+        """(n, n_problems): above 0 speaks for a problem's positive class."""
+
+    @property
+    def problems(self) -> list[dict[str, Any]]:
+        """Of each binary problem its classes, training rows, signed multipliers, ρ, objective, iterations, and whether it was capped."""
+
+    @property
+    def n_capped(self) -> int:
+        """Binary problems that stopped at the iteration cap."""
+
+@final
+class LinearModel:
+    """A trained linear SVM without a kernel matrix, on labels 0, 1, …: what bubbletouch.learning.LinearSVC fits. Pickled as KernelSvm."""
+
+    @staticmethod
+    def train(
+        features: ArrayLike,
+        labels: ArrayLike,
+        multiclass: str,
+        c: float,
+        tolerance: float,
+        max_passes: int,
+        seed: int,
+    ) -> LinearModel:
+        """Trains on features (n, m) and labels (n,). Raises ValueError."""
+
+    def labels(self, features: ArrayLike) -> NDArray[np.int64]:
+        """(n,): of features (n, m)."""
+
+    def scores(self, features: ArrayLike) -> NDArray[np.float64]:
+        """(n, n_classes): the largest says the label."""
+
+    @property
+    def weights(self) -> NDArray[np.float64]:
+        """(n_classes, m)."""
+
+    @property
+    def bias(self) -> NDArray[np.float64]:
+        """(n_classes,)."""
+
+    @property
+    def n_passes(self) -> int:
+        """Passes over the rows, most of all problems."""
+
+    @property
+    def n_capped(self) -> int:
+        """Problems that stopped at max_passes."""
+
+def choose_svm(
+    features: ArrayLike,
+    labels: ArrayLike,
+    params: dict[str, Any],
+    folds: Sequence[tuple[ArrayLike, ArrayLike]],
+    c: Sequence[float],
+    gamma_scales: Sequence[float],
+) -> dict[str, Any]:
+    """Accuracies of every γ (as multiples of that of scale; none: as it is) and C over folds, on one matrix of products: the best C, the best γ, and
+    tuples of C, γ and accuracy."""
 
 def touch_poses(
     object: _Model,
