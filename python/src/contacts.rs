@@ -24,6 +24,8 @@ pub struct Contacts {
     point: Py<PyArray2<f64>>,
     /// (m, 3): of the taxel's spring on the object without friction, newtons, in the frame of the patch.
     force: Py<PyArray2<f64>>,
+    /// (m, 3): ∂δ/∂x for a motion x of the part in the frame of the patch, before the taxel's stop; its length is ∂δ/∂R of a sphere's radius.
+    gradient: Py<PyArray2<f64>>,
     /// (n,): how far the patch went along its z, metres; NaN where it met nothing.
     travel: Py<PyArray1<f64>>,
     /// (n,): taxels with a deflection.
@@ -101,6 +103,7 @@ impl Contacts {
             normal: vectors(|(_, contact, _)| contact.normal),
             point: vectors(|(_, contact, _)| contact.point),
             force: vectors(|(.., force)| *force),
+            gradient: vectors(|(_, contact, _)| contact.gradient()),
             travel: to_column(py, travels).unbind(),
             n_touched: count(|contact| contact.n_touched),
             n_saturated: count(|contact| contact.n_saturated),

@@ -19,11 +19,16 @@ pub struct Goal {
     amounts: Vec<f64>,
 }
 
-#[derive(Clone, Copy)]
-enum Until {
+/// What ends a press.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Until {
+    /// Nothing: the patch is read where it is.
     Pose,
+    /// Metres past first contact.
     Depth,
+    /// Metres from the pose.
     Travel,
+    /// Newtons that the springs carry.
     Force,
 }
 
@@ -93,6 +98,11 @@ impl Goal {
             format!("{n} amounts for {n_poses} poses"),
             allowed,
         ))
+    }
+
+    /// What ends it.
+    pub fn until(&self) -> Until {
+        self.until
     }
 
     fn amount(&self, number: usize) -> f64 {

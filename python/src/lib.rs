@@ -9,6 +9,7 @@ mod catalogue;
 mod contacts;
 mod errors;
 mod goal;
+mod jacobian;
 mod mesh;
 mod model;
 mod patch;
@@ -18,7 +19,9 @@ mod poses;
 mod press;
 mod projection;
 mod signal;
+mod simulation;
 mod sphere_union;
+mod study;
 mod svm;
 mod threads;
 
@@ -49,7 +52,11 @@ mod _core {
     #[pymodule_export]
     use signal::{Chain, Step};
     #[pymodule_export]
+    use simulation::Simulation;
+    #[pymodule_export]
     use sphere_union::SphereUnion;
+    #[pymodule_export]
+    use study::{run_study, toml_of};
     #[pymodule_export]
     use svm::{KernelSvm, LinearModel, choose_svm};
 

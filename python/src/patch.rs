@@ -378,10 +378,12 @@ impl Patch {
     /// threads: at most so many, all cores if None. The interpreter's lock is free meanwhile, and Ctrl-C ends the call.
     ///
     /// Returns (n, ny, nx) of a grid, (n, n_taxels) of another patch, without n for one pose; the same bits at any number of threads.
-    /// With contacts=True also the Contacts; frames are the same.
+    /// With contacts=True also the Contacts; frames are the same. With jacobian=True also (…, 6): how each deflection changes with the
+    /// pose, by metres of the object along x, y, z and by radians about x, y, z through the object's origin, all axes the patch's; zero for
+    /// taxels that are free or saturated. With a depth or a force the travel changes along; a depth needs a flat patch for it.
     ///
     /// Raises ValueError for arrays of another shape or type, numbers that are not finite, and a force that cannot be reached.
-    #[pyo3(signature = (object, poses, *, depth=None, travel=None, force=None, out=None, dtype=None, threads=None, contacts=false))]
+    #[pyo3(signature = (object, poses, *, depth=None, travel=None, force=None, out=None, dtype=None, threads=None, contacts=false, jacobian=false))]
     #[expect(clippy::too_many_arguments, reason = "named in Python")]
     fn press<'py>(
         &self,
@@ -395,6 +397,7 @@ impl Patch {
         dtype: Option<&Bound<'py, PyAny>>,
         threads: Option<i64>,
         contacts: bool,
+        jacobian: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
         guarded(|| {
             let goal = crate::goal::Goal::of(depth, travel, force)?;
@@ -404,7 +407,7 @@ impl Patch {
                 (object, poses, goal),
                 (out, dtype),
                 threads,
-                contacts,
+                crate::press::Wanted { contacts, jacobian },
             )
         })
     }

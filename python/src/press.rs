@@ -5,10 +5,12 @@ use crate::batch::{for_each, n_threads};
 use crate::contacts::{Contacts, OfPose};
 use crate::errors::{bad_input, exception};
 use crate::goal::Goal;
+use crate::jacobian;
 use crate::model::model_of;
 use crate::patch::Patch;
 use crate::poses::Poses;
 use bubbletouch::contact::Workspace;
+use glam::DVec3;
 use numpy::{
     Element, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods,
     dtype as dtype_of,
@@ -38,7 +40,16 @@ impl Real for f32 {
     }
 }
 
-/// Frames of deflections, or frames and contacts.
+/// What is asked for beside frames.
+#[derive(Clone, Copy)]
+pub struct Wanted {
+    /// What touches what.
+    pub contacts: bool,
+    /// How deflections change with the pose.
+    pub jacobian: bool,
+}
+
+/// Frames of deflections, or frames and what else is wanted, contacts first.
 ///
 /// # Errors
 /// What is wrong with the arguments; a force that cannot be reached, by its pose; Ctrl-C.
@@ -48,17 +59,20 @@ pub fn press<'py>(
     (object, poses, goal): (&Bound<'py, PyAny>, &Bound<'py, PyAny>, Goal),
     (out, dtype): (Option<&Bound<'py, PyAny>>, Option<&Bound<'py, PyAny>>),
     threads: Option<i64>,
-    contacts: bool,
+    wanted: Wanted,
 ) -> PyResult<Bound<'py, PyAny>> {
     let given = Poses::of("poses", poses)?;
     goal.check(given.poses.len())?;
+    if wanted.jacobian {
+        jacobian::check(goal.until(), patch.inner())?;
+    }
     let batch = Batch {
         patch,
         object,
         given,
         goal,
         threads: n_threads(threads)?,
-        contacts,
+        wanted,
     };
     let mut shape = batch.patch.sides().to_vec();
     if !batch.given.is_one {
@@ -106,7 +120,7 @@ struct Batch<'a, 'py> {
     given: Poses,
     goal: Goal,
     threads: Option<usize>,
-    contacts: bool,
+    wanted: Wanted,
 }
 
 impl<'py> Batch<'_, 'py> {
@@ -142,23 +156,40 @@ impl<'py> Batch<'_, 'py> {
         py: Python<'py>,
         array: Bound<'py, PyArrayDyn<T>>,
     ) -> PyResult<Bound<'py, PyAny>> {
+        let mut sides = array.shape().to_vec();
+        sides.push(jacobian::N);
+        let changes = self
+            .wanted
+            .jacobian
+            .then(|| PyArrayDyn::<f64>::zeros(py, sides, false));
         let contacts = {
             let mut writable = array
                 .try_readwrite()
                 .map_err(|error| bad_input("out", error, "an array that nobody else uses"))?;
-            self.run(py, writable.as_slice_mut()?)?
+            let mut changing = changes.as_ref().map(|changes| changes.readwrite());
+            let changes = changing.as_mut().map(|changes| changes.as_slice_mut());
+            self.run(py, writable.as_slice_mut()?, changes.transpose()?)?
         };
-        match contacts {
-            None => Ok(array.into_any()),
-            Some(contacts) => Ok((array, contacts).into_pyobject(py)?.into_any()),
-        }
+        Ok(match (contacts, changes) {
+            (None, None) => array.into_any(),
+            (Some(contacts), None) => (array, contacts).into_pyobject(py)?.into_any(),
+            (None, Some(changes)) => (array, changes).into_pyobject(py)?.into_any(),
+            (Some(contacts), Some(changes)) => {
+                (array, contacts, changes).into_pyobject(py)?.into_any()
+            }
+        })
     }
 
-    /// Writes a frame for each pose.
-    fn run<T: Real>(&self, py: Python, frames: &mut [T]) -> PyResult<Option<Contacts>> {
+    /// Writes a frame for each pose, and its changes.
+    fn run<T: Real>(
+        &self,
+        py: Python,
+        frames: &mut [T],
+        changes: Option<&mut [f64]>,
+    ) -> PyResult<Option<Contacts>> {
         let model = model_of("object", self.object)?;
         let (patch, goal, poses) = (self.patch.inner(), &self.goal, &self.given.poses);
-        let (is_one, contacts) = (self.given.is_one, self.contacts);
+        let (is_one, wanted) = (self.given.is_one, self.wanted);
         let named = |number: usize, error: bubbletouch::Error| {
             let place = if is_one {
                 "poses: ".to_owned()
@@ -168,7 +199,8 @@ impl<'py> Batch<'_, 'py> {
             exception(error.under(place))
         };
         let found: Mutex<Vec<(usize, OfPose)>> = Mutex::new(Vec::new());
-        let work = |number: usize, frame: &mut [T], workspace: &mut Workspace| {
+        type Item<'a, T> = (&'a mut [T], Option<&'a mut [f64]>);
+        let work = |number: usize, (frame, changes): Item<T>, workspace: &mut Workspace| {
             let placed = (model, &poses[number]);
             let pressed = goal.press(number, patch, placed, workspace);
             let pressed = pressed.map_err(|error| named(number, error))?;
@@ -176,9 +208,16 @@ impl<'py> Batch<'_, 'py> {
                 Some(_) => T::write(frame, workspace.deflections()),
                 None => frame.fill(T::default()),
             }
-            if contacts {
-                let met = goal.press_with_contacts(number, patch, placed, workspace);
-                let met = met.map_err(|error| named(number, error))?;
+            if !wanted.contacts && changes.is_none() {
+                return Ok(());
+            }
+            let met = goal.press_with_contacts(number, patch, placed, workspace);
+            let met = met.map_err(|error| named(number, error))?;
+            if let (Some(changes), Some(pressed), Some(_)) = (changes, pressed, met) {
+                let origin = poses[number].translation - pressed.travel * DVec3::Z;
+                jacobian::fill(changes, goal.until(), patch, (workspace.contacts(), origin));
+            }
+            if wanted.contacts {
                 let of_pose = OfPose::new(patch, (pressed, met), workspace);
                 if let Ok(mut found) = found.lock() {
                     found.push((number, of_pose));
@@ -186,10 +225,18 @@ impl<'py> Batch<'_, 'py> {
             }
             Ok(())
         };
-        let frames = frames.chunks_exact_mut(patch.n_taxels()).collect();
+        let n_taxels = patch.n_taxels();
+        let frames = frames.chunks_exact_mut(n_taxels);
+        let items: Vec<Item<T>> = match changes {
+            None => frames.map(|frame| (frame, None)).collect(),
+            Some(changes) => {
+                let changes = changes.chunks_exact_mut(n_taxels * jacobian::N);
+                frames.zip(changes.map(Some)).collect()
+            }
+        };
         let spare = self.patch.spare();
-        for_each(py, frames, self.threads, spare, Workspace::new, work)?;
-        if !contacts {
+        for_each(py, items, self.threads, spare, Workspace::new, work)?;
+        if !wanted.contacts {
             return Ok(None);
         }
         let found = found.into_inner().unwrap_or_default();

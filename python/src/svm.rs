@@ -12,10 +12,11 @@ use bubbletouch::recognition::svm::cross_validation::choice::{Candidates, choose
 use bubbletouch::recognition::svm::kernel::{Gamma, Kernel};
 use bubbletouch::recognition::svm::predict::svm_model::SvmModel;
 use bubbletouch::recognition::svm::{Multiclass, SvmParams};
-use ndarray::{Array1, Array2, Ix2};
+use ndarray::{Array1, Array2, ArrayView2, Axis, Ix2, concatenate};
 use numpy::{IntoPyArray, PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
+use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Rows of numbers.
@@ -31,6 +32,27 @@ fn rows_of(given: &Bound<PyAny>) -> PyResult<Array2<f64>> {
             Ok(rows.expect("the shape was looked at"))
         },
     )
+}
+
+/// Rows that the library predicts at once.
+const BLOCK_ROWS: usize = 256;
+
+/// What is predicted of parts of the rows on the threads of the pool: parts are whole blocks of the library's, so that their bits are the same.
+///
+/// # Errors
+/// That of all rows at once, which names the right one.
+fn in_parts<T: Send>(
+    features: &Array2<f64>,
+    predict: impl Fn(ArrayView2<f64>) -> bubbletouch::Result<T> + Sync,
+) -> bubbletouch::Result<Vec<T>> {
+    let n_blocks = features.nrows().div_ceil(BLOCK_ROWS).max(1);
+    let rows = n_blocks.div_ceil(rayon::current_num_threads()) * BLOCK_ROWS;
+    let parts: Vec<ArrayView2<f64>> = features.axis_chunks_iter(Axis(0), rows).collect();
+    if parts.len() < 2 {
+        return Ok(vec![predict(features.view())?]);
+    }
+    let predicted: bubbletouch::Result<Vec<T>> = parts.into_par_iter().map(&predict).collect();
+    predicted.or_else(|_| Ok(vec![predict(features.view())?]))
 }
 
 /// Whole numbers from 0.
@@ -143,8 +165,9 @@ impl KernelSvm {
     ) -> PyResult<Bound<'py, PyArray1<i64>>> {
         guarded(|| {
             let (features, pool) = (rows_of(features)?, pool()?);
-            let labels = py.detach(|| pool.install(|| self.model.labels(features.view())));
-            Ok(to_integers(py, &labels.map_err(exception)?))
+            let label = |rows: ArrayView2<f64>| self.model.labels(rows);
+            let labels = py.detach(|| pool.install(|| in_parts(&features, label)));
+            Ok(to_integers(py, labels.map_err(exception)?.iter().flatten()))
         })
     }
 
@@ -156,8 +179,12 @@ impl KernelSvm {
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         guarded(|| {
             let (features, pool) = (rows_of(features)?, pool()?);
-            let values = py.detach(|| pool.install(|| self.model.decision_values(features.view())));
-            Ok(values.map_err(exception)?.into_pyarray(py))
+            let value = |rows: ArrayView2<f64>| self.model.decision_values(rows);
+            let values = py.detach(|| pool.install(|| in_parts(&features, value)));
+            let values = values.map_err(exception)?;
+            let views: Vec<ArrayView2<f64>> = values.iter().map(|part| part.view()).collect();
+            let values = concatenate(Axis(0), &views).expect("parts have the same columns");
+            Ok(values.into_pyarray(py))
         })
     }
 

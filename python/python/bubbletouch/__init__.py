@@ -15,12 +15,14 @@ from bubbletouch._core import (
     Mesh,
     Patch,
     Projection,
+    Simulation,
     Solid,
     SphereUnion,
     Step,
     touch_poses,
     write_frame,
 )
+from bubbletouch.study import Study, Table, run, simulate
 
 __all__ = [
     "Catalogue",
@@ -30,9 +32,14 @@ __all__ = [
     "Mesh",
     "Patch",
     "Projection",
+    "Simulation",
     "Solid",
     "SphereUnion",
     "Step",
+    "Study",
+    "Table",
+    "run",
+    "simulate",
     "touch_poses",
     "write_frame",
 ]

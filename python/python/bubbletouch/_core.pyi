@@ -1,6 +1,6 @@
 """What Rust does. Lengths in metres, forces in newtons, angles in radians."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from os import PathLike
 from typing import Any, Literal, TypeAlias, TypeVar, final, overload
 
@@ -17,12 +17,15 @@ __all__ = [
     "Mesh",
     "Patch",
     "Projection",
+    "Simulation",
     "Solid",
     "SphereUnion",
     "Step",
     "_kernel_pace",
     "_panic",
     "choose_svm",
+    "run_study",
+    "toml_of",
     "touch_poses",
     "write_frame",
 ]
@@ -208,6 +211,10 @@ class Contacts:
         """(m, 3): of the taxel's spring on the object without friction, newtons, in the frame of the patch."""
 
     @property
+    def gradient(self) -> NDArray[np.float64]:
+        """(m, 3): ∂δ/∂x for a motion x of the part in the frame of the patch, before the taxel's stop; its length is ∂δ/∂R of a sphere's radius."""
+
+    @property
     def travel(self) -> NDArray[np.float64]:
         """(n,): how far the patch went along its z, metres; NaN where it met nothing."""
 
@@ -376,6 +383,7 @@ class Patch:
         dtype: DTypeLike | None = None,
         threads: int | None = None,
         contacts: Literal[False] = False,
+        jacobian: Literal[False] = False,
     ) -> _Out: ...
     @overload
     def press(  # type: ignore[overload-overlap]
@@ -390,6 +398,7 @@ class Patch:
         dtype: type[np.float32] | Literal["float32"],
         threads: int | None = None,
         contacts: Literal[False] = False,
+        jacobian: Literal[False] = False,
     ) -> NDArray[np.float32]: ...
     @overload
     def press(
@@ -404,6 +413,7 @@ class Patch:
         dtype: type[np.float64] | Literal["float64"] | None = None,
         threads: int | None = None,
         contacts: Literal[False] = False,
+        jacobian: Literal[False] = False,
     ) -> NDArray[np.float64]: ...
     @overload
     def press(
@@ -418,6 +428,7 @@ class Patch:
         dtype: DTypeLike | None = None,
         threads: int | None = None,
         contacts: Literal[True],
+        jacobian: Literal[False] = False,
     ) -> tuple[_Out, Contacts]: ...
     @overload
     def press(
@@ -432,8 +443,25 @@ class Patch:
         dtype: type[np.float64] | Literal["float64"] | None = None,
         threads: int | None = None,
         contacts: Literal[True],
+        jacobian: Literal[False] = False,
     ) -> tuple[NDArray[np.float64], Contacts]: ...
-    def press(  # type: ignore[misc]
+    @overload
+    def press(
+        self,
+        object: _Model,
+        poses: ArrayLike,
+        *,
+        depth: ArrayLike | None = None,
+        travel: ArrayLike | None = None,
+        force: ArrayLike | None = None,
+        out: None = None,
+        dtype: type[np.float64] | Literal["float64"] | None = None,
+        threads: int | None = None,
+        contacts: Literal[False] = False,
+        jacobian: Literal[True],
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
+    @overload
+    def press(
         self,
         object: _Model,
         poses: ArrayLike,
@@ -445,7 +473,8 @@ class Patch:
         dtype: DTypeLike | None = None,
         threads: int | None = None,
         contacts: bool = False,
-    ) -> object:
+        jacobian: bool = False,
+    ) -> Any:
         """Deflections of the taxels pressed on an object at n poses, metres, 0 to the stroke.
 
         poses: the object in the frame of the patch, (n, 7) of x, y, z, qw, qx, qy, qz or (n, 4, 4); (7,) or (4, 4) for one alone.
@@ -462,7 +491,9 @@ class Patch:
         threads: at most so many, all cores if None. The interpreter's lock is free meanwhile, and Ctrl-C ends the call.
 
         Returns (n, ny, nx) of a grid, (n, n_taxels) of another patch, without n for one pose; the same bits at any number of threads.
-        With contacts=True also the Contacts; frames are the same.
+        With contacts=True also the Contacts; frames are the same. With jacobian=True also (…, 6): how each deflection changes with the
+        pose, by metres of the object along x, y, z and by radians about x, y, z through the object's origin, all axes the patch's; zero for
+        taxels that are free or saturated. With a depth or a force the travel changes along; a depth needs a flat patch for it.
 
         Raises ValueError for arrays of another shape or type, numbers that are not finite, and a force that cannot be reached.
         """
@@ -580,6 +611,47 @@ class Projection:
     def __getnewargs__(self) -> tuple[str, tuple[int, int], int, int]: ...
 
 @final
+class Simulation:
+    """A scene frame by frame, from its text: bubbletouch.simulate takes a file or a dict.
+
+    It is an iterator of frames, each a dict:
+
+    - time: seconds;
+    - patches: of each by name pose (7,) in the world, deflection (ny, nx) or (n_taxels,) in metres, force likewise in newtons, signal (or
+      None), wrench (6,) of force and torque on the patch in its frame, n_touched, n_saturated;
+    - objects: of each by name pose (7,) in the world, and held: imposed, pressed, at rest, unsettled or escaped.
+    """
+
+    def __new__(cls, text: str, place: str, folder: _Path) -> Simulation: ...
+    def reset(self) -> None:
+        """Back to before the first frame."""
+
+    def step(self) -> dict[str, Any] | None:
+        """The next frame; None after the last. Raises ValueError."""
+
+    def __iter__(self) -> Simulation: ...
+    def __next__(self) -> dict[str, Any]: ...
+    @property
+    def n_frames(self) -> int:
+        """Of the whole scene."""
+
+    @property
+    def output_rate(self) -> float:
+        """Frames a second of the scene's time."""
+
+    @property
+    def patches(self) -> list[str]:
+        """Their names."""
+
+    @property
+    def objects(self) -> list[str]:
+        """Their names."""
+
+    @property
+    def title(self) -> str:
+        """What the scene is about."""
+
+@final
 class KernelSvm:
     """A trained SVM with a kernel, on labels 0, 1, …: what bubbletouch.learning.SVC fits. Pickled as its training rows, and trained again."""
 
@@ -666,6 +738,20 @@ def touch_poses(
 
     offset, tilt: (2,) or (n, 2); yaw: a number or (n,). Returns (7,) if all are of one, otherwise (n, 7). Raises ValueError.
     """
+
+def run_study(
+    text: str,
+    place: str,
+    name: str,
+    folder: _Path,
+    out: _Path,
+    seed: int | None = None,
+    callback: Callable[[str, int, int], object] | None = None,
+) -> list[tuple[str, str, str, dict[str, Any]]]:
+    """Runs a study (TOML) into a folder: of each table its file's name, title, note and columns."""
+
+def toml_of(json: str) -> str:
+    """A study in TOML from the same in JSON."""
 
 def write_frame(path: _Path, frame: ArrayLike, pitch: float) -> None:
     """Writes the deflections (ny, nx; metres) of a grid with this pitch as a picture (.png), a table (.csv) or arrays (.npz), by the

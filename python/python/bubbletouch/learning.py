@@ -133,7 +133,7 @@ class SVC(_Classifier):
     def predict(self, X: ArrayLike) -> NDArray[Any]:
         """(n,): the class of each row of features (n, m)."""
         features = self._features(X)
-        return cast(NDArray[Any], self.classes_[self._model.labels(features)])
+        return self.classes_[self._model.labels(features)]
 
     def decision_values(self, X: ArrayLike) -> Floats:
         """(n, n_problems): of each binary problem; above 0 speaks for its first class. Sums over touches may be compared as well."""
@@ -211,7 +211,7 @@ class LinearSVC(_Classifier):
     def predict(self, X: ArrayLike) -> NDArray[Any]:
         """(n,): the class of each row of features (n, m)."""
         features = self._features(X)
-        return cast(NDArray[Any], self.classes_[self._model.labels(features)])
+        return self.classes_[self._model.labels(features)]
 
     def decision_function(self, X: ArrayLike) -> Floats:
         """(n,) of two classes, above 0 for the second; otherwise (n, n_classes), the largest for the class that is predicted."""
