@@ -30,7 +30,9 @@ start = time.perf_counter()
 unit = np.array([1, 1, 1, 0.03, 0.03, 0.03])
 damping = 1e-4
 frame, jacobian = patch.press(drill, guess, jacobian=True)
-for step in range(1, 50):
+step = 0
+while np.abs(felt - frame).max() > 1e-10 and step < 50:
+    step += 1
     rows = jacobian.reshape(-1, 6) * unit
     square = rows.T @ rows
     change = np.linalg.solve(square + damping * np.diag(square.diagonal()), rows.T @ (felt - frame).ravel())
@@ -40,8 +42,6 @@ for step in range(1, 50):
         guess, frame, jacobian, damping = tried, tried_frame, tried_jacobian, damping / 5
     else:
         damping *= 4
-    if np.abs(felt - frame).max() < 1e-10:
-        break
 took = time.perf_counter() - start
 
 away = 1e3 * np.sqrt(np.square(guess[:3] - truth[:3]).sum())

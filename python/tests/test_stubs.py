@@ -57,6 +57,14 @@ def test_stubs_are_those_of_the_module() -> None:
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+def test_the_package_is_of_the_types_that_it_says() -> None:
+    pytest.importorskip("mypy")
+    sources = Path(__file__).resolve().parents[1] / "python" / "bubbletouch"
+    checked = [sys.executable, "-m", "mypy", "--strict", str(sources)]
+    done = subprocess.run(checked, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
 def test_the_examples_are_of_the_types_that_the_stubs_say() -> None:
     pytest.importorskip("mypy")
     checked = [sys.executable, "-m", "mypy", "--strict", *map(str, EXAMPLES)]

@@ -43,6 +43,7 @@ def test_a_study_has_tables_charts_and_a_page(study: bt.Study) -> None:
     assert study.charts and (study.folder / "report.html").exists()
     page = study._repr_html_()
     assert "<table>" in page and "data:image/svg+xml;base64," in page
+    assert study.get("costs") is None and study.get("summary") is summary
     with pytest.raises(ValueError, match="table: `costs`; .*summary"):
         study["costs"]
     with pytest.raises(ValueError, match="column: `price`; "):

@@ -68,7 +68,7 @@ class _World:
         """(n, n_objects); zero of a frame that nothing touches."""
         # The estimator's own checks cost as much as what it computes.
         values = self.classifier._model.decision_values(self.features(frames))
-        touched: Floats = frames.any(axis=(1, 2))[:, None].astype(np.float64)
+        touched = np.asarray(frames.any(axis=(1, 2)), np.float64)[:, None]
         return values * touched
 
     def touch(self, which: NDArray[np.int64], offset: Floats, yaw: Floats) -> NDArray[np.float32]:

@@ -80,6 +80,10 @@ class Study(Mapping[str, Table]):
             raise ValueError(f"table: `{name}`; {', '.join(self._tables)}")
         return self._tables[name]
 
+    def get(self, name: str, default: Any = None) -> Any:
+        """A table, or the default where there is none of that name."""
+        return self._tables.get(name, default)
+
     def __contains__(self, name: object) -> bool:
         return name in self._tables
 
