@@ -18,6 +18,7 @@ mod placement;
 mod poses;
 mod press;
 mod projection;
+mod reconstruction;
 mod signal;
 mod simulation;
 mod sphere_union;
@@ -49,6 +50,8 @@ mod _core {
     use press::_kernel_pace;
     #[pymodule_export]
     use projection::Projection;
+    #[pymodule_export]
+    use reconstruction::Reconstructor;
     #[pymodule_export]
     use signal::{Chain, Step};
     #[pymodule_export]

@@ -19,6 +19,18 @@ pub struct Projection {
     asked: (String, (usize, usize), usize, u64),
 }
 
+impl Projection {
+    /// The library's.
+    pub fn inner(&self) -> &sensing::Projection {
+        &self.projection
+    }
+
+    /// Rows and columns of a frame.
+    pub fn shape(&self) -> (usize, usize) {
+        self.asked.1
+    }
+}
+
 fn ensemble_of(name: &str) -> PyResult<Ensemble> {
     let mut all = Ensemble::ALL.iter().zip(Ensemble::NAMES);
     let found = all.find_map(|(ensemble, (known, _))| (*known == name).then_some(*ensemble));

@@ -195,6 +195,15 @@ def test_ctrl_c_ends_a_long_packing() -> None:
     assert interrupted_after(0.3, lambda: spiky.pack(0.2e-3)) < 0.2
 
 
+def test_ctrl_c_leaves_a_long_training() -> None:
+    from bubbletouch.learning import SVC
+
+    random = np.random.default_rng(0)
+    features, labels = random.normal(size=(3000, 60)), random.integers(3, size=3000)
+    svm = SVC(C=1e4, tol=1e-6)
+    assert interrupted_after(0.3, lambda: svm.fit(features, labels)) < 0.2
+
+
 def test_a_forked_process_presses_too(mug: bt.SphereUnion) -> None:
     """multiprocessing on Linux forks, and threads are not forked with it."""
     program = """

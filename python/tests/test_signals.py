@@ -143,3 +143,40 @@ def test_what_cannot_be_a_projection_is_refused(frames: Floats) -> None:
             bt.Projection("sbhe", (32, 48), m)
     with pytest.raises(ValueError, match="frames: shape"):
         bt.Projection("sbhe", (32, 32), 64)(frames)
+
+
+@pytest.mark.parametrize("basis", ["pca", "dct"])
+@pytest.mark.parametrize("solver", ["omp", "l1", "lmmse"])
+def test_frames_come_back_from_measurements(basis: str, solver: str) -> None:
+    patch, ball = bt.Patch.grid(16, 16, 4e-3, 5e-3), bt.SphereUnion([[0, 0, 0.033]], 0.033)
+    offset = np.random.default_rng(8).uniform(-0.02, 0.02, (300, 2))
+    frames = patch.press(ball, bt.touch_poses(ball, offset=offset), depth=3e-3)
+    errors = []
+    for m in (64, 128):
+        projection = bt.Projection("gaussian", patch.shape, m, seed=1)
+        rebuild = bt.Reconstructor(
+            projection, frames[:250], basis=basis, solver=solver, noise=1e-5
+        )
+        found = rebuild(projection(frames[250:]))
+        assert found["frames"].shape == (50, 16, 16)
+        assert found["n_atoms"].shape == (50,) and not found["is_capped"].any()
+        wrong = found["frames"] - frames[250:]
+        errors.append(np.linalg.norm(wrong) / np.linalg.norm(frames[250:]))
+    assert errors[1] < 0.5 * errors[0] + 0.03 and errors[1] < 0.25
+
+
+def test_what_cannot_be_rebuilt_is_refused(frames: Floats) -> None:
+    projection = bt.Projection("gaussian", (32, 48), 64)
+    with pytest.raises(ValueError, match="basis: `fourier`; dct, haar"):
+        bt.Reconstructor(projection, frames, basis="fourier")
+    with pytest.raises(ValueError, match="solver: `fast`; omp, l1 or lmmse"):
+        bt.Reconstructor(projection, frames, solver="fast")
+    with pytest.raises(ValueError, match="noise: -1; zero or a positive number"):
+        bt.Reconstructor(projection, frames, noise=-1)
+    with pytest.raises(ValueError, match="training: shape"):
+        bt.Reconstructor(projection, frames[:, :, 1:])
+    rebuild = bt.Reconstructor(projection, frames)
+    with pytest.raises(ValueError, match=r"measurements: shape \(2, 63\); \(n, 64\)"):
+        rebuild(np.zeros((2, 63)))
+    with pytest.raises(ValueError, match="measurements: NaN"):
+        rebuild(np.full((2, 64), np.nan))

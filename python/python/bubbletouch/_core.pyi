@@ -17,6 +17,7 @@ __all__ = [
     "Mesh",
     "Patch",
     "Projection",
+    "Reconstructor",
     "Simulation",
     "Solid",
     "SphereUnion",
@@ -609,6 +610,29 @@ class Projection:
         """m."""
 
     def __getnewargs__(self) -> tuple[str, tuple[int, int], int, int]: ...
+
+@final
+class Reconstructor:
+    """Rebuilds frames from the measurements of one projection, by what training frames are made of.
+
+    Reconstructor(projection, training, basis="pca", solver="lmmse", noise=1e-4). training: (n, ny, nx), metres. basis: dct, haar,
+    daubechies4 (both of sides that are powers of two) or pca, of which the n_atoms that carry most are kept (None: all; of pca 256). solver: omp (matching
+    pursuit), l1 (basis pursuit by FISTA) or lmmse (the linear estimate). noise: standard deviation on each taxel, in the frames' unit. Raises ValueError.
+    """
+
+    def __new__(
+        cls,
+        projection: Projection,
+        training: ArrayLike,
+        *,
+        basis: str = "pca",
+        solver: str = "lmmse",
+        n_atoms: int | None = None,
+        noise: float = 0.0,
+        seed: int = 0,
+    ) -> Reconstructor: ...
+    def __call__(self, measurements: ArrayLike) -> dict[str, NDArray[Any]]:
+        """Of measurements (n, m): frames (n, ny, nx), n_atoms (n,) that each took, is_capped (n,) where its solver stopped at a limit."""
 
 @final
 class Simulation:
