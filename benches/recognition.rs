@@ -7,6 +7,7 @@ use bubbletouch::random::Seed;
 use bubbletouch::recognition::data::dataset::{Dataset, dataset};
 use bubbletouch::recognition::data::scaling::Scaling;
 use bubbletouch::recognition::data::split::stratified_k_fold;
+use bubbletouch::recognition::features::{Cut, ImageFeature, ImageFeatures, Join, Workspace};
 use bubbletouch::recognition::svm::cross_validation::choice::{Candidates, choose};
 use bubbletouch::recognition::svm::kernel::{Gamma, Kernel};
 use bubbletouch::recognition::svm::{Multiclass, Solver, SvmParams};
@@ -175,5 +176,32 @@ fn linfa_models(kernel: Kernel, data: &Dataset) -> Vec<Svm<f64, bool>> {
     models
 }
 
-criterion_group!(benches, train, choice, predict);
+/// Features of a frame of 64 × 64 taxels that a disc of half its width touches, one thread.
+fn features(criterion: &mut Criterion) {
+    const TAXELS: usize = 64;
+    let height = |i: usize| {
+        let (x, y) = ((i % TAXELS) as f64 - 30.3, (i / TAXELS) as f64 - 33.1);
+        (1.0 - (x * x + 1.5 * y * y) / 256.0 + 0.05 * (0.7 * x + 0.4 * y).sin()).max(0.0)
+    };
+    let frame: Vec<f64> = (0..TAXELS * TAXELS).map(height).collect();
+    let mut group = criterion.benchmark_group("features of a frame");
+    let mut named: Vec<Vec<ImageFeature>> = ImageFeature::ALL.iter().map(|f| vec![*f]).collect();
+    named.push(vec![
+        ImageFeature::FourierMellin,
+        ImageFeature::PolarHarmonics,
+        ImageFeature::Descriptors,
+    ]);
+    for features in named {
+        let join = Join::new(&features).unwrap();
+        let shape = (TAXELS, TAXELS);
+        let features = ImageFeatures::new(join, shape, 1.0, Cut::default());
+        let (mut workspace, mut out) = (Workspace::default(), vec![0.0; join.n_values(shape)]);
+        group.bench_function(BenchmarkId::new(join.to_string(), TAXELS), |bencher| {
+            bencher.iter(|| features.write(&frame, &mut workspace, &mut out));
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, train, choice, predict, features);
 criterion_main!(benches);

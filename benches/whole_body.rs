@@ -37,7 +37,7 @@ fn body(n_taxels: usize) -> (WholeBody, Vec<Pose>) {
 /// A ball of `radius` metres as n equal spheres on its surface.
 fn ball(n: usize, radius: f64) -> SphereClusters {
     let golden = PI * (3.0 - 5f64.sqrt());
-    let each = 2.0 * radius / (n as f64).sqrt();
+    let each = radius.min(2.0 * radius / (n as f64).sqrt());
     let spheres = (0..n).map(|k| {
         let z = 1.0 - (2.0 * k as f64 + 1.0) / n as f64;
         let (sin, cos) = (golden * k as f64).sin_cos();

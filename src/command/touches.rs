@@ -80,12 +80,13 @@ pub fn touches(args: &Args) -> Result<()> {
 impl Args {
     /// An error for human touches, which no object makes.
     fn check(&self, plan: &Plan) -> Result<()> {
-        if plan.spec.human_touch.is_none() {
+        if plan.spec.places_objects() {
             return Ok(());
         }
         let place = self.study.study.display();
         let allowed =
             "a study that presses objects (bubbletouch features writes what others learn from)";
-        Err(Error::input(place, "a study of human touches", allowed))
+        let given = "a study of human touches or of recorded frames";
+        Err(Error::input(place, given, allowed))
     }
 }

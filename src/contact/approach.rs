@@ -245,7 +245,7 @@ fn farthest_by_leaves(
         approach.travelling().taxels.each_leaf(
             |node| approach.most_of(node, &sphere) > farthest.get(),
             |leaf| {
-                let [needed, _] = needed_of_leaf(leaf, &sphere);
+                let needed = needed_of_leaf(leaf, &sphere);
                 farthest.set(needed.into_iter().fold(farthest.get(), f64::max));
             },
         );

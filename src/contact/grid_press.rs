@@ -22,6 +22,8 @@ pub(super) struct GridPress {
     /// Where the meshes stop the taxels; empty if there are none.
     envelope: Envelope,
     sheet: Sheet,
+    /// At which height what is lower does not count, metres: −s − ρ at a pose, else nowhere.
+    behind: f64,
     /// Of the last press to a force: see [`starts`](Self::starts).
     starts: Vec<f64>,
 }
@@ -47,11 +49,15 @@ impl GridPress {
             "one pose an object"
         );
         self.lines.lay(&grid.grid);
+        self.behind = match goal {
+            Goal::Pose => grid.behind(),
+            Goal::Travel(_) | Goal::Depth(_) => f64::NEG_INFINITY,
+        };
         let placed = Placed {
             objects,
             patch_from_objects,
             radius: grid.radius,
-            behind: grid.behind(),
+            behind: self.behind,
             lines: &self.lines,
         };
         let mut first = search(self.instructions, &mut self.search, &placed, goal);
@@ -98,7 +104,7 @@ impl GridPress {
             self.instructions,
             &self.search.found,
             &self.lines,
-            travel,
+            (travel, self.behind),
             &mut self.sheet,
         );
         if !self.envelope.heights.is_empty() {
@@ -115,20 +121,27 @@ impl GridPress {
 }
 
 for_instructions! {
-    /// Raises the deflections to what the spheres need at a travel.
+    /// Raises the deflections to what the spheres need at a travel, if they are not behind the substrate.
     fn raise_all(
         spheres: &[PlacedSphere],
         lines: &GridLines,
-        travel: f64,
+        travel_and_behind: (f64, f64),
         sheet: &mut Sheet,
     ) = raise_each
 }
 
 #[inline(always)]
-fn raise_each(spheres: &[PlacedSphere], lines: &GridLines, travel: f64, sheet: &mut Sheet) {
+fn raise_each(
+    spheres: &[PlacedSphere],
+    lines: &GridLines,
+    (travel, behind): (f64, f64),
+    sheet: &mut Sheet,
+) {
     for sphere in spheres {
         let height = sphere.center.z - travel;
-        if height < sphere.reach {
+        if height < behind {
+            sphere.raise_through(lines, behind - height, sheet);
+        } else if height < sphere.reach {
             sphere.raise(lines, height, sheet);
         }
     }
@@ -139,7 +152,7 @@ fn raise_each(spheres: &[PlacedSphere], lines: &GridLines, travel: f64, sheet: &
 pub(super) enum Goal {
     /// To this travel, metres, from the front: all counts.
     Travel(f64),
-    /// Nowhere: of spheres those whose centres are not behind the substrate.
+    /// Nowhere: what is behind the substrate does not count.
     Pose,
     /// To first contact and this far past it, metres, from the front: all counts.
     Depth(f64),
@@ -152,7 +165,7 @@ pub(super) struct Placed<'a> {
     pub patch_from_objects: &'a [Pose],
     /// ρ, metres.
     pub radius: f64,
-    /// −s − ρ, metres.
+    /// At which height what is lower does not count, metres.
     pub behind: f64,
     /// Of the grid.
     pub lines: &'a GridLines,

@@ -12,9 +12,10 @@
 //!
 //! **Behind the substrate.** A press comes from the front and stays there: to a depth, a travel or a force all counts, however deep,
 //! so that no taxel of a flat patch is deflected less the deeper it is pressed. At a pose without such a way ([`press_at_pose`],
-//! [`press_with_contacts`]) a sphere whose centre is behind the substrate (`h < −s − ρ`) is on the far side of the skin and does not
-//! count, nor what of a mesh touches a taxel only there, unless the substrate is inside of the mesh. In a time loop, and on the way of
-//! a press, what pushed a taxel in the step before goes on pushing it.
+//! [`press_with_contacts`]) and to free objects a sphere or a mesh counts until it is wholly behind the substrate, as far as that taxel can
+//! tell: a taxel that rests on its far side would be further back than the substrate is, `h + √(S² − b²) < −s − ρ`. So a ball that
+//! goes through a skin leaves it taxel by taxel. In a time loop, and on the way of a press, what pushed a taxel in the step before
+//! goes on pushing it.
 //!
 //! A taxel that would have to go further than its stroke s is saturated: counted in [`Contact`], never hidden.
 //!

@@ -58,34 +58,34 @@ impl<'a> PlacedUnion<'a> {
     }
 }
 
-/// How far a sphere, which may be behind the substrate, needs a taxel to be pushed, metres, zero or less if it does not meet it; and the sphere's
-/// height along the taxel's axis, metres. `from`: the sphere's centre to the taxel's; `frame`: across the axis, twice, and along it, unit; `reach`: both
-/// radii, metres.
+/// How far a sphere needs a taxel to be pushed, metres, zero or less if it does not meet it or is behind its substrate, which is at height
+/// `behind` along its axis. `from`: the sphere's centre to the taxel's; `frame`: across the axis, twice, and along it, unit; `reach`: both radii,
+/// metres.
 ///
 /// The order of the operations is that of the grid kernel, so that both agree to the last bit on a grid.
 #[inline(always)]
-pub(super) fn needed_along(from: DVec3, frame: [DVec3; 3], reach: f64) -> [f64; 2] {
+pub(super) fn needed_along(from: DVec3, frame: [DVec3; 3], reach: f64, behind: f64) -> f64 {
     let [across_x, across_y, axis] = frame;
     let (dx, dy, height) = (from.dot(across_x), from.dot(across_y), -from.dot(axis));
     let q = reach * reach - dy * dy - dx * dx;
     let depth = q.max(0.0).sqrt() - height;
-    [if q > 0.0 { depth } else { 0.0 }, height]
+    let gap = (behind - height).max(0.0);
+    if q > gap * gap { depth } else { 0.0 }
 }
 
 /// The same of each taxel of a leaf and a sphere in the patch frame.
 #[inline(always)]
-pub(super) fn needed_of_leaf(leaf: &Leaf, sphere: &Sphere) -> [[f64; LEAF]; 2] {
-    let [mut needed, mut heights] = [[0.0; LEAF]; 2];
-    for k in 0..LEAF {
+pub(super) fn needed_of_leaf(leaf: &Leaf, sphere: &Sphere) -> [f64; LEAF] {
+    let mut needed = [0.0; LEAF];
+    for (k, needed) in needed.iter_mut().enumerate() {
         let from = leaf.vector(&leaf.centers, k) - sphere.center;
         let frame = [
             leaf.vector(&leaf.across[0], k),
             leaf.vector(&leaf.across[1], k),
             leaf.vector(&leaf.axes, k),
         ];
-        let [depth, height] = needed_along(from, frame, leaf.radii[k] + sphere.radius);
-        needed[k] = depth;
-        heights[k] = height;
+        let reach = leaf.radii[k] + sphere.radius;
+        *needed = needed_along(from, frame, reach, leaf.behind[k]);
     }
-    [needed, heights]
+    needed
 }

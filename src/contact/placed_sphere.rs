@@ -162,6 +162,30 @@ impl PlacedSphere {
         }
     }
 
+    /// The same of a sphere whose centre is behind the substrate by a `gap`, metres: it pushes the taxels whose substrates are inside of it.
+    #[cold]
+    pub fn raise_through(&self, lines: &GridLines, gap: f64, sheet: &mut Sheet) {
+        let reach2 = self.reach * self.reach;
+        let half_width = (reach2 - gap * gap).max(0.0).sqrt();
+        let columns = lines.x.within(self.center.x, half_width);
+        let rows = lines.y.within(self.center.y, half_width);
+        if columns.is_empty() || rows.is_empty() {
+            return;
+        }
+        sheet.cover(&rows, &columns);
+        for row in rows {
+            let dy = lines.y.positions[row] - self.center.y;
+            let taxels = sheet.row(row, columns.clone()).iter_mut();
+            for (deflection, x) in taxels.zip(&lines.x.positions[columns.clone()]) {
+                let dx = x - self.center.x;
+                let q = reach2 - dy * dy - dx * dx;
+                if q > gap * gap {
+                    *deflection = deflection.max(q.sqrt() - self.center.z);
+                }
+            }
+        }
+    }
+
     /// N blocks from column `first` of each row.
     #[inline(always)]
     fn raise_square<const N: usize>(
@@ -228,15 +252,17 @@ impl PlacedSphere {
         }
     }
 
-    /// Raises the deflections to what the sphere needs with its centre where it is, and marks those that it has raised.
+    /// Raises the deflections to what the sphere needs with its centre where it is, and marks those that it has raised. Where it is behind the
+    /// substrate, which is at height `behind`, it does not count.
     pub fn raise_and_mark<M: Copy>(
         &self,
         lines: &GridLines,
+        behind: f64,
         deflections: &mut [f64],
-        mark: M,
-        marks: &mut [M],
+        (mark, marks): (M, &mut [M]),
     ) {
         let height = self.center.z;
+        let gap = (behind - height).max(0.0);
         self.each_row(lines, height, |taxels, places, row_reach2| {
             let taxels = deflections[taxels.clone()]
                 .iter_mut()
@@ -244,6 +270,9 @@ impl PlacedSphere {
             for ((deflection, marked), x) in taxels.zip(places) {
                 let dx = x - self.center.x;
                 let q = row_reach2 - dx * dx;
+                if q <= gap * gap {
+                    continue;
+                }
                 let bar = (height + *deflection).max(0.0);
                 if q > bar * bar * ALMOST {
                     let needed = q.sqrt() - height;

@@ -153,11 +153,9 @@ pub fn press_to_force(
 
 /// Presses a patch on objects, right where they are: poses are `patch_from_object`, one an object.
 ///
-/// Each sphere counts as the contact stage's title page says, for each taxel by itself. A mesh counts with all triangles but
-/// those that touch the taxel only behind its substrate (lower than −s − ρ along its axis), unless the substrate is inside
-/// of the mesh there: so what a forearm rests on does not press on its other side. What has gone far past the stroke lies there, too,
-/// unless it is known how it came ([`press_to_depth`]). A single part decides each touched
-/// taxel; where two need the same, the object that comes first, and of a union the first of its spheres.
+/// What is behind the substrate does not count (the contact stage's title page has the rule), for each taxel by itself: so what a forearm
+/// rests on does not press on its other side. What has gone far past the stroke lies there, too, unless it is known how it came
+/// ([`press_to_depth`]). A single part decides each touched taxel; where two need the same, the object that comes first, and of a union the first of its spheres.
 ///
 /// ```
 /// use bubbletouch::contact::{Workspace, press_with_contacts, spring_load};

@@ -43,7 +43,7 @@ fn run(search: &mut SphereSearch, placed: &Placed, goal: Goal) -> f64 {
         }
         Goal::Pose => {
             search.gather(placed.objects, 0.0, |sphere| {
-                sphere.center.z >= placed.behind
+                sphere.center.z + sphere.reach > placed.behind
             });
             f64::INFINITY
         }

@@ -80,11 +80,12 @@ fn push_held(
                 let from = taxel.center - pose.transform_point(center);
                 let [across_x, across_y] = taxel.across;
                 let frame = [across_x, across_y, taxel.axis];
-                let [needed, height] = needed_along(from, frame, taxel.radius + radius);
-                if height >= taxel.behind {
+                let needed = |behind| needed_along(from, frame, taxel.radius + radius, behind);
+                // In front of the substrate it has pushed already.
+                if needed(taxel.behind) > 0.0 {
                     continue;
                 }
-                needed
+                needed(f64::NEG_INFINITY)
             }
             Model::Mesh(mesh) => {
                 let stop = MeshAt::new(mesh, pose).stop_by(&taxel, part);
@@ -118,12 +119,9 @@ fn push_along_rows(
         let Some(placed) = view.place(&union.spheres()[number as usize], 0.0) else {
             continue;
         };
-        if placed.center.z < behind {
-            continue;
-        }
-        is_near = true;
         let mark = [object as u32, number];
-        placed.raise_and_mark(lines, deflections, mark, deciding);
+        is_near = true;
+        placed.raise_and_mark(lines, behind, deflections, (mark, deciding));
     }
     if !is_near {
         return;
@@ -154,8 +152,8 @@ fn push_by_each(
         taxels.each_leaf(
             |node| node.is_near(sphere.center, sphere.radius),
             |leaf| {
-                let [needed, heights] = needed_of_leaf(leaf, &sphere);
-                let pushes = |k: usize| (needed[k] > 0.0) & (heights[k] >= leaf.behind[k]);
+                let needed = needed_of_leaf(leaf, &sphere);
+                let pushes = |k: usize| needed[k] > 0.0;
                 if (0..LEAF).fold(false, |any, k| any | pushes(k)) {
                     for k in (0..LEAF).filter(|&k| pushes(k)) {
                         workspace.push(leaf.numbers[k], needed[k], deciding);

@@ -15,6 +15,9 @@ pub mod human_touch {}
 #[doc = include_str!("../../guide/reconstruction.md")]
 pub mod reconstruction {}
 
+#[doc = include_str!("../../guide/recorded_frames.md")]
+pub mod recorded_frames {}
+
 #[doc = include_str!("../../guide/scenes.md")]
 pub mod scenes {}
 

@@ -1,7 +1,7 @@
 //! Where a study comes from, and what overrides it.
 
 use crate::error::{Error, Result};
-use crate::study::ObjectsSpec;
+use crate::study::{ObjectsSpec, RecordedSpec};
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
@@ -64,6 +64,17 @@ impl Source {
             objects.meshes = None;
         } else {
             objects.meshes = Some(given.clone());
+        }
+    }
+
+    /// Looks for recorded frames in the folder that was asked for.
+    pub fn replace_recorded(&self, recorded: &mut RecordedSpec) {
+        let Some(folder) = &self.objects else {
+            return;
+        };
+        let files = [&mut recorded.frames, &mut recorded.labels];
+        for file in files.into_iter().chain(&mut recorded.groups) {
+            *file = folder.join(&*file);
         }
     }
 

@@ -3,6 +3,7 @@
 //! | room | enters | leaves |
 //! |---|---|---|
 //! | [`data`] | features y (n_rows × m), labels `0..n_classes` | a checked [data set](data::dataset), [split](data::split) into training and test rows, on one [scale](data::scaling) |
+//! | [`features`] | frames, or measurements of them | what does not change with constant pressure, stiffness, place or turn |
 //! | [`classifiers`] | training rows | a [trained classifier](classifiers::trained_classifier) of any [kind](ClassifierKind) |
 //! | [`svm`] | training rows | soft-margin [SVMs](svm), and the [choice](svm::cross_validation::choice) of their C and γ |
 //! | [`evaluation`] | labels | a [confusion matrix](evaluation::metrics), [fused](evaluation::fusion) touches |
@@ -36,6 +37,7 @@
 pub mod classifiers;
 pub mod data;
 pub mod evaluation;
+pub mod features;
 pub mod statistics;
 pub mod svm;
 

@@ -1,12 +1,25 @@
 //! What an ensemble says of itself, and what a drawn map does.
 
 use super::Ensemble;
+use crate::error::Result;
 use crate::random::Seed;
 use ndarray::{Array2, ArrayView2, ArrayViewMut2};
 use std::fmt::Debug;
 
 /// Draws the map of an ny × nx array to m measurements, 1 ≤ m ≤ n, from its own stream.
 pub type Draw = fn((usize, usize), usize, &Seed) -> Box<dyn Operator>;
+
+/// Learns it from frames (n_frames × n), of which there are some.
+pub type Learn = fn(ArrayView2<f64>, usize, &Seed) -> Result<Box<dyn Operator>>;
+
+/// Where a map comes from.
+#[derive(Clone, Copy, Debug)]
+pub enum Source {
+    /// It is drawn, or known.
+    Drawn(Draw),
+    /// It is learned from frames that training touches read.
+    Learned(Learn),
+}
 
 /// An ensemble of measurements.
 #[derive(Debug)]
@@ -23,8 +36,8 @@ pub struct EnsembleAbout {
     pub bytes: fn(f64, f64) -> f64,
     /// About how many seconds it takes for one taxel of a frame among many, by m and n.
     pub taxel_s: fn(f64, f64) -> f64,
-    /// Draws the map of an ny × nx array to m measurements, 1 ≤ m ≤ n, from its own stream.
-    pub draw: Draw,
+    /// Where a map comes from.
+    pub source: Source,
 }
 
 impl EnsembleAbout {
@@ -37,7 +50,7 @@ impl EnsembleAbout {
             needs_rows: false,
             bytes: |_, n| 16.0 * n,
             taxel_s: |_, _| 5e-10,
-            draw,
+            source: Source::Drawn(draw),
         }
     }
 }
@@ -68,6 +81,11 @@ impl Ensemble {
     /// Whether the first m measurements of a larger projection are those of the projection of size m.
     pub fn is_prefix_nested(self) -> bool {
         self.about().is_prefix_nested
+    }
+
+    /// Whether its map is learned from frames of training touches.
+    pub fn is_learned(self) -> bool {
+        matches!(self.about().source, Source::Learned(_))
     }
 
     /// The number of measurements of an array of n taxels where m are asked for: n, of a whole frame.

@@ -39,6 +39,18 @@ impl Lmmse {
     /// # Errors
     /// A dictionary that has seen no training frames; σ negative or not finite; training frames, or a projection, that are zero.
     pub fn new(sensed: &SensedDictionary, noise_std: f64) -> Result<Self> {
+        Self::shrunk(sensed, noise_std, None)
+    }
+
+    /// The same with each coefficient (k) multiplied by a number from 0 to 1.
+    ///
+    /// # Errors
+    /// Those of [`new`](Self::new).
+    pub(super) fn shrunk(
+        sensed: &SensedDictionary,
+        noise_std: f64,
+        shrinkage: Option<&Array1<f64>>,
+    ) -> Result<Self> {
         let dictionary = sensed.dictionary();
         let energy = dictionary.energy().ok_or_else(|| {
             let given = "a dictionary that has seen no training frames";
@@ -67,7 +79,10 @@ impl Lmmse {
             )
         })?;
         // m × k: a row of measurements times this is a row of coefficients.
-        let to_coefficients = factor.solve(weighted.t());
+        let mut to_coefficients = factor.solve(weighted.t());
+        if let Some(shrinkage) = shrinkage {
+            to_coefficients *= shrinkage;
+        }
         Ok(Self::of(sensed, to_coefficients))
     }
 
@@ -95,11 +110,16 @@ impl Lmmse {
     /// # Panics
     /// When a row does not have m values.
     pub fn estimate(&self, measurements: ArrayView2<f64>) -> Array2<f64> {
-        let mut frames = match &self.form {
-            Form::Direct(matrix) => measurements.dot(matrix),
-            Form::Through(first, second) => measurements.dot(first).dot(second),
-        };
+        let mut frames = self.linear(measurements);
         frames += &self.constant;
         frames
+    }
+
+    /// Its linear part: what measurements add to the estimate of measurements of zero.
+    pub(super) fn linear(&self, measurements: ArrayView2<f64>) -> Array2<f64> {
+        match &self.form {
+            Form::Direct(matrix) => measurements.dot(matrix),
+            Form::Through(first, second) => measurements.dot(first).dot(second),
+        }
     }
 }

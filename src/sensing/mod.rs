@@ -12,6 +12,8 @@
 //! | [`Sbhe`](Ensemble::Sbhe) | ±1/√B on the B taxels of a scrambled block \[SBHE\] | 1 | n + m indices |
 //! | [`BlockAverage`](Ensemble::BlockAverage) | 1/area on a rectangle of taxels | 1/√area | m rectangles |
 //! | [`Subsample`](Ensemble::Subsample) | one taxel | 1 | m indices |
+//! | [`Fourier`](Ensemble::Fourier) | a cosine or sine of a low frequency, ±√2/√n at most | 1 | m × n numbers |
+//! | [`PrincipalComponents`](Ensemble::PrincipalComponents) | a principal component of training frames | 1 | m × n numbers |
 //! | [`Identity`](Ensemble::Identity) | one taxel, all n in order | 1 | nothing |
 //!
 //! **Scale.** No entry depends on m. So √(n/m)·Φ preserves norms on average (Johnson and Lindenstrauss) for the random
@@ -49,6 +51,7 @@ mod dense;
 mod dictionary;
 #[macro_use]
 mod ensemble;
+mod image_estimate;
 mod lasso;
 mod lmmse;
 mod omp;
@@ -68,13 +71,16 @@ ensembles! {
     Sbhe sbhe "Scrambled block Hadamard \\[SBHE\\]: taxels permuted, Walsh–Hadamard transforms of blocks, coefficients in random order.";
     BlockAverage block_average "Averages over blocks of neighbouring taxels: equal squares where the array allows them (64 × 64 at m = 1,024 is 2 × 2 taxels each), else the cells of recursive splitting, largest first, along its longer side. A cell of a smaller m is a union of cells of a larger m, so the smaller measurements follow from the larger, among all m of splitting and among squares whose sides divide each other (ratios 4, 16, 64 …).";
     Subsample subsample "Some taxels, drawn without replacement.";
+    Fourier fourier "The lowest Fourier coefficients: products of cosines and sines, the lowest frequencies first.";
+    PrincipalComponents principal_components "The first principal components of frames that training touches read: directions in which they differ most.";
     Identity identity "The frame itself, whatever m.";
 }
 
 pub use coherence::{Coherence, Extremes};
 pub use columns::Columns;
 pub use dictionary::{Basis, Dictionary, Energy};
-pub use ensemble::{Draw, EnsembleAbout, Operator};
+pub use ensemble::{Draw, EnsembleAbout, Learn, Operator, Source};
+pub use image_estimate::{ImageEstimate, N_COMPONENTS, Readings};
 pub use lasso::Lasso;
 pub use lmmse::Lmmse;
 pub use omp::Omp;

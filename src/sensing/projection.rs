@@ -1,7 +1,7 @@
 //! One prepared projection of any ensemble.
 
 use super::Ensemble;
-use super::ensemble::Operator;
+use super::ensemble::{Operator, Source};
 use super::sbhe::ScrambledHadamard;
 use crate::error::{Error, Result};
 use crate::random::Seed;
@@ -35,14 +35,44 @@ impl Projection {
     /// [`Ensemble::Identity`] has n measurements whatever m.
     ///
     /// # Errors
-    /// An array without taxels; m = 0 or m > n.
+    /// An array without taxels; m = 0 or m > n; an ensemble that is learned.
     pub fn new(ensemble: Ensemble, grid: (usize, usize), m: usize, seed: &Seed) -> Result<Self> {
         let n = check_size(grid, m)?;
+        let Source::Drawn(draw) = ensemble.about().source else {
+            let given = format!("{}, which are learned from touches", ensemble.about().words);
+            return Err(Error::input("ensemble", given, "an ensemble that is drawn"));
+        };
         Ok(Self {
             ensemble,
             n_taxels: n,
             n_measurements: ensemble.n_measurements(m, n),
-            operator: (ensemble.about().draw)(grid, m, seed).into(),
+            operator: draw(grid, m, seed).into(),
+        })
+    }
+
+    /// The same of any ensemble, beside frames that training touches read (n_frames × n): learned from them, where it is learned.
+    ///
+    /// # Errors
+    /// An array without taxels; m = 0 or m > n; fewer than m directions in which frames differ.
+    ///
+    /// # Panics
+    /// When a frame does not have n values.
+    pub fn learned(
+        ensemble: Ensemble,
+        grid: (usize, usize),
+        m: usize,
+        (frames, seed): (ArrayView2<f64>, &Seed),
+    ) -> Result<Self> {
+        let Source::Learned(learn) = ensemble.about().source else {
+            return Self::new(ensemble, grid, m, seed);
+        };
+        let n = check_size(grid, m)?;
+        assert_eq!(frames.ncols(), n, "taxels in a frame");
+        Ok(Self {
+            ensemble,
+            n_taxels: n,
+            n_measurements: m,
+            operator: learn(frames, m, seed)?.into(),
         })
     }
 

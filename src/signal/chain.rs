@@ -98,6 +98,11 @@ impl Chain {
         Self::at_rest(patch, Quantity::Force, true)?.with(&steps, patch)
     }
 
+    /// The most that a taxel reads: its stroke, or the force at it; of what the frames are when the chain has read them.
+    pub fn full_scale(&self) -> f64 {
+        self.quantity.full_scale(&self.taxel)
+    }
+
     /// Without steps.
     fn at_rest(patch: &Patch, quantity: Quantity, is_signed: bool) -> Result<Self> {
         Ok(Self {

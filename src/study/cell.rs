@@ -3,8 +3,8 @@
 use super::axes::AxisValues;
 use super::sensor_errors::{Strengths, TestedOn, strength_columns};
 use crate::recognition::ClassifierKind;
-use crate::recognition::data::features::Features;
 use crate::recognition::data::over_time::OverTime;
+use crate::recognition::features::Features;
 use crate::sensing::Ensemble;
 use crate::signal::NoiseUnit;
 use crate::table::{Column, Columns, Role, Scale};
@@ -12,7 +12,6 @@ use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 use std::borrow::Cow;
 
-const FEATURES: &[(&str, &str)] = &[("centred_unit_norm", "centred, unit norm")];
 const OVER_TIME: &[(&str, &str)] = &[
     ("", "all frames"),
     ("deepest", "deepest frame"),
@@ -55,6 +54,8 @@ pub struct Cell {
     pub over_time: Option<OverTime>,
     /// What is made of the measurements.
     pub features: Features,
+    /// How far behind the foremost point features of images see, as a fraction of the full scale; only if the study has the key.
+    pub foremost_full_scale: Option<f64>,
     /// Which classifier.
     pub classifier: ClassifierKind,
     /// Soft-margin penalty C; empty when it is chosen by cross-validation, or when the classifier has none.
@@ -99,7 +100,9 @@ impl Serialize for Cell {
         put_if_there!(tested_on);
         put!(ensemble, measurements, ratio, frames);
         put_if_there!(over_time);
-        put!(features, classifier, c, train_touches);
+        put!(features);
+        put_if_there!(foremost_full_scale);
+        put!(classifier, c, train_touches);
         put_if_there!(mislabelled_fraction, class_imbalance);
         put!(fused_touches);
         for axis in self.variant.values.iter() {
@@ -137,7 +140,8 @@ impl Columns for Cell {
             Column::new("over_time", Choice, "over time", "", Words)
                 .named(OVER_TIME)
                 .optional(),
-            Column::new("features", Choice, "features", "", Words).named(FEATURES),
+            Column::new("features", Choice, "features", "", Words).named(Features::NAMES),
+            Column::new("foremost_full_scale", Choice, "foremost", "%", Share).optional(),
             Column::new("classifier", Choice, "classifier", "", Words).named(ClassifierKind::NAMES),
             Column::new("c", Choice, "C", "", Log).named(CHOSEN),
             Column::new("train_touches", Choice, "training touches", "", Log),
@@ -150,9 +154,15 @@ impl Columns for Cell {
 }
 
 impl Cell {
+    /// Numbers that each of its frames is told by.
+    pub fn n_frame_features(&self) -> usize {
+        let shape = (self.ny, self.nx);
+        self.features.n_values(self.measurements, shape)
+    }
+
     /// Numbers that a touch is told by.
     pub fn n_features(&self) -> usize {
-        let (n_frames, m) = (self.frames, self.measurements);
+        let (n_frames, m) = (self.frames, self.n_frame_features());
         let all = n_frames * m;
         self.over_time
             .map_or(all, |kind| kind.n_features(n_frames, m))
@@ -182,6 +192,7 @@ pub(crate) mod tests {
             frames: 1,
             over_time: None,
             features: Features::Raw,
+            foremost_full_scale: None,
             classifier: ClassifierKind::LinearSvm,
             c: Some(1.0),
             train_touches: 75,

@@ -78,7 +78,7 @@ pub const COUNT: Range = Range::Count(1, MOST_COUNTED);
 pub const TOUCHES: Range = Range::Count(1, MOST_TOUCHES);
 
 /// The keys of the tables that kinds of study share, and what their numbers may be. A list has values, and none twice.
-const KEYS: [(&str, Range); 53] = [
+const KEYS: [(&str, Range); 54] = [
     ("objects.surface_error_mm", Range::Positive),
     ("objects.close_holes_mm", Range::Positive),
     ("objects.names", Range::Any),
@@ -111,6 +111,7 @@ const KEYS: [(&str, Range); 53] = [
     ("sensing.ratio", Range::AtLeastOne),
     ("sensing.measurements", COUNT),
     ("recognition.features", Range::Any),
+    ("recognition.foremost_full_scale", Range::Positive),
     ("recognition.over_time", Range::Any),
     ("recognition.classifier", Range::Any),
     ("recognition.c", Range::Positive),

@@ -94,7 +94,7 @@ impl StudyPart {
         let touched = self.touched.as_ref();
         let frames = touched.simulate(on, &FramePlace::Memory, progress)?;
         let touches = (touched as _, &frames);
-        measure_group(&self.plan, group, touches, trial, n_measurements)
+        measure_group(&self.plan, group, touches, trial, (n_measurements, None))
     }
 
     /// Writes the measurements of one cell in one trial into a folder that exists.

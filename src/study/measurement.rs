@@ -1,6 +1,7 @@
 //! Frames → signal → measurements, for one condition of the signal, ensemble and trial.
 
 use super::frames::Frames;
+use super::images::Images;
 use super::plan::Plan;
 use super::sensed::of_channel;
 use super::sensor_errors::{TestedOn, skin};
@@ -11,11 +12,12 @@ use super::touch_set::TouchSet;
 use crate::error::Result;
 use crate::random::Seed;
 use crate::recognition::data::split::Split;
-use crate::sensing::Projection;
+use crate::sensing::{Ensemble, Projection, Readings};
 use crate::signal::{Chain, Noise, Recording, Scratch, SignalStep};
 use crate::world::Taxel;
 use ndarray::{Array1, Array2, ArrayView2, ArrayViewMut2, Axis, s};
 use rayon::prelude::*;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// Frames measured together: one matrix product. Fixed, so that results do not depend on the number of threads.
@@ -30,8 +32,19 @@ pub struct Measurements {
     pub n_frames: usize,
     /// Φ1 (m): what a frame of ones measures.
     pub of_ones: Array1<f64>,
+    /// Φ, and how images are made of measurements.
+    pub sensed: Arc<SensedBy>,
     /// Processor-seconds, summed over threads.
     pub cpu_s: f64,
+}
+
+/// What measures a group in a trial, with all that is learned of training touches for it.
+#[derive(Clone, Debug)]
+pub struct SensedBy {
+    /// The ensemble's matrix.
+    pub projection: Projection,
+    /// Images of what is measured, where any cell's features are of images.
+    pub images: Option<Images>,
 }
 
 /// What a reading is made with, the same for all frames.
@@ -57,7 +70,7 @@ impl Measurements {
             return rows;
         };
         // One touch at a time, since all frames of all touches may be many.
-        let m = cell.measurements;
+        let m = cell.n_frame_features();
         let mut frames = Array2::zeros((1, self.n_frames * m));
         for (row, touch) in rows.outer_iter_mut().zip(touches) {
             self.read_into(cell, &[*touch], frames.view_mut());
@@ -70,6 +83,10 @@ impl Measurements {
     /// All frames of some touches one after the other, as the cell's kind of features: n × F·m.
     fn read_into(&self, cell: &Cell, touches: &[usize], mut rows: ArrayViewMut2<f64>) {
         let m = cell.measurements;
+        if let (Some(join), Some(images)) = (cell.features.of_image(), &self.sensed.images) {
+            let wanted = (join, cell.foremost_full_scale, m);
+            return images.features(wanted, (self, touches), rows);
+        }
         for (mut row, touch) in rows.outer_iter_mut().zip(touches) {
             for (frame, mut part) in row.exact_chunks_mut(m).into_iter().enumerate() {
                 let place = touch * self.n_frames + frame;
@@ -118,7 +135,7 @@ pub fn touches_to_read<'a>(
 }
 
 /// Reads and projects all frames of a group in one trial, to a number of measurements among
-/// [`Group::projected`](super::Group::projected).
+/// [`Group::projected`](super::Group::projected). Φ and all that is learned for features is the trial's own, or `sensed` by another.
 ///
 /// # Errors
 /// What a signal step or the projection refuses.
@@ -127,37 +144,128 @@ pub fn measure_group(
     group: &Group,
     (touched, frames): (&dyn TouchSet, &Frames),
     (trial, split): (usize, &Split),
-    n_measurements: usize,
+    (n_measurements, sensed): (usize, Option<&Arc<SensedBy>>),
 ) -> Result<Measurements> {
     let array = &plan.arrays[group.array];
     let seed = Seed::new(plan.spec.seed);
-    let drawn = plan.spec.projection_of(trial) as u64;
-    let drawn = seed.named("projection").numbered(drawn);
-    let trial = trial as u64;
-    let projection = Projection::new(group.ensemble, array.frame_shape(), n_measurements, &drawn)?;
-    let skins = skins(plan, group, trial);
+    let skins = skins(plan, group, trial as u64);
     let chains = |skin| array.chains(skin, |skin| signal_steps(plan, group, skin));
     let chains = skins.iter().map(chains).collect::<Result<Vec<_>>>()?;
-    let reading = Reading {
-        chains: &chains,
-        projection: &projection,
-        taxel: *array.taxel(),
-        speed: plan.speed,
-    };
-    let signal = seed.named("signal").numbered(trial);
+    let signal = seed.named("signal").numbered(trial as u64);
     let n_frames = frames.facts.n_frames;
     let mut touches = touched.to_read(plan, n_frames, &signal);
     for &touch in &split.test {
         touches[touch].skin = skins.len() - 1;
     }
+    let whole = Projection::new(
+        Ensemble::Identity,
+        array.frame_shape(),
+        array.n_values(),
+        &seed,
+    )?;
+    let reading = Reading {
+        chains: &chains,
+        projection: &whole,
+        taxel: *array.taxel(),
+        speed: plan.speed,
+    };
+    let sensed = match sensed {
+        Some(sensed) => Arc::clone(sensed),
+        None => {
+            let read = (reading, frames, &touches[..]);
+            Arc::new(sensed_by(
+                plan,
+                group,
+                read,
+                (trial, split),
+                n_measurements,
+            )?)
+        }
+    };
+    let reading = Reading {
+        projection: &sensed.projection,
+        ..reading
+    };
     let (values, cpu_s) = measure(reading, frames, &touches)?;
     let ones = Array2::ones((1, array.n_values()));
     Ok(Measurements {
         values,
         n_frames,
-        of_ones: projection.measure(ones.view()).row(0).to_owned(),
+        of_ones: sensed.projection.measure(ones.view()).row(0).to_owned(),
+        sensed,
         cpu_s,
     })
+}
+
+/// Draws Φ in a trial, or learns it, and what makes images of measurements, from training touches.
+fn sensed_by(
+    plan: &Plan,
+    group: &Group,
+    (whole, frames, touches): (Reading, &Frames, &[TouchToRead]),
+    (trial, split): (usize, &Split),
+    n_measurements: usize,
+) -> Result<SensedBy> {
+    let shape = plan.arrays[group.array].frame_shape();
+    let drawn = plan.spec.projection_of(trial) as u64;
+    let drawn = Seed::new(plan.spec.seed)
+        .named("projection")
+        .numbered(drawn);
+    if !group.learns() {
+        let projection = Projection::new(group.ensemble, shape, n_measurements, &drawn)?;
+        return Ok(SensedBy {
+            projection,
+            images: None,
+        });
+    }
+    // Of whole touches, so many that their frames are enough; the split has one of each object in turn.
+    let n_touches = LEARNED_FRAMES.div_ceil(frames.facts.n_frames.max(1));
+    let learned = split.train.iter().take(n_touches);
+    let learned: Vec<TouchToRead> = learned.map(|&touch| touches[touch]).collect();
+    let (training, _) = measure(whole, frames, &learned)?;
+    let learn = |m| Projection::learned(group.ensemble, shape, m, (training.view(), &drawn));
+    let projection = learn(n_measurements)?;
+    let mut images = None;
+    if group.needs_images() {
+        let untouched = untouched(whole, trial, plan.spec.seed);
+        let readings = Readings {
+            training: training.view(),
+            untouched: untouched.view(),
+        };
+        let is_served =
+            |m: &usize| projection.ensemble().is_prefix_nested() || *m == n_measurements;
+        let counts = group.counts_of_images().into_iter().filter(is_served);
+        let projections = counts.map(|m| match m == n_measurements {
+            true => Ok(projection.clone()),
+            false => learn(m),
+        });
+        let projections = projections.collect::<Result<Vec<_>>>()?;
+        let full_scale = whole.chains[0][0].full_scale();
+        images = Some(Images::new(
+            &projections,
+            (shape, full_scale),
+            readings,
+            &drawn,
+        )?);
+    }
+    Ok(SensedBy { projection, images })
+}
+
+/// Frames that images are learned from, at most: with fewer the estimate has less to go by than it has components, and more take longer.
+pub const LEARNED_FRAMES: usize = 4096;
+/// Readings of the untouched skin: noise along a component is known to √(2 / 256) = 9 %.
+pub const UNTOUCHED: usize = 256;
+
+/// What the skin of training touches reads when nothing touches it (readings × n).
+fn untouched(whole: Reading, trial: usize, seed: u64) -> Array2<f64> {
+    let seed = Seed::new(seed).named("untouched").numbered(trial as u64);
+    let mut readings = Array2::zeros((UNTOUCHED, whole.projection.n_taxels()));
+    let mut scratch = Scratch::default();
+    for (number, mut row) in readings.outer_iter_mut().enumerate() {
+        let frame = row.as_slice_mut().expect("rows are whole");
+        let named = seed.numbered(number as u64);
+        whole.chains[0][0].apply(frame, None, &named, &mut scratch);
+    }
+    readings
 }
 
 /// The study's steps in this group's condition, on a skin.

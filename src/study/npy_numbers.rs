@@ -1,7 +1,7 @@
 //! Numbers out of `.npy` files, whatever NumPy wrote them as.
 
 use crate::error::{Error, Result};
-use ndarray::{Array, Array1, Array2, Dimension};
+use ndarray::{Array, Array1, Array2, Dimension, IxDyn};
 use ndarray_npy::{ReadNpyError, ReadNpyExt, ReadableElement};
 use std::fs::File;
 use std::io::BufReader;
@@ -22,6 +22,36 @@ enum Elements {
 pub fn read_matrix(path: &Path) -> Result<Array2<f64>> {
     const WHAT: &str = "n × m of float64, float32, int8 to int64, uint8 to uint32 or bool";
     Ok(read(path, WHAT)?.0)
+}
+
+/// Reads frames of any type of float, integer or bool, one after the other whatever the dimensions of the file: so many rows of so many numbers.
+///
+/// # Errors
+/// No such file; no `.npy` file of so many numbers of one of these types.
+pub fn read_frames(path: &Path, shape: (usize, usize)) -> Result<Array2<f64>> {
+    const WHAT: &str = "n × rows × columns or n × F × rows × columns of float64, float32, int8 to int64, uint8 to uint32 or bool";
+    let (frames, _) = read::<IxDyn>(path, WHAT)?;
+    let given = format!("{} numbers", frames.len());
+    let frames = frames.as_standard_layout().into_owned();
+    let frames = frames.into_shape_with_order(shape);
+    frames.map_err(|_| Error::input(path.display(), given, format!("a .npy file, {WHAT}")))
+}
+
+/// Reads whole numbers from zero on, one dimension of them.
+///
+/// # Errors
+/// No such file; another type, or other dimensions; a number below zero, by its position.
+pub fn read_whole_numbers(path: &Path) -> Result<Vec<usize>> {
+    const WHAT: &str = "one dimension of int8 to int64, uint8 to uint32 or bool";
+    let (numbers, elements): (Array1<f64>, _) = read(path, WHAT)?;
+    if elements == Elements::Floats {
+        return Err(wrong_type(path, WHAT));
+    }
+    if let Some(position) = numbers.iter().position(|&number| number < 0.0) {
+        let place = format!("{}, position {position}", path.display());
+        return Err(Error::input(place, numbers[position], "zero or more"));
+    }
+    Ok(numbers.iter().map(|&number| number as usize).collect())
 }
 
 /// Reads a class for each row of features, below the number of rows; of two classes also false and true.

@@ -55,15 +55,17 @@ impl Plan {
         check.count("trials", spec.trials, MOST_TRIALS)?;
         check.layout(&spec)?;
         check.shear(&spec)?;
-        let arrays = check.touching_arrays(&spec.skin, &spec.touches)?;
+        let arrays = match &spec.recorded {
+            Some(recorded) => check.recorded(recorded, &spec)?,
+            None => check.touching_arrays(&spec.skin, &spec.touches)?,
+        };
         check.human_touch(&spec, &arrays)?;
-        let placement = match spec.human_touch {
-            // It places no objects.
-            Some(_) => check.placed(&TouchesSpec {
+        let placement = match spec.places_objects() {
+            false => check.placed(&TouchesSpec {
                 depth_mm: SpreadSpec::One(1.0),
                 ..TouchesSpec::default()
             })?,
-            None => {
+            true => {
                 check.objects(&spec.objects)?;
                 spec.objects.settle_surface_error(&arrays);
                 check.placed(&spec.touches)?
@@ -74,11 +76,13 @@ impl Plan {
         check.steps(&spec.signal)?;
         check.tested_on(&spec.signal)?;
         check.sensing(&spec.sensing, &arrays)?;
-        let frames = match &spec.human_touch {
-            Some(human) => vec![human.n_frames()],
-            None => spec.touches.frames.values(),
+        let frames = match (&spec.human_touch, &spec.recorded) {
+            (Some(human), _) => vec![human.n_frames()],
+            (_, Some(recorded)) => vec![recorded.shape()?[1]],
+            _ => spec.touches.frames.values(),
         };
         check.recognition(&spec.recognition)?;
+        check.images(&spec.recognition, &arrays)?;
         check.over_time(&spec.recognition, &frames)?;
         check.folds(&spec)?;
         check.repeats(&spec)?;

@@ -43,7 +43,7 @@ impl Check<'_> {
     /// What a study has instead of objects, if it has; and nothing that only objects have.
     pub fn human_touch(&self, spec: &StudySpec, arrays: &[TaxelArray]) -> Result<()> {
         let Some(human) = &spec.human_touch else {
-            if spec.touches == TouchesSpec::default() {
+            if spec.places_objects() && spec.touches == TouchesSpec::default() {
                 let allowed = "a table [touches]: how the objects are touched";
                 return Err(self.error("touches", "no such table", allowed));
             }

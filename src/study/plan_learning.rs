@@ -9,6 +9,7 @@ use super::taxel_array::TaxelArray;
 use crate::error::Result;
 use crate::recognition::ClassifierKind;
 use crate::recognition::data::over_time::OverTime;
+use crate::recognition::features::Features;
 
 /// What a classifier may have a use for.
 type Has = fn(ClassifierKind) -> bool;
@@ -114,6 +115,34 @@ impl Check<'_> {
         Ok(())
     }
 
+    /// Features of images: of one value a taxel, in rows and columns.
+    pub fn images(&self, recognition: &RecognitionSpec, arrays: &[TaxelArray]) -> Result<()> {
+        let mut features = recognition.features.values().into_iter();
+        let Some(features) = features.find(|features| features.of_image().is_some()) else {
+            return match &recognition.foremost_full_scale {
+                None => Ok(()),
+                Some(_) => {
+                    let given = "given, but no features of the study are of images";
+                    let allowed = "features of images, or no such key";
+                    Err(self.error("recognition.foremost_full_scale", given, allowed))
+                }
+            };
+        };
+        let is_image = |array: &&TaxelArray| array.is_image() && array.sensed().n_channels() == 1;
+        match arrays.iter().find(|array| !is_image(array)) {
+            None => Ok(()),
+            Some(array) => {
+                let given = match array.sensed().n_channels() > 1 {
+                    true => format!("{} of shear", String::from(features)),
+                    false => format!("{} of a {}", String::from(features), array.layout().words()),
+                };
+                let allowed = "features of measurements (raw, centred, unit_norm, centred_unit_norm): \
+                               those of images need rows and columns of one value a taxel";
+                Err(self.error("recognition.features", given, allowed))
+            }
+        }
+    }
+
     /// What is made of a touch's frames: no more of them than there are.
     pub fn over_time(&self, recognition: &RecognitionSpec, frames: &[usize]) -> Result<()> {
         let fewest = frames.iter().copied().min().unwrap_or(0);
@@ -156,6 +185,14 @@ impl RecognitionSpec {
     /// The fraction of touches held out for testing, where there are no folds.
     pub fn test_share(&self) -> f64 {
         self.test_fraction.unwrap_or(0.25)
+    }
+
+    /// How far behind the foremost point these features see: those of measurements know none.
+    pub fn foremost(&self, features: Features) -> Vec<Option<f64>> {
+        match features.of_image() {
+            Some(_) => Axis::of(&self.foremost_full_scale),
+            None => vec![None],
+        }
     }
 
     /// Folds of the cross-validation that chooses C and γ.

@@ -64,6 +64,18 @@ impl ObjectsSpec {
     }
 }
 
+impl SkinSpec {
+    /// Each taxel of an array with this pitch.
+    pub(super) fn taxel(&self, pitch_mm: f64) -> Taxel {
+        Taxel {
+            radius: self.taxel_radius_mm.unwrap_or(0.5 * pitch_mm) * MM,
+            stiffness: self.stiffness_n_per_m,
+            damping: self.damping_n_s_per_m,
+            stroke: self.stroke_mm * MM,
+        }
+    }
+}
+
 impl Check<'_> {
     pub fn objects(&self, objects: &ObjectsSpec) -> Result<()> {
         let given = self.table("objects", objects)?;
@@ -128,12 +140,7 @@ impl Check<'_> {
         let radius = skin.curvature_radius_mm.unwrap_or(0.0) * MM;
         let mut arrays = Vec::new();
         for pitch_mm in pitches {
-            let taxel = Taxel {
-                radius: skin.taxel_radius_mm.unwrap_or(0.5 * pitch_mm) * MM,
-                stiffness: skin.stiffness_n_per_m,
-                damping: skin.damping_n_s_per_m,
-                stroke: skin.stroke_mm * MM,
-            };
+            let taxel = skin.taxel(pitch_mm);
             for n in self.taxels_a_side(skin, pitch_mm)? {
                 let grid = Grid {
                     nx: n,

@@ -51,9 +51,7 @@ pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> R
         .ok_or_else(|| Error::input("study", "no cells", "at least one value an axis"))?;
     let on = &plan.arrays[group.array];
     let names: Vec<&str> = touched.iter().map(|t| t.object.name.as_str()).collect();
-    let n = N_SAMPLES.min(names.len());
-    let chosen = named_samples(plan, &names)?;
-    let chosen = chosen.unwrap_or_else(|| (0..n).map(|k| k * names.len() / n).collect());
+    let chosen = spread_samples(plan, &names)?;
     let before = chosen.last().copied().unwrap_or(0);
     let name = |label: usize| names[label].replace('_', " ");
     let array = on.describe_taxels();
@@ -189,6 +187,16 @@ fn loudest_group<'a>(plan: &Plan, sweep: &'a Sweep) -> Option<&'a Group> {
         let by_size = n_taxels(a).cmp(&n_taxels(b));
         by_size.then(a.condition.noise.total_cmp(&b.condition.noise))
     })
+}
+
+/// The same, or four that are spread over the list.
+///
+/// # Errors
+/// Those of [`named_samples`].
+pub(super) fn spread_samples(plan: &Plan, classes: &[&str]) -> Result<Vec<usize>> {
+    let n = N_SAMPLES.min(classes.len());
+    let spread = || (0..n).map(|k| k * classes.len() / n).collect();
+    Ok(named_samples(plan, classes)?.unwrap_or_else(spread))
 }
 
 /// Labels of those that the study names for its picture; `None` where it names none.

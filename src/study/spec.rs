@@ -7,13 +7,14 @@ use super::axis::Axis;
 use super::cell::Cell;
 use super::defaults::{count, number};
 pub use super::spec_human::*;
+pub use super::spec_recorded::*;
 pub use super::spec_scene::*;
 pub use super::spec_signal::*;
 use crate::error::Result;
 use crate::recognition::ClassifierKind;
-use crate::recognition::data::features::Features;
 use crate::recognition::data::over_time::OverTime;
 use crate::recognition::data::scaling::Scaling;
+use crate::recognition::features::Features;
 use crate::recognition::svm::{Multiclass, Solver};
 use crate::sensing::Ensemble;
 use crate::table::{Column, Columns};
@@ -47,6 +48,8 @@ pub struct StudySpec {
     pub touches: TouchesSpec,
     /// Instead of objects and how they are touched: which kind of touch is it?
     pub human_touch: Option<HumanTouchSpec>,
+    /// Instead of objects and how they are touched: what a skin has read.
+    pub recorded: Option<RecordedSpec>,
     /// What happens to a frame before it is sensed.
     #[serde(default)]
     pub signal: SignalSpec,
@@ -79,6 +82,7 @@ pub(crate) const MAY_CHANGE: &[&str] = &[
     "sensing.ratio",
     "sensing.measurements",
     "recognition.features",
+    "recognition.foremost_full_scale",
     "recognition.over_time",
     "recognition.classifier",
     "recognition.c",
@@ -121,10 +125,14 @@ pub struct SensingSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RecognitionSpec {
-    /// Axis: what is made of a touch's measurements before they are scaled. (Features of force: `"force"` among
-    /// `signal.steps`.)
+    /// Axis: what is made of a touch's measurements before they are scaled: `raw`, `centred`, `unit_norm`, `centred_unit_norm`; or features of
+    /// images, `fourier_magnitude`, `fourier_mellin`, `polar_harmonics`, `descriptors`, `aligned`, or several of these joined by `+`. (Features of
+    /// force: `"force"` among `signal.steps`.)
     #[serde(default = "default_features")]
     pub features: Axis<Features>,
+    /// Axis: features of images see only what is so far behind the foremost point, as a fraction of the full scale, as if each touch were pressed so
+    /// deep; all that is there when left out. A depth that was never learned then looks like one that was.
+    pub foremost_full_scale: Option<Axis<f64>>,
     /// Axis: what is made of the frames of a touch; all of them one after the other when left out. `deepest` frame, `stacked_8` evenly
     /// in time (or another number), `moments` of each measurement, `course` of the touch, or `summarised`: moments and course.
     pub over_time: Option<Axis<OverTime>>,
@@ -245,6 +253,11 @@ impl StudySpec {
     pub fn parse(place: &str, text: &str) -> Result<Self> {
         let (spec, axes) = axes::read::<Self>(place, text, AXIS_RULES)?;
         Ok(Self { axes, ..spec })
+    }
+
+    /// Whether it touches objects that it places.
+    pub fn places_objects(&self) -> bool {
+        self.human_touch.is_none() && self.recorded.is_none()
     }
 
     /// How many values each key has that is an axis where it stands, but for those of the signal, which may be combined in another way.

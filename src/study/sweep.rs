@@ -87,7 +87,7 @@ impl Group {
     pub fn families(&self) -> impl Iterator<Item = &[Cell]> {
         let family = |cell: &Cell| {
             let (m, kind) = (cell.measurements, cell.classifier);
-            let rows = (cell.over_time, cell.features);
+            let rows = (cell.over_time, cell.features, cell.foremost_full_scale);
             let spoiled = (cell.mislabelled_fraction, cell.class_imbalance);
             (m, rows, kind, cell.train_touches, spoiled)
         };
@@ -97,6 +97,30 @@ impl Group {
     /// The cells of a family by fit: those with the same C, of which the first speaks for all.
     pub fn fits(family: &[Cell]) -> impl Iterator<Item = &[Cell]> {
         family.chunk_by(|a, b| a.c == b.c)
+    }
+
+    /// Whether any cell's features are of images.
+    pub fn needs_images(&self) -> bool {
+        self.cells
+            .iter()
+            .any(|cell| cell.features.of_image().is_some())
+    }
+
+    /// Whether anything is learned from training touches before they are measured.
+    pub fn learns(&self) -> bool {
+        self.ensemble.is_learned() || self.needs_images()
+    }
+
+    /// The measurements that images are made of, each once, rising.
+    pub fn counts_of_images(&self) -> Vec<usize> {
+        let cells = self
+            .cells
+            .iter()
+            .filter(|cell| cell.features.of_image().is_some());
+        let mut counts: Vec<usize> = cells.map(|cell| cell.measurements).collect();
+        counts.sort_unstable();
+        counts.dedup();
+        counts
     }
 
     /// The measurements that serve every cell: of the largest m if smaller ones are its prefixes, else one set per m.
@@ -122,9 +146,10 @@ impl Sweep {
         named_samples(plan, &classes)?;
         let n_classes = classes.len();
         if n_classes < 2 {
-            let (place, given, allowed) = match plan.spec.human_touch {
-                Some(_) => ("key human_touch.kinds", "kind", "kinds"),
-                None => ("objects", "object", "objects"),
+            let (place, given, allowed) = match (&plan.spec.human_touch, &plan.spec.recorded) {
+                (Some(_), _) => ("key human_touch.kinds", "kind", "kinds"),
+                (_, Some(_)) => ("key recorded.labels", "class", "classes"),
+                _ => ("objects", "object", "objects"),
             };
             let given = format!("{n_classes} {given}");
             let allowed = format!("at least two, since recognition tells {allowed} apart");
@@ -133,7 +158,7 @@ impl Sweep {
         let labels = touched.labels();
         let together = plan.keep_together.as_ref();
         let keys = together.map(|together| touched.group_keys(together));
-        let keys = keys.transpose()?;
+        let keys = keys.transpose()?.or_else(|| touched.own_groups());
         let split = |trial| draw_split(plan, &labels, keys.as_ref(), trial);
         let splits = (0..plan.spec.trials).map(split);
         let splits = splits.collect::<Result<Vec<_>>>()?;
@@ -246,6 +271,7 @@ impl Sweep {
             measurements in plan.measurement_counts(array, group.ensemble);
             over_time in Axis::of(&learned.over_time);
             features in learned.features.values();
+            foremost_full_scale in learned.foremost(features);
             classifier in learned.classifier.values();
             train_touches in train_touches.iter().copied();
             class_imbalance in Axis::of(&learned.class_imbalance);
@@ -269,6 +295,7 @@ impl Sweep {
                 frames: group.frames,
                 over_time,
                 features,
+                foremost_full_scale,
                 classifier,
                 c,
                 train_touches,

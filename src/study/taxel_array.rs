@@ -87,6 +87,11 @@ impl TaxelArray {
             && self.slide == DVec2::ZERO
     }
 
+    /// Whether its taxels lie in straight rows and columns, one pitch apart along the surface.
+    pub fn is_image(&self) -> bool {
+        matches!(self.layout, ArrayLayout::Grid | ArrayLayout::Cylinder)
+    }
+
     /// How far it goes along its own x and y once it is pressed, metres.
     pub fn slide(&self) -> DVec2 {
         self.slide

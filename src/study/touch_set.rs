@@ -1,4 +1,4 @@
-//! What a recognition study asks of its touches: of pressed objects, or of human touches.
+//! What a recognition study asks of its touches: of pressed objects, of human touches, or of recorded frames.
 
 use super::frames::{FramePlace, Frames};
 use super::measurement::{TouchToRead, touches_to_read};
@@ -17,7 +17,7 @@ use ndarray::Array1;
 use rand::Rng;
 use rayon::prelude::*;
 
-/// Touches of several classes: objects, or kinds of touch. They follow each other class by class.
+/// Touches of several classes: objects, kinds of touch, or what a recording calls them. They follow each other class by class.
 pub trait TouchSet: Sync {
     /// Name of every class, by its label, and how many touches it has.
     fn classes(&self) -> Vec<(&str, usize)>;
@@ -38,6 +38,11 @@ pub trait TouchSet: Sync {
     /// An axis that is spread uniformly, without a distance.
     fn group_keys(&self, _together: &KeepTogether) -> Result<Array1<usize>> {
         Ok((0..self.labels().len()).collect())
+    }
+
+    /// Group of every touch, where they are what they are and no key says what stays together.
+    fn own_groups(&self) -> Option<Array1<usize>> {
+        None
     }
 
     /// Makes what all touches need on all threads now; the first touches would make it one after the other.

@@ -8,7 +8,8 @@
 //! (R² + Q) / (2R)   if Q > R²: it is above the taxel below
 //! ```
 //!
-//! and the sphere is not behind the substrate where t ≥ R − s − ρ. On a ring t is A + B cos(φ − φ_c): an interval.
+//! and with B = R − s − ρ the sphere is not behind the substrate where `t + √(t² − Q) ≥ B`, which is where t is B or (B² + Q) / (2B) or more.
+//! On a ring t is A + A' cos(φ − φ_c): an interval.
 
 use super::lanes::{View, ball_around};
 use super::object_press::Pushed;
@@ -94,7 +95,8 @@ impl Pushed for DomePatch {
     fn push(&self, state: &mut PatchState, center: DVec3, reach: f64) {
         let radius = self.dome.radius();
         let power = center.length_squared() - reach * reach;
-        let behind = radius - self.taxel.stroke - self.taxel.radius;
+        let substrate = radius - self.taxel.stroke - self.taxel.radius;
+        let behind = substrate.min((substrate * substrate + power) / (2.0 * substrate));
         let least = self.least_along(power).max(behind);
         let across = center.xy().length();
         let angle = center.y.atan2(center.x);

@@ -116,7 +116,8 @@ impl DrapedPatch {
                 dz - height * nz[k],
             );
             let square = reach * reach - (bx * bx + by * by + bz * bz);
-            squares[k] = if height < behind { -1.0 } else { square };
+            let gap = (behind - height).max(0.0);
+            squares[k] = if square <= gap * gap { -1.0 } else { square };
             heights[k] = height;
         }
         let first = tile * LANES;

@@ -69,6 +69,12 @@ impl RowPatch {
         &self.taxel
     }
 
+    /// −s − ρ, metres: what is lower is behind the substrate.
+    #[inline(always)]
+    pub fn behind(&self) -> f64 {
+        -self.taxel.stroke - self.taxel.radius
+    }
+
     /// As [`BodyPatch::ball`](super::BodyPatch::ball).
     pub fn ball(&self) -> Sphere {
         Sphere {

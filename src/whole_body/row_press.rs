@@ -41,7 +41,7 @@ impl Pushed for RowPatch {
         if is_beside(self, center.z, reach) {
             return;
         }
-        let behind = -self.taxel().stroke - self.taxel().radius;
+        let behind = self.behind();
         let mut under = std::mem::take(&mut state.under);
         under.clear();
         let mut widest = 0.0;
@@ -87,7 +87,7 @@ fn push_rows(
         let along = patch.lines().positions[row] - w;
         for (start, share) in under {
             let taxels = state.block(row * n_columns + *start as usize);
-            share.push(along * along, is_small, taxels);
+            share.push(along * along, is_small, patch.behind(), taxels);
         }
     }
 }
@@ -95,10 +95,12 @@ fn push_rows(
 /// What a sphere is to the columns of a bundle, the same in all rows.
 #[derive(Clone, Debug)]
 pub(super) struct Share {
-    /// S² − b², m²; negative behind the substrate.
+    /// S² − b², m².
     squares: [f64; LANES],
     /// h, metres.
     heights: [f64; LANES],
+    /// Whether the sphere's middle is behind a substrate.
+    is_behind: bool,
 }
 
 impl Share {
@@ -106,26 +108,39 @@ impl Share {
     #[inline(always)]
     fn of(bundle: &Bundle, center: DVec3, reach: f64, behind: f64) -> (Self, f64) {
         let (mut squares, mut heights, mut spares) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        let mut gaps = [0.0; LANES];
         for k in 0..LANES {
             let (du, dv) = (center.x - bundle.u[k], center.y - bundle.v[k]);
             let beside = du * bundle.axis_v[k] - dv * bundle.axis_u[k];
             let height = du * bundle.axis_u[k] + dv * bundle.axis_v[k];
             let square = reach * reach - beside * beside;
-            let square = if height < behind { -1.0 } else { square };
-            let above = height.max(0.0);
+            // Above the skin, or behind the substrate; one of them is zero.
+            let (above, gap) = (height.max(0.0), (behind - height).max(0.0));
             squares[k] = square;
             heights[k] = height;
-            spares[k] = square - above * above;
+            gaps[k] = gap;
+            spares[k] = square - above * above - gap * gap;
         }
-        (Self { squares, heights }, largest(&spares))
+        let share = Self {
+            squares,
+            heights,
+            is_behind: largest(&gaps) > 0.0,
+        };
+        (share, largest(&spares))
     }
 
-    /// Raises taxels of a row that is so far away along the rows, squared, m².
+    /// Raises taxels of a row that is so far away along the rows, squared, m²; their substrates are at height `behind`.
     #[inline(always)]
-    fn push(&self, along2: f64, is_small: bool, taxels: &mut [f64; LANES]) {
+    fn push(&self, along2: f64, is_small: bool, behind: f64, taxels: &mut [f64; LANES]) {
         let mut squares = self.squares;
         for square in &mut squares {
             *square -= along2;
+        }
+        if self.is_behind {
+            for (square, height) in squares.iter_mut().zip(&self.heights) {
+                let gap = (behind - height).max(0.0);
+                *square = if *square <= gap * gap { -1.0 } else { *square };
+            }
         }
         if is_small || beats(&squares, &self.heights, taxels) {
             raise(&squares, &self.heights, taxels);

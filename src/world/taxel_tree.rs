@@ -354,7 +354,7 @@ mod tests {
                 let height = (center - taxel.center).dot(taxel.axis);
                 let beside2 = center.distance_squared(taxel.center) - height * height;
                 let q = (radius + taxel.radius).powi(2) - beside2;
-                if q > 0.0 && q.sqrt() > height && height >= taxel.behind {
+                if q > 0.0 && q.sqrt() > height && height + q.sqrt() >= taxel.behind {
                     n_pushed += 1;
                     assert!(is_visited[taxel.number as usize], "case {case}");
                 }

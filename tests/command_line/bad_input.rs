@@ -490,7 +490,12 @@ fn keys_of_features_frames_and_fused_touches_are_checked() {
     refuses(
         "[recognition]",
         "features = \"loud\"",
-        &["study.toml:24", "loud", "unit_norm"],
+        &["study.toml:24", "loud", "unit_norm", "polar_harmonics"],
+    );
+    refuses(
+        "[recognition]",
+        "features = \"descriptors+raw\"",
+        &["study.toml:24", "descriptors+raw", "joined by +"],
     );
     refuses(
         "[recognition]",

@@ -317,13 +317,14 @@ fn what_starts_inside_the_skin_comes_up_and_what_starts_behind_it_falls() {
     let ball = union([DVec3::ZERO], 0.02);
     let body = FreeObject::new(&ball, 0.05, DVec3::ZERO).unwrap();
     let above = settle(&skin, &body, &height(0.05));
-    for start in [0.02, 0.01, 0.0, -0.004, -0.0059] {
+    // S is 21 mm and the substrate 6 mm behind the skin.
+    for start in [0.02, 0.01, 0.0, -0.004, -0.0061, -0.012] {
         let rest = settle(&skin, &body, &height(start));
         assert_rests(&rest, 0.05 * G, &format!("from {start} m"));
         let apart = (rest.pose.translation.z - above.pose.translation.z).abs();
         assert!(apart < 1e-6, "from {start} m: {rest:?}");
     }
-    for start in [-0.0061, -0.03, -10.0] {
+    for start in [-0.0271, -0.03, -10.0] {
         let rest = settle(&skin, &body, &height(start));
         let is_gone = matches!(rest.outcome, Outcome::Escaped { .. });
         assert!(is_gone, "from {start} m: {rest:?}");

@@ -125,7 +125,8 @@ impl Rest<'_> {
             let needed = least - slope * (beside.length() - edge) - height;
             (needed, axis + slope * beside.normalize())
         };
-        let is_behind = height < -stroke - radius || height < -stroke && needed > stroke + INSIDE;
+        let is_behind =
+            height + left < -stroke - radius || height < -stroke && needed > stroke + INSIDE;
         (!is_behind).then_some((needed, way))
     }
 

@@ -86,7 +86,7 @@ fn needed_by_search(center: DVec3, axis: DVec3, taxel: &Taxel, sphere: &Sphere) 
     let reach = taxel.radius + sphere.radius;
     let height = (sphere.center - center).dot(axis);
     let is_far = sphere.center.distance(center) > reach + taxel.stroke + taxel.radius;
-    if is_far || height < -taxel.stroke - taxel.radius {
+    if is_far {
         return 0.0;
     }
     let distance = |z: f64| (center + z * axis).distance(sphere.center);
@@ -111,7 +111,11 @@ fn needed_by_search(center: DVec3, axis: DVec3, taxel: &Taxel, sphere: &Sphere) 
             inside = middle
         }
     }
-    (-inside).max(0.0)
+    // As far ahead of the sphere's middle, the taxel would rest on its far side.
+    match 2.0 * height - inside < -taxel.stroke - taxel.radius {
+        true => 0.0,
+        false => (-inside).max(0.0),
+    }
 }
 
 /// Whether a taxel runs along the flank of a sphere, where its height has no bounded slope.

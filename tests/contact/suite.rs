@@ -199,9 +199,10 @@ fn by_every_part(scene: &Scene, taxel: usize, behind_counts: bool) -> (f64, f64)
                     let height = away.dot(axis);
                     let left = reach * reach - (away - height * axis).length_squared();
                     // Rounding decides along a flank, and at the substrate.
-                    if left.abs() < 1e-9 * reach * reach || (height - behind).abs() < 1e-12 {
+                    let top = height + left.max(0.0).sqrt();
+                    if left.abs() < 1e-9 * reach * reach || (top - behind).abs() < 1e-9 * reach {
                         tolerance = f64::INFINITY;
-                    } else if left > 0.0 && height >= behind {
+                    } else if left > 0.0 && top >= behind {
                         needed = needed.max(left.sqrt() - height);
                         let size = reach * reach / left.sqrt() + center.length() + 0.3;
                         tolerance = f64::max(tolerance, 8.0 * f64::EPSILON * size);

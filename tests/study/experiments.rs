@@ -8,7 +8,11 @@ use bubbletouch::kinds::speed_accuracy::{SpeedAccuracyPlan, SpeedAccuracyStudySp
 use bubbletouch::kinds::stability::{StabilityPlan, StabilityStudySpec};
 use bubbletouch::kinds::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
 use bubbletouch::random::Seed;
-use bubbletouch::study::{HumanTouches, Plan, StudySpec, Sweep, draw_touches, load_objects};
+use bubbletouch::study::{
+    HumanTouches, Plan, RecordedFrames, RecordedSpec, StudySpec, Sweep, draw_touches, load_objects,
+    write_integers, write_npy,
+};
+use ndarray::Array3;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -98,11 +102,15 @@ fn every_experiment_can_run() {
             assert!(plan.cells.len() > 1, "{place} compares something");
             continue;
         }
-        let spec = StudySpec::parse(&place, &text).unwrap();
+        let mut spec = StudySpec::parse(&place, &text).unwrap();
         assert!(
             !spec.question.is_empty() && !spec.expected.is_empty(),
             "{place}"
         );
+        let folder = tempfile::tempdir().unwrap();
+        if let Some(recorded) = &mut spec.recorded {
+            put_a_recording(folder.path(), recorded);
+        }
         let plan = Plan::new(&place, spec).unwrap();
         if plan.spec.objects.meshes.is_some() {
             println!("{place}: planned; its meshes are not part of the crate");
@@ -115,9 +123,28 @@ fn every_experiment_can_run() {
             assert!(sweep.n_cells() > 1, "{place} compares something");
             continue;
         }
+        if let Some(recorded) = &plan.spec.recorded {
+            let touches = RecordedFrames::read(recorded, None).unwrap();
+            let sweep = Sweep::new(&plan, &touches).unwrap();
+            assert!(sweep.n_cells() > 1, "{place} compares something");
+            continue;
+        }
         let objects = load_objects(&plan.spec.objects, None).unwrap();
         let touched = draw_touches(objects, &plan.placement, &seed).unwrap();
         let sweep = Sweep::new(&plan, &touched).unwrap();
         assert!(sweep.n_cells() > 1, "{place} compares something");
     }
+}
+
+/// Ten frames of each class, in the place of recordings that are not part of the crate.
+fn put_a_recording(folder: &Path, recorded: &mut RecordedSpec) {
+    let n_classes = recorded.names.as_ref().map_or(2, Vec::len);
+    let labels = (0..10 * n_classes).map(|touch| touch % n_classes);
+    let frames = Array3::from_shape_fn((10 * n_classes, 28, 50), |(touch, row, column)| {
+        ((touch * (row + 1) * (column + 1)) % 256) as f32
+    });
+    recorded.frames = folder.join("frames.npy");
+    recorded.labels = folder.join("labels.npy");
+    write_npy(&recorded.frames, &frames).unwrap();
+    write_integers(&recorded.labels, labels).unwrap();
 }

@@ -6,7 +6,7 @@ use bubbletouch::study::{sample_frames, simulate_array};
 use std::collections::BTreeSet;
 use std::fs;
 
-/// Several arrays, frames, ensembles (one of them not nested), ratios, features, classifiers and fused touches; C and γ are
+/// Several arrays, frames, ensembles (one of them not nested, one learned), ratios, features, classifiers and fused touches; C and γ are
 /// chosen, and offsets stay together.
 const WIDE: &str = r#"
 question = "Do threads matter?"
@@ -36,11 +36,11 @@ noise_std_full_scale = 0.2
 smoothing_mm = 6.0
 
 [sensing]
-ensemble = ["gaussian", "block_average"]
-ratio = [4, 16]
+ensemble = ["gaussian", "block_average", "principal_components"]
+ratio = [8, 16]
 
 [recognition]
-features = ["raw", "centred_unit_norm"]
+features = ["raw", "centred_unit_norm", "fourier_mellin+descriptors"]
 classifier = ["linear_svm", "rbf_svm"]
 choose_c = [0.1, 1.0, 10.0]
 choose_gamma = [0.5, 2.0]

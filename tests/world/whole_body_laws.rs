@@ -586,7 +586,7 @@ fn a_ball_on_a_box_and_on_a_flat_end_is_felt_as_by_any_skin() {
                 let height = from.dot(layout.axes()[taxel]);
                 let left =
                     (0.01 + TAXEL.radius).powi(2) - (from.length_squared() - height * height);
-                let is_pushed = left > 0.0 && height >= -TAXEL.stroke - TAXEL.radius;
+                let is_pushed = left > 0.0 && height + left.sqrt() >= -TAXEL.stroke - TAXEL.radius;
                 let needed = if is_pushed { left.sqrt() - height } else { 0.0 };
                 let expected = needed.clamp(0.0, TAXEL.stroke);
                 assert!((found - expected).abs() < 1e-12, "{} {taxel}", patch.name());

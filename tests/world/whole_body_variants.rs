@@ -165,7 +165,7 @@ impl Scene {
                         let height = from.dot(*axis);
                         let beside = from - height * *axis;
                         let q = reach * reach - beside.length_squared();
-                        if q > 0.0 && height >= -taxel.stroke - taxel.radius {
+                        if q > 0.0 && height + q.sqrt() >= -taxel.stroke - taxel.radius {
                             *deflection = deflection.max(q.sqrt() - height).min(taxel.stroke);
                         }
                     }

@@ -62,7 +62,8 @@ impl Reach {
 
     /// Whether the sphere is on the far side of the substrate, which is `taxel.behind` along the axis.
     pub fn is_behind(&self, taxel: &PlacedTaxel, center: DVec3) -> bool {
-        (center - taxel.center).dot(self.axis) < taxel.behind
+        let gap = taxel.behind - (center - taxel.center).dot(self.axis);
+        gap > 0.0 && self.reach * self.reach - self.beside.length_squared() <= gap * gap
     }
 
     pub fn derivatives(&self) -> Derivatives {
@@ -159,7 +160,7 @@ mod tests {
         let found = Reach::new(c, 4e-3, &taxel(DVec3::Z), 0.0).unwrap();
         let needed = (25e-6 - 5e-6_f64).sqrt() - 3e-3;
         assert!((found.deflection - needed).abs() < 1e-18);
-        let behind = c - 10e-3 * DVec3::Z;
+        let behind = c - 15e-3 * DVec3::Z;
         let found = Reach::new(behind, 4e-3, &taxel(DVec3::Z), 0.0).unwrap();
         assert!(found.is_behind(&taxel(DVec3::Z), behind));
     }

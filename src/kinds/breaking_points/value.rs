@@ -8,7 +8,7 @@ use crate::objects::Object;
 use crate::random::Seed;
 use crate::study::evaluation::{Evaluation, Trial};
 use crate::study::frames::Frames;
-use crate::study::measurement::{Measurements, measure_group};
+use crate::study::measurement::{Measurements, SensedBy, measure_group};
 use crate::study::plan::Plan;
 use crate::study::progress::Silent;
 use crate::study::simulation::{TouchedObject, draw_touches, simulate_array};
@@ -16,6 +16,7 @@ use crate::study::spec::ObjectsSpec;
 use crate::study::sweep::Sweep;
 use crate::study::table::Cell;
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// The objects that ways touch, by what says so.
 pub(super) type ObjectSets = Vec<(ObjectsSpec, Vec<Object>)>;
@@ -44,11 +45,18 @@ impl<'a> World<'a> {
         })
     }
 
-    fn measure(&self, trial: usize) -> Result<Measurements> {
+    /// Measured by what it draws and learns itself, or by what another did.
+    fn measure(&self, trial: usize, sensed: Option<&Arc<SensedBy>>) -> Result<Measurements> {
         let group = &self.sweep.groups[0];
         let touches = (&self.touched as &dyn crate::study::TouchSet, &self.frames);
         let split = (trial, &self.sweep.splits[trial]);
-        measure_group(self.plan, group, touches, split, group.projected()[0])
+        measure_group(
+            self.plan,
+            group,
+            touches,
+            split,
+            (group.projected()[0], sensed),
+        )
     }
 
     /// An error unless what is learned here can be tested there: the same touches, split alike, measured by the same projection.
@@ -88,8 +96,9 @@ pub(super) fn evaluate(
     // Of each classifier, trial by trial.
     let mut found: Vec<Vec<Evaluation>> = vec![Vec::new(); families.len()];
     for number in 0..value.learned.spec.trials {
-        let measurements = learned.measure(number)?;
-        let of_tested = tested.as_ref().map(|world| world.measure(number));
+        let measurements = learned.measure(number, None)?;
+        let of_tested = tested.as_ref();
+        let of_tested = of_tested.map(|world| world.measure(number, Some(&measurements.sensed)));
         let of_tested = of_tested.transpose()?;
         let trial = Trial {
             plan: learned.plan,

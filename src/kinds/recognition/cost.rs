@@ -2,6 +2,8 @@
 //! those that finished.
 
 use crate::recognition::svm::{Multiclass, Solver};
+use crate::sensing::N_COMPONENTS;
+use crate::study::measurement::LEARNED_FRAMES;
 use crate::study::plan::Plan;
 use crate::study::sweep::Group;
 use crate::study::table::Cell;
@@ -14,6 +16,10 @@ const TAXEL_S: f64 = 8e-9;
 const SKIN: f64 = 10.0;
 /// Seconds of a multiply-add of a product of matrices.
 const PRODUCT_S: f64 = 4e-11;
+/// Products with all frames until their principal components are found.
+const LEARNING_PRODUCTS: f64 = 8.0;
+/// Seconds to make features of an image's taxel.
+const FEATURE_S: f64 = 1e-8;
 /// Seconds of an SVM's solver for an entry of the kernel matrices of its binary problems; of linfa's.
 const ENTRY_S: f64 = 1.5e-9;
 const LINFA_ENTRY_S: f64 = 1.2e-7;
@@ -38,7 +44,11 @@ pub(super) fn touch_s(
 pub(super) fn measure_s(plan: &Plan, group: &Group, (n_touches, m): (usize, usize)) -> f64 {
     let n_values = plan.arrays[group.array].n_values();
     let project_s = (group.ensemble.about().taxel_s)(m as f64, n_values as f64);
-    (n_touches * group.frames * n_values) as f64 * (TAXEL_S + project_s)
+    let learn_s = match group.learns() {
+        true => LEARNING_PRODUCTS * PRODUCT_S * (LEARNED_FRAMES * n_values * N_COMPONENTS) as f64,
+        false => 0.0,
+    };
+    (n_touches * group.frames * n_values) as f64 * (TAXEL_S + project_s) + learn_s
 }
 
 /// A fit in one trial, with what it chooses, and its test.
@@ -70,7 +80,21 @@ pub(super) fn fit_s(plan: &Plan, cell: &Cell, (n_classes, n_touches): (f64, f64)
         }
     };
     let test_s = (cell.classifier.about().test_s)(n_train, cell.n_features() as f64, n_classes);
-    choose_s + train_s(plan, cell, n_train, n_classes) + n_test * test_s
+    let n_rows = (n_train + n_test) * cell.frames as f64;
+    choose_s + train_s(plan, cell, n_train, n_classes) + n_test * test_s + n_rows * image_s(cell)
+}
+
+/// To make features of a frame, by way of its image.
+fn image_s(cell: &Cell) -> f64 {
+    let n = (cell.nx * cell.ny) as f64;
+    let estimate_s = match cell.ensemble.about().is_whole_frame {
+        true => 0.0,
+        false => 0.5 * PRODUCT_S * n * cell.measurements.min(N_COMPONENTS) as f64,
+    };
+    match cell.features.of_image() {
+        Some(_) => estimate_s + n * FEATURE_S,
+        None => 0.0,
+    }
 }
 
 fn train_s(plan: &Plan, cell: &Cell, n_train: f64, n_classes: f64) -> f64 {

@@ -109,6 +109,12 @@ impl Findings for RecognitionStudy {
 /// What the test touches have in common with those that are learned from.
 fn split_words(spec: &StudySpec) -> String {
     let held_out = match spec.recognition.keep_together {
+        _ if let Some(recorded) = &spec.recorded => {
+            return match recorded.groups {
+                Some(_) => "recorded groups that are never learned".to_owned(),
+                None => "random touches, whatever was recorded together".to_owned(),
+            };
+        }
         _ if spec.axes.has("recognition.keep_together") => return "as each row says".to_owned(),
         None => {
             return "random touches: most have neighbours in the pose that are learned".to_owned();

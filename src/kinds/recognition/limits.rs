@@ -21,11 +21,13 @@ impl RecognitionStudy {
         });
         let n_deeper: usize = deeper.sum();
         let n_capped = fits.iter().filter(|(_, score)| score.n_capped > 0).count();
-        let missed = match self.first().plan.spec.human_touch {
-            Some(_) => {
+        let spec = &self.first().plan.spec;
+        let missed = match (&spec.human_touch, &spec.recorded) {
+            (Some(_), _) => {
                 "the hand was beyond the array or between its taxels; their frames hold no contact"
             }
-            None => "no part of the object was over the array; their frames hold no contact",
+            (_, Some(_)) => "no taxel reads more than recorded.zero",
+            _ => "no part of the object was over the array; their frames hold no contact",
         };
         let limit = |what: &str, (count, of): (usize, usize), meaning: &str| Limit {
             what: what.to_owned(),

@@ -5,7 +5,6 @@ use super::study::RecognitionStudy;
 use crate::error::{Error, Result};
 use crate::kinds::{self, Kind, Source};
 use crate::random::Seed;
-use crate::study::HumanTouches;
 use crate::study::axes::AxisValues;
 use crate::study::memory::check_touches;
 use crate::study::object_files::load_objects;
@@ -13,6 +12,7 @@ use crate::study::plan::Plan;
 use crate::study::simulation::draw_touches;
 use crate::study::spec::StudySpec;
 use crate::study::touch_set::TouchSet;
+use crate::study::{HumanTouches, RecordedFrames};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::path::Path;
@@ -43,7 +43,10 @@ fn read_plans(source: &Source) -> Result<Vec<(AxisValues, Plan)>> {
         return Err(Error::input("--seed", seed, allowed));
     }
     spec.seed = source.seed(spec.seed);
-    source.replace_objects(&mut spec.objects);
+    match &mut spec.recorded {
+        Some(recorded) => source.replace_recorded(recorded),
+        None => source.replace_objects(&mut spec.objects),
+    }
     Plan::variants(&source.place, spec)
 }
 
@@ -79,6 +82,8 @@ impl RecognitionStudy {
             } else if let Some(human) = &plan.spec.human_touch {
                 check_touches(&plan, human.kinds.len(), ceiling)?;
                 Arc::new(HumanTouches::draw(human, &seed)?)
+            } else if let Some(recorded) = &plan.spec.recorded {
+                Arc::new(RecordedFrames::read(recorded, ceiling)?)
             } else {
                 let known = objects.entry(format!("{:?}", plan.spec.objects));
                 let objects = match known {
@@ -101,7 +106,7 @@ pub(super) fn touch_content(plan: &Plan) -> String {
         spec, placement, ..
     } = plan;
     format!(
-        "{:?} {placement:?} {:?} {}",
-        spec.objects, spec.human_touch, spec.seed
+        "{:?} {placement:?} {:?} {:?} {}",
+        spec.objects, spec.human_touch, spec.recorded, spec.seed
     )
 }

@@ -192,7 +192,13 @@ impl Job<'_> {
         let (part, group) = self.study.group(self.group);
         let touches = (part.touched.as_ref() as _, frames);
         let trial = (self.trial, &part.sweep.splits[self.trial]);
-        measure_group(&part.plan, group, touches, trial, self.n_measurements)
+        measure_group(
+            &part.plan,
+            group,
+            touches,
+            trial,
+            (self.n_measurements, None),
+        )
     }
 
     fn evaluate(&self, family: usize, measurements: &Measurements) -> Result<Vec<CellRow>> {

@@ -2,7 +2,9 @@
 
 use super::study::RecognitionStudy;
 use crate::recognition::svm::{Multiclass, Solver};
+use crate::sensing::N_COMPONENTS;
 use crate::study::frames::{FramePlace, made_at_once, most_bytes};
+use crate::study::measurement::{LEARNED_FRAMES, UNTOUCHED};
 use crate::study::memory::solver_memory;
 use crate::study::pieces::Scale;
 use crate::study::plan::Plan;
@@ -32,7 +34,8 @@ pub fn recognition_scale(
     let m = |group: &Group| group.projected().into_iter().max().unwrap_or(0) as f64;
     let measured = |on: Placed| {
         let matrix = on.1.ensemble.about().bytes;
-        8.0 * n_frames(on) * m(on.1) + matrix(m(on.1), n_values(on) as f64)
+        let learned = learned_bytes(on.1, n_values(on) as f64);
+        8.0 * n_frames(on) * m(on.1) + matrix(m(on.1), n_values(on) as f64) + learned
     };
     let groups = || {
         let parts = study.parts().iter();
@@ -68,6 +71,16 @@ pub fn recognition_scale(
     match free.n_at_once(ceiling) == Some(rayon::current_num_threads()) {
         true => (free, FramePlace::Memory),
         false => (scale(in_file), FramePlace::File(folder.to_owned())),
+    }
+}
+
+/// Frames that something is learned from before touches are measured, n values each, as they are read and about their mean; and what is learned.
+fn learned_bytes(group: &Group, n: f64) -> f64 {
+    let frames = (2 * LEARNED_FRAMES + UNTOUCHED) as f64;
+    let estimates: f64 = group.counts_of_images().iter().map(|&m| m as f64).sum();
+    match group.learns() {
+        true => 8.0 * n * (frames + estimates + 3.0 * N_COMPONENTS as f64),
+        false => 0.0,
     }
 }
 

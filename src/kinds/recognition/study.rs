@@ -19,7 +19,7 @@ use crate::study::plan::{Plan, millimetres};
 use crate::study::progress::Progress;
 use crate::study::published::{check_published, compare_with_published};
 use crate::study::short_hash;
-use crate::study::spec::ObjectsSpec;
+use crate::study::spec::{ObjectsSpec, RecordedSpec};
 use crate::study::sweep::{Group, StudyPart, Sweep};
 use crate::study::table::{Cell, StageTime, Tables};
 use crate::study::tabulate::tabulate;
@@ -199,11 +199,14 @@ impl RecognitionStudy {
     /// A file of an object cannot be read.
     pub fn content(&self) -> Result<BTreeMap<String, String>> {
         let mut all = BTreeMap::new();
-        let objects = self.parts.iter().map(|part| &part.plan.spec.objects);
-        let mut objects: Vec<&ObjectsSpec> = objects.collect();
-        objects.dedup();
-        for objects in objects {
-            for (name, hash) in objects_content(objects)? {
+        let specs = self.parts.iter().map(|part| &part.plan.spec);
+        let mut made_of: Vec<(&ObjectsSpec, &Option<RecordedSpec>)> =
+            specs.map(|spec| (&spec.objects, &spec.recorded)).collect();
+        made_of.dedup();
+        for (objects, recorded) in made_of {
+            let recorded = recorded.as_ref().map(RecordedSpec::content).transpose()?;
+            let content = objects_content(objects)?.into_iter();
+            for (name, hash) in content.chain(recorded.into_iter().flatten()) {
                 let known = all.entry(name.clone()).or_insert_with(|| hash.clone());
                 if *known != hash {
                     all.insert(format!("{name} of {}", &hash[..12]), hash);
@@ -310,15 +313,17 @@ fn measured_content(plan: &Plan, group: &Group) -> String {
     let array = plan.arrays[group.array].content();
     let steps = signal_steps(plan, group, &Seed::new(plan.spec.seed));
     let recognition = &plan.spec.recognition;
-    // Test touches are read by another skin only where there is one.
-    let split = (group.tested_on != TestedOn::SameSkin).then_some((
+    // Test touches are read by another skin only where there is one, and training touches learned from where anything is learned.
+    let has_split = group.learns() || group.tested_on != TestedOn::SameSkin;
+    let split = has_split.then_some((
         plan.keep_together,
         recognition.folds,
         recognition.test_fraction,
     ));
     let drawn = (plan.spec.seed, plan.spec.projections_per_split, plan.speed);
     let (ensemble, m) = (group.ensemble, group.projected());
-    format!("{array} {steps:?} {split:?} {drawn:?} {ensemble:?} {m:?}")
+    let images = group.counts_of_images();
+    format!("{array} {steps:?} {split:?} {drawn:?} {ensemble:?} {m:?} {images:?}")
 }
 
 impl RecognitionStudy {

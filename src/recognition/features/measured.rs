@@ -1,7 +1,4 @@
-//! Features: what is made of a touch's measurements before a classifier scales and learns them.
-//!
-//! The measurements of a touch are F frames of m, one after the other (F = 1 unless a touch is read at several depths).
-//! Everything here is done to one touch at a time and learns nothing, so training and test touches need not be kept apart.
+//! Features of measurements: without what a constant pressure adds to them, at norm 1, or both.
 //!
 //! **Centred.** A pressure that is the same on all taxels, x = a·1, measures as y = a·u with u = Φ1. Centring removes that
 //! part from each frame: `y − u (u·y) / (u·u)`, the measurements' component at right angles to u. So a touch reads the
@@ -16,32 +13,15 @@
 //! **Unit norm.** All F·m values of a touch are divided by their Euclidean norm, so a touch reads the same on a stiffer
 //! skin; how much a touch grows from frame to frame is kept. A touch of zeros stays zero.
 
+use super::Features;
 use ndarray::{ArrayView1, ArrayViewMut1, ArrayViewMut2};
-use serde::{Deserialize, Serialize};
-
-/// What is made of measurements.
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
-)]
-#[serde(rename_all = "snake_case")]
-pub enum Features {
-    /// The measurements.
-    #[default]
-    Raw,
-    /// Each frame without what a constant pressure adds to it.
-    Centred,
-    /// Each touch scaled to norm 1.
-    UnitNorm,
-    /// Centred, then scaled to norm 1.
-    CentredUnitNorm,
-}
 
 /// What an element of u = Φ1 is rounded to in double precision where it is 0 (rows of Φ have norms of about 1, and at most
 /// 2²⁴ taxels); smaller ones count as 0.
 const ROUNDING: f64 = 1e-12;
 
 impl Features {
-    /// Makes features of measurements (n_touches × F·m) in place; `of_ones` is u = Φ1 (m).
+    /// Makes features of measurements (n_touches × F·m) in place; `of_ones` is u = Φ1 (m). Those of images leave them as they are.
     ///
     /// # Panics
     /// When a row is not a whole number of frames.

@@ -1,0 +1,102 @@
+//! The image itself, moved so that its centroid is in the middle and turned so that its principal axes are those of the array: a quarter of
+//! its taxels.
+//!
+//! With the central moments μ_pq = Σ δ (x − x̄)ᵖ (y − ȳ)^q, the longer principal axis is at the angle φ = ½ atan2(2 μ₁₁, μ₂₀ − μ₀₂). It has no
+//! sign of its own: it points to where Σ δ a³ > 0, a along it, and the other axis is a quarter turn from it. Values are read at every second
+//! taxel of the turned grid, interpolated bilinearly, 0 beyond the array.
+//!
+//! Invariant to shifts by whole taxels, as long as the contact stays on the array, and to quarter turns; to others as far as taxels sample what
+//! is turned. An image whose two principal moments are equal (a disc, a square) has no axes: what is close to one turns with any noise,
+//! and so does one whose third moment is near 0. [`polar_harmonics`](super::ImageFeature::PolarHarmonics) need no axes.
+//!
+//! Source: Hu (1962), *Visual pattern recognition by moment invariants*, IRE Transactions on Information Theory 8, 179, section III.
+
+use super::feature::{Feature, FeatureAbout, Workspace};
+use super::image::Image;
+
+/// Taxels between what is read.
+const STEP: usize = 2;
+
+pub(super) const ABOUT: FeatureAbout = FeatureAbout {
+    words: "aligned",
+    n_values: |(ny, nx)| ny.div_ceil(STEP) * nx.div_ceil(STEP),
+    prepare: |_, _| Box::new(Aligned),
+};
+
+#[derive(Debug)]
+struct Aligned;
+
+impl Feature for Aligned {
+    fn write(&self, image: &Image, _: &mut Workspace, out: &mut [f64]) {
+        let (sine, cosine) = axis(image);
+        let (x, y) = image.centroid;
+        let (columns, rows) = (image.nx.div_ceil(STEP), image.ny.div_ceil(STEP));
+        let from_middle = |i: usize, n: usize| (STEP * i) as f64 - 0.5 * (STEP * (n - 1)) as f64;
+        for (row, out) in out.chunks_exact_mut(columns).enumerate() {
+            let across = from_middle(row, rows);
+            for (column, to) in out.iter_mut().enumerate() {
+                let along = from_middle(column, columns);
+                *to = image.at(
+                    x + cosine * along - sine * across,
+                    y + sine * along + cosine * across,
+                );
+            }
+        }
+    }
+}
+
+/// Sine and cosine of the longer principal axis, pointing to where the third moment along it is positive.
+fn axis(image: &Image) -> (f64, f64) {
+    let (x, y) = image.centroid;
+    let from_centroid = || {
+        let touched = image.touched.iter();
+        touched.map(|&(column, row, value)| (column as f64 - x, row as f64 - y, value))
+    };
+    let (mut along_x, mut along_y, mut across) = (0.0, 0.0, 0.0);
+    for (x, y, value) in from_centroid() {
+        along_x += value * x * x;
+        along_y += value * y * y;
+        across += value * x * y;
+    }
+    let (sine, cosine) = (0.5 * f64::atan2(2.0 * across, along_x - along_y)).sin_cos();
+    let third: f64 = from_centroid()
+        .map(|(x, y, value)| value * (cosine * x + sine * y).powi(3))
+        .sum();
+    match third < 0.0 {
+        true => (-sine, -cosine),
+        false => (sine, cosine),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::ImageFeature;
+    use super::super::tests::features_of;
+
+    #[test]
+    fn a_wedge_in_any_direction_becomes_one_along_x() {
+        let side = 41;
+        let wedge = |angle: f64| -> Vec<f64> {
+            let (sine, cosine) = angle.sin_cos();
+            let value = |i: usize| {
+                let (x, y) = ((i % side) as f64 - 20.0, (i / side) as f64 - 20.0);
+                let (a, b) = (cosine * x + sine * y, cosine * y - sine * x);
+                let inside = (1.0 - (a / 16.0).powi(2)) * (1.0 - (b / 6.0).powi(2));
+                match a.abs() < 16.0 && b.abs() < 6.0 {
+                    true => inside * (1.2 + a / 16.0),
+                    false => 0.0,
+                }
+            };
+            (0..side * side).map(value).collect()
+        };
+        let of = |angle| features_of(ImageFeature::Aligned, (side, side), &wedge(angle));
+        let straight = of(0.0);
+        let size = straight.iter().map(|v| v * v).sum::<f64>();
+        for degrees in [20.0, 77.0, 135.0, 200.0, 301.0_f64] {
+            let turned = of(degrees.to_radians());
+            let pairs = straight.iter().zip(&turned);
+            let error: f64 = pairs.map(|(a, b)| (a - b).powi(2)).sum();
+            assert!(error < 5e-3 * size, "{degrees}: {}", error / size);
+        }
+    }
+}

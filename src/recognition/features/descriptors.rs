@@ -1,0 +1,164 @@
+//! Descriptors: how much of the image is how deep, how its pressure spreads, and how that falls off from its centroid. 126 numbers.
+//!
+//! | numbers | of |
+//! |---|---|
+//! | 3 | the largest δ, Σ δ, √Σ δ² |
+//! | 24 | √(taxels with δ ≥ ℓ) at ℓ = k s / 24, s the full scale, k = 1 … 24 |
+//! | 24 | the same at ℓ = k δ_max / 25: relative to the deepest |
+//! | 24 | the same at δ_max − ℓ: how wide the object is so far behind its foremost point, however deep it is pressed |
+//! | 3 × 9 | [moments](super::moments) of δ, of the touched taxels, and of those above half of the largest |
+//! | 24 | Σ δ / (area) in rings about the centroid, r from k h / 24 to (k + 1) h / 24, h half the shorter side |
+//!
+//! The root of an area is a length, as the others are. Each number is a sum over touched taxels that does not ask where they are, or asks only
+//! for how far they are from their centroid: invariant exactly to shifts that keep the contact on the array and to quarter turns and
+//! mirror images (but for two of the moments, which change sign), to other turns as far as taxels sample what is turned.
+//!
+//! Sources: Hu (1962), IRE Transactions on Information Theory 8, 179 (moments); level sets and radial profiles are common in
+//! granulometry: Serra (1982), *Image Analysis and Mathematical Morphology*.
+
+use super::feature::{Feature, FeatureAbout, Workspace};
+use super::image::Image;
+use super::moments::{N_MOMENTS, Weight, moments};
+use std::f64::consts::PI;
+
+/// Levels of each kind, and rings: an image of 64 × 64 taxels pressed at half its stroke by ± 1 of full scale / 24 tells all of them apart.
+const N_LEVELS: usize = 24;
+const N_RINGS: usize = 24;
+const N_VALUES: usize = 3 + 3 * N_LEVELS + 3 * N_MOMENTS + N_RINGS;
+
+pub(super) const ABOUT: FeatureAbout = FeatureAbout {
+    words: "descriptors",
+    n_values: |_| N_VALUES,
+    prepare: |_, full_scale| Box::new(Descriptors { full_scale }),
+};
+
+#[derive(Debug)]
+struct Descriptors {
+    full_scale: f64,
+}
+
+impl Feature for Descriptors {
+    fn write(&self, image: &Image, _: &mut Workspace, out: &mut [f64]) {
+        out.fill(0.0);
+        let (scale, deepest) = (self.full_scale, image.largest);
+        if deepest == 0.0 {
+            return;
+        }
+        let squares = image.touched.iter().map(|(.., value)| value * value);
+        out[..3].copy_from_slice(&[deepest, image.sum, squares.sum::<f64>().sqrt()]);
+        let (levels, out) = out[3..].split_at_mut(3 * N_LEVELS);
+        let (fixed, levels) = levels.split_at_mut(N_LEVELS);
+        let (relative, behind) = levels.split_at_mut(N_LEVELS);
+        let step = scale / N_LEVELS as f64;
+        let relative_step = deepest / (N_LEVELS + 1) as f64;
+        for (.., value) in &image.touched {
+            // The highest level that a value reaches, counted from 1.
+            count(fixed, (value / step) as usize);
+            count(relative, (value / relative_step) as usize);
+            // Counted from the other end: the least ℓ with δ ≥ δ_max − ℓ.
+            let least = ((deepest - value) / step).ceil() as usize;
+            count(behind, (N_LEVELS + 1).saturating_sub(least.max(1)));
+        }
+        [fixed, relative, &mut *behind]
+            .into_iter()
+            .for_each(areas_above);
+        behind.reverse();
+        let (of_moments, profile) = out.split_at_mut(3 * N_MOMENTS);
+        let weights = [
+            Weight::Pressure,
+            Weight::Touched,
+            Weight::Above(0.5 * deepest),
+        ];
+        for (out, weight) in of_moments.chunks_exact_mut(N_MOMENTS).zip(weights) {
+            out.copy_from_slice(&moments(image, weight));
+        }
+        write_profile(image, profile);
+    }
+}
+
+/// One more at a level, counted from 1; the last level takes what is above it.
+fn count(levels: &mut [f64], level: usize) {
+    if level > 0 {
+        levels[level.min(levels.len()) - 1] += 1.0;
+    }
+}
+
+/// From counts at each level to roots of counts at it or above.
+fn areas_above(levels: &mut [f64]) {
+    let mut above = 0.0;
+    for level in levels.iter_mut().rev() {
+        above += *level;
+        *level = above.sqrt();
+    }
+}
+
+/// Mean pressure of rings; what of a ring is beyond the array counts as 0.
+fn write_profile(image: &Image, profile: &mut [f64]) {
+    let width = 0.5 * image.nx.min(image.ny) as f64 / N_RINGS as f64;
+    let (x, y) = image.centroid;
+    for &(column, row, value) in &image.touched {
+        let (along, across) = (column as f64 - x, row as f64 - y);
+        let ring = ((along * along + across * across).sqrt() / width) as usize;
+        if let Some(sum) = profile.get_mut(ring) {
+            *sum += value;
+        }
+    }
+    for (ring, sum) in profile.iter_mut().enumerate() {
+        let [inner, outer] = [ring, ring + 1].map(|k| k as f64 * width);
+        *sum /= PI * (outer * outer - inner * inner);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::ImageFeature;
+    use super::super::tests::{features_of, frame};
+    use super::*;
+
+    fn root_of_count(frame: &[f64], is_counted: impl Fn(f64) -> bool) -> f64 {
+        let counted = frame.iter().filter(|&&v| v > 0.0 && is_counted(v));
+        (counted.count() as f64).sqrt()
+    }
+
+    #[test]
+    fn areas_are_counts_of_taxels_above_each_level() {
+        let shape = (16, 16);
+        let frame = frame(shape);
+        let found = features_of(ImageFeature::Descriptors, shape, &frame);
+        assert_eq!(found.len(), N_VALUES);
+        let deepest = frame.iter().copied().fold(0.0, f64::max);
+        assert_eq!(found[0], deepest);
+        // Full scale is 1 in tests.
+        for k in 1..=24 {
+            let level = k as f64 / 24.0;
+            let expected = [
+                root_of_count(&frame, |v| v >= level),
+                root_of_count(&frame, |v| v >= k as f64 * deepest / 25.0),
+                root_of_count(&frame, |v| v >= deepest - level),
+            ];
+            for (kind, expected) in expected.into_iter().enumerate() {
+                assert_eq!(found[2 + kind * 24 + k], expected, "{kind} {k}");
+            }
+        }
+    }
+
+    /// A rigid press further in adds the same to every taxel that it touches.
+    #[test]
+    fn areas_behind_the_foremost_point_do_not_change_with_depth() {
+        let shape = (32, 32);
+        let ball = |depth: f64| -> Vec<f64> {
+            let away =
+                |i: usize| ((i % 32) as f64 - 15.0).powi(2) + ((i / 32) as f64 - 14.0).powi(2);
+            (0..1024)
+                .map(|i| (depth - away(i) / 301.7).max(0.0))
+                .collect()
+        };
+        let behind = |depth| {
+            let found = features_of(ImageFeature::Descriptors, shape, &ball(depth));
+            // As far behind as both depths reach.
+            found[3 + 48..3 + 48 + 12].to_vec()
+        };
+        assert_eq!(behind(0.52), behind(0.52 + 0.25));
+        assert!(behind(0.52).iter().any(|&area| area > 0.0));
+    }
+}

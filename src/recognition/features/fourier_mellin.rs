@@ -1,0 +1,141 @@
+//! Harmonics over the angle of √|F| in rings about frequency 0: 216 numbers.
+//!
+//! A shift leaves |F| as it is; to turn the image by φ turns |F| by φ; and the magnitude of a harmonic around a ring does not change when the
+//! ring is turned. So with ρⱼ = j / 72 cycles a taxel, j = 1 … 24 (up to a third), and θ over half a turn, since |F(−ω)| = |F(ω)|:
+//!
+//! f(j, k) = |Σ_θ √|F(ρⱼ cos θ, ρⱼ sin θ)| exp(−2ikθ)| / 36, θ = 0, 5°, … 175°, k = 0 … 8.
+//!
+//! |F| between whole frequencies is interpolated bilinearly. Invariant to cyclic shifts and to quarter turns of a square image exactly,
+//! to other turns as far as taxels sample what is turned.
+//!
+//! Differs from the transform that it is named after, which takes log ρ and is invariant to scale as well: a small and a large object of one
+//! shape are to be told apart.
+//!
+//! Source: Sheng and Arsenault (1986), *Experiments on pattern recognition using invariant Fourier–Mellin descriptors*, JOSA A 3, 771.
+
+use super::feature::{Feature, FeatureAbout, Workspace};
+use super::image::Image;
+use super::rings::Rings;
+use super::spectrum::Spectrum;
+use std::f64::consts::PI;
+
+/// Rings, of equal distance up to a third of a cycle a taxel.
+const N_RINGS: usize = 24;
+const LAST_RING: f64 = 1.0 / 3.0;
+/// Directions over half a turn; even, so that a quarter turn is a whole number of them.
+const N_ANGLES: usize = 36;
+/// Harmonics 0, 2, … 16 of the whole turn. Edges of contacts are told by few; higher ones are mostly noise.
+const N_HARMONICS: usize = 9;
+
+pub(super) const ABOUT: FeatureAbout = FeatureAbout {
+    words: "Fourier–Mellin",
+    n_values: |_| N_RINGS * N_HARMONICS,
+    prepare: |shape, _| Box::new(FourierMellin::new(shape)),
+};
+
+#[derive(Debug)]
+struct FourierMellin {
+    spectrum: Spectrum,
+    rings: Rings,
+    /// Where the spectrum is read, ring after ring.
+    reads: Vec<Read>,
+}
+
+/// Four values of the spectrum and their weights.
+type Read = [(u32, f64); 4];
+
+impl FourierMellin {
+    fn new((ny, nx): (usize, usize)) -> Self {
+        let spectrum = Spectrum::new((ny, nx), (nx as f64 * LAST_RING) as usize + 1);
+        let places = (1..=N_RINGS).flat_map(|ring| {
+            (0..N_ANGLES).map(move |step| {
+                let radius = LAST_RING * ring as f64 / N_RINGS as f64;
+                let (sine, cosine) = (PI * step as f64 / N_ANGLES as f64).sin_cos();
+                (radius * cosine * nx as f64, radius * sine * ny as f64)
+            })
+        });
+        Self {
+            reads: places
+                .map(|place| read(place, &spectrum, (ny, nx)))
+                .collect(),
+            rings: Rings::new(N_ANGLES, N_HARMONICS),
+            spectrum,
+        }
+    }
+}
+
+/// The four whole frequencies about (u, v). |F| has the period of the array, and F(−u, −v) the magnitude of F(u, v).
+fn read((u, v): (f64, f64), spectrum: &Spectrum, (ny, nx): (usize, usize)) -> Read {
+    let (left, below) = (u.floor(), v.floor());
+    let (along, up) = (u - left, v - below);
+    let place = |right: f64, above: f64| {
+        let u = (left + right).rem_euclid(nx as f64) as usize;
+        let v = (below + above).rem_euclid(ny as f64) as usize;
+        let (u, v) = match u < spectrum.n_columns() {
+            true => (u, v),
+            false => ((nx - u) % nx, (ny - v) % ny),
+        };
+        (u * ny + v) as u32
+    };
+    [
+        (place(0.0, 0.0), (1.0 - along) * (1.0 - up)),
+        (place(1.0, 0.0), along * (1.0 - up)),
+        (place(0.0, 1.0), (1.0 - along) * up),
+        (place(1.0, 1.0), along * up),
+    ]
+}
+
+impl Feature for FourierMellin {
+    fn write(&self, image: &Image, workspace: &mut Workspace, out: &mut [f64]) {
+        let Workspace { fourier, rings, .. } = workspace;
+        self.spectrum.transform(image, fourier);
+        rings.values.clear();
+        rings.values.extend(self.reads.iter().map(|read| {
+            let terms = read.iter();
+            let terms = terms.map(|&(place, weight)| weight * fourier.magnitudes[place as usize]);
+            terms.sum::<f64>().sqrt()
+        }));
+        self.rings.write(rings, out);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::spectrum::tests::by_definition;
+    use super::super::tests::{features_of, frame};
+    use super::super::{Cut, Image, ImageFeature};
+    use super::*;
+
+    /// Everything by its definition, frequency by frequency.
+    #[test]
+    fn they_are_what_the_equation_says() {
+        let shape = (12, 10);
+        let frame = frame(shape);
+        let mut image = Image::default();
+        image.read(&frame, shape.1, Cut::default());
+        let found = features_of(ImageFeature::FourierMellin, shape, &frame);
+        let between = |u: f64, v: f64| {
+            let (left, below) = (u.floor() as isize, v.floor() as isize);
+            let (along, up) = (u - u.floor(), v - v.floor());
+            let row = |v: isize| {
+                (1.0 - along) * by_definition(&image, left, v)
+                    + along * by_definition(&image, left + 1, v)
+            };
+            (1.0 - up) * row(below) + up * row(below + 1)
+        };
+        for (ring, harmonic) in [(1, 0), (5, 3), (16, 8), (24, 1)] {
+            let radius = ring as f64 / 72.0;
+            let (mut re, mut im) = (0.0, 0.0);
+            for step in 0..36 {
+                let theta = PI * step as f64 / 36.0;
+                let magnitude = between(10.0 * radius * theta.cos(), 12.0 * radius * theta.sin());
+                let angle = -2.0 * harmonic as f64 * theta;
+                re += magnitude.sqrt() * angle.cos();
+                im += magnitude.sqrt() * angle.sin();
+            }
+            let expected = f64::hypot(re, im) / 36.0;
+            let found = found[(ring - 1) * N_HARMONICS + harmonic];
+            assert!((found - expected).abs() < 1e-7, "{found} {expected}");
+        }
+    }
+}

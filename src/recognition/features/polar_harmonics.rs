@@ -1,0 +1,92 @@
+//! Roots of harmonics over the angle of the image itself, in rings about the centroid of its pressure: 416 numbers.
+//!
+//! With the centroid (x̄, ȳ) = Σ δ (x, y) / Σ δ and rings of radius r = (j + ½) h / 26, j = 0 … 25, where h is half the shorter side:
+//!
+//! f(j, k)² = |Σ_θ δ(x̄ + r cos θ, ȳ + r sin θ) exp(−ikθ)| / 32, θ in 32 equal steps, k = 0 … 15.
+//!
+//! δ between taxels is interpolated bilinearly, and 0 beyond the array. The centroid goes with the contact and a turn of the image
+//! turns rings: invariant exactly to shifts by whole taxels as long as no ring that meets the contact leaves the array, and to
+//! quarter turns; to others as far as taxels sample what is turned. The root brings weak harmonics closer to strong ones.
+//!
+//! Source: the angular part of Sheng and Arsenault (1986), JOSA A 3, 771, without the transform before it.
+
+use super::feature::{Feature, FeatureAbout, Workspace};
+use super::image::Image;
+use super::rings::Rings;
+use std::f64::consts::TAU;
+
+/// Rings; on 64 × 64 taxels 1.2 pitches apart.
+const N_RINGS: usize = 26;
+/// A multiple of 4, so that a quarter turn is a whole number of steps.
+const N_ANGLES: usize = 32;
+/// All but the one that a step of 32 cannot tell from its mirror image.
+const N_HARMONICS: usize = 16;
+
+pub(super) const ABOUT: FeatureAbout = FeatureAbout {
+    words: "polar harmonics",
+    n_values: |_| N_RINGS * N_HARMONICS,
+    prepare: |shape, _| Box::new(PolarHarmonics::new(shape)),
+};
+
+#[derive(Debug)]
+struct PolarHarmonics {
+    rings: Rings,
+    /// Of each value, ring after ring: where it is beside the centroid, in columns and rows.
+    places: Vec<(f64, f64)>,
+}
+
+impl PolarHarmonics {
+    fn new((ny, nx): (usize, usize)) -> Self {
+        let half = 0.5 * ny.min(nx) as f64;
+        let places = (0..N_RINGS).flat_map(|ring| {
+            (0..N_ANGLES).map(move |step| {
+                let radius = (ring as f64 + 0.5) * half / N_RINGS as f64;
+                let (sine, cosine) = (TAU * step as f64 / N_ANGLES as f64).sin_cos();
+                (radius * cosine, radius * sine)
+            })
+        });
+        Self {
+            rings: Rings::new(N_ANGLES, N_HARMONICS),
+            places: places.collect(),
+        }
+    }
+}
+
+impl Feature for PolarHarmonics {
+    fn write(&self, image: &Image, workspace: &mut Workspace, out: &mut [f64]) {
+        let (x, y) = image.centroid;
+        let values = &mut workspace.rings.values;
+        values.clear();
+        values.extend(self.places.iter().map(|p| image.at(x + p.0, y + p.1)));
+        self.rings.write(&mut workspace.rings, out);
+        out.iter_mut().for_each(|value| *value = value.sqrt());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Cut;
+    use super::super::ImageFeature;
+    use super::super::tests::features_of;
+    use super::*;
+
+    /// A plane δ = 1 + 0.1 (x − x̄) over a disc has harmonic 0 of 1 and harmonic 1 of 0.05 r; bilinear interpolation is exact on planes.
+    #[test]
+    fn harmonics_of_a_plane_are_its_height_and_its_slope() {
+        let shape = (64, 64);
+        let frame: Vec<f64> = (0..4096)
+            .map(|i| 1.0 + 0.01 * ((i % 64) as f64 - 31.5))
+            .collect();
+        let found = features_of(ImageFeature::PolarHarmonics, shape, &frame);
+        let mut image = Image::default();
+        image.read(&frame, 64, Cut::default());
+        let height = 1.0 + 0.01 * (image.centroid.0 - 31.5);
+        for ring in 0..16 {
+            let radius = (ring as f64 + 0.5) * 32.0 / 26.0;
+            let [zero, one, two] = [0, 1, 2].map(|k| found[ring * N_HARMONICS + k].powi(2));
+            assert!((zero - height).abs() < 1e-12, "{ring}");
+            assert!((one - 0.005 * radius).abs() < 1e-12, "{ring}");
+            assert!(two < 1e-12, "{ring}");
+        }
+    }
+}

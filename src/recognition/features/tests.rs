@@ -1,0 +1,257 @@
+//! Laws of all features of images, each held to all of them.
+
+use super::*;
+use crate::random::Seed;
+use rand::Rng;
+
+/// An uneven blob with holes in the middle third of an array, between 0 and 1.
+pub(super) fn frame((ny, nx): (usize, usize)) -> Vec<f64> {
+    let mut rng = Seed::new(7).named("frame").rng();
+    let near = |i: usize, n: usize| 3 * i >= n && 3 * i < 2 * n;
+    let value = |i: usize| match near(i % nx, nx) && near(i / nx, ny) {
+        true => rng.gen_range(-0.3..1.0_f64).max(0.0),
+        false => 0.0,
+    };
+    (0..ny * nx).map(value).collect()
+}
+
+/// The features of a frame of full scale 1 without noise.
+pub(super) fn features_of(feature: ImageFeature, shape: (usize, usize), frame: &[f64]) -> Vec<f64> {
+    let join = Join::new(&[feature]).unwrap();
+    written(join, shape, frame, 0.0)
+}
+
+fn written(join: Join, shape: (usize, usize), frame: &[f64], level: f64) -> Vec<f64> {
+    let cut = Cut {
+        level,
+        foremost: None,
+    };
+    cut_off(join, shape, frame, cut)
+}
+
+fn cut_off(join: Join, shape: (usize, usize), frame: &[f64], cut: Cut) -> Vec<f64> {
+    let features = ImageFeatures::new(join, shape, 1.0, cut);
+    let mut out = vec![f64::NAN; join.n_values(shape)];
+    features.write(frame, &mut Workspace::default(), &mut out);
+    out
+}
+
+/// The frame moved by whole taxels, around the array's edges.
+fn shifted(frame: &[f64], (ny, nx): (usize, usize), (up, along): (usize, usize)) -> Vec<f64> {
+    let from = |i: usize| (i / nx + ny - up) % ny * nx + (i % nx + nx - along) % nx;
+    (0..ny * nx).map(|i| frame[from(i)]).collect()
+}
+
+/// The frame turned by 90°.
+fn turned(frame: &[f64], side: usize) -> Vec<f64> {
+    let from = |i: usize| (i % side) * side + side - 1 - i / side;
+    (0..side * side).map(|i| frame[from(i)]).collect()
+}
+
+fn mirrored(frame: &[f64], nx: usize) -> Vec<f64> {
+    let rows = frame.chunks_exact(nx);
+    rows.flat_map(|row| row.iter().rev().copied()).collect()
+}
+
+fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
+    let pairs = a.iter().zip(b);
+    pairs.fold(0.0, |most, (a, b)| f64::max(most, (a - b).abs()))
+}
+
+/// Of numbers of order 1 to 10, and of roots of what is 0 but for the rounding of such numbers.
+const ROUNDING: f64 = 1e-7;
+
+#[test]
+fn a_shift_on_the_array_changes_no_feature() {
+    for shape in [(30, 30), (24, 36), (31, 27)] {
+        let frame = frame(shape);
+        for &feature in ImageFeature::ALL {
+            let found = features_of(feature, shape, &frame);
+            assert!(found.iter().any(|&value| value > 0.1), "{feature:?}");
+            for by in [(0, 1), (3, 0), (5, 7)] {
+                let moved = features_of(feature, shape, &shifted(&frame, shape, by));
+                let difference = largest_difference(&found, &moved);
+                assert!(difference < ROUNDING, "{feature:?} {by:?}: {difference}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_shift_around_the_edge_changes_no_fourier_magnitude_but_the_others() {
+    let shape = (24, 24);
+    let frame = frame(shape);
+    let moved = shifted(&frame, shape, (12, 5));
+    for &feature in ImageFeature::ALL {
+        let [before, after] = [&frame, &moved].map(|frame| features_of(feature, shape, frame));
+        let is_cyclic = matches!(
+            feature,
+            ImageFeature::FourierMagnitude | ImageFeature::FourierMellin
+        );
+        let is_same = largest_difference(&before, &after) < ROUNDING;
+        assert_eq!(is_same, is_cyclic, "{feature:?}");
+    }
+}
+
+#[test]
+fn a_quarter_turn_changes_none_but_the_fourier_magnitude() {
+    for side in [24, 31] {
+        let frame = frame((side, side));
+        let turned = turned(&frame, side);
+        for &feature in ImageFeature::ALL {
+            let [before, after] =
+                [&frame, &turned].map(|frame| features_of(feature, (side, side), frame));
+            let difference = largest_difference(&before, &after);
+            let is_turned = feature == ImageFeature::FourierMagnitude;
+            assert_eq!(
+                difference > ROUNDING,
+                is_turned,
+                "{feature:?}: {difference}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_mirror_image_has_the_same_harmonics_and_the_descriptors_but_three() {
+    let shape = (24, 24);
+    let frame = frame(shape);
+    let mirrored = mirrored(&frame, 24);
+    for (feature, n_changed) in [
+        (ImageFeature::FourierMellin, 0),
+        (ImageFeature::PolarHarmonics, 0),
+        (ImageFeature::Descriptors, 3),
+    ] {
+        let [before, after] = [&frame, &mirrored].map(|frame| features_of(feature, shape, frame));
+        let pairs = before.iter().zip(&after);
+        let changed: Vec<_> = pairs.filter(|(a, b)| (*a - *b).abs() > ROUNDING).collect();
+        assert_eq!(changed.len(), n_changed, "{feature:?}");
+        assert!(changed.iter().all(|(a, b)| (*a + *b).abs() < ROUNDING));
+    }
+}
+
+#[test]
+fn more_pressure_multiplies_roots_and_the_aligned_image() {
+    let shape = (20, 20);
+    let frame = frame(shape);
+    let more: Vec<f64> = frame.iter().map(|value| 4.0 * value).collect();
+    for (feature, factor) in [
+        (ImageFeature::FourierMagnitude, 2.0),
+        (ImageFeature::FourierMellin, 2.0),
+        (ImageFeature::PolarHarmonics, 2.0),
+        (ImageFeature::Aligned, 4.0),
+    ] {
+        let found = features_of(feature, shape, &frame);
+        let scaled: Vec<f64> = found.iter().map(|value| factor * value).collect();
+        let difference = largest_difference(&scaled, &features_of(feature, shape, &more));
+        assert!(difference < ROUNDING, "{feature:?}: {difference}");
+    }
+}
+
+#[test]
+fn what_is_below_the_level_counts_as_nothing() {
+    let shape = (18, 21);
+    let frame = frame(shape);
+    let kept = |value: f64| if value >= 0.4 { value } else { 0.0 };
+    let above: Vec<f64> = frame.iter().map(|&value| kept(value)).collect();
+    let noisy: Vec<f64> = frame
+        .iter()
+        .enumerate()
+        .map(|(i, &value)| match value >= 0.4 {
+            true => value,
+            false => [-3.0, 0.39, f64::NAN][i % 3],
+        })
+        .collect();
+    let all = Join::new(ImageFeature::ALL).unwrap();
+    let [noisy, of_above] =
+        [(&noisy, 0.4), (&above, 0.0)].map(|(frame, level)| written(all, shape, frame, level));
+    assert!(noisy == of_above);
+    assert!(of_above != written(all, shape, &frame, 0.0));
+}
+
+#[test]
+fn nothing_has_no_features_and_any_array_has_finite_ones() {
+    for shape in [(1, 1), (1, 5), (5, 1), (2, 2), (3, 3), (7, 4)] {
+        let n = shape.0 * shape.1;
+        let all = Join::new(ImageFeature::ALL).unwrap();
+        assert!(
+            written(all, shape, &vec![0.0; n], 0.0)
+                .iter()
+                .all(|&v| v == 0.0)
+        );
+        for frame in [
+            vec![0.5; n],
+            (0..n).map(|i| i as f64).collect(),
+            vec![1e100; n],
+        ] {
+            let found = written(all, shape, &frame, 0.0);
+            assert!(found.iter().all(|v| !v.is_nan()), "{shape:?}");
+        }
+    }
+}
+
+#[test]
+fn a_join_is_its_features_one_after_the_other_in_whatever_order_it_is_written() {
+    let shape = (16, 16);
+    let frame = frame(shape);
+    let features = Features::try_from("descriptors + fourier_mellin".to_owned()).unwrap();
+    assert_eq!(String::from(features), "fourier_mellin+descriptors");
+    let parts = [ImageFeature::FourierMellin, ImageFeature::Descriptors];
+    let expected = parts
+        .map(|feature| features_of(feature, shape, &frame))
+        .concat();
+    let join = features.of_image().unwrap();
+    assert_eq!(features.n_values(3, shape), expected.len());
+    assert_eq!(written(join, shape, &frame, 0.0), expected);
+}
+
+#[test]
+fn every_name_reads_back_and_others_are_told_what_there_is() {
+    for name in [
+        "raw",
+        "centred",
+        "unit_norm",
+        "centred_unit_norm",
+        "aligned",
+    ] {
+        let features = Features::try_from(name.to_owned()).unwrap();
+        assert_eq!(String::from(features), name);
+    }
+    for (given, wanted) in [
+        ("fourier", "fourier_mellin"),
+        ("", "raw"),
+        ("raw+aligned", "joined by +"),
+        ("aligned+", "joined by +"),
+        ("aligned+aligned", "each once"),
+    ] {
+        let error = Features::try_from(given.to_owned())
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains(wanted), "{error}");
+    }
+}
+
+/// A rigid object that goes in deeper adds the same to every taxel that it touches, and touches more.
+#[test]
+fn what_is_behind_the_foremost_point_does_not_change_with_depth() {
+    let shape = (32, 32);
+    let pressed = |depth: f64| -> Vec<f64> {
+        let away = |i: usize| ((i % 32) as f64 - 15.0).powi(2) + ((i / 32) as f64 - 14.0).powi(2);
+        let surface = |i: usize| away(i) / 301.7 + 0.02 * ((i % 7) as f64).sin().abs();
+        (0..1024).map(|i| (depth - surface(i)).max(0.0)).collect()
+    };
+    let all = Join::new(ImageFeature::ALL).unwrap();
+    let found = |depth, foremost| {
+        let cut = Cut {
+            level: 0.0,
+            foremost,
+        };
+        cut_off(all, shape, &pressed(depth), cut)
+    };
+    let [shallow, deep] = [0.4, 0.75].map(|depth| found(depth, Some(0.3)));
+    assert!(largest_difference(&shallow, &deep) < ROUNDING);
+    let [shallow, deep] = [0.4, 0.75].map(|depth| found(depth, None));
+    assert!(largest_difference(&shallow, &deep) > 1.0);
+    // What is not so deep is as it is.
+    assert!(found(0.2, Some(0.3)) == found(0.2, None));
+}

@@ -1,0 +1,144 @@
+//! Features of images in a study: what they bring, what they are learned from, and what they refuse.
+
+use crate::study::{Study, laid_out};
+use bubbletouch::recognition::features::{Cut, Features, ImageFeatures, Workspace};
+use bubbletouch::study::FeatureSet;
+use bubbletouch::study::progress::Silent;
+use bubbletouch::study::{Plan, StudySpec};
+
+const STUDY: &str = r#"
+question = "What does a frame's image say?"
+trials = 1
+
+[objects]
+sets = ["household"]
+names = ["mug", "banana", "scissors", "power_drill", "fork", "bowl"]
+surface_error_mm = 1.0
+
+[skin]
+pitch_mm = 4.0
+size_mm = 96.0
+stroke_mm = 5.0
+
+[touches]
+per_object = 40
+offset_x_mm = { uniform = [-10.0, 10.0] }
+offset_y_mm = { uniform = [-10.0, 10.0] }
+yaw_deg = { uniform = [0.0, 360.0] }
+depth_mm = 3.0
+
+[sensing]
+ensemble = "identity"
+
+[recognition]
+features = ["raw", "fourier_mellin+polar_harmonics+descriptors"]
+classifier = "linear_svm"
+"#;
+
+/// Accuracies of raw measurements and of joined invariants.
+fn accuracies(text: &str) -> [f64; 2] {
+    let tables = Study::new(text).run();
+    let accuracies: Vec<f64> = tables
+        .accuracy
+        .iter()
+        .map(|(_, score)| score.accuracy)
+        .collect();
+    accuracies.try_into().expect("a trial of two cells")
+}
+
+#[test]
+fn invariants_recognise_what_is_turned_any_way_and_so_do_estimated_images() {
+    let [raw, invariant] = accuracies(STUDY);
+    assert!(invariant > raw + 0.15, "{raw} {invariant}");
+    let sensed = "ensemble = \"principal_components\"\nmeasurements = 48";
+    let compressed = STUDY.replace("ensemble = \"identity\"", sensed);
+    let [raw, invariant] = accuracies(&compressed);
+    assert!(invariant > raw + 0.1, "{raw} {invariant}");
+}
+
+/// What a cell learns from and is tested on in a trial.
+fn features(text: &str, cell: usize, trial: usize) -> FeatureSet {
+    let study = laid_out(text).unwrap();
+    study.first().features((cell, trial), &Silent).unwrap()
+}
+
+#[test]
+fn features_of_a_whole_frame_are_those_of_the_frame() {
+    let [raw, found] = [0, 1].map(|cell| features(STUDY, cell, 0).data.records);
+    let join = Features::try_from("fourier_mellin+polar_harmonics+descriptors".to_owned());
+    let join = join.unwrap().of_image().unwrap();
+    let features = ImageFeatures::new(join, (24, 24), 5e-3, Cut::default());
+    let mut out = vec![0.0; join.n_values((24, 24))];
+    for (frame, row) in raw.outer_iter().zip(found.outer_iter()) {
+        features.write(
+            frame.as_slice().unwrap(),
+            &mut Workspace::default(),
+            &mut out,
+        );
+        assert_eq!(row.to_vec(), out);
+    }
+}
+
+/// Test touches that were learned from would be told apart by what else is tested.
+#[test]
+fn what_is_learned_for_images_does_not_know_test_touches() {
+    let sensed = "ensemble = \"principal_components\"\nmeasurements = 8";
+    let text = STUDY.replace("ensemble = \"identity\"", sensed);
+    let text = text.replace("trials = 1", "trials = 2");
+    let [set, other] = [0, 1].map(|trial| features(&text, 1, trial));
+    // Another split: the same touches measure otherwise, by what was learned from others.
+    assert_ne!(set.split.test, other.split.test);
+    assert_ne!(set.data.records.row(0), other.data.records.row(0));
+}
+
+#[test]
+fn a_depth_changes_no_feature_of_what_is_behind_the_foremost_point() {
+    let at = |depth: &str| {
+        let text = STUDY
+            .replace("depth_mm = 3.0", &format!("depth_mm = {depth}"))
+            .replace("classifier =", "foremost_full_scale = 0.3\nclassifier =");
+        features(&text, 1, 0).data.records
+    };
+    let [shallow, deep] = ["2.0", "4.0"].map(at);
+    let size = shallow.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+    // Frames are kept in f32; an area may count a taxel more for it.
+    let is_near = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-3 * size;
+    let n_near = shallow
+        .iter()
+        .zip(&deep)
+        .filter(|pair| is_near(*pair))
+        .count();
+    assert!(
+        n_near as f64 > 0.999 * shallow.len() as f64,
+        "{n_near} of {}",
+        shallow.len()
+    );
+    let raw = |depth: &str| {
+        let text = STUDY.replace("depth_mm = 3.0", &format!("depth_mm = {depth}"));
+        features(&text, 1, 0).data.records
+    };
+    let [shallow, deep] = ["2.0", "4.0"].map(raw);
+    let n_near = shallow
+        .iter()
+        .zip(&deep)
+        .filter(|pair| is_near(*pair))
+        .count();
+    assert!((n_near as f64) < 0.9 * shallow.len() as f64);
+}
+
+#[test]
+fn skins_without_rows_and_shear_have_no_images() {
+    let refused = |text: &str| {
+        let spec = StudySpec::parse("study.toml", text).unwrap();
+        Plan::new("study.toml", spec).unwrap_err().to_string()
+    };
+    let hexagonal = STUDY.replace("stroke_mm = 5.0", "stroke_mm = 5.0\nlayout = \"hexagonal\"");
+    let shear =
+        "stroke_mm = 5.0\nsensed = \"shear\"\nfriction = 0.5\nshear_stiffness_n_per_m = 50.0";
+    for text in [hexagonal, STUDY.replace("stroke_mm = 5.0", shear)] {
+        let said = refused(&text);
+        for words in ["recognition.features", "fourier_mellin", "rows and columns"] {
+            assert!(said.contains(words), "{said}");
+        }
+    }
+}
