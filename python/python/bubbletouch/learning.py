@@ -1,0 +1,278 @@
+"""Soft-margin support vector machines, as scikit-learn's estimators are used.
+
+With scikit-learn installed (`pip install 'bubbletouch[learning]'`) they are its estimators and stand in its pipelines, searches and scores;
+without it they fit, predict and are pickled all the same. Features should be of one scale: StandardScaler before them.
+
+Differs from scikit-learn: no class or sample weights; `SVC` needs 4 · n_rows² to 8 · n_rows² bytes up to `max_memory`, and is slower beyond. A
+trained model is pickled as the rows that it was trained on, and trained again when it is loaded: the same bits, after the same time.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, cast
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from bubbletouch import _core
+
+try:
+    from sklearn.base import BaseEstimator, ClassifierMixin
+    from sklearn.exceptions import ConvergenceWarning, NotFittedError
+    from sklearn.model_selection import check_cv
+    from sklearn.utils.multiclass import check_classification_targets
+    from sklearn.utils.validation import check_is_fitted, validate_data
+except ImportError:
+    from bubbletouch._without_sklearn import (
+        BaseEstimator,
+        ClassifierMixin,
+        ConvergenceWarning,
+        NotFittedError,
+        check_classification_targets,
+        check_cv,
+        check_is_fitted,
+        validate_data,
+    )
+
+__all__ = ["SVC", "GridSearch", "LinearSVC", "NotFittedError"]
+
+Floats = NDArray[np.float64]
+
+
+class _Classifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
+    """What both have: classes of any kind, numbered for the library."""
+
+    classes_: NDArray[Any]
+
+    def _numbered(self, X: ArrayLike, y: ArrayLike) -> tuple[Floats, NDArray[np.int64]]:
+        features, labels = validate_data(self, X, y, dtype=np.float64, order="C")
+        check_classification_targets(labels)
+        self.classes_, numbers = np.unique(labels, return_inverse=True)
+        if len(self.classes_) < 2:
+            raise ValueError(f"labels: 1 class ({self.classes_[0]!r}); at least two classes")
+        return features, numbers
+
+    def _features(self, X: ArrayLike) -> Floats:
+        check_is_fitted(self)
+        return cast(Floats, validate_data(self, X, dtype=np.float64, order="C", reset=False))
+
+    def _warn_of(self, n_capped: int, limit: str) -> None:
+        if n_capped:
+            said = f"{n_capped} problems stopped at {limit} before they converged"
+            warnings.warn(said, ConvergenceWarning, stacklevel=3)
+
+
+class SVC(_Classifier):
+    """A support vector machine with a kernel.
+
+    C: what a unit of margin violation costs, above 0. kernel: rbf, linear or poly (of `degree` and `coef0`). gamma: "scale"
+    (1 / (n_features · var X)), "auto" (1 / n_features) or a number above 0. tol: how far the optimality conditions may be violated, in units of the
+    decision value. multi_class: "ovo", each pair of classes votes and of a tie the lowest class wins (as LIBSVM), or "ovr".
+    max_memory: bytes of kernel values held at once.
+
+    After fit: classes_, n_features_in_, support_ (numbers of training rows), n_support_ (of each class), problems_ (each binary
+    problem and its solution), n_capped_.
+    """
+
+    def __init__(
+        self,
+        C: float = 1.0,
+        *,
+        kernel: str = "rbf",
+        degree: int = 3,
+        gamma: str | float = "scale",
+        coef0: float = 0.0,
+        tol: float = 1e-3,
+        multi_class: str = "ovo",
+        max_memory: int = 2 << 30,
+    ) -> None:
+        self.C = C
+        self.kernel = kernel
+        self.degree = degree
+        self.gamma = gamma
+        self.coef0 = coef0
+        self.tol = tol
+        self.multi_class = multi_class
+        self.max_memory = max_memory
+
+    def _params(self, n_features: int) -> dict[str, Any]:
+        match self.gamma:
+            case "scale":
+                gamma = None
+            case "auto":
+                gamma = 1.0 / n_features
+            case str():
+                raise ValueError(f"gamma: `{self.gamma}`; scale, auto or a number above 0")
+            case number:
+                gamma = float(number)
+        return {
+            "kernel": self.kernel,
+            "gamma": gamma,
+            "coef0": float(self.coef0),
+            "degree": int(self.degree),
+            "c": float(self.C),
+            "tolerance": float(self.tol),
+            "multiclass": self.multi_class,
+            "memory_bytes": int(self.max_memory),
+        }
+
+    def fit(self, X: ArrayLike, y: ArrayLike) -> SVC:
+        """Trains on features (n, m) and labels (n,). Ctrl-C returns at once; what runs is ended by its end."""
+        features, numbers = self._numbered(X, y)
+        self._model = _core.KernelSvm.train(features, numbers, self._params(features.shape[1]))
+        self.problems_ = self._model.problems
+        support = [p["rows"][p["coefficients"] != 0] for p in self.problems_]
+        self.support_ = np.unique(np.concatenate(support))
+        self.n_support_ = np.bincount(numbers[self.support_], minlength=len(self.classes_))
+        self.n_capped_ = self._model.n_capped
+        self._warn_of(self.n_capped_, "the iteration cap")
+        return self
+
+    def predict(self, X: ArrayLike) -> NDArray[Any]:
+        """(n,): the class of each row of features (n, m)."""
+        features = self._features(X)
+        return self.classes_[self._model.labels(features)]
+
+    def decision_values(self, X: ArrayLike) -> Floats:
+        """(n, n_problems): of each binary problem; above 0 speaks for its first class. Sums over touches may be compared as well."""
+        features = self._features(X)
+        return self._model.decision_values(features)
+
+    def decision_function(self, X: ArrayLike) -> Floats:
+        """(n,) of two classes, above 0 for the second; otherwise (n, n_classes), the largest for the class that is predicted (but for ties).
+
+        Of one-vs-one these are votes and, below one vote, the sum of the decision values for and against a class.
+        """
+        values = self.decision_values(X)
+        n_classes = len(self.classes_)
+        if n_classes == 2:
+            return -values[:, 0] if values.shape[1] == 1 else (values[:, 1] - values[:, 0]) / 2
+        if self.multi_class == "ovr":
+            return values
+        votes, sums = np.zeros((2, len(values), n_classes))
+        for problem, value in zip(self.problems_, values.T, strict=True):
+            first, second = problem["positive"], problem["negative"]
+            votes[:, first] += value > 0
+            votes[:, second] += value <= 0
+            sums[:, first] += value
+            sums[:, second] -= value
+        return cast(Floats, votes + sums / (3 * (np.abs(sums) + 1)))
+
+
+class LinearSVC(_Classifier):
+    """A linear support vector machine without a kernel matrix, by dual coordinate descent.
+
+    C: what a unit of margin violation (hinge) costs, above 0. multi_class: "ovr" or "crammer_singer". tol: the spread of projected
+    gradients at which it stops. max_iter: passes over the rows. random_state: seed of the order in which rows are visited (None: 0). The intercept
+    is regularised with the weights, as LIBLINEAR's: centre the features.
+
+    After fit: classes_, n_features_in_, coef_ (n_classes, m; of two classes (1, m)), intercept_, n_iter_, n_capped_.
+    """
+
+    def __init__(
+        self,
+        C: float = 1.0,
+        *,
+        multi_class: str = "ovr",
+        tol: float = 1e-3,
+        max_iter: int = 1000,
+        random_state: int | None = None,
+    ) -> None:
+        self.C = C
+        self.multi_class = multi_class
+        self.tol = tol
+        self.max_iter = max_iter
+        self.random_state = random_state
+
+    def fit(self, X: ArrayLike, y: ArrayLike) -> LinearSVC:
+        """Trains on features (n, m) and labels (n,). Ctrl-C returns at once; what runs is ended by its end."""
+        features, numbers = self._numbered(X, y)
+        seed = 0 if self.random_state is None else int(self.random_state)
+        self._model = _core.LinearModel.train(
+            features,
+            numbers,
+            self.multi_class,
+            float(self.C),
+            float(self.tol),
+            int(self.max_iter),
+            seed,
+        )
+        self.coef_, self.intercept_ = self._model.weights, self._model.bias
+        if len(self.classes_) == 2:
+            self.coef_ = (self.coef_[1:] - self.coef_[:1]) / 2
+            self.intercept_ = (self.intercept_[1:] - self.intercept_[:1]) / 2
+        self.n_iter_ = max(1, self._model.n_passes)
+        self.n_capped_ = self._model.n_capped
+        self._warn_of(self.n_capped_, f"max_iter = {self.max_iter}")
+        return self
+
+    def predict(self, X: ArrayLike) -> NDArray[Any]:
+        """(n,): the class of each row of features (n, m)."""
+        features = self._features(X)
+        return self.classes_[self._model.labels(features)]
+
+    def decision_function(self, X: ArrayLike) -> Floats:
+        """(n,) of two classes, above 0 for the second; otherwise (n, n_classes), the largest for the class that is predicted."""
+        features = self._features(X)
+        scores = self._model.scores(features)
+        return (scores[:, 1] - scores[:, 0]) / 2 if len(self.classes_) == 2 else scores
+
+
+class GridSearch(_Classifier):
+    """The C and γ of an SVC that recognise most held-out rows, over folds, on one matrix of products for the whole grid.
+
+    estimator: an SVC. C: candidates, each above 0. gamma_scales: candidates of γ as multiples of that of "scale"; None: as the
+    estimator has it. cv: a number of folds, an object of scikit-learn that splits, or pairs of arrays of training and test rows; rows that share
+    a group (fit's `groups`) are kept together by those that take groups. Of equals the smaller γ, then the smaller C.
+
+    After fit: best_params_ (C and gamma), best_score_, results_ (C, gamma, accuracy of each), best_estimator_ (of all rows).
+    """
+
+    def __init__(
+        self,
+        estimator: SVC | None = None,
+        *,
+        C: Sequence[float] = (0.1, 1.0, 10.0, 100.0),
+        gamma_scales: Sequence[float] | None = None,
+        cv: Any = 5,
+    ) -> None:
+        self.estimator = estimator
+        self.C = C
+        self.gamma_scales = gamma_scales
+        self.cv = cv
+
+    def fit(self, X: ArrayLike, y: ArrayLike, groups: ArrayLike | None = None) -> GridSearch:
+        """Chooses on features (n, m) and labels (n,), and trains on all of them."""
+        features, numbers = self._numbered(X, y)
+        estimator = SVC() if self.estimator is None else self.estimator
+        split = cast(
+            "Callable[..., Iterable[tuple[NDArray[Any], NDArray[Any]]]]",
+            check_cv(self.cv, numbers, classifier=True).split,
+        )
+        folds = list(split(features, numbers, groups))
+        params = estimator._params(features.shape[1])
+        scales = [] if self.gamma_scales is None else [float(scale) for scale in self.gamma_scales]
+        chosen = _core.choose_svm(features, numbers, params, folds, list(self.C), scales)
+        self.results_ = [dict(zip(("C", "gamma", "accuracy"), one, strict=True)) for one in chosen["tried"]]
+        self.best_score_ = chosen["accuracy"]
+        self.best_params_: dict[str, Any] = {"C": chosen["C"]}
+        if chosen["gamma"] is not None:
+            self.best_params_["gamma"] = chosen["gamma"]
+        own = {name: getattr(estimator, name) for name in _SVC_NAMES} | self.best_params_
+        self.best_estimator_ = SVC(**own).fit(features, np.asarray(y))
+        return self
+
+    def predict(self, X: ArrayLike) -> NDArray[Any]:
+        """(n,): the class of each row of features (n, m)."""
+        features = self._features(X)
+        return self.best_estimator_.predict(features)
+
+    def decision_function(self, X: ArrayLike) -> Floats:
+        """As SVC's."""
+        features = self._features(X)
+        return self.best_estimator_.decision_function(features)
+
+
+_SVC_NAMES = ("C", "kernel", "degree", "gamma", "coef0", "tol", "multi_class", "max_memory")

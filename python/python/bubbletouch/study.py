@@ -1,0 +1,165 @@
+"""Studies: a question in TOML, tables and charts as answer; and scenes."""
+
+from __future__ import annotations
+
+import base64
+import html
+import json
+import tempfile
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bubbletouch import _core
+from bubbletouch._core import Simulation
+
+Callback = Callable[[str, int, int], object]
+
+# Rows that a notebook shows of a table.
+_SHOWN = 20
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table of results.
+
+    file: its name in the folder; title, note: what it holds, and how to read it; columns: float64 arrays (NaN where absent) and lists of words.
+    """
+
+    file: str
+    title: str
+    note: str
+    columns: dict[str, NDArray[np.float64] | list[str]]
+
+    def __len__(self) -> int:
+        return max((len(column) for column in self.columns.values()), default=0)
+
+    def __getitem__(self, column: str) -> NDArray[np.float64] | list[str]:
+        """A column. Raises ValueError, which lists them."""
+        if column not in self.columns:
+            raise ValueError(f"column: `{column}`; {', '.join(self.columns)}")
+        return self.columns[column]
+
+    def frame(self) -> Any:
+        """As a pandas.DataFrame. Raises ImportError without pandas."""
+        import pandas
+
+        return pandas.DataFrame(self.columns)
+
+    def _repr_html_(self) -> str:
+        rows = [f"<th>{html.escape(name)}</th>" for name in self.columns]
+        lines = [f"<tr>{''.join(rows)}</tr>"]
+        for values in zip(*(column[:_SHOWN] for column in self.columns.values()), strict=True):
+            cells = (f"{value:.5g}" if isinstance(value, float) else value for value in values)
+            lines.append("<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in cells) + "</tr>")
+        more = f"<p>… {len(self) - _SHOWN} more rows</p>" if len(self) > _SHOWN else ""
+        return f"<h4>{html.escape(self.title)}</h4><table>{''.join(lines)}</table>{more}"
+
+
+class Study(Mapping[str, Table]):
+    """What came of a study: its tables by name ("summary" is that of summary.csv), and the folder with charts and report.html."""
+
+    def __init__(
+        self,
+        folder: Path,
+        tables: list[tuple[str, str, str, dict[str, Any]]],
+        kept: tempfile.TemporaryDirectory[str] | None = None,
+    ) -> None:
+        self.folder = folder
+        self._tables = {Path(table[0]).stem: Table(*table) for table in tables}
+        self._kept = kept
+
+    def __getitem__(self, name: str) -> Table:
+        """A table. Raises ValueError, which lists them."""
+        if name not in self._tables:
+            raise ValueError(f"table: `{name}`; {', '.join(self._tables)}")
+        return self._tables[name]
+
+    def get(self, name: str, default: Any = None) -> Any:
+        """A table, or the default where there is none of that name."""
+        return self._tables.get(name, default)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._tables
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._tables)
+
+    def __len__(self) -> int:
+        return len(self._tables)
+
+    @property
+    def charts(self) -> list[Path]:
+        """Files of charts as SVG."""
+        return sorted(self.folder.glob("*.svg"))
+
+    def __repr__(self) -> str:
+        return f"<bubbletouch.Study in {self.folder}: {', '.join(self._tables)}>"
+
+    def _repr_html_(self) -> str:
+        first = next((name for name in ("summary", *self._tables) if name in self._tables), None)
+        shown = "" if first is None else self._tables[first]._repr_html_()
+        for chart in self.charts:
+            data = base64.b64encode(chart.read_bytes()).decode()
+            shown += f'<img alt="{html.escape(chart.stem)}" src="data:image/svg+xml;base64,{data}">'
+        return shown
+
+
+def run(
+    study: str | PathLike[str] | Mapping[str, Any],
+    out: str | PathLike[str] | None = None,
+    *,
+    seed: int | None = None,
+    callback: Callback | None = None,
+) -> Study:
+    """Runs a study, on all cores: the same tables, bit by bit, as `bubbletouch run`.
+
+    study: a TOML file, or its tables as a dict. out: the folder of results, where an interrupted run goes on (None: a temporary one, which
+    goes with the Study). seed: replaces the study's. callback: is told the stage, how many of its steps are done, and of how many, from
+    any thread and at most 20 times a second; what it raises ends the run.
+
+    Raises ValueError for what cannot be run, by key; OSError for files; what a callback raises; KeyboardInterrupt for Ctrl-C, and what is
+    finished by then is kept in `out`. The first work item that fails ends the run.
+    """
+    if isinstance(study, Mapping):
+        text, name, folder = _core.toml_of(_json(study)), "study", Path()
+        place = name
+    else:
+        path = Path(study)
+        text, name, folder, place = path.read_text(encoding="utf-8"), path.stem, path.parent, str(path)
+    kept = tempfile.TemporaryDirectory(prefix="bubbletouch-") if out is None else None
+    results = Path(kept.name) / name if kept is not None else Path(out or "")
+    tables = _core.run_study(text, place, name, folder, results, seed, callback)
+    return Study(results, tables, kept)
+
+
+def simulate(scene: str | PathLike[str] | Mapping[str, Any]) -> Simulation:
+    """A scene, ready for its first frame: a TOML file, or its tables as a dict (paths in it are then relative to the working folder).
+
+    Raises ValueError for what cannot be simulated, by key; OSError for a file that cannot be read.
+    """
+    if isinstance(scene, Mapping):
+        return Simulation(_core.toml_of(_json(scene)), "scene", Path())
+    path = Path(scene)
+    return Simulation(path.read_text(encoding="utf-8"), str(path), path.parent)
+
+
+def _json(study: Mapping[str, Any]) -> str:
+    def plain(value: object) -> object:
+        if isinstance(value, np.ndarray | np.generic):
+            return value.tolist()
+        if isinstance(value, Mapping):
+            return dict(value)
+        if isinstance(value, PathLike):
+            return str(value)
+        raise ValueError(f"{value!r}; tables, lists, words, numbers and truth values")
+
+    try:
+        return json.dumps(dict(study), default=plain, allow_nan=False)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"tables: {error}; what TOML can say") from None

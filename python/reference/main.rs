@@ -1,0 +1,149 @@
+//! Presses, a chain, a projection and SVMs by the library alone, as `.npy` files in a folder: what `tests/test_identity.py` computes again in Python
+//! and compares bit by bit.
+
+use bubbletouch::contact::{Workspace, press_at_pose, press_to_depth, press_to_force};
+use bubbletouch::geometry::Pose;
+use bubbletouch::objects::{Model, Sphere, SphereUnion};
+use bubbletouch::random::Seed;
+use bubbletouch::recognition::classifiers::class_model::ClassModel;
+use bubbletouch::recognition::classifiers::linear_svm::LinearSvmParams;
+use bubbletouch::recognition::data::dataset::dataset;
+use bubbletouch::recognition::svm::SvmParams;
+use bubbletouch::recognition::svm::kernel::{Gamma, Kernel};
+use bubbletouch::sensing::{Ensemble, Projection};
+use bubbletouch::signal::{Chain, Noise, NoiseUnit, Scratch, SensorError, SignalStep};
+use bubbletouch::study::write_npy;
+use bubbletouch::world::{Grid, Layout, Patch, Taxel};
+use bubbletouch::{Error, Result};
+use glam::{DQuat, DVec3};
+use ndarray::{Array1, Array2};
+use std::path::Path;
+
+const N: usize = 120;
+const TAXEL: Taxel = Taxel {
+    radius: 1e-3,
+    stiffness: 100.0,
+    damping: 0.0,
+    stroke: 5e-3,
+};
+
+/// Three balls in a row, apart by a distance, metres.
+fn balls(apart: f64) -> Result<Model> {
+    let ball = |k: i32| Sphere {
+        center: DVec3::new(f64::from(k) * apart, 0.0, 0.03),
+        radius: 0.012,
+    };
+    Ok(SphereUnion::new((-1..=1).map(ball).collect())?.into())
+}
+
+/// Numbers that are exact in any language.
+fn pose(number: usize) -> Pose {
+    let k = number as f64;
+    let turn = DQuat::from_xyzw(0.0, 0.0, 0.6, 0.8).normalize();
+    let at = DVec3::new((k - 60.0) / 8192.0, (number % 7) as f64 / 1024.0, 0.0);
+    Pose::new(turn, at)
+}
+
+fn main() -> Result<()> {
+    let folder = std::env::args()
+        .nth(1)
+        .ok_or_else(|| Error::input("reference", "no folder", "the folder where its files go"))?;
+    let folder = Path::new(&folder);
+    let grid = Grid {
+        nx: 24,
+        ny: 20,
+        pitch: 2e-3,
+    };
+    let flat = Patch::grid(grid, TAXEL)?;
+    let hexagonal = Patch::new("patch", Layout::hexagonal(24, 20, 2e-3)?, TAXEL)?;
+    let models = [balls(0.014)?, balls(0.016)?, balls(0.02)?];
+    let mut workspace = Workspace::new();
+    for (name, patch) in [("grid", &flat), ("hexagonal", &hexagonal)] {
+        let frames = |press: &mut dyn FnMut(&Model, Pose, &mut Workspace) -> Result<()>,
+                      workspace: &mut Workspace|
+         -> Result<Array2<f64>> {
+            let mut frames = Array2::zeros((N, patch.n_taxels()));
+            for (number, mut frame) in frames.outer_iter_mut().enumerate() {
+                press(&models[number % 3], pose(number), workspace)?;
+                frame.assign(&Array1::from(workspace.deflections().to_vec()));
+            }
+            Ok(frames)
+        };
+        let depth = frames(
+            &mut |model, pose, workspace| {
+                press_to_depth(patch, std::slice::from_ref(model), &[pose], 3e-3, workspace);
+                Ok(())
+            },
+            &mut workspace,
+        )?;
+        let force = frames(
+            &mut |model, pose, workspace| {
+                press_to_force(patch, std::slice::from_ref(model), &[pose], 2.0, workspace)
+                    .map(drop)
+            },
+            &mut workspace,
+        )?;
+        let here = frames(
+            &mut |model, mut pose, workspace| {
+                pose.translation.z = -0.02;
+                press_at_pose(patch, std::slice::from_ref(model), &[pose], workspace);
+                Ok(())
+            },
+            &mut workspace,
+        )?;
+        write_npy(&folder.join(format!("{name}_depth.npy")), &depth)?;
+        write_npy(&folder.join(format!("{name}_force.npy")), &force)?;
+        write_npy(&folder.join(format!("{name}_here.npy")), &here)?;
+        if name == "grid" {
+            after_presses(folder, &flat, depth)?;
+        }
+    }
+    Ok(())
+}
+
+fn after_presses(folder: &Path, patch: &Patch, mut frames: Array2<f64>) -> Result<()> {
+    let skin = Seed::new(7);
+    let noise = Noise {
+        std: 0.02,
+        unit: NoiseUnit::FullScale,
+    };
+    let steps = [
+        SensorError::Hysteresis.step(&[0.1], skin),
+        SensorError::Gain.step(&[0.05], skin),
+        SensorError::Drift.step(&[0.02], skin),
+        SensorError::Faults.step(&[0.01, 0.02], skin),
+        SignalStep::Noise(noise),
+        SignalStep::Smoothing { width: 4e-3 },
+        SensorError::Quantisation.step(&[10.0], skin),
+    ];
+    let chain = Chain::new(&steps, patch)?;
+    let (touches, mut scratch) = (Seed::new(2018), Scratch::default());
+    for (number, mut frame) in frames.outer_iter_mut().enumerate() {
+        let frame = frame.as_slice_mut().expect("rows are whole");
+        chain.apply(frame, None, &touches.numbered(number as u64), &mut scratch);
+    }
+    write_npy(&folder.join("chain.npy"), &frames)?;
+    for (ensemble, (name, _)) in Ensemble::ALL.iter().zip(Ensemble::NAMES) {
+        let projection = Projection::new(*ensemble, (20, 24), 32, &Seed::new(11))?;
+        let measured = projection.measure(frames.view());
+        write_npy(&folder.join(format!("{name}.npy")), &measured)?;
+    }
+    let projection = Projection::new(Ensemble::Sbhe, (20, 24), 32, &Seed::new(11))?;
+    let features = 1e3 * projection.measure(frames.view());
+    let labels = Array1::from_iter((0..N).map(|number| number % 3));
+    let data = dataset(features.clone(), labels)?;
+    let gamma = Gamma::Scale;
+    for (name, kernel) in [("linear", Kernel::Linear), ("rbf", Kernel::Rbf { gamma })] {
+        let params = SvmParams {
+            kernel,
+            ..SvmParams::default()
+        };
+        let values = params.train(&data)?.decision_values(features.view())?;
+        write_npy(&folder.join(format!("svc_{name}.npy")), &values)?;
+    }
+    let linear = LinearSvmParams::default().train(&data, &Seed::new(0))?;
+    write_npy(
+        &folder.join("linear_svc.npy"),
+        &linear.scores(features.view())?,
+    )
+}

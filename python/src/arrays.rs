@@ -1,0 +1,141 @@
+//! NumPy arrays in and out.
+//!
+//! What comes in is looked at as float64, whatever real type it has; a copy is made only of other types and of strided arrays.
+
+use crate::errors::bad_input;
+use glam::DVec3;
+use ndarray::{Array2, ArrayViewD};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::PyAny;
+
+/// `numpy.asarray`.
+fn asarray<'py>(py: Python<'py>, array: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    static ASARRAY: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+    ASARRAY.import(py, "numpy", "asarray")?.call1((array,))
+}
+
+/// Real numbers of any shape as float64, in C order.
+///
+/// # Errors
+/// Something that is no array of real numbers; its text begins with `place`.
+pub fn numbers<'py>(
+    place: &str,
+    given: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    if let Ok(array) = given.cast::<PyArrayDyn<f64>>()
+        && array.is_c_contiguous()
+    {
+        return Ok(array.clone());
+    }
+    let py = given.py();
+    let array = asarray(py, given)
+        .map_err(|error| bad_input(place, error.value(py), "an array of real numbers"))?;
+    let dtype = array.getattr("dtype")?;
+    let kind: String = dtype.getattr("kind")?.extract()?;
+    if !matches!(&kind[..], "f" | "i" | "u" | "b") {
+        let given = format!("dtype {dtype}");
+        return Err(bad_input(place, given, "real numbers, such as float64"));
+    }
+    let array = array.call_method1("astype", ("float64", "C"))?;
+    Ok(array.cast_into::<PyArrayDyn<f64>>()?)
+}
+
+/// Looks at real numbers of a shape that `is_shape` allows.
+///
+/// # Errors
+/// Those of [`numbers`]; another shape.
+pub fn view<T>(
+    place: &str,
+    given: &Bound<PyAny>,
+    allowed: &str,
+    is_shape: impl Fn(&[usize]) -> bool,
+    look: impl FnOnce(ArrayViewD<f64>) -> PyResult<T>,
+) -> PyResult<T> {
+    let array = numbers(place, given)?;
+    if !is_shape(array.shape()) {
+        return Err(bad_input(place, shape_of(array.shape()), allowed));
+    }
+    let array = array
+        .try_readonly()
+        .map_err(|error| bad_input(place, error, "an array that nobody writes to meanwhile"))?;
+    look(array.as_array())
+}
+
+/// `shape (3, 7)`, as Python writes it.
+pub fn shape_of(shape: &[usize]) -> String {
+    let sides: Vec<String> = shape.iter().map(ToString::to_string).collect();
+    match &sides[..] {
+        [side] => format!("shape ({side},)"),
+        sides => format!("shape ({})", sides.join(", ")),
+    }
+}
+
+/// n points or directions of an n × 3 array.
+///
+/// # Errors
+/// Another shape. Numbers that are not finite are left to the library, which says what is wrong with which.
+pub fn points(place: &str, given: &Bound<PyAny>) -> PyResult<Vec<DVec3>> {
+    let is_shape = |shape: &[usize]| matches!(shape, [_, 3]);
+    view(place, given, "(n, 3)", is_shape, |array| {
+        let rows = array.rows().into_iter();
+        Ok(rows.map(|row| DVec3::new(row[0], row[1], row[2])).collect())
+    })
+}
+
+/// n numbers: an array of n, or one for all.
+///
+/// # Errors
+/// Another shape.
+pub fn each(place: &str, given: &Bound<PyAny>, n: usize) -> PyResult<Vec<f64>> {
+    let is_shape = |shape: &[usize]| shape.is_empty() || shape == [n];
+    let allowed = format!("({n},), or one number for all");
+    view(place, given, &allowed, is_shape, |array| {
+        Ok(match array.ndim() {
+            0 => vec![array.first().copied().unwrap_or(f64::NAN); n],
+            _ => array.iter().copied().collect(),
+        })
+    })
+}
+
+/// Frames of n taxels as n_frames × n: shapes (n_frames, …) whose sides after the first make n, or one frame alone.
+///
+/// # Errors
+/// Another number of taxels; a number that is not finite.
+pub fn frames(place: &str, given: &Bound<PyAny>, n_taxels: usize) -> PyResult<Array2<f64>> {
+    let is_shape = |shape: &[usize]| {
+        let whole = shape.iter().product::<usize>() == n_taxels && !shape.is_empty();
+        whole || shape.len() > 1 && shape[1..].iter().product::<usize>() == n_taxels
+    };
+    let allowed = format!("(n, …) with {n_taxels} taxels a frame");
+    view(place, given, &allowed, is_shape, |array| {
+        let n_frames = array.len() / n_taxels;
+        let values: Vec<f64> = array.iter().copied().collect();
+        if let Some(at) = values.iter().position(|value| !value.is_finite()) {
+            let place = format!("{place}, frame {}, taxel {}", at / n_taxels, at % n_taxels);
+            return Err(bad_input(place, values[at], "only finite numbers"));
+        }
+        let frames = Array2::from_shape_vec((n_frames, n_taxels), values);
+        Ok(frames.expect("as many values as frames times taxels"))
+    })
+}
+
+/// n × 3 numbers for Python.
+pub fn to_rows<'py>(
+    py: Python<'py>,
+    points: impl ExactSizeIterator<Item = DVec3>,
+) -> Bound<'py, PyArray2<f64>> {
+    let n = points.len();
+    let values: Vec<f64> = points.flat_map(|point| point.to_array()).collect();
+    let rows = Array2::from_shape_vec((n, 3), values).expect("three numbers a point");
+    rows.into_pyarray(py)
+}
+
+/// n numbers for Python.
+pub fn to_column<T: numpy::Element>(
+    py: Python<'_>,
+    values: impl IntoIterator<Item = T>,
+) -> Bound<'_, PyArray1<T>> {
+    values.into_iter().collect::<Vec<T>>().into_pyarray(py)
+}

@@ -1,0 +1,137 @@
+//! Work on each item of a batch, on several threads, each with its own scratch.
+
+use crate::errors::bad_input;
+use crate::threads::{Interrupt, pool};
+use pyo3::prelude::*;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Items that a thread takes at once, at most. Larger: threads end farther apart; smaller: they queue more often.
+const MOST_AT_ONCE: usize = 16;
+/// Fewer items for each thread are not worth waking it: 5 to 50 µs.
+const LEAST_PER_THREAD: usize = 4;
+
+/// How many threads: those asked for, or as many as the pool has.
+///
+/// # Errors
+/// Zero or less.
+pub fn n_threads(asked: Option<i64>) -> PyResult<Option<usize>> {
+    let Some(asked) = asked else {
+        return Ok(None);
+    };
+    match usize::try_from(asked) {
+        Ok(n) if n > 0 => Ok(Some(n)),
+        _ => Err(bad_input(
+            "threads",
+            asked,
+            "at least 1, or None for all cores",
+        )),
+    }
+}
+
+/// Scratch that calls leave for each other.
+pub struct Spare<S>(Mutex<Vec<S>>);
+
+impl<S> Spare<S> {
+    /// None yet.
+    pub const fn new() -> Self {
+        Self(Mutex::new(Vec::new()))
+    }
+
+    fn take(&self) -> Option<S> {
+        self.0.lock().ok()?.pop()
+    }
+
+    fn give_back(&self, scratch: S) {
+        if let Ok(mut spare) = self.0.lock() {
+            spare.push(scratch);
+        }
+    }
+}
+
+/// Calls `work` with each item's number, the item and a thread's scratch, without the interpreter's lock; this thread is one of those that
+/// work, and looks for Ctrl-C.
+///
+/// # Errors
+/// The first that some `work` returns, by the items' numbers among those that were begun; what Ctrl-C raises.
+pub fn for_each<T: Send, S: Send>(
+    py: Python,
+    items: Vec<T>,
+    threads: Option<usize>,
+    spare: &Spare<S>,
+    new_scratch: impl Fn() -> S + Sync,
+    work: impl Fn(usize, T, &mut S) -> PyResult<()> + Sync,
+) -> PyResult<()> {
+    let n_items = items.len();
+    py.detach(|| {
+        let most = n_items.div_ceil(LEAST_PER_THREAD);
+        let scratch = || spare.take().unwrap_or_else(&new_scratch);
+        if most <= 1 || threads == Some(1) {
+            let mut scratch = scratch();
+            let mut interrupt = Interrupt::new();
+            let mut worked = Ok(());
+            for (number, item) in items.into_iter().enumerate() {
+                worked = work(number, item, &mut scratch);
+                if worked.is_err() {
+                    break;
+                }
+                worked = interrupt.check();
+                if worked.is_err() {
+                    break;
+                }
+            }
+            spare.give_back(scratch);
+            return worked;
+        }
+        let pool = pool()?;
+        let n_threads = threads
+            .unwrap_or_else(|| pool.current_num_threads())
+            .min(most);
+        let at_once = (n_items / (4 * n_threads)).clamp(1, MOST_AT_ONCE);
+        let queue = Mutex::new(items.into_iter().enumerate());
+        let failed: Mutex<Option<(usize, PyErr)>> = Mutex::new(None);
+        let is_over = AtomicBool::new(false);
+        let fail = |number: usize, error: PyErr| {
+            is_over.store(true, Ordering::Relaxed);
+            if let Ok(mut failed) = failed.lock()
+                && failed.as_ref().is_none_or(|(first, _)| number < *first)
+            {
+                *failed = Some((number, error));
+            }
+        };
+        let run = |mut interrupt: Option<Interrupt>| {
+            let mut scratch = scratch();
+            let mut taken = Vec::with_capacity(at_once);
+            while !is_over.load(Ordering::Relaxed) {
+                match queue.lock() {
+                    Ok(mut queue) => taken.extend(queue.by_ref().take(at_once)),
+                    Err(_) => break,
+                }
+                if taken.is_empty() {
+                    break;
+                }
+                for (number, item) in taken.drain(..) {
+                    if let Err(error) = work(number, item, &mut scratch) {
+                        fail(number, error);
+                        break;
+                    }
+                    if let Some(Err(error)) = interrupt.as_mut().map(Interrupt::check) {
+                        fail(0, error);
+                        break;
+                    }
+                }
+            }
+            spare.give_back(scratch);
+        };
+        pool.in_place_scope(|scope| {
+            for _ in 1..n_threads {
+                scope.spawn(|_| run(None));
+            }
+            run(Some(Interrupt::new()));
+        });
+        match failed.into_inner() {
+            Ok(Some((_, error))) => Err(error),
+            _ => Ok(()),
+        }
+    })
+}

@@ -1,0 +1,118 @@
+//! `Catalogue` and `Solid`: named objects as parametric solids with real dimensions.
+
+use crate::errors::{check_readable, exception, guarded};
+use crate::model::corners;
+use crate::sphere_union::SphereUnion;
+use crate::threads::aside;
+use bubbletouch::objects::{self, Entry};
+use bubbletouch::study::load_catalogue;
+use numpy::PyArray2;
+use pyo3::prelude::*;
+use std::path::PathBuf;
+
+/// Named objects in named sets.
+#[pyclass(frozen, module = "bubbletouch")]
+pub struct Catalogue {
+    entries: objects::Catalogue,
+}
+
+#[pymethods]
+impl Catalogue {
+    /// The objects that come with bubbletouch: balls, boxes, cans, a household and hands.
+    #[staticmethod]
+    fn builtin() -> PyResult<Self> {
+        guarded(|| {
+            let entries = objects::Catalogue::builtin().map_err(exception)?;
+            Ok(Self { entries })
+        })
+    }
+
+    /// A TOML file of objects. Raises OSError, or ValueError with the file's line.
+    #[staticmethod]
+    fn read(path: PathBuf) -> PyResult<Self> {
+        guarded(|| {
+            check_readable(&path)?;
+            let entries = load_catalogue(&path).map_err(exception)?;
+            Ok(Self { entries })
+        })
+    }
+
+    /// Of all objects, set by set.
+    #[getter]
+    fn names(&self) -> Vec<&str> {
+        let entries = self.entries.entries().iter();
+        entries.map(|entry| entry.name.as_str()).collect()
+    }
+
+    #[getter]
+    fn sets(&self) -> Vec<&str> {
+        self.entries.sets()
+    }
+
+    /// The object of a name. Raises ValueError, which offers names that resemble it.
+    fn object(&self, name: &str) -> PyResult<Solid> {
+        let entry = self.entries.object(name).map_err(exception)?;
+        Ok(Solid(entry.clone()))
+    }
+
+    /// The objects of a set. Raises ValueError, which lists the sets.
+    fn set(&self, name: &str) -> PyResult<Vec<Solid>> {
+        let entries = self.entries.set(name).map_err(exception)?;
+        Ok(entries.into_iter().cloned().map(Solid).collect())
+    }
+
+    fn __len__(&self) -> usize {
+        self.entries.entries().len()
+    }
+
+    fn __repr__(&self) -> String {
+        let (n, sets) = (self.entries.entries().len(), self.entries.sets().join(", "));
+        format!("<bubbletouch.Catalogue: {n} objects in {sets}>")
+    }
+}
+
+/// An object of a catalogue: a union of parametric shapes with real dimensions, resting on z = 0, its box centred at x = y = 0.
+#[pyclass(frozen, module = "bubbletouch")]
+pub struct Solid(Entry);
+
+#[pymethods]
+impl Solid {
+    #[getter]
+    fn name(&self) -> &str {
+        &self.0.name
+    }
+
+    /// The set that it belongs to: balls, boxes, cans, household, hands, or a file's name.
+    #[getter]
+    fn set(&self) -> &str {
+        &self.0.set
+    }
+
+    /// Where its dimensions are from.
+    #[getter]
+    fn source(&self) -> &str {
+        &self.0.source
+    }
+
+    /// (2, 3): the least and the largest corner of the box around it, metres.
+    #[getter]
+    fn bounds<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+        corners(py, &self.0.solid.bounds())
+    }
+
+    /// Spheres whose surface is within the tolerance (metres, positive) of the solid's. Raises ValueError.
+    fn pack(&self, py: Python, tolerance: f64) -> PyResult<SphereUnion> {
+        guarded(|| {
+            let solid = self.0.solid.clone();
+            let packed = aside(py, move |_| solid.pack(tolerance))?;
+            Ok(SphereUnion::of(packed.map_err(exception)?))
+        })
+    }
+
+    fn __repr__(&self) -> String {
+        let size = self.0.solid.bounds().size() * 1e3;
+        let [x, y, z] = [size.x, size.y, size.z];
+        let Entry { name, set, .. } = &self.0;
+        format!("<bubbletouch.Solid {name} of {set}: {x:.1} × {y:.1} × {z:.1} mm>")
+    }
+}

@@ -1,0 +1,123 @@
+//! Errors of the library as exceptions, and what becomes of a panic.
+//!
+//! | library | Python |
+//! |---|---|
+//! | [`Error::Input`] | `ValueError`, the same sentence |
+//! | [`Error::Io`] | `OSError`, or its subclass for the system's number, with the file's name |
+//! | [`Error::WorkItems`] | `RuntimeError`, the same sentence |
+//! | a panic | `InternalError`, which asks for a report |
+
+use bubbletouch::Error;
+use pyo3::create_exception;
+use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind, set_hook};
+use std::path::Path;
+use std::sync::Mutex;
+
+create_exception!(
+    bubbletouch,
+    InternalError,
+    PyRuntimeError,
+    "A bug of bubbletouch itself, wherever it was called from: its text asks for a report."
+);
+
+/// What the last panic said, and where.
+static LAST_PANIC: Mutex<Option<String>> = Mutex::new(None);
+
+/// From now on a panic is kept for its exception, and nothing is printed.
+pub fn keep_panics() {
+    set_hook(Box::new(|info: &PanicHookInfo| {
+        let place = info.location().map_or(String::new(), |location| {
+            format!(", {}:{}", location.file(), location.line())
+        });
+        let said = message(info.payload());
+        if let Ok(mut last) = LAST_PANIC.lock() {
+            *last = Some(format!("{said}{place}"));
+        }
+    }));
+}
+
+fn message(payload: &dyn Any) -> &str {
+    let text = payload.downcast_ref::<&str>().copied();
+    let text = text.or_else(|| payload.downcast_ref::<String>().map(String::as_str));
+    text.unwrap_or("no message")
+}
+
+/// What `call` returns; a panic in it as an [`InternalError`].
+///
+/// # Errors
+/// Its own, and that one.
+pub fn guarded<T>(call: impl FnOnce() -> PyResult<T>) -> PyResult<T> {
+    catch_unwind(AssertUnwindSafe(call)).unwrap_or_else(|payload| {
+        let kept = LAST_PANIC.lock().ok().and_then(|mut last| last.take());
+        let said = kept.unwrap_or_else(|| message(&*payload).to_owned());
+        let version = env!("CARGO_PKG_VERSION");
+        Err(InternalError::new_err(format!(
+            "a bug of bubbletouch {version} ({said}); please report it, with the call that led here"
+        )))
+    })
+}
+
+/// The exception for an error of the library.
+pub fn exception(error: Error) -> PyErr {
+    let said = error.to_string();
+    match error {
+        Error::Input { .. } => PyValueError::new_err(said),
+        Error::Io { path, source, .. } => os_error(&path, &source, said),
+        Error::WorkItems { .. } => PyRuntimeError::new_err(said),
+    }
+}
+
+/// `OSError`: Python makes a `FileNotFoundError` and its like of the number.
+pub fn os_error(path: &Path, source: &std::io::Error, said: String) -> PyErr {
+    match source.raw_os_error() {
+        Some(number) => PyOSError::new_err((number, said, path.display().to_string())),
+        None => PyOSError::new_err(said),
+    }
+}
+
+/// `ValueError` as `<where>: <what was given>; <what is allowed>`.
+pub fn bad_input(place: impl ToString, given: impl ToString, allowed: impl ToString) -> PyErr {
+    exception(Error::input(place, given, allowed))
+}
+
+/// An `OSError` if there is no file at `path`, or it may not be opened, before the library looks at what is in it.
+///
+/// # Errors
+/// That one.
+pub fn check_readable(path: &Path) -> PyResult<()> {
+    let failed = |error: std::io::Error| {
+        let said = format!("{}: cannot be read", path.display());
+        os_error(path, &error, said)
+    };
+    // A pipe would wait for who writes to it; the library refuses it by its kind.
+    if std::fs::metadata(path).map_err(failed)?.is_file() {
+        std::fs::File::open(path).map_err(failed)?;
+    }
+    Ok(())
+}
+
+/// An `OSError` if the folder of a file to write is not there.
+///
+/// # Errors
+/// That one.
+pub fn check_folder(path: &Path) -> PyResult<()> {
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    let failed = |error: std::io::Error| {
+        let said = format!("{}: cannot be written", path.display());
+        os_error(path, &error, said)
+    };
+    folder.map_or(Ok(()), |folder| {
+        std::fs::metadata(folder).map(drop).map_err(failed)
+    })
+}
+
+/// Panics, so that tests see what becomes of it.
+#[pyfunction]
+pub fn _panic() -> PyResult<()> {
+    guarded(|| panic!("asked for"))
+}

@@ -1,0 +1,71 @@
+//! `bubbletouch._core`: the library for Python.
+//!
+//! Python's own side (`python/bubbletouch`) names what is here, and documents it in `_core.pyi`. Nothing here computes: arguments are checked
+//! and taken from arrays, the library is called without the interpreter's lock, results are put into arrays.
+
+mod arrays;
+mod batch;
+mod catalogue;
+mod contacts;
+mod errors;
+mod goal;
+mod jacobian;
+mod mesh;
+mod model;
+mod patch;
+mod picture;
+mod placement;
+mod poses;
+mod press;
+mod projection;
+mod reconstruction;
+mod signal;
+mod simulation;
+mod sphere_union;
+mod study;
+mod svm;
+mod threads;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+mod _core {
+    use super::*;
+
+    #[pymodule_export]
+    use catalogue::{Catalogue, Solid};
+    #[pymodule_export]
+    use contacts::Contacts;
+    #[pymodule_export]
+    use errors::{_panic, InternalError};
+    #[pymodule_export]
+    use mesh::Mesh;
+    #[pymodule_export]
+    use patch::Patch;
+    #[pymodule_export]
+    use picture::write_frame;
+    #[pymodule_export]
+    use placement::touch_poses;
+    #[pymodule_export]
+    use press::_kernel_pace;
+    #[pymodule_export]
+    use projection::Projection;
+    #[pymodule_export]
+    use reconstruction::Reconstructor;
+    #[pymodule_export]
+    use signal::{Chain, Step};
+    #[pymodule_export]
+    use simulation::Simulation;
+    #[pymodule_export]
+    use sphere_union::SphereUnion;
+    #[pymodule_export]
+    use study::{run_study, toml_of};
+    #[pymodule_export]
+    use svm::{KernelSvm, LinearModel, choose_svm};
+
+    #[pymodule_init]
+    fn init(_module: &Bound<'_, PyModule>) -> PyResult<()> {
+        errors::keep_panics();
+        Ok(())
+    }
+}

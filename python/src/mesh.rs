@@ -1,0 +1,204 @@
+//! `Mesh`: triangles.
+
+use crate::arrays::{numbers, points, shape_of, to_rows};
+use crate::errors::{bad_input, check_readable, exception, guarded};
+use crate::model::{corners, unit_of};
+use crate::sphere_union::SphereUnion;
+use crate::threads::aside;
+use bubbletouch::mesh::{SizeLimits, Surface, TriangleMesh};
+use bubbletouch::objects::{MeshModel, Model, vertex_spheres};
+use bubbletouch::packing::{Body, error_of_file, pack_mesh_watched};
+use bubbletouch::study::read_mesh_file;
+use glam::DVec3;
+use ndarray::Array2;
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+use std::path::PathBuf;
+
+/// What else may be done about a mesh that cannot be packed.
+const ADVICE: &str = "Mesh.read(…, close_holes=WIDTH) closes holes up to that width, pack(…, sheet=True) packs the surface without thickness";
+
+/// A triangle mesh, touched exactly: taxels feel its faces, edges and corners, from both sides.
+///
+/// `Mesh(vertices, triangles)`: vertices (n, 3), metres; triangles (m, 3), numbers of vertices from 0, counter-clockwise seen from
+/// outside. Raises ValueError for numbers that are not finite and vertices that are not there.
+#[pyclass(frozen, module = "bubbletouch")]
+pub struct Mesh {
+    /// Where it is from, for errors.
+    place: String,
+    triangles: MeshModel,
+    model: Model,
+}
+
+impl Mesh {
+    fn new(place: String, mesh: TriangleMesh) -> Self {
+        let triangles = MeshModel::new(mesh);
+        let model = Model::Mesh(triangles.clone());
+        Self {
+            place,
+            triangles,
+            model,
+        }
+    }
+
+    /// Itself, as the contact kernel takes it.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// Its triangles.
+    pub fn triangle_mesh(&self) -> &TriangleMesh {
+        self.triangles.mesh()
+    }
+}
+
+#[pymethods]
+impl Mesh {
+    #[new]
+    fn from_arrays(vertices: &Bound<PyAny>, triangles: &Bound<PyAny>) -> PyResult<Self> {
+        guarded(|| {
+            let vertices = points("vertices", vertices)?;
+            let triangles = corner_numbers(triangles)?;
+            let place = "mesh".to_owned();
+            let mesh = TriangleMesh::new(&place, vertices, triangles).map_err(exception)?;
+            Ok(Self::new(place, mesh))
+        })
+    }
+
+    /// A PLY, OBJ or STL file.
+    ///
+    /// unit: of the file's numbers; None: metres, and then an object of 0.1 mm to 10 m. close_holes: the widest hole that is closed by a
+    /// cone, metres. Raises OSError for a file that cannot be read, ValueError for one that is no such mesh.
+    #[staticmethod]
+    #[pyo3(signature = (path, *, unit=None, close_holes=None))]
+    fn read(
+        py: Python,
+        path: PathBuf,
+        unit: Option<&str>,
+        close_holes: Option<f64>,
+    ) -> PyResult<Self> {
+        guarded(|| {
+            let unit = unit_of(unit)?;
+            check_readable(&path)?;
+            let place = path.display().to_string();
+            let read = || {
+                let file = read_mesh_file(&path, unit, &SizeLimits::ANY)?;
+                let mesh = file.into_mesh(&place)?;
+                Ok(Self::new(
+                    place.clone(),
+                    match close_holes {
+                        Some(widest) => mesh.with_holes_closed(widest)?.mesh,
+                        None => mesh,
+                    },
+                ))
+            };
+            py.detach(read).map_err(exception)
+        })
+    }
+
+    /// Few spheres for the solid that the mesh encloses, on all cores.
+    ///
+    /// No sphere reaches more than tolerance / 2 (metres, positive) outside it, and no point of its surface is more than the tolerance
+    /// outside the spheres: proved, or a ValueError. The mesh must be closed; with sheet=True its surface itself is packed, without
+    /// thickness. Takes seconds for a scan of 16,000 triangles. Ctrl-C ends it.
+    #[pyo3(signature = (tolerance, *, sheet=false))]
+    fn pack(&self, py: Python, tolerance: f64, sheet: bool) -> PyResult<SphereUnion> {
+        guarded(|| {
+            let mesh = self.triangle_mesh().clone();
+            let body = if sheet { Body::Sheet } else { Body::Solid };
+            let packed = aside(py, move |stop| {
+                let surface = Surface::new(mesh);
+                pack_mesh_watched(&surface, body, tolerance, &mut |_| stop.end_if_told())
+            })?;
+            let packed = packed.map_err(|error| error_of_file(error, &self.place, ADVICE));
+            Ok(SphereUnion::of(packed.map_err(exception)?.spheres))
+        })
+    }
+
+    /// A sphere around each vertex, of twice the mean distance to the nearest other vertex: the objects of the original BubbleTouch.
+    fn vertex_spheres(&self) -> PyResult<SphereUnion> {
+        guarded(|| {
+            let vertices = self.triangle_mesh().vertices();
+            let spheres = vertex_spheres(&self.place, vertices).map_err(exception)?;
+            Ok(SphereUnion::of(spheres))
+        })
+    }
+
+    /// (n, 3), metres; a copy.
+    #[getter]
+    fn vertices<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+        to_rows(py, self.triangle_mesh().vertices().iter().copied())
+    }
+
+    /// (m, 3), numbers of vertices; a copy.
+    #[getter]
+    fn triangles<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<u32>> {
+        let triangles = self.triangle_mesh().triangles();
+        let corners = triangles.iter().flatten().copied().collect();
+        let rows = Array2::from_shape_vec((triangles.len(), 3), corners);
+        rows.expect("three corners a triangle").into_pyarray(py)
+    }
+
+    /// (2, 3): the least and the largest corner of the box around it, metres.
+    #[getter]
+    fn bounds<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+        corners(py, &self.triangles.bounds())
+    }
+
+    /// m².
+    #[getter]
+    fn area(&self) -> f64 {
+        self.triangle_mesh().area()
+    }
+
+    /// m³; negative if the triangles face inwards.
+    #[getter]
+    fn volume(&self) -> f64 {
+        self.triangle_mesh().volume_and_centroid().0
+    }
+
+    /// (3,): of the volume, metres.
+    #[getter]
+    fn centroid<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        let DVec3 { x, y, z } = self.triangle_mesh().volume_and_centroid().1;
+        vec![x, y, z].into_pyarray(py)
+    }
+
+    /// How many triangles.
+    fn __len__(&self) -> usize {
+        self.triangle_mesh().n_triangles()
+    }
+
+    fn __repr__(&self) -> String {
+        let size = self.triangles.bounds().size() * 1e3;
+        let (n, place) = (self.triangle_mesh().n_triangles(), &self.place);
+        let [x, y, z] = [size.x, size.y, size.z];
+        format!("<bubbletouch.Mesh {place}: {n} triangles, {x:.1} × {y:.1} × {z:.1} mm>")
+    }
+
+    fn __getnewargs__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<u32>>) {
+        (self.vertices(py), self.triangles(py))
+    }
+}
+
+/// Vertex numbers of an n × 3 array of whole numbers.
+fn corner_numbers(given: &Bound<PyAny>) -> PyResult<Vec<[u32; 3]>> {
+    const PLACE: &str = "triangles";
+    let array = numbers(PLACE, given)?;
+    let &[_, 3] = array.shape() else {
+        return Err(bad_input(PLACE, shape_of(array.shape()), "(n, 3)"));
+    };
+    let array = array.try_readonly()?;
+    let number = |&value: &f64| match value {
+        whole if whole >= 0.0 && whole <= f64::from(u32::MAX) && whole.fract() == 0.0 => {
+            Ok(whole as u32)
+        }
+        other => Err(bad_input(PLACE, other, "whole numbers of vertices, from 0")),
+    };
+    let rows = array.as_slice()?.chunks_exact(3);
+    rows.map(|row| Ok([number(&row[0])?, number(&row[1])?, number(&row[2])?]))
+        .collect()
+}

@@ -1,0 +1,414 @@
+//! `Patch`: taxels on a rigid substrate.
+
+use crate::arrays::{each, points, to_column, to_rows};
+use crate::batch::Spare;
+use crate::errors::{bad_input, exception, guarded};
+use crate::mesh::Mesh;
+use crate::poses::Poses;
+use bubbletouch::contact::Workspace;
+use bubbletouch::random::Seed;
+use bubbletouch::world::{self, Grid, Layout, Taxel, Taxels};
+use numpy::PyArray2;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+/// A taxel's spring if nobody says, N/m: the command's (and written out in signatures, where help() shows it).
+const STIFFNESS: f64 = 100.0;
+
+/// Taxels on a rigid substrate, made by one of its static methods.
+///
+/// A taxel is a sphere of `taxel_radius` (metres, positive; half the pitch if None) on a spring of `stiffness` (N/m, positive) with
+/// a `damping` (N·s/m, zero or more; read by signal chains and scenes), which goes in by its `stroke` (metres, positive) at most. All raise ValueError for what is out of its range, and for
+/// more than 4,194,304 taxels.
+#[pyclass(frozen, module = "bubbletouch")]
+pub struct Patch {
+    patch: world::Patch,
+    /// Sides of a frame: (ny, nx) of a grid, otherwise (n_taxels,).
+    shape: Vec<usize>,
+    /// What presses work in.
+    spare: Spare<Workspace>,
+}
+
+impl Patch {
+    fn of(patch: world::Patch) -> Self {
+        let grid = patch.layout().as_grid();
+        Self {
+            shape: grid.map_or(vec![patch.n_taxels()], |grid| vec![grid.ny, grid.nx]),
+            spare: Spare::new(),
+            patch,
+        }
+    }
+
+    fn with(layout: Layout, taxels: impl Into<Taxels>) -> PyResult<Self> {
+        let patch = world::Patch::new("patch", layout, taxels);
+        Ok(Self::of(patch.map_err(exception)?))
+    }
+
+    /// The library's.
+    pub fn inner(&self) -> &world::Patch {
+        &self.patch
+    }
+
+    /// Sides of a frame.
+    pub fn sides(&self) -> &[usize] {
+        &self.shape
+    }
+
+    /// What presses work in.
+    pub fn spare(&self) -> &Spare<Workspace> {
+        &self.spare
+    }
+
+    /// A property of the taxels: one number if all are equal, otherwise one each.
+    fn property<'py>(
+        &self,
+        py: Python<'py>,
+        of: impl Fn(&Taxel) -> f64,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        Ok(match self.patch.taxels() {
+            Taxels::Equal(taxel) => of(taxel).into_pyobject(py)?.into_any(),
+            Taxels::Each(taxels) => to_column(py, taxels.iter().map(of)).into_any(),
+        })
+    }
+}
+
+/// Rows or columns, which the library takes from 0.
+fn side(place: &str, given: i64) -> PyResult<usize> {
+    usize::try_from(given).map_err(|_| bad_input(place, given, "at least 1"))
+}
+
+/// Equal taxels; the radius is half the pitch if nobody says.
+fn taxel(pitch: f64, stroke: f64, (radius, stiffness, damping): (Option<f64>, f64, f64)) -> Taxel {
+    Taxel {
+        radius: radius.unwrap_or(0.5 * pitch),
+        stiffness,
+        damping,
+        stroke,
+    }
+}
+
+#[pymethods]
+impl Patch {
+    /// ny rows (along y, ascending) of nx taxels in the plane z = 0, `pitch` metres apart, centred on the origin. Frames are (ny, nx).
+    #[staticmethod]
+    #[pyo3(signature = (ny, nx, pitch, stroke, *, taxel_radius=None, stiffness=100.0, damping=0.0))]
+    fn grid(
+        ny: i64,
+        nx: i64,
+        pitch: f64,
+        stroke: f64,
+        taxel_radius: Option<f64>,
+        stiffness: f64,
+        damping: f64,
+    ) -> PyResult<Self> {
+        guarded(|| {
+            let (ny, nx) = (side("ny", ny)?, side("nx", nx)?);
+            let grid = Grid { nx, ny, pitch };
+            grid.check().map_err(exception)?;
+            let taxel = taxel(pitch, stroke, (taxel_radius, stiffness, damping));
+            Ok(Self::of(
+                world::Patch::grid(grid, taxel).map_err(exception)?,
+            ))
+        })
+    }
+
+    /// ny staggered rows of nx taxels, each inner one with six neighbours `pitch` metres away; row by row.
+    #[staticmethod]
+    #[pyo3(signature = (ny, nx, pitch, stroke, *, taxel_radius=None, stiffness=100.0, damping=0.0))]
+    fn hexagonal(
+        ny: i64,
+        nx: i64,
+        pitch: f64,
+        stroke: f64,
+        taxel_radius: Option<f64>,
+        stiffness: f64,
+        damping: f64,
+    ) -> PyResult<Self> {
+        guarded(|| {
+            let (ny, nx) = (side("ny", ny)?, side("nx", nx)?);
+            let layout = Layout::hexagonal(nx, ny, pitch).map_err(exception)?;
+            let taxel = taxel(pitch, stroke, (taxel_radius, stiffness, damping));
+            Self::with(layout, taxel)
+        })
+    }
+
+    /// The places of a hexagonal lattice no farther than `radius` metres from the origin; row by row.
+    #[staticmethod]
+    #[pyo3(signature = (radius, pitch, stroke, *, taxel_radius=None, stiffness=100.0, damping=0.0))]
+    fn disc(
+        radius: f64,
+        pitch: f64,
+        stroke: f64,
+        taxel_radius: Option<f64>,
+        stiffness: f64,
+        damping: f64,
+    ) -> PyResult<Self> {
+        guarded(|| {
+            let layout = Layout::disc(radius, pitch).map_err(exception)?;
+            let taxel = taxel(pitch, stroke, (taxel_radius, stiffness, damping));
+            Self::with(layout, taxel)
+        })
+    }
+
+    /// Rings of taxels around z, pointing away from it: a forearm, a finger.
+    ///
+    /// radius: of the rest centres; length: between the first and the last ring, zero or more; arc: above 0 to 2π, its middle at +x;
+    /// pitch: along the surface, met as well as whole numbers of taxels allow. Presses go along z: move() the patch to bring its middle
+    /// there.
+    #[staticmethod]
+    #[pyo3(signature = (radius, length, arc, pitch, stroke, *, taxel_radius=None, stiffness=100.0, damping=0.0))]
+    #[expect(clippy::too_many_arguments, reason = "named in Python")]
+    fn cylinder(
+        radius: f64,
+        length: f64,
+        arc: f64,
+        pitch: f64,
+        stroke: f64,
+        taxel_radius: Option<f64>,
+        stiffness: f64,
+        damping: f64,
+    ) -> PyResult<Self> {
+        guarded(|| {
+            let layout = Layout::cylinder(radius, length, arc, pitch).map_err(exception)?;
+            let taxel = taxel(pitch, stroke, (taxel_radius, stiffness, damping));
+            Self::with(layout, taxel)
+        })
+    }
+
+    /// Rings of taxels on a sphere about the origin, from its pole at +z to `half_angle` (above 0 to π): a fingertip, an elbow.
+    #[staticmethod]
+    #[pyo3(signature = (radius, half_angle, pitch, stroke, *, taxel_radius=None, stiffness=100.0, damping=0.0))]
+    fn sphere_cap(
+        radius: f64,
+        half_angle: f64,
+        pitch: f64,
+        stroke: f64,
+        taxel_radius: Option<f64>,
+        stiffness: f64,
+        damping: f64,
+    ) -> PyResult<Self> {
+        guarded(|| {
+            let layout = Layout::sphere_cap(radius, half_angle, pitch).map_err(exception)?;
+            let taxel = taxel(pitch, stroke, (taxel_radius, stiffness, damping));
+            Self::with(layout, taxel)
+        })
+    }
+
+    /// Taxels spread over a whole mesh, as many as on a grid of this pitch, at least 0.83 pitches apart; 0.2 ms a taxel.
+    #[staticmethod]
+    #[pyo3(signature = (mesh, pitch, stroke, *, seed=0, taxel_radius=None, stiffness=100.0, damping=0.0))]
+    #[expect(clippy::too_many_arguments, reason = "named in Python")]
+    fn draped(
+        py: Python,
+        mesh: &Bound<Mesh>,
+        pitch: f64,
+        stroke: f64,
+        seed: u64,
+        taxel_radius: Option<f64>,
+        stiffness: f64,
+        damping: f64,
+    ) -> PyResult<Self> {
+        guarded(|| {
+            let mesh = mesh.get().triangle_mesh();
+            let layout = py.detach(|| Layout::draped(mesh, pitch, &Seed::new(seed)));
+            let taxel = taxel(pitch, stroke, (taxel_radius, stiffness, damping));
+            Self::with(layout.map_err(exception)?, taxel)
+        })
+    }
+
+    /// Any taxels: centers (n, 3), axes (n, 3) of length one, away from the substrate; the others (n,) or one number for all.
+    #[staticmethod]
+    #[pyo3(signature = (centers, axes, *, stroke, taxel_radius, stiffness=None, damping=None))]
+    fn from_arrays(
+        centers: &Bound<PyAny>,
+        axes: &Bound<PyAny>,
+        stroke: &Bound<PyAny>,
+        taxel_radius: &Bound<PyAny>,
+        stiffness: Option<&Bound<PyAny>>,
+        damping: Option<&Bound<PyAny>>,
+    ) -> PyResult<Self> {
+        guarded(|| {
+            let centers = points("centers", centers)?;
+            let axes = points("axes", axes)?;
+            let n = centers.len();
+            let or = |place: &str, given: Option<&Bound<PyAny>>, other: f64| match given {
+                Some(given) => each(place, given, n),
+                None => Ok(vec![other; n]),
+            };
+            let stroke = each("stroke", stroke, n)?;
+            let radius = each("taxel_radius", taxel_radius, n)?;
+            let stiffness = or("stiffness", stiffness, STIFFNESS)?;
+            let damping = or("damping", damping, 0.0)?;
+            let taxels: Vec<Taxel> = (0..n)
+                .map(|taxel| Taxel {
+                    radius: radius[taxel],
+                    stiffness: stiffness[taxel],
+                    damping: damping[taxel],
+                    stroke: stroke[taxel],
+                })
+                .collect();
+            let layout = Layout::new(centers, axes).map_err(exception)?;
+            match taxels.iter().all(|taxel| *taxel == taxels[0]) {
+                true => Self::with(layout, taxels[0]),
+                false => Self::with(layout, Taxels::Each(taxels)),
+            }
+        })
+    }
+
+    /// The same taxels elsewhere in the frame of the patch, and no grid any more. pose: (7,) or (4, 4).
+    fn moved(&self, pose: &Bound<PyAny>) -> PyResult<Self> {
+        guarded(|| {
+            let poses = Poses::of("pose", pose)?;
+            let [pose] = &poses.poses[..] else {
+                let given = format!("{} poses", poses.poses.len());
+                return Err(bad_input("pose", given, "one pose"));
+            };
+            let layout = self.patch.layout().moved(pose);
+            Self::with(layout, self.patch.taxels().clone())
+        })
+    }
+
+    /// Of a frame: (ny, nx) of a grid, otherwise (n_taxels,).
+    #[getter]
+    fn shape<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, &self.shape)
+    }
+
+    #[getter]
+    fn n_taxels(&self) -> usize {
+        self.patch.n_taxels()
+    }
+
+    /// (n_taxels, 3): where they rest, metres; a copy.
+    #[getter]
+    fn centers<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+        to_rows(py, self.patch.layout().centers().iter().copied())
+    }
+
+    /// (n_taxels, 3): unit, away from the substrate; a copy.
+    #[getter]
+    fn axes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+        to_rows(py, self.patch.layout().axes().iter().copied())
+    }
+
+    /// Of a grid, metres.
+    #[getter]
+    fn pitch(&self) -> Option<f64> {
+        self.patch.layout().as_grid().map(|grid| grid.pitch)
+    }
+
+    /// Metres; one number, or one each.
+    #[getter]
+    fn taxel_radius<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.property(py, |taxel| taxel.radius)
+    }
+
+    /// Metres; one number, or one each. A taxel whose deflection is its stroke is saturated.
+    #[getter]
+    fn stroke<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.property(py, |taxel| taxel.stroke)
+    }
+
+    /// N/m; one number, or one each.
+    #[getter]
+    fn stiffness<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.property(py, |taxel| taxel.stiffness)
+    }
+
+    /// N·s/m; one number, or one each.
+    #[getter]
+    fn damping<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.property(py, |taxel| taxel.damping)
+    }
+
+    fn __len__(&self) -> usize {
+        self.patch.n_taxels()
+    }
+
+    fn __repr__(&self) -> String {
+        match self.patch.layout().as_grid() {
+            Some(grid) => {
+                let (ny, nx, pitch) = (grid.ny, grid.nx, 1e3 * grid.pitch);
+                format!("<bubbletouch.Patch: grid of {ny} × {nx} taxels, {pitch} mm apart>")
+            }
+            None => format!("<bubbletouch.Patch: {} taxels>", self.patch.n_taxels()),
+        }
+    }
+
+    /// A grid as its call, another patch as its arrays.
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let named = PyDict::new(py);
+        named.set_item("stroke", self.stroke(py)?)?;
+        named.set_item("taxel_radius", self.taxel_radius(py)?)?;
+        named.set_item("stiffness", self.stiffness(py)?)?;
+        named.set_item("damping", self.damping(py)?)?;
+        let class = py.get_type::<Self>();
+        let grid = self.patch.layout().as_grid();
+        let (made_by, given) = match (grid, self.patch.taxels()) {
+            (Some(grid), Taxels::Equal(_)) => {
+                let sides = (grid.ny, grid.nx, grid.pitch);
+                (class.getattr("grid")?, sides.into_pyobject(py)?)
+            }
+            _ => {
+                let arrays = (self.centers(py), self.axes(py));
+                (class.getattr("from_arrays")?, arrays.into_pyobject(py)?)
+            }
+        };
+        let partial = py.import("functools")?.getattr("partial")?;
+        let call = partial.call((made_by,), Some(&named))?;
+        Ok((call, given))
+    }
+
+    /// Deflections of the taxels pressed on an object at n poses, metres, 0 to the stroke.
+    ///
+    /// poses: the object in the frame of the patch, (n, 7) of x, y, z, qw, qx, qy, qz or (n, 4, 4); (7,) or (4, 4) for one alone.
+    ///
+    /// The patch comes from the front along its z. At most one of
+    ///
+    /// - depth: metres past first contact, zero or more;
+    /// - travel: metres from the pose given;
+    /// - force: newtons that all springs carry together, Σ k δ;
+    ///
+    /// each one number for all poses, or (n,). With none the patch is read where it is. A pose at which it meets nothing gives zeros.
+    ///
+    /// out: a C-contiguous array of float32 or float64 that takes the frames, and is returned. dtype: of a new array, float64 or float32.
+    /// threads: at most so many, all cores if None. The interpreter's lock is free meanwhile, and Ctrl-C ends the call.
+    ///
+    /// Returns (n, ny, nx) of a grid, (n, n_taxels) of another patch, without n for one pose; the same bits at any number of threads.
+    /// With contacts=True also the Contacts; frames are the same. With jacobian=True also (…, 6): how each deflection changes with the
+    /// pose, by metres of the object along x, y, z and by radians about x, y, z through the object's origin, all axes the patch's; zero for
+    /// taxels that are free or saturated. With a depth or a force the travel changes along; a depth needs a flat patch for it.
+    ///
+    /// Raises ValueError for arrays of another shape or type, numbers that are not finite, and a force that cannot be reached.
+    #[pyo3(signature = (object, poses, *, depth=None, travel=None, force=None, out=None, dtype=None, threads=None, contacts=false, jacobian=false))]
+    #[expect(clippy::too_many_arguments, reason = "named in Python")]
+    fn press<'py>(
+        &self,
+        py: Python<'py>,
+        object: &Bound<'py, PyAny>,
+        poses: &Bound<'py, PyAny>,
+        depth: Option<&Bound<'py, PyAny>>,
+        travel: Option<&Bound<'py, PyAny>>,
+        force: Option<&Bound<'py, PyAny>>,
+        out: Option<&Bound<'py, PyAny>>,
+        dtype: Option<&Bound<'py, PyAny>>,
+        threads: Option<i64>,
+        contacts: bool,
+        jacobian: bool,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        guarded(|| {
+            let goal = crate::goal::Goal::of(depth, travel, force)?;
+            crate::press::press(
+                py,
+                self,
+                (object, poses, goal),
+                (out, dtype),
+                threads,
+                crate::press::Wanted { contacts, jacobian },
+            )
+        })
+    }
+}

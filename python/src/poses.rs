@@ -1,0 +1,91 @@
+//! Poses: `patch_from_object`, seven numbers each or 4 × 4.
+
+use crate::arrays::{numbers, shape_of};
+use crate::errors::bad_input;
+use bubbletouch::geometry::Pose;
+use glam::{DMat3, DQuat, DVec3};
+use ndarray::ArrayView1;
+use numpy::{PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+
+/// How far R Rᵀ may be from one, entry by entry, and a quaternion's length: written digits, or float32's rounding.
+const ROUNDING: f64 = 1e-3;
+const ALLOWED: &str = "(n, 7) of x, y, z, qw, qx, qy, qz, or (n, 4, 4); without n for one";
+
+/// Poses, and whether it was one alone rather than a batch.
+pub struct Poses {
+    /// `patch_from_object`.
+    pub poses: Vec<Pose>,
+    /// Given without a first side n.
+    pub is_one: bool,
+}
+
+impl Poses {
+    /// From an array of (n, 7), (7,), (n, 4, 4) or (4, 4).
+    ///
+    /// # Errors
+    /// Another shape; a pose, named by its number from 0, that is not finite or whose rotation is none.
+    pub fn of(place: &str, given: &Bound<PyAny>) -> PyResult<Self> {
+        let array = numbers(place, given)?;
+        let (n_numbers, is_one) = match array.shape() {
+            [7] => (7, true),
+            [4, 4] => (16, true),
+            [_, 7] => (7, false),
+            [_, 4, 4] => (16, false),
+            other => return Err(bad_input(place, shape_of(other), ALLOWED)),
+        };
+        let array = array
+            .try_readonly()
+            .map_err(|error| bad_input(place, error, "an array that nobody writes to meanwhile"))?;
+        let values = array.as_slice()?;
+        let of = |(number, values): (usize, &[f64])| {
+            let pose = match values.len() {
+                7 => from_seven(values),
+                _ => from_matrix(values),
+            };
+            pose.map_err(|allowed| {
+                let place = if is_one {
+                    place.to_owned()
+                } else {
+                    format!("{place}[{number}]")
+                };
+                bad_input(place, ArrayView1::from(values), allowed)
+            })
+        };
+        let poses = values.chunks_exact(n_numbers).enumerate().map(of);
+        Ok(Self {
+            poses: poses.collect::<PyResult<_>>()?,
+            is_one,
+        })
+    }
+}
+
+fn from_seven(values: &[f64]) -> Result<Pose, &'static str> {
+    let at = DVec3::new(values[0], values[1], values[2]);
+    let turn = DQuat::from_xyzw(values[4], values[5], values[6], values[3]);
+    let length = turn.length();
+    // Not a number is not near, either.
+    if at.is_finite() && (length - 1.0).abs() <= ROUNDING {
+        return Ok(Pose::new(turn.normalize(), at));
+    }
+    Err("finite x, y, z and a quaternion qw, qx, qy, qz of length one")
+}
+
+fn from_matrix(values: &[f64]) -> Result<Pose, &'static str> {
+    const ALLOWED: &str = "a rotation and a translation, with a last row 0, 0, 0, 1";
+    let row = |k: usize| DVec3::new(values[4 * k], values[4 * k + 1], values[4 * k + 2]);
+    let rotation = DMat3::from_cols(row(0), row(1), row(2)).transpose();
+    let at = DVec3::new(values[3], values[7], values[11]);
+    let is_rotation = (rotation * rotation.transpose()).abs_diff_eq(DMat3::IDENTITY, ROUNDING)
+        && rotation.determinant() > 0.0;
+    if !(is_rotation && at.is_finite() && values[12..] == [0.0, 0.0, 0.0, 1.0]) {
+        return Err(ALLOWED);
+    }
+    Ok(Pose::new(DQuat::from_mat3(&rotation).normalize(), at))
+}
+
+/// x, y, z, qw, qx, qy, qz.
+pub fn seven(pose: &Pose) -> [f64; 7] {
+    let (at, turn) = (pose.translation, pose.rotation);
+    [at.x, at.y, at.z, turn.w, turn.x, turn.y, turn.z]
+}

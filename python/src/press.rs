@@ -1,0 +1,286 @@
+//! Presses in batches, written into a NumPy array.
+
+use crate::arrays::shape_of;
+use crate::batch::{for_each, n_threads};
+use crate::contacts::{Contacts, OfPose};
+use crate::errors::{bad_input, exception};
+use crate::goal::Goal;
+use crate::jacobian;
+use crate::model::model_of;
+use crate::patch::Patch;
+use crate::poses::Poses;
+use bubbletouch::contact::Workspace;
+use glam::DVec3;
+use numpy::{
+    Element, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods,
+    dtype as dtype_of,
+};
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::PyTuple;
+use std::sync::Mutex;
+use std::time::Instant;
+
+/// What frames can be made of.
+trait Real: Element + Copy + Default + Send + Sync {
+    fn write(to: &mut [Self], deflections: &[f64]);
+}
+
+impl Real for f64 {
+    fn write(to: &mut [Self], deflections: &[f64]) {
+        to.copy_from_slice(deflections);
+    }
+}
+
+impl Real for f32 {
+    fn write(to: &mut [Self], deflections: &[f64]) {
+        for (to, deflection) in to.iter_mut().zip(deflections) {
+            *to = *deflection as f32;
+        }
+    }
+}
+
+/// What is asked for beside frames.
+#[derive(Clone, Copy)]
+pub struct Wanted {
+    /// What touches what.
+    pub contacts: bool,
+    /// How deflections change with the pose.
+    pub jacobian: bool,
+}
+
+/// Frames of deflections, or frames and what else is wanted, contacts first.
+///
+/// # Errors
+/// What is wrong with the arguments; a force that cannot be reached, by its pose; Ctrl-C.
+pub fn press<'py>(
+    py: Python<'py>,
+    patch: &Patch,
+    (object, poses, goal): (&Bound<'py, PyAny>, &Bound<'py, PyAny>, Goal),
+    (out, dtype): (Option<&Bound<'py, PyAny>>, Option<&Bound<'py, PyAny>>),
+    threads: Option<i64>,
+    wanted: Wanted,
+) -> PyResult<Bound<'py, PyAny>> {
+    let given = Poses::of("poses", poses)?;
+    goal.check(given.poses.len())?;
+    if wanted.jacobian {
+        jacobian::check(goal.until(), patch.inner())?;
+    }
+    let batch = Batch {
+        patch,
+        object,
+        given,
+        goal,
+        threads: n_threads(threads)?,
+        wanted,
+    };
+    let mut shape = batch.patch.sides().to_vec();
+    if !batch.given.is_one {
+        shape.insert(0, batch.given.poses.len());
+    }
+    if let Some(out) = out {
+        if let Some(dtype) = dtype {
+            let has = out.getattr("dtype")?;
+            if is_single(py, dtype)? != is_single(py, &has)? {
+                return Err(bad_input("dtype", dtype, format!("{has}, which out has")));
+            }
+        }
+        return batch.into_out(py, out, &shape);
+    }
+    match dtype {
+        Some(dtype) if is_single(py, dtype)? => batch.into_new::<f32>(py, &shape),
+        _ => batch.into_new::<f64>(py, &shape),
+    }
+}
+
+/// Whether numbers of a NumPy type are float32; float64 is the other that can be.
+fn is_single(py: Python, dtype: &Bound<PyAny>) -> PyResult<bool> {
+    let allowed = "float32 or float64";
+    let descr = numpy::PyArrayDescr::new(py, dtype.clone())
+        .map_err(|_| bad_input("dtype", dtype, allowed))?;
+    match (
+        descr.is_equiv_to(&dtype_of::<f32>(py)),
+        descr.is_equiv_to(&dtype_of::<f64>(py)),
+    ) {
+        (true, _) => Ok(true),
+        (_, true) => Ok(false),
+        _ => Err(bad_input("dtype", dtype, allowed)),
+    }
+}
+
+/// `numpy.empty`: every number is written once, and large arrays lie in large pages.
+fn empty<'py>(py: Python<'py>) -> PyResult<&'py Bound<'py, PyAny>> {
+    static EMPTY: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+    EMPTY.import(py, "numpy", "empty")
+}
+
+struct Batch<'a, 'py> {
+    patch: &'a Patch,
+    object: &'a Bound<'py, PyAny>,
+    given: Poses,
+    goal: Goal,
+    threads: Option<usize>,
+    wanted: Wanted,
+}
+
+impl<'py> Batch<'_, 'py> {
+    fn into_new<T: Real>(self, py: Python<'py>, shape: &[usize]) -> PyResult<Bound<'py, PyAny>> {
+        let shape = PyTuple::new(py, shape)?;
+        let array = empty(py)?.call1((shape, dtype_of::<T>(py)))?;
+        self.fill(py, array.cast_into::<PyArrayDyn<T>>()?)
+    }
+
+    fn into_out(
+        self,
+        py: Python<'py>,
+        out: &Bound<'py, PyAny>,
+        shape: &[usize],
+    ) -> PyResult<Bound<'py, PyAny>> {
+        if let Ok(array) = out.cast::<PyArrayDyn<f64>>() {
+            check_out(array, shape)?;
+            return self.fill(py, array.clone());
+        }
+        if let Ok(array) = out.cast::<PyArrayDyn<f32>>() {
+            check_out(array, shape)?;
+            return self.fill(py, array.clone());
+        }
+        let given = match out.getattr("dtype") {
+            Ok(dtype) => format!("dtype {dtype}"),
+            Err(_) => out.get_type().to_string(),
+        };
+        Err(bad_input("out", given, "an array of float32 or float64"))
+    }
+
+    fn fill<T: Real>(
+        self,
+        py: Python<'py>,
+        array: Bound<'py, PyArrayDyn<T>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let mut sides = array.shape().to_vec();
+        sides.push(jacobian::N);
+        let changes = self
+            .wanted
+            .jacobian
+            .then(|| PyArrayDyn::<f64>::zeros(py, sides, false));
+        let contacts = {
+            let mut writable = array
+                .try_readwrite()
+                .map_err(|error| bad_input("out", error, "an array that nobody else uses"))?;
+            let mut changing = changes.as_ref().map(|changes| changes.readwrite());
+            let changes = changing.as_mut().map(|changes| changes.as_slice_mut());
+            self.run(py, writable.as_slice_mut()?, changes.transpose()?)?
+        };
+        Ok(match (contacts, changes) {
+            (None, None) => array.into_any(),
+            (Some(contacts), None) => (array, contacts).into_pyobject(py)?.into_any(),
+            (None, Some(changes)) => (array, changes).into_pyobject(py)?.into_any(),
+            (Some(contacts), Some(changes)) => {
+                (array, contacts, changes).into_pyobject(py)?.into_any()
+            }
+        })
+    }
+
+    /// Writes a frame for each pose, and its changes.
+    fn run<T: Real>(
+        &self,
+        py: Python,
+        frames: &mut [T],
+        changes: Option<&mut [f64]>,
+    ) -> PyResult<Option<Contacts>> {
+        let model = model_of("object", self.object)?;
+        let (patch, goal, poses) = (self.patch.inner(), &self.goal, &self.given.poses);
+        let (is_one, wanted) = (self.given.is_one, self.wanted);
+        let named = |number: usize, error: bubbletouch::Error| {
+            let place = if is_one {
+                "poses: ".to_owned()
+            } else {
+                format!("poses[{number}]: ")
+            };
+            exception(error.under(place))
+        };
+        let found: Mutex<Vec<(usize, OfPose)>> = Mutex::new(Vec::new());
+        type Item<'a, T> = (&'a mut [T], Option<&'a mut [f64]>);
+        let work = |number: usize, (frame, changes): Item<T>, workspace: &mut Workspace| {
+            let placed = (model, &poses[number]);
+            let pressed = goal.press(number, patch, placed, workspace);
+            let pressed = pressed.map_err(|error| named(number, error))?;
+            match pressed {
+                Some(_) => T::write(frame, workspace.deflections()),
+                None => frame.fill(T::default()),
+            }
+            if !wanted.contacts && changes.is_none() {
+                return Ok(());
+            }
+            let met = goal.press_with_contacts(number, patch, placed, workspace);
+            let met = met.map_err(|error| named(number, error))?;
+            if let (Some(changes), Some(pressed), Some(_)) = (changes, pressed, met) {
+                let origin = poses[number].translation - pressed.travel * DVec3::Z;
+                jacobian::fill(changes, goal.until(), patch, (workspace.contacts(), origin));
+            }
+            if wanted.contacts {
+                let of_pose = OfPose::new(patch, (pressed, met), workspace);
+                if let Ok(mut found) = found.lock() {
+                    found.push((number, of_pose));
+                }
+            }
+            Ok(())
+        };
+        let n_taxels = patch.n_taxels();
+        let frames = frames.chunks_exact_mut(n_taxels);
+        let items: Vec<Item<T>> = match changes {
+            None => frames.map(|frame| (frame, None)).collect(),
+            Some(changes) => {
+                let changes = changes.chunks_exact_mut(n_taxels * jacobian::N);
+                frames.zip(changes.map(Some)).collect()
+            }
+        };
+        let spare = self.patch.spare();
+        for_each(py, items, self.threads, spare, Workspace::new, work)?;
+        if !wanted.contacts {
+            return Ok(None);
+        }
+        let found = found.into_inner().unwrap_or_default();
+        Contacts::of(py, found).map(Some)
+    }
+}
+
+/// Whether an array can take the frames as they come.
+fn check_out<T: Element>(array: &Bound<PyArrayDyn<T>>, shape: &[usize]) -> PyResult<()> {
+    if array.shape() != shape {
+        return Err(bad_input("out", shape_of(array.shape()), shape_of(shape)));
+    }
+    if !array.is_c_contiguous() {
+        return Err(bad_input("out", "a strided array", "a C-contiguous one"));
+    }
+    Ok(())
+}
+
+/// Taxel readings a second of the kernel alone, one thread, nothing written anywhere: what presses into arrays are measured against.
+#[pyfunction]
+pub fn _kernel_pace(
+    py: Python,
+    patch: &Bound<Patch>,
+    object: &Bound<PyAny>,
+    poses: &Bound<PyAny>,
+    depth: &Bound<PyAny>,
+    seconds: f64,
+) -> PyResult<f64> {
+    let poses = Poses::of("poses", poses)?.poses;
+    let goal = Goal::of(Some(depth), None, None)?;
+    goal.check(poses.len())?;
+    let (patch, model) = (patch.get().inner(), model_of("object", object)?);
+    py.detach(|| {
+        let mut workspace = Workspace::new();
+        let start = Instant::now();
+        let mut n_readings = 0;
+        while start.elapsed().as_secs_f64() < seconds {
+            for (number, pose) in poses.iter().enumerate() {
+                let pressed = goal.press(number, patch, (model, pose), &mut workspace);
+                pressed.map_err(exception)?;
+                std::hint::black_box(workspace.deflections());
+                n_readings += patch.n_taxels();
+            }
+        }
+        Ok(n_readings as f64 / start.elapsed().as_secs_f64())
+    })
+}

@@ -1,0 +1,107 @@
+//! `Projection`: compressed measurements of frames.
+
+use crate::arrays::frames;
+use crate::errors::{bad_input, exception, guarded};
+use crate::threads::pool;
+use bubbletouch::random::Seed;
+use bubbletouch::sensing::{self, Ensemble};
+use numpy::{IntoPyArray, PyArray2};
+use pyo3::prelude::*;
+
+/// A random projection y = Φx from frames of ny × nx taxels to m measurements, drawn once.
+///
+/// Projection("sbhe", patch.shape, 64, seed=7). ensemble: gaussian, bernoulli, circulant, sparse, sbhe, block_average, subsample,
+/// or identity (all taxels, whatever m). n_measurements: 1 to the number of taxels. Raises ValueError.
+#[pyclass(frozen, module = "bubbletouch")]
+pub struct Projection {
+    projection: sensing::Projection,
+    /// As it was asked for, so that it can be pickled.
+    asked: (String, (usize, usize), usize, u64),
+}
+
+impl Projection {
+    /// The library's.
+    pub fn inner(&self) -> &sensing::Projection {
+        &self.projection
+    }
+
+    /// Rows and columns of a frame.
+    pub fn shape(&self) -> (usize, usize) {
+        self.asked.1
+    }
+}
+
+fn ensemble_of(name: &str) -> PyResult<Ensemble> {
+    let mut all = Ensemble::ALL.iter().zip(Ensemble::NAMES);
+    let found = all.find_map(|(ensemble, (known, _))| (*known == name).then_some(*ensemble));
+    found.ok_or_else(|| {
+        let known: Vec<&str> = Ensemble::NAMES.iter().map(|(known, _)| *known).collect();
+        bad_input("ensemble", format!("`{name}`"), known.join(", "))
+    })
+}
+
+#[pymethods]
+impl Projection {
+    #[new]
+    #[pyo3(signature = (ensemble, shape, n_measurements, seed=0))]
+    fn new(ensemble: &str, shape: (i64, i64), n_measurements: i64, seed: u64) -> PyResult<Self> {
+        guarded(|| {
+            let side = |side: i64| usize::try_from(side).unwrap_or(0);
+            let (grid, m) = ((side(shape.0), side(shape.1)), side(n_measurements));
+            let drawn = ensemble_of(ensemble)?;
+            let projection = sensing::Projection::new(drawn, grid, m, &Seed::new(seed));
+            Ok(Self {
+                projection: projection.map_err(exception)?,
+                asked: (ensemble.to_owned(), grid, m, seed),
+            })
+        })
+    }
+
+    /// Measurements (n, m) of frames (n, …) of n_taxels each, or of one frame: (1, m). A row has the same bits in any batch.
+    fn __call__<'py>(
+        &self,
+        py: Python<'py>,
+        frames: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        guarded(|| {
+            let frames = self::frames("frames", frames, self.projection.n_taxels())?;
+            let pool = pool()?;
+            let measured = py.detach(|| pool.install(|| self.projection.measure(frames.view())));
+            Ok(measured.into_pyarray(py))
+        })
+    }
+
+    /// Φ, (m, n_taxels); made when it is asked for.
+    #[getter]
+    fn matrix<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        guarded(|| Ok(py.detach(|| self.projection.matrix()).into_pyarray(py)))
+    }
+
+    /// Its name.
+    #[getter]
+    fn ensemble(&self) -> &str {
+        &self.asked.0
+    }
+
+    /// Of a frame.
+    #[getter]
+    fn n_taxels(&self) -> usize {
+        self.projection.n_taxels()
+    }
+
+    /// m.
+    #[getter]
+    fn n_measurements(&self) -> usize {
+        self.projection.n_measurements()
+    }
+
+    fn __repr__(&self) -> String {
+        let (name, (ny, nx), m, seed) = &self.asked;
+        format!("<bubbletouch.Projection: {name} of {ny} × {nx} taxels to {m}, seed {seed}>")
+    }
+
+    fn __getnewargs__(&self) -> (&str, (usize, usize), usize, u64) {
+        let (name, shape, m, seed) = &self.asked;
+        (name, *shape, *m, *seed)
+    }
+}

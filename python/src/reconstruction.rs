@@ -1,0 +1,158 @@
+//! `Reconstructor`: whole frames back from measurements.
+
+use crate::arrays::{frames, to_column, view};
+use crate::errors::{bad_input, exception, guarded};
+use crate::projection::Projection;
+use crate::threads::pool;
+use bubbletouch::random::Seed;
+use bubbletouch::sensing::{self, Basis, Dictionary, Effort, SensedDictionary, Solver};
+use ndarray::Ix2;
+use numpy::{IntoPyArray, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use self_cell::self_cell;
+
+type Prepared<'a> = sensing::Reconstructor<'a>;
+
+self_cell!(
+    /// A dictionary seen through a projection, beside both.
+    struct Sensed {
+        owner: (sensing::Projection, Dictionary),
+        #[covariant]
+        dependent: SensedDictionary,
+    }
+);
+
+self_cell!(
+    /// A solver beside what it solves with.
+    struct Solving {
+        owner: Box<Sensed>,
+        #[not_covariant]
+        dependent: Prepared,
+    }
+);
+
+/// Rebuilds frames from the measurements of one projection, by what training frames are made of.
+///
+/// Reconstructor(projection, training, basis="pca", solver="lmmse", noise=1e-4). training: (n, ny, nx), metres. basis: dct, haar,
+/// daubechies4 (both of sides that are powers of two) or pca, of which the n_atoms that carry most are kept (None: all; of pca 256). solver: omp (matching
+/// pursuit), l1 (basis pursuit by FISTA) or lmmse (the linear estimate). noise: standard deviation on each taxel, in the frames' unit. Raises ValueError.
+#[pyclass(frozen, module = "bubbletouch")]
+pub struct Reconstructor {
+    solving: Solving,
+    shape: (usize, usize),
+    n_measurements: usize,
+}
+
+#[pymethods]
+impl Reconstructor {
+    #[new]
+    #[pyo3(signature = (projection, training, *, basis="pca", solver="lmmse", n_atoms=None, noise=0.0, seed=0))]
+    #[expect(clippy::too_many_arguments, reason = "named in Python")]
+    fn new(
+        py: Python,
+        projection: &Bound<Projection>,
+        training: &Bound<PyAny>,
+        basis: &str,
+        solver: &str,
+        n_atoms: Option<usize>,
+        noise: f64,
+        seed: u64,
+    ) -> PyResult<Self> {
+        guarded(|| {
+            let (projection, shape) = (projection.get().inner(), projection.get().shape());
+            let named = |name: &str| format!("`{name}`");
+            let basis = match basis {
+                "dct" => Basis::Dct,
+                "haar" => Basis::Haar,
+                "daubechies4" => Basis::Daubechies4,
+                "pca" => Basis::Pca,
+                other => {
+                    return Err(bad_input(
+                        "basis",
+                        named(other),
+                        "dct, haar, daubechies4 or pca",
+                    ));
+                }
+            };
+            let solver = match solver {
+                "omp" => Solver::Omp,
+                "l1" => Solver::L1,
+                "lmmse" => Solver::Lmmse,
+                other => return Err(bad_input("solver", named(other), "omp, l1 or lmmse")),
+            };
+            if !(noise.is_finite() && noise >= 0.0) {
+                return Err(bad_input("noise", noise, "zero or a positive number"));
+            }
+            let training = frames("training", training, projection.n_taxels())?;
+            let pool = pool()?;
+            let made = py.detach(|| {
+                pool.install(|| {
+                    let seed = Seed::new(seed);
+                    let dictionary =
+                        Dictionary::learned(basis, shape, training.view(), n_atoms, &seed)?;
+                    let sensed = Sensed::try_new((projection.clone(), dictionary), |owner| {
+                        SensedDictionary::new(&owner.0, &owner.1)
+                    })?;
+                    Solving::try_new(Box::new(sensed), |sensed| {
+                        let sensed = sensed.borrow_dependent();
+                        sensing::Reconstructor::new(solver, sensed, &Effort::default(), noise)
+                    })
+                })
+            });
+            Ok(Self {
+                solving: made.map_err(exception)?,
+                shape,
+                n_measurements: projection.n_measurements(),
+            })
+        })
+    }
+
+    /// Of measurements (n, m): frames (n, ny, nx), n_atoms (n,) that each took, is_capped (n,) where its solver stopped at a limit.
+    fn __call__<'py>(
+        &self,
+        py: Python<'py>,
+        measurements: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        guarded(|| {
+            let m = self.n_measurements;
+            let is_shape = |shape: &[usize]| matches!(shape, [_, wide] if *wide == m);
+            let allowed = format!("(n, {m})");
+            let rows = view(
+                "measurements",
+                measurements,
+                &allowed,
+                is_shape,
+                |array| match array.iter().find(|value| !value.is_finite()) {
+                    Some(bad) => Err(bad_input("measurements", bad, "only finite numbers")),
+                    None => Ok(array.to_owned()),
+                },
+            )?;
+            let rows = rows.into_dimensionality::<Ix2>();
+            let rows = rows.expect("the shape was looked at");
+            let pool = pool()?;
+            let found = py.detach(|| {
+                pool.install(|| {
+                    self.solving
+                        .with_dependent(|_, solver| solver.reconstruct(rows.view()))
+                })
+            });
+            let found = found.map_err(exception)?;
+            let (n, (ny, nx)) = (found.frames.nrows(), self.shape);
+            let said = PyDict::new(py);
+            said.set_item(
+                "frames",
+                found.frames.into_pyarray(py).reshape([n, ny, nx])?,
+            )?;
+            let atoms = found.n_atoms.into_iter().map(|n| n as i64);
+            said.set_item("n_atoms", to_column(py, atoms))?;
+            said.set_item("is_capped", to_column(py, found.capped))?;
+            Ok(said)
+        })
+    }
+
+    fn __repr__(&self) -> String {
+        let (m, (ny, nx)) = (self.n_measurements, self.shape);
+        format!("<bubbletouch.Reconstructor: {m} measurements to {ny} × {nx} taxels>")
+    }
+}

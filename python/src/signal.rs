@@ -1,0 +1,322 @@
+//! `Step` and `Chain`: what electronics make of deflections.
+
+use crate::arrays::{frames, view};
+use crate::batch::{Spare, for_each, n_threads};
+use crate::errors::{bad_input, exception, guarded};
+use crate::patch::Patch;
+use bubbletouch::random::Seed;
+use bubbletouch::signal::{
+    self, MOST_STRENGTHS, Noise, NoiseUnit, Quantity, Recording, SENSOR_ERRORS, Scratch,
+    SensorError, SignalStep,
+};
+use numpy::IntoPyArray;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+/// A step from deflections to what a skin's electronics read, made by one of its static methods. What it may be is checked by Chain.
+#[pyclass(frozen, module = "bubbletouch")]
+#[derive(Clone)]
+pub struct Step {
+    kind: Kind,
+    /// As it was made.
+    call: String,
+}
+
+/// A step before it is known whose skin it is.
+#[derive(Clone)]
+enum Kind {
+    Plain(SignalStep),
+    Error(SensorError, [f64; MOST_STRENGTHS]),
+}
+
+impl Step {
+    fn of_skin(&self, skin: Seed) -> SignalStep {
+        match self.kind {
+            Kind::Plain(step) => step,
+            Kind::Error(error, strengths) => error.step(&strengths, skin),
+        }
+    }
+}
+
+/// The words of all sensor errors.
+fn words() -> String {
+    let words: Vec<&str> = SENSOR_ERRORS
+        .iter()
+        .map(|error| error.about().step)
+        .collect();
+    words.join(", ")
+}
+
+#[pymethods]
+impl Step {
+    /// Deflections become forces, k δ + c δ̇, newtons.
+    #[staticmethod]
+    fn force() -> Self {
+        Self {
+            kind: Kind::Plain(SignalStep::Force),
+            call: "force()".to_owned(),
+        }
+    }
+
+    /// Gaussian noise on every taxel: a fraction of the full scale (of a taxel at its stroke), millimetres, or newtons; zero or more.
+    #[staticmethod]
+    #[pyo3(signature = (std, unit="full_scale"))]
+    fn noise(std: f64, unit: &str) -> PyResult<Self> {
+        let known = match unit {
+            "full_scale" => NoiseUnit::FullScale,
+            "mm" => NoiseUnit::Mm,
+            "n" => NoiseUnit::N,
+            _ => {
+                let given = format!("`{unit}`");
+                return Err(bad_input("noise unit", given, "full_scale, mm or n"));
+            }
+        };
+        Ok(Self {
+            kind: Kind::Plain(SignalStep::Noise(Noise { std, unit: known })),
+            call: format!("noise({std}, {unit:?})"),
+        })
+    }
+
+    /// A Gaussian over the array, of standard deviation `width` in metres, zero or more.
+    #[staticmethod]
+    fn smoothing(width: f64) -> Self {
+        Self {
+            kind: Kind::Plain(SignalStep::Smoothing { width }),
+            call: format!("smoothing({width})"),
+        }
+    }
+
+    /// A sensor error: Step.error("gain", gain_std=0.07). Raises ValueError, which lists the names, or the strengths of one.
+    ///
+    /// errors() has all; those that belong to a piece of hardware (gain, drift, faults) are drawn from the chain's skin_seed.
+    #[staticmethod]
+    #[pyo3(signature = (name, **strengths))]
+    fn error(name: &str, strengths: Option<&Bound<PyDict>>) -> PyResult<Self> {
+        let error = SensorError::of_step(name)
+            .ok_or_else(|| bad_input("sensor error", format!("`{name}`"), words()))?;
+        let known = error.about().strengths;
+        let keys: Vec<&str> = known.iter().map(|strength| strength.key).collect();
+        let keys = keys.join(", ");
+        let mut values = [0.0; MOST_STRENGTHS];
+        let mut call = format!("error({name:?}");
+        for (key, value) in strengths.into_iter().flatten() {
+            let (key, value): (String, f64) = (key.extract()?, value.extract()?);
+            let place = known.iter().position(|strength| strength.key == key);
+            let place = place.ok_or_else(|| bad_input(name, format!("`{key}`"), &keys))?;
+            if !(known[place].is_allowed)(value) {
+                return Err(bad_input(key, value, known[place].allowed));
+            }
+            values[place] = value;
+            call += &format!(", {key}={value}");
+        }
+        Ok(Self {
+            kind: Kind::Error(error, values),
+            call: call + ")",
+        })
+    }
+
+    /// Of each sensor error its strengths, and of each strength what is allowed.
+    #[staticmethod]
+    fn errors(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+        let all = PyDict::new(py);
+        for error in SENSOR_ERRORS {
+            let strengths = PyDict::new(py);
+            for strength in error.about().strengths {
+                strengths.set_item(strength.key, strength.allowed)?;
+            }
+            all.set_item(error.about().step, strengths)?;
+        }
+        Ok(all)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Step.{}", self.call)
+    }
+}
+
+/// Steps from deflections to what is read, in their order, prepared for a patch.
+///
+/// Chain([Step.error("gain", gain_std=0.05), Step.noise(0.02), Step.smoothing(4e-3)], patch, skin_seed=7)
+///
+/// skin_seed: the piece of hardware, which has its own gains, drift and faults; 0 and above. of_force: whether frames are newtons from
+/// the start. Raises ValueError for a step that this patch, or its place in the chain, cannot have.
+#[pyclass(frozen, module = "bubbletouch")]
+pub struct Chain {
+    chain: signal::Chain,
+    steps: Vec<Step>,
+    spare: Spare<Scratch>,
+}
+
+#[pymethods]
+impl Chain {
+    #[new]
+    #[pyo3(signature = (steps, patch, *, skin_seed=0, of_force=false))]
+    fn new(
+        steps: Vec<Bound<Step>>,
+        patch: &Bound<Patch>,
+        skin_seed: u64,
+        of_force: bool,
+    ) -> PyResult<Self> {
+        guarded(|| {
+            let steps: Vec<Step> = steps.iter().map(|step| step.get().clone()).collect();
+            let skin = Seed::new(skin_seed);
+            let prepared: Vec<SignalStep> = steps.iter().map(|step| step.of_skin(skin)).collect();
+            let quantity = match of_force {
+                true => Quantity::Force,
+                false => Quantity::Deflection,
+            };
+            let chain = signal::Chain::of(&prepared, patch.get().inner(), quantity);
+            Ok(Self {
+                chain: chain.map_err(exception)?,
+                steps,
+                spare: Spare::new(),
+            })
+        })
+    }
+
+    /// What is read of frames, each that of a touch by itself, at rest.
+    ///
+    /// frames: deflections (n, …) of n_taxels each, metres, or one frame; they stay as they are. seed: of what changes from touch to
+    /// touch; frame i has the random numbers of touch `first` + i, whatever else is read. rates: δ̇, m/s, as frames. Returns an array
+    /// of the same shape, float64, in the unit of `quantity`. Raises ValueError.
+    #[pyo3(signature = (frames, *, seed=0, first=0, rates=None, threads=None))]
+    fn __call__<'py>(
+        &self,
+        py: Python<'py>,
+        frames: &Bound<'py, PyAny>,
+        seed: u64,
+        first: u64,
+        rates: Option<&Bound<'py, PyAny>>,
+        threads: Option<i64>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        guarded(|| {
+            let n_taxels = self.chain.n_taxels();
+            let shape = frames.getattr("shape").ok();
+            let mut values = self::frames("frames", frames, n_taxels)?;
+            let rates = self.rates(rates, values.nrows())?;
+            let seed = Seed::new(seed);
+            let work = |number: usize, frame: &mut [f64], scratch: &mut Scratch| {
+                let touch = seed.numbered(first + number as u64);
+                let rates = rates
+                    .as_ref()
+                    .map(|rates| &rates[number * n_taxels..][..n_taxels]);
+                self.chain.apply(frame, rates, &touch, scratch);
+                Ok(())
+            };
+            let rows = values.as_slice_mut().expect("frames are whole");
+            let rows = rows.chunks_exact_mut(n_taxels).collect();
+            let (threads, spare) = (n_threads(threads)?, &self.spare);
+            for_each(py, rows, threads, spare, Scratch::default, work)?;
+            as_given(values.into_pyarray(py).into_any(), shape)
+        })
+    }
+
+    /// What is read of the frames of one touch, in the order of time: hysteresis and scan order connect them.
+    ///
+    /// n_before: leading frames that are remembered, but not returned. interval: seconds between frames; None: the press waits at each.
+    /// time: the share of the session that has gone, 0 to 1, for drift. Returns (n − n_before, …). Raises ValueError.
+    #[pyo3(signature = (frames, *, seed=0, n_before=0, interval=None, time=None, rates=None))]
+    #[expect(clippy::too_many_arguments, reason = "named in Python")]
+    fn read_touch<'py>(
+        &self,
+        py: Python<'py>,
+        frames: &Bound<'py, PyAny>,
+        seed: u64,
+        n_before: usize,
+        interval: Option<f64>,
+        time: Option<f64>,
+        rates: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        guarded(|| {
+            let mut values = self::frames("frames", frames, self.chain.n_taxels())?;
+            let n_frames = values.nrows();
+            if n_before >= n_frames {
+                let given = format!("{n_before} of {n_frames} frames");
+                return Err(bad_input("n_before", given, "fewer than there are"));
+            }
+            if interval.is_some_and(|seconds| !(seconds.is_finite() && seconds > 0.0)) {
+                let allowed = "a positive number of seconds, or None";
+                return Err(bad_input("interval", interval.unwrap_or_default(), allowed));
+            }
+            if time.is_some_and(|share| !(0.0..=1.0).contains(&share)) {
+                return Err(bad_input(
+                    "time",
+                    time.unwrap_or_default(),
+                    "0 to 1, or None",
+                ));
+            }
+            let rates = self.rates(rates, n_frames)?;
+            let recording = Recording {
+                frames: values.as_slice_mut().expect("frames are whole"),
+                rates: rates.as_deref(),
+                n_before,
+                interval,
+                time,
+            };
+            let (touch, mut scratch) = (Seed::new(seed), Scratch::default());
+            py.detach(|| self.chain.apply_recording(recording, &touch, &mut scratch));
+            let shape = frames.getattr("shape").ok();
+            let read = as_given(values.into_pyarray(py).into_any(), shape)?;
+            let after = pyo3::types::PySlice::new(py, n_before as isize, n_frames as isize, 1);
+            match n_before {
+                0 => Ok(read),
+                _ => read.get_item(after),
+            }
+        })
+    }
+
+    /// Of what it returns: deflection (metres) or force (newtons).
+    #[getter]
+    fn quantity(&self) -> &'static str {
+        self.chain.quantity().name()
+    }
+
+    /// The steps, in their order.
+    #[getter]
+    fn steps<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        let steps: PyResult<Vec<_>> = self
+            .steps
+            .iter()
+            .map(|step| Bound::new(py, step.clone()))
+            .collect();
+        PyTuple::new(py, steps?)
+    }
+
+    fn __repr__(&self) -> String {
+        let steps: Vec<String> = self.steps.iter().map(Step::__repr__).collect();
+        format!("<bubbletouch.Chain: [{}]>", steps.join(", "))
+    }
+}
+
+impl Chain {
+    /// One rate for each value of the frames.
+    fn rates(&self, given: Option<&Bound<PyAny>>, n_frames: usize) -> PyResult<Option<Vec<f64>>> {
+        let n = n_frames * self.chain.n_taxels();
+        let is_shape = |shape: &[usize]| shape.iter().product::<usize>() == n;
+        let look = |given| {
+            view(
+                "rates",
+                given,
+                "one for each value of frames",
+                is_shape,
+                |array| Ok(array.iter().copied().collect::<Vec<f64>>()),
+            )
+        };
+        let rates = given.map(look).transpose()?;
+        match rates.iter().flatten().find(|rate| !rate.is_finite()) {
+            Some(bad) => Err(bad_input("rates", bad, "finite numbers of m/s")),
+            None => Ok(rates),
+        }
+    }
+}
+
+/// Frames in the shape that they had.
+fn as_given<'py>(
+    frames: Bound<'py, PyAny>,
+    shape: Option<Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    match shape {
+        Some(shape) => frames.call_method1("reshape", (shape,)),
+        None => Ok(frames),
+    }
+}

@@ -1,0 +1,118 @@
+//! `SphereUnion`: rigid spheres.
+
+use crate::arrays::{each, points, to_column, to_rows};
+use crate::errors::{check_folder, check_readable, exception, guarded};
+use crate::model::{corners, unit_of};
+use bubbletouch::files::write_whole;
+use bubbletouch::mesh::SizeLimits;
+use bubbletouch::objects::{self, Model, Sphere, write_spheres};
+use bubbletouch::study::load_spheres;
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+use std::path::PathBuf;
+
+/// A union of rigid spheres.
+///
+/// `SphereUnion(centers, radii)`: centers (n, 3), metres; radii (n,) or one number, metres, positive. Raises ValueError, which names the
+/// first sphere (from 1) that cannot be.
+#[pyclass(frozen, module = "bubbletouch")]
+pub struct SphereUnion {
+    model: Model,
+}
+
+impl SphereUnion {
+    /// Of the library's.
+    pub fn of(spheres: objects::SphereUnion) -> Self {
+        Self {
+            model: spheres.into(),
+        }
+    }
+
+    /// Itself, as the contact kernel takes it.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    fn union(&self) -> &objects::SphereUnion {
+        self.model.spheres().expect("it is made of spheres")
+    }
+
+    fn spheres(&self) -> &[Sphere] {
+        self.union().spheres()
+    }
+}
+
+#[pymethods]
+impl SphereUnion {
+    #[new]
+    fn new(centers: &Bound<PyAny>, radii: &Bound<PyAny>) -> PyResult<Self> {
+        guarded(|| {
+            let centers = points("centers", centers)?;
+            let radii = each("radii", radii, centers.len())?;
+            let spheres = centers.into_iter().zip(radii);
+            let spheres = spheres.map(|(center, radius)| Sphere { center, radius });
+            let union = objects::SphereUnion::new(spheres.collect()).map_err(exception)?;
+            Ok(Self::of(union))
+        })
+    }
+
+    /// A CSV file with columns x, y, z, r in metres, or in a unit.
+    ///
+    /// Raises OSError for a file that cannot be read, ValueError for one that holds no such spheres.
+    #[staticmethod]
+    #[pyo3(signature = (path, *, unit=None))]
+    fn read(path: PathBuf, unit: Option<&str>) -> PyResult<Self> {
+        guarded(|| {
+            let unit = unit_of(unit)?;
+            check_readable(&path)?;
+            let spheres = load_spheres(&path, unit, &SizeLimits::ANY).map_err(exception)?;
+            Ok(Self::of(spheres))
+        })
+    }
+
+    /// Writes a CSV file of which read() gives the same bits. Raises OSError; what stood there is kept then.
+    fn write(&self, path: PathBuf) -> PyResult<()> {
+        guarded(|| {
+            check_folder(&path)?;
+            let written = write_whole(&path, |sink| write_spheres(self.union(), sink));
+            written.map_err(exception)
+        })
+    }
+
+    /// (n, 3), metres; a copy.
+    #[getter]
+    fn centers<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+        to_rows(py, self.spheres().iter().map(|sphere| sphere.center))
+    }
+
+    /// (n,), metres; a copy.
+    #[getter]
+    fn radii<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        to_column(py, self.spheres().iter().map(|sphere| sphere.radius))
+    }
+
+    /// (2, 3): the least and the largest corner of the box around it, metres.
+    #[getter]
+    fn bounds<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+        corners(py, &self.union().bounds())
+    }
+
+    /// How many spheres.
+    fn __len__(&self) -> usize {
+        self.spheres().len()
+    }
+
+    fn __repr__(&self) -> String {
+        let size = self.union().bounds().size() * 1e3;
+        let [x, y, z] = [size.x, size.y, size.z];
+        let n = self.spheres().len();
+        format!("<bubbletouch.SphereUnion: {n} spheres, {x:.1} × {y:.1} × {z:.1} mm>")
+    }
+
+    fn __getnewargs__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>) {
+        (self.centers(py), self.radii(py))
+    }
+}

@@ -1,0 +1,210 @@
+//! Studies: what `bubbletouch run` does, with the tables in memory.
+
+use crate::errors::{bad_input, exception, guarded};
+use crate::threads::{Stop, aside};
+use bubbletouch::Error;
+use bubbletouch::Result;
+use bubbletouch::kinds::{Source, load};
+use bubbletouch::study::journal::{JOURNAL_FILE, Journal};
+use bubbletouch::study::pieces::{Part, PieceManner};
+use bubbletouch::study::progress::Progress;
+use bubbletouch::study::provenance::Manifest;
+use bubbletouch::table::{Data, Table};
+use numpy::IntoPyArray;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant, SystemTime};
+
+/// Between two calls of a callback. Shorter: workers wait for the interpreter more often.
+const BETWEEN_CALLS: Duration = Duration::from_millis(50);
+
+/// Tells a callback how far a study is, and ends it when it should.
+struct Told {
+    stop: Stop,
+    callback: Option<Py<PyAny>>,
+    stage: Mutex<Stage>,
+    /// What the callback raised.
+    raised: Arc<Mutex<Option<PyErr>>>,
+}
+
+struct Stage {
+    name: String,
+    done: u64,
+    total: u64,
+    told: Instant,
+}
+
+impl Told {
+    fn tell(&self, (name, done, total): (String, u64, u64)) {
+        let Some(callback) = &self.callback else {
+            return;
+        };
+        let called = Python::attach(|py| callback.call1(py, (name, done, total)).map(drop));
+        if let Err(error) = called {
+            if let Ok(mut raised) = self.raised.lock() {
+                raised.get_or_insert(error);
+            }
+            self.stop.tell();
+        }
+        self.stop.end_if_told();
+    }
+}
+
+impl Progress for Told {
+    fn stage(&self, name: &str, total: u64) {
+        self.stop.end_if_told();
+        if let Ok(mut stage) = self.stage.lock() {
+            *stage = Stage {
+                name: name.to_owned(),
+                done: 0,
+                total,
+                told: Instant::now(),
+            };
+        }
+        self.tell((name.to_owned(), 0, total));
+    }
+
+    fn advance(&self, n: u64) {
+        self.stop.end_if_told();
+        let Ok(mut stage) = self.stage.lock() else {
+            return;
+        };
+        stage.done += n;
+        let is_end = stage.done >= stage.total;
+        if !is_end && stage.told.elapsed() < BETWEEN_CALLS {
+            return;
+        }
+        stage.told = Instant::now();
+        let said = (stage.name.clone(), stage.done, stage.total);
+        drop(stage);
+        self.tell(said);
+    }
+
+    fn finish(&self, _message: &str) {}
+}
+
+/// Of a table its file's name, title, note and columns.
+type Said<'py> = (String, String, String, Bound<'py, PyDict>);
+
+/// A study's own words, and where its results go.
+struct Asked {
+    source: Source,
+    name: String,
+}
+
+fn run(asked: &Asked, told: &Told) -> Result<Vec<Table>> {
+    let started = SystemTime::now();
+    let Source {
+        results,
+        place,
+        folder,
+        ..
+    } = &asked.source;
+    std::fs::create_dir_all(results).map_err(|e| Error::io(results, "create folder", e))?;
+    let study = load(&asked.source)?;
+    let journal = Journal::open(&results.join(JOURNAL_FILE), study.identity())?;
+    let n_before = study.n_all() - study.n_left(Part::All, &journal);
+    let outcome = study.run(&PieceManner {
+        journal: &journal,
+        fail_fast: true,
+        retries: true,
+        part: Part::All,
+        progress: told,
+    })?;
+    journal.sync()?;
+    let manifest = Manifest {
+        study: asked.name.clone(),
+        command: format!("bubbletouch run {place}"),
+        paths_from: folder.clone(),
+        n_finished_before: n_before,
+        ..Manifest::ended(study.identity(), started)
+    };
+    told.stage("report", 1);
+    study.write(results, &outcome, manifest)?;
+    told.advance(1);
+    Ok(outcome.tables)
+}
+
+/// Runs a study (TOML) into a folder: of each table its file's name, title, note and columns.
+#[pyfunction]
+#[pyo3(signature = (text, place, name, folder, out, seed=None, callback=None))]
+#[expect(clippy::too_many_arguments, reason = "called by bubbletouch.run alone")]
+pub fn run_study<'py>(
+    py: Python<'py>,
+    text: String,
+    place: String,
+    name: String,
+    folder: PathBuf,
+    out: PathBuf,
+    seed: Option<u64>,
+    callback: Option<Py<PyAny>>,
+) -> PyResult<Vec<Said<'py>>> {
+    guarded(|| {
+        let packings = out.parent().unwrap_or(Path::new("")).join("packings");
+        let asked = Asked {
+            source: Source {
+                folder,
+                seed,
+                packings: Some(packings),
+                results: out,
+                ..Source::of_text(&place, &text)
+            },
+            name,
+        };
+        let raised = Arc::new(Mutex::new(None));
+        let of_callback = Arc::clone(&raised);
+        let ran = aside(py, move |stop| {
+            let told = Told {
+                stop: stop.clone(),
+                callback,
+                raised: of_callback,
+                stage: Mutex::new(Stage {
+                    name: String::new(),
+                    done: 0,
+                    total: 0,
+                    told: Instant::now(),
+                }),
+            };
+            run(&asked, &told)
+        });
+        if let Ok(mut raised) = raised.lock()
+            && let Some(error) = raised.take()
+        {
+            return Err(error);
+        }
+        let tables = ran?.map_err(exception)?;
+        tables.iter().map(|table| columns(py, table)).collect()
+    })
+}
+
+fn columns<'py>(py: Python<'py>, table: &Table) -> PyResult<Said<'py>> {
+    let values = PyDict::new(py);
+    for (column, data) in table.columns.iter().zip(&table.data) {
+        match data {
+            Data::Numbers(numbers) => {
+                values.set_item(&*column.name, numbers.clone().into_pyarray(py))?;
+            }
+            Data::Words { levels, codes } => {
+                let words = codes.iter().map(|code| &levels[*code as usize]);
+                values.set_item(&*column.name, words.collect::<Vec<_>>())?;
+            }
+        }
+    }
+    let (file, title) = (table.file.to_owned(), table.title.to_owned());
+    Ok((file, title, table.note.clone(), values))
+}
+
+/// A study in TOML from the same in JSON.
+#[pyfunction]
+pub fn toml_of(json: &str) -> PyResult<String> {
+    guarded(|| {
+        let failed = |error: &dyn std::fmt::Display| {
+            let allowed = "tables, lists, words, numbers and truth values, as TOML has them";
+            bad_input("study", error, allowed)
+        };
+        let table: toml::Table = serde_json::from_str(json).map_err(|error| failed(&error))?;
+        toml::to_string(&table).map_err(|error| failed(&error))
+    })
+}

@@ -1,0 +1,398 @@
+//! What the estimators of `bubbletouch.learning` train: soft-margin SVMs on features and labels 0, 1, …
+
+use crate::arrays::view;
+use crate::errors::{bad_input, exception, guarded};
+use crate::threads::{aside, pool};
+use bubbletouch::random::Seed;
+use bubbletouch::recognition::classifiers::class_model::ClassModel;
+use bubbletouch::recognition::classifiers::linear_svm::{LinearMargin, LinearSvm, LinearSvmParams};
+use bubbletouch::recognition::data::dataset::{Dataset, dataset};
+use bubbletouch::recognition::data::split::Split;
+use bubbletouch::recognition::svm::cross_validation::choice::{Candidates, choose};
+use bubbletouch::recognition::svm::kernel::{Gamma, Kernel};
+use bubbletouch::recognition::svm::predict::svm_model::SvmModel;
+use bubbletouch::recognition::svm::{Multiclass, SvmParams};
+use ndarray::{Array1, Array2, ArrayView2, Axis, Ix2, concatenate};
+use numpy::{IntoPyArray, PyArray1, PyArray2};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Rows of numbers.
+fn rows_of(given: &Bound<PyAny>) -> PyResult<Array2<f64>> {
+    let is_shape = |shape: &[usize]| matches!(shape, [_, _]);
+    view(
+        "features",
+        given,
+        "(n_rows, n_features)",
+        is_shape,
+        |array| {
+            let rows = array.to_owned().into_dimensionality::<Ix2>();
+            Ok(rows.expect("the shape was looked at"))
+        },
+    )
+}
+
+/// Rows that the library predicts at once.
+const BLOCK_ROWS: usize = 256;
+
+/// What is predicted of parts of the rows on the threads of the pool: parts are whole blocks of the library's, so that their bits are the same.
+///
+/// # Errors
+/// That of all rows at once, which names the right one.
+fn in_parts<T: Send>(
+    features: &Array2<f64>,
+    predict: impl Fn(ArrayView2<f64>) -> bubbletouch::Result<T> + Sync,
+) -> bubbletouch::Result<Vec<T>> {
+    let n_blocks = features.nrows().div_ceil(BLOCK_ROWS).max(1);
+    let rows = n_blocks.div_ceil(rayon::current_num_threads()) * BLOCK_ROWS;
+    let parts: Vec<ArrayView2<f64>> = features.axis_chunks_iter(Axis(0), rows).collect();
+    if parts.len() < 2 {
+        return Ok(vec![predict(features.view())?]);
+    }
+    let predicted: bubbletouch::Result<Vec<T>> = parts.into_par_iter().map(&predict).collect();
+    predicted.or_else(|_| Ok(vec![predict(features.view())?]))
+}
+
+/// Whole numbers from 0.
+fn whole(place: &str, given: &Bound<PyAny>) -> PyResult<Vec<usize>> {
+    let is_shape = |shape: &[usize]| shape.len() == 1;
+    view(place, given, "(n,)", is_shape, |array| {
+        let number = |&value: &f64| match value {
+            whole if whole >= 0.0 && whole < 2f64.powi(53) && whole.fract() == 0.0 => {
+                Ok(whole as usize)
+            }
+            other => Err(bad_input(place, other, "whole numbers from 0")),
+        };
+        array.iter().map(number).collect()
+    })
+}
+
+fn data_of(features: &Bound<PyAny>, labels: &Bound<PyAny>) -> PyResult<Dataset> {
+    let labels = Array1::from(whole("labels", labels)?);
+    dataset(rows_of(features)?, labels).map_err(exception)
+}
+
+/// The kernel and C of a call, as Python names them.
+#[derive(Clone, FromPyObject)]
+#[pyo3(from_item_all)]
+struct Asked {
+    kernel: String,
+    /// `None`: that of scale.
+    gamma: Option<f64>,
+    coef0: f64,
+    degree: u32,
+    c: f64,
+    tolerance: f64,
+    multiclass: String,
+    memory_bytes: usize,
+}
+
+impl Asked {
+    fn params(&self) -> PyResult<SvmParams> {
+        let gamma = self.gamma.map_or(Gamma::Scale, Gamma::Value);
+        let kernel = match &self.kernel[..] {
+            "linear" => Kernel::Linear,
+            "rbf" => Kernel::Rbf { gamma },
+            "poly" => Kernel::Polynomial {
+                gamma,
+                coef0: self.coef0,
+                degree: self.degree,
+            },
+            other => {
+                return Err(bad_input(
+                    "kernel",
+                    format!("`{other}`"),
+                    "linear, poly or rbf",
+                ));
+            }
+        };
+        let multiclass = match &self.multiclass[..] {
+            "ovo" => Multiclass::OneVsOne,
+            "ovr" => Multiclass::OneVsRest,
+            other => return Err(bad_input("multi_class", format!("`{other}`"), "ovo or ovr")),
+        };
+        Ok(SvmParams {
+            kernel,
+            multiclass,
+            c: self.c,
+            tolerance: self.tolerance,
+            memory_bytes: self.memory_bytes,
+            ..SvmParams::default()
+        })
+    }
+}
+
+/// A trained SVM with a kernel, on labels 0, 1, …: what bubbletouch.learning.SVC fits. Pickled as its training rows, and trained again.
+#[pyclass(frozen, module = "bubbletouch._core")]
+pub struct KernelSvm {
+    model: SvmModel,
+    /// What it was trained from: it is pickled as that, and trained again.
+    asked: Py<PyDict>,
+    data: Arc<Dataset>,
+}
+
+#[pymethods]
+impl KernelSvm {
+    /// Trains on features (n, m) and labels (n,). Raises ValueError.
+    #[staticmethod]
+    fn train(
+        py: Python,
+        features: &Bound<PyAny>,
+        labels: &Bound<PyAny>,
+        params: Bound<PyDict>,
+    ) -> PyResult<Self> {
+        guarded(|| {
+            let asked: Asked = params.extract()?;
+            let params_of = asked.params()?;
+            let data = Arc::new(data_of(features, labels)?);
+            let rows = Arc::clone(&data);
+            let trained = aside(py, move |_| params_of.train(&rows))?;
+            Ok(Self {
+                model: trained.map_err(exception)?,
+                asked: params.copy()?.unbind(),
+                data,
+            })
+        })
+    }
+
+    /// (n,): of features (n, m); of equally many votes the lowest label.
+    fn labels<'py>(
+        &self,
+        py: Python<'py>,
+        features: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray1<i64>>> {
+        guarded(|| {
+            let (features, pool) = (rows_of(features)?, pool()?);
+            let label = |rows: ArrayView2<f64>| self.model.labels(rows);
+            let labels = py.detach(|| pool.install(|| in_parts(&features, label)));
+            Ok(to_integers(py, labels.map_err(exception)?.iter().flatten()))
+        })
+    }
+
+    /// (n, n_problems): above 0 speaks for a problem's positive class.
+    fn decision_values<'py>(
+        &self,
+        py: Python<'py>,
+        features: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        guarded(|| {
+            let (features, pool) = (rows_of(features)?, pool()?);
+            let value = |rows: ArrayView2<f64>| self.model.decision_values(rows);
+            let values = py.detach(|| pool.install(|| in_parts(&features, value)));
+            let values = values.map_err(exception)?;
+            let views: Vec<ArrayView2<f64>> = values.iter().map(|part| part.view()).collect();
+            let values = concatenate(Axis(0), &views).expect("parts have the same columns");
+            Ok(values.into_pyarray(py))
+        })
+    }
+
+    /// Of each binary problem its classes, training rows, signed multipliers, ρ, objective, iterations, and whether it was capped.
+    #[getter]
+    fn problems<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let problem = |problem: &bubbletouch::recognition::svm::BinaryProblem| {
+            let said = PyDict::new(py);
+            let solution = &problem.solution;
+            said.set_item("positive", problem.positive)?;
+            said.set_item("negative", problem.negative)?;
+            said.set_item("rows", to_integers(py, &problem.rows))?;
+            said.set_item(
+                "coefficients",
+                solution.coefficients.clone().into_pyarray(py),
+            )?;
+            said.set_item("rho", solution.rho)?;
+            said.set_item("objective", solution.objective)?;
+            said.set_item("n_iterations", solution.n_iterations)?;
+            said.set_item("is_capped", solution.is_capped)?;
+            Ok(said)
+        };
+        self.model.problems().iter().map(problem).collect()
+    }
+
+    /// Binary problems that stopped at the iteration cap.
+    #[getter]
+    fn n_capped(&self) -> usize {
+        self.model.n_capped()
+    }
+
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let train = py.get_type::<Self>().getattr("train")?;
+        let (features, labels) = arrays_of(py, &self.data);
+        Ok((
+            train,
+            (features, labels, self.asked.bind(py)).into_pyobject(py)?,
+        ))
+    }
+}
+
+/// A trained linear SVM without a kernel matrix, on labels 0, 1, …: what bubbletouch.learning.LinearSVC fits. Pickled as KernelSvm.
+#[pyclass(frozen, module = "bubbletouch._core")]
+pub struct LinearModel {
+    svm: LinearSvm,
+    asked: (String, f64, f64, usize, u64),
+    data: Arc<Dataset>,
+}
+
+#[pymethods]
+impl LinearModel {
+    /// Trains on features (n, m) and labels (n,). Raises ValueError.
+    #[staticmethod]
+    #[expect(clippy::too_many_arguments, reason = "named in Python")]
+    fn train(
+        py: Python,
+        features: &Bound<PyAny>,
+        labels: &Bound<PyAny>,
+        multiclass: &str,
+        c: f64,
+        tolerance: f64,
+        max_passes: i64,
+        seed: u64,
+    ) -> PyResult<Self> {
+        guarded(|| {
+            let margin = match multiclass {
+                "ovr" => LinearMargin::OneVsRest,
+                "crammer_singer" => LinearMargin::CrammerSinger,
+                other => {
+                    let given = format!("`{other}`");
+                    return Err(bad_input("multi_class", given, "ovr or crammer_singer"));
+                }
+            };
+            let max_passes = usize::try_from(max_passes)
+                .map_err(|_| bad_input("max_iter", max_passes, "at least 1"))?;
+            let params = LinearSvmParams {
+                margin,
+                c,
+                tolerance,
+                max_passes,
+            };
+            let data = Arc::new(data_of(features, labels)?);
+            let rows = Arc::clone(&data);
+            let trained = aside(py, move |_| params.train(&rows, &Seed::new(seed)))?;
+            Ok(Self {
+                svm: trained.map_err(exception)?,
+                asked: (multiclass.to_owned(), c, tolerance, max_passes, seed),
+                data,
+            })
+        })
+    }
+
+    /// (n,): of features (n, m).
+    fn labels<'py>(
+        &self,
+        py: Python<'py>,
+        features: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray1<i64>>> {
+        guarded(|| {
+            let (features, pool) = (rows_of(features)?, pool()?);
+            let labels = py.detach(|| pool.install(|| self.svm.labels(features.view())));
+            Ok(to_integers(py, &labels.map_err(exception)?))
+        })
+    }
+
+    /// (n, n_classes): the largest says the label.
+    fn scores<'py>(
+        &self,
+        py: Python<'py>,
+        features: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        guarded(|| {
+            let (features, pool) = (rows_of(features)?, pool()?);
+            let scores = py.detach(|| pool.install(|| self.svm.scores(features.view())));
+            Ok(scores.map_err(exception)?.into_pyarray(py))
+        })
+    }
+
+    /// (n_classes, m).
+    #[getter]
+    fn weights<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+        self.svm.model().weights.clone().into_pyarray(py)
+    }
+
+    /// (n_classes,).
+    #[getter]
+    fn bias<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.svm.model().bias.clone().into_pyarray(py)
+    }
+
+    /// Passes over the rows, most of all problems.
+    #[getter]
+    fn n_passes(&self) -> usize {
+        let passes = self.svm.convergence().iter().map(|end| end.n_passes);
+        passes.max().unwrap_or(0)
+    }
+
+    /// Problems that stopped at max_passes.
+    #[getter]
+    fn n_capped(&self) -> usize {
+        self.svm.n_capped()
+    }
+
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let train = py.get_type::<Self>().getattr("train")?;
+        let (features, labels) = arrays_of(py, &self.data);
+        let (multiclass, c, tolerance, max_passes, seed) = &self.asked;
+        let given = (features, labels, multiclass, c, tolerance, max_passes, seed);
+        Ok((train, given.into_pyobject(py)?))
+    }
+}
+
+/// Accuracies of every γ (as multiples of that of scale; none: as it is) and C over folds, on one matrix of products: the best C, the best γ, and
+/// tuples of C, γ and accuracy.
+#[pyfunction]
+pub fn choose_svm<'py>(
+    py: Python<'py>,
+    features: &Bound<'py, PyAny>,
+    labels: &Bound<'py, PyAny>,
+    params: Bound<'py, PyDict>,
+    folds: Vec<(Bound<'py, PyAny>, Bound<'py, PyAny>)>,
+    c: Vec<f64>,
+    gamma_scales: Vec<f64>,
+) -> PyResult<Bound<'py, PyDict>> {
+    guarded(|| {
+        let params = params.extract::<Asked>()?.params()?;
+        let data = data_of(features, labels)?;
+        let fold = |(train, test): &(Bound<PyAny>, Bound<PyAny>)| {
+            Ok(Split {
+                train: whole("folds", train)?,
+                test: whole("folds", test)?,
+            })
+        };
+        let folds: Vec<Split> = folds.iter().map(fold).collect::<PyResult<_>>()?;
+        let candidates = Candidates { c, gamma_scales };
+        let chosen = aside(py, move |_| choose(&params, &data, &folds, &candidates))?;
+        let chosen = chosen.map_err(exception)?;
+        let said = PyDict::new(py);
+        let tried = chosen
+            .tried
+            .iter()
+            .map(|one| (one.c, one.gamma, one.accuracy));
+        said.set_item("C", chosen.best.c)?;
+        said.set_item("gamma", chosen.best.gamma)?;
+        said.set_item("accuracy", chosen.best.accuracy)?;
+        said.set_item("tried", tried.collect::<Vec<_>>())?;
+        said.set_item("n_capped", chosen.n_capped)?;
+        Ok(said)
+    })
+}
+
+fn arrays_of<'py>(
+    py: Python<'py>,
+    data: &Dataset,
+) -> (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<i64>>) {
+    let features = data.records.clone().into_pyarray(py);
+    (features, to_integers(py, &data.targets))
+}
+
+fn to_integers<'py, 'a>(
+    py: Python<'py>,
+    numbers: impl IntoIterator<Item = &'a usize>,
+) -> Bound<'py, PyArray1<i64>> {
+    crate::arrays::to_column(py, numbers.into_iter().map(|number| *number as i64))
+}

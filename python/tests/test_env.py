@@ -1,0 +1,97 @@
+"""Gymnasium environments."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+gymnasium = pytest.importorskip("gymnasium")
+import bubbletouch as bt
+from bubbletouch.env import FindObject, FindObjectVector
+from gymnasium.utils.env_checker import check_env
+
+
+@pytest.fixture(scope="module")
+def many() -> FindObjectVector:
+    return FindObjectVector(64)
+
+
+def test_gymnasiums_checks() -> None:
+    environment = gymnasium.make("BubbleTouch/FindObject-v0")
+    check_env(environment.unwrapped, skip_render_check=True)
+
+
+def test_where_objects_lie_is_what_touch_poses_says(many: FindObjectVector) -> None:
+    world = many._world
+    random = np.random.default_rng(0)
+    offset, yaw = random.uniform(-0.03, 0.03, (40, 2)), random.uniform(0, 6, 40)
+    for number, thing in enumerate(world.objects):
+        which = np.full(40, number)
+        got, want = world._poses(which, offset, yaw), bt.touch_poses(thing, offset=offset, yaw=yaw)
+        np.testing.assert_allclose(got[:, :3], want[:, :3], atol=1e-12)
+        same = np.abs((got[:, 3:] * want[:, 3:]).sum(axis=1))
+        np.testing.assert_allclose(same, 1, atol=1e-12)
+        assert world.patch.press(thing, got, depth=3e-3).any()
+
+
+def test_episodes_are_the_same_again_with_the_same_seed(many: FindObjectVector) -> None:
+    actions = np.random.default_rng(1).uniform(-1, 1, (30, 64, 2)).astype(np.float32)
+    runs = []
+    for _ in range(2):
+        observed, _ = many.reset(seed=4)
+        run = [observed, *(many.step(action) for action in actions)]
+        runs.append(run)
+    np.testing.assert_array_equal(runs[0][0], runs[1][0])
+    for one, other in zip(runs[0][1:], runs[1][1:], strict=True):
+        for a, b in zip(one[:4], other[:4], strict=True):
+            np.testing.assert_array_equal(a, b)
+
+
+def test_episodes_end_and_begin_anew(many: FindObjectVector) -> None:
+    observed, _ = many.reset(seed=2)
+    assert many.observation_space.contains(observed)
+    random = np.random.default_rng(3)
+    over = np.zeros(64, bool)
+    ends = right = 0
+    for _ in range(100):
+        observed, rewards, terminated, truncated, info = many.step(
+            random.uniform(-1, 1, (64, 2)).astype(np.float32)
+        )
+        assert many.observation_space.contains(observed)
+        assert (rewards[over] == 0).all() and not (terminated & truncated).any()
+        assert not (terminated | truncated)[over].any()
+        ends += terminated.sum()
+        right += (rewards[terminated] > 0).sum()
+        over = terminated | truncated
+    assert ends > 100
+    # The classifier tells four objects apart better than chance, wherever a random walk touches them.
+    assert right / ends > 0.75
+
+
+def test_one_is_as_many() -> None:
+    single, many = FindObject(), FindObjectVector(1)
+    first, _ = single.reset(seed=8)
+    np.testing.assert_array_equal(first, many.reset(seed=8)[0][0])
+    action = np.array([0.5, -0.5], np.float32)
+    for _ in range(5):
+        one, several = single.step(action), many.step(action[None])
+        np.testing.assert_array_equal(one[0], several[0][0])
+        assert one[1] == several[1][0]
+
+
+def test_what_cannot_be_told_apart_is_refused() -> None:
+    with pytest.raises(ValueError, match="n_taxels: 15; an even number"):
+        FindObject(n_taxels=15)
+    with pytest.raises(ValueError, match="objects: 1; at least two"):
+        FindObject(objects=["mug"])
+    with pytest.raises(ValueError, match="object: `mugg`; perhaps mug"):
+        FindObject(objects=["mug", "mugg"])
+
+
+def test_vectors_are_made_by_name() -> None:
+    vector = gymnasium.make_vec(
+        "BubbleTouch/FindObject-v0", num_envs=3, vectorization_mode="vector_entry_point"
+    )
+    assert vector.reset(seed=0)[0].shape == (3, 258)
+    with pytest.raises(ValueError, match=r"actions: shape \(2, 2\); \(3, 2\)"):
+        vector.step(np.zeros((2, 2), np.float32))

@@ -1,0 +1,39 @@
+"""The examples run, and so does what the pages show."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+PACKAGE = Path(__file__).resolve().parents[1]
+EXAMPLES = sorted((PACKAGE / "examples").glob("*.py"))
+PAGES = [PACKAGE / "README.md", PACKAGE.parent / "README.md"]
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
+def test_example(example: Path, tmp_path: Path) -> None:
+    source = example.read_text()
+    for needed in ("sklearn", "gymnasium", "torch"):
+        if re.search(rf"^(import|from) {needed}", source, re.M):
+            pytest.importorskip(needed)
+    done = subprocess.run(
+        [sys.executable, str(example)], cwd=tmp_path, capture_output=True, text=True, timeout=300
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.strip(), "an example says what it found"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda path: path.parent.name or "root")
+def test_page(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    blocks = re.findall(r"^```python\n(.*?)^```", page.read_text(), re.M | re.S)
+    assert blocks, f"no Python in {page}"
+    for block in blocks:
+        if "sklearn" in block:
+            pytest.importorskip("sklearn")
+        exec(compile(block, str(page), "exec"), {})
+    assert (tmp_path / "mug.png").read_bytes().startswith(b"\x89PNG")

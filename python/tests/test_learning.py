@@ -1,0 +1,182 @@
+"""SVMs as estimators."""
+
+from __future__ import annotations
+
+import pickle
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+pytest.importorskip("sklearn")
+from bubbletouch import _core
+from bubbletouch.learning import SVC, GridSearch, LinearSVC
+from numpy.typing import NDArray
+from sklearn import svm
+from sklearn.datasets import make_classification
+from sklearn.exceptions import ConvergenceWarning
+from sklearn.model_selection import GroupKFold, cross_val_score
+from sklearn.pipeline import make_pipeline
+from sklearn.preprocessing import StandardScaler
+from sklearn.utils.estimator_checks import parametrize_with_checks
+
+# Of scikit-learn's tiny and unscaled data.
+pytestmark = pytest.mark.filterwarnings("ignore:.*stopped at max_iter = 1000")
+
+# No exceptions.
+FAILING: dict[str, str] = {}
+
+
+@parametrize_with_checks(
+    [
+        SVC(),
+        SVC(kernel="linear", multi_class="ovr"),
+        LinearSVC(),
+        LinearSVC(multi_class="crammer_singer"),
+        GridSearch(cv=2, C=[1.0, 10.0], gamma_scales=[1.0]),
+    ],
+    expected_failed_checks=lambda _: FAILING,
+)
+def test_scikit_learns_checks(estimator, check) -> None:  # type: ignore[no-untyped-def]
+    check(estimator)
+
+
+@pytest.fixture(scope="module")
+def data() -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    features, labels = make_classification(
+        600, 20, n_informative=8, n_classes=4, class_sep=1.2, random_state=3
+    )
+    return StandardScaler().fit_transform(features), labels
+
+
+@pytest.mark.parametrize("kernel", ["linear", "rbf", "poly"])
+def test_it_finds_what_libsvm_finds(data, kernel: str) -> None:  # type: ignore[no-untyped-def]
+    features, labels = data
+    ours = SVC(kernel=kernel, tol=1e-6).fit(features[:400], labels[:400])
+    theirs = svm.SVC(kernel=kernel, tol=1e-6, decision_function_shape="ovo")
+    theirs.fit(features[:400], labels[:400])
+    expected = theirs.decision_function(features[400:])
+    np.testing.assert_allclose(ours.decision_values(features[400:]), expected, atol=2e-4)
+    np.testing.assert_array_equal(ours.predict(features[400:]), theirs.predict(features[400:]))
+    np.testing.assert_array_equal(ours.support_, np.sort(theirs.support_))
+    np.testing.assert_array_equal(ours.n_support_, theirs.n_support_)
+    theirs.decision_function_shape = "ovr"
+    np.testing.assert_allclose(
+        ours.decision_function(features[400:]), theirs.decision_function(features[400:]), atol=2e-4
+    )
+
+
+def test_the_linear_one_finds_what_liblinear_finds(data) -> None:  # type: ignore[no-untyped-def]
+    features, labels = data
+    ours = LinearSVC(tol=1e-6, max_iter=100_000).fit(features, labels)
+    theirs = svm.LinearSVC(loss="hinge", tol=1e-8, max_iter=1_000_000).fit(features, labels)
+    np.testing.assert_allclose(ours.coef_, theirs.coef_, atol=1e-3)
+    np.testing.assert_allclose(ours.intercept_, theirs.intercept_, atol=1e-3)
+
+
+def test_names_are_classes_too(data) -> None:  # type: ignore[no-untyped-def]
+    features, labels = data
+    names = np.array(["mug", "bowl", "drill", "ball"])[labels]
+    for estimator in (SVC(), LinearSVC()):
+        predicted = estimator.fit(features, names).predict(features)
+        assert set(predicted) <= set(names) and (predicted == names).mean() > 0.7
+
+
+@pytest.mark.parametrize("estimator", [SVC(), SVC(kernel="linear"), LinearSVC(), GridSearch(cv=3)])
+def test_what_is_unpickled_predicts_the_same_bits(data, estimator) -> None:  # type: ignore[no-untyped-def]
+    features, labels = data
+    estimator.fit(features[:300], labels[:300])
+    again = pickle.loads(pickle.dumps(estimator))
+    np.testing.assert_array_equal(
+        again.decision_function(features), estimator.decision_function(features)
+    )
+
+
+def test_groups_are_kept_together(data) -> None:  # type: ignore[no-untyped-def]
+    features, labels = data
+    groups = np.arange(600) // 10
+    search = GridSearch(SVC(), C=[0.1, 1, 10], gamma_scales=[0.5, 1], cv=GroupKFold(5))
+    search.fit(features, labels, groups=groups)
+    assert len(search.results_) == 6
+    best = SVC(**search.best_params_)
+    scores = cross_val_score(best, features, labels, groups=groups, cv=GroupKFold(5))
+    assert search.best_score_ == pytest.approx(scores.mean(), abs=0.02)
+    assert search.best_score_ == max(one["accuracy"] for one in search.results_)
+    piped = make_pipeline(StandardScaler(), search).fit(features, labels, gridsearch__groups=groups)
+    assert piped.score(features, labels) > 0.7
+
+
+def test_a_solver_that_stops_early_says_so(data) -> None:  # type: ignore[no-untyped-def]
+    features, labels = data
+    with pytest.warns(ConvergenceWarning, match="stopped at max_iter = 1 before"):
+        capped = LinearSVC(max_iter=1, tol=1e-9).fit(features, labels)
+    assert capped.n_capped_ > 0
+
+
+@pytest.mark.parametrize(
+    ("estimator", "said"),
+    [
+        (SVC(C=-1), "C: -1"),
+        (SVC(C=float("nan")), "C: NaN"),
+        (SVC(gamma=0), "gamma"),
+        (SVC(gamma="wide"), "gamma: `wide`; scale, auto or a number above 0"),
+        (SVC(kernel="sigmoid"), "kernel: `sigmoid`; linear, poly or rbf"),
+        (SVC(multi_class="all"), "multi_class: `all`; ovo or ovr"),
+        (SVC(tol=0), "tolerance: 0"),
+        (LinearSVC(C=0), "C: 0"),
+        (LinearSVC(multi_class="ovo"), "multi_class: `ovo`; ovr or crammer_singer"),
+        (LinearSVC(max_iter=-3), "max_iter: -3; at least 1"),
+        (GridSearch(C=[]), "C"),
+        (GridSearch(cv=[([0, 1], [10_000])]), "10000"),
+    ],
+)
+def test_what_cannot_be_trained_is_refused(data, estimator, said: str) -> None:  # type: ignore[no-untyped-def]
+    with pytest.raises(ValueError, match=said):
+        estimator.fit(*data)
+
+
+def test_the_core_refuses_what_the_estimators_would(data) -> None:  # type: ignore[no-untyped-def]
+    features, labels = data
+    params = SVC()._params(20)
+    with pytest.raises(ValueError, match="labels: 599 labels; one for each of the 600 rows"):
+        _core.KernelSvm.train(features, labels[1:], params)
+    with pytest.raises(ValueError, match="features, row 2, column 1: NaN"):
+        spoilt = features.copy()
+        spoilt[2, 1] = np.nan
+        _core.KernelSvm.train(spoilt, labels, params)
+    with pytest.raises(ValueError, match="labels: -1; whole numbers from 0"):
+        _core.KernelSvm.train(features, labels - 1, params)
+    model = _core.KernelSvm.train(features, labels, params)
+    with pytest.raises(ValueError, match="features: 19 columns; the 20 columns of training"):
+        model.labels(features[:, 1:])
+
+
+def test_without_scikit_learn_they_fit_and_predict() -> None:
+    program = """
+import sys
+sys.modules["sklearn"] = None
+import numpy as np, pickle
+from bubbletouch.learning import SVC, LinearSVC, GridSearch, NotFittedError
+random = np.random.default_rng(0)
+labels = np.repeat(["a", "b", "c"], 40)
+features = random.normal(size=(120, 5)) + np.repeat(np.eye(3, 5) * 4, 40, axis=0)
+for estimator in (SVC(), LinearSVC(), GridSearch(cv=4)):
+    try:
+        estimator.predict(features)
+    except NotFittedError:
+        pass
+    else:
+        raise AssertionError
+    assert estimator.fit(features, labels).score(features, labels) > 0.9
+    assert (pickle.loads(pickle.dumps(estimator)).predict(features) == estimator.predict(features)).all()
+    for bad in (features[:, 1:], features[0], features * np.nan):
+        try:
+            estimator.predict(bad)
+        except ValueError:
+            pass
+        else:
+            raise AssertionError
+assert SVC(C=3).get_params()["C"] == 3 and SVC().set_params(C=4).C == 4
+"""
+    subprocess.run([sys.executable, "-c", program], check=True, timeout=60)

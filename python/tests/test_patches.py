@@ -1,0 +1,108 @@
+"""Patches: where taxels rest, what they are."""
+
+from __future__ import annotations
+
+import pickle
+
+import bubbletouch as bt
+import numpy as np
+import pytest
+
+
+def test_a_grid_has_rows_along_y(patch: bt.Patch) -> None:
+    assert patch.shape == (32, 48) and len(patch) == patch.n_taxels == 32 * 48
+    centers = patch.centers.reshape(32, 48, 3)
+    np.testing.assert_allclose(centers[:, 0, 1], (np.arange(32) - 15.5) * 2e-3, atol=1e-15)
+    np.testing.assert_allclose(centers[0, :, 0], (np.arange(48) - 23.5) * 2e-3, atol=1e-15)
+    assert (patch.axes == [0, 0, 1]).all()
+    assert (patch.pitch, patch.stroke, patch.taxel_radius) == (2e-3, 5e-3, 1e-3)
+    assert (patch.stiffness, patch.damping) == (100.0, 0.0)
+
+
+def test_other_layouts_have_one_long_side(box: bt.Mesh) -> None:
+    patches = {
+        "hexagonal": bt.Patch.hexagonal(6, 5, 2e-3, 5e-3),
+        "disc": bt.Patch.disc(8e-3, 2e-3, 5e-3),
+        "cylinder": bt.Patch.cylinder(0.04, 0.06, np.pi, 3e-3, 5e-3),
+        "sphere_cap": bt.Patch.sphere_cap(8e-3, np.pi / 2, 1.5e-3, 2e-3, taxel_radius=0.5e-3),
+        "draped": bt.Patch.draped(box, 4e-3, 2e-3, seed=3),
+    }
+    for name, patch in patches.items():
+        assert patch.shape == (patch.n_taxels,) and patch.n_taxels > 20, name
+        assert patch.pitch is None
+        np.testing.assert_allclose(np.linalg.norm(patch.axes, axis=1), 1.0, rtol=1e-12)
+    assert patches["hexagonal"].n_taxels == 30
+    round_z = patches["cylinder"].centers[:, :2]
+    np.testing.assert_allclose(np.linalg.norm(round_z, axis=1), 0.04)
+
+
+def test_taxels_of_arrays_may_differ() -> None:
+    centers = [[0, 0, 0], [4e-3, 0, 0]]
+    patch = bt.Patch.from_arrays(
+        centers, [[0, 0, 1], [0, 0, 1]], stroke=[5e-3, 2e-3], taxel_radius=1e-3
+    )
+    np.testing.assert_array_equal(patch.stroke, [5e-3, 2e-3])
+    plate = bt.SphereUnion([[2e-3, 0, 1.0]], 1.0)
+    frame = patch.press(plate, [0, 0, 0, 1, 0, 0, 0], depth=4e-3)
+    np.testing.assert_allclose(frame, [4e-3, 2e-3], rtol=1e-3)
+
+
+def test_a_moved_patch_is_moved() -> None:
+    ring = bt.Patch.cylinder(0.04, 0.02, np.pi, 3e-3, 5e-3)
+    up = [0, 0, -0.04, *(np.array([1, 0, -1, 0]) / np.sqrt(2))]
+    moved = ring.moved(up)
+    highest = moved.centers[:, 2].argmax()
+    np.testing.assert_allclose(moved.centers[highest, [1, 2]], 0, atol=1e-3)
+    np.testing.assert_allclose(moved.axes[highest, 2], 1, atol=2e-3)
+
+
+def test_patches_are_pickled(mug: bt.SphereUnion) -> None:
+    pose = bt.touch_poses(mug)
+    made = [
+        bt.Patch.grid(8, 9, 4e-3, 5e-3, taxel_radius=1.5e-3, stiffness=30, damping=0.2),
+        bt.Patch.hexagonal(8, 9, 4e-3, 5e-3),
+    ]
+    for patch in made:
+        again = pickle.loads(pickle.dumps(patch))
+        assert again.shape == patch.shape and again.stiffness == patch.stiffness
+        expected = patch.press(mug, pose, depth=2e-3)
+        np.testing.assert_array_equal(again.press(mug, pose, depth=2e-3), expected)
+        assert expected.max() > 0
+
+
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (lambda: bt.Patch.grid(8, 8, -1e-3, 5e-3), "taxel pitch: -0.001 m; a finite positive number"),
+        (lambda: bt.Patch.grid(8, 8, float("nan"), 5e-3), "taxel pitch: NaN m; a finite positive"),
+        (lambda: bt.Patch.grid(0, 8, 1e-3, 5e-3), "taxel grid: 8 × 0 taxels; at least one"),
+        (lambda: bt.Patch.grid(-2, 8, 1e-3, 5e-3), "ny: -2; at least 1"),
+        (lambda: bt.Patch.grid(8, 8, 1e-3, 0), "taxel stroke: 0 m; a finite positive number"),
+        (lambda: bt.Patch.grid(8, 8, 1e-3, 5e-3, stiffness=-1), "taxel stiffness: -1 N/m"),
+        (lambda: bt.Patch.grid(8, 8, 1e-3, 5e-3, damping=-1), "taxel damping: -1 N·s/m"),
+        (lambda: bt.Patch.grid(9999, 9999, 1e-3, 5e-3), "taxel grid: 99980001 taxels; 1 to 4194304"),
+        (lambda: bt.Patch.cylinder(0.04, 0.06, 9, 3e-3, 5e-3), "cylinder arc"),
+        (lambda: bt.Patch.disc(-1, 3e-3, 5e-3), "disc radius: -1 m"),
+        (
+            lambda: bt.Patch.from_arrays([[0, 0]], [[0, 0, 1]], stroke=1e-3, taxel_radius=1e-3),
+            r"centers: shape \(1, 2\); \(n, 3\)",
+        ),
+        (
+            lambda: bt.Patch.from_arrays([[0, 0, 0]], [[0, 0, 2]], stroke=1e-3, taxel_radius=1e-3),
+            "layout, taxel 1: axis .*; a vector of length one",
+        ),
+        (
+            lambda: bt.Patch.from_arrays(
+                [[0, 0, 0]], [[0, 0, 1]], stroke=[1e-3, 1e-3], taxel_radius=1e-3
+            ),
+            r"stroke: shape \(2,\); \(1,\), or one number for all",
+        ),
+        (
+            lambda: bt.Patch.from_arrays([], [], stroke=1e-3, taxel_radius=1e-3),
+            r"centers: shape \(0,\); \(n, 3\)",
+        ),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_a_patch_is_refused_in_the_librarys_words(make, said) -> None:  # type: ignore[no-untyped-def]
+    with pytest.raises(ValueError, match=said):
+        make()
