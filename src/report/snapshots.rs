@@ -35,9 +35,11 @@ pub fn snapshots(set: &Snapshots) -> Result<Picture> {
     let block = largest.div_ceil(MOST_CELLS);
     let n_cells = largest.div_ceil(block);
     let side = whole_pixels(192.0, n_cells);
-    let box_side = side * n_cells as f64;
+    let rows = frames.iter().map(|(_, frame)| frame.nrows());
+    let n_rows = rows.max().unwrap_or(0).div_ceil(block);
+    let (box_side, box_height) = (side * n_cells as f64, side * n_rows as f64);
     let (left, top) = (66.0, 34.0);
-    let (column_width, row_height) = (box_side + 22.0, box_side + 74.0);
+    let (column_width, row_height) = (box_side + 22.0, box_height + 74.0);
     let right = left + frames.len().min(MOST_COLUMNS) as f64 * column_width;
     let height = frames.len().div_ceil(MOST_COLUMNS) as f64 * row_height + 24.0;
     let mut drawing = Drawing::new(right + 84.0, height);
@@ -65,7 +67,7 @@ pub fn snapshots(set: &Snapshots) -> Result<Picture> {
         }
         maps.push((cells, largest_of_blocks(frame, (block, block))));
     }
-    let bar = Area::new((right, top), (16.0, box_side));
+    let bar = Area::new((right, top), (16.0, box_height));
     draw_colour_bar(&mut drawing, scale, bar);
     let style = TextStyle::new(12).colour(MUTED);
     drawing.text((left, height - 10.0), &set.caption, style);

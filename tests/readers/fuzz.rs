@@ -18,10 +18,11 @@ use bubbletouch::report::folder::{table_files, write_files};
 use bubbletouch::report::recognition::{read_tables, tables_of};
 use bubbletouch::scene::{ScenePlan, SceneSpec};
 use bubbletouch::study::journal::{Identity, Journal};
-use bubbletouch::study::{Plan, StudySpec};
+use bubbletouch::study::{Plan, StudySpec, write_npy};
 use bubbletouch::table::Table;
 use bubbletouch::world::{Interpolation, PoseTrajectory, Robot};
 use bubbletouch::{Error, Result};
+use ndarray::Array3;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -61,7 +62,18 @@ fn text_of(input: &[u8]) -> Result<&str> {
 
 #[test]
 fn studies() {
-    let seeds = files("experiments", "toml", 12_000);
+    let folder = tempfile::tempdir().unwrap();
+    let frames = folder.path().join("frames.npy");
+    write_npy(&frames, &Array3::<f32>::zeros((44, 28, 50))).unwrap();
+    let frames = frames.display().to_string();
+    // A plan of recorded frames reads their shape.
+    let with_frames = |seed: Vec<u8>| {
+        let text = String::from_utf8(seed).unwrap();
+        text.replace("frames.npy\"\n", &format!("{frames}\"\n"))
+            .into_bytes()
+    };
+    let seeds = files("experiments", "toml", 12_000).into_iter();
+    let seeds: Vec<Vec<u8>> = seeds.map(with_frames).collect();
     assert!(seeds.len() > 10);
     Target {
         name: "study",
@@ -73,6 +85,7 @@ fn studies() {
             "[object_detail]\n",
             "[reconstruction]\n",
             "[human_touch]\n",
+            "[recorded]\n",
             "[signal]\n",
             "taxels",
             "size_mm",
