@@ -123,7 +123,8 @@ fn after_presses(folder: &Path, patch: &Patch, mut frames: Array2<f64>) -> Resul
         chain.apply(frame, None, &touches.numbered(number as u64), &mut scratch);
     }
     write_npy(&folder.join("chain.npy"), &frames)?;
-    for (ensemble, (name, _)) in Ensemble::ALL.iter().zip(Ensemble::NAMES) {
+    let drawn = Ensemble::ALL.iter().zip(Ensemble::NAMES);
+    for (ensemble, (name, _)) in drawn.filter(|(ensemble, _)| !ensemble.is_learned()) {
         let projection = Projection::new(*ensemble, (20, 24), 32, &Seed::new(11))?;
         let measured = projection.measure(frames.view());
         write_npy(&folder.join(format!("{name}.npy")), &measured)?;

@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 /// A random projection y = Φx from frames of ny × nx taxels to m measurements, drawn once.
 ///
 /// Projection("sbhe", patch.shape, 64, seed=7). ensemble: gaussian, bernoulli, circulant, sparse, sbhe, block_average, subsample,
-/// or identity (all taxels, whatever m). n_measurements: 1 to the number of taxels. Raises ValueError.
+/// fourier, or identity (all taxels, whatever m). n_measurements: 1 to the number of taxels. Raises ValueError.
 #[pyclass(frozen, module = "bubbletouch")]
 pub struct Projection {
     projection: sensing::Projection,
@@ -32,10 +32,14 @@ impl Projection {
 }
 
 fn ensemble_of(name: &str) -> PyResult<Ensemble> {
-    let mut all = Ensemble::ALL.iter().zip(Ensemble::NAMES);
-    let found = all.find_map(|(ensemble, (known, _))| (*known == name).then_some(*ensemble));
+    // What is learned from touches is a study's.
+    let drawn = || {
+        let all = Ensemble::ALL.iter().zip(Ensemble::NAMES);
+        all.filter(|(ensemble, _)| !ensemble.is_learned())
+    };
+    let found = drawn().find_map(|(ensemble, (known, _))| (*known == name).then_some(*ensemble));
     found.ok_or_else(|| {
-        let known: Vec<&str> = Ensemble::NAMES.iter().map(|(known, _)| *known).collect();
+        let known: Vec<&str> = drawn().map(|(_, (known, _))| *known).collect();
         bad_input("ensemble", format!("`{name}`"), known.join(", "))
     })
 }

@@ -150,8 +150,8 @@ def test_chains_projections_and_svms_of_the_library(reference, poses) -> None:  
     ]
     frames = bt.Chain(steps, patch, skin_seed=7)(reference["grid_depth"], seed=2018)
     np.testing.assert_array_equal(frames, reference["chain"])
-    names = sorted(set(reference) & {"gaussian", "bernoulli", "circulant", "sparse", "sbhe", "block_average", "subsample", "identity"})
-    assert len(names) == 8
+    names = sorted(set(reference) & {"gaussian", "bernoulli", "circulant", "sparse", "sbhe", "block_average", "subsample", "fourier", "identity"})
+    assert len(names) == 9
     for name in names:
         measured = bt.Projection(name, (20, 24), 32, seed=11)(frames)
         np.testing.assert_array_equal(measured, reference[name])

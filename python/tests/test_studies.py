@@ -128,7 +128,7 @@ def test_ctrl_c_ends_a_study_and_the_next_run_goes_on(tmp_path: Path) -> None:
     ("change", "said"),
     [
         ({"skin": STUDY["skin"] | {"pitch_mm": -1.0}}, "skin.pitch_mm"),
-        ({"sensing": {"ensemble": "fourier"}}, "fourier"),
+        ({"sensing": {"ensemble": "wavelet"}}, "wavelet"),
         ({"extra": 1}, "extra"),
         ({"trials": float("nan")}, "tables: .*; what TOML can say"),
         ({"trials": {1, 2}}, "tables: "),

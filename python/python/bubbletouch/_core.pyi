@@ -584,7 +584,7 @@ class Projection:
     """A random projection y = Φx from frames of ny × nx taxels to m measurements, drawn once.
 
     Projection("sbhe", patch.shape, 64, seed=7). ensemble: gaussian, bernoulli, circulant, sparse, sbhe, block_average, subsample,
-    or identity (all taxels, whatever m). n_measurements: 1 to the number of taxels. Raises ValueError.
+    fourier, or identity (all taxels, whatever m). n_measurements: 1 to the number of taxels. Raises ValueError.
     """
 
     def __new__(
