@@ -187,11 +187,11 @@ impl RecognitionSpec {
         self.test_fraction.unwrap_or(0.25)
     }
 
-    /// How far behind the foremost point these features see: those of measurements know none.
+    /// How far behind the foremost point these features see: those of measurements the whole scale.
     pub fn foremost(&self, features: Features) -> Vec<Option<f64>> {
         match features.of_image() {
             Some(_) => Axis::of(&self.foremost_full_scale),
-            None => vec![None],
+            None => vec![self.foremost_full_scale.as_ref().map(|_| 1.0)],
         }
     }
 

@@ -2,6 +2,7 @@
 
 use crate::study::{Study, laid_out};
 use bubbletouch::recognition::features::{Cut, Features, ImageFeatures, Workspace};
+use bubbletouch::report::recognition::tables_of;
 use bubbletouch::study::FeatureSet;
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::{Plan, StudySpec};
@@ -141,4 +142,19 @@ fn skins_without_rows_and_shear_have_no_images() {
             assert!(said.contains(words), "{said}");
         }
     }
+}
+
+#[test]
+fn what_has_no_image_stands_in_the_same_tables_as_what_is_behind_the_foremost_point() {
+    let text = STUDY.replace(
+        "classifier =",
+        "foremost_full_scale = [0.3, 1.0]\nclassifier =",
+    );
+    let tables = laid_out(&text).unwrap().run(&Silent).unwrap();
+    let cells = tables.summary.iter().map(|(cell, _)| cell);
+    let seen: Vec<_> = cells.map(|cell| cell.foremost_full_scale).collect();
+    assert_eq!(seen, [Some(1.0), Some(0.3), Some(1.0)]);
+    let summary = tables_of(&tables).unwrap();
+    let summary = summary.iter().find(|table| table.file == "summary.csv");
+    assert!(summary.is_some());
 }
