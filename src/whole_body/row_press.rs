@@ -108,7 +108,7 @@ impl Share {
     #[inline(always)]
     fn of(bundle: &Bundle, center: DVec3, reach: f64, behind: f64) -> (Self, f64) {
         let (mut squares, mut heights, mut spares) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-        let mut gaps = [0.0; LANES];
+        let mut n_behind = 0;
         for k in 0..LANES {
             let (du, dv) = (center.x - bundle.u[k], center.y - bundle.v[k]);
             let beside = du * bundle.axis_v[k] - dv * bundle.axis_u[k];
@@ -118,13 +118,13 @@ impl Share {
             let (above, gap) = (height.max(0.0), (behind - height).max(0.0));
             squares[k] = square;
             heights[k] = height;
-            gaps[k] = gap;
+            n_behind += u32::from(height < behind);
             spares[k] = square - above * above - gap * gap;
         }
         let share = Self {
             squares,
             heights,
-            is_behind: largest(&gaps) > 0.0,
+            is_behind: n_behind > 0,
         };
         (share, largest(&spares))
     }
@@ -137,13 +137,22 @@ impl Share {
             *square -= along2;
         }
         if self.is_behind {
-            for (square, height) in squares.iter_mut().zip(&self.heights) {
-                let gap = (behind - height).max(0.0);
-                *square = if *square <= gap * gap { -1.0 } else { *square };
-            }
+            self.push_through(squares, behind, taxels);
+            return;
         }
         if is_small || beats(&squares, &self.heights, taxels) {
             raise(&squares, &self.heights, taxels);
         }
+    }
+
+    /// The same where the sphere's middle is behind a substrate, by itself: what is rare is not to slow down what is not.
+    #[cold]
+    #[inline(never)]
+    fn push_through(&self, mut squares: [f64; LANES], behind: f64, taxels: &mut [f64; LANES]) {
+        for (square, height) in squares.iter_mut().zip(&self.heights) {
+            let gap = (behind - height).max(0.0);
+            *square = if *square <= gap * gap { -1.0 } else { *square };
+        }
+        raise(&squares, &self.heights, taxels);
     }
 }
