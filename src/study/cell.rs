@@ -41,7 +41,7 @@ pub struct Cell {
     pub smoothing_mm: f64,
     /// How strong each sensor error is: a column for each strength that the study has.
     pub strengths: Strengths,
-    /// The skin that test touches are made with; only if the study has the key; 1 of all others.
+    /// The skin that test touches are made with; only if the study has the key.
     pub tested_on: Option<TestedOn>,
     /// How measurements are made.
     pub ensemble: Ensemble,
@@ -51,11 +51,12 @@ pub struct Cell {
     pub ratio: f64,
     /// Frames a touch, F: a row of features has F · m values.
     pub frames: usize,
-    /// What is made of the frames, if not all of them one after the other; only if the study has the key; 1 of all others.
+    /// What is made of the frames, if not all of them one after the other; only if the study has the key.
     pub over_time: Option<OverTime>,
     /// What is made of the measurements.
     pub features: Features,
-    /// How far behind the foremost point features of images see, as a fraction of the full scale; only if the study has the key; 1 of all others.
+    /// How far behind the foremost point features of images see, as a fraction of the full scale, 1 of all others; only if the study
+    /// has the key.
     pub foremost_full_scale: Option<f64>,
     /// Which classifier.
     pub classifier: ClassifierKind,
@@ -63,9 +64,9 @@ pub struct Cell {
     pub c: Option<f64>,
     /// Training touches an object, at most.
     pub train_touches: usize,
-    /// Fraction of them with another object's label; only if the study has the key; 1 of all others.
+    /// Fraction of them with another object's label; only if the study has the key.
     pub mislabelled_fraction: Option<f64>,
-    /// How many times as many the most frequent object has as the rarest; only if the study has the key; 1 of all others.
+    /// How many times as many the most frequent object has as the rarest; only if the study has the key.
     pub class_imbalance: Option<f64>,
     /// Test touches of an object that are decided on together, by the sum of their scores.
     pub fused_touches: usize,
