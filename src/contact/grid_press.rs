@@ -140,7 +140,7 @@ fn raise_each(
     for sphere in spheres {
         let height = sphere.center.z - travel;
         if height < behind {
-            sphere.raise_through(lines, behind - height, sheet);
+            sphere.raise_through(lines, height, behind, sheet);
         } else if height < sphere.reach {
             sphere.raise(lines, height, sheet);
         }

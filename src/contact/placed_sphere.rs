@@ -162,9 +162,10 @@ impl PlacedSphere {
         }
     }
 
-    /// The same of a sphere whose centre is behind the substrate by a `gap`, metres: it pushes the taxels whose substrates are inside of it.
+    /// The same with its centre behind the substrate, which is at height `behind`: it pushes the taxels whose substrates are inside of it.
     #[cold]
-    pub fn raise_through(&self, lines: &GridLines, gap: f64, sheet: &mut Sheet) {
+    pub fn raise_through(&self, lines: &GridLines, height: f64, behind: f64, sheet: &mut Sheet) {
+        let gap = behind - height;
         let reach2 = self.reach * self.reach;
         let half_width = (reach2 - gap * gap).max(0.0).sqrt();
         let columns = lines.x.within(self.center.x, half_width);
@@ -180,7 +181,7 @@ impl PlacedSphere {
                 let dx = x - self.center.x;
                 let q = reach2 - dy * dy - dx * dx;
                 if q > gap * gap {
-                    *deflection = deflection.max(q.sqrt() - self.center.z);
+                    *deflection = deflection.max(q.sqrt() - height);
                 }
             }
         }

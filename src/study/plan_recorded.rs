@@ -15,8 +15,8 @@ impl RecordedSpec {
     /// # Errors
     /// No such file; one of another number of dimensions, or without frames.
     pub fn shape(&self) -> Result<[usize; 4]> {
-        let shape = npy_shape(&self.frames)?;
-        let shape = match shape[..] {
+        let given = npy_shape(&self.frames)?;
+        let shape = match given[..] {
             [n, rows, columns] => [n, 1, rows, columns],
             [n, frames, rows, columns] => [n, frames, rows, columns],
             _ => [0; 4],
@@ -26,11 +26,10 @@ impl RecordedSpec {
         if n > 0 && (1..=MOST_FRAMES).contains(&frames) && is_array(rows) && is_array(columns) {
             return Ok(shape);
         }
-        let shape = npy_shape(&self.frames)?;
         let allowed = format!(
             "n × rows × columns or n × F × rows × columns, 1 to {MOST_FRAMES} frames of 1 to {MOST_SIDE} rows and columns"
         );
-        let given = format!("an array of shape {shape:?}");
+        let given = format!("an array of shape {given:?}");
         Err(crate::Error::input(self.frames.display(), given, allowed))
     }
 }

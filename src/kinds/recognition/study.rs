@@ -322,7 +322,7 @@ fn measured_content(plan: &Plan, group: &Group) -> String {
     ));
     let drawn = (plan.spec.seed, plan.spec.projections_per_split, plan.speed);
     let (ensemble, m) = (group.ensemble, group.projected());
-    let images = group.counts_of_images();
+    let images = group.features_of_images();
     format!("{array} {steps:?} {split:?} {drawn:?} {ensemble:?} {m:?} {images:?}")
 }
 
