@@ -5,7 +5,7 @@ use std::ops::Range;
 use ndarray::ArrayViewMut2;
 
 use crate::recognition::svm::gram::sorted::Sorted;
-use crate::recognition::svm::linalg::packed::Packed;
+use crate::recognition::svm::linalg::products::{multiply, own_products};
 use crate::recognition::svm::linalg::scalar::Scalar;
 
 /// Rows of a group of classes, at least, while classes last: enough that a product's time goes into its multiplications.
@@ -37,8 +37,6 @@ pub(crate) fn pairs(
 pub(crate) struct Group<'a, T> {
     sorted: &'a Sorted<T>,
     rows: Range<usize>,
-    /// Its rows, packed for products with those of others.
-    packed: Packed<'a, T>,
     /// Those of its rows with each other, row by row.
     own: Vec<T>,
 }
@@ -48,13 +46,11 @@ impl<'a, T: Scalar> Group<'a, T> {
     pub fn new(sorted: &'a Sorted<T>, classes: &Range<usize>) -> Self {
         let rows = sorted.rows_of(classes);
         let points = sorted.points().range(rows.clone());
-        let packed = points.packed();
-        let mut own = packed.own_products();
+        let mut own = own_products(points.values);
         points.apply(own.view_mut(), points, &sorted.kernel());
         Self {
             sorted,
             rows,
-            packed,
             own: own.into_raw_vec_and_offset().0,
         }
     }
@@ -64,10 +60,7 @@ impl<'a, T: Scalar> Group<'a, T> {
         let sizes = || groups.iter().map(|group| sorted.rows_of(group).len());
         let squares: usize = sizes().map(|n| n * n).sum();
         let largest = sizes().max().unwrap_or(0);
-        let values = (squares + largest * largest) * size_of::<T>();
-        let n_features = sorted.centre().len();
-        let packed = sizes().map(|n| Packed::<T>::bytes(n, n_features));
-        values + packed.sum::<usize>()
+        (squares + largest * largest) * size_of::<T>()
     }
 
     /// Kernel values of another group's rows with these: row by row, in the memory of the last ones.
@@ -78,7 +71,7 @@ impl<'a, T: Scalar> Group<'a, T> {
         let mut values = values.expect("room for all values was made");
         let [own, others] =
             [self, other].map(|group| self.sorted.points().range(group.rows.clone()));
-        self.packed.multiply(others.values, values.view_mut());
+        multiply(others.values, own.values, values.view_mut());
         others.apply(values, own, &self.sorted.kernel());
     }
 

@@ -2,11 +2,10 @@
 
 use std::ops::Range;
 
-use ndarray::linalg::general_mat_mul;
 use ndarray::{ArrayView2, ArrayViewMut2, s};
 
 use crate::recognition::svm::gram::points::PointsView;
-use crate::recognition::svm::linalg::packed::mirror;
+use crate::recognition::svm::linalg::products::multiply;
 use crate::recognition::svm::linalg::scalar::Scalar;
 
 /// Products of the rows of each class with each other and with those of all classes before.
@@ -35,24 +34,17 @@ impl<T: Scalar> ClassProducts<T> {
 
     fn multiply(&mut self, points: PointsView<T>) {
         let mut rest = &mut self.values[..];
-        let mut rows = Vec::new();
         for range in &self.ranges {
             let (own, later) = rest.split_at_mut(range.len() * range.end);
-            rows.extend(own.chunks_exact_mut(range.end.max(1)));
-            rest = later;
-        }
-        let by_panels = points.packed().multiply_up_to_own(&mut rows);
-        for (class, range) in self.ranges.iter().enumerate() {
-            let own = &mut self.values[self.starts[class]..self.starts[class + 1]];
             let own = ArrayViewMut2::from_shape((range.len(), range.end), own);
-            let mut own = own.expect("there is room for the products of all rows");
-            if by_panels {
-                mirror(&mut own.slice_mut(s![.., range.clone()]));
-            } else {
-                let left = points.values.slice(s![range.clone(), ..]);
-                let right = points.values.slice(s![..range.end, ..]);
-                general_mat_mul(T::one(), &left, &right.t(), T::zero(), &mut own);
-            }
+            let left = points.values.slice(s![range.clone(), ..]);
+            let right = points.values.slice(s![..range.end, ..]);
+            multiply(
+                left,
+                right,
+                own.expect("there is room for the products of all rows"),
+            );
+            rest = later;
         }
     }
 

@@ -6,7 +6,7 @@ use ndarray::{Array1, Array2, ArrayView1, ArrayView2, ArrayViewMut2, Axis, s};
 
 use crate::recognition::svm::kernel::KernelFunction;
 use crate::recognition::svm::linalg::moved_row::{Moved, move_row};
-use crate::recognition::svm::linalg::packed::Packed;
+use crate::recognition::svm::linalg::products::{multiply, own_products};
 use crate::recognition::svm::linalg::row_products::Rows;
 use crate::recognition::svm::linalg::scalar::Scalar;
 
@@ -70,7 +70,7 @@ impl<T: Scalar> Points<T> {
     /// Their coordinates along some directions (k × m): n × k.
     pub fn along(&self, directions: ArrayView2<T>) -> Self {
         let mut values = Array2::zeros((self.len(), directions.nrows()));
-        Packed::new(directions).multiply(self.values.view(), values.view_mut());
+        multiply(self.values.view(), directions, values.view_mut());
         let norms = values.map_axis(Axis(1), |row| row.dot(&row));
         Self { values, norms }
     }
@@ -147,12 +147,7 @@ pub(crate) struct PointsView<'a, T> {
     norms: ArrayView1<'a, T>,
 }
 
-impl<'a, T: Scalar> PointsView<'a, T> {
-    /// The same rows, packed for products with others.
-    pub fn packed(&self) -> Packed<'a, T> {
-        Packed::new(self.values)
-    }
-
+impl<T: Scalar> PointsView<'_, T> {
     /// `K(x, x)` per row.
     pub fn diagonal(&self, kernel: &KernelFunction) -> Vec<T> {
         self.norms
@@ -178,7 +173,7 @@ impl<'a, T: Scalar> PointsView<'a, T> {
 
     /// `K(x_i, x_j)`: n × n.
     pub fn own_kernel(&self, kernel: &KernelFunction) -> Array2<T> {
-        let mut values = self.packed().own_products();
+        let mut values = own_products(self.values);
         self.apply(values.view_mut(), *self, kernel);
         values
     }

@@ -6,7 +6,7 @@ use ndarray::{Array2, ArrayViewMut2, s};
 use crate::recognition::svm::gram::class_products::ClassProducts;
 use crate::recognition::svm::gram::points::Points;
 use crate::recognition::svm::kernel::KernelFunction;
-use crate::recognition::svm::linalg::packed::mirror;
+use crate::recognition::svm::linalg::products::mirror;
 use crate::recognition::svm::linalg::scalar::Scalar;
 use crate::recognition::svm::smo::Dense;
 

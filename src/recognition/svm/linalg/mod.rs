@@ -3,10 +3,7 @@
 pub(crate) mod factors;
 pub(crate) mod few_dimensions;
 pub(crate) mod moved_row;
-pub(crate) mod packed;
-pub(crate) mod panels;
-#[cfg(target_arch = "x86_64")]
-pub(crate) mod panels_512;
+pub(crate) mod products;
 pub(crate) mod row_products;
 pub(crate) mod row_tiles;
 pub(crate) mod scalar;

@@ -2,8 +2,6 @@
 
 use ndarray::NdFloat;
 
-use crate::recognition::svm::linalg::panels::{Panels, Wanted};
-use crate::recognition::svm::linalg::row_products::Rows;
 use crate::recognition::svm::linalg::row_tiles;
 use crate::recognition::svm::smo::Gram;
 use crate::recognition::svm::smo::iterations::{Search, Stop, run_plain};
@@ -32,14 +30,6 @@ pub(crate) trait Scalar: NdFloat + Default {
         first_look: u64,
     ) -> Stop {
         run_plain(gram, variables, search, first_look)
-    }
-    /// So many rows packed for products with others, where there is a fast way.
-    fn panels(_: Rows<Self>, _: usize) -> Option<Panels> {
-        None
-    }
-    /// Products of rows with packed rows, row by row; `false`, and nothing written, where there is no fast way.
-    fn multiply(_: &Panels, _: &[&[Self]], _: Wanted, _: &mut [&mut [Self]]) -> bool {
-        false
     }
 }
 
@@ -74,14 +64,6 @@ impl Scalar for f32 {
 
     fn products_in_place(rows: &[&[Self]], others: &[&[Self]], products: &mut [Self]) -> bool {
         row_tiles::products_in_place(rows, others, products)
-    }
-
-    fn panels(rows: Rows<Self>, n_rows: usize) -> Option<Panels> {
-        Panels::new(rows, n_rows)
-    }
-
-    fn multiply(panels: &Panels, left: &[&[Self]], wanted: Wanted, to: &mut [&mut [Self]]) -> bool {
-        panels.multiply(left, wanted, to)
     }
 
     #[cfg(target_arch = "x86_64")]

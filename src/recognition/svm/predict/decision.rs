@@ -7,16 +7,16 @@ use ndarray::{Array1, Array2, ArrayView2, Axis, s};
 use crate::recognition::svm::gram::points::Points;
 use crate::recognition::svm::gram::sorted::Sorted;
 use crate::recognition::svm::kernel::KernelFunction;
-use crate::recognition::svm::linalg::packed::Packed;
+use crate::recognition::svm::linalg::products::multiply;
 use crate::recognition::svm::linalg::scalar::Scalar;
 use crate::recognition::svm::predict::class_weights::ClassWeights;
 use crate::recognition::svm::predict::unbeaten::Pairs;
 use crate::recognition::svm::predict::voting::Ballot;
 use crate::recognition::svm::{BinaryProblem, Multiclass};
 
-/// Rows whose decision values are computed at once: with 5,000 support vectors their kernel values take 5 MB. Larger
-/// leaves the processor's cache, smaller makes the products inefficient.
-const BLOCK_ROWS: usize = 256;
+/// Rows whose decision values are computed at once. Fewer, and a product spends its time on bringing the support vectors into order; more,
+/// and their kernel values (10 MB with 5,000 support vectors) take much memory.
+const BLOCK_ROWS: usize = 512;
 
 /// `Σ y a K(x_i, x) − ρ` for all problems.
 #[derive(Clone, Debug)]
@@ -155,27 +155,21 @@ impl<T: Scalar> DecisionFunctions<T> {
             .map(|rows| Points::new(rows, self.centre.view()))
     }
 
-    fn room(&self, n_rows: usize) -> Room<'_, T> {
-        let (packed, n_vectors) = match &self.sums {
-            Sums::Hyperplanes(_) => (None, 0),
-            Sums::Support(support) => {
-                let vectors = &support.vectors;
-                (Some(vectors.all().packed()), vectors.len())
-            }
+    /// Room for a block's kernel values: written over and over, so that its memory is asked for once.
+    fn room(&self, n_rows: usize) -> Array2<T> {
+        let n_vectors = match &self.sums {
+            Sums::Hyperplanes(_) => 0,
+            Sums::Support(support) => support.vectors.len(),
         };
-        Room {
-            packed,
-            values: Array2::zeros((BLOCK_ROWS.min(n_rows), n_vectors)),
-        }
+        Array2::zeros((BLOCK_ROWS.min(n_rows), n_vectors))
     }
 
     /// `Σ y a K(x_i, x)` of some rows: n_problems × rows, so that all rows of a problem lie side by side.
-    fn sums_of(&self, points: &Points<T>, room: &mut Room<T>) -> Array2<T> {
+    fn sums_of(&self, points: &Points<T>, room: &mut Array2<T>) -> Array2<T> {
         match &self.sums {
             Sums::Hyperplanes(normals) => {
                 let mut sums = Array2::zeros((normals.nrows(), points.len()));
-                let packed = points.all().packed();
-                packed.multiply(normals.view(), sums.view_mut());
+                multiply(normals.view(), points.all().values, sums.view_mut());
                 sums
             }
             Sums::Support(support) => {
@@ -185,25 +179,15 @@ impl<T: Scalar> DecisionFunctions<T> {
     }
 }
 
-/// What all blocks of rows need.
-struct Room<'a, T> {
-    /// The support vectors, if there are any.
-    packed: Option<Packed<'a, T>>,
-    /// Room for a block's kernel values: written over and over, so that its memory is asked for once.
-    values: Array2<T>,
-}
-
 impl<T: Scalar> Support<T> {
     /// `K(x, x_i)`: rows × vectors.
-    fn kernel_values<'a>(&self, points: &Points<T>, room: &'a mut Room<T>) -> ArrayView2<'a, T> {
+    fn kernel_values<'a>(&self, points: &Points<T>, room: &'a mut Array2<T>) -> ArrayView2<'a, T> {
         let n = points.len();
-        let mut values = room.values.slice_mut(s![..n, ..]);
-        let points = points.all();
-        if let Some(packed) = &room.packed {
-            packed.multiply(points.values, values.view_mut());
-        }
-        points.apply(values.view_mut(), self.vectors.all(), &self.kernel);
-        room.values.slice(s![..n, ..])
+        let mut values = room.slice_mut(s![..n, ..]);
+        let (points, vectors) = (points.all(), self.vectors.all());
+        multiply(points.values, vectors.values, values.view_mut());
+        points.apply(values, vectors, &self.kernel);
+        room.slice(s![..n, ..])
     }
 
     /// `Σ y a K(x_i, x)` from kernel values (rows × vectors): n_problems × rows.

@@ -13,7 +13,7 @@ use std::ops::Range;
 use crate::recognition::svm::active_set::pair_search::PairGoal;
 use crate::recognition::svm::dual::DualSolution;
 use crate::recognition::svm::gram::sorted::Sorted;
-use crate::recognition::svm::linalg::packed::{Packed, own_products};
+use crate::recognition::svm::linalg::products::own_products;
 use crate::recognition::svm::linalg::row_products::multiply;
 use crate::recognition::svm::linalg::scalar::Scalar;
 use crate::recognition::svm::screening::first_rows::{
@@ -122,10 +122,7 @@ impl<'c, 'a, T: Scalar> NearMargin<'c, 'a, T> {
         let across = n_pairs * 2 * largest.pow(2);
         let normals = n_pairs * (sorted.centre().len() + 2 * largest);
         let few = sorted.points().len() * FEW_DIMENSIONS;
-        let n_copied = 2 * largest + FEW_DIMENSIONS;
-        (2 * within + across + normals + few) * size_of::<T>()
-            + Packed::<T>::bytes(n_copied, sorted.centre().len())
-            + Dense::<T>::bytes(2 * largest)
+        (2 * within + across + normals + few) * size_of::<T>() + Dense::<T>::bytes(2 * largest)
     }
 
     /// Solves all pairs for this C, starting from the solutions of the last one, to a violation of the optimality conditions
