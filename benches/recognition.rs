@@ -10,7 +10,7 @@ use bubbletouch::recognition::data::split::stratified_k_fold;
 use bubbletouch::recognition::features::{Cut, ImageFeature, ImageFeatures, Join, Workspace};
 use bubbletouch::recognition::svm::cross_validation::choice::{Candidates, choose};
 use bubbletouch::recognition::svm::kernel::{Gamma, Kernel};
-use bubbletouch::recognition::svm::{Multiclass, Solver, SvmParams};
+use bubbletouch::recognition::svm::{Multiclass, SvmParams};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use linfa::DatasetBase;
 use linfa::traits::Fit;
@@ -64,33 +64,27 @@ fn kernels() -> [(&'static str, Kernel); 2] {
     [("linear", Kernel::Linear), ("rbf", Kernel::Rbf { gamma })]
 }
 
-/// What trains: our solver in both multi-class schemes, and linfa-svm beside it.
-const TRAINERS: [(Solver, Multiclass); 3] = [
-    (Solver::Smo, Multiclass::OneVsOne),
-    (Solver::Smo, Multiclass::OneVsRest),
-    (Solver::Linfa, Multiclass::OneVsOne),
-];
-
 fn train(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("train");
     group.sample_size(10);
     for m in [64, 256] {
         let data = touches(m, &Seed::new(2));
         for (name, kernel) in kernels() {
-            for (solver, multiclass) in TRAINERS {
+            for multiclass in [Multiclass::OneVsOne, Multiclass::OneVsRest] {
                 let params = SvmParams {
                     kernel,
                     multiclass,
-                    solver,
                     ..SvmParams::default()
                 };
-                group.bench_function(
-                    BenchmarkId::new(format!("{name} {multiclass:?} {solver:?}"), m),
-                    |bencher| {
-                        bencher.iter(|| params.train(&data).unwrap());
-                    },
-                );
+                let name = format!("{name} {multiclass:?}");
+                group.bench_function(BenchmarkId::new(name, m), |bencher| {
+                    bencher.iter(|| params.train(&data).unwrap());
+                });
             }
+            let name = format!("{name} OneVsOne, linfa-svm");
+            group.bench_function(BenchmarkId::new(name, m), |bencher| {
+                bencher.iter(|| linfa_models(kernel, &data));
+            });
         }
     }
     group.finish();

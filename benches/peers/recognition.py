@@ -27,6 +27,7 @@ import scipy
 import sklearn
 from sklearn.ensemble import RandomForestClassifier
 from sklearn.linear_model import LogisticRegression
+from sklearn.model_selection import GridSearchCV
 from sklearn.naive_bayes import GaussianNB
 from sklearn.neighbors import KNeighborsClassifier
 from sklearn.preprocessing import StandardScaler
@@ -39,15 +40,18 @@ ROOT = Path(__file__).resolve().parents[2]
 # Peer, its maker, what of ours answers the same question, and whether both solve the same optimisation problem.
 OVO = ["--multiclass", "one_vs_one"]
 OVR = ["--multiclass", "one_vs_rest"]
+# LIBLINEAR's own problem and method, to its default tolerance.
+DESCENT = ["--solver", "coordinate_descent", "--tolerance", "1e-4"]
 COMPARISONS = [
     ("SVC(linear)", lambda jobs: SVC(kernel="linear"), ["--classifier", "linear_svm", *OVO], True),
     ("SVC(rbf)", lambda jobs: SVC(kernel="rbf"), ["--classifier", "rbf_svm", *OVO], True),
     ("SVC(poly, coef0=1)", lambda jobs: SVC(kernel="poly", coef0=1.0), ["--classifier", "polynomial_svm", *OVO], True),
     ("LinearSVC(hinge)", lambda jobs: LinearSVC(loss="hinge"), ["--classifier", "linear_svm", *OVO], False),
     ("LinearSVC(hinge)", lambda jobs: LinearSVC(loss="hinge"), ["--classifier", "linear_svm", *OVR], False),
+    ("LinearSVC(hinge)", lambda jobs: LinearSVC(loss="hinge"), ["--classifier", "linear_svm", *OVR, *DESCENT], False),
     ("LinearSVC()", lambda jobs: LinearSVC(), ["--classifier", "linear_svm", *OVO], False),
     ("LogisticRegression", lambda jobs: LogisticRegression(max_iter=200), ["--classifier", "logistic_regression"], False),
-    ("KNeighbors(5)", lambda jobs: KNeighborsClassifier(5, n_jobs=jobs), ["--classifier", "nearest_neighbours"], False),
+    ("KNeighbors(5)", lambda jobs: KNeighborsClassifier(5, n_jobs=jobs), ["--classifier", "k_nearest"], False),
     ("GaussianNB", lambda jobs: GaussianNB(), ["--classifier", "naive_bayes"], False),
     ("DecisionTree", lambda jobs: DecisionTreeClassifier(random_state=0), ["--classifier", "decision_tree"], False),
     ("RandomForest(100)", lambda jobs: RandomForestClassifier(random_state=0, n_jobs=jobs), ["--classifier", "random_forest"], False),
@@ -55,8 +59,8 @@ COMPARISONS = [
 
 COLUMNS = [
     "date", "machine", "bubbletouch", "scikit_learn", "numpy", "threads", "noise_std", "smoothing_mm", "measurements", "n_train", "n_test",
-    "peer", "ours", "peer_fit_s", "our_fit_s", "fit_ratio", "peer_predict_s", "our_predict_s", "predict_ratio",
-    "peer_accuracy", "our_accuracy", "identical_share", "peer_dual", "our_dual", "dual_difference",
+    "peer", "ours", "peer_fit_s", "our_fit_s", "fit_ratio", "our_cold_fit_s", "peer_predict_s", "our_predict_s", "predict_ratio",
+    "peer_accuracy", "our_accuracy", "identical_share", "peer_dual", "our_dual", "dual_difference", "peer_warnings",
 ]
 
 
@@ -98,15 +102,13 @@ class Ours:
         self.environment = dict(os.environ, RAYON_NUM_THREADS=str(threads))
 
     def classify(self, folder, options, repeat=1):
-        """What the command says and predicts; None where it does not know an option's value."""
+        """What the command says and predicts."""
         with tempfile.TemporaryDirectory() as scratch:
             predictions = Path(scratch) / "predictions.npy"
             command = [self.binary, "classify", str(folder.scaled), "--scaling", "none", *options, "--json", "--repeat", str(repeat)]
             command += ["--train-rows", str(self.n_train), "--predictions", str(predictions)]
             done = subprocess.run(command, env=self.environment, capture_output=True, text=True)
             if done.returncode != 0:
-                if "unknown variant" in done.stderr or "unexpected argument" in done.stderr:
-                    return None
                 sys.exit(done.stderr)
             return json.loads(done.stdout), np.load(predictions)
 
@@ -151,64 +153,41 @@ def dual_objective(model, labels):
 def compare(folder, ours, comparison, threads, repeats):
     """One row of the table; the peer and ours take turns."""
     name, make, options, is_same_problem = comparison
-    peer_times, our_times, model, answer = [], [], None, None
+    peer_times, our_times, cold_s = [], [], []
     repeat = 2
-    with threadpool_limits(threads), warnings.catch_warnings():
-        warnings.simplefilter("ignore")
+    with threadpool_limits(threads), warnings.catch_warnings(record=True) as warned:
+        warnings.simplefilter("always")
         for _ in range(repeats):
             answer = ours.classify(folder, options, repeat)
             model = make(threads)
             fit_s, _ = timed(lambda: model.fit(folder.train, folder.train_labels))
             predict_s, predicted = timed(lambda: model.predict(folder.test))
             peer_times.append((fit_s, predict_s))
-            if answer:
-                # A command that starts anew has cold caches; from the second fit on it is as warm as the peer's.
-                ours_s = [statistics.mean(answer[0][part][1:]) for part in ["fit_s", "predict_s"]]
-                our_times.append(ours_s)
-                # As much of the machine's better and worse spells as one fit and prediction of the peer holds.
-                repeat = 1 + max(1, min(MOST_WARM_FITS, round((fit_s + predict_s) / sum(ours_s))))
-        row = {"peer": name, "peer_accuracy": np.mean(predicted == folder.test_labels)}
-        row["peer_fit_s"], row["peer_predict_s"] = map(statistics.median, zip(*peer_times))
-        if isinstance(model, SVC):
-            row["peer_dual"] = dual_objective(model, folder.train_labels)
-    if answer:
-        found, labels = answer
-        row["ours"] = " ".join(options[1::2])
-        row["our_fit_s"], row["our_predict_s"] = map(statistics.median, zip(*our_times))
-        row["fit_ratio"] = row["peer_fit_s"] / row["our_fit_s"]
-        row["predict_ratio"] = row["peer_predict_s"] / row["our_predict_s"]
-        row["our_accuracy"] = found["accuracy"]
-        row["identical_share"] = np.mean(labels == predicted)
-        if is_same_problem and found["svm"]:
-            row["our_dual"] = found["svm"]["dual_objective"]
-            row["dual_difference"] = (row["our_dual"] - row["peer_dual"]) / abs(row["peer_dual"])
+            # A command that starts anew has cold caches; from the second fit on it is as warm as the peer's.
+            ours_s = [statistics.mean(answer[0][part][1:]) for part in ["fit_s", "predict_s"]]
+            our_times.append(ours_s)
+            cold_s.append(answer[0]["fit_s"][0])
+            # As much of the machine's better and worse spells as one fit and prediction of the peer holds.
+            repeat = 1 + max(1, min(MOST_WARM_FITS, round((fit_s + predict_s) / sum(ours_s))))
+    row = {"peer": name, "peer_accuracy": np.mean(predicted == folder.test_labels)}
+    row["peer_fit_s"], row["peer_predict_s"] = map(statistics.median, zip(*peer_times))
+    row["peer_warnings"] = " ".join(sorted({warning.category.__name__ for warning in warned}))
+    found, labels = answer
+    row["ours"] = " ".join(options[1::2])
+    row["our_fit_s"], row["our_predict_s"] = map(statistics.median, zip(*our_times))
+    row["our_cold_fit_s"] = statistics.median(cold_s)
+    row["fit_ratio"] = row["peer_fit_s"] / row["our_fit_s"]
+    row["predict_ratio"] = row["peer_predict_s"] / row["our_predict_s"]
+    row["our_accuracy"] = found["accuracy"]
+    row["identical_share"] = np.mean(labels == predicted)
+    if is_same_problem:
+        row["peer_dual"], row["our_dual"] = dual_objective(model, folder.train_labels), found["svm"]["dual_objective"]
+        row["dual_difference"] = (row["our_dual"] - row["peer_dual"]) / abs(row["peer_dual"])
     return row
 
 
-def compare_with_linfa(folder, ours, threads):
-    """Our engine against linfa-svm, both in our command."""
-    rows = []
-    for classifier in ["linear_svm", "rbf_svm"]:
-        options = ["--classifier", classifier, *OVO]
-        linfa = ours.classify(folder, [*options, "--solver", "linfa"])
-        own = ours.classify(folder, options, repeat=3)
-        if not (linfa and own):
-            continue
-        (theirs, their_labels), (found, labels) = linfa, own
-        row = {"peer": f"linfa-svm {classifier}", "ours": " ".join(options[1::2])}
-        for key, side in [("peer", theirs), ("our", found)]:
-            row |= {f"{key}_fit_s": side["fit_median_s"], f"{key}_predict_s": side["predict_median_s"]}
-            row |= {f"{key}_accuracy": side["accuracy"], f"{key}_dual": side["svm"]["dual_objective"]}
-        row["fit_ratio"] = row["peer_fit_s"] / row["our_fit_s"]
-        row["predict_ratio"] = row["peer_predict_s"] / row["our_predict_s"]
-        row["identical_share"] = np.mean(labels == their_labels)
-        row["dual_difference"] = (row["our_dual"] - row["peer_dual"]) / abs(row["peer_dual"])
-        rows.append(row)
-    return rows
-
-
 def compare_grid(folder, ours, threads, repeats):
-    """Our 6 × 6 grid of C and γ with 5-fold cross-validation against three fits of SVC(rbf), with its defaults and on the grid."""
+    """Our 6 × 6 grid of C and γ with 5-fold cross-validation, and the fit with what was chosen, against GridSearchCV's."""
     penalties = [10.0**k for k in range(-1, 5)]
     # As multiples of 'scale', 1 / (m · variance).
     gammas = [4.0**k for k in range(-4, 2)]
@@ -216,27 +195,21 @@ def compare_grid(folder, ours, threads, repeats):
     for name, values in [("--choose-c", penalties), ("--choose-gamma", gammas)]:
         options += [name, ",".join(f"{value:g}" for value in values)]
     scale = 1.0 / (folder.train.shape[1] * folder.train.var())
-    cells = [SVC(C=c, gamma=gamma * scale) for gamma in gammas for c in penalties]
-
-    def fit_s(model):
-        return timed(lambda: model.fit(folder.train, folder.train_labels))[0]
-
+    grid = {"C": penalties, "gamma": [gamma * scale for gamma in gammas]}
     peer_times, our_times = [], []
     with threadpool_limits(threads):
         for _ in range(repeats):
-            answer = ours.classify(folder, options)
-            if not answer:
-                print("grid: this bubbletouch has no --choose-gamma yet")
-                return []
-            our_times.append(answer[0]["fit_s"][0])
-            peer_times.append(sum(fit_s(SVC()) for _ in range(3)))
-        peers = {
-            "3 fits of SVC(rbf)": statistics.median(peer_times),
-            "3 mean fits of SVC(rbf) on the grid's cells": 3.0 * statistics.mean(map(fit_s, cells)),
-        }
-    our_fit_s = statistics.median(our_times)
-    common = {"ours": "6 x 6 grid of C and gamma, 5 folds", "our_accuracy": answer[0]["accuracy"], "our_fit_s": our_fit_s}
-    return [{"peer": peer, "peer_fit_s": time_s, "fit_ratio": time_s / our_fit_s, **common} for peer, time_s in peers.items()]
+            found, labels = ours.classify(folder, options)
+            our_times.append(found["fit_s"][0])
+            peer = GridSearchCV(SVC(), grid, cv=5, n_jobs=threads)
+            peer_times.append(timed(lambda: peer.fit(folder.train, folder.train_labels))[0])
+    row = {"peer": "GridSearchCV(SVC(rbf))", "ours": "6 x 6 grid of C and gamma, 5 folds"}
+    row["peer_fit_s"], row["our_fit_s"] = map(statistics.median, [peer_times, our_times])
+    row["fit_ratio"] = row["peer_fit_s"] / row["our_fit_s"]
+    predicted = peer.predict(folder.test)
+    row["peer_accuracy"], row["our_accuracy"] = np.mean(predicted == folder.test_labels), found["accuracy"]
+    row["identical_share"] = np.mean(labels == predicted)
+    return [row]
 
 
 def show(row):
@@ -284,7 +257,7 @@ def parse():
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--threads", type=int, nargs="+", default=[1, os.cpu_count()])
     parser.add_argument("--only", default="", help="only peers whose names hold this")
-    parser.add_argument("--grid", action="store_true", help="only the grid of C and gamma against three fits")
+    parser.add_argument("--grid", action="store_true", help="only the grid of C and gamma against GridSearchCV")
     parser.add_argument("--out", type=Path, default=ROOT / "results/peers/recognition.csv")
     return parser.parse_args()
 
@@ -327,8 +300,6 @@ def measure(folder, ours, threads, arguments):
     for comparison in COMPARISONS:
         if arguments.only in comparison[0]:
             yield compare(folder, ours, comparison, threads, arguments.repeats)
-    if arguments.only in "linfa-svm":
-        yield from compare_with_linfa(folder, ours, threads)
 
 
 def write(path, rows):

@@ -52,7 +52,7 @@ pub struct Args {
     /// Folds of that cross-validation
     #[arg(long, value_name = "K", default_value_t = 5)]
     choose_folds: usize,
-    /// What trains an SVM: smo, coordinate_descent or linfa
+    /// What trains an SVM: smo or coordinate_descent
     #[arg(long, value_name = "NAME", default_value = "smo", value_parser = word::<Solver>)]
     solver: Solver,
     /// γ of the RBF and polynomial kernels, for scaled features: a number, or scale for 1 / (m · variance)

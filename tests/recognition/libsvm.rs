@@ -4,10 +4,11 @@
 //! made it and says how exact LIBSVM's solutions are: it keeps kernel values in 32 bits, and the file gives for every case
 //! the duality gap of its coefficients and what follows for its decision values.
 
+use crate::svm_conditions::{Worth, kernel_value};
 use bubbletouch::recognition::data::dataset::{Dataset, dataset};
 use bubbletouch::recognition::svm::kernel::{Gamma, Kernel};
 use bubbletouch::recognition::svm::predict::svm_model::SvmModel;
-use bubbletouch::recognition::svm::{BinaryProblem, Multiclass, SvmParams};
+use bubbletouch::recognition::svm::{Multiclass, SvmParams};
 use ndarray::{Array1, Array2, ArrayView1};
 use std::collections::BTreeMap;
 
@@ -55,6 +56,16 @@ impl Case {
         )
     }
 
+    fn params(&self) -> SvmParams {
+        SvmParams {
+            kernel: self.kernel(),
+            multiclass: self.multiclass,
+            c: self.c,
+            tolerance: self.tolerance,
+            ..SvmParams::default()
+        }
+    }
+
     fn kernel(&self) -> Kernel {
         let gamma = Gamma::Value(self.gamma);
         match self.kernel.as_str() {
@@ -68,18 +79,6 @@ impl Case {
             other => panic!("no kernel {other}"),
         }
     }
-
-    /// `K(x, z)`, from the definition.
-    fn kernel_value(&self, x: ArrayView1<f64>, z: ArrayView1<f64>) -> f64 {
-        match self.kernel.as_str() {
-            "linear" => x.dot(&z),
-            "rbf" => {
-                let difference = &x - &z;
-                (-self.gamma * difference.dot(&difference)).exp()
-            }
-            _ => (self.gamma * x.dot(&z) + 1.0).powi(3),
-        }
-    }
 }
 
 fn goldens() -> Goldens {
@@ -90,73 +89,37 @@ fn matrix(rows: &[Vec<f64>]) -> Array2<f64> {
     Array2::from_shape_fn((rows.len(), rows[0].len()), |(i, j)| rows[i][j])
 }
 
-/// What a model is worth, from the definitions: the sum over its problems of the dual objective and of the duality gap,
-/// and how far the decision values may be from the optimum's (as in `make_libsvm.py`).
-struct Worth {
+/// Sums over a model's problems of what training minimises and of the duality gap, and how far the decision values may be from the
+/// optimum's (as in `make_libsvm.py`).
+struct Sums {
     dual: f64,
     gap: f64,
     decision_error: f64,
 }
 
-fn worth(case: &Case, data: &Dataset, model: &SvmModel) -> Worth {
-    let n = data.records.nrows();
-    let kernel = Array2::from_shape_fn((n, n), |(i, j)| {
-        case.kernel_value(data.records.row(i), data.records.row(j))
-    });
-    let largest = kernel.diag().fold(0.0_f64, |max, &value| max.max(value));
-    let mut sum = Worth {
+fn sums(case: &Case, data: &Dataset, model: &SvmModel) -> Sums {
+    let own = |row| kernel_value(case.kernel(), data, row, row);
+    let largest = (0..data.targets.len()).map(own).fold(0.0, f64::max);
+    let params = case.params();
+    let mut sums = Sums {
         dual: 0.0,
         gap: 0.0,
         decision_error: 0.0,
     };
     for problem in model.problems() {
-        let (dual, primal) = objectives(case.c, data, &kernel, problem);
-        let gap = (primal + dual).max(0.0);
+        let worth = Worth::of(&params, data, problem);
+        let gap = worth.gap().max(0.0);
         let error = 2.0 * (2.0 * gap * largest).sqrt() + case.tolerance;
-        sum.dual += dual;
-        sum.gap += gap;
-        sum.decision_error = sum.decision_error.max(error);
+        sums.dual -= worth.dual;
+        sums.gap += gap;
+        sums.decision_error = sums.decision_error.max(error);
     }
-    sum
-}
-
-/// `½ Σ_ij a_i a_j y_i y_j K_ij − Σ_i a_i` and `½ |w|² + C Σ_i max(0, 1 − y_i f(x_i))`: at the optimum their sum is 0.
-fn objectives(c: f64, data: &Dataset, kernel: &Array2<f64>, problem: &BinaryProblem) -> (f64, f64) {
-    let mut coefficients = Array1::zeros(kernel.nrows());
-    for (&row, &coefficient) in problem.rows.iter().zip(&problem.solution.coefficients) {
-        coefficients[row] = coefficient;
-    }
-    let sums = kernel.dot(&coefficients);
-    let half = 0.5 * coefficients.dot(&sums);
-    let multipliers: f64 = coefficients.iter().map(|a: &f64| a.abs()).sum();
-    let hinge: f64 = problem
-        .rows
-        .iter()
-        .map(|&row| {
-            let y = if data.targets[row] == problem.positive {
-                1.0
-            } else {
-                -1.0
-            };
-            (1.0 - y * (sums[row] - problem.solution.rho)).max(0.0)
-        })
-        .sum();
-    (half - multipliers, half + c * hinge)
+    sums
 }
 
 fn trained(case: &Case, set: &Set) -> (Dataset, SvmModel) {
     let data = dataset(matrix(&set.rows), Array1::from(set.labels.clone())).unwrap();
-    let usual = SvmParams {
-        kernel: case.kernel(),
-        c: case.c,
-        tolerance: case.tolerance,
-        ..SvmParams::default()
-    };
-    let params = SvmParams {
-        multiclass: case.multiclass,
-        ..usual
-    };
-    let model = params.train(&data).unwrap();
+    let model = case.params().train(&data).unwrap();
     (data, model)
 }
 
@@ -164,7 +127,7 @@ fn trained(case: &Case, set: &Set) -> (Dataset, SvmModel) {
 fn check(case: &Case, set: &Set) {
     let name = case.name();
     let (data, model) = trained(case, set);
-    let ours = worth(case, &data, &model);
+    let ours = sums(case, &data, &model);
     println!(
         "{name}: dual {:.8e}, LIBSVM {:.8e}; gap {:.1e}, {:.1e}; capped {}, {}",
         ours.dual,

@@ -1,7 +1,7 @@
 //! Where learning could break: C at its ends, wrong labels, classes of two rows and of one in a hundred. Each case has the
 //! behaviour that `guide::limits` states.
 
-use crate::svm_conditions::violation;
+use crate::svm_conditions::Worth;
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::ClassifierKind;
 use bubbletouch::recognition::classifiers::class_model::ClassModel;
@@ -97,8 +97,9 @@ fn from_a_trillionth_to_a_trillion_of_c_a_solution_is_optimal_or_counted_as_capp
                 n_capped += model.n_capped();
                 let mut n_violated = 0;
                 for problem in model.problems() {
-                    let (worst, known) = violation(&params, data, problem);
-                    n_violated += usize::from(worst > 1.01 * params.tolerance + known);
+                    let worth = Worth::of(&params, data, problem);
+                    let allowed = 1.01 * params.tolerance + worth.rounding;
+                    n_violated += usize::from(worth.violation > allowed);
                 }
                 assert!(
                     n_violated <= model.n_capped(),

@@ -280,10 +280,6 @@ fn the_choice_of_solver_and_margin_is_kept() {
             ..one.clone()
         },
         Classifier {
-            solver: Solver::Linfa,
-            ..one
-        },
-        Classifier {
             kind: ClassifierKind::RbfSvm,
             ..linear.clone()
         },

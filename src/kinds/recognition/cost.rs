@@ -1,7 +1,7 @@
 //! About how long parts of a recognition study take, processor-seconds: for `plan` right within a factor of three; a run weighs its items by
 //! those that finished.
 
-use crate::recognition::svm::{Multiclass, Solver};
+use crate::recognition::svm::Multiclass;
 use crate::sensing::{N_COMPONENTS, N_STEPS};
 use crate::study::measurement::LEARNED_FRAMES;
 use crate::study::plan::Plan;
@@ -20,9 +20,8 @@ const PRODUCT_S: f64 = 4e-11;
 const LEARNING_PRODUCTS: f64 = 8.0;
 /// Seconds to make features of an image's taxel.
 const FEATURE_S: f64 = 1e-8;
-/// Seconds of an SVM's solver for an entry of the kernel matrices of its binary problems; of linfa's.
+/// Seconds of an SVM's solver for an entry of the kernel matrices of its binary problems.
 const ENTRY_S: f64 = 1.5e-9;
-const LINFA_ENTRY_S: f64 = 1.2e-7;
 
 /// To make all touches on an array, so many frames each.
 pub(super) fn touch_s(
@@ -105,14 +104,10 @@ fn train_s(plan: &Plan, cell: &Cell, n_train: f64, n_classes: f64) -> f64 {
     if about.kernel.is_none() {
         return (about.train_s)(n_train, m, n_classes);
     }
-    let entry_s = match recognition.solver {
-        Solver::Linfa => LINFA_ENTRY_S,
-        _ => ENTRY_S,
-    };
     // Entries of all binary problems.
     let n_entries = match recognition.multiclass {
         Multiclass::OneVsOne => 2.0 * n_train * n_train,
         Multiclass::OneVsRest | Multiclass::CrammerSinger => n_classes * n_train * n_train,
     };
-    n_entries * entry_s + 0.5 * PRODUCT_S * n_train * n_train * m
+    n_entries * ENTRY_S + 0.5 * PRODUCT_S * n_train * n_train * m
 }

@@ -100,14 +100,11 @@ fn family_bytes(plan: &Plan, cell: &Cell, n_test: usize, n_classes: usize) -> f6
     };
     let n_train = (cell.train_touches * n_classes) as f64;
     let (m, n_test) = (cell.n_features() as f64, n_test as f64);
-    let of_pair = 8.0 * (2.0 * cell.train_touches as f64).powi(2);
     let of_all = 8.0 * n_train * n_train;
     let is_kernel_svm = cell.classifier.about().kernel.is_some();
     let kernel_values = match (learned.solver, learned.multiclass) {
         _ if !is_kernel_svm => 0.0,
         (Solver::CoordinateDescent, _) | (_, Multiclass::CrammerSinger) => 0.0,
-        (Solver::Linfa, Multiclass::OneVsOne) => of_pair,
-        (Solver::Linfa, Multiclass::OneVsRest) => of_all,
         // At most as many as the solver is allowed.
         _ => of_all.min(solver_memory(learned.solver_memory_gib) as f64),
     };

@@ -69,6 +69,7 @@ impl Rows {
 }
 
 /// Solves one binary problem with y = `sign` (±1 per row): the signed multipliers `y_i a_i`.
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn solve(
     rows: &Rows,
     sign: &[f64],
@@ -137,19 +138,23 @@ fn solved(alpha: Vec<f64>, sign: &[f64], n_passes: usize, is_capped: bool) -> So
 }
 
 /// `a·b`, of padded rows.
+#[inline(always)]
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; LANES];
-    for (a, b) in a.chunks_exact(LANES).zip(b.chunks_exact(LANES)) {
+    let (a, b) = (a.as_chunks::<LANES>().0, b.as_chunks::<LANES>().0);
+    let (n, mut sums) = (a.len().min(b.len()), [0.0; LANES]);
+    for at in 0..n {
         for lane in 0..LANES {
-            sums[lane] += a[lane] * b[lane];
+            sums[lane] += a[at][lane] * b[at][lane];
         }
     }
     sums.iter().sum()
 }
 
 /// `w += factor · x`, of padded rows.
+#[inline(always)]
 pub(crate) fn add_scaled(w: &mut [f64], factor: f64, x: &[f64]) {
-    for (w, x) in w.iter_mut().zip(x) {
-        *w += factor * x;
+    let n = w.len().min(x.len());
+    for at in 0..n {
+        w[at] += factor * x[at];
     }
 }

@@ -12,8 +12,7 @@
 //! 4. **Along C and over folds** each solution starts from the last ([`cross_validation`]).
 //! 5. **Prediction** is one matrix product for all problems, and the vote of their signs ([`predict`]).
 //!
-//! `linfa_solver` has linfa-svm solve the problems instead. The linear case without any kernel matrix is
-//! [`linear_svm`](crate::recognition::classifiers::linear_svm).
+//! The linear case without any kernel matrix is [`linear_svm`](crate::recognition::classifiers::linear_svm).
 
 pub(crate) mod active_set;
 pub mod cross_validation;
@@ -21,7 +20,6 @@ pub mod dual;
 pub(crate) mod gram;
 pub mod kernel;
 pub(crate) mod linalg;
-pub(crate) mod linfa_solver;
 pub mod predict;
 pub(crate) mod screening;
 pub(crate) mod smo;
@@ -41,7 +39,7 @@ use crate::recognition::svm::kernel::{Kernel, KernelFunction};
 use crate::recognition::svm::linalg::scalar::Scalar;
 use crate::recognition::svm::predict::decision::DecisionFunctions;
 use crate::recognition::svm::predict::svm_model::{Decision, SvmModel};
-use crate::recognition::svm::training::{Goal, Trained};
+use crate::recognition::svm::training::Goal;
 use crate::{Error, Result};
 
 /// How binary classifiers make one for many classes.
@@ -85,8 +83,6 @@ pub enum Solver {
     /// Dual coordinate descent: linear kernel and one-vs-rest, with a regularised bias (LIBLINEAR's problem); see
     /// [`linear_svm`](crate::recognition::classifiers::linear_svm).
     CoordinateDescent,
-    /// linfa-svm: the same dual problem as `Smo`, much slower; an independent program to compare with.
-    Linfa,
 }
 
 /// Rows below which kernel values are always f64: it costs nothing that a person would notice.
@@ -117,7 +113,7 @@ pub struct SvmParams {
     pub tolerance: f64,
     /// What solves the binary problems.
     pub solver: Solver,
-    /// Most bytes of kernel values held at once (apart from linfa's). Where they do not fit, rows are computed when asked
+    /// Most bytes of kernel values held at once. Where they do not fit, rows are computed when asked
     /// for and the latest kept: slower, the same solution.
     pub memory_bytes: usize,
 }
@@ -192,17 +188,12 @@ impl SvmParams {
         ascending.sort_by(f64::total_cmp);
         ascending.dedup();
         let centre = extent.centre(&kernel);
-        let sorting = (data, &classes[..], kernel, centre.view());
         let goal = Goal {
             path: &ascending,
             tolerance: self.tolerance,
             memory: self.memory_bytes,
         };
-        let trained = match self.solver {
-            Solver::Smo => self.train_smo(sorting, goal),
-            Solver::Linfa => self.train_linfa(sorting, &ascending)?,
-            Solver::CoordinateDescent => return Err(coordinate_descent_is_linear_only()),
-        };
+        let trained = self.train_smo((data, &classes, kernel, centre.view()), goal);
         if ascending == path {
             return Ok(trained);
         }
@@ -268,31 +259,6 @@ impl SvmParams {
         models
     }
 
-    fn train_linfa(&self, sorting: Sorting, path: &[f64]) -> Result<Vec<SvmModel>> {
-        let (data, classes, kernel, centre) = sorting;
-        let sorted = Sorted::<f64>::new(data, classes, kernel, centre);
-        path.iter()
-            .map(|&c| {
-                let problems = linfa_solver::solve_all(
-                    data,
-                    classes,
-                    &kernel,
-                    self.multiclass,
-                    (c, self.tolerance),
-                )?;
-                let trained = Trained {
-                    problems,
-                    normals: None,
-                };
-                Ok(SvmModel::new(
-                    Cow::Borrowed(&sorted),
-                    self.multiclass,
-                    trained,
-                ))
-            })
-            .collect()
-    }
-
     /// Refuses what no data set could be trained with.
     pub(crate) fn check(&self, path: &[f64]) -> Result<()> {
         if path.is_empty() {
@@ -308,6 +274,13 @@ impl SvmParams {
                 ));
             }
         }
+        if self.solver == Solver::CoordinateDescent {
+            return Err(Error::input(
+                "solver",
+                "coordinate_descent",
+                "smo solves the dual problem of a kernel; coordinate_descent is for linear SVMs, one-vs-rest",
+            ));
+        }
         if self.multiclass == Multiclass::CrammerSinger {
             return Err(Error::input(
                 "multiclass",
@@ -317,14 +290,6 @@ impl SvmParams {
         }
         Ok(())
     }
-}
-
-fn coordinate_descent_is_linear_only() -> Error {
-    Error::input(
-        "solver",
-        "coordinate_descent",
-        "smo or linfa solve the dual problem of a kernel; coordinate_descent is for linear SVMs, one-vs-rest",
-    )
 }
 
 impl Fit<Array2<f64>, Array1<usize>, Error> for SvmParams {

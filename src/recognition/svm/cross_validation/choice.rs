@@ -5,13 +5,13 @@ use serde::{Deserialize, Serialize};
 
 use crate::recognition::data::dataset::{Dataset, check_labels, distinct, rows};
 use crate::recognition::data::split::Split;
+use crate::recognition::svm::SvmParams;
 use crate::recognition::svm::cross_validation::grid::Grid;
 use crate::recognition::svm::gram::extent::Extent;
 use crate::recognition::svm::gram::sorted::Sorted;
 use crate::recognition::svm::kernel::{Gamma, Kernel, KernelFunction};
 use crate::recognition::svm::linalg::scalar::Scalar;
 use crate::recognition::svm::training::Goal;
-use crate::recognition::svm::{Solver, SvmParams};
 use crate::{Error, Result};
 
 /// What may be chosen.
@@ -71,10 +71,7 @@ pub fn choose(
         tolerance: params.tolerance,
         memory: params.memory_bytes,
     };
-    let (counts, n_capped) = match params.solver {
-        Solver::Smo => on_one_matrix(params, (training, &extent), folds, &kernels, goal)?,
-        _ => one_by_one(params, training, folds, &kernels, goal)?,
-    };
+    let (counts, n_capped) = on_one_matrix(params, (training, &extent), folds, &kernels, goal)?;
     let n_validated: usize = folds.iter().map(|fold| fold.test.len()).sum();
     let tried = counts
         .indexed_iter()
@@ -284,35 +281,6 @@ fn grid<T: Scalar>(
     Ok(grid.n_correct(kernels, goal))
 }
 
-/// The same by training a model for each fold and candidate: for solvers that share nothing, and as an oracle.
-fn one_by_one(
-    params: &SvmParams,
-    training: &Dataset,
-    folds: &[Split],
-    kernels: &[KernelFunction],
-    goal: Goal,
-) -> Result<(Array2<usize>, usize)> {
-    let mut counts = Array2::zeros((kernels.len(), goal.path.len()));
-    let mut n_capped = 0;
-    for fold in folds {
-        let fitting = rows(training, &fold.train)?;
-        let held_out = rows(training, &fold.test)?;
-        for (kernel, mut counts) in kernels.iter().zip(counts.rows_mut()) {
-            let kernel = match gamma_of(kernel) {
-                Some(gamma) => params.kernel.with_gamma(Gamma::Value(gamma)),
-                None => params.kernel,
-            };
-            let models = SvmParams { kernel, ..*params }.train_path(&fitting, goal.path)?;
-            for (count, model) in counts.iter_mut().zip(models) {
-                let labels = model.labels(held_out.records.view())?;
-                *count += n_equal(&labels, &held_out.targets);
-                n_capped += model.n_capped();
-            }
-        }
-    }
-    Ok((counts, n_capped))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -327,6 +295,35 @@ mod tests {
             (i % 3) as f64 * 0.6 + ((i * 7 + j * 13) as f64 * 1.7).sin()
         });
         dataset(features, Array1::from_iter((0..n).map(|i| i % 3))).unwrap()
+    }
+
+    /// The same by training a model for each fold and candidate.
+    fn one_by_one(
+        params: &SvmParams,
+        training: &Dataset,
+        folds: &[Split],
+        kernels: &[KernelFunction],
+        goal: Goal,
+    ) -> Result<(Array2<usize>, usize)> {
+        let mut counts = Array2::zeros((kernels.len(), goal.path.len()));
+        let mut n_capped = 0;
+        for fold in folds {
+            let fitting = rows(training, &fold.train)?;
+            let held_out = rows(training, &fold.test)?;
+            for (kernel, mut counts) in kernels.iter().zip(counts.rows_mut()) {
+                let kernel = match gamma_of(kernel) {
+                    Some(gamma) => params.kernel.with_gamma(Gamma::Value(gamma)),
+                    None => params.kernel,
+                };
+                let models = SvmParams { kernel, ..*params }.train_path(&fitting, goal.path)?;
+                for (count, model) in counts.iter_mut().zip(models) {
+                    let labels = model.labels(held_out.records.view())?;
+                    *count += n_equal(&labels, &held_out.targets);
+                    n_capped += model.n_capped();
+                }
+            }
+        }
+        Ok((counts, n_capped))
     }
 
     #[test]
