@@ -262,8 +262,7 @@ fn grid<T: Scalar>(
     kernels: &[KernelFunction],
     goal: Goal,
 ) -> Result<(Array2<usize>, usize)> {
-    // Three matrices at most: products, of which each has a half and rows in doubt another, the kernel made of them, and the
-    // part that a fold trains on.
+    // Three matrices at most: products, the kernel made of them, and the part that a fold trains on.
     let most = (params.memory_bytes / (3 * size_of::<T>())).isqrt();
     let n_rows = sorted.points().len();
     if n_rows > most {

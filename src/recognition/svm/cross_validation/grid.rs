@@ -6,18 +6,16 @@
 //! [from that of the fold before](crate::recognition::svm::cross_validation::seed) where that is nearer. Validation rows are
 //! [judged](crate::recognition::svm::cross_validation::judgement) by their own class's problems first.
 
-use ndarray::Array2;
+use ndarray::{Array1, Array2};
 
 use crate::recognition::data::split::Split;
 use crate::recognition::svm::Multiclass;
-use crate::recognition::svm::cross_validation::fold_path::{FoldPath, FoldSolution};
+use crate::recognition::svm::cross_validation::fold_path::FoldPath;
 use crate::recognition::svm::cross_validation::judgement::Judgement;
-use crate::recognition::svm::gram::class_columns::ClassColumns;
-use crate::recognition::svm::gram::class_products::ClassProducts;
-use crate::recognition::svm::gram::later_products::LaterProducts;
 use crate::recognition::svm::gram::product_kernel::ProductKernel;
 use crate::recognition::svm::gram::sorted::Sorted;
 use crate::recognition::svm::kernel::KernelFunction;
+use crate::recognition::svm::linalg::products::own_products;
 use crate::recognition::svm::linalg::scalar::Scalar;
 use crate::recognition::svm::smo::Dense;
 use crate::recognition::svm::training::Goal;
@@ -51,32 +49,17 @@ impl<T: Scalar> Grid<'_, T> {
     /// Validation rows recognised, over all folds, per kernel and C (kernels.len() × path.len()), and solves stopped at the
     /// iteration cap.
     pub fn n_correct(&self, kernels: &[KernelFunction], goal: Goal) -> (Array2<usize>, usize) {
-        let (points, ranges) = (self.sorted.points(), self.sorted.ranges());
-        let products = ClassProducts::new(points.all(), ranges);
+        let rows = (self.sorted.points(), self.sorted.ranges());
+        let products = own_products(rows.0.all().values);
         let folds: Vec<Fold> = self.folds.iter().map(|split| self.fold(split)).collect();
         let mut counts = Array2::zeros((kernels.len(), goal.path.len()));
         let mut n_capped = 0;
-        let columns = ClassColumns::new(ranges);
-        let (mut rooms, mut later) = (Vec::new(), LaterProducts::new(&products));
         for (&kernel, mut counts) in kernels.iter().zip(counts.rows_mut()) {
-            let kernel = ProductKernel::new(points, &products, kernel);
+            let kernel = ProductKernel::new(rows, products.view(), kernel);
             for folds in folds.chunks(FOLDS_AT_ONCE) {
-                rooms.resize(folds.len(), Vec::new());
-                let judgements = self.judge(folds, (&columns, &mut rooms), &kernel, goal);
-                for class in 0..ranges.len() {
-                    let doubtful = judgements.iter().map(|judgement| judgement.doubtful(class));
-                    later.gather(class, doubtful.flatten());
-                }
-                for (judgement, room) in judgements.into_iter().zip(&mut rooms) {
+                for judgement in self.judge(folds, &kernel, goal) {
                     n_capped += judgement.n_capped();
-                    for class in 0..ranges.len() {
-                        let write = |row, to: &mut _| {
-                            kernel.write_row((class, row), later.of_row(row), to);
-                        };
-                        let both = counts.iter_mut().zip(judgement.n_right(class, write));
-                        both.for_each(|(count, n_right)| *count += n_right);
-                    }
-                    *room = judgement.into_room();
+                    counts += &Array1::from(judgement.n_right(&kernel));
                 }
             }
         }
@@ -103,22 +86,14 @@ impl<T: Scalar> Grid<'_, T> {
     }
 
     /// Solves all problems of some folds, and judges their validation rows.
-    fn judge<'c>(
-        &self,
-        folds: &[Fold],
-        (columns, rooms): (&'c ClassColumns, &mut [Vec<T>]),
-        kernel: &ProductKernel<T>,
-        goal: Goal,
-    ) -> Vec<Judgement<'c, T>> {
-        let folds_and_rooms = folds.iter().zip(rooms);
-        let judgement = |(fold, room)| self.judgement(fold, (columns, room), goal);
-        let mut judgements: Vec<Judgement<T>> = folds_and_rooms.map(judgement).collect();
+    fn judge(&self, folds: &[Fold], kernel: &ProductKernel<T>, goal: Goal) -> Vec<Judgement<T>> {
+        let judgement = |fold| self.judgement(fold, goal.path.len());
+        let mut judgements: Vec<Judgement<T>> = folds.iter().map(judgement).collect();
         let mut gram = Dense::default();
         if self.multiclass == Multiclass::OneVsRest {
             kernel.write_all(&mut gram);
         }
-        let problems = self.problems();
-        for &problem in &problems {
+        for (number, problem) in self.problems() {
             if let (positive, Some(negative)) = problem {
                 kernel.write_pair((positive, negative), &mut gram);
             }
@@ -131,7 +106,9 @@ impl<T: Scalar> Grid<'_, T> {
             let mut judgements = judgements.into_iter();
             let judge = |path: &FoldPath| {
                 let judgement = judgements.next().expect("each fold has one");
-                take(judgement, problem, path, columns);
+                path.solutions
+                    .iter()
+                    .for_each(|solution| judgement.take(number, solution));
             };
             match problem.1 {
                 Some(_) => {
@@ -144,27 +121,20 @@ impl<T: Scalar> Grid<'_, T> {
         judgements
     }
 
-    fn judgement<'c>(
-        &self,
-        fold: &Fold,
-        (columns, room): (&'c ClassColumns, &mut Vec<T>),
-        goal: Goal,
-    ) -> Judgement<'c, T> {
+    fn judgement(&self, fold: &Fold, n_path: usize) -> Judgement<T> {
         let ranges = self.sorted.ranges();
         let of_class = |row: &usize| ranges.partition_point(|range| range.end <= *row);
         let rows = fold.validation.iter().map(|row| (*row, of_class(row)));
         let known = rows.filter(|(_, class)| fold.is_class[*class]).collect();
-        let n_path = goal.path.len();
-        let room = std::mem::take(room);
-        let fold = (known, &fold.is_class[..]);
-        Judgement::new(fold, (columns, room), self.multiclass, n_path)
+        Judgement::new((known, &fold.is_class), ranges, self.multiclass, n_path)
     }
 
-    /// All problems; pairs of neighbouring classes come together, so that their part of the kernel stays in the cache.
-    fn problems(&self) -> Vec<(usize, Option<usize>)> {
-        let mut problems = self.multiclass.problems(self.sorted.ranges().len());
+    /// All problems with their numbers; pairs of neighbouring classes come together, so that their part of the kernel stays in the cache.
+    fn problems(&self) -> Vec<(usize, (usize, Option<usize>))> {
+        let problems = self.multiclass.problems(self.sorted.ranges().len());
+        let mut problems: Vec<_> = problems.into_iter().enumerate().collect();
         let group = |class: usize| class / CLASSES_AT_ONCE;
-        problems.sort_by_key(|&(a, b)| (group(a), b.map(group)));
+        problems.sort_by_key(|&(_, (a, b))| (group(a), b.map(group)));
         problems
     }
 
@@ -187,30 +157,5 @@ impl<T: Scalar> Grid<'_, T> {
         };
         let of_fold = |fold: &&Fold| rows.clone().map(|row| label(fold, row)).collect();
         folds.iter().map(of_fold).collect()
-    }
-}
-
-/// Judges the validation rows of a fold by its solutions of a problem.
-fn take<T: Scalar>(
-    judgement: &mut Judgement<T>,
-    problem: (usize, Option<usize>),
-    path: &FoldPath,
-    columns: &ClassColumns,
-) {
-    let mut last: Option<&FoldSolution> = None;
-    for solution in &path.solutions {
-        if let (positive, Some(negative)) = problem {
-            let [first, second] = [positive, negative].map(|at| &columns.ranges()[at]);
-            let place = |row: usize| match first.contains(&row) {
-                true => row - first.start,
-                false => first.len() + row - second.start,
-            };
-            let sum = |row: usize| -solution.f[place(row)];
-            let numbers = solution.numbers.clone();
-            judgement.look((positive, negative), numbers, (sum, solution.rho));
-        }
-        let is_last = last.is_some_and(|last| last.beta == solution.beta);
-        judgement.take(problem, solution, is_last);
-        last = Some(solution);
     }
 }

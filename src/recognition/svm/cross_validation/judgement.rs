@@ -1,169 +1,168 @@
-//! Which validation rows of a fold are recognised, without all decision values.
+//! Which validation rows of a fold are recognised.
 //!
-//! What its own class's problems say of a row is noted as they are solved; rows that are in doubt then are
-//! [put to the vote](crate::recognition::svm::cross_validation::election) of all.
+//! What its own class's problems say of a row is known as they are solved. A row that its class wins in each of them is recognised,
+//! whatever the others say: every other class has lost one. The rest are put to the vote of all problems, by the matrix products of
+//! [prediction](crate::recognition::svm::predict).
 
 use std::ops::Range;
 
-use ndarray::Array2;
+use ndarray::{Array2, ArrayView2};
 
 use crate::recognition::svm::Multiclass;
 use crate::recognition::svm::cross_validation::fold_path::FoldSolution;
-use crate::recognition::svm::gram::class_columns::ClassColumns;
+use crate::recognition::svm::gram::product_kernel::ProductKernel;
 use crate::recognition::svm::linalg::scalar::Scalar;
+use crate::recognition::svm::predict::class_weights::{ClassWeights, weighted_sums};
+use crate::recognition::svm::predict::voting::Ballot;
 
-/// What validation needs of a problem's solution.
-#[derive(Clone, PartialEq)]
-pub(crate) struct Solved {
-    /// Where β of the rows of its classes is, as [`ClassColumns::spread_some`] lays it out.
-    pub(crate) beta: Range<usize>,
-    pub(crate) rho: f64,
-    is_capped: bool,
-}
+/// Rows put to the vote at once: a bound on the memory of their kernel values.
+const ROWS_AT_ONCE: usize = 512;
 
 /// The validation rows of a fold, and its problems as they are solved.
-pub(crate) struct Judgement<'a, T> {
+pub(crate) struct Judgement<T> {
+    multiclass: Multiclass,
+    /// All problems, by the positions of their classes, in the order of [`Multiclass::problems`].
+    problems: Vec<(usize, Option<usize>)>,
+    /// Whether each class is trained on.
+    is_class: Vec<bool>,
     /// Rows whose class is trained on, ascending, with the position of that class.
-    pub(crate) rows: Vec<(usize, usize)>,
-    pub(crate) columns: &'a ClassColumns,
-    /// The classes that are trained on.
-    pub(crate) classes: Vec<usize>,
-    pub(crate) multiclass: Multiclass,
-    /// For each row and C how many problems the row's own class loses, and one that it loses to.
-    pub(crate) lost: Array2<(usize, usize)>,
-    /// In the order of [`Multiclass::problems`], along C; empty where a class is not trained on.
-    pub(crate) problems: Vec<Vec<Solved>>,
-    /// β of all problems.
-    pub(crate) beta: Vec<T>,
+    rows: Vec<(usize, usize)>,
+    /// Whether each row's own class loses a problem, by C.
+    is_beaten: Array2<bool>,
+    /// β by C and class.
+    weights: Vec<Vec<ClassWeights<T>>>,
+    /// ρ: C × problems.
+    rho: Array2<f64>,
     /// Whether any problem's solution is another than for the C before, by C.
     is_new: Vec<bool>,
+    n_capped: usize,
 }
 
-impl<'a, T: Scalar> Judgement<'a, T> {
-    /// Of these validation rows, each with the position of its class, and whether each class is trained on; along so many C.
-    /// The room is for the solutions.
+impl<T: Scalar> Judgement<T> {
+    /// Of these validation rows, each with the position of its class, and whether each class is trained on; along so many C. The
+    /// rows of all classes lie in these ranges.
     pub fn new(
         (rows, is_class): (Vec<(usize, usize)>, &[bool]),
-        (columns, mut room): (&'a ClassColumns, Vec<T>),
+        ranges: &[Range<usize>],
         multiclass: Multiclass,
         n_path: usize,
     ) -> Self {
-        room.clear();
-        // As much as solutions may take, so that it is asked for once.
-        room.reserve(columns.n_values(multiclass) * n_path);
-        let n_problems = multiclass.problems(is_class.len()).len();
+        let problems = multiclass.problems(is_class.len());
+        let of_class = |(class, range): (usize, &Range<usize>)| {
+            ClassWeights::zeros(class, range.clone(), problems.iter().copied())
+        };
+        let of_c = || ranges.iter().enumerate().map(of_class).collect();
         Self {
-            lost: Array2::from_elem((rows.len(), n_path), (0, 0)),
-            rows,
-            columns,
-            classes: (0..is_class.len()).filter(|at| is_class[*at]).collect(),
             multiclass,
-            problems: (0..n_problems).map(|_| Vec::new()).collect(),
-            beta: room,
+            is_class: is_class.to_vec(),
+            is_beaten: Array2::from_elem((rows.len(), n_path), false),
+            rows,
+            weights: (0..n_path).map(|_| of_c()).collect(),
+            rho: Array2::zeros((n_path, problems.len())),
             is_new: vec![false; n_path],
+            n_capped: 0,
+            problems,
         }
     }
 
     /// Solves stopped at the iteration cap.
     pub fn n_capped(&self) -> usize {
-        let solved = self.problems.iter().flatten();
-        solved.filter(|solved| solved.is_capped).count()
+        self.n_capped
     }
 
-    /// The room that it was given.
-    pub fn into_room(self) -> Vec<T> {
-        self.beta
-    }
-
-    /// Takes a problem's solution for the next C; whether β is that of the last one.
-    pub fn take(
-        &mut self,
-        (positive, negative): (usize, Option<usize>),
-        solution: &FoldSolution,
-        is_last: bool,
-    ) {
-        let number = match negative {
-            Some(negative) => self.pair(positive, negative),
-            None => positive,
+    /// Takes a problem's solution for some C.
+    pub fn take(&mut self, problem: usize, solution: &FoldSolution) {
+        let numbers = solution.numbers.clone();
+        self.is_new[numbers.start] = true;
+        self.n_capped += usize::from(solution.is_capped) * numbers.len();
+        let (positive, negative) = self.problems[problem];
+        let classes = match negative {
+            Some(negative) => vec![positive, negative],
+            None => (0..self.is_class.len()).collect(),
         };
-        let beta = match self.problems[number].last() {
-            Some(last) if is_last => last.beta.clone(),
-            _ => {
-                let start = self.beta.len();
-                let classes = match negative {
-                    Some(negative) => vec![positive, negative],
-                    None => (0..self.columns.ranges().len()).collect(),
-                };
-                self.columns
-                    .spread_some(&classes, &solution.beta, &mut self.beta);
-                start..self.beta.len()
-            }
-        };
-        let solved = Solved {
-            beta,
-            rho: solution.rho,
-            is_capped: solution.is_capped,
-        };
-        let numbers = &solution.numbers;
-        self.is_new[numbers.start] |= self.problems[number].last() != Some(&solved);
-        self.problems[number].resize(numbers.end, solved);
-    }
-
-    /// Notes which rows of two classes lose at some C, by what the decision function of the pair adds up to before ρ.
-    pub fn look(
-        &mut self,
-        (positive, negative): (usize, usize),
-        numbers: Range<usize>,
-        (sum, rho): (impl Fn(usize) -> f64, f64),
-    ) {
-        for (class, rival) in [(positive, negative), (negative, positive)] {
-            for at in self.of_class(class) {
-                if (sum(self.rows[at].0) > rho) != (class == positive) {
-                    for number in numbers.clone() {
-                        let lost = &mut self.lost[[at, number]];
-                        *lost = (lost.0 + 1, rival);
-                    }
+        for number in numbers {
+            self.rho[[number, problem]] = solution.rho;
+            let mut start = 0;
+            for &class in &classes {
+                let weights = &mut self.weights[number][class];
+                let end = start + weights.vectors.len();
+                weights.set(problem, &solution.beta[start..end]);
+                if negative.is_some() {
+                    let own = weights.vectors.clone();
+                    let f = (own, &solution.f[start..end]);
+                    self.look(number, (class, class == positive), f, solution.rho);
                 }
+                start = end;
             }
         }
     }
 
-    /// Where the problem of two classes is, the first of which comes first.
-    #[inline(always)]
-    pub(crate) fn pair(&self, first: usize, second: usize) -> usize {
-        let n_classes = self.columns.ranges().len();
-        first * (2 * n_classes - first - 1) / 2 + second - first - 1
-    }
-
-    /// The rows of a class whose kernel values with all are asked for, ascending: their own class has lost some problem.
-    pub fn doubtful(&self, class: usize) -> impl Iterator<Item = usize> + '_ {
-        let own = self.of_class(class).filter(|&at| self.is_doubtful(at));
-        own.map(|at| self.rows[at].0)
-    }
-
-    /// Whether all problems say the same of a row as at the C before.
-    pub(crate) fn is_as_before(&self, at: usize, number: usize) -> bool {
-        let lost = self.lost.row(at);
-        number > 0 && !self.is_new[number] && lost[number] == lost[number - 1]
-    }
-
-    pub(crate) fn is_doubtful(&self, at: usize) -> bool {
-        let is_pairs = self.multiclass == Multiclass::OneVsOne;
-        !is_pairs || self.lost.row(at).iter().any(|lost| lost.0 > 0)
-    }
-
-    /// Where the rows of a class are.
-    pub(crate) fn of_class(&self, class: usize) -> Range<usize> {
+    /// Notes which validation rows of a class lose a pair: `−f` is what its decision function adds up to before ρ.
+    fn look(
+        &mut self,
+        number: usize,
+        (class, is_positive): (usize, bool),
+        (own, f): (Range<usize>, &[f64]),
+        rho: f64,
+    ) {
         let first = self.rows.partition_point(|row| row.1 < class);
-        first..self.rows.partition_point(|row| row.1 <= class)
+        let last = self.rows.partition_point(|row| row.1 <= class);
+        for at in first..last {
+            let sum = -f[self.rows[at].0 - own.start];
+            self.is_beaten[[at, number]] |= (sum > rho) != is_positive;
+        }
+    }
+
+    /// Rows that are recognised, by C.
+    pub fn n_right(&self, kernel: &ProductKernel<T>) -> Vec<usize> {
+        let is_settled =
+            |at: &usize| self.is_pairs() && !self.is_beaten.row(*at).iter().any(|x| *x);
+        let (settled, open): (Vec<usize>, Vec<usize>) = (0..self.rows.len()).partition(is_settled);
+        let mut n_right = vec![settled.len(); self.weights.len()];
+        for some in open.chunks(ROWS_AT_ONCE) {
+            let rows: Vec<usize> = some.iter().map(|&at| self.rows[at].0).collect();
+            let values = kernel.rows(&rows);
+            let mut n_elected = 0;
+            for (number, n_right) in n_right.iter_mut().enumerate() {
+                if self.is_new[number] {
+                    n_elected = self.n_elected(number, some, values.view());
+                }
+                *n_right += n_elected;
+            }
+        }
+        n_right
+    }
+
+    /// Of some rows with these kernel values, those whose own class is elected.
+    fn n_elected(&self, number: usize, some: &[usize], values: ArrayView2<T>) -> usize {
+        let sums = weighted_sums(&self.weights[number], values, self.problems.len());
+        let mut ballot = Ballot::new(self.is_class.len(), some.len(), self.multiclass);
+        for (problem, sums) in sums.rows().into_iter().enumerate() {
+            let (positive, negative) = self.problems[problem];
+            if self.is_class[positive] && negative.is_none_or(|class| self.is_class[class]) {
+                let sums = sums.to_slice().expect("sums are stored problem by problem");
+                ballot.take((positive, negative), sums, self.rho[[number, problem]]);
+            }
+        }
+        let winners = ballot.winners().into_iter().zip(some);
+        let is_right = |&(winner, &at): &(usize, &usize)| {
+            winner == self.rows[at].1 || (self.is_pairs() && !self.is_beaten[[at, number]])
+        };
+        winners.filter(is_right).count()
+    }
+
+    fn is_pairs(&self) -> bool {
+        self.multiclass == Multiclass::OneVsOne
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::recognition::svm::gram::points::Points;
+    use crate::recognition::svm::kernel::KernelFunction;
     use crate::recognition::svm::predict::voting::first_maximum;
-    use ndarray::Array2;
+    use ndarray::{Array1, Array2};
 
     const N: usize = 60;
     const C: [f64; 4] = [0.1, 1.0, 10.0, 10.0];
@@ -192,17 +191,15 @@ mod tests {
         let is_training: Vec<bool> = (0..N).map(|at| at % 4 != 1).collect();
         let class = |at: usize| RANGES.iter().position(|range| range.contains(&at)).unwrap();
         let rows: Vec<(usize, usize)> = (1..N).step_by(4).map(|at| (at, class(at))).collect();
-        let columns = ClassColumns::new(&RANGES);
+        let points = Points::new(Array2::zeros((N, 1)).view(), Array1::zeros(1).view());
+        let kernel_function = KernelFunction::Linear;
+        let product_kernel = ProductKernel::new((&points, &RANGES), kernel.view(), kernel_function);
         for multiclass in [Multiclass::OneVsOne, Multiclass::OneVsRest] {
-            let mut judgement = Judgement::new(
-                (rows.clone(), &[true; 4]),
-                (&columns, vec![0.0; 7]),
-                multiclass,
-                C.len(),
-            );
+            let mut judgement =
+                Judgement::new((rows.clone(), &[true; 4]), &RANGES, multiclass, C.len());
             // Votes of each row, or values, by C.
             let mut scores = vec![vec![[0.0; 4]; rows.len()]; C.len()];
-            for (positive, negative) in multiclass.problems(4) {
+            for (problem, (positive, negative)) in multiclass.problems(4).into_iter().enumerate() {
                 let own = RANGES[positive].clone();
                 let classes = match negative {
                     Some(negative) => vec![positive, negative],
@@ -210,7 +207,6 @@ mod tests {
                 };
                 let members: Vec<usize> =
                     classes.iter().flat_map(|&at| RANGES[at].clone()).collect();
-                let mut last = Vec::new();
                 for (number, beta) in path(&members, &own, &is_training).iter().enumerate() {
                     let rho = 0.03 * C[number];
                     let sum = |row: usize| {
@@ -226,18 +222,14 @@ mod tests {
                             Some(negative) => scores[negative] += 1.0,
                         }
                     }
-                    if let Some(negative) = negative {
-                        judgement.look((positive, negative), number..number + 1, (sum, rho));
-                    }
                     let solution = FoldSolution {
                         numbers: number..number + 1,
                         beta: beta.clone(),
-                        f: Vec::new(),
+                        f: members.iter().map(|&row| -sum(row)).collect(),
                         rho,
                         is_capped: number == 1,
                     };
-                    judgement.take((positive, negative), &solution, last == *beta);
-                    last.clone_from(beta);
+                    judgement.take(problem, &solution);
                 }
             }
             let expected: Vec<usize> = scores
@@ -249,16 +241,7 @@ mod tests {
                         .count()
                 })
                 .collect();
-            let mut found = vec![0; C.len()];
-            for class in 0..4 {
-                let doubtful: Vec<usize> = judgement.doubtful(class).collect();
-                let n_right = judgement.n_right(class, |row, to| {
-                    assert!(doubtful.contains(&row));
-                    *to = kernel.row(row).to_vec();
-                });
-                let both = found.iter_mut().zip(n_right);
-                both.for_each(|(sum, n_right)| *sum += n_right);
-            }
+            let found = judgement.n_right(&product_kernel);
             assert_eq!(found, expected, "{multiclass:?}");
             assert!(
                 expected.iter().all(|&n| n > 3 && n < rows.len()),

@@ -17,36 +17,6 @@ pub(crate) fn write_columns<T: Copy>(rows: &[&[T]], to: &mut [T], stride: usize)
     }
 }
 
-/// Writes some values of equally long rows as columns side by side: value `places[j]` of row `i` to `j · stride + i`.
-pub(crate) fn write_some_columns<T: Copy>(
-    rows: &[&[T]],
-    places: &[usize],
-    to: &mut [T],
-    stride: usize,
-) {
-    let (tiles, last) = rows.as_chunks::<TILE>();
-    for (number, tile) in tiles.iter().enumerate() {
-        let n = tile[0].len();
-        let mut columns = *tile;
-        for i in 0..TILE {
-            columns[i] = &tile[i][..n];
-        }
-        for (j, &place) in places.iter().enumerate() {
-            assert!(place < n);
-            let to = &mut to[j * stride + number * TILE..][..TILE];
-            for i in 0..TILE {
-                to[i] = columns[i][place];
-            }
-        }
-    }
-    let first = rows.len() - last.len();
-    for (i, row) in last.iter().enumerate() {
-        for (j, &place) in places.iter().enumerate() {
-            to[j * stride + first + i] = row[place];
-        }
-    }
-}
-
 fn write_tile<T: Copy>(rows: &[&[T]; TILE], to: &mut [T], stride: usize) {
     let n = rows[0].len();
     let mut columns = *rows;
@@ -77,12 +47,6 @@ mod tests {
                 let (j, i) = (at / stride, at % stride);
                 let expected = if i < n { i * m + j } else { usize::MAX };
                 assert_eq!(value, expected, "{n} {m}: {i} {j}");
-            }
-            let places: Vec<usize> = (0..m).step_by(2).collect();
-            let mut some = vec![usize::MAX; places.len() * stride];
-            write_some_columns(&rows, &places, &mut some, stride);
-            for (some, every) in some.chunks(stride).zip(to.chunks(stride).step_by(2)) {
-                assert_eq!(some, every, "{n} {m}");
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use ndarray::Array2;
+use ndarray::{Array2, ArrayView2, s};
 
 use crate::recognition::svm::BinaryProblem;
 use crate::recognition::svm::gram::sorted::Sorted;
@@ -20,6 +20,24 @@ pub(crate) struct ClassWeights<T> {
 }
 
 impl<V: Scalar> ClassWeights<V> {
+    /// None yet of a class in these problems, which are named by their positive and negative class.
+    pub fn zeros(
+        class: usize,
+        vectors: Range<usize>,
+        problems: impl Iterator<Item = (usize, Option<usize>)>,
+    ) -> Self {
+        let takes_part = |(positive, negative): (usize, Option<usize>)| {
+            negative.is_none_or(|negative| positive == class || negative == class)
+        };
+        let own = problems.enumerate().filter(|(_, sides)| takes_part(*sides));
+        let own: Vec<usize> = own.map(|(problem, _)| problem).collect();
+        Self {
+            coefficients: Array2::zeros((own.len(), vectors.len())),
+            vectors,
+            problems: own,
+        }
+    }
+
     /// Of all rows of a class.
     pub fn new<T: Scalar>(
         sorted: &Sorted<T>,
@@ -27,27 +45,28 @@ impl<V: Scalar> ClassWeights<V> {
         vectors: Range<usize>,
         problems: &[BinaryProblem],
     ) -> Self {
-        let takes_part = |problem: &BinaryProblem| match problem.negative {
-            Some(negative) => problem.positive == class || negative == class,
-            None => true,
-        };
-        let own: Vec<usize> = (0..problems.len())
-            .filter(|&problem| takes_part(&problems[problem]))
-            .collect();
-        let mut coefficients = Array2::zeros((own.len(), vectors.len()));
-        for (&problem, mut weights) in own.iter().zip(coefficients.rows_mut()) {
+        let sides = problems.iter().map(|p| (p.positive, p.negative));
+        let mut weights = Self::zeros(class, vectors, sides);
+        let own = weights.problems.iter();
+        for (&problem, mut own) in own.zip(weights.coefficients.rows_mut()) {
             let BinaryProblem { rows, solution, .. } = &problems[problem];
             for (&row, &coefficient) in rows.iter().zip(&solution.coefficients) {
                 let at = sorted.place()[row];
-                if vectors.contains(&at) {
-                    weights[at - vectors.start] = V::of(coefficient);
+                if weights.vectors.contains(&at) {
+                    own[at - weights.vectors.start] = V::of(coefficient);
                 }
             }
         }
-        Self {
-            vectors,
-            problems: own,
-            coefficients,
+        weights
+    }
+
+    /// Sets the coefficients of a problem that the class takes part in.
+    pub fn set(&mut self, problem: usize, coefficients: &[f64]) {
+        if let Ok(place) = self.problems.binary_search(&problem) {
+            let own = self.coefficients.row_mut(place);
+            own.into_iter()
+                .zip(coefficients)
+                .for_each(|(own, &coefficient)| *own = V::of(coefficient));
         }
     }
 
@@ -70,6 +89,24 @@ impl<V: Scalar> ClassWeights<V> {
             ..self
         }
     }
+}
+
+/// `Σ y a K(x_i, x)` from kernel values (rows × vectors) and what the vectors of each class weigh: n_problems × rows.
+pub(crate) fn weighted_sums<T: Scalar>(
+    weights: &[ClassWeights<T>],
+    kernel_values: ArrayView2<T>,
+    n_problems: usize,
+) -> Array2<T> {
+    let mut sums = Array2::zeros((n_problems, kernel_values.nrows()));
+    for class in weights {
+        let own = kernel_values.slice(s![.., class.vectors.clone()]);
+        let part = class.coefficients.dot(&own.t());
+        for (part, &problem) in part.rows().into_iter().zip(&class.problems) {
+            let mut sum = sums.row_mut(problem);
+            sum += &part;
+        }
+    }
+    sums
 }
 
 impl ClassWeights<f64> {

@@ -9,7 +9,7 @@ use crate::recognition::svm::gram::sorted::Sorted;
 use crate::recognition::svm::kernel::KernelFunction;
 use crate::recognition::svm::linalg::products::multiply;
 use crate::recognition::svm::linalg::scalar::Scalar;
-use crate::recognition::svm::predict::class_weights::ClassWeights;
+use crate::recognition::svm::predict::class_weights::{ClassWeights, weighted_sums};
 use crate::recognition::svm::predict::unbeaten::Pairs;
 use crate::recognition::svm::predict::voting::Ballot;
 use crate::recognition::svm::{BinaryProblem, Multiclass};
@@ -138,7 +138,11 @@ impl<T: Scalar> DecisionFunctions<T> {
                     .filter(|row| winners[*row].is_none())
                     .collect();
                 let values = values.select(Axis(0), &open);
-                let elected = elect(support.sums(values.view(), problems.len()));
+                let elected = elect(weighted_sums(
+                    &support.weights,
+                    values.view(),
+                    problems.len(),
+                ));
                 for (row, winner) in open.into_iter().zip(elected) {
                     winners[row] = Some(winner);
                 }
@@ -173,7 +177,8 @@ impl<T: Scalar> DecisionFunctions<T> {
                 sums
             }
             Sums::Support(support) => {
-                support.sums(support.kernel_values(points, room), self.rho.len())
+                let values = support.kernel_values(points, room);
+                weighted_sums(&support.weights, values, self.rho.len())
             }
         }
     }
@@ -188,19 +193,5 @@ impl<T: Scalar> Support<T> {
         multiply(points.values, vectors.values, values.view_mut());
         points.apply(values, vectors, &self.kernel);
         room.slice(s![..n, ..])
-    }
-
-    /// `Σ y a K(x_i, x)` from kernel values (rows × vectors): n_problems × rows.
-    fn sums(&self, kernel_values: ArrayView2<T>, n_problems: usize) -> Array2<T> {
-        let mut sums = Array2::zeros((n_problems, kernel_values.nrows()));
-        for class in &self.weights {
-            let own = kernel_values.slice(s![.., class.vectors.clone()]);
-            let part = class.coefficients.dot(&own.t());
-            for (part, &problem) in part.rows().into_iter().zip(&class.problems) {
-                let mut sum = sums.row_mut(problem);
-                sum += &part;
-            }
-        }
-        sums
     }
 }
