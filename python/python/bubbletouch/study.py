@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bubbletouch import _core
-from bubbletouch._core import Simulation
+from bubbletouch._core import Mesh, Simulation, SphereUnion
 
 Callback = Callable[[str, int, int], object]
 
@@ -141,12 +141,31 @@ def run(
 def simulate(scene: str | PathLike[str] | Mapping[str, Any]) -> Simulation:
     """A scene, ready for its first frame: a TOML file, or its tables as a dict (paths in it are then relative to the working folder).
 
+    The "object" of one of a dict's objects may be a Mesh or a SphereUnion in place of a name; it is touched as it is.
+
     Raises ValueError for what cannot be simulated, by key; OSError for a file that cannot be read.
     """
     if isinstance(scene, Mapping):
-        return Simulation(_core.toml_of(_json(scene)), "scene", Path())
+        tables, models = _in_memory(scene)
+        return Simulation(_core.toml_of(_json(tables)), "scene", Path(), models)
     path = Path(scene)
-    return Simulation(path.read_text(encoding="utf-8"), str(path), path.parent)
+    return Simulation(path.read_text(encoding="utf-8"), str(path), path.parent, {})
+
+
+def _in_memory(scene: Mapping[str, Any]) -> tuple[Mapping[str, Any], dict[str, Mesh | SphereUnion]]:
+    """A scene without its objects in memory, and these by their names in it."""
+    models: dict[str, Mesh | SphereUnion] = {}
+
+    def named(given: Any) -> Any:
+        if not isinstance(given, Mapping) or not isinstance(given.get("object"), Mesh | SphereUnion):
+            return given
+        models[str(given.get("name", ""))] = given["object"]
+        return {key: value for key, value in given.items() if key != "object"}
+
+    objects = scene.get("objects")
+    if not isinstance(objects, list | tuple):
+        return scene, models
+    return {**scene, "objects": [named(given) for given in objects]}, models
 
 
 def _json(study: Mapping[str, Any]) -> str:
