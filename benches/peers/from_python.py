@@ -15,7 +15,7 @@ import numpy as np
 import trimesh
 from contact import DEPTH, PITCH, RADIUS, SIDE, STIFFNESS, STROKE, TactileSensor, draw_poses, error_of, timed
 
-TOLERANCES_MM = [1.0, 0.5, 0.2, 0.1]
+TOLERANCES_MM = [1.0, 0.5, 0.4, 0.3, 0.2, 0.1]
 # So many poses at once: those of the sensor again and again.
 REPEAT = 50
 
@@ -38,7 +38,7 @@ def on_mesh(path, n_touches, rounds, octree_depth):
     sensor = TactileSensor(mesh, octree_depth)
     sensor.tune(poses, truth)
     error = error_of(np.array([sensor.read(pose) for pose in poses]), truth)[0]
-    one, many = np.zeros((SIDE, SIDE)), np.zeros((REPEAT * n_touches, SIDE, SIDE))
+    one, many = np.zeros((SIDE, SIDE)), np.full((REPEAT * n_touches, SIDE, SIDE), 1.0)
     repeated = np.tile(poses, (REPEAT, 1))
     times = {name: ([], []) for name, _ in things}
     peer = []
@@ -47,9 +47,10 @@ def on_mesh(path, n_touches, rounds, octree_depth):
         for name, thing in things:
             alone, batch = times[name]
             alone += timed(lambda pose, thing=thing: patch.press(thing, pose, out=one), np.tile(poses, (5, 1)))
-            start = time.perf_counter()
+            # Time of the thread alone: a batch is long enough to be put aside by a busy machine.
+            start = time.thread_time()
             patch.press(thing, repeated, out=many, threads=1)
-            batch.append(1e6 * (time.perf_counter() - start) / len(repeated))
+            batch.append(1e6 * (time.thread_time() - start) / len(repeated))
     peer_us = statistics.median(peer)
     print(f"{path.stem:24} MuJoCo {sensor.setting}: {peer_us:8.1f} us, {error:.4f} mm")
     best = None

@@ -24,6 +24,7 @@ __all__ = [
     "Step",
     "_kernel_pace",
     "_panic",
+    "advise",
     "choose_svm",
     "run_study",
     "toml_of",
@@ -802,6 +803,18 @@ def run_study(
     callback: Callable[[str, int, int], object] | None = None,
 ) -> list[tuple[str, str, str, dict[str, Any]]]:
     """Runs a study (TOML) into a folder: of each table its file's name, title, note and columns."""
+
+def advise(
+    results: _Path,
+    reach: float | None,
+    budget: float | None,
+    value: str | None,
+    cost: str | None,
+    table: str | None,
+    given: list[str],
+    worst: bool,
+) -> str:
+    """What the results in a folder advise, as JSON: at least so good, or at most so dear. Raises ValueError."""
 
 def toml_of(json: str) -> str:
     """A study in TOML from the same in JSON."""

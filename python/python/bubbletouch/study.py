@@ -138,6 +138,37 @@ def run(
     return Study(results, tables, kept)
 
 
+def advise(
+    results: Study | str | PathLike[str],
+    *,
+    accuracy: float | None = None,
+    reach: float | None = None,
+    budget: float | None = None,
+    value: str | None = None,
+    cost: str | None = None,
+    table: str | None = None,
+    given: Mapping[str, Any] | None = None,
+    worst: bool = False,
+) -> dict[str, Any]:
+    """Which setting of a study to take, as `bubbletouch advise --json` says: the cheapest that is good enough, or the best that is cheap enough.
+
+    results: a Study, or a folder of results. One of accuracy (a share), reach (of another value, in its unit) and budget (the most that it may
+    cost, in the unit of its column). value, cost, table: columns and a table's file, if not the usual ones. given: conditions, such as
+    {"noise": 0.05}. worst: one answer for all conditions.
+
+    A dict: table, value, cost, and answers, each with a condition and choice, certain and next_up (rows by column, or None), or refused.
+    Raises ValueError where no choice is, and where there are no results; OSError for files that cannot be read.
+    """
+    if accuracy is not None:
+        if reach is not None or value is not None:
+            raise ValueError("accuracy: beside reach or value; one of them")
+        reach, value = accuracy, "accuracy"
+    folder = results.folder if isinstance(results, Study) else Path(results)
+    conditions = [f"{name}={of}" for name, of in (given or {}).items()]
+    said: dict[str, Any] = json.loads(_core.advise(folder, reach, budget, value, cost, table, conditions, worst))
+    return said
+
+
 def simulate(scene: str | PathLike[str] | Mapping[str, Any]) -> Simulation:
     """A scene, ready for its first frame: a TOML file, or its tables as a dict (paths in it are then relative to the working folder).
 
