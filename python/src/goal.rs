@@ -12,6 +12,7 @@ use bubbletouch::objects::Model;
 use bubbletouch::world::Patch;
 use glam::DVec3;
 use pyo3::prelude::*;
+use std::slice::from_ref;
 
 /// Until when, and how much of it: one number for all poses or one each.
 pub struct Goal {
@@ -112,20 +113,46 @@ impl Goal {
         }
     }
 
-    /// Presses at the pose of a number; `None` where the patch meets nothing.
+    /// The press at the pose of a number.
+    pub fn of_pose<'a>(
+        &self,
+        number: usize,
+        patch: &'a Patch,
+        (model, pose): (&'a Model, &'a Pose),
+    ) -> Press<'a> {
+        Press {
+            patch,
+            models: from_ref(model),
+            poses: from_ref(pose),
+            until: self.until,
+            amount: self.amount(number),
+        }
+    }
+}
+
+/// One press.
+pub struct Press<'a> {
+    patch: &'a Patch,
+    models: &'a [Model],
+    poses: &'a [Pose],
+    until: Until,
+    amount: f64,
+}
+
+impl Press<'_> {
+    /// Deflects the taxels; `None` where the patch meets nothing.
     ///
     /// # Errors
     /// A force that cannot be reached.
-    pub fn press(
-        &self,
-        number: usize,
-        patch: &Patch,
-        (model, pose): (&Model, &Pose),
-        workspace: &mut Workspace,
-    ) -> Result<Option<Contact>> {
-        let (models, poses) = (std::slice::from_ref(model), std::slice::from_ref(pose));
-        let amount = self.amount(number);
-        Ok(match self.until {
+    pub fn deflect(&self, workspace: &mut Workspace) -> Result<Option<Contact>> {
+        let &Self {
+            patch,
+            models,
+            poses,
+            until,
+            amount,
+        } = self;
+        Ok(match until {
             Until::Pose => Some(press_at_pose(patch, models, poses, workspace)),
             Until::Depth => press_to_depth(patch, models, poses, amount, workspace),
             Until::Travel => Some(press_to_travel(patch, models, poses, amount, workspace)),
@@ -137,17 +164,16 @@ impl Goal {
     ///
     /// # Errors
     /// A force that cannot be reached.
-    pub fn press_with_contacts(
-        &self,
-        number: usize,
-        patch: &Patch,
-        (model, pose): (&Model, &Pose),
-        workspace: &mut Workspace,
-    ) -> Result<Option<Contact>> {
-        let (models, poses) = (std::slice::from_ref(model), std::slice::from_ref(pose));
-        let amount = self.amount(number);
+    pub fn meet(&self, workspace: &mut Workspace) -> Result<Option<Contact>> {
+        let &Self {
+            patch,
+            models,
+            poses,
+            until,
+            amount,
+        } = self;
         let approach = Approach::new(patch, DVec3::Z)?;
-        Ok(match self.until {
+        Ok(match until {
             Until::Pose => Some(press_with_contacts(patch, models, poses, workspace)),
             Until::Depth => approach.press_to_depth(models, poses, amount, workspace),
             Until::Travel => {

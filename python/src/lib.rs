@@ -59,7 +59,7 @@ mod _core {
     #[pymodule_export]
     use sphere_union::SphereUnion;
     #[pymodule_export]
-    use study::{run_study, toml_of};
+    use study::{advise, run_study, toml_of};
     #[pymodule_export]
     use svm::{KernelSvm, LinearModel, choose_svm};
 

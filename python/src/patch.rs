@@ -30,7 +30,8 @@ pub struct Patch {
 }
 
 impl Patch {
-    fn of(patch: world::Patch) -> Self {
+    /// Of the library's.
+    pub fn of(patch: world::Patch) -> Self {
         let grid = patch.layout().as_grid();
         Self {
             shape: grid.map_or(vec![patch.n_taxels()], |grid| vec![grid.ny, grid.nx]),

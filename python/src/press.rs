@@ -201,17 +201,17 @@ impl<'py> Batch<'_, 'py> {
         let found: Mutex<Vec<(usize, OfPose)>> = Mutex::new(Vec::new());
         type Item<'a, T> = (&'a mut [T], Option<&'a mut [f64]>);
         let work = |number: usize, (frame, changes): Item<T>, workspace: &mut Workspace| {
-            let placed = (model, &poses[number]);
-            let pressed = goal.press(number, patch, placed, workspace);
+            let press = goal.of_pose(number, patch, (model, &poses[number]));
+            let pressed = press.deflect(workspace);
             let pressed = pressed.map_err(|error| named(number, error))?;
             match pressed {
-                Some(_) => T::write(frame, workspace.deflections()),
+                Some(_) => workspace.write_deflections(frame, T::write),
                 None => frame.fill(T::default()),
             }
             if !wanted.contacts && changes.is_none() {
                 return Ok(());
             }
-            let met = goal.press_with_contacts(number, patch, placed, workspace);
+            let met = press.meet(workspace);
             let met = met.map_err(|error| named(number, error))?;
             if let (Some(changes), Some(pressed), Some(_)) = (changes, pressed, met) {
                 let origin = poses[number].translation - pressed.travel * DVec3::Z;
@@ -275,8 +275,8 @@ pub fn _kernel_pace(
         let mut n_readings = 0;
         while start.elapsed().as_secs_f64() < seconds {
             for (number, pose) in poses.iter().enumerate() {
-                let pressed = goal.press(number, patch, (model, pose), &mut workspace);
-                pressed.map_err(exception)?;
+                let press = goal.of_pose(number, patch, (model, pose));
+                press.deflect(&mut workspace).map_err(exception)?;
                 std::hint::black_box(workspace.deflections());
                 n_readings += patch.n_taxels();
             }

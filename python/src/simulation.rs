@@ -1,13 +1,20 @@
-//! `Simulation`: a scene, frame by frame.
+//! `Simulation`: a scene, frame by frame, or step by step by hand.
 
-use crate::arrays::to_column;
-use crate::errors::{exception, guarded};
-use crate::poses::seven;
-use bubbletouch::scene::{self, Frame, Held, PatchReading, ScenePlan, SceneSpec, Stepping};
+use crate::arrays::{to_column, to_rows, view};
+use crate::errors::{bad_input, exception, guarded};
+use crate::model::model_of;
+use crate::patch::Patch;
+use crate::poses::{Poses, seven};
+use bubbletouch::geometry::Pose;
+use bubbletouch::scene::{
+    self, Frame, Held, PatchReading, PlannedPatch, ScenePlan, SceneSpec, Stepping,
+};
+use glam::DVec3;
 use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use self_cell::self_cell;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -28,62 +35,128 @@ fn begin(plan: &Arc<ScenePlan>) -> OnItsWay {
     })
 }
 
-/// A scene frame by frame, from its text: bubbletouch.simulate takes a file or a dict.
+/// A scene, from its text: bubbletouch.simulate takes a file or a dict.
 ///
-/// It is an iterator of frames, each a dict:
+/// It is an iterator of frames, one after the other as the scene says; or a program moves things itself, step by step, with set_…(),
+/// step(dt) and observe(). Frames are dicts:
 ///
 /// - time: seconds;
-/// - patches: of each by name pose (7,) in the world, deflection (ny, nx) or (n_taxels,) in metres, force likewise in newtons, signal (or
-///   None), wrench (6,) of force and torque on the patch in its frame, n_touched, n_saturated;
+/// - patches: of each by name pose (7,) in the world, deflection (ny, nx) or (n_taxels,) in metres, force likewise in newtons, force3
+///   (n_taxels, 3) on each taxel along its axis, and sideways too with friction, in newtons in the frame of the patch, signal (or None),
+///   wrench (6,) of force and torque on the patch in its frame, n_touched, n_saturated;
 /// - objects: of each by name pose (7,) in the world, and held: imposed, pressed, at rest, unsettled or escaped.
 #[pyclass(module = "bubbletouch")]
 pub struct Simulation {
     plan: Arc<ScenePlan>,
     going: OnItsWay,
-    n_done: usize,
 }
 
 #[pymethods]
 impl Simulation {
     #[new]
-    #[pyo3(signature = (text, place, folder))]
-    fn new(py: Python, text: &str, place: &str, folder: PathBuf) -> PyResult<Self> {
+    #[pyo3(signature = (text, place, folder, models))]
+    fn new(
+        py: Python,
+        text: &str,
+        place: &str,
+        folder: PathBuf,
+        models: &Bound<PyDict>,
+    ) -> PyResult<Self> {
         guarded(|| {
+            let mut in_memory = BTreeMap::new();
+            for (name, object) in models {
+                let name: String = name.extract()?;
+                let model = model_of(&name, &object)?.clone();
+                in_memory.insert(name, model);
+            }
             let plan = py.detach(|| {
                 let spec = SceneSpec::parse(place, text)?;
-                ScenePlan::new(place, &folder, spec)
+                ScenePlan::with_models(place, &folder, spec, &in_memory)
             });
             let plan = Arc::new(plan.map_err(exception)?);
             Ok(Self {
                 going: begin(&plan),
                 plan,
-                n_done: 0,
             })
         })
     }
 
-    /// Back to before the first frame.
-    fn reset(&mut self) {
-        self.going = begin(&self.plan);
-        self.n_done = 0;
+    /// Back to before the first frame, and nothing is set by hand any more. The skin stays as it is; the noise of its readings is that of
+    /// `seed` (None: the scene's own). Raises ValueError.
+    #[pyo3(signature = (seed=None))]
+    fn reset(&mut self, seed: Option<i64>) -> PyResult<()> {
+        let seed = match seed {
+            None => self.plan.spec.seed,
+            Some(given) => u64::try_from(given)
+                .map_err(|_| bad_input("seed", given, "zero or a positive whole number"))?,
+        };
+        self.change(|simulation| {
+            simulation.reset(seed);
+            Ok(())
+        })
     }
 
-    /// The next frame; None after the last. Raises ValueError.
-    fn step<'py>(&mut self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+    /// A step by hand of `dt` seconds: what was set goes there, all else goes on as the scene says. Raises ValueError.
+    fn step(&mut self, py: Python, dt: f64) -> PyResult<()> {
+        let going = &mut self.going;
+        guarded(|| py.detach(|| on(going, |simulation| simulation.step(dt))))
+    }
+
+    /// What everything is like now, as a frame; before any step, the scene's first. Raises ValueError.
+    fn observe<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let going = &mut self.going;
         guarded(|| {
-            let (going, plan) = (&mut self.going, &self.plan);
-            let frame = py.detach(|| {
-                going.with_dependent_mut(|_, simulation| {
-                    let frame = simulation.next_frame().map_err(exception)?;
-                    Ok::<_, PyErr>(frame.cloned())
-                })
-            })?;
-            let Some(frame) = frame else {
-                return Ok(None);
-            };
-            self.n_done += 1;
-            frame_of(py, plan, frame).map(Some)
+            let frame = py.detach(|| on(going, |simulation| simulation.observe().cloned()))?;
+            frame_of(py, &self.plan, frame)
         })
+    }
+
+    /// From the next step on an object is here, in the world: (7,) or (4, 4). A free one comes to rest from here. Raises ValueError.
+    fn set_object_pose(&mut self, object: &str, pose: &Bound<PyAny>) -> PyResult<()> {
+        let pose = one_pose(pose)?;
+        self.change(|simulation| simulation.set_object_pose(object, pose))
+    }
+
+    /// From the next step on the base of a robot is here, in the world: (7,) or (4, 4). Raises ValueError.
+    fn set_robot_pose(&mut self, robot: &str, pose: &Bound<PyAny>) -> PyResult<()> {
+        let pose = one_pose(pose)?;
+        self.change(|simulation| simulation.set_robot_pose(robot, pose))
+    }
+
+    /// From the next step on the joints of a robot are here: (n_joints,) in the order of `robots`, radians and metres. Raises ValueError.
+    fn set_joint_positions(&mut self, robot: &str, positions: &Bound<PyAny>) -> PyResult<()> {
+        let is_shape = |shape: &[usize]| shape.len() == 1;
+        view("positions", positions, "(n_joints,)", is_shape, |array| {
+            let positions: Vec<f64> = array.iter().copied().collect();
+            self.change(|simulation| simulation.set_joint_positions(robot, &positions))
+        })
+    }
+
+    /// The skin of a patch, in its own frame. Raises ValueError.
+    fn patch(&self, name: &str) -> PyResult<Patch> {
+        let patches = self.plan.patches.iter();
+        let mut patches = patches.filter(|patch| patch.skin.name() == name);
+        let found = patches.next().map(|patch| Patch::of(patch.skin.clone()));
+        found.ok_or_else(|| bad_input("patch", format!("`{name}`"), self.patches().join(", ")))
+    }
+
+    /// Seconds since the start.
+    #[getter]
+    fn time(&mut self) -> f64 {
+        self.going
+            .with_dependent_mut(|_, simulation| simulation.time())
+    }
+
+    /// By name, the names of their joints that move.
+    #[getter]
+    fn robots<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let robots = PyDict::new(py);
+        for robot in &self.plan.robots {
+            let joints = robot.robot.coordinates().iter();
+            let joints: Vec<&str> = joints.map(|joint| joint.name.as_str()).collect();
+            robots.set_item(&robot.name, joints)?;
+        }
+        Ok(robots)
     }
 
     fn __iter__(slf: Bound<'_, Self>) -> Bound<'_, Self> {
@@ -91,7 +164,15 @@ impl Simulation {
     }
 
     fn __next__<'py>(&mut self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
-        self.step(py)
+        let (going, plan) = (&mut self.going, &self.plan);
+        guarded(|| {
+            let frame = py.detach(|| {
+                on(going, |simulation| {
+                    simulation.next_frame().map(|frame| frame.cloned())
+                })
+            });
+            frame?.map(|frame| frame_of(py, plan, frame)).transpose()
+        })
     }
 
     /// Of the whole scene.
@@ -127,8 +208,41 @@ impl Simulation {
     }
 
     fn __repr__(&self) -> String {
-        let (place, n, done) = (&self.plan.place, self.plan.n_frames, self.n_done);
-        format!("<bubbletouch.Simulation {place}: {done} of {n} frames>")
+        let plan = &self.plan;
+        let [patches, objects] = [plan.patches.len(), plan.objects.len()];
+        format!(
+            "<bubbletouch.Simulation {}: {patches} patches, {objects} objects, {} frames>",
+            plan.place, plan.n_frames
+        )
+    }
+}
+
+impl Simulation {
+    fn change(
+        &mut self,
+        change: impl FnOnce(&mut Going) -> bubbletouch::Result<()>,
+    ) -> PyResult<()> {
+        guarded(|| on(&mut self.going, change))
+    }
+}
+
+/// What a call of the simulation returns.
+fn on<T>(
+    going: &mut OnItsWay,
+    call: impl FnOnce(&mut Going) -> bubbletouch::Result<T>,
+) -> PyResult<T> {
+    going.with_dependent_mut(|_, simulation| call(simulation).map_err(exception))
+}
+
+/// `world_from_…`.
+fn one_pose(given: &Bound<PyAny>) -> PyResult<Pose> {
+    let poses = Poses::of("pose", given)?;
+    match (poses.is_one, &poses.poses[..]) {
+        (true, &[pose]) => Ok(pose),
+        (_, several) => {
+            let given = format!("{} poses", several.len());
+            Err(bad_input("pose", given, "one, (7,) or (4, 4)"))
+        }
     }
 }
 
@@ -137,7 +251,10 @@ fn frame_of<'py>(py: Python<'py>, plan: &ScenePlan, frame: Frame) -> PyResult<Bo
     for (patch, reading) in plan.patches.iter().zip(frame.patches) {
         let shape = patch.skin.layout().as_grid();
         let shape = shape.map_or(vec![patch.skin.n_taxels()], |grid| vec![grid.ny, grid.nx]);
-        patches.set_item(patch.skin.name(), patch_of(py, &shape, reading)?)?;
+        let force3 = force3(patch, &reading);
+        let said = patch_of(py, &shape, reading)?;
+        said.set_item("force3", to_rows(py, force3.into_iter()))?;
+        patches.set_item(patch.skin.name(), said)?;
     }
     for (object, reading) in plan.objects.iter().zip(&frame.objects) {
         let of_object = PyDict::new(py);
@@ -156,6 +273,20 @@ fn frame_of<'py>(py: Python<'py>, plan: &ScenePlan, frame: Frame) -> PyResult<Bo
     said.set_item("patches", patches)?;
     said.set_item("objects", objects)?;
     Ok(said)
+}
+
+/// What objects put on each taxel along its axis, and with friction sideways.
+fn force3(patch: &PlannedPatch, reading: &PatchReading) -> Vec<DVec3> {
+    match &reading.friction {
+        Some(friction) => friction.force3.clone(),
+        None => {
+            let layout = patch.skin.layout();
+            let forces = reading.force.iter().enumerate();
+            forces
+                .map(|(taxel, force)| -*force * layout.axes()[taxel])
+                .collect()
+        }
+    }
 }
 
 fn patch_of<'py>(

@@ -4,7 +4,9 @@ use crate::errors::{bad_input, exception, guarded};
 use crate::threads::{Stop, aside};
 use bubbletouch::Error;
 use bubbletouch::Result;
-use bubbletouch::kinds::{Source, load};
+use bubbletouch::kinds::{Source, load, read_tables};
+use bubbletouch::report::advice::{self, Offers, Wish};
+use bubbletouch::report::advice_answers::{answers, answers_json};
 use bubbletouch::study::journal::{JOURNAL_FILE, Journal};
 use bubbletouch::study::pieces::{Part, PieceManner};
 use bubbletouch::study::progress::Progress;
@@ -206,5 +208,46 @@ pub fn toml_of(json: &str) -> PyResult<String> {
         };
         let table: toml::Table = serde_json::from_str(json).map_err(|error| failed(&error))?;
         toml::to_string(&table).map_err(|error| failed(&error))
+    })
+}
+
+/// What the results in a folder advise, as JSON: at least so good, or at most so dear. Raises ValueError.
+#[pyfunction]
+#[pyo3(signature = (results, reach, budget, value, cost, table, given, worst))]
+#[expect(clippy::too_many_arguments, reason = "named in Python")]
+pub fn advise(
+    results: PathBuf,
+    reach: Option<f64>,
+    budget: Option<f64>,
+    value: Option<String>,
+    cost: Option<String>,
+    table: Option<String>,
+    given: Vec<String>,
+    worst: bool,
+) -> PyResult<String> {
+    guarded(|| {
+        let wish = match (reach, budget) {
+            (Some(reach), None) => Wish::Value(reach),
+            (None, Some(most)) => Wish::Budget(most),
+            _ => {
+                let given = "both or neither of what is needed and a budget";
+                return Err(bad_input(
+                    "advise",
+                    given,
+                    "one of accuracy, reach and budget",
+                ));
+            }
+        };
+        let (_, tables) = read_tables(&results).map_err(exception)?;
+        let asked = advice::Asked {
+            table,
+            value,
+            cost,
+            given,
+        };
+        let said = Offers::of(&tables, &asked)
+            .map_err(|error| error.under(format!("{}: ", results.display())))
+            .and_then(|offers| Ok(answers_json(&offers, &answers(&offers, wish, worst)?)));
+        said.map(|said| said.to_string()).map_err(exception)
     })
 }

@@ -69,6 +69,28 @@ fn whole(place: &str, given: &Bound<PyAny>) -> PyResult<Vec<usize>> {
     })
 }
 
+/// What is predicted of rows, without the interpreter's lock, on the threads of the pool.
+fn predicted<T: Send>(
+    features: &Bound<PyAny>,
+    predict: impl FnOnce(&Array2<f64>) -> bubbletouch::Result<T> + Send,
+) -> PyResult<T> {
+    let (py, features, pool) = (features.py(), rows_of(features)?, pool()?);
+    let predicted = py.detach(|| pool.install(|| predict(&features)));
+    predicted.map_err(exception)
+}
+
+/// What is trained, and from what: models are pickled as that.
+fn trained<T: Send + 'static>(
+    features: &Bound<PyAny>,
+    labels: &Bound<PyAny>,
+    train: impl FnOnce(&Dataset) -> bubbletouch::Result<T> + Send + 'static,
+) -> PyResult<(T, Arc<Dataset>)> {
+    let data = Arc::new(data_of(features, labels)?);
+    let rows = Arc::clone(&data);
+    let model = aside(features.py(), move |_| train(&rows))?;
+    Ok((model.map_err(exception)?, data))
+}
+
 fn data_of(features: &Bound<PyAny>, labels: &Bound<PyAny>) -> PyResult<Dataset> {
     let labels = Array1::from(whole("labels", labels)?);
     dataset(rows_of(features)?, labels).map_err(exception)
@@ -138,22 +160,15 @@ impl KernelSvm {
     /// Trains on features (n, m) and labels (n,). Raises ValueError.
     #[staticmethod]
     fn train(
-        py: Python,
         features: &Bound<PyAny>,
         labels: &Bound<PyAny>,
         params: Bound<PyDict>,
     ) -> PyResult<Self> {
         guarded(|| {
-            let asked: Asked = params.extract()?;
-            let params_of = asked.params()?;
-            let data = Arc::new(data_of(features, labels)?);
-            let rows = Arc::clone(&data);
-            let trained = aside(py, move |_| params_of.train(&rows))?;
-            Ok(Self {
-                model: trained.map_err(exception)?,
-                asked: params.copy()?.unbind(),
-                data,
-            })
+            let asked = params.extract::<Asked>()?.params()?;
+            let (model, data) = trained(features, labels, move |rows| asked.train(rows))?;
+            let asked = params.copy()?.unbind();
+            Ok(Self { model, asked, data })
         })
     }
 
@@ -164,10 +179,9 @@ impl KernelSvm {
         features: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray1<i64>>> {
         guarded(|| {
-            let (features, pool) = (rows_of(features)?, pool()?);
             let label = |rows: ArrayView2<f64>| self.model.labels(rows);
-            let labels = py.detach(|| pool.install(|| in_parts(&features, label)));
-            Ok(to_integers(py, labels.map_err(exception)?.iter().flatten()))
+            let labels = predicted(features, |rows| in_parts(rows, label))?;
+            Ok(to_integers(py, labels.iter().flatten()))
         })
     }
 
@@ -178,10 +192,8 @@ impl KernelSvm {
         features: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         guarded(|| {
-            let (features, pool) = (rows_of(features)?, pool()?);
             let value = |rows: ArrayView2<f64>| self.model.decision_values(rows);
-            let values = py.detach(|| pool.install(|| in_parts(&features, value)));
-            let values = values.map_err(exception)?;
+            let values = predicted(features, |rows| in_parts(rows, value))?;
             let views: Vec<ArrayView2<f64>> = values.iter().map(|part| part.view()).collect();
             let values = concatenate(Axis(0), &views).expect("parts have the same columns");
             Ok(values.into_pyarray(py))
@@ -241,9 +253,7 @@ pub struct LinearModel {
 impl LinearModel {
     /// Trains on features (n, m) and labels (n,). Raises ValueError.
     #[staticmethod]
-    #[expect(clippy::too_many_arguments, reason = "named in Python")]
     fn train(
-        py: Python,
         features: &Bound<PyAny>,
         labels: &Bound<PyAny>,
         multiclass: &str,
@@ -269,14 +279,10 @@ impl LinearModel {
                 tolerance,
                 max_passes,
             };
-            let data = Arc::new(data_of(features, labels)?);
-            let rows = Arc::clone(&data);
-            let trained = aside(py, move |_| params.train(&rows, &Seed::new(seed)))?;
-            Ok(Self {
-                svm: trained.map_err(exception)?,
-                asked: (multiclass.to_owned(), c, tolerance, max_passes, seed),
-                data,
-            })
+            let seeded = Seed::new(seed);
+            let (svm, data) = trained(features, labels, move |rows| params.train(rows, &seeded))?;
+            let asked = (multiclass.to_owned(), c, tolerance, max_passes, seed);
+            Ok(Self { svm, asked, data })
         })
     }
 
@@ -287,9 +293,8 @@ impl LinearModel {
         features: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray1<i64>>> {
         guarded(|| {
-            let (features, pool) = (rows_of(features)?, pool()?);
-            let labels = py.detach(|| pool.install(|| self.svm.labels(features.view())));
-            Ok(to_integers(py, &labels.map_err(exception)?))
+            let labels = predicted(features, |rows| self.svm.labels(rows.view()))?;
+            Ok(to_integers(py, &labels))
         })
     }
 
@@ -300,9 +305,8 @@ impl LinearModel {
         features: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         guarded(|| {
-            let (features, pool) = (rows_of(features)?, pool()?);
-            let scores = py.detach(|| pool.install(|| self.svm.scores(features.view())));
-            Ok(scores.map_err(exception)?.into_pyarray(py))
+            let scores = predicted(features, |rows| self.svm.scores(rows.view()))?;
+            Ok(scores.into_pyarray(py))
         })
     }
 

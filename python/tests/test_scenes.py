@@ -49,11 +49,10 @@ def test_a_scene_goes_frame_by_frame() -> None:
     assert palm[10]["wrench"][2] < 0 and palm[10]["signal"] is None
     assert frames[10]["objects"]["ball"]["pose"][2] == pytest.approx(-2e-3)
     assert frames[10]["objects"]["ball"]["held"] == "imposed"
-    assert simulation.step() is None
+    assert next(simulation, None) is None
     simulation.reset()
-    first = simulation.step()
-    assert first is not None and first["time"] == 0.0
-    assert "1 of 21 frames" in repr(simulation)
+    assert next(simulation)["time"] == 0.0
+    assert "1 patches, 1 objects, 21 frames" in repr(simulation)
 
 
 def test_the_same_frames_as_the_commands(tmp_path: Path, command: Command) -> None:
@@ -76,3 +75,108 @@ def test_what_cannot_be_simulated_is_refused_by_its_key(tmp_path: Path) -> None:
         bt.simulate(SCENE | {"wind": 3})
     with pytest.raises(FileNotFoundError):
         bt.simulate(tmp_path / "missing.toml")
+
+
+def same(a: dict[str, Any], b: dict[str, Any]) -> bool:
+    """Whether two frames are the same, bit by bit."""
+    pairs = [
+        (a[kind][name][key], b[kind][name][key])
+        for kind in ("patches", "objects")
+        for name in a[kind]
+        for key in a[kind][name]
+    ]
+    return all(np.array_equal(of_a, of_b) for of_a, of_b in pairs)
+
+
+def test_a_step_by_hand_is_the_scenes_own() -> None:
+    looped = list(bt.simulate(SCENE))
+    ball = {key: value for key, value in SCENE["objects"][0].items() if key != "motion"}
+    still = bt.simulate(SCENE | {"objects": [ball], "duration_s": 2.0})
+    assert same(still.observe(), looped[0])
+    for frame in looped[1:]:
+        still.set_object_pose("ball", frame["objects"]["ball"]["pose"])
+        still.step(0.1)
+        assert same(still.observe(), frame)
+    assert still.time == pytest.approx(2.0)
+    with pytest.raises(ValueError, match="reset"):
+        next(still)
+    still.reset()
+    assert same(next(still), looped[0])
+
+
+def test_objects_in_memory_are_touched_as_they_are(box: bt.Mesh) -> None:
+    tennis = bt.Catalogue.builtin().object("tennis").pack(0.25e-3)
+    ball = SCENE["objects"][0]
+    given = bt.simulate(SCENE | {"objects": [ball | {"object": tennis}]})
+    assert all(same(a, b) for a, b in zip(given, bt.simulate(SCENE), strict=True))
+    at = {"position_mm": [0.0, 0.0, -1.0]}
+    boxed = bt.simulate(SCENE | {"objects": [{"name": "box", "object": box, "at": at}]})
+    frame = boxed.observe()["patches"]["palm"]
+    # A face of 40 × 30 mm lies a millimetre below the tips, which are half a pitch in front of their centres.
+    patch, pose = boxed.patch("palm"), np.array([0, 0, -1e-3, 1, 0, 0, 0])
+    np.testing.assert_allclose(frame["deflection"], patch.press(box, pose), atol=1e-9)
+    assert frame["n_touched"] >= 80
+    with pytest.raises(ValueError, match="surface_error_mm.*beside an object in memory"):
+        bt.simulate(SCENE | {"objects": [ball | {"object": tennis, "surface_error_mm": 1.0}]})
+
+
+def arm(patch: dict[str, Any]) -> dict[str, Any]:
+    urdf = Path(__file__).resolve().parents[2] / "objects" / "robots" / "arm.urdf"
+    joints = ["shoulder_turn", "shoulder_bend", "arm_turn", "elbow_bend", "forearm_turn", "wrist_bend", "flange_turn"]
+    start = {f"{joint}_rad": [0.0] for joint in joints}
+    robot = {"name": "arm", "urdf": str(urdf), "joints": {"time_s": [0.0], "positions": start}}
+    return SCENE | {"robots": [robot], "patches": [SCENE["patches"][0] | patch]}
+
+
+def test_joints_and_bases_carry_the_skin() -> None:
+    simulation = bt.simulate(arm({"robot": "arm", "link": "forearm"}))
+    assert list(simulation.robots) == ["arm"] and len(simulation.robots["arm"]) == 7
+    before = simulation.observe()["patches"]["palm"]["pose"]
+    simulation.set_joint_positions("arm", [0.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0])
+    assert np.array_equal(simulation.observe()["patches"]["palm"]["pose"], before)
+    simulation.step(0.01)
+    bent = simulation.observe()["patches"]["palm"]["pose"]
+    assert np.linalg.norm(bent[:3] - before[:3]) > 0.05
+    simulation.set_robot_pose("arm", [0.1, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
+    simulation.step(0.01)
+    moved = simulation.observe()["patches"]["palm"]["pose"]
+    np.testing.assert_allclose(moved[:3] - bent[:3], [0.1, 0.0, 0.0], atol=1e-12)
+
+
+def test_forces_of_taxels_add_up_to_the_wrench() -> None:
+    skin = SCENE["patches"][0] | {"friction": 0.5, "shear_stiffness_n_per_m": 50.0}
+    for patch in (SCENE["patches"][0], skin):
+        frame = list(bt.simulate(SCENE | {"patches": [patch]}))[10]["patches"]["palm"]
+        total = frame["force3"].sum(axis=0)
+        assert total[2] == pytest.approx(frame["wrench"][2], rel=1e-9) and total[2] < -0.1
+
+
+def test_another_seed_is_other_noise() -> None:
+    noisy = SCENE | {"patches": [SCENE["patches"][0] | {"signal": ["force", {"noise_std_n": 0.01}]}]}
+    simulation = bt.simulate(noisy)
+    signals = []
+    for seed in (None, None, 1, 1, 2):
+        simulation.reset(seed)
+        signals.append(simulation.observe()["patches"]["palm"]["signal"])
+    assert np.array_equal(signals[0], signals[1]) and np.array_equal(signals[2], signals[3])
+    assert not np.array_equal(signals[0], signals[2]) and not np.array_equal(signals[2], signals[4])
+
+
+def test_what_cannot_be_set_is_refused() -> None:
+    simulation = bt.simulate(arm({}))
+    identity = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]
+    for call, said in [
+        (lambda: simulation.set_object_pose("bal", identity), "object: `bal`"),
+        (lambda: simulation.set_object_pose("ball", [np.nan] * 7), "pose"),
+        (lambda: simulation.set_object_pose("ball", [identity, identity]), "2 poses"),
+        (lambda: simulation.set_robot_pose("leg", identity), "robot: `leg`"),
+        (lambda: simulation.set_joint_positions("arm", [0.0]), "robots.arm.*1 positions"),
+        (lambda: simulation.set_joint_positions("arm", [9.0] * 7), "robots.arm.*at most"),
+        (lambda: simulation.set_joint_positions("arm", [[0.0] * 7]), r"shape \(1, 7\)"),
+        (lambda: simulation.step(0.0), "positive number of seconds"),
+        (lambda: simulation.step(float("nan")), "positive number of seconds"),
+        (lambda: simulation.reset(-1), "seed: -1"),
+        (lambda: simulation.patch("plam"), "patch: `plam`; palm"),
+    ]:
+        with pytest.raises(ValueError, match=said):
+            call()

@@ -69,6 +69,28 @@ def test_the_same_tables_as_the_commands(study: bt.Study, tmp_path: Path, comman
     assert (tmp_path / "out" / "study.toml").read_bytes() == (again.folder / "study.toml").read_bytes()
 
 
+def test_advice_is_the_cheapest_that_is_good_enough(study: bt.Study) -> None:
+    advice = bt.advise(study, accuracy=0.5)
+    rows = study[Path(advice["table"]).stem]
+    accuracy, cost = (np.asarray(rows[advice[key]], float) for key in ("value", "cost"))
+    # The cheapest of each condition; of all conditions, the cheapest row.
+    choices = [answer["choice"] for answer in advice["answers"] if "choice" in answer]
+    assert min(choice[advice["cost"]] for choice in choices) == cost[accuracy >= 0.5].min()
+    assert all(choice[advice["value"]] >= 0.5 for choice in choices)
+    answers = bt.advise(study.folder, budget=cost.max())["answers"]
+    assert max(answer["choice"][advice["value"]] for answer in answers) == accuracy.max()
+    (worst,) = bt.advise(study, budget=cost.max(), worst=True)["answers"]
+    assert worst["choice"][advice["value"]] <= accuracy.max()
+    with pytest.raises(ValueError, match="one of accuracy, reach and budget"):
+        bt.advise(study)
+    with pytest.raises(ValueError, match="at most 1"):
+        bt.advise(study, accuracy=1.5)
+    with pytest.raises(ValueError, match="wind"):
+        bt.advise(study, accuracy=0.5, given={"wind": 3})
+    with pytest.raises(ValueError, match="nowhere"):
+        bt.advise(study.folder / "nowhere", accuracy=0.5)
+
+
 def test_a_run_goes_on_where_it_was(study: bt.Study) -> None:
     start = time.perf_counter()
     again = bt.run(STUDY, study.folder)

@@ -1,8 +1,9 @@
 //! `bubbletouch advise`: which setting to take.
 
 use super::streams::say;
-use bubbletouch::report::advice::{Advice, Asked, Offer, Offers, Wish};
-use bubbletouch::{Error, Result, kinds};
+use bubbletouch::report::advice::{Advice, Asked, Offers, Wish};
+use bubbletouch::report::advice_answers::{Answer, answers, answers_json};
+use bubbletouch::{Result, kinds};
 use std::path::PathBuf;
 
 /// Say which setting is the cheapest that is accurate enough, or the most accurate that is cheap enough.
@@ -63,12 +64,6 @@ fn renamed(_: &str) -> std::result::Result<f64, String> {
     Err("it is called --budget, in the unit of --cost (microseconds a decision if that is left out)".to_owned())
 }
 
-/// What is advised in a condition, or why nothing is.
-struct Answer {
-    condition: String,
-    advice: Result<Advice>,
-}
-
 pub fn advise(args: &Args) -> Result<()> {
     let place = format!("{}: ", args.results.display());
     let (_, tables) = kinds::read_tables(&args.results)?;
@@ -82,9 +77,9 @@ pub fn advise(args: &Args) -> Result<()> {
         given: args.given.clone(),
     };
     let offers = Offers::of(&tables, &asked).map_err(|error| error.under(place))?;
-    let answers = args.answers(&offers)?;
+    let answers = answers(&offers, args.wish(), args.worst)?;
     match args.json {
-        true => say(json_of(&offers, &answers)),
+        true => say(answers_json(&offers, &answers)),
         false => {
             let texts = answers.iter().map(|answer| args.in_words(&offers, answer));
             say(texts.collect::<Vec<_>>().join("\n\n"))
@@ -93,38 +88,11 @@ pub fn advise(args: &Args) -> Result<()> {
 }
 
 impl Args {
-    /// An answer a condition; an error if there is advice in none.
-    fn answers(&self, offers: &Offers) -> Result<Vec<Answer>> {
-        let wish = match (self.wish.accuracy.or(self.wish.reach), self.wish.budget) {
+    fn wish(&self) -> Wish {
+        match (self.wish.accuracy.or(self.wish.reach), self.wish.budget) {
             (Some(value), _) => Wish::Value(value),
             (None, most) => Wish::Budget(most.unwrap_or(f64::NAN)),
-        };
-        let conditions = offers.by_condition();
-        let answer = |condition: String, choices: &[Offer]| Answer {
-            condition,
-            advice: offers.advise(choices, wish),
-        };
-        let answers: Vec<Answer> = if self.worst && conditions.len() > 1 {
-            let words = format!("the worst of {} conditions", conditions.len());
-            vec![answer(words, &offers.worst())]
-        } else {
-            let answer = |choices: &Vec<Offer>| answer(offers.condition(&choices[0]), choices);
-            conditions.iter().map(answer).collect()
-        };
-        if answers.iter().any(|answer| answer.advice.is_ok()) {
-            return Ok(answers);
         }
-        // Of several conditions the first speaks for all.
-        let first = answers.into_iter().next();
-        let Some((condition, Err(refused))) = first.map(|first| (first.condition, first.advice))
-        else {
-            let given = "no choice whose value and cost are known";
-            return Err(Error::input(self.results.display(), given, "at least one"));
-        };
-        Err(match condition.is_empty() {
-            true => refused,
-            false => refused.under(format!("with {condition}: ")),
-        })
     }
 
     fn in_words(&self, offers: &Offers, Answer { condition, advice }: &Answer) -> String {
@@ -161,27 +129,4 @@ impl Args {
             "\nThe next step up gains {gain} and costs {cost} more ({times:.1} times as much): {next}"
         )
     }
-}
-
-fn json_of(offers: &Offers, answers: &[Answer]) -> serde_json::Value {
-    let in_json = |offer: &Offer| offers.json(offer);
-    let answers = answers
-        .iter()
-        .map(|Answer { condition, advice }| match advice {
-            Ok(advice) => serde_json::json!({
-                "condition": condition,
-                "choice": in_json(&advice.choice),
-                "certain": advice.certain.as_ref().map(in_json),
-                "next_up": advice.next_up.as_ref().map(in_json),
-            }),
-            Err(refused) => {
-                serde_json::json!({ "condition": condition, "refused": refused.to_string() })
-            }
-        });
-    serde_json::json!({
-        "table": offers.table.file,
-        "value": offers.value.name,
-        "cost": offers.cost.name,
-        "answers": answers.collect::<Vec<_>>(),
-    })
 }

@@ -34,6 +34,11 @@ impl GridPress {
         self.sheet.deflections()
     }
 
+    /// Where they are, and how to copy them.
+    pub fn sheet(&self) -> &Sheet {
+        &self.sheet
+    }
+
     /// Keeps the spheres that press a taxel on the way to the goal, and returns the travel to first contact if the
     /// goal is a depth (`None` where no travel touches anything).
     pub(super) fn gather(

@@ -20,6 +20,20 @@ impl Sheet {
         &self.deflections[..self.n_taxels]
     }
 
+    /// The same as other numbers, n_taxels of them: `write` makes them of what is covered, the rest is zero without being looked at.
+    pub fn write_to<T: Copy + Default>(&self, to: &mut [T], write: impl Fn(&mut [T], &[f64])) {
+        assert_eq!(to.len(), self.n_taxels, "one number a taxel");
+        let mut done = 0;
+        for row in self.rows.clone() {
+            let first = row * self.n_columns;
+            let columns = first + self.columns.start..first + self.columns.end;
+            to[done..columns.start].fill(T::default());
+            write(&mut to[columns.clone()], &self.deflections[columns.clone()]);
+            done = columns.end;
+        }
+        to[done..].fill(T::default());
+    }
+
     /// Leaves all taxels of a grid at rest. What was not covered is not looked at.
     pub fn clear(&mut self, n_columns: usize, n_rows: usize) {
         if (self.n_columns, self.n_taxels) == (n_columns, n_columns * n_rows) {

@@ -65,6 +65,22 @@ impl Workspace {
         }
     }
 
+    /// The same into an array's row, n_taxels of any numbers: `write` makes them of deflections, and what a press of a grid has not come near
+    /// is filled with zeros without being read, which is faster than a copy of all.
+    ///
+    /// # Panics
+    /// If the row has not one place a taxel.
+    pub fn write_deflections<T: Copy + Default>(
+        &self,
+        row: &mut [T],
+        write: impl Fn(&mut [T], &[f64]),
+    ) {
+        match self.is_on_grid {
+            true => self.grid.sheet().write_to(row, write),
+            false => write(row, &self.deflections),
+        }
+    }
+
     /// The touched taxels of the last press, ascending; none if it was a [press](super::press_at_pose) that does not say what touches what.
     pub fn contacts(&self) -> &[TaxelContact] {
         &self.contacts

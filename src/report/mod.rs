@@ -9,6 +9,7 @@
 //! draws them, also moving.
 
 pub mod advice;
+pub mod advice_answers;
 pub(crate) mod canvas;
 pub mod chart;
 pub mod colours;

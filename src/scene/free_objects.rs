@@ -50,11 +50,7 @@ impl FreeObjects {
                 object,
                 mass,
                 center_of_mass,
-                reading: ObjectReading {
-                    pose: start,
-                    held: Held::AtRest,
-                    balance: None,
-                },
+                reading: at_start(start),
             }),
         });
         Self {
@@ -66,6 +62,13 @@ impl FreeObjects {
             balancer: Balancer::new(),
             pushed: vec![Vec::new(); plan.patches.len()],
             workspace: Workspace::new(),
+        }
+    }
+
+    /// Puts one somewhere, by the scene's number of it: from there it comes to rest in the next step.
+    pub fn put(&mut self, object: usize, pose: Pose) {
+        for free in self.all.iter_mut().filter(|free| free.object == object) {
+            free.reading = at_start(pose);
         }
     }
 
@@ -163,6 +166,14 @@ impl FreeObjects {
         for free in &self.all {
             readings[free.object] = free.reading;
         }
+    }
+}
+
+fn at_start(pose: Pose) -> ObjectReading {
+    ObjectReading {
+        pose,
+        held: Held::AtRest,
+        balance: None,
     }
 }
 

@@ -56,6 +56,7 @@
 //! # Ok::<(), bubbletouch::Error>(())
 //! ```
 
+mod by_hand;
 mod frame;
 mod free_objects;
 mod mount;

@@ -63,10 +63,28 @@ impl ScenePlan {
     ///
     /// # Errors
     /// Errors begin with `place`, its file's name, and the key.
-    pub fn new(place: &str, folder: &Path, mut spec: SceneSpec) -> Result<Self> {
+    pub fn new(place: &str, folder: &Path, spec: SceneSpec) -> Result<Self> {
+        Self::with_models(place, folder, spec, &BTreeMap::new())
+    }
+
+    /// The same with objects that are in memory, by their names in the scene, which then says of them neither `object`, `spheres` nor `mesh`.
+    ///
+    /// # Errors
+    /// Also a model whose name no object of the scene has.
+    pub fn with_models(
+        place: &str,
+        folder: &Path,
+        mut spec: SceneSpec,
+        models: &BTreeMap<String, Model>,
+    ) -> Result<Self> {
         let check = Check { place };
-        let reader = Reader { check, folder };
+        let reader = Reader {
+            check,
+            folder,
+            models,
+        };
         check_names(&reader.check, &spec)?;
+        reader.check_models(&spec.objects)?;
         let robots = spec.robots.iter().map(|robot| reader.robot(robot));
         let robots = robots.collect::<Result<Vec<_>>>()?;
         let seed = Seed::new(spec.seed);

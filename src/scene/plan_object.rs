@@ -10,6 +10,7 @@ use crate::error::Result;
 use crate::geometry::Pose;
 use crate::mesh::SizeLimits;
 use crate::objects::{Catalogue, Model};
+use crate::spelling::nearest_names;
 use crate::study::{ObjectsSpec, load_catalogue, load_mesh, load_spheres, positive};
 use crate::world::{Body, Motion};
 use glam::DVec3;
@@ -86,7 +87,23 @@ impl Reader<'_> {
         Ok((object, model))
     }
 
+    /// That every model in memory is one of the scene's objects.
+    pub fn check_models(&self, objects: &[ObjectSpec]) -> Result<()> {
+        let names = objects.iter().map(|object| object.name.as_str());
+        for name in self.models.keys() {
+            if names.clone().all(|known| known != name) {
+                let given = format!("a model for `{name}`");
+                let allowed = nearest_names(name, names);
+                return Err(self.check.error("objects", given, allowed));
+            }
+        }
+        Ok(())
+    }
+
     fn model(&self, key: &str, spec: &ObjectSpec, finest_mm: f64) -> Result<Model> {
+        if let Some(model) = self.models.get(&spec.name) {
+            return self.model_in_memory(key, spec, model);
+        }
         let has_file = spec.mesh.is_some() || spec.spheres.is_some();
         let misplaced = [
             (
@@ -152,6 +169,27 @@ impl Reader<'_> {
                 "none, or several, of object, spheres and mesh",
                 "one of them",
             )),
+        }
+    }
+
+    /// What is in memory is taken as it is.
+    fn model_in_memory(&self, key: &str, spec: &ObjectSpec, model: &Model) -> Result<Model> {
+        let shape = [
+            ("object", spec.object.is_some()),
+            ("objects", spec.objects.is_some()),
+            ("spheres", spec.spheres.is_some()),
+            ("mesh", spec.mesh.is_some()),
+            ("model", spec.model.is_some()),
+            ("unit", spec.unit.is_some()),
+            ("surface_error_mm", spec.surface_error_mm.is_some()),
+        ];
+        match shape.into_iter().find(|(_, is_given)| *is_given) {
+            None => Ok(model.clone()),
+            Some((name, _)) => {
+                let given = "given beside an object in memory";
+                let allowed = "no key of its shape: it is touched as it is";
+                Err(self.check.error(&format!("{key}.{name}"), given, allowed))
+            }
         }
     }
 

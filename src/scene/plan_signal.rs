@@ -21,8 +21,6 @@ pub struct PlannedSignal {
     chain: Chain,
     /// What it begins with.
     begins: Quantity,
-    /// The names of its frames are below it.
-    seed: Seed,
 }
 
 impl PlannedSignal {
@@ -31,11 +29,12 @@ impl PlannedSignal {
         self.chain.quantity()
     }
 
-    /// Reads what a patch feels at a frame, by its number, and at a share of the scene's time.
+    /// Reads what a patch feels, its noise of this name, at a share of the scene's time.
     pub(super) fn read(
         &self,
         reading: &mut PatchReading,
-        (frame, share): (usize, f64),
+        name: &Seed,
+        share: f64,
         scratch: &mut Scratch,
     ) {
         let felt = match self.begins {
@@ -51,8 +50,7 @@ impl PlannedSignal {
             interval: None,
             time: Some(share),
         };
-        let name = self.seed.numbered(frame as u64);
-        self.chain.apply_recording(recording, &name, scratch);
+        self.chain.apply_recording(recording, name, scratch);
     }
 }
 
@@ -91,7 +89,6 @@ impl Reader<'_> {
         Ok(Some(PlannedSignal {
             chain: self.under(key, Chain::of(&steps, skin, begins))?,
             begins,
-            seed: seed.named("signal").named(skin.name()),
         }))
     }
 

@@ -4,9 +4,11 @@ use super::spec::{MotionSpec, PlaneSpec, PoseSpec};
 use crate::contact::balance::HalfSpace;
 use crate::error::Result;
 use crate::geometry::{Pose, rotation_from_rpy};
+use crate::objects::Model;
 use crate::study::{Check, not_negative};
 use crate::world::{Motion, Phase, PoseTrajectory, VelocityPlan};
 use glam::DVec3;
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -19,6 +21,8 @@ pub(super) struct Reader<'a> {
     pub check: Check<'a>,
     /// What its paths are relative to.
     pub folder: &'a Path,
+    /// Objects in memory, by their names in the scene.
+    pub models: &'a BTreeMap<String, Model>,
 }
 
 impl Reader<'_> {

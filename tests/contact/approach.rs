@@ -28,6 +28,22 @@ fn random_union(rng: &mut impl Rng) -> SphereUnion {
     SphereUnion::new(spheres.collect()).unwrap()
 }
 
+/// Whatever stood in a row, deflections are written over all of it, as doubles and as singles.
+fn assert_rows_are_written(workspace: &Workspace) {
+    let deflections = workspace.deflections();
+    let mut doubles = vec![f64::NAN; deflections.len()];
+    workspace.write_deflections(&mut doubles, <[f64]>::copy_from_slice);
+    assert_eq!(doubles, deflections);
+    let mut singles = vec![f32::NAN; deflections.len()];
+    workspace.write_deflections(&mut singles, |row, deflections| {
+        for (single, double) in row.iter_mut().zip(deflections) {
+            *single = *double as f32;
+        }
+    });
+    let rounded = deflections.iter().map(|double| *double as f32);
+    assert!(singles.into_iter().eq(rounded));
+}
+
 #[test]
 fn on_a_grid_it_is_the_grids_own_press() {
     let mut rng = rng("approach", 0);
@@ -55,6 +71,8 @@ fn on_a_grid_it_is_the_grids_own_press() {
         for (own, grid) in workspace.deflections().iter().zip(of_grid.deflections()) {
             assert!((own - grid).abs() < 1e-12, "case {case}: {own} for {grid}");
         }
+        assert_rows_are_written(&workspace);
+        assert_rows_are_written(&of_grid);
         if let (Some(touch), Some(contact)) = (touch, contact) {
             assert!((touch.travel - contact.travel).abs() < 1e-12, "case {case}");
             assert_eq!(touch.n_touched, contact.n_touched, "case {case}");

@@ -16,6 +16,7 @@ mod placement_rest;
 mod placement_touches;
 mod robot_motion;
 mod robot_urdf;
+mod scene_by_hand;
 mod scene_errors;
 mod scene_forces;
 mod scene_laws;

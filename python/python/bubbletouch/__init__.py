@@ -23,7 +23,7 @@ from bubbletouch._core import (
     touch_poses,
     write_frame,
 )
-from bubbletouch.study import Study, Table, run, simulate
+from bubbletouch.study import Study, Table, advise, run, simulate
 
 __all__ = [
     "Catalogue",
@@ -40,6 +40,7 @@ __all__ = [
     "Step",
     "Study",
     "Table",
+    "advise",
     "run",
     "simulate",
     "touch_poses",

@@ -24,6 +24,7 @@ __all__ = [
     "Step",
     "_kernel_pace",
     "_panic",
+    "advise",
     "choose_svm",
     "run_study",
     "toml_of",
@@ -636,22 +637,51 @@ class Reconstructor:
 
 @final
 class Simulation:
-    """A scene frame by frame, from its text: bubbletouch.simulate takes a file or a dict.
+    """A scene, from its text: bubbletouch.simulate takes a file or a dict.
 
-    It is an iterator of frames, each a dict:
+    It is an iterator of frames, one after the other as the scene says; or a program moves things itself, step by step, with set_…(),
+    step(dt) and observe(). Frames are dicts:
 
     - time: seconds;
-    - patches: of each by name pose (7,) in the world, deflection (ny, nx) or (n_taxels,) in metres, force likewise in newtons, signal (or
-      None), wrench (6,) of force and torque on the patch in its frame, n_touched, n_saturated;
+    - patches: of each by name pose (7,) in the world, deflection (ny, nx) or (n_taxels,) in metres, force likewise in newtons, force3
+      (n_taxels, 3) on each taxel along its axis, and sideways too with friction, in newtons in the frame of the patch, signal (or None),
+      wrench (6,) of force and torque on the patch in its frame, n_touched, n_saturated;
     - objects: of each by name pose (7,) in the world, and held: imposed, pressed, at rest, unsettled or escaped.
     """
 
-    def __new__(cls, text: str, place: str, folder: _Path) -> Simulation: ...
-    def reset(self) -> None:
-        """Back to before the first frame."""
+    def __new__(
+        cls, text: str, place: str, folder: _Path, models: dict[str, Mesh | SphereUnion]
+    ) -> Simulation: ...
+    def reset(self, seed: int | None = None) -> None:
+        """Back to before the first frame, and nothing is set by hand any more. The skin stays as it is; the noise of its readings is that of
+        `seed` (None: the scene's own). Raises ValueError.
+        """
 
-    def step(self) -> dict[str, Any] | None:
-        """The next frame; None after the last. Raises ValueError."""
+    def step(self, dt: float) -> None:
+        """A step by hand of `dt` seconds: what was set goes there, all else goes on as the scene says. Raises ValueError."""
+
+    def observe(self) -> dict[str, Any]:
+        """What everything is like now, as a frame; before any step, the scene's first. Raises ValueError."""
+
+    def set_object_pose(self, object: str, pose: ArrayLike) -> None:
+        """From the next step on an object is here, in the world: (7,) or (4, 4). A free one comes to rest from here. Raises ValueError."""
+
+    def set_robot_pose(self, robot: str, pose: ArrayLike) -> None:
+        """From the next step on the base of a robot is here, in the world: (7,) or (4, 4). Raises ValueError."""
+
+    def set_joint_positions(self, robot: str, positions: ArrayLike) -> None:
+        """From the next step on the joints of a robot are here: (n_joints,) in the order of `robots`, radians and metres. Raises ValueError."""
+
+    def patch(self, name: str) -> Patch:
+        """The skin of a patch, in its own frame. Raises ValueError."""
+
+    @property
+    def time(self) -> float:
+        """Seconds since the start."""
+
+    @property
+    def robots(self) -> dict[str, list[str]]:
+        """By name, the names of their joints that move."""
 
     def __iter__(self) -> Simulation: ...
     def __next__(self) -> dict[str, Any]: ...
@@ -773,6 +803,18 @@ def run_study(
     callback: Callable[[str, int, int], object] | None = None,
 ) -> list[tuple[str, str, str, dict[str, Any]]]:
     """Runs a study (TOML) into a folder: of each table its file's name, title, note and columns."""
+
+def advise(
+    results: _Path,
+    reach: float | None,
+    budget: float | None,
+    value: str | None,
+    cost: str | None,
+    table: str | None,
+    given: list[str],
+    worst: bool,
+) -> str:
+    """What the results in a folder advise, as JSON: at least so good, or at most so dear. Raises ValueError."""
 
 def toml_of(json: str) -> str:
     """A study in TOML from the same in JSON."""

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bubbletouch import _core
-from bubbletouch._core import Simulation
+from bubbletouch._core import Mesh, Simulation, SphereUnion
 
 Callback = Callable[[str, int, int], object]
 
@@ -138,15 +138,65 @@ def run(
     return Study(results, tables, kept)
 
 
+def advise(
+    results: Study | str | PathLike[str],
+    *,
+    accuracy: float | None = None,
+    reach: float | None = None,
+    budget: float | None = None,
+    value: str | None = None,
+    cost: str | None = None,
+    table: str | None = None,
+    given: Mapping[str, Any] | None = None,
+    worst: bool = False,
+) -> dict[str, Any]:
+    """Which setting of a study to take, as `bubbletouch advise --json` says: the cheapest that is good enough, or the best that is cheap enough.
+
+    results: a Study, or a folder of results. One of accuracy (a share), reach (of another value, in its unit) and budget (the most that it may
+    cost, in the unit of its column). value, cost, table: columns and a table's file, if not the usual ones. given: conditions, such as
+    {"noise": 0.05}. worst: one answer for all conditions.
+
+    A dict: table, value, cost, and answers, each with a condition and choice, certain and next_up (rows by column, or None), or refused.
+    Raises ValueError where no choice is, and where there are no results; OSError for files that cannot be read.
+    """
+    if accuracy is not None:
+        if reach is not None or value is not None:
+            raise ValueError("accuracy: beside reach or value; one of them")
+        reach, value = accuracy, "accuracy"
+    folder = results.folder if isinstance(results, Study) else Path(results)
+    conditions = [f"{name}={of}" for name, of in (given or {}).items()]
+    said: dict[str, Any] = json.loads(_core.advise(folder, reach, budget, value, cost, table, conditions, worst))
+    return said
+
+
 def simulate(scene: str | PathLike[str] | Mapping[str, Any]) -> Simulation:
     """A scene, ready for its first frame: a TOML file, or its tables as a dict (paths in it are then relative to the working folder).
+
+    The "object" of one of a dict's objects may be a Mesh or a SphereUnion in place of a name; it is touched as it is.
 
     Raises ValueError for what cannot be simulated, by key; OSError for a file that cannot be read.
     """
     if isinstance(scene, Mapping):
-        return Simulation(_core.toml_of(_json(scene)), "scene", Path())
+        tables, models = _in_memory(scene)
+        return Simulation(_core.toml_of(_json(tables)), "scene", Path(), models)
     path = Path(scene)
-    return Simulation(path.read_text(encoding="utf-8"), str(path), path.parent)
+    return Simulation(path.read_text(encoding="utf-8"), str(path), path.parent, {})
+
+
+def _in_memory(scene: Mapping[str, Any]) -> tuple[Mapping[str, Any], dict[str, Mesh | SphereUnion]]:
+    """A scene without its objects in memory, and these by their names in it."""
+    models: dict[str, Mesh | SphereUnion] = {}
+
+    def named(given: Any) -> Any:
+        if not isinstance(given, Mapping) or not isinstance(given.get("object"), Mesh | SphereUnion):
+            return given
+        models[str(given.get("name", ""))] = given["object"]
+        return {key: value for key, value in given.items() if key != "object"}
+
+    objects = scene.get("objects")
+    if not isinstance(objects, list | tuple):
+        return scene, models
+    return {**scene, "objects": [named(given) for given in objects]}, models
 
 
 def _json(study: Mapping[str, Any]) -> str:

@@ -1,0 +1,382 @@
+//! Scenes by hand: the same steps as the time loop's, whoever says where things go; what cannot be set is refused.
+
+use bubbletouch::geometry::Pose;
+use bubbletouch::objects::{Catalogue, Model};
+use bubbletouch::scene::{Frame, Held, Movement, ScenePlan, SceneSpec, Simulation, Stepping};
+use glam::{DQuat, DVec3};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+fn plan(text: &str) -> ScenePlan {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+    ScenePlan::new("s.toml", folder, SceneSpec::parse("s.toml", text).unwrap()).unwrap()
+}
+
+fn frames(plan: &ScenePlan) -> Vec<Frame> {
+    let mut frames = Vec::new();
+    let mut simulation = Simulation::new(plan, Stepping::AsNeeded);
+    simulation.run(&mut [&mut frames]).unwrap();
+    frames
+}
+
+/// Frames of a scene whose things a program puts where `set` says that they are at a time. Steps are as long as the loop's: numbers of
+/// seconds that add up without rounding.
+fn by_hand(plan: &ScenePlan, set: impl Fn(&mut Simulation, f64)) -> Vec<Frame> {
+    let mut simulation = Simulation::new(plan, Stepping::AsNeeded);
+    let dt = 1.0 / (plan.output_rate * plan.n_substeps as f64);
+    set(&mut simulation, 0.0);
+    let mut frames = vec![simulation.observe().unwrap().clone()];
+    for _ in 1..plan.n_frames {
+        for _ in 0..plan.n_substeps {
+            let time = simulation.time() + dt;
+            set(&mut simulation, time);
+            simulation.step(dt).unwrap();
+        }
+        frames.push(simulation.observe().unwrap().clone());
+    }
+    frames
+}
+
+/// 64 frames a second, four steps each.
+const CLOCK: &str = "title = \"By hand\"\noutput_hz = 64.0\ndt_ms = 3.90625\nduration_s = 0.75";
+
+const MOTION: &str = "motion = { phases = [
+    { duration_s = 0.25, linear_mm_per_s = [0.0, 5.0, -20.0] },
+    { duration_s = 0.5, linear_mm_per_s = [60.0, 0.0, 0.0], angular_deg_per_s = [0.0, 10.0, 70.0] },
+] }";
+
+/// A pear slides over a damped skin with friction and noise, and a ball is pushed onto another.
+fn sliding(motion: &str) -> String {
+    format!(
+        r#"{CLOCK}
+        [[patches]]
+        name = "skin"
+        layout = {{ grid = {{ nx = 24, ny = 16, pitch_mm = 3.0 }} }}
+        stroke_mm = 6.0
+        damping_n_s_per_m = 3.0
+        friction = 0.6
+        shear_stiffness_n_per_m = 80.0
+        signal = ["force", {{ drift_std_full_scale = 0.05 }}, {{ noise_std_n = 0.01 }}]
+        [[patches]]
+        name = "scale"
+        at = {{ position_mm = [300.0, 0.0, 0.0] }}
+        layout = {{ hexagonal = {{ nx = 16, ny = 16, pitch_mm = 4.0 }} }}
+        stroke_mm = 5.0
+        [[objects]]
+        name = "pear"
+        object = "pear"
+        at = {{ position_mm = [-10.0, 3.0, 3.0] }}
+        {motion}
+        [[objects]]
+        name = "ball"
+        object = "tennis"
+        at = {{ position_mm = [300.0, 0.0, 3.0] }}
+        {motion}
+        press = {{ patch = "scale", direction = [0.0, 0.0, -1.0], force_n = 2.0, speed_mm_per_s = 40.0, travel_mm = 12.0 }}
+        "#
+    )
+}
+
+#[test]
+fn a_step_by_hand_is_the_time_loops() {
+    let (looped, still) = (plan(&sliding(MOTION)), plan(&sliding("")));
+    let set = |simulation: &mut Simulation, time: f64| {
+        for object in &looped.objects {
+            let Movement::Imposed(motion) = &object.movement else {
+                panic!("both go where they are told");
+            };
+            let pose = motion.pose_at(time);
+            simulation.set_object_pose(&object.name, pose).unwrap();
+        }
+    };
+    let frames = frames(&looped);
+    assert!(
+        frames
+            .iter()
+            .any(|frame| frame.patches.iter().all(|patch| patch.n_touched > 20))
+    );
+    let slipping = |frame: &Frame| frame.patches[0].friction.as_ref().unwrap().n_slipping;
+    assert!(frames.iter().any(|frame| slipping(frame) > 0));
+    assert!(frames == by_hand(&still, set));
+    // What nobody sets goes on as the scene says.
+    assert!(frames == by_hand(&looped, |_, _| {}));
+}
+
+#[test]
+fn joints_and_bases_by_hand_move_skin_as_trajectories_do() {
+    let arm = |joints: &str| {
+        let names = [
+            "shoulder_turn",
+            "shoulder_bend",
+            "arm_turn",
+            "elbow_bend",
+            "forearm_turn",
+            "wrist_bend",
+            "flange_turn",
+        ];
+        let rest = names.map(|name| match name {
+            "shoulder_turn" => format!("shoulder_turn_deg = {joints}"),
+            "shoulder_bend" => "shoulder_bend_deg = [90.0, 90.0]".to_owned(),
+            other => format!("{other}_deg = [0.0, 0.0]"),
+        });
+        format!(
+            r#"{CLOCK}
+            [[robots]]
+            name = "arm"
+            urdf = "objects/robots/arm.urdf"
+            joints = {{ time_s = [0.0, 0.75], positions = {{ {} }} }}
+            [[robots]]
+            name = "tray"
+            floating = true
+            at = {{ position_mm = [2000.0, 0.0, 0.0] }}
+            [[patches]]
+            name = "forearm"
+            robot = "arm"
+            link = "forearm"
+            at = {{ position_mm = [0.0, 0.0, 120.0] }}
+            layout = {{ cylinder = {{ radius_mm = 51.0, length_mm = 220.0, arc_deg = 360.0, pitch_mm = 8.0 }} }}
+            stroke_mm = 5.0
+            damping_n_s_per_m = 2.0
+            [[patches]]
+            name = "sheet"
+            robot = "tray"
+            layout = {{ grid = {{ nx = 24, ny = 24, pitch_mm = 5.0 }} }}
+            stroke_mm = 8.0
+            [[objects]]
+            name = "football"
+            object = "soccer"
+            at = {{ position_mm = [470.0, -120.0, 33.5] }}
+            [[objects]]
+            name = "mug"
+            object = "mug"
+            surface_error_mm = 2.0
+            at = {{ position_mm = [2005.0, 0.0, 40.0] }}
+            free = {{ mass_kg = 0.118 }}
+            "#,
+            rest.join(", ")
+        )
+    };
+    let turning = plan(&arm("[-40.0, 0.0]"));
+    let rise = "motion = { way_points = [{ time_s = 0.0, position_mm = [2000.0, 0.0, 0.0] }, { time_s = 0.75, position_mm = [2000.0, 0.0, 9.0] }] }";
+    let at = "at = { position_mm = [2000.0, 0.0, 0.0] }";
+    let moved = plan(&arm("[-40.0, 0.0]").replace(at, rise));
+    let still = plan(&arm("[-40.0, -40.0]"));
+    let set = |simulation: &mut Simulation, time: f64| {
+        let joints = turning.robots[0].joints.as_ref().unwrap();
+        simulation
+            .set_joint_positions("arm", &joints.positions_at(time))
+            .unwrap();
+        let tray = moved.robots[1].base.pose_at(time);
+        simulation.set_robot_pose("tray", tray).unwrap();
+    };
+    let frames = frames(&moved);
+    assert!(frames.iter().any(|frame| frame.patches[0].n_touched > 10));
+    assert!(
+        frames
+            .iter()
+            .all(|frame| frame.objects[1].held == Held::AtRest)
+    );
+    assert!(
+        frames[48].objects[1].pose.translation.z - frames[0].objects[1].pose.translation.z > 8e-3
+    );
+    assert!(frames == by_hand(&still, set));
+}
+
+#[test]
+fn a_reset_is_a_new_start_and_another_seed_is_other_noise() {
+    let plan = plan(&sliding(MOTION));
+    let frames = frames(&plan);
+    let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);
+    simulation
+        .set_object_pose("pear", Pose::from_translation(DVec3::Z))
+        .unwrap();
+    for _ in 0..5 {
+        simulation.step(0.01).unwrap();
+        simulation.observe().unwrap();
+    }
+    assert!(
+        simulation
+            .next_frame()
+            .unwrap_err()
+            .to_string()
+            .contains("reset")
+    );
+    simulation.reset(plan.spec.seed);
+    let mut again = Vec::new();
+    simulation.run(&mut [&mut again]).unwrap();
+    assert!(frames == again);
+    simulation.reset(plan.spec.seed + 1);
+    let mut other = Vec::new();
+    simulation.run(&mut [&mut other]).unwrap();
+    let [a, b] = [&frames, &other].map(|frames| &frames[40].patches[0]);
+    assert_eq!(a.deflection, b.deflection);
+    let differ = a
+        .signal
+        .iter()
+        .flatten()
+        .zip(b.signal.iter().flatten())
+        .filter(|(a, b)| a != b);
+    assert!(differ.count() > 300);
+}
+
+#[test]
+fn a_frame_is_made_once_and_the_first_is_the_scenes() {
+    let plan = plan(&sliding(MOTION));
+    let frames = frames(&plan);
+    let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);
+    for _ in 0..3 {
+        assert!(*simulation.observe().unwrap() == frames[0]);
+    }
+    assert!(*simulation.next_frame().unwrap().unwrap() == frames[1]);
+    assert!(*simulation.observe().unwrap() == frames[1]);
+}
+
+#[test]
+fn a_free_object_that_was_lost_is_put_back() {
+    let text = format!(
+        "{CLOCK}
+        [[patches]]
+        name = \"sheet\"
+        layout = {{ grid = {{ nx = 24, ny = 24, pitch_mm = 5.0 }} }}
+        stroke_mm = 8.0
+        [[objects]]
+        name = \"mug\"
+        object = \"mug\"
+        surface_error_mm = 2.0
+        at = {{ position_mm = [900.0, 0.0, 40.0] }}
+        free = {{ mass_kg = 0.118 }}"
+    );
+    let plan = plan(&text);
+    let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);
+    let held = |simulation: &mut Simulation| simulation.observe().unwrap().objects[0].held;
+    assert!(matches!(held(&mut simulation), Held::Escaped { .. }));
+    simulation
+        .set_object_pose("mug", Pose::from_translation(0.04 * DVec3::Z))
+        .unwrap();
+    simulation.step(0.01).unwrap();
+    assert_eq!(held(&mut simulation), Held::AtRest);
+}
+
+#[test]
+fn objects_in_memory_are_those_of_the_catalogue() {
+    let named = sliding(MOTION);
+    let spec = |text: &str| SceneSpec::parse("s.toml", text).unwrap();
+    let without = named
+        .replace("object = \"pear\"\n", "\n")
+        .replace("object = \"tennis\"\n", "\n");
+    let catalogue = Catalogue::builtin().unwrap();
+    let model = |name: &str| -> Model {
+        catalogue
+            .object(name)
+            .unwrap()
+            .build(0.25e-3)
+            .unwrap()
+            .model
+    };
+    let models = BTreeMap::from([
+        ("pear".to_owned(), model("pear")),
+        ("ball".to_owned(), model("tennis")),
+    ]);
+    let folder = Path::new("");
+    let plan_of = |text: &str, models: &BTreeMap<String, Model>| {
+        ScenePlan::with_models("s.toml", folder, spec(text), models)
+    };
+    let given = plan_of(&without, &models).unwrap();
+    assert!(frames(&given) == frames(&plan(&named)));
+    let said = |text: &str, models: &BTreeMap<String, Model>| {
+        plan_of(text, models).unwrap_err().to_string()
+    };
+    let twice = said(&named, &models);
+    assert!(
+        twice.contains("objects.pear.object: given beside an object in memory"),
+        "{twice}"
+    );
+    let unknown = said(
+        &named,
+        &BTreeMap::from([("peer".to_owned(), model("pear"))]),
+    );
+    assert!(
+        unknown.contains("a model for `peer`") && unknown.contains("pear"),
+        "{unknown}"
+    );
+}
+
+#[test]
+fn what_cannot_be_set_is_refused_and_nothing_moves() {
+    let text = format!(
+        "{CLOCK}
+        [[robots]]
+        name = \"arm\"
+        urdf = \"objects/robots/arm.urdf\"
+        joints = {{ time_s = [0.0], positions = {{ shoulder_turn_deg = [0.0], shoulder_bend_deg = [0.0], arm_turn_deg = [0.0], elbow_bend_deg = [0.0], forearm_turn_deg = [0.0], wrist_bend_deg = [0.0], flange_turn_deg = [0.0] }} }}
+        [[patches]]
+        name = \"sheet\"
+        layout = {{ grid = {{ nx = 4, ny = 4, pitch_mm = 5.0 }} }}
+        stroke_mm = 8.0
+        [[objects]]
+        name = \"ball\"
+        object = \"golf\"
+        robot = \"arm\"
+        [[objects]]
+        name = \"other\"
+        object = \"golf\""
+    );
+    let plan = plan(&text);
+    let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);
+    let before = simulation.observe().unwrap().clone();
+    let nan = Pose::from_translation(f64::NAN * DVec3::X);
+    let long = Pose {
+        rotation: DQuat::from_xyzw(0.0, 0.0, 0.0, 2.0),
+        translation: DVec3::ZERO,
+    };
+    let said = |result: bubbletouch::Result<()>, parts: &[&str]| {
+        let error = result.unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        let said = error.to_string();
+        for part in parts {
+            assert!(said.contains(part), "{said:?} has no {part:?}");
+        }
+    };
+    said(
+        simulation.set_joint_positions("arn", &[0.0; 7]),
+        &["robot: `arn`", "`arm`"],
+    );
+    said(
+        simulation.set_joint_positions("arm", &[0.0; 6]),
+        &["robots.arm", "6 positions", "7"],
+    );
+    said(
+        simulation.set_joint_positions("arm", &[f64::NAN; 7]),
+        &["robots.arm", "NaN", "finite"],
+    );
+    let far = [0.0, 9.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    said(
+        simulation.set_joint_positions("arm", &far),
+        &["robots.arm", "`shoulder_bend`", "9.0", "at most"],
+    );
+    said(
+        simulation.set_robot_pose("arm", nan),
+        &["robots.arm", "NaN", "finite"],
+    );
+    said(
+        simulation.set_object_pose("balls", Pose::IDENTITY),
+        &["object: `balls`", "`ball`"],
+    );
+    said(
+        simulation.set_object_pose("ball", Pose::IDENTITY),
+        &["objects.ball", "a robot carries"],
+    );
+    said(
+        simulation.set_object_pose("other", long),
+        &["objects.other", "unit quaternion"],
+    );
+    for dt in [0.0, -0.1, f64::NAN, f64::INFINITY] {
+        said(
+            simulation.step(dt),
+            &["step", "a positive number of seconds"],
+        );
+    }
+    assert!(*simulation.observe().unwrap() == before);
+    simulation.step(1.0 / 64.0).unwrap();
+    assert_eq!(simulation.observe().unwrap().patches, before.patches);
+}
