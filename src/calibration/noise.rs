@@ -1,7 +1,7 @@
 //! Noise: σ of what a taxel reads untouched, by differences from frame to frame, which a slow drift leaves alone.
 //!
 //! σ² = Var(x(t + 1) − x(t)) / 2 − q²/12, the last for the rounding of a converter of step q (Sheppard's correction); where most readings are
-//! clipped, the mean over taxels of what [censored readings](super::untouched) say. What comes out of a smoothing has only a share of the noise that
+//! clipped, the mean over taxels of what censored readings say (Tobin 1958). What comes out of a smoothing has only a share of the noise that
 //! goes in.
 
 use super::robust::{jackknife, mean, variance};
