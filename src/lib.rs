@@ -95,11 +95,12 @@
 //! | [`signal`] | deflections → frames |
 //! | [`sensing`] | frames → measurements, and back |
 //! | [`recognition`] | labelled measurements → classifier, scores |
+//! | [`calibration`] | recorded frames → the signal that makes such frames |
 //! | [`study`] | TOML → plan → tables |
 //! | [`scene`] | TOML → robots, skin and objects that move → frames over time |
 //! | [`report`] | tables and frames → files for people |
 //!
-//! The ten stages from `mesh` to `recognition` are pure: no files (but a robot's, if it is asked for by its path), clock,
+//! The eleven stages from `mesh` to `calibration` are pure: no files (but a robot's, if it is asked for by its path), clock,
 //! threads, printing or global state; but large touches in `whole_body` and chains of packings in `packing` use the threads of the pool. All
 //! other threads live in `study`, `kinds` and `report`, files in these, in `scene` (what a scene names) and in the command.
 //!
@@ -148,6 +149,7 @@
 // They panic where nobody reads any more.
 #![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
 
+pub mod calibration;
 pub mod contact;
 pub mod dynamics;
 pub mod error;

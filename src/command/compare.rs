@@ -3,8 +3,9 @@
 use super::output::{check_ending, terminal_width};
 use super::streams::{say, write_out};
 use bubbletouch::files::{CsvFile, write_bytes};
-use bubbletouch::report::compared::{differences_page, differences_text};
+use bubbletouch::report::compared::{differences_page, differences_text, sentences_text};
 use bubbletouch::report::differences::differences;
+use bubbletouch::report::rank_agreement::rank_agreement;
 use bubbletouch::{Error, Result, kinds};
 use std::path::PathBuf;
 
@@ -34,7 +35,12 @@ pub fn compare(args: &Args) -> Result<()> {
         return Err(Error::input(second_name, other.words, allowed));
     }
     let place = format!("{first_name} and {second_name}: ");
-    let found = differences(&first, &second).map_err(|error| error.under(place))?;
+    let ranks = rank_agreement(&first, &second);
+    let found = match (differences(&first, &second), &ranks) {
+        // A simulated and a recorded study share no setting, but an order of designs.
+        (Err(_), Some(_)) if args.out.is_none() => Vec::new(),
+        (found, _) => found.map_err(|error| error.under(place))?,
+    };
     if let Some(out) = &args.out {
         let mut file = CsvFile::create(out)?;
         for row in found.iter().flat_map(|column| &column.rows) {
@@ -43,9 +49,16 @@ pub fn compare(args: &Args) -> Result<()> {
         file.commit()?;
     }
     if let Some(html) = &args.html {
-        let page = differences_page(&found, (&first_name, &second_name))?;
+        let page = differences_page((&found, ranks.as_ref()), (&first_name, &second_name))?;
         write_bytes(html, page.as_bytes())?;
     }
     say(format_args!("First: {first_name}; second: {second_name}."))?;
-    write_out(differences_text(&found, terminal_width())?.as_bytes())
+    let width = terminal_width();
+    if let Some(ranks) = &ranks {
+        write_out(sentences_text(&ranks.words(), width).as_bytes())?;
+    }
+    match found.is_empty() {
+        true => say("No row of the one has all settings of a row of the other."),
+        false => write_out(differences_text(&found, width)?.as_bytes()),
+    }
 }

@@ -1,6 +1,7 @@
 //! The command line: one file a subcommand, each `Args` → work → files or terminal.
 
 mod advise;
+mod calibrate;
 mod classify;
 mod compare;
 mod features;
@@ -61,7 +62,7 @@ enum Command {
     ///
     /// A table, or the study, that was changed after its run is refused: manifest.json holds the SHA-256 of each.
     Report(report::Args),
-    /// Say what moved between two folders of results, and whether chance explains it
+    /// Say what moved between two folders of results, whether chance explains it, and whether both rank designs alike
     Compare(compare::Args),
     /// Run a few work items of a folder of results again, and say whether they are the same bytes
     Verify(verify::Args),
@@ -78,6 +79,11 @@ enum Command {
     Features(features::Args),
     /// Train and test one classifier on such a folder, and time it
     Classify(classify::Args),
+    /// Say what noise, gains, drift, crosstalk ... a skin has, from its recorded frames, as the [signal] of a study
+    ///
+    /// Each number comes with its 95 % interval; what frames do not tell is a comment that says why. Noise, smoothing and drift need frames of the
+    /// untouched skin (--untouched or --untouched-frames).
+    Calibrate(calibrate::Args),
     /// Simulate a scene: robots, skin and objects that move, from one TOML file
     Simulate(simulate::Args),
     /// Press one object on one array and write or draw the deflections
@@ -117,6 +123,7 @@ pub fn dispatch() -> Result<()> {
         Some(Command::Touches(args)) => touches::touches(&args),
         Some(Command::Features(args)) => features::features(&args),
         Some(Command::Classify(args)) => classify::classify(&args),
+        Some(Command::Calibrate(args)) => calibrate::calibrate(&args),
         Some(Command::Simulate(args)) => simulate::simulate(&args),
         Some(Command::Press(args)) => press::press(&args),
         Some(Command::Recording(args)) => recording::recording(&args),

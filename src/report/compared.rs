@@ -4,6 +4,7 @@ use crate::error::Result;
 use crate::quantile::quantile;
 use crate::report::differences::{ColumnDifferences, Difference, Moved};
 use crate::report::page::StudyAbout;
+use crate::report::rank_agreement::RankAgreement;
 use crate::report::study_folder::{Found, MOST_CHARTS, page_of};
 use crate::report::terminal::{paragraph, table_text};
 use crate::spelling::counted;
@@ -21,20 +22,25 @@ const COSTS: File<Difference> = File::new("costs.csv", "Costs of both runs", "")
 /// # Errors
 /// Rows that have no form in a table.
 pub fn differences_text(found: &[ColumnDifferences], width: usize) -> Result<String> {
-    let sentences = sentences(found).into_iter();
-    let sentences: String = sentences.map(|said| paragraph(&said, width)).collect();
     Ok(format!(
-        "{sentences}\n{}",
+        "{}\n{}",
+        sentences_text(&sentences(found), width),
         table_text(&values(found)?, width)
     ))
 }
 
-/// The page of two folders by their names.
+/// A paragraph each, of lines at most `width` letters long.
+pub fn sentences_text(sentences: &[String], width: usize) -> String {
+    let sentences = sentences.iter();
+    sentences.map(|said| paragraph(said, width)).collect()
+}
+
+/// The page of two folders by their names: what moved, and how alike they rank their designs.
 ///
 /// # Errors
 /// As [`differences_text`]; a chart that cannot be drawn.
 pub fn differences_page(
-    found: &[ColumnDifferences],
+    (found, ranks): (&[ColumnDifferences], Option<&RankAgreement>),
     (first, second): (&str, &str),
 ) -> Result<String> {
     let note = format!("First: {first}; second: {second}. What moved most surely comes first.");
@@ -55,7 +61,11 @@ pub fn differences_page(
         &Found {
             tables: &[values, costs],
             charts: &charts,
-            answers: &sentences(found),
+            answers: &[
+                ranks.map_or_else(Vec::new, RankAgreement::words),
+                sentences(found),
+            ]
+            .concat(),
         },
     )
 }

@@ -28,6 +28,7 @@ pub(crate) mod picture;
 pub(crate) mod picture_axes;
 pub mod pressure_map;
 pub mod progress;
+pub mod rank_agreement;
 pub mod recognition;
 pub mod recording;
 mod run_clock;

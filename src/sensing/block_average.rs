@@ -43,7 +43,8 @@ impl Block {
 
 /// Splits an ny × nx array into m blocks, in reading order of their first taxels.
 fn blocks(grid: (usize, usize), m: usize) -> Vec<Block> {
-    let mut blocks = equal_squares(grid, m).unwrap_or_else(|| split_blocks(grid, m));
+    let equal = equal_squares(grid, m).or_else(|| equal_halves(grid, m));
+    let mut blocks = equal.unwrap_or_else(|| rows_of_blocks(grid, m));
     blocks.sort_by_key(|block| (block.rows.start, block.columns.start));
     blocks
 }
@@ -62,6 +63,30 @@ fn equal_squares((ny, nx): (usize, usize), m: usize) -> Option<Vec<Block>> {
             })
             .collect()
     })
+}
+
+/// Blocks by halving, if they are equally large.
+fn equal_halves(grid: (usize, usize), m: usize) -> Option<Vec<Block>> {
+    let blocks = split_blocks(grid, m);
+    let area = blocks[0].area();
+    let is_equal = blocks.iter().all(|block| block.area() == area);
+    is_equal.then_some(blocks)
+}
+
+/// As many rows of blocks as make these nearly square, and in each about as many as in the others.
+fn rows_of_blocks((ny, nx): (usize, usize), m: usize) -> Vec<Block> {
+    let square = (m as f64 * ny as f64 / nx as f64).sqrt().round() as usize;
+    let n_rows = square.clamp(m.div_ceil(nx), ny.min(m));
+    // The k-th of n parts of a length.
+    let part = |k: usize, n: usize, length: usize| k * length / n..(k + 1) * length / n;
+    let rows = (0..n_rows).flat_map(|row| {
+        let n_columns = part(row, n_rows, m).len();
+        (0..n_columns).map(move |column| Block {
+            rows: part(row, n_rows, ny),
+            columns: part(column, n_columns, nx),
+        })
+    });
+    rows.collect()
 }
 
 /// Halves the largest block (the oldest of equals) until there are m.
@@ -202,6 +227,25 @@ mod tests {
         ] {
             for block in blocks(grid, m) {
                 assert_eq!((block.rows.len(), block.columns.len()), (side, side));
+            }
+        }
+    }
+
+    #[test]
+    fn blocks_are_nearly_square_where_they_cannot_be_equal() {
+        for (grid, m) in [
+            ((28, 50), 88),
+            ((28, 50), 22),
+            ((31, 31), 100),
+            ((10, 60), 37),
+        ] {
+            let side = (grid.0 as f64 * grid.1 as f64 / m as f64).sqrt();
+            for block in blocks(grid, m) {
+                let sides = [block.rows.len(), block.columns.len()].map(|n| n as f64 / side);
+                assert!(
+                    sides.iter().all(|ratio| (0.6..1.6).contains(ratio)),
+                    "{grid:?}, {m}: {block:?}"
+                );
             }
         }
     }

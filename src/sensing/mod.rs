@@ -80,7 +80,7 @@ pub use coherence::{Coherence, Extremes};
 pub use columns::Columns;
 pub use dictionary::{Basis, Dictionary, Energy};
 pub use ensemble::{Draw, EnsembleAbout, Learn, Operator, Source};
-pub use image_estimate::{ImageEstimate, N_COMPONENTS, N_STEPS, Readings};
+pub use image_estimate::{ImageEstimate, ImagePrior, N_COMPONENTS, N_STEPS, Readings};
 pub use lasso::Lasso;
 pub use lmmse::Lmmse;
 pub use omp::Omp;

@@ -1,9 +1,10 @@
 //! Features of images: from measurements of a trial by way of an estimate of the frame.
 
+use super::measurement::LEARNED_FRAMES;
 use crate::error::Result;
 use crate::random::Seed;
 use crate::recognition::features::{Cut, ImageFeatures, Join, Workspace};
-use crate::sensing::{ImageEstimate, Projection, Readings};
+use crate::sensing::{Ensemble, ImageEstimate, ImagePrior, Projection, Readings};
 use ndarray::{Array2, ArrayView2, Axis, s};
 use rayon::prelude::*;
 
@@ -42,8 +43,16 @@ impl Images {
         readings: Readings,
         seed: &Seed,
     ) -> Result<Self> {
+        let is_whole = |projection: &Projection| projection.ensemble() == Ensemble::Identity;
+        let prior = match projections.iter().all(is_whole) {
+            true => None,
+            false => Some(ImagePrior::learned(shape, readings, LEARNED_FRAMES, seed)?),
+        };
         let estimates = projections.iter().map(|projection| {
-            let estimate = ImageEstimate::new(projection, shape, readings, seed)?;
+            let estimate = match prior.as_ref().filter(|_| !is_whole(projection)) {
+                None => ImageEstimate::of_frames(readings.untouched),
+                Some(prior) => ImageEstimate::new(projection, prior)?,
+            };
             Ok((projection.n_measurements(), estimate))
         });
         Ok(Self {

@@ -8,6 +8,7 @@ mod stored;
 mod study;
 
 mod bad_input;
+mod calibrate;
 mod classify;
 mod events;
 mod features;

@@ -7,6 +7,7 @@ mod study;
 
 mod accuracy;
 mod axes;
+mod calibration;
 mod experiments;
 mod families;
 mod frames;

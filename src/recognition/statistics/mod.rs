@@ -5,4 +5,5 @@ pub mod comparison;
 pub mod interval;
 pub mod many_tests;
 pub(crate) mod mean_squares;
+pub mod rank_correlation;
 pub mod variance;

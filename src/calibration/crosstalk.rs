@@ -1,0 +1,119 @@
+//! Crosstalk: what untouched taxels beside an edge of contact read of their neighbours.
+//!
+//! Taxels read A δ, A what a [leak](crate::signal::Crosstalk) κ does to deflections δ. One that nothing touches reads κ/4 Σⱼ δⱼ of its four
+//! neighbours, and no more; a touched one reads more by its own deflection. So over taxels that have a pressed neighbour on one side and a quiet one opposite, the
+//! shares xᵢ / Σⱼ δⱼ are densest at κ/4 and above that otherwise. δ = A⁻¹ x for the κ found before; begun at κ = 0, until it stays.
+//!
+//! It is what leaks before gains and noise. An elastic cover that rounds all edges is seen as a leak where it is one.
+
+use super::gain::Gains;
+use super::robust::{jackknife, mode};
+use super::{Estimate, RecordedSkin};
+use crate::signal::Crosstalk;
+use crate::world::Grid;
+use ndarray::{Array1, Array2};
+
+/// Frames that are looked at, at most, evenly from all. More take longer.
+const N_FRAMES: usize = 1000;
+/// What the neighbours of a taxel read together, of the full scale, at least; and in standard deviations of the noise.
+const PRESSED: [f64; 2] = [0.15, 60.0];
+/// What a quiet taxel reads at most, likewise.
+const QUIET: [f64; 2] = [0.01, 3.0];
+/// What is not clipped, of the full scale.
+const CLIPPED: f64 = 0.97;
+/// Taxels beside an edge, at least.
+const FEWEST: usize = 200;
+/// Rounds in which κ is found again.
+const N_ROUNDS: usize = 8;
+/// Steps of A⁻¹: what is left of an error is at most (2κ)²⁵.
+const N_STEPS: usize = 25;
+/// The largest leak whose frames can be sharpened again.
+const LARGEST: f64 = 0.45;
+
+/// The fraction that leaks.
+pub(super) fn estimate(
+    skin: &RecordedSkin,
+    touched: &Array2<f64>,
+    gains: &Gains,
+    (noise, width): (f64, f64),
+) -> Estimate {
+    if width > 0.0 {
+        return Estimate::unknown("smoothing hides how sharp the edges of a contact are");
+    }
+    let stride = touched.nrows().div_ceil(N_FRAMES).max(1);
+    let frames = touched.outer_iter().step_by(stride);
+    let frames: Vec<Array1<f64>> = frames.map(|frame| &frame / &gains.of_taxels).collect();
+    let mut leak = 0.0;
+    let mut shares = Vec::new();
+    for _ in 0..N_ROUNDS {
+        shares = frames
+            .iter()
+            .map(|frame| shares_of(skin, frame, leak, noise))
+            .collect();
+        let mut all = shares.concat();
+        if all.len() < FEWEST {
+            let n = all.len();
+            return Estimate::unknown(format!("only {n} taxels are beside an edge of a contact"));
+        }
+        leak = (4.0 * mode(&mut all)).clamp(0.0, LARGEST);
+    }
+    if leak == LARGEST {
+        return Estimate::unknown(format!(
+            "more than {LARGEST} seems to leak: edges are not sharp"
+        ));
+    }
+    let found = jackknife(shares.len(), |keep| {
+        let kept = (0..shares.len()).filter(|&frame| keep(frame));
+        let mut kept: Vec<f64> = kept
+            .flat_map(|frame| shares[frame].iter().copied())
+            .collect();
+        Some(4.0 * mode(&mut kept))
+    });
+    let found = found.map(|found| found.map(|leak| leak.max(0.0)));
+    found.unwrap_or_else(|| Estimate::unknown("there are too few frames"))
+}
+
+/// xᵢ / Σⱼ δⱼ of taxels beside an edge.
+fn shares_of(skin: &RecordedSkin, frame: &Array1<f64>, leak: f64, noise: f64) -> Vec<f64> {
+    let pressed = PRESSED[0].max(PRESSED[1] * noise);
+    let quiet = QUIET[0].max(QUIET[1] * noise);
+    let felt = sharpened(skin, &skin.filled(frame.view()), leak);
+    let mut shares = Vec::new();
+    for taxel in 0..frame.len() {
+        let Some(near) = skin.neighbours(taxel) else {
+            continue;
+        };
+        // What is not known is not below.
+        let is_usable = |&taxel: &usize| frame[taxel] < CLIPPED;
+        let sum: f64 = near.iter().map(|&near| felt[near]).sum();
+        let [left, right, above, below] = near.map(|near| frame[near]);
+        let is_edge = |a: f64, b: f64| a.min(b).abs() < quiet && a.max(b) > 0.25 * pressed;
+        if sum > pressed
+            && (is_edge(left, right) || is_edge(above, below))
+            && is_usable(&taxel)
+            && near.iter().all(is_usable)
+        {
+            shares.push(frame[taxel] / sum);
+        }
+    }
+    shares
+}
+
+/// δ of A δ = x: δ ← δ + x − A δ.
+fn sharpened(skin: &RecordedSkin, frame: &[f64], leak: f64) -> Vec<f64> {
+    let (ny, nx) = skin.shape;
+    let grid = Grid { nx, ny, pitch: 1.0 };
+    let mut felt = frame.to_vec();
+    let Ok(crosstalk) = Crosstalk::new(leak, &grid) else {
+        return felt;
+    };
+    let (mut read, mut scratch) = (felt.clone(), felt.clone());
+    for _ in 0..N_STEPS {
+        read.copy_from_slice(&felt);
+        crosstalk.spread(&mut read, &mut scratch);
+        for ((felt, x), read) in felt.iter_mut().zip(frame).zip(&read) {
+            *felt += x - read;
+        }
+    }
+    felt
+}

@@ -1,0 +1,82 @@
+//! Drift: how far zeros move. A zero is a Wiener process of standard deviation σ at the end of the session, so between the times s and t it moves by a
+//! variance of σ² (t − s), taxel by taxel.
+//!
+//! From the first run of untouched frames to the last: σ² = (Var(z(t) − z(s)) − noise) / (t − s). Where most readings are clipped at the zero, only
+//! zeros that moved up are seen; as many moved down as far, from a zero that began there: σ² = Σ (z(t)² − noise) / Σ t over those above it.
+
+use super::robust::{jackknife, variance};
+use super::smoothing::Smoothed;
+use super::untouched::{Untouched, Zero};
+use super::{Estimate, RecordedSkin};
+use std::f64::consts::FRAC_PI_2;
+
+/// Share of the session that lies between the first and the last untouched frames, at least. Less says too little of its end.
+const SPAN: f64 = 0.25;
+
+/// σ at the end of the session, of the full scale; of noise of a standard deviation, smoothed by a width in pitches.
+pub(super) fn estimate(
+    skin: &RecordedSkin,
+    untouched: Option<&Untouched>,
+    (noise, width): (f64, f64),
+) -> Estimate {
+    let Some(untouched) = untouched else {
+        return Estimate::unknown("there are too few untouched frames");
+    };
+    let span = untouched.times[untouched.times.len() - 1] - untouched.times[0];
+    if span < SPAN {
+        return Estimate::unknown("untouched frames are from one time of the session");
+    }
+    let n_taxels = skin.n_taxels();
+    // A mean of a run has so much of it, and of the rounding.
+    let of_mean = noise.powi(2) / untouched.n_run as f64;
+    let found = jackknife(n_taxels, |keep| {
+        let taxels = (0..n_taxels).filter(|&taxel| keep(taxel));
+        match untouched.is_clipped {
+            false => moved(untouched, taxels).map(|moved| (moved - 2.0 * of_mean) / span),
+            true => above(untouched, taxels, FRAC_PI_2 * of_mean),
+        }
+    });
+    let share = Smoothed::new(skin.shape, width).variance;
+    let std = |variance: f64| (variance / share).max(0.0).sqrt();
+    // A converter hides what is less than half of its step.
+    let hidden = 0.5 * untouched.step;
+    match found.map(|variance| variance.map(std)) {
+        Some(Estimate::Found { value, interval }) if value < hidden => Estimate::Found {
+            value: 0.0,
+            interval: [0.0, interval[1].max(hidden)],
+        },
+        Some(found) => found,
+        None => Estimate::unknown(
+            "most untouched readings are the least that the skin reads: zeros below it are lost",
+        ),
+    }
+}
+
+/// Variance of what zeros move from the first run to the last.
+fn moved(untouched: &Untouched, taxels: impl Iterator<Item = usize>) -> Option<f64> {
+    let last = untouched.runs.nrows() - 1;
+    let ends = taxels.map(|taxel| [0, last].map(|run| untouched.runs[(run, taxel)]));
+    let moves: Vec<f64> = ends
+        .filter_map(|ends| match ends {
+            [Zero::Clear(first), Zero::Clear(last)] => Some(last - first),
+            _ => None,
+        })
+        .collect();
+    (moves.len() > 1).then(|| variance(&moves))
+}
+
+/// σ² of zeros that are above where they began.
+fn above(untouched: &Untouched, taxels: impl Iterator<Item = usize>, of_mean: f64) -> Option<f64> {
+    let (mut squares, mut times) = (0.0, 0.0);
+    for taxel in taxels {
+        for (time, zero) in untouched.times.iter().zip(untouched.runs.column(taxel)) {
+            if let Zero::Clear(zero) | Zero::Clipped { mean: zero, .. } = *zero
+                && zero > 0.0
+            {
+                squares += zero.powi(2) - of_mean;
+                times += time;
+            }
+        }
+    }
+    (times > 0.0).then(|| squares / times)
+}

@@ -1,0 +1,76 @@
+//! Noise: σ of what a taxel reads untouched, by differences from frame to frame, which a slow drift leaves alone.
+//!
+//! σ² = Var(x(t + 1) − x(t)) / 2 − q²/12, the last for the rounding of a converter of step q (Sheppard's correction); where most readings are
+//! clipped, the mean over taxels of what censored readings say (Tobin 1958). What comes out of a smoothing has only a share of the noise that
+//! goes in.
+
+use super::robust::{jackknife, mean, variance};
+use super::smoothing::Smoothed;
+use super::untouched::{Untouched, Zero};
+use super::{Estimate, RecordedSkin};
+
+/// Noise below this many steps of the converter is lost in them: Sheppard's correction is no longer right.
+const SEEN: f64 = 0.5;
+/// The same where readings are clipped: rounding moves the share that is.
+const SEEN_CLIPPED: f64 = 2.0;
+
+/// σ of what is read, smoothed if it is, of the full scale.
+pub(super) fn of_readings(untouched: Option<&Untouched>) -> Estimate {
+    let Some(untouched) = untouched else {
+        return Estimate::unknown("there are too few untouched frames");
+    };
+    let n_taxels = untouched.skin.n_taxels();
+    let found = jackknife(n_taxels, |keep| {
+        let taxels = (0..n_taxels).filter(|&taxel| keep(taxel));
+        match untouched.is_clear {
+            true => of_differences(untouched, taxels),
+            false => of_clipped(untouched, taxels),
+        }
+    });
+    let (steps, words) = match untouched.is_clear {
+        true => (SEEN, "half a step"),
+        false => (SEEN_CLIPPED, "two steps"),
+    };
+    match found {
+        Some(Estimate::Found { value, .. }) if value < steps * untouched.step => {
+            Estimate::unknown(format!("it is below {words} of the converter"))
+        }
+        Some(found) => found,
+        None => Estimate::unknown(
+            "most untouched readings are the least that the skin reads: noise below it is lost",
+        ),
+    }
+}
+
+/// σ before the smoothing of a width in pitches.
+pub(super) fn before_smoothing(read: Estimate, skin: &RecordedSkin, width: f64) -> Estimate {
+    let share = Smoothed::new(skin.shape, width).variance.sqrt();
+    read.map(|std| std / share)
+}
+
+fn of_differences(untouched: &Untouched, taxels: impl Iterator<Item = usize>) -> Option<f64> {
+    let mut differences = Vec::new();
+    for taxel in taxels {
+        for run in untouched.clear(taxel) {
+            let readings = untouched.readings(taxel, run);
+            let pairs = readings.iter().zip(readings.iter().skip(1));
+            differences.extend(pairs.map(|(now, next)| next - now));
+        }
+    }
+    let rounding = untouched.step.powi(2) / 12.0;
+    (!differences.is_empty()).then(|| {
+        let variance = 0.5 * variance(&differences) - rounding;
+        variance.max(0.0).sqrt()
+    })
+}
+
+fn of_clipped(untouched: &Untouched, taxels: impl Iterator<Item = usize>) -> Option<f64> {
+    let zeros = taxels.flat_map(|taxel| untouched.runs.column(taxel));
+    let stds: Vec<f64> = zeros
+        .filter_map(|zero| match zero {
+            Zero::Clipped { std, .. } => Some(*std),
+            _ => None,
+        })
+        .collect();
+    (!stds.is_empty()).then(|| mean(stds.into_iter()))
+}

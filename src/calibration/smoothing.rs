@@ -1,0 +1,193 @@
+//! Smoothing: how much the noise of neighbours along a row, and along a column, is alike.
+//!
+//! Noise that is independent from taxel to taxel comes out of a smoothing S with the covariance S Sᵀ. The mean correlation of neighbours rises with
+//! the width; the width is that of the correlation measured. Only what is smoothed after the noise comes in shows here: a soft cover does not.
+
+use super::robust::jackknife;
+use super::untouched::{Untouched, Zero};
+use super::{Estimate, RecordedSkin};
+use crate::signal::Smoothing;
+use crate::world::Grid;
+use std::f64::consts::FRAC_PI_2;
+
+/// Widths below which a smoothing has no reach (half a taxel): the narrowest there is, in pitches.
+const NARROWEST: f64 = 0.125;
+/// Steps of bisection, to a billionth of the array.
+const N_STEPS: usize = 40;
+
+/// What independent noise of variance 1 is after smoothing, as a mean over the grid.
+pub(super) struct Smoothed {
+    /// Its variance.
+    pub variance: f64,
+    /// Mean product of neighbours over their mean square: beyond an edge the frame is mirrored, so its taxels have more noise, and fewer
+    /// neighbours.
+    pub correlation: f64,
+}
+
+impl Smoothed {
+    /// By a width in pitches.
+    pub fn new((rows, columns): (usize, usize), width: f64) -> Self {
+        let (y, x) = (Line::new(rows, width), Line::new(columns, width));
+        let [along_x, along_y] = [(columns - 1) * rows, (rows - 1) * columns].map(|n| n as f64);
+        let (along_x, along_y) = (along_x * y.own, along_y * x.own);
+        let together = along_x * x.neighbours + along_y * y.neighbours;
+        let alone = along_x * x.of_pairs + along_y * y.of_pairs;
+        Self {
+            variance: x.own * y.own,
+            correlation: together / alone,
+        }
+    }
+}
+
+/// Means over a line of taxels of what noise of variance 1 is after smoothing along it.
+struct Line {
+    /// Variance.
+    own: f64,
+    /// The same of those of a pair of neighbours.
+    of_pairs: f64,
+    /// Their covariance.
+    neighbours: f64,
+}
+
+impl Line {
+    fn new(n: usize, width: f64) -> Self {
+        let grid = Grid {
+            nx: n,
+            ny: 1,
+            pitch: 1.0,
+        };
+        let Ok(smoothing) = Smoothing::new(width, &grid) else {
+            return Self {
+                own: 1.0,
+                of_pairs: 1.0,
+                neighbours: 0.0,
+            };
+        };
+        let mut scratch = vec![0.0; smoothing.scratch_len()];
+        let (mut own, mut of_pairs, mut neighbours) = (0.0, 0.0, 0.0);
+        for impulse in 0..n {
+            let mut response = vec![0.0; n];
+            response[impulse] = 1.0;
+            smoothing.apply(&mut response, &mut scratch);
+            own += response.iter().map(|r| r * r).sum::<f64>();
+            for pair in response.windows(2) {
+                of_pairs += 0.5 * (pair[0] * pair[0] + pair[1] * pair[1]);
+                neighbours += pair[0] * pair[1];
+            }
+        }
+        let n_pairs = (n.max(2) - 1) as f64;
+        Self {
+            own: own / n as f64,
+            of_pairs: of_pairs / n_pairs,
+            neighbours: neighbours / n_pairs,
+        }
+    }
+}
+
+/// Its width, in pitches.
+pub(super) fn estimate(skin: &RecordedSkin, untouched: Option<&Untouched>) -> Estimate {
+    let (rows, columns) = skin.shape;
+    let Some(untouched) = untouched else {
+        return Estimate::unknown("there are too few untouched frames to tell how noise is alike");
+    };
+    if rows * columns < 4 {
+        return Estimate::unknown("there are too few taxels");
+    }
+    let n_runs = untouched.runs.nrows();
+    let rows_of = |keep: &dyn Fn(usize) -> bool| {
+        let mut sums = Products::default();
+        for taxel in (0..skin.n_taxels()).filter(|&taxel| keep(taxel)) {
+            let right = (taxel % columns + 1 < columns).then_some(taxel + 1);
+            let below = Some(taxel + columns).filter(|&below| below < skin.n_taxels());
+            for other in [right, below].into_iter().flatten() {
+                (0..n_runs).for_each(|run| sums.add(untouched, run, [taxel, other]));
+            }
+        }
+        sums.correlation(untouched)
+    };
+    let Some(correlation) = jackknife(skin.n_taxels(), rows_of) else {
+        return Estimate::unknown("untouched readings have no noise that is seen");
+    };
+    let width = |correlation: f64| width_of(skin.shape, correlation);
+    match correlation {
+        Estimate::Found {
+            interval: [low, high],
+            ..
+        } if low <= 0.0 => Estimate::Found {
+            value: 0.0,
+            interval: [0.0, width(high)],
+        },
+        found => found.map(width),
+    }
+}
+
+/// Products of what neighbours read.
+#[derive(Default)]
+struct Products {
+    of_neighbours: f64,
+    of_own: f64,
+    n_pairs: f64,
+}
+
+impl Products {
+    fn add(&mut self, untouched: &Untouched, run: usize, [a, b]: [usize; 2]) {
+        let zeros = [a, b].map(|taxel| untouched.runs[(run, taxel)]);
+        let readings = [a, b].map(|taxel| untouched.readings(taxel, run));
+        let [of_a, of_b] = &readings;
+        match zeros {
+            [Zero::Clear(_), Zero::Clear(_)] if untouched.is_clear => {
+                for frame in 1..of_a.len() {
+                    let [a, b] = [of_a, of_b].map(|of| of[frame] - of[frame - 1]);
+                    self.of_neighbours += a * b;
+                    self.of_own += 0.5 * (a * a + b * b);
+                    self.n_pairs += 1.0;
+                }
+            }
+            // Only whether they are above the least reading: products of such signs have the correlation 2/π asin ρ.
+            [Zero::Clipped { .. }, Zero::Clipped { .. }] if !untouched.is_clear => {
+                let share = |of: &ndarray::ArrayView1<f64>| {
+                    of.iter().filter(|&&reading| reading > 0.0).count() as f64 / of.len() as f64
+                };
+                let (share_a, share_b) = (share(of_a), share(of_b));
+                for (&a, &b) in of_a.iter().zip(of_b) {
+                    let [a, b] = [(a, share_a), (b, share_b)]
+                        .map(|(reading, share)| f64::from(u8::from(reading > 0.0)) - share);
+                    self.of_neighbours += a * b;
+                    self.of_own += 0.5 * (a * a + b * b);
+                    self.n_pairs += 1.0;
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn correlation(&self, untouched: &Untouched) -> Option<f64> {
+        // Rounding is independent from taxel to taxel.
+        let rounding = match untouched.is_clear {
+            true => self.n_pairs * untouched.step.powi(2) / 6.0,
+            false => 0.0,
+        };
+        let own = self.of_own - rounding;
+        let correlation = self.of_neighbours / own;
+        (own > 0.25 * rounding && own > 0.0).then(|| match untouched.is_clear {
+            true => correlation,
+            false => (FRAC_PI_2 * correlation).sin(),
+        })
+    }
+}
+
+/// The width at which neighbours have a correlation; 0 where the narrowest has more.
+fn width_of(shape: (usize, usize), correlation: f64) -> f64 {
+    if correlation <= 0.0 {
+        return 0.0;
+    }
+    let (mut low, mut high) = (NARROWEST, shape.0.max(shape.1) as f64);
+    for _ in 0..N_STEPS {
+        let middle = 0.5 * (low + high);
+        match Smoothed::new(shape, middle).correlation < correlation {
+            true => low = middle,
+            false => high = middle,
+        }
+    }
+    low
+}

@@ -1,0 +1,107 @@
+//! `bubbletouch calibrate`: the signal of a skin from what it has recorded.
+
+use super::output::check_ending;
+use super::streams::{note, write_out};
+use bubbletouch::calibration::calibrate as estimated;
+use bubbletouch::files::write_bytes;
+use bubbletouch::study::{RecordedSkinFiles, UntouchedFrames};
+use bubbletouch::{Error, Result};
+use std::ops::Range;
+use std::path::PathBuf;
+
+#[derive(clap::Args)]
+pub struct Args {
+    /// What a skin has read, in the order of time: n × rows × columns or n × F × rows × columns, floats or integers
+    frames: PathBuf,
+    /// The same of the untouched skin, over the same session
+    #[arg(long, value_name = "FILE.npy", conflicts_with = "untouched_frames")]
+    untouched: Option<PathBuf>,
+    /// Which of the frames nothing touches, from 0, the last of each range left out: 0..200,900..1000
+    #[arg(long, value_name = "FROM..TO,...", value_delimiter = ',', value_parser = range)]
+    untouched_frames: Vec<Range<usize>>,
+    /// Newtons that press the skin in each frame: n numbers, for the stiffness of taxels
+    #[arg(long, value_name = "FILE.npy", requires = "stroke_mm")]
+    forces: Option<PathBuf>,
+    /// What an untouched taxel reads
+    #[arg(
+        long,
+        value_name = "READING",
+        default_value_t = 0.0,
+        allow_negative_numbers = true
+    )]
+    zero: f64,
+    /// What a taxel at its full scale reads [default: the largest reading]
+    #[arg(long, value_name = "READING", allow_negative_numbers = true)]
+    full_scale: Option<f64>,
+    /// How far a taxel at its full scale is pushed in
+    #[arg(long, value_name = "MM")]
+    stroke_mm: Option<f64>,
+    /// How far apart taxels are, for the width of a smoothing
+    #[arg(long, value_name = "MM", default_value_t = 1.0)]
+    pitch_mm: f64,
+    /// Write the table to a file, not to standard output
+    #[arg(long, value_name = "FILE.toml")]
+    output: Option<PathBuf>,
+}
+
+pub fn calibrate(args: &Args) -> Result<()> {
+    check_ending(args.output.as_deref(), "toml")?;
+    let lengths = [
+        ("--pitch-mm", Some(args.pitch_mm)),
+        ("--stroke-mm", args.stroke_mm),
+    ];
+    for (option, length) in lengths {
+        if let Some(length) = length.filter(|length| !(length.is_finite() && *length > 0.0)) {
+            return Err(Error::input(option, length, "a positive number"));
+        }
+    }
+    let files = RecordedSkinFiles {
+        frames: args.frames.clone(),
+        untouched: match &args.untouched {
+            Some(path) => UntouchedFrames::File(path.clone()),
+            None if args.untouched_frames.is_empty() => UntouchedFrames::None,
+            None => UntouchedFrames::Among(args.untouched_frames.clone()),
+        },
+        forces: args.forces.clone(),
+        zero: args.zero,
+        full_scale: args.full_scale,
+        stroke_mm: args.stroke_mm,
+    };
+    let skin = files.read()?;
+    let found =
+        estimated(&skin).map_err(|error| error.under(format!("{}: ", args.frames.display())))?;
+    let (rows, columns) = skin.shape;
+    let mut text = format!(
+        "# {}: {} frames of {rows} × {columns} taxels, {} of the untouched skin. Taxels are taken to be {} mm apart.\n",
+        args.frames.display(),
+        skin.touched.nrows() + skin.untouched.nrows(),
+        skin.untouched.nrows(),
+        args.pitch_mm
+    );
+    text += &found.signal_table(args.pitch_mm);
+    if args.forces.is_some() {
+        text += &format!("\n[skin]\n{}", found.stiffness_line());
+    }
+    match &args.output {
+        None => write_out(text.as_bytes()),
+        Some(path) => {
+            write_bytes(path, text.as_bytes())?;
+            note(format_args!(
+                "The [signal] of this skin is in {}.",
+                path.display()
+            ));
+            Ok(())
+        }
+    }
+}
+
+/// `FROM..TO`.
+fn range(text: &str) -> std::result::Result<Range<usize>, String> {
+    let ends = text
+        .split_once("..")
+        .map(|(from, to)| (from.trim().parse(), to.trim().parse()));
+    match ends {
+        Some((Ok(from), Ok(to))) => Ok(from..to),
+        _ => Err("FROM..TO in whole numbers".to_owned()),
+    }
+}

@@ -1,0 +1,245 @@
+//! Whether two studies rank their designs alike: a simulated skin and a real one, say, which share no setting to the letter.
+//!
+//! Designs are told apart by the choices of which both tables have the same two values or more, or three. Rows with values of one table alone
+//! are left out, and of what else differs the mean is taken. Ratios are the same to the nearest whole number, as on arrays that
+//! do not divide by them.
+
+use crate::recognition::statistics::interval::Interval;
+use crate::recognition::statistics::rank_correlation::{kendall, kendall_interval};
+use crate::report::swept::Setting;
+use crate::study::CONFIDENCE;
+use crate::table::{Column, Role, Table, Value, short_number};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// What is ranked.
+const RANKED: &str = "accuracy";
+/// Designs below which there is no order to speak of.
+const FEWEST: usize = 5;
+
+/// How alike two studies rank their designs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RankAgreement {
+    /// Designs of both.
+    pub n_designs: usize,
+    /// Kendall's τ of their accuracies.
+    pub tau: f64,
+    /// Its bootstrap interval over designs.
+    pub interval: Interval,
+    /// Of each choice: its words, how many pairs of designs that differ in nothing else are in the same order, and of how many that are
+    /// no tie.
+    pub choices: Vec<(String, usize, usize)>,
+}
+
+/// Of the first tables of either that tell accuracies; none where too few designs are in both.
+pub fn rank_agreement(first: &[Table], second: &[Table]) -> Option<RankAgreement> {
+    let ranked = |tables: &'_ [Table]| {
+        let mut places = 0..tables.len();
+        places.find(|&place| tables[place].numbers(RANKED).is_some())
+    };
+    let (first, second) = (&first[ranked(first)?], &second[ranked(second)?]);
+    let shared = shared_choices(first, second);
+    let (ours, theirs) = (designs(second, &shared), designs(first, &shared));
+    let both: Vec<(&Design, [f64; 2])> = theirs
+        .iter()
+        .filter_map(|(design, accuracy)| Some((design, [*accuracy, *ours.get(design)?])))
+        .collect();
+    if both.len() < FEWEST {
+        return None;
+    }
+    let accuracies: Vec<[f64; 2]> = both.iter().map(|(_, accuracies)| *accuracies).collect();
+    let told = shared
+        .iter()
+        .enumerate()
+        .filter(|(_, choice)| choice.values.len() > 1);
+    Some(RankAgreement {
+        n_designs: both.len(),
+        tau: kendall(&accuracies)?,
+        interval: kendall_interval(&accuracies, CONFIDENCE)?,
+        choices: told
+            .map(|(place, choice)| {
+                let (same, all) = in_order(&both, place);
+                (choice.column.words.to_string(), same, all)
+            })
+            .filter(|(.., all)| *all > 0)
+            .collect(),
+    })
+}
+
+impl RankAgreement {
+    /// Two sentences.
+    pub fn words(&self) -> Vec<String> {
+        let [tau, low, high] = [self.tau, self.interval.low, self.interval.high].map(short_number);
+        let choices = self.choices.iter();
+        let choices = choices.map(|(words, same, all)| format!("{same} of {all} of {words}"));
+        let choices: Vec<String> = choices.collect();
+        vec![
+            format!(
+                "Both rank {} designs with a Kendall's τ of {tau} (95 % bootstrap interval {low} to {high}).",
+                self.n_designs
+            ),
+            format!(
+                "Of pairs that differ in one choice alone, these are in the same order: {}.",
+                choices.join(", ")
+            ),
+        ]
+    }
+}
+
+/// A choice that tells designs apart, and its values that both tables have.
+struct Choice<'a> {
+    column: &'a Column,
+    values: BTreeSet<String>,
+}
+
+/// The values of all choices of a design.
+type Design = Vec<String>;
+
+fn shared_choices<'a>(first: &'a Table, second: &Table) -> Vec<Choice<'a>> {
+    let has_ratio = first.place("ratio").is_some();
+    let choices = Setting::of_roles(first, &[Role::Choice, Role::Condition]);
+    // On arrays of two sizes a ratio is the same choice, a number of measurements is not.
+    let choices = choices.filter(|one| !(has_ratio && one.column.name == "measurements"));
+    let choices = choices.filter_map(|one| {
+        let values = |table: &Table| -> BTreeSet<String> {
+            let rows = 0..table.n_rows;
+            rows.filter_map(|row| value(table, &one.column.name, row))
+                .collect()
+        };
+        let (ours, theirs) = (values(second), values(first));
+        let values: BTreeSet<String> = ours.intersection(&theirs).cloned().collect();
+        (!values.is_empty()).then_some(Choice {
+            column: one.column,
+            values,
+        })
+    });
+    choices.collect()
+}
+
+fn value(table: &Table, column: &str, row: usize) -> Option<String> {
+    let (_, data) = table.column(column)?;
+    Some(match data.value(row)? {
+        Value::Number(ratio) if column == "ratio" => ratio.round().to_string(),
+        Value::Number(number) => number.to_string(),
+        Value::Word(word) => word,
+    })
+}
+
+/// Mean accuracy of each design that has none but shared values.
+fn designs(table: &Table, shared: &[Choice]) -> BTreeMap<Design, f64> {
+    let mut sums: BTreeMap<Design, (f64, f64)> = BTreeMap::new();
+    for row in 0..table.n_rows {
+        let values = shared.iter().map(|choice| {
+            let value = value(table, &choice.column.name, row)?;
+            choice.values.contains(&value).then_some(value)
+        });
+        let accuracy = table.number(RANKED, row);
+        if let Some(design) = values.collect::<Option<Design>>()
+            && accuracy.is_finite()
+        {
+            let (sum, n) = sums.entry(design).or_default();
+            *sum += accuracy;
+            *n += 1.0;
+        }
+    }
+    let means = sums.into_iter().map(|(design, (sum, n))| (design, sum / n));
+    means.collect()
+}
+
+/// Pairs that differ in one choice alone and are no tie: how many both order alike, and how many there are.
+fn in_order(designs: &[(&Design, [f64; 2])], choice: usize) -> (usize, usize) {
+    let without = |design: &Design| {
+        let mut others = design.clone();
+        others.remove(choice);
+        others
+    };
+    let (mut same, mut all) = (0, 0);
+    for (place, (design, own)) in designs.iter().enumerate() {
+        for (other, its) in &designs[..place] {
+            let order = (own[0] - its[0]) * (own[1] - its[1]);
+            if order != 0.0 && without(design) == without(other) {
+                all += 1;
+                same += usize::from(order > 0.0);
+            }
+        }
+    }
+    (same, all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::table::File;
+
+    crate::row! {
+    /// A design of a study.
+    pub struct Ranked {
+        /// An array's.
+        taxels: usize => Choice: Linear;
+        /// Which.
+        ensemble: String => Choice;
+        /// About.
+        ratio: f64 => Choice in ":1": Log;
+        /// At.
+        measurements: usize => Choice "m": Log;
+        /// In.
+        noise_std: f64 => Condition: Linear;
+        /// What is ranked.
+        accuracy: f64 => Value(More): Share;
+    } }
+
+    const FILE: File<Ranked> = File::new("accuracy.csv", "Accuracy", "");
+
+    /// Block averages, Gaussian and subsampling at two ratios, twice each, on an array of so many taxels.
+    fn table(n_taxels: usize, accuracies: [f64; 6], noises: &[f64]) -> Vec<Table> {
+        let mut rows = Vec::new();
+        for (design, accuracy) in accuracies.into_iter().enumerate() {
+            for (twice, noise_std) in noises.iter().enumerate() {
+                let measurements = n_taxels / [4, 16][design % 2];
+                rows.push(Ranked {
+                    taxels: n_taxels,
+                    ensemble: ["block_average", "gaussian", "subsample"][design / 2].to_owned(),
+                    ratio: n_taxels as f64 / measurements as f64,
+                    measurements,
+                    noise_std: *noise_std,
+                    // The mean of both is what is ranked.
+                    accuracy: accuracy + 0.3 * (twice as f64 - 0.5),
+                });
+            }
+        }
+        vec![FILE.of(&rows).unwrap()]
+    }
+
+    const REAL: [f64; 6] = [0.97, 0.90, 0.90, 0.81, 0.80, 0.60];
+
+    #[test]
+    fn studies_that_share_no_setting_are_compared_by_the_order_of_their_designs() {
+        let real = table(1400, REAL, &[0.0, 0.0]);
+        let found = rank_agreement(&table(4096, REAL.map(|a| 0.5 * a), &[0.1, 0.1]), &real);
+        let found = found.unwrap();
+        assert_eq!((found.n_designs, found.tau), (6, 1.0));
+        let choice = |words: &str, pairs| (words.to_owned(), pairs, pairs);
+        let (ensembles, ratios) = (choice("ensemble", 6), choice("ratio", 3));
+        assert_eq!(found.choices, [ensembles, ratios]);
+        // Another order of two ensembles at one ratio: one pair of 14 that are no tie, and one of its ensembles.
+        let mut other = REAL;
+        other.swap(1, 3);
+        let found = rank_agreement(&table(4096, other, &[0.1, 0.1]), &real).unwrap();
+        assert!(
+            found.tau < 1.0 && found.interval.low < found.tau,
+            "{found:?}"
+        );
+        assert_eq!(found.choices[0], ("ensemble".to_owned(), 5, 6));
+        let reversed = rank_agreement(&table(4096, REAL.map(|a| -a), &[0.1, 0.1]), &real);
+        assert_eq!(reversed.unwrap().tau, -1.0);
+    }
+
+    #[test]
+    fn values_that_one_study_has_alone_are_left_out() {
+        let real = table(1400, REAL, &[0.0]);
+        let found = rank_agreement(&table(4096, REAL, &[0.0, 0.4]), &real).unwrap();
+        assert_eq!((found.n_designs, found.tau), (6, 1.0));
+        let few = table(1400, REAL, &[0.0]);
+        let others: Vec<Table> = Vec::new();
+        assert_eq!(rank_agreement(&few, &others), None);
+    }
+}
