@@ -1,9 +1,13 @@
 //! A step of a body of skin: how it grows with the skin, with what touches it, and with the object's spheres.
 
 use bubbletouch::geometry::Pose;
-use bubbletouch::objects::{Sphere, SphereUnion};
-use bubbletouch::whole_body::{BodyState, Instructions, SphereClusters, WholeBody};
-use bubbletouch::world::{Extrusion, Grid, Layout, Patch, Taxel};
+use bubbletouch::objects::{Part, Shape, Solid, Sphere, SphereUnion, pack};
+use bubbletouch::random::Seed;
+use bubbletouch::signal::{
+    BodyReading, BodyReadout, Moment, Noise, NoiseUnit, SensorError, SignalStep,
+};
+use bubbletouch::whole_body::{BodyState, CoveredRobot, Instructions, SphereClusters, WholeBody};
+use bubbletouch::world::{Extrusion, Grid, Layout, Patch, Robot, Taxel};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -197,5 +201,151 @@ fn draped(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, skin, touch, spheres, threads, instructions, draped);
+/// Two people hug (the scene of `experiments/whole_body.toml`): the skin of one, two million taxels, and the other one's trunk, arms and head.
+struct Hug {
+    robot: CoveredRobot,
+    state: BodyState,
+    object: [SphereClusters; 1],
+    world_from_trunk: Pose,
+    frame: u64,
+}
+
+impl Hug {
+    fn new() -> Self {
+        let robot = Robot::read_urdf("objects/robots/humanoid.urdf".as_ref());
+        let robot = robot.expect("the robot is committed");
+        let mut positions = vec![0.0; robot.n_positions()];
+        for joint in ["left_shoulder", "right_shoulder"] {
+            let joint = robot.joint(joint).expect("it has shoulders");
+            let (coordinate, ..) = robot.drive_of(joint).expect("they move");
+            positions[coordinate] = -0.5 * PI;
+        }
+        let links = robot.forward(&Pose::IDENTITY, &positions);
+        let links = links.expect("one value a joint");
+        let covered = CoveredRobot::new(&robot, TAXEL, PITCH, 0.1).expect("it has links");
+        let mut poses = Vec::new();
+        covered.patch_poses(&links, &mut poses);
+        let mut state = BodyState::at_rest(covered.body());
+        state.place(covered.body(), &poses);
+        let trunk = Shape::Capsule {
+            diameter: 0.3042,
+            length: 0.76,
+        };
+        let arms = Shape::Torus {
+            ring_diameter: 0.376,
+            tube_diameter: 0.09,
+        };
+        let parts = [
+            (trunk, [0.2954, 0.0, 0.24]),
+            (arms, [0.0, 0.0, 0.15]),
+            (Shape::Ball { diameter: 0.18 }, [0.16, 0.07, 0.62]),
+        ];
+        let parts = parts
+            .map(|(shape, at)| Part::new(shape, Pose::from_translation(DVec3::from_array(at))));
+        let parts = parts.into_iter().collect::<Result<_, _>>();
+        let solid = Solid::new(parts.expect("lengths are positive")).expect("there are parts");
+        let spheres = pack(&solid, 0.25e-3).expect("it can be packed");
+        Self {
+            world_from_trunk: links[robot.link("trunk").expect("it has one")],
+            robot: covered,
+            state,
+            object: [SphereClusters::new(&spheres)],
+            frame: 0,
+        }
+    }
+
+    /// A millisecond of a breath; how many taxels are touched.
+    fn press(&mut self) -> usize {
+        self.frame += 1;
+        let breath = (PI * 1e-3 * self.frame as f64).sin();
+        let moved = Pose::from_translation(breath * DVec3::new(0.3e-3, 0.0, 0.5e-3));
+        let pose = [self.world_from_trunk.compose(&moved)];
+        let contact = self
+            .state
+            .press(self.robot.body(), &self.object, &pose, 1e-3);
+        contact.n_touched
+    }
+
+    /// A frame of a session of an hour.
+    fn moment(&self) -> Moment {
+        Moment {
+            frame: self.frame,
+            time: (self.frame as f64 / 3.6e6).fract(),
+        }
+    }
+}
+
+/// What the electronics make of a hug: press, read what is touched, both, and read every taxel.
+fn readout(c: &mut Criterion) {
+    let skin = Seed::new(2018).named("skin");
+    let noise = SignalStep::Noise(Noise {
+        std: 0.05,
+        unit: NoiseUnit::FullScale,
+    });
+    let drift = SensorError::Drift.step(&[0.05], skin);
+    let faults = SensorError::Faults.step(&[0.01], skin);
+    let all = [noise, drift, faults];
+    let mut group = c.benchmark_group("body_hug_2045187_taxels");
+    for n_threads in [1, 2] {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(n_threads)
+            .build();
+        let pool = pool.expect("two threads can be had");
+        let mut hug = Hug::new();
+        assert!(hug.press() > 30_000);
+        let id = |name: &str| BenchmarkId::new(name, n_threads);
+        group.bench_function(id("press"), |b| pool.install(|| b.iter(|| hug.press())));
+        let mut reading = BodyReading::default();
+        let body = hug.robot.body().clone();
+        let read = |steps: &[SignalStep]| {
+            BodyReadout::new(steps, &body, &skin).expect("strengths are in their ranges")
+        };
+        for (name, readout) in [
+            ("read_touched_noise", read(&[noise])),
+            ("read_touched_noise_drift_dead", read(&all)),
+        ] {
+            group.bench_function(id(name), |b| {
+                let mut frame = 0;
+                pool.install(|| {
+                    b.iter(|| {
+                        frame += 1;
+                        let moment = Moment {
+                            frame,
+                            ..hug.moment()
+                        };
+                        readout.read_touched(&body, &hug.state, moment, &mut reading);
+                    });
+                });
+            });
+        }
+        let readout = read(&all);
+        group.bench_function(id("press_and_read_noise_drift_dead"), |b| {
+            pool.install(|| {
+                b.iter(|| {
+                    hug.press();
+                    readout.read_touched(&body, &hug.state, hug.moment(), &mut reading);
+                });
+            });
+        });
+        let taxels: Vec<usize> = (0..body.n_taxels()).collect();
+        let mut values = vec![0.0; taxels.len()];
+        group.sample_size(10);
+        group.bench_function(id("read_all_noise_drift_dead"), |b| {
+            pool.install(|| b.iter(|| readout.read(&taxels, hug.moment(), &mut values)));
+        });
+        group.sample_size(100);
+    }
+    group.finish();
+}
+
+criterion_group!(
+    benches,
+    skin,
+    touch,
+    spheres,
+    threads,
+    instructions,
+    draped,
+    readout
+);
 criterion_main!(benches);

@@ -131,6 +131,7 @@
 //! - `[BK]` Buryanov, Kotiuk, *Proportions of hand segments*, International Journal of Morphology 2010.
 //! - `[CoST]` Jung, Poppe, Poel, Heylen, *Touching the void: introducing CoST, corpus of social touch*, ICMI 2014.
 //! - `[FH]` Flash, Hogan, *The coordination of arm movements: an experimentally confirmed mathematical model*, J. Neuroscience 1985.
+//! - `[PX]` Salmon, Moraes, Dror, Shaw, *Parallel random numbers: as easy as 1, 2, 3*, SC 2011.
 //! - `[SBHE]` Gan, Do, Tran, *Fast compressive imaging using scrambled block Hadamard ensemble*, 2008.
 //!
 //! On learning, named by authors and year:

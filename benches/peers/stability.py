@@ -21,6 +21,8 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 GRAVITY, SPEED, APPROACH, LEAST_HOLD, DECAY = 9.81, 0.5, 2e-3, 0.2, 10.0
 LEAST_HOLD_STEPS, LEAST_TIME, LEAST_STEPS, TOLERANCE = 5.0, 0.5, 50.0, 0.01
+# Balls of a scene, one upon the other; one where it is not named.
+BALLS = dict(stack_of_two=2, stack_of_four=4)
 SKIN_SIM = dict(mass=1e-3, stiffness=16.37, damping=0.13)
 
 # Name, integrator, and whether contacts are hard.
@@ -60,14 +62,16 @@ class Scene:
         self.lift = reach - sag.min()
         mass = cell["object_mass_kg"]
         self.mass, self.is_free = mass, mass is not None
+        self.n_balls = BALLS.get(cell["scene"], 1)
         if self.is_free:
-            self.deflection = self.at_rest(k, mass * GRAVITY)
-            share = mass / (self.deflection > 0).sum() + m
+            weight = self.n_balls * mass * GRAVITY
+            self.deflection = self.at_rest(k, weight)
+            share = self.n_balls * mass / (self.deflection > 0).sum() + m
             is_plunger = cell["scene"] == "plunger"
             self.damping = k * SKIN_SIM["damping"] / SKIN_SIM["stiffness"] if is_plunger else 2 * math.sqrt(k * share)
             end = max(LEAST_TIME, DECAY / slowest(k, self.damping, share), LEAST_STEPS * cell["dt_s"])
             self.judged = self.end = end
-            self.force, self.energy_limit = mass * GRAVITY, mass * GRAVITY * stroke
+            self.force, self.energy_limit = weight, weight * stroke
         else:
             ratio = SKIN_SIM["damping"] / (2 * math.sqrt(SKIN_SIM["stiffness"] * SKIN_SIM["mass"]))
             self.damping = 2 * ratio * math.sqrt(k * m)
@@ -117,9 +121,14 @@ class Scene:
             joint = dict(solref_limit=solref, solimp_limit=solimp)
         above = self.lift + (0 if self.is_free else APPROACH)
         if self.is_free:
-            ball = spec.worldbody.add_body(pos=[0, 0, above])
-            ball.add_joint(type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[0, 0, -1])
-            ball.add_geom(type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[self.ball, 0, 0], mass=self.mass, contype=1, conaffinity=2, **contact)
+            # Taxels meet the first ball (bits 1 and 2), balls each other (bit 4).
+            for number in range(self.n_balls):
+                ball = spec.worldbody.add_body(pos=[0, 0, above + 2 * number * self.ball])
+                ball.add_joint(type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[0, 0, -1])
+                bits = dict(contype=1 if number == 0 else 0, conaffinity=2 if number == 0 else 0)
+                if self.n_balls > 1:
+                    bits = {key: value | 4 for key, value in bits.items()}
+                ball.add_geom(type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[self.ball, 0, 0], mass=self.mass, **bits, **contact)
         else:
             ball = spec.worldbody.add_body(pos=[0, 0, above], mocap=True)
             ball.add_geom(type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[self.ball, 0, 0], contype=1, conaffinity=2, **contact)
@@ -147,16 +156,17 @@ def slowest(k, c, m):
 def energy(scene, data, first):
     cell, taxels = scene.cell, slice(first, None)
     skin = 0.5 * (cell["taxel_mass_kg"] * data.qvel[taxels] ** 2 + cell["stiffness_n_per_m"] * data.qpos[taxels] ** 2).sum()
-    ball = scene.mass * (0.5 * data.qvel[0] ** 2 - GRAVITY * data.qpos[0]) if scene.is_free else 0.0
-    return skin + ball
+    balls = scene.mass * (0.5 * data.qvel[:first] ** 2 - GRAVITY * data.qpos[:first]).sum() if scene.is_free else 0.0
+    return skin + balls
 
 
 def force_on_ball(data):
     """What contacts put on the taxels, along their axis: the contact normals times their forces."""
     total, wrench = 0.0, np.zeros(6)
+    of_taxels = data.model.geom_contype == 2
     for number in range(data.ncon):
         contact = data.contact[number]
-        if contact.efc_address >= 0:
+        if contact.efc_address >= 0 and of_taxels[contact.geom].any():
             mujoco.mj_contactForce(data.model, data, number, wrench)
             total += abs(wrench[0] * contact.frame[2])
     return total
@@ -168,7 +178,7 @@ def simulate(scene, integrator, is_hard):
     judged, end = scene.frames()
     model = scene.model(integrator, is_hard)
     data = mujoco.MjData(model)
-    first = 1 if scene.is_free else 0
+    first = scene.n_balls if scene.is_free else 0
     above = scene.lift + APPROACH
     looks = {1, 2, 5, 10, judged, end} | set(range(0, end, max(1, end // 20)))
     imbalance = felt = None
@@ -248,7 +258,7 @@ def main():
         writer.writerows(rows)
     part.replace(options.out)
     for (scene, method, outcome), count in sorted(counts.items()):
-        print(f"{scene:8} {method:20} {outcome:15} {count}")
+        print(f"{scene:13} {method:20} {outcome:15} {count}")
 
 
 if __name__ == "__main__":

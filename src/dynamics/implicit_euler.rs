@@ -9,9 +9,10 @@
 //! ```
 //!
 //! which is one equation for x', increasing and convex: Newton's method from the right ends after a few steps, exactly. At the floor stops
-//! carry the rest.
+//! carry the rest. Of stacked balls those that would pass through what they lie on go on with it as one (x' of a chain of balls is an
+//! isotonic regression of where each would go alone).
 
-use super::state::{Integrator, State};
+use super::state::{Integrator, Rider, State};
 use super::system::{Drive, System};
 
 /// The integrator and its state.
@@ -22,6 +23,29 @@ pub struct ImplicitEuler {
     free: Vec<f64>,
     /// a of each taxel, N/m.
     stiffness: Vec<f64>,
+    /// Of the object and of what is stacked on it, from below.
+    groups: Vec<Group>,
+}
+
+/// Balls that go on as one.
+#[derive(Clone, Copy, Debug)]
+struct Group {
+    n_balls: usize,
+    mass: f64,
+    /// Where it would go if nothing were in its way, metres of travel.
+    aim: f64,
+}
+
+impl Group {
+    /// With another one on top of it.
+    fn with(self, upper: Self) -> Self {
+        let mass = self.mass + upper.mass;
+        Self {
+            n_balls: self.n_balls + upper.n_balls,
+            aim: (self.mass * self.aim + upper.mass * upper.aim) / mass,
+            mass,
+        }
+    }
 }
 
 /// Newton's method ends after a step for each taxel at the latest; a handful are usual.
@@ -38,6 +62,7 @@ impl ImplicitEuler {
         Self {
             free: vec![0.0; state.deflection.len()],
             stiffness: vec![0.0; state.deflection.len()],
+            groups: Vec::new(),
             state,
         }
     }
@@ -57,11 +82,38 @@ impl ImplicitEuler {
         }
     }
 
-    /// Where a free object goes, metres of travel.
-    fn balance(&self, system: &System, mass: f64, gravity: f64, dt: f64) -> f64 {
+    /// Where a free object goes with what is stacked on it, metres of travel; the first group is left as what goes with the object.
+    fn balance(&mut self, system: &System, mass: f64, gravity: f64, dt: f64) -> f64 {
         let state = &self.state;
-        let inertia = mass / (dt * dt);
-        let aim = state.travel + dt * (state.speed + dt * gravity);
+        let alone = |mass, travel: f64, speed: f64| Group {
+            n_balls: 1,
+            mass,
+            aim: travel + dt * (speed + dt * gravity),
+        };
+        self.groups.clear();
+        for (&mass, rider) in system.riders().iter().zip(&state.riders) {
+            let mut group = alone(mass, rider.travel, rider.speed);
+            while let Some(lower) = self.groups.pop_if(|lower| lower.aim < group.aim) {
+                group = lower.with(group);
+            }
+            self.groups.push(group);
+        }
+        let mut lowest = alone(mass, state.travel, state.speed);
+        let mut n_joined = 0;
+        let mut travel = self.push_in(system, &lowest, dt);
+        while let Some(&next) = self.groups.get(n_joined).filter(|next| next.aim > travel) {
+            lowest = lowest.with(next);
+            n_joined += 1;
+            travel = self.push_in(system, &lowest, dt);
+        }
+        self.groups.splice(..n_joined, [lowest]);
+        travel
+    }
+
+    /// Where balls go that lie on the taxels, metres of travel.
+    fn push_in(&self, system: &System, balls: &Group, dt: f64) -> f64 {
+        let inertia = balls.mass / (dt * dt);
+        let aim = balls.aim;
         let mut travel = aim;
         for _ in 0..MOST_NEWTON_STEPS {
             let (mut slope, mut toward) = (inertia, inertia * aim);
@@ -79,6 +131,24 @@ impl ImplicitEuler {
             travel = next;
         }
         travel.min(system.floor())
+    }
+
+    /// Takes what is stacked on the object along; what those that go with it need of what is below, newtons.
+    fn move_riders(&mut self, system: &System, lowest: f64, gravity: f64, dt: f64) -> f64 {
+        let mut needed = 0.0;
+        let travels = self.groups.iter().enumerate().flat_map(|(number, group)| {
+            let travel = if number == 0 { lowest } else { group.aim };
+            std::iter::repeat_n((number == 0, travel), group.n_balls)
+        });
+        let riders = self.state.riders.iter_mut().zip(system.riders());
+        for ((rider, mass), (is_along, travel)) in riders.zip(travels.skip(1)) {
+            let speed = (travel - rider.travel) / dt;
+            if is_along {
+                needed += mass * (gravity - (speed - rider.speed) / dt);
+            }
+            *rider = Rider { travel, speed };
+        }
+        needed
     }
 
     /// What the stops carry, shared by the taxels at the floor.
@@ -118,7 +188,8 @@ impl Integrator for ImplicitEuler {
         }
         let speed = (travel - self.state.travel) / dt;
         if let Drive::Free { mass, gravity, .. } = system.drive {
-            let needed = mass * (gravity - (speed - self.state.speed) / dt);
+            let mut needed = mass * (gravity - (speed - self.state.speed) / dt);
+            needed += self.move_riders(system, travel, gravity, dt);
             // Rounding of the balance is not the stops'.
             if travel >= system.floor() {
                 self.load_stops(system, (needed - support).max(0.0));

@@ -11,6 +11,8 @@
 //! | [`ImplicitEuler`] | exact: 0 ≤ f ⟂ gap ≥ 0 at the step's end | both implicit | never; its accuracy in time is of order Δt |
 //! | `RapierWorld` (feature `rapier`) | the engine's | the engine's joint motors | what the engine cannot solve in its iterations |
 //!
+//! Balls may be [stacked](System::stacked) on the object, free on the same guide.
+//!
 //! All are an [`Integrator`]; [`run`] steps one and gives a [`DynamicRecording`], whose [`Recording`](crate::contact::Recording) is that of
 //! the contact stage: everything downstream takes it. [`rest`] is where all of them must end: the springs carry the weight.
 //!
@@ -42,5 +44,5 @@ pub use rapier_world::RapierWorld;
 pub use recording::{Divergence, DynamicRecording, Steps, run};
 pub use rest::{Rest, rest};
 pub use semi_implicit::SemiImplicit;
-pub use state::{Integrator, State};
+pub use state::{Integrator, Rider, State};
 pub use system::{Drive, System};

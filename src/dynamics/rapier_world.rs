@@ -5,7 +5,7 @@
 //! times slower and no more exact.)
 
 use super::rapier_settings::{RapierJoints, RapierSettings};
-use super::state::{Integrator, State};
+use super::state::{Integrator, Rider, State};
 use super::system::{Drive, System};
 use crate::error::{Error, Result};
 use glam::DVec3;
@@ -21,6 +21,8 @@ pub struct RapierWorld {
     taxels: Vec<RigidBodyHandle>,
     colliders: Vec<ColliderHandle>,
     object: RigidBodyHandle,
+    /// The balls stacked on it, from below.
+    riders: Vec<RigidBodyHandle>,
     /// What the taxels hang on.
     base: RigidBodyHandle,
     /// The object at a travel of 0.
@@ -61,9 +63,21 @@ impl RapierWorld {
         let object = world.insert_body(body.translation(at).can_sleep(false));
         for sphere in spheres.spheres() {
             let center = system.pose.transform_vector(sphere.center);
-            let ball = ball(sphere.radius, OBJECT, SKIN).translation(engine(center));
+            let ball = ball(sphere.radius, OBJECT, SKIN | OBJECT).translation(engine(center));
             world.insert_collider(ball, Some(object));
         }
+        let radius = spheres.spheres()[0].radius;
+        let riders = system.riders().iter().enumerate();
+        let riders = riders.map(|(number, &mass)| {
+            let above = 2.0 * (number + 1) as f64 * radius - state.travel;
+            let body = RigidBodyBuilder::dynamic()
+                .additional_mass(mass)
+                .locked_axes(GUIDE)
+                .translation(engine(origin + above * DVec3::Z))
+                .can_sleep(false);
+            world.insert(body, ball(radius, OBJECT, OBJECT)).0
+        });
+        let riders = riders.collect();
         let base = insert_base(&mut world, settings.joints);
         let mut made = Self {
             world,
@@ -71,6 +85,7 @@ impl RapierWorld {
             taxels: Vec::with_capacity(system.n_taxels()),
             colliders: Vec::with_capacity(system.n_taxels()),
             object,
+            riders,
             base,
             origin,
             dt: 0.0,
@@ -204,6 +219,20 @@ impl Integrator for RapierWorld {
         let object = &self.world.bodies[self.object];
         self.state.travel = self.origin.z - object.translation().z;
         self.state.speed = -object.linvel().z;
+        let radius = system
+            .object
+            .spheres()
+            .map_or(0.0, |all| all.spheres()[0].radius);
+        for (number, &handle) in self.riders.iter().enumerate() {
+            let (body, above) = (
+                &self.world.bodies[handle],
+                2.0 * (number + 1) as f64 * radius,
+            );
+            self.state.riders[number] = Rider {
+                travel: self.origin.z + above - body.translation().z,
+                speed: -body.linvel().z,
+            };
+        }
         &self.state
     }
 }

@@ -13,7 +13,7 @@ pub struct Rest {
     pub stops: f64,
 }
 
-/// Where the springs carry the weight, or the stops what they do not: found by halving, as a check of everything else.
+/// Where the springs carry the weight of the object and of what is stacked on it, or the stops what they do not: found by halving, as a check of everything else.
 ///
 /// `None` for an imposed motion, and where no taxel is in the way.
 pub fn rest(system: &System) -> Option<Rest> {
@@ -32,7 +32,7 @@ pub fn rest(system: &System) -> Option<Rest> {
             .map(|(taxel, d)| taxels.at(taxel).stiffness * d)
             .sum()
     };
-    let weight = mass * gravity;
+    let weight = (mass + system.riders().iter().sum::<f64>()) * gravity;
     let first = system
         .starts()
         .iter()

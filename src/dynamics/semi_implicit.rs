@@ -6,6 +6,8 @@
 //! ẋ' = ẋ + Δt (g − Σ f / M),                        x' = x + Δt ẋ'
 //! ```
 //!
+//! with f of stacked balls as of taxels, κ max(0, travel of the upper one − travel of the lower one).
+//!
 //! The damper is taken implicitly, which costs nothing: explicitly it would halve the largest step of a well-damped taxel. A free taxel
 //! without a damper is stable for Δt < 2 √(m / k), exactly.
 
@@ -43,7 +45,10 @@ impl SemiImplicit {
         let taxel = system.patch.taxels().at(0);
         let of_taxel = (4.0 * system.taxel_mass / dt + 2.0 * taxel.damping) / dt;
         let of_object = match system.drive {
-            Drive::Free { mass, .. } => 4.0 * mass / (n_touched.max(1) as f64 * dt * dt),
+            Drive::Free { mass, .. } => {
+                let n_above = usize::from(!system.riders().is_empty());
+                4.0 * mass / ((n_touched.max(1) + n_above) as f64 * dt * dt)
+            }
             Drive::Imposed(_) => f64::INFINITY,
         };
         (0.5 * of_taxel.min(of_object) - taxel.stiffness).max(taxel.stiffness)
@@ -76,8 +81,20 @@ impl Integrator for SemiImplicit {
         state.time += dt;
         match &system.drive {
             Drive::Free { mass, gravity, .. } => {
-                state.speed += dt * (gravity - support / mass);
-                state.travel += dt * state.speed;
+                // What each rider puts on what is below it, as things are before the step.
+                let (mut below, mut lower) = (support, state.travel);
+                let (mut mass, mut speed, mut travel) =
+                    (*mass, &mut state.speed, &mut state.travel);
+                for (rider, &of_rider) in state.riders.iter_mut().zip(system.riders()) {
+                    let load = self.contact_stiffness * (rider.travel - lower).max(0.0);
+                    lower = rider.travel;
+                    *speed += dt * (gravity - (below - load) / mass);
+                    *travel += dt * *speed;
+                    (below, mass) = (load, of_rider);
+                    (speed, travel) = (&mut rider.speed, &mut rider.travel);
+                }
+                *speed += dt * (gravity - below / mass);
+                *travel += dt * *speed;
             }
             Drive::Imposed(plan) => state.travel = system.imposed(plan, state.time),
         }

@@ -17,6 +17,17 @@ pub struct State {
     pub travel: f64,
     /// ẋ, m/s.
     pub speed: f64,
+    /// The balls stacked on the object, from below.
+    pub riders: Vec<Rider>,
+}
+
+/// A ball that may lie on what is below it: it does where both have travelled as far.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rider {
+    /// Metres.
+    pub travel: f64,
+    /// m/s.
+    pub speed: f64,
 }
 
 impl State {
@@ -30,10 +41,18 @@ impl State {
             force: zeros,
             travel: system.first_travel(),
             speed: 0.0,
+            riders: system
+                .riders()
+                .iter()
+                .map(|_| Rider {
+                    travel: system.first_travel(),
+                    speed: 0.0,
+                })
+                .collect(),
         }
     }
 
-    /// Σ ½ m δ̇² + Σ ½ k δ², and of a free object ½ M ẋ² − M g x; joules. What contacts and stops store does not count.
+    /// Σ ½ m δ̇² + Σ ½ k δ², and of each free object ½ M ẋ² − M g x; joules. What contacts and stops store does not count.
     pub fn energy(&self, system: &System) -> f64 {
         let m = system.taxel_mass;
         let taxels = self.deflection.iter().zip(&self.velocity).enumerate();
@@ -44,7 +63,12 @@ impl State {
             .sum();
         match system.drive {
             Drive::Free { mass, gravity, .. } => {
-                skin + mass * (0.5 * self.speed * self.speed - gravity * self.travel)
+                let of = |mass: f64, speed: f64, travel: f64| {
+                    mass * (0.5 * speed * speed - gravity * travel)
+                };
+                let riders = system.riders().iter().zip(&self.riders);
+                let riders = riders.map(|(&mass, rider)| of(mass, rider.speed, rider.travel));
+                skin + of(mass, self.speed, self.travel) + riders.sum::<f64>()
             }
             Drive::Imposed(_) => skin,
         }

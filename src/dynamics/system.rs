@@ -38,6 +38,8 @@ pub struct System<'a> {
     /// What moves it.
     pub drive: Drive,
     starts: Vec<f64>,
+    /// Masses of the balls on top of it, from below, kg.
+    riders: Vec<f64>,
 }
 
 impl<'a> System<'a> {
@@ -74,7 +76,38 @@ impl<'a> System<'a> {
             object,
             pose,
             drive,
+            riders: Vec::new(),
         })
+    }
+
+    /// Balls like the object stacked on top of it, each free on the same guide under the same gravity: their masses from below, kg. They lie
+    /// on each other where the object is let go.
+    ///
+    /// # Errors
+    /// A mass that is not positive; an object that is not one free sphere.
+    pub fn stacked(mut self, masses: &[f64]) -> Result<Self> {
+        for &mass in masses {
+            positive("mass of a stacked ball", mass, "kg")?;
+        }
+        let n_spheres = self
+            .object
+            .spheres()
+            .map_or(0, |spheres| spheres.n_spheres());
+        if n_spheres != 1 || !matches!(self.drive, Drive::Free { .. }) {
+            let allowed = "one sphere that is free";
+            return Err(Error::input(
+                "object below stacked balls",
+                "another one",
+                allowed,
+            ));
+        }
+        self.riders = masses.to_vec();
+        Ok(self)
+    }
+
+    /// Masses of the balls on top of the object, from below, kg.
+    pub fn riders(&self) -> &[f64] {
+        &self.riders
     }
 
     /// How many taxels.

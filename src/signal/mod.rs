@@ -32,9 +32,13 @@
 //! faults) has the `skin`'s name and is drawn in [`Chain::new`]; what changes from touch to touch is drawn in
 //! [`Chain::apply`]. There too, strengths share their pattern.
 //!
+//! **Whole bodies.** A [`BodyReadout`] has the steps that each taxel takes by itself, with draws by number in the place of streams: it reads
+//! the touched taxels of millions, and nobody pays for the others.
+//!
 //! **Time.** A touch is a [`Recording`]: frames in the order of time, which hysteresis and scan order connect. A frame alone is a
 //! recording of one: read at rest, by a skin that nothing has touched before.
 
+mod body_readout;
 mod chain;
 mod force;
 mod noise;
@@ -44,6 +48,7 @@ mod smoothing;
 mod step;
 mod strength;
 mod surface_smoothing;
+mod taxel_step;
 
 // Everything that a study may say of a sensor error follows from its line here and from the file that it names.
 sensor_errors! {
@@ -58,6 +63,7 @@ sensor_errors! {
     Quantisation quantisation "A converter clips and rounds.";
 }
 
+pub use body_readout::{BodyReading, BodyReadout, WORTH_THREADS};
 pub use chain::{Chain, Recording, Scratch};
 pub use crosstalk::Crosstalk;
 pub use drift::{Drift, Zeros};
@@ -72,6 +78,7 @@ pub use scan::Scan;
 pub use sensor_error::{Effect, ErrorAbout, MOST_STRENGTHS, Prepare, Skin, Strength, TouchRead};
 pub use smoothing::Smoothing;
 pub use step::SignalStep;
+pub use taxel_step::Moment;
 
 use crate::world::Taxel;
 

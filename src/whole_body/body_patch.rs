@@ -170,6 +170,16 @@ impl WholeBody {
         &self.firsts
     }
 
+    /// The patch of a taxel, and its number there.
+    ///
+    /// # Panics
+    /// If there is no such taxel.
+    pub fn place_of(&self, taxel: usize) -> (usize, usize) {
+        assert!(taxel < self.n_taxels, "a taxel of this body");
+        let patch = self.firsts.partition_point(|&first| first <= taxel) - 1;
+        (patch, taxel - self.firsts[patch])
+    }
+
     /// How many taxels all patches have.
     pub fn n_taxels(&self) -> usize {
         self.n_taxels

@@ -120,10 +120,20 @@ impl BodyState {
 
     /// The deflected taxels of the last step, ascending: number and deflection, metres.
     pub fn touched(&self, body: &WholeBody) -> impl Iterator<Item = (usize, f64)> {
-        self.busy.iter().flat_map(|&number| {
-            let first = body.firsts()[number as usize];
-            let touched = self.patches[number as usize].touched().iter();
+        self.touched_of_patches(body).flat_map(|(first, touched)| {
+            let touched = touched.iter();
             touched.map(move |&(taxel, deflection)| (first + taxel as usize, deflection))
+        })
+    }
+
+    /// The same patch by patch: the number of its first taxel, and how far from there each of the touched ones is numbered.
+    pub(crate) fn touched_of_patches(
+        &self,
+        body: &WholeBody,
+    ) -> impl Iterator<Item = (usize, &[(u32, f64)])> {
+        self.busy.iter().map(|&number| {
+            let patch = number as usize;
+            (body.firsts()[patch], self.patches[patch].touched())
         })
     }
 

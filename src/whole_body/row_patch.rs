@@ -116,7 +116,8 @@ impl RowPatch {
 
 impl Bundle {
     fn new(columns: &[(DVec2, DVec2)]) -> Self {
-        let nowhere = (DVec2::splat(FAR), DVec2::X);
+        // Everything is in front of them: what is behind a substrate takes a slower way.
+        let nowhere = (DVec2::splat(FAR), DVec2::NEG_X);
         let of = |value| filled(columns, &nowhere, value);
         Self {
             u: of(|(place, _)| place.x),

@@ -8,7 +8,7 @@ use super::lanes::{LANES, View, largest};
 use super::object_press::Pushed;
 use super::patch_state::PatchState;
 use super::row_patch::{Bundle, RowPatch};
-use crate::contact::{beats, raise};
+use crate::contact::{Below, beats, raise};
 use crate::geometry::Pose;
 use glam::{DMat3, DVec3};
 
@@ -41,24 +41,38 @@ impl Pushed for RowPatch {
         if is_beside(self, center.z, reach) {
             return;
         }
-        let behind = self.behind();
         let mut under = std::mem::take(&mut state.under);
         under.clear();
-        let mut widest = 0.0;
+        let (mut widest, mut lowest) = (0.0, [f64::INFINITY; LANES]);
         for (look, circles) in self.circles().iter().enumerate() {
             for k in circles.near(center.with_z(0.0), reach) {
                 let bundle = look * LANES + k;
-                let (share, spare) = Share::of(&self.bundles()[bundle], center, reach, behind);
+                let (share, spare) = Share::of(&self.bundles()[bundle], center, reach);
                 if spare > 0.0 {
                     widest = if spare > widest { spare } else { widest };
+                    lower(&mut lowest, &share.heights);
                     under.push(((bundle * LANES) as u32, share));
                 }
             }
         }
-        if !under.is_empty() {
+        if !Below::of(&lowest, self.behind()).is_empty() {
+            push_through(state, self, &under, center.z, widest.sqrt());
+        } else if !under.is_empty() {
             push_rows(state, self, &under, center.z, widest.sqrt());
         }
         state.under = under;
+    }
+}
+
+/// The lower ones of some heights.
+#[inline(always)]
+fn lower(lowest: &mut [f64; LANES], heights: &[f64; LANES]) {
+    for k in 0..LANES {
+        lowest[k] = if heights[k] < lowest[k] {
+            heights[k]
+        } else {
+            lowest[k]
+        };
     }
 }
 
@@ -87,7 +101,32 @@ fn push_rows(
         let along = patch.lines().positions[row] - w;
         for (start, share) in under {
             let taxels = state.block(row * n_columns + *start as usize);
-            share.push(along * along, is_small, patch.behind(), taxels);
+            share.push(along * along, is_small, taxels);
+        }
+    }
+}
+
+/// The same of a sphere whose middle is behind a substrate.
+#[inline(always)]
+fn push_through(
+    state: &mut PatchState,
+    patch: &RowPatch,
+    under: &[(u32, Share)],
+    w: f64,
+    within: f64,
+) {
+    let n_columns = patch.extrusion().places().len();
+    let behind = patch.behind();
+    for row in patch.lines().within(w, within) {
+        let along = patch.lines().positions[row] - w;
+        for (start, share) in under {
+            let squares = share.through(along * along, behind);
+            let taxels = state.block(row * n_columns + *start as usize);
+            if beats(&squares, &share.heights, taxels) {
+                raise(&squares, &share.heights, taxels);
+                let columns = *start..(start + LANES as u32).min(n_columns as u32);
+                state.widen(row, &columns);
+            }
         }
     }
 }
@@ -99,60 +138,47 @@ pub(super) struct Share {
     squares: [f64; LANES],
     /// h, metres.
     heights: [f64; LANES],
-    /// Whether the sphere's middle is behind a substrate.
-    is_behind: bool,
 }
 
 impl Share {
-    /// Also how far along the rows it pushes any, squared, m²; zero or less if it pushes none.
+    /// Also how far along the rows it pushes any from the front, squared, m²; zero or less if it pushes none.
     #[inline(always)]
-    fn of(bundle: &Bundle, center: DVec3, reach: f64, behind: f64) -> (Self, f64) {
+    fn of(bundle: &Bundle, center: DVec3, reach: f64) -> (Self, f64) {
         let (mut squares, mut heights, mut spares) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-        let mut n_behind = 0;
         for k in 0..LANES {
             let (du, dv) = (center.x - bundle.u[k], center.y - bundle.v[k]);
             let beside = du * bundle.axis_v[k] - dv * bundle.axis_u[k];
             let height = du * bundle.axis_u[k] + dv * bundle.axis_v[k];
             let square = reach * reach - beside * beside;
-            // Above the skin, or behind the substrate; one of them is zero.
-            let (above, gap) = (height.max(0.0), (behind - height).max(0.0));
+            let above = height.max(0.0);
             squares[k] = square;
             heights[k] = height;
-            n_behind += u32::from(height < behind);
-            spares[k] = square - above * above - gap * gap;
+            spares[k] = square - above * above;
         }
-        let share = Self {
-            squares,
-            heights,
-            is_behind: n_behind > 0,
-        };
-        (share, largest(&spares))
+        (Self { squares, heights }, largest(&spares))
     }
 
-    /// Raises taxels of a row that is so far away along the rows, squared, m²; their substrates are at height `behind`.
+    /// Raises taxels of a row that is so far away along the rows, squared, m².
     #[inline(always)]
-    fn push(&self, along2: f64, is_small: bool, behind: f64, taxels: &mut [f64; LANES]) {
+    fn push(&self, along2: f64, is_small: bool, taxels: &mut [f64; LANES]) {
         let mut squares = self.squares;
         for square in &mut squares {
             *square -= along2;
-        }
-        if self.is_behind {
-            self.push_through(squares, behind, taxels);
-            return;
         }
         if is_small || beats(&squares, &self.heights, taxels) {
             raise(&squares, &self.heights, taxels);
         }
     }
 
-    /// The same where the sphere's middle is behind a substrate, by itself: what is rare is not to slow down what is not.
-    #[cold]
-    #[inline(never)]
-    fn push_through(&self, mut squares: [f64; LANES], behind: f64, taxels: &mut [f64; LANES]) {
-        for (square, height) in squares.iter_mut().zip(&self.heights) {
-            let gap = (behind - height).max(0.0);
-            *square = if *square <= gap * gap { -1.0 } else { *square };
+    /// What is left of the squares so far away, m², with substrates at the height `behind`: nothing where the sphere does not reach through one.
+    #[inline(always)]
+    fn through(&self, along2: f64, behind: f64) -> [f64; LANES] {
+        let (heights, mut squares) = (self.heights, self.squares);
+        for k in 0..LANES {
+            let gap = (behind - heights[k]).max(0.0);
+            let square = squares[k] - along2;
+            squares[k] = if square <= gap * gap { -1.0 } else { square };
         }
-        raise(&squares, &self.heights, taxels);
+        squares
     }
 }

@@ -342,3 +342,134 @@ fn taxels_as_bodies_in_rapier_come_to_the_same_rest_where_masses_are_alike() {
     );
     assert!((state.support() / (mass * 9.81) - 1.0).abs() < 1e-3);
 }
+
+/// Masses of a stack, from below, kg.
+const STACK: [f64; 4] = [0.02, 0.05, 0.01, 0.03];
+
+#[test]
+fn a_stack_that_sinks_sinks_as_one_object_of_its_mass() {
+    let (patch, ball) = (bowl(6, taxel(2.0)), ball());
+    let stack = system(&patch, &ball, 1e-3, free(STACK[0]));
+    let stack = stack.stacked(&STACK[1..]).unwrap();
+    let all: f64 = STACK.iter().sum();
+    let one = system(&patch, &ball, 1e-3, free(all));
+    let (mut of_stack, mut of_one) = (ImplicitEuler::new(&stack), ImplicitEuler::new(&one));
+    for step in 0..300 {
+        of_stack.step(&stack, 1e-3);
+        of_one.step(&one, 1e-3);
+        let (found, wanted) = (of_stack.state(&stack), of_one.state(&one));
+        assert!((found.travel - wanted.travel).abs() < 1e-12, "{step}");
+        assert!((found.support() - wanted.support()).abs() < 1e-9, "{step}");
+        assert!(
+            found
+                .riders
+                .iter()
+                .all(|rider| rider.travel == found.travel)
+        );
+        let apart = found.energy(&stack) - wanted.energy(&one);
+        assert!(apart.abs() < 1e-12, "{step}: {apart}");
+    }
+    let end = rest(&stack).unwrap();
+    assert_eq!(end, rest(&one).unwrap());
+    assert!((of_stack.state(&stack).travel - end.travel).abs() < 1e-8);
+}
+
+#[test]
+fn a_stack_comes_to_rest_with_its_whole_weight_on_the_skin_stops_or_none() {
+    for heavier in [1.0, 100.0] {
+        let (patch, ball) = (bowl(6, taxel(2.0)), ball());
+        let masses = STACK.map(|mass| heavier * mass);
+        let stack = system(&patch, &ball, 1e-3, free(masses[0]));
+        let stack = stack.stacked(&masses[1..]).unwrap();
+        let end = rest(&stack).unwrap();
+        let weight = 9.81 * masses.iter().sum::<f64>();
+        assert_eq!(end.stops > 0.0, heavier > 1.0);
+        let implicit: Box<dyn Integrator> = Box::new(ImplicitEuler::new(&stack));
+        let mut integrators = vec![(implicit, 1e-3, 1e-9)];
+        if end.stops == 0.0 {
+            // On stops nothing damps balls on penalties: they ring for ever.
+            let penalty = SemiImplicit::new(&stack, 1e6);
+            integrators.push((Box::new(penalty), 2e-5, 3e-3));
+        }
+        for (mut integrator, dt, tolerance) in integrators {
+            let n = (2.0 / dt) as usize;
+            let ran = run(&stack, integrator.as_mut(), &steps(dt, n)).unwrap();
+            assert_eq!(ran.divergence, None);
+            let state = integrator.state(&stack);
+            let off = (state.travel - end.travel).abs();
+            assert!(off < tolerance * end.travel + 1e-8, "{off}");
+            let imbalance = (state.support() / weight - 1.0).abs();
+            assert!(
+                imbalance < tolerance.max(1e-6),
+                "{heavier}, {dt}: {imbalance}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_stack_with_gaps_is_thrown_up_and_falls_back_with_forces_that_only_push() {
+    const DT: f64 = 1e-3;
+    let (patch, ball) = (bowl(6, taxel(0.05)), ball());
+    let stack = system(&patch, &ball, 1e-3, free(STACK[0]));
+    let stack = stack.stacked(&STACK[1..]).unwrap();
+    let mut start = State::start(&stack);
+    start.travel = 4e-3;
+    start.deflection.fill(4e-3);
+    for (number, rider) in start.riders.iter_mut().enumerate() {
+        // Some of them hang in the air.
+        rider.travel = 4e-3 - 2e-3 * (number / 2) as f64;
+    }
+    let mut integrator = ImplicitEuler::from_state(start.clone());
+    let (mut before, mut widest) = (start.clone(), 0.0_f64);
+    let mut energy = before.energy(&stack);
+    for step in 0..3000 {
+        integrator.step(&stack, DT);
+        let now = integrator.state(&stack).clone();
+        let bodies = |state: &State| -> Vec<(f64, f64)> {
+            let riders = state.riders.iter().map(|rider| (rider.travel, rider.speed));
+            [(state.travel, state.speed)]
+                .into_iter()
+                .chain(riders)
+                .collect()
+        };
+        let (old, new) = (bodies(&before), bodies(&now));
+        // From above: what each ball needs of the one below it.
+        let mut carried = 0.0;
+        for number in (1..STACK.len()).rev() {
+            carried += STACK[number] * (9.81 - (new[number].1 - old[number].1) / DT);
+            let gap = new[number - 1].0 - new[number].0;
+            assert!(gap >= -1e-15, "{step}, {number}: {gap}");
+            assert!(carried > -1e-9, "{step}, {number}: {carried}");
+            assert!(
+                gap < 1e-12 || carried.abs() < 1e-9,
+                "{step}, {number}: {gap} {carried}"
+            );
+            widest = widest.max(gap);
+        }
+        carried += STACK[0] * (9.81 - (new[0].1 - old[0].1) / DT);
+        assert!((carried - now.support()).abs() < 1e-8, "{step}");
+        let next = now.energy(&stack);
+        assert!(next <= energy + 1e-12, "{step}: {next} J after {energy} J");
+        (before, energy) = (now, next);
+    }
+    assert!(widest > 1e-3, "{widest}");
+    assert!((before.travel - rest(&stack).unwrap().travel).abs() < 1e-6);
+    assert!(
+        before
+            .riders
+            .iter()
+            .all(|rider| (rider.travel - before.travel).abs() < 1e-6)
+    );
+}
+
+#[test]
+fn balls_are_stacked_on_one_free_sphere_and_have_a_mass() {
+    let (patch, ball) = (bowl(2, taxel(0.0)), ball());
+    let free = system(&patch, &ball, 1e-3, free(1.0));
+    let error = free.stacked(&[1.0, -1.0]).unwrap_err().to_string();
+    assert!(error.contains("mass of a stacked ball: -1 kg"), "{error}");
+    let imposed = System::new(&patch, 1e-3, &ball, at(1.0), far_away(), 1e-3).unwrap();
+    let error = imposed.stacked(&[1.0]).unwrap_err().to_string();
+    assert!(error.contains("one sphere that is free"), "{error}");
+}

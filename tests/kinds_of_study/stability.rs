@@ -115,6 +115,63 @@ fn ours_is_right_everywhere_the_others_break_where_they_must_and_threads_change_
     assert!(svg.contains("limit of an explicit spring") && svg.contains("taxel mass"));
 }
 
+/// Balls one upon the other.
+const STACKS: &str = r#"
+question = "Do stacks come to rest?"
+
+[[stability.parts]]
+scene = "stack_of_two"
+methods = ["quasi_static", "implicit_euler", "rapier_tuned"]
+taxels = [4, 8]
+stiffness_n_per_m = [1e1, 1e5]
+object_mass_kg = [1e-3, 1.0, 1e3]
+taxel_mass_kg = 1e-4
+dt_s = [1e-3, 1e-2]
+
+[[stability.parts]]
+scene = "stack_of_four"
+methods = ["quasi_static", "implicit_euler", "semi_implicit"]
+taxels = 8
+stiffness_n_per_m = [1e1, 1e5]
+object_mass_kg = [1e-3, 1.0, 1e3]
+taxel_mass_kg = 1e-4
+dt_s = [1e-3, 1e-2]
+"#;
+
+#[test]
+fn stacked_balls_come_to_rest_with_the_weight_of_all_on_the_skin() {
+    let case = Case::new();
+    case.file("study.toml", STACKS);
+    case.succeeds(&["run", "study.toml", "--out", "out"]);
+    let path = case.path("out/stability.csv");
+    let cells: Vec<StabilityCell> = read_rows(&path).unwrap();
+    let scores: Vec<StabilityScore> = read_rows(&path).unwrap();
+    for (cell, score) in cells.iter().zip(&scores) {
+        let about = format!("{cell:?} {score:?}");
+        let is_exact = matches!(
+            cell.method,
+            ContactMethod::QuasiStatic | ContactMethod::ImplicitEuler
+        );
+        assert!(!is_exact || score.outcome == Outcome::Right, "{about}");
+        if cell.method == ContactMethod::QuasiStatic {
+            assert!(score.force_imbalance.unwrap() <= 1e-6, "{about}");
+            // The lightest balls push the stiffest taxels in by 1e-8 m, and lean on the walls by 1e-13 m.
+            assert!(score.deflection_error.unwrap() <= 1e-4, "{about}");
+        }
+    }
+    let n_engines = if cfg!(feature = "rapier") { 24 } else { 0 };
+    assert_eq!(cells.len(), 2 * 24 + n_engines + 3 * 12);
+    let broken = cells.iter().zip(&scores).filter(|(cell, score)| {
+        cell.method == ContactMethod::SemiImplicit && score.outcome != Outcome::Right
+    });
+    assert!(
+        broken.count() >= 4,
+        "explicit springs break under stacks too"
+    );
+    let svg = fs::read_to_string(case.path("out/stability_stack_of_four.svg")).unwrap();
+    assert!(svg.contains("Four balls, one upon the other"));
+}
+
 /// Plungers whose taxels carry the same on all arrays.
 const JOINTS: &str = r#"
 question = "How many joints?"

@@ -3,6 +3,7 @@
 #[path = "../fixtures/counting/mod.rs"]
 mod counting;
 
+mod body_readout;
 mod sensing_dictionaries;
 mod sensing_projection;
 mod sensing_reconstruction;

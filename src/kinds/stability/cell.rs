@@ -3,7 +3,9 @@
 use super::rows::{StabilityCell, StabilityScore, StabilityTime};
 use super::scene::{CellScene, GRAVITY};
 use super::spec::{ContactMethod, StabilityScene};
-use crate::contact::balance::{Balancer, FreeObject, Outcome as BalanceOutcome, PlacedSkin};
+use crate::contact::balance::{
+    Balancer, FreeObject, Ground, Outcome as BalanceOutcome, PlacedSkin,
+};
 use crate::contact::{Approach, DamperState, Workspace, press_at_pose, spring_load};
 use crate::dynamics::{
     Divergence, Drive, ImplicitEuler, Integrator, SemiImplicit, Steps, System, run,
@@ -128,8 +130,8 @@ fn simulate(
     if cell.method == ContactMethod::QuasiStatic {
         return match (cell.scene, &scene.drive) {
             (_, Drive::Imposed(plan)) => Ok(press_and_release(cell, scene, plan)),
-            (StabilityScene::Rest, Drive::Free { mass, .. }) => put_to_rest(scene, *mass),
-            _ => press_to_weight(scene),
+            (StabilityScene::Plunger, _) => press_to_weight(scene),
+            (_, Drive::Free { mass, .. }) => put_to_rest(scene, *mass, cell.scene.n_balls()),
         };
     }
     let system = scene.system(cell)?;
@@ -197,22 +199,35 @@ fn integrator(
     }
 }
 
-/// Ours, for a free ball: it may turn and move aside, too.
-fn put_to_rest(scene: &CellScene, mass: f64) -> Result<Answer> {
+/// Ours, for a free ball, or several one upon the other in a tube: they may turn and move aside, too.
+fn put_to_rest(scene: &CellScene, mass: f64, n_balls: usize) -> Result<Answer> {
     let cradle = &scene.cradle;
     let spheres = cradle.ball.spheres().expect("a ball is a sphere");
     let ball = FreeObject::new(spheres, mass, DVec3::ZERO)?;
     let skin = PlacedSkin::new(&cradle.patch, Pose::IDENTITY);
     let gravity = -GRAVITY * DVec3::Z;
-    let balance = Balancer::new().settle(&ball, &[skin], gravity, &cradle.pose)?;
+    let planes = match n_balls {
+        1 => Vec::new(),
+        _ => cradle.tube(),
+    };
+    let ground = Ground {
+        skins: vec![skin],
+        planes,
+        ..Ground::default()
+    };
+    let starts: Vec<Pose> = cradle.stack(n_balls).collect();
+    let balls = vec![ball; n_balls];
+    let balances = Balancer::new().settle_all(&balls, &ground, gravity, &starts)?;
     let mut workspace = Workspace::new();
-    let pose = [balance.pose];
-    press_at_pose(&cradle.patch, from_ref(&cradle.ball), &pose, &mut workspace);
+    let poses: Vec<Pose> = balances.iter().map(|balance| balance.pose).collect();
+    let models = vec![cradle.ball.clone(); n_balls];
+    press_at_pose(&cradle.patch, &models, &poses, &mut workspace);
+    let imbalances = balances.iter().map(|balance| match balance.outcome {
+        BalanceOutcome::Settled => balance.imbalance,
+        _ => f64::INFINITY,
+    });
     Ok(Answer {
-        force_imbalance: match balance.outcome == BalanceOutcome::Settled {
-            true => balance.imbalance,
-            false => f64::INFINITY,
-        },
+        force_imbalance: imbalances.fold(0.0, f64::max),
         deflection: workspace.deflections().to_vec(),
         ..Answer::default()
     })

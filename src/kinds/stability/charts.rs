@@ -58,6 +58,8 @@ fn map(cells: &Table, rows: &[usize]) -> ChartSpec {
     let what = match scene {
         "rest" => "A ball is let go on taxels and comes to rest",
         "press" => "A ball is pressed on taxels with 0.5 m/s, held, and taken off",
+        "stack_of_two" => "Two balls, one upon the other, are let go on taxels and come to rest",
+        "stack_of_four" => "Four balls, one upon the other, are let go on taxels and come to rest",
         _ => "A plunger is let go on SkinSim's taxels",
     };
     let settings = [

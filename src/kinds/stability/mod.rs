@@ -4,7 +4,9 @@
 //! [`run_whole`](crate::study::pieces::run_whole) → [its tables](rows).
 //!
 //! A ball comes down on a **cradle**, a square patch whose taxels it meets nearly all at once (all within a quarter of their stroke), in
-//! one of three [scenes](StabilityScene). Every scene has a moment at which the exact answer is known without any time stepping (the
+//! one of five [scenes](StabilityScene). Two or four balls lie one upon the other in a smooth tube, since without friction a stack that
+//! nothing holds has no rest but the one in which it lies down; upright in the tube the taxels carry all of its weight, and the walls
+//! nothing. Every scene has a moment at which the exact answer is known without any time stepping (the
 //! taxels are where the ball holds them; the springs carry its weight, [`rest`](crate::dynamics::rest)), and is judged there:
 //!
 //! - **force imbalance**: |Σ f − what it must be| as a share of that, at the end (of the hold, if the ball's motion is imposed).

@@ -3,6 +3,7 @@
 use super::cell::LEAST_STEPS;
 use super::rows::StabilityCell;
 use super::spec::StabilityScene;
+use crate::contact::balance::HalfSpace;
 use crate::dynamics::{Drive, Rest, System, rest, skin_sim};
 use crate::error::Result;
 use crate::geometry::Pose;
@@ -91,13 +92,44 @@ impl Cradle {
         Pose::from_translation(self.pose.translation + APPROACH * DVec3::Z)
     }
 
-    /// As the methods with mass see it: the ball at a pose, and taxels that it meets within a reach, metres.
-    fn system(&self, mass: f64, drive: &Drive, reach: f64) -> Result<System<'_>> {
+    /// Where the balls of a stack lie that is at first contact, from below: `patch_from_object`.
+    pub fn stack(&self, n_balls: usize) -> impl Iterator<Item = Pose> {
+        let radius = self
+            .ball
+            .spheres()
+            .map_or(0.0, |ball| ball.spheres()[0].radius);
+        let above = move |number| 2.0 * number as f64 * radius * DVec3::Z;
+        (0..n_balls)
+            .map(move |number| Pose::from_translation(self.pose.translation + above(number)))
+    }
+
+    /// The walls of a tube that holds a stack upright: half-spaces that the balls touch and do not push.
+    pub fn tube(&self) -> Vec<HalfSpace> {
+        let radius = self
+            .ball
+            .spheres()
+            .map_or(0.0, |ball| ball.spheres()[0].radius);
+        let inwards = [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y];
+        let wall = |normal| HalfSpace {
+            normal,
+            height: -radius,
+        };
+        inwards.map(wall).into()
+    }
+
+    /// As the methods with mass see it: taxels of this mass, and the ball of a cell at a pose, with those taxels that it meets within a
+    /// reach, metres, and with what is stacked on it.
+    fn system(&self, cell: &StabilityCell, drive: &Drive, reach: f64) -> Result<System<'_>> {
         let pose = match drive {
             Drive::Free { .. } => self.pose,
             Drive::Imposed(_) => self.above(),
         };
-        System::new(&self.patch, mass, &self.ball, pose, drive.clone(), reach)
+        let mass = cell.taxel_mass_kg;
+        let system = System::new(&self.patch, mass, &self.ball, pose, drive.clone(), reach)?;
+        match (drive, cell.scene.n_balls()) {
+            (&Drive::Free { mass, .. }, n_balls @ 2..) => system.stacked(&vec![mass; n_balls - 1]),
+            _ => Ok(system),
+        }
     }
 }
 
@@ -117,7 +149,7 @@ impl CellScene {
     /// Everything as the methods with mass see it.
     pub fn system(&self, cell: &StabilityCell) -> Result<System<'_>> {
         let reach = APPROACH + REACH * self.taxel.stroke;
-        self.cradle.system(cell.taxel_mass_kg, &self.drive, reach)
+        self.cradle.system(cell, &self.drive, reach)
     }
 
     /// The steps of `dt` seconds after which something is looked at, from 1: the moment of judgement, and the end where that is another.
@@ -136,11 +168,12 @@ impl CellScene {
             travel: 0.0,
         };
         let (k, m) = (taxel.stiffness, cell.taxel_mass_kg);
-        let system = cradle.system(m, &drive, REACH * taxel.stroke)?;
+        let system = cradle.system(cell, &drive, REACH * taxel.stroke)?;
         let truth = rest(&system).expect("a free ball over taxels comes to rest");
         let n_touched = truth.deflection.iter().filter(|d| **d > 0.0).count();
+        let all = cell.scene.n_balls() as f64 * mass;
         // What each taxel has to move, itself included.
-        let share = mass / n_touched as f64 + m;
+        let share = all / n_touched as f64 + m;
         let damping = match cell.scene {
             StabilityScene::Plunger => k * skin_sim::DAMPING / skin_sim::STIFFNESS,
             _ => 2.0 * (k * share).sqrt(),
@@ -151,11 +184,11 @@ impl CellScene {
         Ok(Self {
             cradle,
             truth,
-            force: mass * GRAVITY,
+            force: all * GRAVITY,
             judged: end,
             end,
             // It begins with none, and all that it gains by falling goes into springs and dampers.
-            energy_limit: mass * GRAVITY * taxel.stroke,
+            energy_limit: all * GRAVITY * taxel.stroke,
             taxel: Taxel { damping, ..taxel },
             drive,
         })
@@ -177,7 +210,7 @@ impl CellScene {
         };
         let phases = vec![phase(way, -SPEED), phase(hold, 0.0), phase(way, SPEED)];
         let drive = Drive::Imposed(VelocityPlan::new(cradle.above(), phases)?);
-        let system = cradle.system(m, &drive, APPROACH + REACH * taxel.stroke)?;
+        let system = cradle.system(cell, &drive, APPROACH + REACH * taxel.stroke)?;
         let travel = APPROACH + depth;
         let starts = system.starts().iter();
         let deflection: Vec<f64> = starts.map(|start| (travel - start).max(0.0)).collect();

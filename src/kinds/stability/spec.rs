@@ -49,7 +49,7 @@ pub struct StabilityPartSpec {
     pub stiffness_n_per_m: Axis<f64>,
     /// Axis: m. (Quasi-static taxels have none.)
     pub taxel_mass_kg: Axis<f64>,
-    /// Axis: M of the ball; needed where it is free, not there where its motion is imposed.
+    /// Axis: M of the ball, of each in a stack; needed where it is free, not there where its motion is imposed.
     pub object_mass_kg: Option<Axis<f64>>,
     /// In its place: M over the number of taxels, so that each carries the same on all arrays.
     pub object_mass_per_taxel_kg: Option<Axis<f64>>,
@@ -72,6 +72,21 @@ pub enum StabilityScene {
     Press,
     /// It is let go as in `rest`, on SkinSim's dampers: c / k = 0.13 / 16.37 s.
     Plunger,
+    /// Two equal balls, one upon the other, in a smooth square tube as wide as they are, are let go as in `rest`. The mass is that of each.
+    StackOfTwo,
+    /// Four of them.
+    StackOfFour,
+}
+
+impl StabilityScene {
+    /// How many balls there are.
+    pub fn n_balls(self) -> usize {
+        match self {
+            Self::Rest | Self::Press | Self::Plunger => 1,
+            Self::StackOfTwo => 2,
+            Self::StackOfFour => 4,
+        }
+    }
 }
 
 /// How contact is simulated.

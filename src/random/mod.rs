@@ -15,6 +15,10 @@
 //! assert_ne!(a, c);
 //! ```
 
+mod counter;
+
+pub use counter::{CounterKey, GROUP};
+
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use sha2::{Digest, Sha256};
