@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use ndarray::{Array2, ArrayView2};
+use ndarray::{Array2, ArrayView2, Axis};
 
 use crate::recognition::svm::Multiclass;
 use crate::recognition::svm::cross_validation::fold_path::FoldSolution;
@@ -133,10 +133,13 @@ impl<T: Scalar> Judgement<T> {
         n_right
     }
 
-    /// Of some rows with these kernel values, those whose own class is elected.
+    /// Of some rows with these kernel values, those whose own class wins all its pairs or is elected.
     fn n_elected(&self, number: usize, some: &[usize], values: ArrayView2<T>) -> usize {
-        let sums = weighted_sums(&self.weights[number], values, self.problems.len());
-        let mut ballot = Ballot::new(self.is_class.len(), some.len(), self.multiclass);
+        let is_open = |place: &usize| !self.is_pairs() || self.is_beaten[[some[*place], number]];
+        let open: Vec<usize> = (0..some.len()).filter(is_open).collect();
+        let values = values.select(Axis(0), &open);
+        let sums = weighted_sums(&self.weights[number], values.view(), self.problems.len());
+        let mut ballot = Ballot::new(self.is_class.len(), open.len(), self.multiclass);
         for (problem, sums) in sums.rows().into_iter().enumerate() {
             let (positive, negative) = self.problems[problem];
             if self.is_class[positive] && negative.is_none_or(|class| self.is_class[class]) {
@@ -144,11 +147,9 @@ impl<T: Scalar> Judgement<T> {
                 ballot.take((positive, negative), sums, self.rho[[number, problem]]);
             }
         }
-        let winners = ballot.winners().into_iter().zip(some);
-        let is_right = |&(winner, &at): &(usize, &usize)| {
-            winner == self.rows[at].1 || (self.is_pairs() && !self.is_beaten[[at, number]])
-        };
-        winners.filter(is_right).count()
+        let winners = ballot.winners().into_iter().zip(&open);
+        let n_elected = winners.filter(|(winner, place)| *winner == self.rows[some[**place]].1);
+        some.len() - open.len() + n_elected.count()
     }
 
     fn is_pairs(&self) -> bool {
