@@ -444,7 +444,15 @@ fn two_runs_side_by_side_say_what_moved() {
     );
     case.file("other.toml", STUDY.replace("[0.05, 0.2]", "0.7"));
     case.succeeds(&["run", "other.toml", "--out", "other"]);
-    let output = case.run(&["compare", "whole", "other"]);
+    // No row is in both: what moved cannot be written, but both rank the same designs.
+    let output = case.run(&["compare", "whole", "other", "--out", "none.csv"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(said(&output).contains("no row"), "{}", said(&output));
+    assert!(!case.path("none.csv").exists());
+    let (output, _) = case.succeeds(&["compare", "whole", "other"]);
+    assert!(output.contains("designs with a Kendall's τ of"), "{output}");
+    assert!(
+        output.contains("No row of the one has all settings"),
+        "{output}"
+    );
 }
