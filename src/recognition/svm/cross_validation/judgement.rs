@@ -139,15 +139,10 @@ impl<T: Scalar> Judgement<T> {
         let open: Vec<usize> = (0..some.len()).filter(is_open).collect();
         let values = values.select(Axis(0), &open);
         let sums = weighted_sums(&self.weights[number], values.view(), self.problems.len());
-        let mut ballot = Ballot::new(self.is_class.len(), open.len(), self.multiclass);
-        for (problem, sums) in sums.rows().into_iter().enumerate() {
-            let (positive, negative) = self.problems[problem];
-            if self.is_class[positive] && negative.is_none_or(|class| self.is_class[class]) {
-                let sums = sums.to_slice().expect("sums are stored problem by problem");
-                ballot.take((positive, negative), sums, self.rho[[number, problem]]);
-            }
-        }
-        let winners = ballot.winners().into_iter().zip(&open);
+        let between = (self.is_class.len(), self.multiclass);
+        let is_class = |class: usize| self.is_class[class];
+        let winners = Ballot::elect(&sums, self.rho.row(number), between, is_class);
+        let winners = winners.into_iter().zip(&open);
         let n_elected = winners.filter(|(winner, place)| *winner == self.rows[some[**place]].1);
         some.len() - open.len() + n_elected.count()
     }

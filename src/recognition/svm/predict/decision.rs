@@ -111,20 +111,8 @@ impl<T: Scalar> DecisionFunctions<T> {
     }
 
     /// The position of the class that each row's decision values speak for.
-    pub fn winners(
-        &self,
-        features: ArrayView2<f64>,
-        (n_classes, multiclass): (usize, Multiclass),
-    ) -> Vec<usize> {
-        let problems = multiclass.problems(n_classes);
-        let elect = |sums: Array2<T>| {
-            let mut ballot = Ballot::new(n_classes, sums.ncols(), multiclass);
-            for ((&problem, sums), &rho) in problems.iter().zip(sums.rows()).zip(&self.rho) {
-                let sums = sums.to_slice().expect("sums are stored problem by problem");
-                ballot.take(problem, sums, rho);
-            }
-            ballot.winners()
-        };
+    pub fn winners(&self, features: ArrayView2<f64>, between: (usize, Multiclass)) -> Vec<usize> {
+        let elect = |sums: Array2<T>| Ballot::elect(&sums, self.rho.view(), between, |_| true);
         let mut room = self.room(features.nrows());
         let of_block = |points| match &self.sums {
             Sums::Support(
@@ -141,7 +129,7 @@ impl<T: Scalar> DecisionFunctions<T> {
                 let elected = elect(weighted_sums(
                     &support.weights,
                     values.view(),
-                    problems.len(),
+                    self.rho.len(),
                 ));
                 for (row, winner) in open.into_iter().zip(elected) {
                     winners[row] = Some(winner);

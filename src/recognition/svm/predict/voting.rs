@@ -1,6 +1,6 @@
 //! From the decision values of binary problems to one class.
 
-use ndarray::{Array1, Array2, ArrayView2};
+use ndarray::{Array1, Array2, ArrayView1, ArrayView2};
 
 use crate::recognition::svm::Multiclass;
 use crate::recognition::svm::linalg::scalar::Scalar;
@@ -106,6 +106,25 @@ impl Ballot {
                 }
             }
         }
+    }
+
+    /// The position of the class that each row's votes are for, by the sums of problems (n_problems × n_rows) and their ρ. Problems
+    /// between these classes whose classes do not all take part have no vote.
+    pub fn elect<T: Scalar>(
+        sums: &Array2<T>,
+        rho: ArrayView1<f64>,
+        (n_classes, multiclass): (usize, Multiclass),
+        takes_part: impl Fn(usize) -> bool,
+    ) -> Vec<usize> {
+        let mut ballot = Self::new(n_classes, sums.ncols(), multiclass);
+        let problems = multiclass.problems(n_classes).into_iter();
+        for (((positive, negative), sums), &rho) in problems.zip(sums.rows()).zip(rho) {
+            if takes_part(positive) && negative.is_none_or(&takes_part) {
+                let sums = sums.to_slice().expect("sums are stored problem by problem");
+                ballot.take((positive, negative), sums, rho);
+            }
+        }
+        ballot.winners()
     }
 
     /// The position of the class that each row's votes are for; of equals the first.
