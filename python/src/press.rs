@@ -108,10 +108,10 @@ fn is_single(py: Python, dtype: &Bound<PyAny>) -> PyResult<bool> {
     }
 }
 
-/// `numpy.empty`: every number is written once, and large arrays lie in large pages.
-fn empty<'py>(py: Python<'py>) -> PyResult<&'py Bound<'py, PyAny>> {
-    static EMPTY: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
-    EMPTY.import(py, "numpy", "empty")
+/// `numpy.zeros`: what nothing comes near is never written, and large arrays lie in large pages.
+fn zeros<'py>(py: Python<'py>) -> PyResult<&'py Bound<'py, PyAny>> {
+    static ZEROS: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+    ZEROS.import(py, "numpy", "zeros")
 }
 
 struct Batch<'a, 'py> {
@@ -126,8 +126,8 @@ struct Batch<'a, 'py> {
 impl<'py> Batch<'_, 'py> {
     fn into_new<T: Real>(self, py: Python<'py>, shape: &[usize]) -> PyResult<Bound<'py, PyAny>> {
         let shape = PyTuple::new(py, shape)?;
-        let array = empty(py)?.call1((shape, dtype_of::<T>(py)))?;
-        self.fill(py, array.cast_into::<PyArrayDyn<T>>()?)
+        let array = zeros(py)?.call1((shape, dtype_of::<T>(py)))?;
+        self.fill(py, array.cast_into::<PyArrayDyn<T>>()?, true)
     }
 
     fn into_out(
@@ -138,11 +138,11 @@ impl<'py> Batch<'_, 'py> {
     ) -> PyResult<Bound<'py, PyAny>> {
         if let Ok(array) = out.cast::<PyArrayDyn<f64>>() {
             check_out(array, shape)?;
-            return self.fill(py, array.clone());
+            return self.fill(py, array.clone(), false);
         }
         if let Ok(array) = out.cast::<PyArrayDyn<f32>>() {
             check_out(array, shape)?;
-            return self.fill(py, array.clone());
+            return self.fill(py, array.clone(), false);
         }
         let given = match out.getattr("dtype") {
             Ok(dtype) => format!("dtype {dtype}"),
@@ -155,6 +155,7 @@ impl<'py> Batch<'_, 'py> {
         self,
         py: Python<'py>,
         array: Bound<'py, PyArrayDyn<T>>,
+        is_zero: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
         let mut sides = array.shape().to_vec();
         sides.push(jacobian::N);
@@ -168,7 +169,8 @@ impl<'py> Batch<'_, 'py> {
                 .map_err(|error| bad_input("out", error, "an array that nobody else uses"))?;
             let mut changing = changes.as_ref().map(|changes| changes.readwrite());
             let changes = changing.as_mut().map(|changes| changes.as_slice_mut());
-            self.run(py, writable.as_slice_mut()?, changes.transpose()?)?
+            let frames = writable.as_slice_mut()?;
+            self.run(py, (frames, is_zero), changes.transpose()?)?
         };
         Ok(match (contacts, changes) {
             (None, None) => array.into_any(),
@@ -180,11 +182,11 @@ impl<'py> Batch<'_, 'py> {
         })
     }
 
-    /// Writes a frame for each pose, and its changes.
+    /// Writes a frame for each pose, onto zeros or whatever is there, and its changes.
     fn run<T: Real>(
         &self,
         py: Python,
-        frames: &mut [T],
+        (frames, are_zero): (&mut [T], bool),
         changes: Option<&mut [f64]>,
     ) -> PyResult<Option<Contacts>> {
         let model = model_of("object", self.object)?;
@@ -204,9 +206,11 @@ impl<'py> Batch<'_, 'py> {
             let press = goal.of_pose(number, patch, (model, &poses[number]));
             let pressed = press.deflect(workspace);
             let pressed = pressed.map_err(|error| named(number, error))?;
-            match pressed {
-                Some(_) => workspace.write_deflections(frame, T::write),
-                None => frame.fill(T::default()),
+            if !are_zero {
+                frame.fill(T::default());
+            }
+            if pressed.is_some() {
+                workspace.write_deflections(frame, T::write);
             }
             if !wanted.contacts && changes.is_none() {
                 return Ok(());

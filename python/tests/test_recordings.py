@@ -172,6 +172,23 @@ def test_huggingfaces_datasets_read_the_lerobot_dataset(lerobot: Path) -> None:
     assert row["observation.touch.palm"].shape == (5, 192) and row["episode_index"] == 1
 
 
+def test_lerobots_own_reader_reads_it(lerobot: Path, recording: Recording) -> None:
+    pytest.importorskip("lerobot")
+    from lerobot.datasets.lerobot_dataset import LeRobotDataset
+
+    dataset = LeRobotDataset("bubbletouch/test", root=lerobot, delta_timestamps={"observation.pose.palm": [-0.05, 0.0]})
+    assert (dataset.fps, dataset.num_episodes, len(dataset)) == (20, 3, 29)
+    row = dataset[12]
+    assert (row["task"], int(row["episode_index"]), int(row["frame_index"])) == ("Another task", 1, 1)
+    fast = recording.patches["palm"].force.reshape(51, -1).astype(np.float32)
+    assert np.array_equal(dataset[28]["observation.touch.palm"].numpy(), fast[46:51])
+    assert dataset[28]["observation.points.back"].shape == (25, 6)
+    # Asked for by time, as policies do.
+    poses = recording.patches["palm"].pose[[45, 50]].astype(np.float32)
+    assert np.array_equal(dataset[28]["observation.pose.palm"].numpy(), poses)
+    assert np.allclose(dataset.meta.stats["observation.pose.palm"]["mean"], poses[0])
+
+
 def test_reruns_reader_takes_the_lerobot_dataset(lerobot: Path) -> None:
     experimental = pytest.importorskip("rerun.experimental")
     if not hasattr(experimental, "LeRobotReader"):

@@ -70,3 +70,12 @@ def test_the_examples_are_of_the_types_that_the_stubs_say() -> None:
     checked = [sys.executable, "-m", "mypy", "--strict", *map(str, EXAMPLES)]
     done = subprocess.run(checked, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_pyright_agrees_on_the_examples() -> None:
+    pytest.importorskip("pyright")
+    pyright = [sys.executable, "-m", "pyright", "--pythonpath", sys.executable]
+    if subprocess.run([*pyright, "--version"], capture_output=True).returncode:
+        pytest.skip("pyright cannot get its own program")
+    done = subprocess.run([*pyright, *map(str, EXAMPLES)], capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr

@@ -20,18 +20,14 @@ impl Sheet {
         &self.deflections[..self.n_taxels]
     }
 
-    /// The same as other numbers, n_taxels of them: `write` makes them of what is covered, the rest is zero without being looked at.
-    pub fn write_to<T: Copy + Default>(&self, to: &mut [T], write: impl Fn(&mut [T], &[f64])) {
-        assert_eq!(to.len(), self.n_taxels, "one number a taxel");
-        let mut done = 0;
+    /// The same as other numbers, n_taxels zeros: `write` makes them of what is covered, the rest is not looked at.
+    pub fn write_onto<T>(&self, zeros: &mut [T], write: impl Fn(&mut [T], &[f64])) {
+        assert_eq!(zeros.len(), self.n_taxels, "one number a taxel");
         for row in self.rows.clone() {
             let first = row * self.n_columns;
             let columns = first + self.columns.start..first + self.columns.end;
-            to[done..columns.start].fill(T::default());
-            write(&mut to[columns.clone()], &self.deflections[columns.clone()]);
-            done = columns.end;
+            write(&mut zeros[columns.clone()], &self.deflections[columns]);
         }
-        to[done..].fill(T::default());
     }
 
     /// Leaves all taxels of a grid at rest. What was not covered is not looked at.

