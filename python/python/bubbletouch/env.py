@@ -120,7 +120,8 @@ class FindObjectVector(VectorEnv[NDArray[np.float32], NDArray[np.float32], Any])
         training_seed: int = 0,
     ) -> None:
         self.num_envs = num_envs
-        self.confidence, self.max_steps = confidence, max_steps
+        self.confidence: float = confidence
+        self.max_steps: int = max_steps
         self._world = _World(objects, n_taxels, reach, training_seed)
         low = np.r_[np.zeros(n_taxels**2), -np.ones(2)].astype(np.float32)
         self.single_observation_space = spaces.Box(low, np.ones(len(low), np.float32))

@@ -76,6 +76,11 @@ class SVC(_Classifier):
     problem and its solution), n_capped_.
     """
 
+    problems_: list[dict[str, Any]]
+    support_: NDArray[np.int64]
+    n_support_: NDArray[np.int64]
+    n_capped_: int
+
     def __init__(
         self,
         C: float = 1.0,
@@ -171,6 +176,11 @@ class LinearSVC(_Classifier):
     After fit: classes_, n_features_in_, coef_ (n_classes, m; of two classes (1, m)), intercept_, n_iter_, n_capped_.
     """
 
+    coef_: Floats
+    intercept_: Floats
+    n_iter_: int
+    n_capped_: int
+
     def __init__(
         self,
         C: float = 1.0,
@@ -230,6 +240,11 @@ class GridSearch(_Classifier):
     After fit: best_params_ (C and gamma), best_score_, results_ (C, gamma, accuracy of each), best_estimator_ (of all rows).
     """
 
+    results_: list[dict[str, Any]]
+    best_score_: float
+    best_params_: dict[str, Any]
+    best_estimator_: SVC
+
     def __init__(
         self,
         estimator: SVC | None = None,
@@ -257,7 +272,7 @@ class GridSearch(_Classifier):
         chosen = _core.choose_svm(features, numbers, params, folds, list(self.C), scales)
         self.results_ = [dict(zip(("C", "gamma", "accuracy"), one, strict=True)) for one in chosen["tried"]]
         self.best_score_ = chosen["accuracy"]
-        self.best_params_: dict[str, Any] = {"C": chosen["C"]}
+        self.best_params_ = {"C": chosen["C"]}
         if chosen["gamma"] is not None:
             self.best_params_["gamma"] = chosen["gamma"]
         own = {name: getattr(estimator, name) for name in _SVC_NAMES} | self.best_params_
