@@ -57,6 +57,15 @@ def test_tables_become_data_frames(study: bt.Study) -> None:
     assert set(frame["object" if "object" in frame else "ensemble"])
 
 
+def test_tables_become_polars_frames(study: bt.Study) -> None:
+    polars = pytest.importorskip("polars")
+    table = study["accuracy"]
+    frame = table.polars()
+    assert isinstance(frame, polars.DataFrame) and frame.columns == list(table.columns) and len(frame) == len(table)
+    for name, column in table.columns.items():
+        assert np.array_equal(frame[name].to_numpy(), column, equal_nan=isinstance(column, np.ndarray)), name
+
+
 def test_the_same_tables_as_the_commands(study: bt.Study, tmp_path: Path, command: Command) -> None:
     path = tmp_path / "cans.toml"
     path.write_text(text_of(STUDY))

@@ -51,6 +51,12 @@ class Table:
 
         return pandas.DataFrame(self.columns)
 
+    def polars(self) -> Any:
+        """As a polars.DataFrame. Raises ImportError without polars."""
+        import polars
+
+        return polars.DataFrame(self.columns)
+
     def _repr_html_(self) -> str:
         rows = [f"<th>{html.escape(name)}</th>" for name in self.columns]
         lines = [f"<tr>{''.join(rows)}</tr>"]
