@@ -56,7 +56,8 @@ fn read_plans(source: &Source) -> Result<Vec<(AxisValues, Plan)>> {
 /// Those of [`read_plan`]; an object that cannot be read; touches that memory cannot hold.
 pub fn load_study(source: &Source) -> Result<RecognitionStudy> {
     let plans = read_plans(source)?;
-    let mut study = RecognitionStudy::load(plans, source.packings.as_deref(), source.memory)?;
+    let (packings, place) = (source.packings.as_deref(), &source.place);
+    let mut study = RecognitionStudy::load(place, plans, packings, source.memory)?;
     (study.scale, study.place) = recognition_scale(&study, source.memory, &source.results);
     Ok(study)
 }
@@ -66,8 +67,9 @@ impl RecognitionStudy {
     /// limit). Objects that are packed are kept in `packings`.
     ///
     /// # Errors
-    /// An object that cannot be built; too many touches; those of [`of_variants`](Self::of_variants).
+    /// An object that cannot be built; too many touches; those of [`of_variants`](Self::of_variants), after `place` (the file).
     pub fn load(
+        place: &str,
         plans: Vec<(AxisValues, Plan)>,
         packings: Option<&Path>,
         ceiling: Option<u64>,
@@ -96,7 +98,7 @@ impl RecognitionStudy {
             drawn.insert(content, touched.clone());
             variants.push((variant, plan, touched));
         }
-        Self::of_variants(variants)
+        Self::of_variants(variants).map_err(|error| error.under(format!("{place}, ")))
     }
 }
 
