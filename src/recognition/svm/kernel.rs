@@ -1,10 +1,18 @@
-//! Kernels of the support vector machines.
+//! Kernels of the support vector machines: all that tells one from another, so that a new one is a case of each `match` here.
+//!
+//! A kernel value is a function of one pairwise number, which all γ share (the product x·z, of matrix products), and of the rows' squared norms.
 
-use ndarray::{ArrayView1, ArrayView2};
+use ndarray::{Array2, ArrayView1, ArrayView2, ArrayViewMut2};
 use serde::{Deserialize, Serialize};
 
 use crate::recognition::svm::gram::extent::Extent;
+use crate::recognition::svm::linalg::products::{multiply, own_products};
+use crate::recognition::svm::linalg::scalar::Scalar;
 use crate::{Error, Result};
+
+/// The largest exponent of an RBF kernel, γ times the squared distance between two rows, for f32: the exponent's rounding is
+/// the kernel value's relative error.
+const SINGLE_EXPONENT: f64 = 1e4;
 
 /// The width parameter γ of a kernel, in inverse squared feature units.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -153,6 +161,101 @@ impl KernelFunction {
             format!("a row of squared length {norm:e}"),
             "its kernel value must be a finite number: scale the features, or take a smaller gamma or degree",
         ))
+    }
+
+    /// γ, of a kernel that has one.
+    pub fn gamma(&self) -> Option<f64> {
+        match *self {
+            Self::Linear => None,
+            Self::Rbf { gamma } | Self::Polynomial { gamma, .. } => Some(gamma),
+        }
+    }
+
+    /// Whether a constant that is added to all features changes nothing but a decision function's ρ: then rows are taken about
+    /// their mean, where products are small and keep their digits.
+    pub fn has_any_centre(&self) -> bool {
+        match self {
+            Self::Linear | Self::Rbf { .. } => true,
+            Self::Polynomial { .. } => false,
+        }
+    }
+
+    /// The largest `K(x, x)` of rows of which the farthest is so far from the centre (squared), where f32 has the digits for
+    /// values of rows so far apart; `None`: it has not.
+    pub fn largest_in_single(&self, farthest: f64) -> Option<f64> {
+        match *self {
+            Self::Linear => Some(farthest),
+            // Where exponents are large, K is nearly the identity and coefficients are near 1, whatever C.
+            Self::Rbf { gamma } if 4.0 * gamma * farthest > SINGLE_EXPONENT => None,
+            Self::Rbf { .. } => Some(1.0),
+            Self::Polynomial { .. } => None,
+        }
+    }
+
+    /// The pairwise numbers of rows (n_left × m) with others (n × m), which values are made of: into n_left × n.
+    pub fn pairwise<T: Scalar>(
+        &self,
+        left: ArrayView2<T>,
+        right: ArrayView2<T>,
+        to: ArrayViewMut2<T>,
+    ) {
+        multiply(left, right, to);
+    }
+
+    /// The same of all rows (n × m) with each other: n × n.
+    pub fn own_pairwise<T: Scalar>(&self, rows: ArrayView2<T>) -> Array2<T> {
+        own_products(rows)
+    }
+
+    /// `K(x, x)` of a row's squared norm.
+    pub fn of_norm<T: Scalar>(&self, norm: T) -> T {
+        match *self {
+            Self::Linear => norm,
+            Self::Rbf { .. } => T::one(),
+            Self::Polynomial {
+                gamma,
+                coef0,
+                degree,
+            } => polynomial(norm, gamma, coef0, degree),
+        }
+    }
+
+    /// Values in place of a row's pairwise numbers, of its squared norm and the others'.
+    pub fn of_pairwise<T: Scalar>(&self, pairwise: &mut [T], norm: T, norms: &[T]) {
+        match *self {
+            Self::Linear => {}
+            Self::Rbf { gamma } => {
+                distances(pairwise, norm, norms);
+                T::exponentials(pairwise, gamma);
+            }
+            Self::Polynomial {
+                gamma,
+                coef0,
+                degree,
+            } => {
+                for value in pairwise {
+                    *value = polynomial(*value, gamma, coef0, degree);
+                }
+            }
+        }
+    }
+}
+
+fn polynomial<T: Scalar>(product: T, gamma: f64, coef0: f64, degree: i32) -> T {
+    T::of((gamma * product.wide() + coef0).powi(degree))
+}
+
+/// `|x|² + |z|² − 2 x·z` in place of each product, not below 0.
+#[multiversion::multiversion(targets("x86_64+avx2+fma"))]
+fn distances<T: Scalar>(products: &mut [T], norm: T, norms: &[T]) {
+    let two = T::one() + T::one();
+    for (value, &other) in products.iter_mut().zip(norms) {
+        let distance = norm + other - two * *value;
+        *value = if distance > T::zero() {
+            distance
+        } else {
+            T::zero()
+        };
     }
 }
 

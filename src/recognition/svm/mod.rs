@@ -92,9 +92,6 @@ const SINGLE_TOLERANCE: f64 = 1e-4;
 /// The largest C · K(x, x), and the largest K(x, x), for f32: rounding of K, 6e-8 of it, is multiplied by coefficients of at
 /// most C.
 const SINGLE_MOST: f64 = 1e5;
-/// The largest exponent of an RBF kernel, γ times the squared distance between two rows, for f32: the exponent's rounding is
-/// the kernel value's relative error.
-const SINGLE_EXPONENT: f64 = 1e4;
 /// Bytes of kernel values held at once, unless asked otherwise: one-vs-rest on 16,384 rows in f32.
 pub const DEFAULT_MEMORY_BYTES: usize = 2 << 30;
 
@@ -223,14 +220,8 @@ impl SvmParams {
         path: &[f64],
         farthest: f64,
     ) -> bool {
-        let largest = match kernel {
-            KernelFunction::Polynomial { .. } => return true,
-            // Where exponents are large, K is nearly the identity and coefficients are near 1, whatever C.
-            KernelFunction::Rbf { gamma } if 4.0 * gamma * farthest > SINGLE_EXPONENT => {
-                return true;
-            }
-            KernelFunction::Rbf { .. } => 1.0,
-            KernelFunction::Linear => farthest,
+        let Some(largest) = kernel.largest_in_single(farthest) else {
+            return true;
         };
         let c = path.iter().copied().fold(0.0, f64::max);
         n_rows < SINGLE_FROM_ROWS

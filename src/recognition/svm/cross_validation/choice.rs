@@ -77,7 +77,7 @@ pub fn choose(
         .indexed_iter()
         .map(|((kernel, c), &n_correct)| Tried {
             c: path[c],
-            gamma: gamma_of(&kernels[kernel]),
+            gamma: kernels[kernel].gamma(),
             accuracy: n_correct as f64 / n_validated as f64,
         });
     Ok(Chosen::of(tried.collect(), n_capped))
@@ -149,13 +149,6 @@ fn ascending(values: &[f64]) -> Vec<f64> {
     values.sort_by(f64::total_cmp);
     values.dedup();
     values
-}
-
-fn gamma_of(kernel: &KernelFunction) -> Option<f64> {
-    match *kernel {
-        KernelFunction::Linear => None,
-        KernelFunction::Rbf { gamma } | KernelFunction::Polynomial { gamma, .. } => Some(gamma),
-    }
 }
 
 /// The kernel with every γ that is asked for, ascending.
@@ -310,7 +303,7 @@ mod tests {
             let fitting = rows(training, &fold.train)?;
             let held_out = rows(training, &fold.test)?;
             for (kernel, mut counts) in kernels.iter().zip(counts.rows_mut()) {
-                let kernel = match gamma_of(kernel) {
+                let kernel = match kernel.gamma() {
                     Some(gamma) => params.kernel.with_gamma(Gamma::Value(gamma)),
                     None => params.kernel,
                 };

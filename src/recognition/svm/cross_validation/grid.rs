@@ -15,7 +15,6 @@ use crate::recognition::svm::cross_validation::judgement::Judgement;
 use crate::recognition::svm::gram::product_kernel::ProductKernel;
 use crate::recognition::svm::gram::sorted::Sorted;
 use crate::recognition::svm::kernel::KernelFunction;
-use crate::recognition::svm::linalg::products::own_products;
 use crate::recognition::svm::linalg::scalar::Scalar;
 use crate::recognition::svm::smo::Dense;
 use crate::recognition::svm::training::Goal;
@@ -50,12 +49,13 @@ impl<T: Scalar> Grid<'_, T> {
     /// iteration cap.
     pub fn n_correct(&self, kernels: &[KernelFunction], goal: Goal) -> (Array2<usize>, usize) {
         let rows = (self.sorted.points(), self.sorted.ranges());
-        let products = own_products(rows.0.all().values);
+        // One kernel, of several γ: all are made of the same numbers.
+        let pairwise = kernels[0].own_pairwise(rows.0.all().values);
         let folds: Vec<Fold> = self.folds.iter().map(|split| self.fold(split)).collect();
         let mut counts = Array2::zeros((kernels.len(), goal.path.len()));
         let mut n_capped = 0;
         for (&kernel, mut counts) in kernels.iter().zip(counts.rows_mut()) {
-            let kernel = ProductKernel::new(rows, products.view(), kernel);
+            let kernel = ProductKernel::new(rows, pairwise.view(), kernel);
             for folds in folds.chunks(FOLDS_AT_ONCE) {
                 for judgement in self.judge(folds, &kernel, goal) {
                     n_capped += judgement.n_capped();

@@ -5,7 +5,6 @@ use std::ops::Range;
 use ndarray::ArrayViewMut2;
 
 use crate::recognition::svm::gram::sorted::Sorted;
-use crate::recognition::svm::linalg::products::{multiply, own_products};
 use crate::recognition::svm::linalg::scalar::Scalar;
 
 /// Rows of a group of classes, at least, while classes last: enough that a product's time goes into its multiplications.
@@ -46,8 +45,7 @@ impl<'a, T: Scalar> Group<'a, T> {
     pub fn new(sorted: &'a Sorted<T>, classes: &Range<usize>) -> Self {
         let rows = sorted.rows_of(classes);
         let points = sorted.points().range(rows.clone());
-        let mut own = own_products(points.values);
-        points.apply(own.view_mut(), points, &sorted.kernel());
+        let own = points.own_kernel(&sorted.kernel());
         Self {
             sorted,
             rows,
@@ -68,11 +66,10 @@ impl<'a, T: Scalar> Group<'a, T> {
         let size = (other.rows.len(), self.rows.len());
         values.resize(size.0 * size.1, T::zero());
         let values = ArrayViewMut2::from_shape(size, values);
-        let mut values = values.expect("room for all values was made");
+        let values = values.expect("room for all values was made");
         let [own, others] =
             [self, other].map(|group| self.sorted.points().range(group.rows.clone()));
-        multiply(others.values, own.values, values.view_mut());
-        others.apply(values, own, &self.sorted.kernel());
+        others.write_kernel(own, &self.sorted.kernel(), values);
     }
 
     /// Of kernel values with this group those of some rows with some of its own, row by row; all rows begin with `first`.

@@ -46,9 +46,9 @@ impl Extent {
 
     /// Where kernels are taken about: the mean of the rows where that changes nothing but rounding, else the origin.
     pub fn centre(&self, kernel: &KernelFunction) -> Array1<f64> {
-        match kernel {
-            KernelFunction::Linear | KernelFunction::Rbf { .. } => self.mean.clone(),
-            KernelFunction::Polynomial { .. } => Array1::zeros(self.mean.len()),
+        match kernel.has_any_centre() {
+            true => self.mean.clone(),
+            false => Array1::zeros(self.mean.len()),
         }
     }
 }

@@ -6,7 +6,7 @@ use ndarray::{Array1, Array2, ArrayView1, ArrayView2, ArrayViewMut2, Axis, s};
 
 use crate::recognition::svm::kernel::KernelFunction;
 use crate::recognition::svm::linalg::moved_row::{Moved, move_row};
-use crate::recognition::svm::linalg::products::{multiply, own_products};
+use crate::recognition::svm::linalg::products::multiply;
 use crate::recognition::svm::linalg::row_products::Rows;
 use crate::recognition::svm::linalg::scalar::Scalar;
 
@@ -152,74 +152,48 @@ impl<T: Scalar> PointsView<'_, T> {
     pub fn diagonal(&self, kernel: &KernelFunction) -> Vec<T> {
         self.norms
             .iter()
-            .map(|&norm| match *kernel {
-                KernelFunction::Linear => norm,
-                KernelFunction::Rbf { .. } => T::one(),
-                KernelFunction::Polynomial {
-                    gamma,
-                    coef0,
-                    degree,
-                } => polynomial(norm, gamma, coef0, degree),
-            })
+            .map(|&norm| kernel.of_norm(norm))
             .collect()
     }
 
     /// `K(x_i, z_j)`: n × n of the others.
     pub fn kernel(&self, others: PointsView<T>, kernel: &KernelFunction) -> Array2<T> {
-        let mut values = self.values.dot(&others.values.t());
-        self.apply(values.view_mut(), others, kernel);
+        let mut values = Array2::zeros((self.values.nrows(), others.values.nrows()));
+        self.write_kernel(others, kernel, values.view_mut());
         values
+    }
+
+    /// The same into n × n of the others.
+    pub fn write_kernel(
+        &self,
+        others: PointsView<T>,
+        kernel: &KernelFunction,
+        mut to: ArrayViewMut2<T>,
+    ) {
+        kernel.pairwise(self.values, others.values, to.view_mut());
+        self.apply(to, others, kernel);
     }
 
     /// `K(x_i, x_j)`: n × n.
     pub fn own_kernel(&self, kernel: &KernelFunction) -> Array2<T> {
-        let mut values = own_products(self.values);
+        let mut values = kernel.own_pairwise(self.values);
         self.apply(values.view_mut(), *self, kernel);
         values
     }
 
-    /// Turns products with the others into kernel values, in place.
+    /// Turns [pairwise numbers](KernelFunction::pairwise) with the others into kernel values, in place.
     pub fn apply(
         &self,
-        mut products: ArrayViewMut2<T>,
+        mut pairwise: ArrayViewMut2<T>,
         others: PointsView<T>,
         kernel: &KernelFunction,
     ) {
-        match *kernel {
-            KernelFunction::Linear => {}
-            KernelFunction::Rbf { gamma } => {
-                let norms = others.norms.to_slice();
-                let norms = norms.expect("norms are stored one by one");
-                for (mut row, &norm) in products.rows_mut().into_iter().zip(self.norms) {
-                    let row = row.as_slice_mut().expect("rows of products are contiguous");
-                    distances(row, norm, norms);
-                    T::exponentials(row, gamma);
-                }
-            }
-            KernelFunction::Polynomial {
-                gamma,
-                coef0,
-                degree,
-            } => products.mapv_inplace(|value| polynomial(value, gamma, coef0, degree)),
+        let norms = others.norms.to_slice();
+        let norms = norms.expect("norms are stored one by one");
+        for (mut row, &norm) in pairwise.rows_mut().into_iter().zip(self.norms) {
+            let row = row.as_slice_mut().expect("rows of values are contiguous");
+            kernel.of_pairwise(row, norm, norms);
         }
-    }
-}
-
-fn polynomial<T: Scalar>(product: T, gamma: f64, coef0: f64, degree: i32) -> T {
-    T::of((gamma * product.wide() + coef0).powi(degree))
-}
-
-/// `|x|² + |z|² − 2 x·z` in place of each product, not below 0.
-#[multiversion::multiversion(targets("x86_64+avx2+fma"))]
-fn distances<T: Scalar>(products: &mut [T], norm: T, norms: &[T]) {
-    let two = T::one() + T::one();
-    for (value, &other) in products.iter_mut().zip(norms) {
-        let distance = norm + other - two * *value;
-        *value = if distance > T::zero() {
-            distance
-        } else {
-            T::zero()
-        };
     }
 }
 

@@ -1,5 +1,5 @@
-//! Kernel values made of the products of all rows when they are asked for: those within classes once, those between two when
-//! their pair is solved, those of a row when it is judged.
+//! Kernel values made of the pairwise numbers of all rows (products, of most kernels) when they are asked for: those within classes
+//! once, those between two when their pair is solved, those of a row when it is judged.
 
 use std::ops::Range;
 
@@ -10,29 +10,29 @@ use crate::recognition::svm::kernel::KernelFunction;
 use crate::recognition::svm::linalg::scalar::Scalar;
 use crate::recognition::svm::smo::Dense;
 
-/// A kernel on rows whose products are known.
+/// A kernel on rows whose pairwise numbers are known.
 pub(crate) struct ProductKernel<'a, T> {
     points: &'a Points<T>,
     /// Where the rows of each class are.
     ranges: &'a [Range<usize>],
     /// n × n.
-    products: ArrayView2<'a, T>,
+    pairwise: ArrayView2<'a, T>,
     kernel: KernelFunction,
     /// Values of the rows of each class with each other.
     within: Vec<Array2<T>>,
 }
 
 impl<'a, T: Scalar> ProductKernel<'a, T> {
-    /// Of rows, class by class, whose products with each other are these.
+    /// Of rows, class by class, whose pairwise numbers are these.
     pub fn new(
         (points, ranges): (&'a Points<T>, &'a [Range<usize>]),
-        products: ArrayView2<'a, T>,
+        pairwise: ArrayView2<'a, T>,
         kernel: KernelFunction,
     ) -> Self {
         let mut own = Self {
             points,
             ranges,
-            products,
+            pairwise,
             kernel,
             within: Vec::new(),
         };
@@ -47,15 +47,15 @@ impl<'a, T: Scalar> ProductKernel<'a, T> {
     /// Writes the kernel values of the rows of a class with those of another.
     fn write(&self, (class, other): (usize, usize), mut to: ArrayViewMut2<T>) {
         let (rows, others) = (self.ranges[class].clone(), self.ranges[other].clone());
-        let products = self.products.slice(s![rows.clone(), others.clone()]);
-        to.assign(&products);
+        let pairwise = self.pairwise.slice(s![rows.clone(), others.clone()]);
+        to.assign(&pairwise);
         let (rows, others) = (self.points.range(rows), self.points.range(others));
         rows.apply(to, others, &self.kernel);
     }
 
     /// Those of all rows with each other.
     pub fn write_all(&self, to: &mut Dense<T>) {
-        let (mut values, all) = (self.products.to_owned(), self.points.all());
+        let (mut values, all) = (self.pairwise.to_owned(), self.points.all());
         all.apply(values.view_mut(), all, &self.kernel);
         to.of_whole(values.view());
     }
@@ -68,7 +68,7 @@ impl<'a, T: Scalar> ProductKernel<'a, T> {
 
     /// Those of some rows with all.
     pub fn rows(&self, rows: &[usize]) -> Array2<T> {
-        let mut values = self.products.select(Axis(0), rows);
+        let mut values = self.pairwise.select(Axis(0), rows);
         let own = self.points.select(rows);
         own.all()
             .apply(values.view_mut(), self.points.all(), &self.kernel);

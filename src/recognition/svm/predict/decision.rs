@@ -176,10 +176,10 @@ impl<T: Scalar> Support<T> {
     /// `K(x, x_i)`: rows × vectors.
     fn kernel_values<'a>(&self, points: &Points<T>, room: &'a mut Array2<T>) -> ArrayView2<'a, T> {
         let n = points.len();
-        let mut values = room.slice_mut(s![..n, ..]);
-        let (points, vectors) = (points.all(), self.vectors.all());
-        multiply(points.values, vectors.values, values.view_mut());
-        points.apply(values, vectors, &self.kernel);
+        let values = room.slice_mut(s![..n, ..]);
+        points
+            .all()
+            .write_kernel(self.vectors.all(), &self.kernel, values);
         room.slice(s![..n, ..])
     }
 }
