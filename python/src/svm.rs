@@ -117,6 +117,7 @@ impl Asked {
         let kernel = match &self.kernel[..] {
             "linear" => Kernel::Linear,
             "rbf" => Kernel::Rbf { gamma },
+            "laplacian" => Kernel::Laplacian { gamma },
             "poly" => Kernel::Polynomial {
                 gamma,
                 coef0: self.coef0,
@@ -126,7 +127,7 @@ impl Asked {
                 return Err(bad_input(
                     "kernel",
                     format!("`{other}`"),
-                    "linear, poly or rbf",
+                    "laplacian, linear, poly or rbf",
                 ));
             }
         };

@@ -151,7 +151,7 @@ pub struct RecognitionSpec {
     pub c: Option<Axis<f64>>,
     /// Instead of `c`: candidates of which each fit chooses one by cross-validation within its training rows.
     pub choose_c: Option<Vec<f64>>,
-    /// γ of the RBF and polynomial kernels; 1 / (F · m · variance), 'scale', when left out.
+    /// γ of the RBF, Laplacian and polynomial kernels; 1 / (F · m · variance), 'scale', when left out (Laplacian: the standard deviation).
     pub gamma: Option<f64>,
     /// Instead of `gamma`: candidates as multiples of 'scale', of which each fit chooses one together with C.
     pub choose_gamma: Option<Vec<f64>>,

@@ -101,13 +101,14 @@ impl Training<'_> {
 
     /// The γ of a classifier that has one, where it is not chosen.
     fn gamma(&self) -> Result<Option<f64>> {
-        if !self.kind.has_gamma() {
+        let kernel = self.kind.about().kernel.filter(|_| self.kind.has_gamma());
+        let Some(kernel) = kernel.map(|kernel| kernel(&self.classifier())) else {
             return Ok(None);
-        }
+        };
         let records = self.data.records.view();
         let scaled = self.recognition.scaling.fit(records)?.apply(records)?;
-        let gamma = self.recognition.gamma.map_or(Gamma::Scale, Gamma::Value);
-        gamma.resolve(scaled.view()).map(Some)
+        let scale = || kernel.gamma_scale(scaled.view());
+        Ok(Some(self.recognition.gamma.unwrap_or_else(scale)))
     }
 
     /// The leading training rows, as many of each object as take part in a choice.

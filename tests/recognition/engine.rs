@@ -24,7 +24,10 @@ const CUBIC: Kernel = Kernel::Polynomial {
     coef0: 1.0,
     degree: 3,
 };
-const KERNELS: [Kernel; 3] = [Kernel::Linear, RBF, CUBIC];
+const LAPLACIAN: Kernel = Kernel::Laplacian {
+    gamma: Gamma::Scale,
+};
+const KERNELS: [Kernel; 4] = [Kernel::Linear, RBF, LAPLACIAN, CUBIC];
 
 fn params(kernel: Kernel, c: f64, tolerance: f64) -> SvmParams {
     SvmParams {
@@ -134,7 +137,7 @@ fn each_model_of_a_path_is_that_of_training_its_c_alone_in_the_order_asked() {
     let data = clouds(&[30, 25, 20], 5, 1.0, 2);
     let path = [1e6, 100.0, 1e-6, 1.0, 1.0, 0.01, 1e4, 1e-6];
     for (tolerance, relative) in [(1e-3, 1e-4), (1e-8, 1e-8)] {
-        for kernel in [RBF, CUBIC] {
+        for kernel in [RBF, LAPLACIAN, CUBIC] {
             for multiclass in [Multiclass::OneVsOne, Multiclass::OneVsRest] {
                 let params = SvmParams {
                     multiclass,
@@ -456,7 +459,7 @@ fn one_row_in_a_hundred_is_found_where_it_stands_apart_and_given_up_where_it_doe
 #[test]
 fn two_rows_a_class_are_enough_for_thirty_classes() {
     let data = clouds(&[2; 30], 40, 2.0, 9);
-    for kernel in [Kernel::Linear, RBF, CUBIC] {
+    for kernel in KERNELS {
         for multiclass in [Multiclass::OneVsOne, Multiclass::OneVsRest] {
             let params = SvmParams {
                 multiclass,

@@ -40,6 +40,9 @@ fn near(c: f64) -> f64 {
 const RBF: Kernel = Kernel::Rbf {
     gamma: Gamma::Scale,
 };
+const LAPLACIAN: Kernel = Kernel::Laplacian {
+    gamma: Gamma::Scale,
+};
 const CUBIC: Kernel = Kernel::Polynomial {
     gamma: Gamma::Scale,
     coef0: 1.0,
@@ -67,8 +70,37 @@ fn digits(labels: &Array1<usize>) -> String {
 }
 
 /// scikit-learn 1.9.1 on `fixed()`: SVC(C, kernel, gamma="scale", degree=3, coef0=1): labels with the default
-/// tolerance; with tol=1e-9 the first test row's decision values and the sum of the pairs' dual objectives.
-const SCIKIT_LEARN: [(Kernel, f64, &str, [f64; 6], f64); 6] = [
+/// tolerance; with tol=1e-9 the first test row's decision values and the sum of the pairs' dual objectives. Laplacian: kernel="precomputed" of
+/// laplacian_kernel(gamma=1 / (4 · std)).
+const SCIKIT_LEARN: [(Kernel, f64, &str, [f64; 6], f64); 8] = [
+    (
+        LAPLACIAN,
+        1.0,
+        "0123032301230120032321030323032301230113",
+        [
+            1.022631323,
+            1.115535441,
+            0.818957705,
+            0.029455848,
+            -0.465932241,
+            -0.246124259,
+        ],
+        -69.28052140644554,
+    ),
+    (
+        LAPLACIAN,
+        100.0,
+        "0123022301130120032321230323032301230313",
+        [
+            1.095744207,
+            1.250385671,
+            0.768783105,
+            0.041190599,
+            -0.306716338,
+            -0.11687713,
+        ],
+        -123.60424568814187,
+    ),
     (
         Kernel::Linear,
         1.0,

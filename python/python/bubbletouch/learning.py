@@ -67,8 +67,8 @@ class _Classifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
 class SVC(_Classifier):
     """A support vector machine with a kernel.
 
-    C: what a unit of margin violation costs, above 0. kernel: rbf, linear or poly (of `degree` and `coef0`). gamma: "scale"
-    (1 / (n_features · var X)), "auto" (1 / n_features) or a number above 0. tol: how far the optimality conditions may be violated, in units of the
+    C: what a unit of margin violation costs, above 0. kernel: rbf, laplacian (slower), linear or poly (of `degree` and `coef0`). gamma: "scale"
+    (1 / (n_features · var X), of laplacian 1 / (n_features · std X)), "auto" (1 / n_features) or a number above 0. tol: how far the optimality conditions may be violated, in units of the
     decision value. multi_class: "ovo", each pair of classes votes and of a tie the lowest class wins (as LIBSVM), or "ovr".
     max_memory: bytes of kernel values held at once.
 

@@ -14,11 +14,12 @@ use crate::{Error, Result};
 /// the kernel value's relative error.
 const SINGLE_EXPONENT: f64 = 1e4;
 
-/// The width parameter γ of a kernel, in inverse squared feature units.
+/// The width parameter γ of a kernel, in inverse squared feature units; of a Laplacian one in inverse feature units.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Gamma {
-    /// `1 / (m · var(X))`, the variance taken over all training features; 1 where that is 0 (scikit-learn's default).
+    /// `1 / (m · var(X))`, the variance taken over all training features; 1 where that is 0 (scikit-learn's default). Of a Laplacian
+    /// kernel `1 / (m · √var(X))`.
     Scale,
     /// A number above 0.
     Value(f64),
@@ -31,6 +32,12 @@ pub enum Kernel {
     Linear,
     /// `exp(−γ|x − z|²)`.
     Rbf {
+        /// γ.
+        gamma: Gamma,
+    },
+    /// `exp(−γ|x − z|₁)`, of the sum of absolute differences: a feature that is far off counts less than with [`Rbf`](Self::Rbf). Slower:
+    /// distances of this kind are no matrix product.
+    Laplacian {
         /// γ.
         gamma: Gamma,
     },
@@ -51,6 +58,7 @@ impl Kernel {
         match self {
             Self::Linear => Self::Linear,
             Self::Rbf { .. } => Self::Rbf { gamma },
+            Self::Laplacian { .. } => Self::Laplacian { gamma },
             Self::Polynomial { coef0, degree, .. } => Self::Polynomial {
                 gamma,
                 coef0,
@@ -59,16 +67,38 @@ impl Kernel {
         }
     }
 
+    /// What γ is if nobody says, of the training features (n_rows × m).
+    pub(crate) fn gamma_scale(&self, features: ArrayView2<f64>) -> f64 {
+        let variance = variance(features);
+        let spread = match self {
+            Self::Laplacian { .. } => variance.sqrt(),
+            _ => variance,
+        };
+        let scale = features.ncols() as f64 * spread;
+        if scale > 0.0 { 1.0 / scale } else { 1.0 }
+    }
+
     /// The kernel with γ as a number, taken from the training features (n_rows × m) of this extent.
     pub(crate) fn resolve(
         &self,
         features: ArrayView2<f64>,
         extent: &Extent,
     ) -> Result<KernelFunction> {
+        let number = |gamma: Gamma| match gamma {
+            Gamma::Scale => Ok(self.gamma_scale(features)),
+            Gamma::Value(gamma) if gamma > 0.0 && gamma.is_finite() => Ok(gamma),
+            Gamma::Value(gamma) => {
+                let allowed = "'scale' or a finite number above 0 is allowed";
+                Err(Error::input("gamma", gamma, allowed))
+            }
+        };
         let function = match *self {
             Self::Linear => KernelFunction::Linear,
             Self::Rbf { gamma } => KernelFunction::Rbf {
-                gamma: gamma.resolve(features)?,
+                gamma: number(gamma)?,
+            },
+            Self::Laplacian { gamma } => KernelFunction::Laplacian {
+                gamma: number(gamma)?,
             },
             Self::Polynomial {
                 gamma,
@@ -83,7 +113,7 @@ impl Kernel {
                     return Err(Error::input("degree", degree, "1 to 20 is allowed"));
                 }
                 KernelFunction::Polynomial {
-                    gamma: gamma.resolve(features)?,
+                    gamma: number(gamma)?,
                     coef0,
                     degree: degree as i32,
                 }
@@ -94,29 +124,16 @@ impl Kernel {
     }
 }
 
-impl Gamma {
-    pub(crate) fn resolve(self, features: ArrayView2<f64>) -> Result<f64> {
-        match self {
-            Self::Value(gamma) if gamma > 0.0 && gamma.is_finite() => Ok(gamma),
-            Self::Value(gamma) => Err(Error::input(
-                "gamma",
-                gamma,
-                "'scale' or a finite number above 0 is allowed",
-            )),
-            Self::Scale => {
-                // Two plain passes; ndarray's own variance divides at every value.
-                let n = features.len() as f64;
-                let mean = features.sum() / n;
-                let of_row = |row: ArrayView1<f64>| match row.as_slice() {
-                    Some(row) => squares_about(mean, row),
-                    None => squares_about(mean, &row.to_vec()),
-                };
-                let squares: f64 = features.rows().into_iter().map(of_row).sum();
-                let scale = features.ncols() as f64 * squares / n;
-                Ok(if scale > 0.0 { 1.0 / scale } else { 1.0 })
-            }
-        }
-    }
+/// Of all features.
+fn variance(features: ArrayView2<f64>) -> f64 {
+    // Two plain passes; ndarray's own variance divides at every value.
+    let n = features.len() as f64;
+    let mean = features.sum() / n;
+    let of_row = |row: ArrayView1<f64>| match row.as_slice() {
+        Some(row) => squares_about(mean, row),
+        None => squares_about(mean, &row.to_vec()),
+    };
+    features.rows().into_iter().map(of_row).sum::<f64>() / n
 }
 
 /// `Σ (x − mean)²`.
@@ -138,6 +155,7 @@ fn squares_about(mean: f64, values: &[f64]) -> f64 {
 pub(crate) enum KernelFunction {
     Linear,
     Rbf { gamma: f64 },
+    Laplacian { gamma: f64 },
     Polynomial { gamma: f64, coef0: f64, degree: i32 },
 }
 
@@ -146,7 +164,7 @@ impl KernelFunction {
     /// with itself, nor a squared distance four times the largest squared norm.
     fn check(&self, norm: f64) -> Result<()> {
         let largest = match *self {
-            Self::Linear | Self::Rbf { .. } => 4.0 * norm,
+            Self::Linear | Self::Rbf { .. } | Self::Laplacian { .. } => 4.0 * norm,
             Self::Polynomial {
                 gamma,
                 coef0,
@@ -167,7 +185,9 @@ impl KernelFunction {
     pub fn gamma(&self) -> Option<f64> {
         match *self {
             Self::Linear => None,
-            Self::Rbf { gamma } | Self::Polynomial { gamma, .. } => Some(gamma),
+            Self::Rbf { gamma } | Self::Laplacian { gamma } | Self::Polynomial { gamma, .. } => {
+                Some(gamma)
+            }
         }
     }
 
@@ -175,7 +195,7 @@ impl KernelFunction {
     /// their mean, where products are small and keep their digits.
     pub fn has_any_centre(&self) -> bool {
         match self {
-            Self::Linear | Self::Rbf { .. } => true,
+            Self::Linear | Self::Rbf { .. } | Self::Laplacian { .. } => true,
             Self::Polynomial { .. } => false,
         }
     }
@@ -188,7 +208,7 @@ impl KernelFunction {
             // Where exponents are large, K is nearly the identity and coefficients are near 1, whatever C.
             Self::Rbf { gamma } if 4.0 * gamma * farthest > SINGLE_EXPONENT => None,
             Self::Rbf { .. } => Some(1.0),
-            Self::Polynomial { .. } => None,
+            Self::Laplacian { .. } | Self::Polynomial { .. } => None,
         }
     }
 
@@ -199,19 +219,29 @@ impl KernelFunction {
         right: ArrayView2<T>,
         to: ArrayViewMut2<T>,
     ) {
-        multiply(left, right, to);
+        match self {
+            Self::Laplacian { .. } => absolute_differences(left, right, to),
+            _ => multiply(left, right, to),
+        }
     }
 
     /// The same of all rows (n × m) with each other: n × n.
     pub fn own_pairwise<T: Scalar>(&self, rows: ArrayView2<T>) -> Array2<T> {
-        own_products(rows)
+        match self {
+            Self::Laplacian { .. } => {
+                let mut own = Array2::zeros((rows.nrows(), rows.nrows()));
+                absolute_differences(rows, rows, own.view_mut());
+                own
+            }
+            _ => own_products(rows),
+        }
     }
 
     /// `K(x, x)` of a row's squared norm.
     pub fn of_norm<T: Scalar>(&self, norm: T) -> T {
         match *self {
             Self::Linear => norm,
-            Self::Rbf { .. } => T::one(),
+            Self::Rbf { .. } | Self::Laplacian { .. } => T::one(),
             Self::Polynomial {
                 gamma,
                 coef0,
@@ -228,6 +258,7 @@ impl KernelFunction {
                 distances(pairwise, norm, norms);
                 T::exponentials(pairwise, gamma);
             }
+            Self::Laplacian { gamma } => T::exponentials(pairwise, gamma),
             Self::Polynomial {
                 gamma,
                 coef0,
@@ -259,6 +290,45 @@ fn distances<T: Scalar>(products: &mut [T], norm: T, norms: &[T]) {
     }
 }
 
+/// `|x − z|₁` of rows x with rows z: the same bits in either order and with any instructions.
+fn absolute_differences<T: Scalar>(
+    left: ArrayView2<T>,
+    right: ArrayView2<T>,
+    mut to: ArrayViewMut2<T>,
+) {
+    let (left, right) = (left.as_standard_layout(), right.as_standard_layout());
+    let all = right.as_slice().expect("it is in standard layout");
+    for (mut to, left) in to.rows_mut().into_iter().zip(left.rows()) {
+        let to = to.as_slice_mut().expect("rows of values are contiguous");
+        let left = left.as_slice().expect("it is in standard layout");
+        absolute_differences_of(left, all, to);
+    }
+}
+
+/// Those of one row with rows that follow each other.
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
+fn absolute_differences_of<T: Scalar>(left: &[T], rows: &[T], to: &mut [T]) {
+    let (left_lanes, left_last) = left.as_chunks::<16>();
+    for at in 0..to.len() {
+        let row = &rows[at * left.len()..][..left.len()];
+        let (lanes, last) = row.as_chunks::<16>();
+        let mut sums = [T::zero(); 16];
+        for block in 0..left_lanes.len() {
+            for lane in 0..16 {
+                sums[lane] += (left_lanes[block][lane] - lanes[block][lane]).abs();
+            }
+        }
+        let mut sum = T::zero();
+        for value in sums {
+            sum += value;
+        }
+        for column in 0..last.len() {
+            sum += (left_last[column] - last[column]).abs();
+        }
+        to[at] = sum;
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -267,21 +337,25 @@ mod tests {
     #[test]
     fn gamma_scale_is_the_inverse_of_columns_times_variance() {
         let features = array![[1.0, 3.0], [5.0, 7.0]];
+        let gamma = Gamma::Scale;
+        let (rbf, laplacian) = (Kernel::Rbf { gamma }, Kernel::Laplacian { gamma });
+        assert_eq!(rbf.gamma_scale(features.view()), 1.0 / (2.0 * 5.0));
         assert_eq!(
-            Gamma::Scale.resolve(features.view()).unwrap(),
-            1.0 / (2.0 * 5.0)
+            laplacian.gamma_scale(features.view()),
+            1.0 / (2.0 * 5_f64.sqrt())
         );
-        assert_eq!(
-            Gamma::Scale.resolve(Array2::ones((3, 2)).view()).unwrap(),
-            1.0
-        );
+        assert_eq!(rbf.gamma_scale(Array2::ones((3, 2)).view()), 1.0);
     }
 
     #[test]
     fn parameters_out_of_range_are_refused() {
         let features = array![[1.0]];
         for gamma in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            assert!(Gamma::Value(gamma).resolve(features.view()).is_err());
+            let gamma = Gamma::Value(gamma);
+            let extent = Extent::of(features.view()).unwrap();
+            for kernel in [Kernel::Rbf { gamma }, Kernel::Laplacian { gamma }] {
+                assert!(kernel.resolve(features.view(), &extent).is_err());
+            }
         }
         for (coef0, degree) in [(-1.0, 2), (f64::NAN, 2), (0.0, 0), (0.0, 21)] {
             let gamma = Gamma::Scale;

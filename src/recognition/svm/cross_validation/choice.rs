@@ -162,7 +162,7 @@ fn kernels(
             params.kernel.resolve(training.records.view(), extent)?,
         ]);
     }
-    let unit = Gamma::Scale.resolve(training.records.view())?;
+    let unit = params.kernel.gamma_scale(training.records.view());
     ascending(scales)
         .into_iter()
         .map(|scale| {

@@ -12,7 +12,7 @@ use crate::recognition::svm::linalg::scalar::Scalar;
 
 /// Rows (n × m) moved to a centre, with their squared norms.
 ///
-/// The linear and the RBF kernel may be taken about any centre: a constant added to all features changes no RBF distance,
+/// Some kernels may be taken about any centre: a constant added to all features changes no RBF distance,
 /// and of a linear decision function only ρ, since the coefficients sum to zero. About the mean, products are small and
 /// keep their digits.
 #[derive(Clone, Debug)]
@@ -212,15 +212,18 @@ mod tests {
             degree: 3,
         };
         let rbf = KernelFunction::Rbf { gamma: 0.3 };
-        for kernel in [KernelFunction::Linear, rbf, polynomial] {
+        let laplacian = KernelFunction::Laplacian { gamma: 0.3 };
+        for kernel in [KernelFunction::Linear, rbf, laplacian, polynomial] {
             let double = matrix::<f64>(&a, &b, &kernel);
             let single = matrix::<f32>(&a, &b, &kernel);
             for ((i, j), &value) in double.indexed_iter() {
                 let dot: f64 = (0..3).map(|k| a[[i, k]] * b[[j, k]]).sum();
                 let distance: f64 = (0..3).map(|k| (a[[i, k]] - b[[j, k]]).powi(2)).sum();
+                let absolute: f64 = (0..3).map(|k| (a[[i, k]] - b[[j, k]]).abs()).sum();
                 let expected = match kernel {
                     KernelFunction::Linear => dot,
                     KernelFunction::Rbf { .. } => (-0.3 * distance).exp(),
+                    KernelFunction::Laplacian { .. } => (-0.3 * absolute).exp(),
                     KernelFunction::Polynomial { .. } => (0.3 * dot + 1.0).powi(3),
                 };
                 assert!((value - expected).abs() < 1e-13, "{kernel:?}");
