@@ -269,6 +269,9 @@ fn sensed_by(
 
 /// Frames that images are learned from, at most: with fewer the estimate has less to go by than it has components, and more take longer.
 pub const LEARNED_FRAMES: usize = 4096;
+/// Those of fewer with copies of them, about: a copy says less than a frame of its own. On 880 frames of a real skin accuracy from block averages at
+/// 16:1 rises from 0.922 with half as many to 0.930, and stays there with twice as many, which take twice as long.
+pub const WITH_COPIES: usize = 2 * LEARNED_FRAMES;
 /// Readings of the untouched skin: noise along a component is known to √(2 / 256) = 9 %.
 pub const UNTOUCHED: usize = 256;
 

@@ -3,7 +3,7 @@
 
 use crate::recognition::svm::Multiclass;
 use crate::sensing::{N_COMPONENTS, N_STEPS};
-use crate::study::measurement::LEARNED_FRAMES;
+use crate::study::measurement::WITH_COPIES;
 use crate::study::plan::Plan;
 use crate::study::sweep::Group;
 use crate::study::table::Cell;
@@ -44,7 +44,7 @@ pub(super) fn measure_s(plan: &Plan, group: &Group, (n_touches, m): (usize, usiz
     let n_values = plan.arrays[group.array].n_values();
     let project_s = (group.ensemble.about().taxel_s)(m as f64, n_values as f64);
     let learn_s = match group.learns() {
-        true => LEARNING_PRODUCTS * PRODUCT_S * (LEARNED_FRAMES * n_values * N_COMPONENTS) as f64,
+        true => LEARNING_PRODUCTS * PRODUCT_S * (WITH_COPIES * n_values * N_COMPONENTS) as f64,
         false => 0.0,
     };
     let n_frames = (n_touches * group.frames) as f64;

@@ -4,7 +4,7 @@ use super::study::RecognitionStudy;
 use crate::recognition::svm::{Multiclass, Solver};
 use crate::sensing::N_COMPONENTS;
 use crate::study::frames::{FramePlace, made_at_once, most_bytes};
-use crate::study::measurement::{LEARNED_FRAMES, UNTOUCHED};
+use crate::study::measurement::{UNTOUCHED, WITH_COPIES};
 use crate::study::memory::solver_memory;
 use crate::study::pieces::Scale;
 use crate::study::plan::Plan;
@@ -80,7 +80,7 @@ pub fn recognition_scale(
 
 /// Frames that something is learned from before touches are measured, n values each, as they are read and about their mean; and what is learned.
 fn learned_bytes(group: &Group, n: f64) -> f64 {
-    let frames = (2 * LEARNED_FRAMES + UNTOUCHED) as f64;
+    let frames = (2 * WITH_COPIES + UNTOUCHED) as f64;
     let estimates: f64 = group.counts_of_images().iter().map(|&m| m as f64).sum();
     match group.learns() {
         true => 8.0 * n * (frames + estimates + 3.0 * N_COMPONENTS as f64),
