@@ -3,14 +3,23 @@
 //! `cargo bench --bench recognition`: 20 classes of 30 training and 30 test touches, Gaussian measurements of synthetic
 //! frames, standardised. Ids end in the number of measurements m.
 
+use bubbletouch::contact::{self, press_to_depth};
+use bubbletouch::kinds::recognition::RecognitionStudy;
 use bubbletouch::random::Seed;
+use bubbletouch::recognition::ClassifierKind;
+use bubbletouch::recognition::classifiers::classifier::Classifier;
 use bubbletouch::recognition::data::dataset::{Dataset, dataset};
 use bubbletouch::recognition::data::scaling::Scaling;
 use bubbletouch::recognition::data::split::stratified_k_fold;
-use bubbletouch::recognition::features::{Cut, ImageFeature, ImageFeatures, Join, Workspace};
+use bubbletouch::recognition::features::{
+    Cut, Features, ImageFeature, ImageFeatures, Join, Workspace,
+};
 use bubbletouch::recognition::svm::cross_validation::choice::{Candidates, choose};
 use bubbletouch::recognition::svm::kernel::{Gamma, Kernel};
 use bubbletouch::recognition::svm::{Multiclass, SvmParams};
+use bubbletouch::signal::{Chain, Noise, NoiseUnit, Scratch, SignalStep};
+use bubbletouch::study::progress::Silent;
+use bubbletouch::study::{Plan, StudySpec, draw_touches, load_objects};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use linfa::DatasetBase;
 use linfa::traits::Fit;
@@ -197,5 +206,95 @@ fn features(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, train, choice, predict, features);
+/// Objects that lie anywhere, touched once with 10 % noise.
+const TOUCHES: &str = r#"
+question = "How long from touch to answer?"
+trials = 1
+[objects]
+sets = ["household"]
+surface_error_mm = 1.0
+[skin]
+pitch_mm = 2.0
+taxels = 64
+stroke_mm = 5.0
+[touches]
+per_object = 80
+offset_x_mm = { uniform = [-10.0, 10.0] }
+offset_y_mm = { uniform = [-10.0, 10.0] }
+yaw_deg = { uniform = [0.0, 360.0] }
+depth_mm = { uniform = [2.0, 4.0] }
+[signal]
+noise_std_full_scale = 0.1
+smoothing_mm = 4.0
+[sensing]
+ensemble = "identity"
+[recognition]
+features = "fourier_mellin+polar_harmonics+descriptors"
+classifier = "linear_svm"
+"#;
+
+/// One touch at a time: press, noise and smoothing, joined invariants, answer; one thread.
+fn touch_to_answer(criterion: &mut Criterion) {
+    let plan = StudySpec::parse("bench.toml", TOUCHES).unwrap();
+    let plan = Plan::new("bench.toml", plan).unwrap();
+    let objects = load_objects(&plan.spec.objects, None).unwrap();
+    let touched = draw_touches(objects, &plan.placement, &Seed::new(1)).unwrap();
+    let study = RecognitionStudy::new(plan, Box::new(touched.clone())).unwrap();
+    let set = study.first().features((0, 0), &Silent).unwrap();
+    let array = &study.first().plan.arrays[0];
+    let noise = Noise {
+        std: 0.1,
+        unit: NoiseUnit::FullScale,
+    };
+    let steps = [
+        SignalStep::Noise(noise),
+        SignalStep::Smoothing { width: 4e-3 },
+    ];
+    let chain = Chain::new(&steps, array.patch()).unwrap();
+    // What smoothing leaves of the noise, 0.0149 of full scale, times √(2 ln 4096).
+    let cut = Cut {
+        level: 3e-4,
+        foremost: None,
+    };
+    let join = Features::try_from("fourier_mellin+polar_harmonics+descriptors".to_owned());
+    let join = join.unwrap().of_image().unwrap();
+    let features = ImageFeatures::new(join, array.shape(), 5e-3, cut);
+    let mut group = criterion.benchmark_group("touch to answer");
+    for (kind, multiclass) in [
+        (ClassifierKind::LinearSvm, Multiclass::OneVsOne),
+        (ClassifierKind::LinearSvm, Multiclass::OneVsRest),
+        (ClassifierKind::RbfSvm, Multiclass::OneVsOne),
+    ] {
+        let classifier = Classifier {
+            multiclass,
+            ..Classifier::new(kind)
+        };
+        let classifier = classifier
+            .train(&set.training(None).unwrap(), &Seed::new(1))
+            .unwrap();
+        let (mut press, mut scratch) = (contact::Workspace::new(), Scratch::default());
+        let (mut workspace, mut frame) = (Workspace::default(), vec![0.0; array.n_taxels()]);
+        let mut row = Array2::zeros((1, join.n_values(array.shape())));
+        let mut next = 0;
+        let name = format!("{kind:?}, {multiclass:?}");
+        group.bench_function(BenchmarkId::new(name, touched.len()), |bencher| {
+            bencher.iter(|| {
+                next += 1;
+                let object = &touched[next % touched.len()];
+                let place = &object.touches[next % object.touches.len()];
+                let pose = place.patch_from_object(&object.rests[place.rest]);
+                let model = std::slice::from_ref(&object.object.model);
+                press_to_depth(array.patch(), model, &[pose], place.depth, &mut press);
+                frame.copy_from_slice(press.deflections());
+                let seed = Seed::new(2).numbered(next as u64);
+                chain.apply(&mut frame, None, &seed, &mut scratch);
+                features.write(&frame, &mut workspace, row.as_slice_mut().unwrap());
+                classifier.labels(row.view()).unwrap()
+            });
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, train, choice, predict, features, touch_to_answer);
 criterion_main!(benches);

@@ -15,39 +15,13 @@
 //! the method of convex projections*, IEEE Transactions on Medical Imaging 1, 81. With noise they would fit that as well, and are left
 //! out; so they are where rows of Φ depend on each other.
 //!
-//! What few frames say fits them better than those to come: their images would be closer to the truth than the images of test touches, and a classifier
-//! that learns from the ones errs on the others. So they are added to by copies that are moved over the array and mirrored.
-//!
 //! A whole frame is its own estimate.
 
 use super::cholesky::Cholesky;
-use super::{Basis, Dictionary, Lmmse, Projection, SensedDictionary};
+use super::image_prior::ImagePrior;
+use super::{Lmmse, Projection, SensedDictionary};
 use crate::error::Result;
-use crate::random::Seed;
-use ndarray::{Array1, Array2, ArrayView2, Axis, s};
-use rand::Rng;
-
-/// Principal components, at most: what is beyond is the rest. More take longer to find and add what measurements, usually fewer, do not say.
-pub const N_COMPONENTS: usize = 512;
-
-/// Readings that the estimate is prepared from, one a row of n taxels, all through the same signal.
-#[derive(Clone, Copy, Debug)]
-pub struct Readings<'a> {
-    /// Of training touches.
-    pub training: ArrayView2<'a, f64>,
-    /// Of the untouched skin.
-    pub untouched: ArrayView2<'a, f64>,
-}
-
-/// What readings say of images, whatever they are measured by.
-#[derive(Clone, Debug)]
-pub struct ImagePrior {
-    /// ψⱼ and λⱼ.
-    dictionary: Dictionary,
-    /// max(0, 1 − νⱼ / λⱼ).
-    shrinkage: Array1<f64>,
-    untouched: Array2<f64>,
-}
+use ndarray::{Array2, ArrayView2};
 
 /// Images from measurements, ready for any number of frames.
 #[derive(Clone, Debug)]
@@ -61,41 +35,6 @@ pub struct ImageEstimate {
 
 /// Steps to an image that is nowhere negative. Fewer leave more of the ringing; each takes as long as the linear estimate and measuring its image again.
 pub const N_STEPS: usize = 20;
-
-/// Share of an array's sides by which copies of training frames are moved, at most. More moves contacts off the array, less leaves places that only
-/// these frames have.
-const MOVED: f64 = 0.25;
-
-impl ImagePrior {
-    /// Of an ny × nx array, from about `n_frames` frames: training readings, and where there are too few, copies of them.
-    ///
-    /// # Errors
-    /// No training readings, or of another length; readings that are not finite.
-    pub fn learned(
-        grid: (usize, usize),
-        readings: Readings,
-        n_frames: usize,
-        seed: &Seed,
-    ) -> Result<Self> {
-        let k = N_COMPONENTS.min(grid.0 * grid.1);
-        let training = with_copies(readings.training, grid, n_frames, seed);
-        let dictionary = Dictionary::learned(Basis::Pca, grid, training.view(), Some(k), seed)?;
-        let n_untouched = readings.untouched.nrows().max(1) as f64;
-        let atoms = dictionary.atoms(0..dictionary.n_atoms());
-        let of_noise = readings.untouched.dot(&atoms.t());
-        let mut shrinkage = of_noise.mapv(|c| c * c).sum_axis(Axis(0)) / n_untouched;
-        if let Some(energy) = dictionary.energy() {
-            shrinkage.zip_mut_with(&energy.of_atoms, |noise, all| {
-                *noise = (1.0 - *noise / all).max(0.0);
-            });
-        }
-        Ok(Self {
-            dictionary,
-            shrinkage,
-            untouched: readings.untouched.to_owned(),
-        })
-    }
-}
 
 impl ImageEstimate {
     /// Of whole frames; their noise is that of the untouched readings.
@@ -153,56 +92,24 @@ impl ImageEstimate {
     }
 }
 
-/// Frames, then as many copies of each as there is room for below `n_frames`: moved by up to a quarter of the array, and mirrored or not. An image at
-/// another place is as likely, and what is learned of few frames fits them better than those to come, whose images then differ from theirs.
-fn with_copies(
-    frames: ArrayView2<f64>,
-    (ny, nx): (usize, usize),
-    n_frames: usize,
-    seed: &Seed,
-) -> Array2<f64> {
-    let n_each = (n_frames / frames.nrows().max(1)).max(1);
-    let mut all = Array2::zeros((n_each * frames.nrows(), frames.ncols()));
-    all.slice_mut(s![..frames.nrows(), ..]).assign(&frames);
-    let mut rng = seed.named("copies").rng();
-    let rest = all.outer_iter_mut().skip(frames.nrows());
-    for (mut copy, frame) in rest.zip(frames.outer_iter().cycle()) {
-        let mut place = |n: usize| {
-            let most = (MOVED * n as f64) as isize;
-            (rng.gen_range(-most..=most), rng.r#gen::<bool>())
-        };
-        let (along_y, along_x) = (place(ny), place(nx));
-        // Where the value at a place comes from, if it is on the array.
-        let from = |at: usize, (by, is_mirrored): (isize, bool), n: usize| {
-            let from = at.checked_add_signed(-by).filter(|&from| from < n)?;
-            Some(if is_mirrored { n - 1 - from } else { from })
-        };
-        for y in 0..ny {
-            for x in 0..nx {
-                if let (Some(row), Some(column)) = (from(y, along_y, ny), from(x, along_x, nx)) {
-                    copy[y * nx + x] = frame[row * nx + column];
-                }
-            }
-        }
-    }
-    all
-}
-
 fn root_mean_square(values: ArrayView2<f64>) -> f64 {
     let squares: f64 = values.iter().map(|value| value * value).sum();
     (squares / values.len().max(1) as f64).sqrt()
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
+    use super::super::Readings;
     use super::*;
+    use crate::random::Seed;
     use crate::sensing::Ensemble;
+    use rand::Rng;
     use rand_distr::StandardNormal;
 
-    const GRID: (usize, usize) = (12, 12);
+    pub(in crate::sensing) const GRID: (usize, usize) = (12, 12);
 
     /// Bumps that lie anywhere.
-    fn bumps(n: usize, name: &str) -> Array2<f64> {
+    pub(in crate::sensing) fn bumps(n: usize, name: &str) -> Array2<f64> {
         let mut rng = Seed::new(3).named(name).rng();
         let mut frames = Array2::zeros((n, 144));
         for mut frame in frames.outer_iter_mut() {
@@ -220,7 +127,7 @@ mod tests {
         Array2::from_shape_fn((n, 144), |_| std * rng.sample::<f64, _>(StandardNormal))
     }
 
-    fn error(a: &Array2<f64>, b: &Array2<f64>) -> f64 {
+    pub(in crate::sensing) fn error(a: &Array2<f64>, b: &Array2<f64>) -> f64 {
         (a - b).mapv(|d| d * d).mean().unwrap_or(0.0).sqrt()
     }
 
@@ -237,45 +144,16 @@ mod tests {
         (estimated(&projection, readings, 600), projection)
     }
 
-    fn estimated(projection: &Projection, readings: Readings, n_frames: usize) -> ImageEstimate {
+    pub(in crate::sensing) fn estimated(
+        projection: &Projection,
+        readings: Readings,
+        n_frames: usize,
+    ) -> ImageEstimate {
         if projection.ensemble() == Ensemble::Identity {
             return ImageEstimate::of_frames(readings.untouched);
         }
         let prior = ImagePrior::learned(GRID, readings, n_frames, &Seed::new(2)).unwrap();
         ImageEstimate::new(projection, &prior).unwrap()
-    }
-
-    #[test]
-    fn copies_tell_of_places_that_few_frames_do_not_have() {
-        let frames = bumps(30, "training");
-        assert_eq!(with_copies(frames.view(), GRID, 59, &Seed::new(1)), frames);
-        let copies = with_copies(frames.view(), GRID, 305, &Seed::new(1));
-        assert_eq!(copies.nrows(), 300);
-        assert_eq!(copies.slice(s![..30, ..]), frames);
-        // Each is its frame moved: none of its values is another's, and none is there twice.
-        for (copy, frame) in copies.outer_iter().zip(frames.outer_iter().cycle()) {
-            let sorted = |values: ndarray::ArrayView1<f64>| {
-                let mut values: Vec<f64> = values.iter().copied().filter(|&v| v > 0.0).collect();
-                values.sort_by(f64::total_cmp);
-                values
-            };
-            let (mut left, mut whole) = (sorted(copy), sorted(frame).into_iter());
-            left.retain(|value| !whole.any(|other| other == *value));
-            assert_eq!(left, Vec::<f64>::new());
-        }
-        let projection = Projection::new(Ensemble::BlockAverage, GRID, 16, &Seed::new(1)).unwrap();
-        let untouched = Array2::zeros((4, 144));
-        let readings = Readings {
-            training: frames.view(),
-            untouched: untouched.view(),
-        };
-        let test = bumps(100, "test");
-        let measured = projection.measure(test.view());
-        let [few, many] = [30, 600].map(|n_frames| {
-            let estimate = estimated(&projection, readings, n_frames);
-            error(&estimate.images(measured.view()), &test)
-        });
-        assert!(many < 0.9 * few, "{few} {many}");
     }
 
     #[test]

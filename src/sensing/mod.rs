@@ -52,6 +52,7 @@ mod dictionary;
 #[macro_use]
 mod ensemble;
 mod image_estimate;
+mod image_prior;
 mod lasso;
 mod lmmse;
 mod omp;
@@ -80,7 +81,8 @@ pub use coherence::{Coherence, Extremes};
 pub use columns::Columns;
 pub use dictionary::{Basis, Dictionary, Energy};
 pub use ensemble::{Draw, EnsembleAbout, Learn, Operator, Source};
-pub use image_estimate::{ImageEstimate, ImagePrior, N_COMPONENTS, N_STEPS, Readings};
+pub use image_estimate::{ImageEstimate, N_STEPS};
+pub use image_prior::{ImagePrior, N_COMPONENTS, Readings};
 pub use lasso::Lasso;
 pub use lmmse::Lmmse;
 pub use omp::Omp;

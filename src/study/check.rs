@@ -23,6 +23,9 @@ pub const MOST_VALUES: usize = 10_000;
 /// What a key may count, at most: what is counted is in memory at once, or takes for ever.
 const MOST_COUNTED: usize = 100_000_000;
 
+/// Readings of a training touch, at most: all are in memory at once, and of so many another adds nothing.
+const MOST_READINGS: usize = 100;
+
 /// Configurations of a study, at most: all are laid out before the first runs.
 const MOST_CONFIGURATIONS: f64 = 1e6;
 
@@ -78,7 +81,7 @@ pub const COUNT: Range = Range::Count(1, MOST_COUNTED);
 pub const TOUCHES: Range = Range::Count(1, MOST_TOUCHES);
 
 /// The keys of the tables that kinds of study share, and what their numbers may be. A list has values, and none twice.
-const KEYS: [(&str, Range); 54] = [
+const KEYS: [(&str, Range); 55] = [
     ("objects.surface_error_mm", Range::Positive),
     ("objects.close_holes_mm", Range::Positive),
     ("objects.names", Range::Any),
@@ -119,6 +122,10 @@ const KEYS: [(&str, Range); 54] = [
     ("recognition.choose_gamma", Range::Positive),
     ("recognition.choose_folds", Range::Count(2, MOST_COUNTED)),
     ("recognition.choose_touches", COUNT),
+    (
+        "recognition.training_readings",
+        Range::Count(1, MOST_READINGS),
+    ),
     ("recognition.degree", Range::Count(1, 20)),
     ("recognition.coef0", Range::NotNegative),
     ("recognition.n_neighbours", COUNT),

@@ -77,7 +77,8 @@ impl Trial<'_> {
     pub fn evaluate(&self, family: &[Cell]) -> Result<Vec<Evaluation>> {
         let split = self.sweep.split(self.plan, &family[0], self.number)?;
         let training = self.training(&family[0], &split)?;
-        let test = rows(&family[0], (self.tested, &split.test), &self.sweep.labels)?;
+        let labels = self.sweep.labels.select(Axis(0), &split.test);
+        let test = dataset(self.tested.features(&family[0], &split.test), labels)?;
         let same_fit: Vec<&[Cell]> = Group::fits(family).collect();
         let penalties: Vec<Option<f64>> = same_fit.iter().map(|cells| cells[0].c).collect();
         let fitted = training.train_all(&penalties)?;
@@ -149,10 +150,18 @@ impl Trial<'_> {
         let keys = self.sweep.group_keys.as_ref();
         let of = (cell, self.number);
         let labels = self.sweep.learned_labels(self.plan, of, split)?;
+        let readings = self.measurements.readings(&split.train);
+        let n_touches = self.measurements.n_touches;
+        let labels = readings.iter().map(|reading| labels[reading % n_touches]);
+        let data = dataset(
+            self.measurements.features(cell, &readings),
+            labels.collect(),
+        )?;
         Ok(Training {
             recognition: &self.plan.spec.recognition,
             kind: cell.classifier,
-            data: rows(cell, (self.measurements, &split.train), &labels)?,
+            data,
+            n_first: split.train.len(),
             group_keys: keys.map(|keys| keys.select(Axis(0), &split.train)),
             seed: self.seed("validation"),
         })
@@ -162,14 +171,4 @@ impl Trial<'_> {
         let seed = Seed::new(self.plan.spec.seed).named(name);
         seed.numbered(self.number as u64)
     }
-}
-
-/// What a cell learns from, or is tested on, of some touches.
-fn rows(
-    cell: &Cell,
-    (measurements, touches): (&Measurements, &[usize]),
-    labels: &Array1<usize>,
-) -> Result<Dataset> {
-    let labels = labels.select(Axis(0), touches);
-    dataset(measurements.features(cell, touches), labels)
 }

@@ -2,7 +2,7 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `features.npy` | n × m, f64: the measurements of every touch, before scaling |
+//! | `features.npy` | n × m, f64: the measurements of every touch, before scaling; with several readings of training touches the first of every touch, then the second … |
 //! | `labels.npy` | n, i64: the object's number (of mislabelled training touches another's) |
 //! | `train.npy` | i64: the rows that the trial trains on, in its order; a prefix is a smaller training set |
 //! | `test.npy` | i64: the rows that it tests, ascending |
@@ -73,9 +73,15 @@ impl StudyPart {
         let of = (group, n_projected);
         let measured = self.measured(of, (trial, &split), ("touch", progress))?;
         let all: Vec<usize> = (0..sweep.labels.len()).collect();
-        let features = measured.features(cell, &all);
+        let all = measured.readings(&all);
+        let learned = sweep.learned_labels(plan, (cell, trial), &split)?;
+        let labels = all.iter().map(|row| learned[row % learned.len()]);
+        let split = Split {
+            train: measured.readings(&split.train),
+            ..split
+        };
         Ok(FeatureSet {
-            data: dataset(features, sweep.learned_labels(plan, (cell, trial), &split)?)?,
+            data: dataset(measured.features(cell, &all), labels.collect())?,
             split,
         })
     }

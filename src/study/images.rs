@@ -1,6 +1,6 @@
 //! Features of images: from measurements of a trial by way of an estimate of the frame.
 
-use super::measurement::LEARNED_FRAMES;
+use super::measurement::{LEARNED_FRAMES, WITH_COPIES};
 use crate::error::Result;
 use crate::random::Seed;
 use crate::recognition::features::{Cut, ImageFeatures, Join, Workspace};
@@ -44,9 +44,13 @@ impl Images {
         seed: &Seed,
     ) -> Result<Self> {
         let is_whole = |projection: &Projection| projection.ensemble() == Ensemble::Identity;
+        let n_frames = match readings.training.nrows() < LEARNED_FRAMES {
+            true => WITH_COPIES,
+            false => LEARNED_FRAMES,
+        };
         let prior = match projections.iter().all(is_whole) {
             true => None,
-            false => Some(ImagePrior::learned(shape, readings, LEARNED_FRAMES, seed)?),
+            false => Some(ImagePrior::learned(shape, readings, n_frames, seed)?),
         };
         let estimates = projections.iter().map(|projection| {
             let estimate = match prior.as_ref().filter(|_| !is_whole(projection)) {

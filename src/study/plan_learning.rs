@@ -10,6 +10,7 @@ use crate::error::Result;
 use crate::recognition::ClassifierKind;
 use crate::recognition::data::over_time::OverTime;
 use crate::recognition::features::Features;
+use crate::sensing::Ensemble;
 
 /// What a classifier may have a use for.
 type Has = fn(ClassifierKind) -> bool;
@@ -76,6 +77,19 @@ impl Check<'_> {
             return Err(self.error("sensing.ensemble", given, allowed));
         }
         Ok(())
+    }
+
+    /// Ensembles of a kind of study that has no frames to learn one from.
+    pub fn drawn(&self, key: &str, ensembles: impl IntoIterator<Item = Ensemble>) -> Result<()> {
+        let mut ensembles = ensembles.into_iter();
+        match ensembles.find(|ensemble| ensemble.is_learned()) {
+            None => Ok(()),
+            Some(learned) => {
+                let given = learned.about().words;
+                let allowed = "ensembles that are drawn: studies that recognise objects from touches alone learn one";
+                Err(self.error(key, given, allowed))
+            }
+        }
     }
 
     /// The keys of `[recognition]`: each in its range, none that contradicts another, none that nothing has a use for.

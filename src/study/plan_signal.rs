@@ -7,7 +7,7 @@ use super::sensor_errors::{Strengths, all_strengths};
 use super::spec::{CombineSpec, SensedSpec, SignalSpec, StepSpec, TouchesSpec};
 use super::spec_signal::{NOISES, SignalAxis};
 use crate::error::Result;
-use crate::signal::{NoiseUnit, SENSOR_ERRORS, Strength};
+use crate::signal::{NoiseUnit, SENSOR_ERRORS, SensorError, Strength};
 
 /// One value for each axis of the signal.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -181,6 +181,13 @@ impl Plan {
 }
 
 impl Condition {
+    /// Whether two readings of one touch may differ.
+    pub fn is_random(&self) -> bool {
+        let mut given = self.strengths.given();
+        self.noise > 0.0
+            || given.any(|(error, _, value)| error == SensorError::Drift && value > 0.0)
+    }
+
     /// The same with another value on an axis.
     fn with(mut self, (key, step): (&str, StepSpec), value: f64) -> Self {
         match step {

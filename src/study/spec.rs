@@ -159,6 +159,9 @@ pub struct RecognitionSpec {
     pub choose_folds: Option<usize>,
     /// Training touches an object that take part in that choice, at most; all when left out.
     pub choose_touches: Option<usize>,
+    /// How many times each training touch is read and learned, each time with its own noise; 1 when left out. Without noise or drift all readings of
+    /// a touch are the same, and it is learned once. C and γ are chosen on first readings.
+    pub training_readings: Option<usize>,
     /// d of the polynomial kernel.
     #[serde(default = "default_degree")]
     pub degree: u32,

@@ -100,6 +100,12 @@ impl Group {
         family.chunk_by(|a, b| a.c == b.c)
     }
 
+    /// How many times each touch is read.
+    pub fn n_readings(&self, plan: &Plan) -> usize {
+        let asked = plan.spec.recognition.training_readings.unwrap_or(1);
+        if self.condition.is_random() { asked } else { 1 }
+    }
+
     /// Whether any cell's features are of images.
     pub fn needs_images(&self) -> bool {
         self.cells.iter().any(|cell| cell.of_images().is_some())

@@ -19,8 +19,10 @@ pub struct Training<'a> {
     pub recognition: &'a RecognitionSpec,
     /// Which classifier.
     pub kind: ClassifierKind,
-    /// Training rows in drawing order, one of each object in turn.
+    /// Training rows in drawing order, one of each object in turn; first readings before any second.
     pub data: Dataset,
+    /// How many of them are first readings.
+    pub n_first: usize,
     /// The group of each row, when the study keeps groups together.
     pub group_keys: Option<Array1<usize>>,
     /// What the folds of a choice are drawn from.
@@ -111,13 +113,14 @@ impl Training<'_> {
         Ok(Some(self.recognition.gamma.unwrap_or_else(scale)))
     }
 
-    /// The leading training rows, as many of each object as take part in a choice.
+    /// The leading training rows, as many of each object as take part in a choice, all of them first readings: another reading of a touch that a fold holds
+    /// out would be learned.
     fn choosing_rows(&self) -> Dataset {
         let labels = &self.data.targets;
         let n_objects = labels.iter().max().map_or(0, |last| last + 1);
         // Rows come one of each object in turn, so these hold as many of each.
         let touches = self.recognition.choose_touches.unwrap_or(usize::MAX);
-        let n_rows = touches.saturating_mul(n_objects).min(labels.len());
+        let n_rows = touches.saturating_mul(n_objects).min(self.n_first);
         Dataset::new(
             self.data.records.slice(s![..n_rows, ..]).to_owned(),
             labels.slice(s![..n_rows]).to_owned(),

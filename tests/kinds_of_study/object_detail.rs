@@ -338,6 +338,11 @@ fn keys_of_a_detail_study_that_are_out_of_range_are_named() {
             "key objects.surface_error_mm",
         ),
         (
+            "measurements = 32",
+            "measurements = 32\nensemble = \"principal_components\"",
+            "key object_detail.recognition.ensemble: principal components",
+        ),
+        (
             "points = 1000",
             "points = 0",
             "key object_detail.surface_points: 0",

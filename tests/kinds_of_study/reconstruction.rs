@@ -168,6 +168,11 @@ fn keys_out_of_range_are_named() {
             "full_scale = 0.1\nsteps = [\"noise\", \"force\"]",
             "force after noise",
         ),
+        (
+            "\"sbhe\"",
+            "\"principal_components\"",
+            "key sensing.ensemble: principal components",
+        ),
         ("atoms = 40", "atoms = 0", "key reconstruction.atoms: 0"),
         (
             "atoms = 40",

@@ -147,6 +147,11 @@ fn keys_that_are_out_of_range_are_named() {
             "key speed_accuracy.recognition.ratio: 0.5",
         ),
         (
+            "\"block_average\"]",
+            "\"principal_components\"]",
+            "key speed_accuracy.recognition.ensemble: principal components",
+        ),
+        (
             "objects = 4",
             "objects = 1",
             "key speed_accuracy.recognition.objects: 1",

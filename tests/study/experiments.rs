@@ -8,6 +8,7 @@ use bubbletouch::kinds::speed_accuracy::{SpeedAccuracyPlan, SpeedAccuracyStudySp
 use bubbletouch::kinds::stability::{StabilityPlan, StabilityStudySpec};
 use bubbletouch::kinds::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
 use bubbletouch::random::Seed;
+use bubbletouch::report::rank_agreement::rank_agreement;
 use bubbletouch::study::{
     HumanTouches, Plan, RecordedFrames, RecordedSpec, StudySpec, Sweep, draw_touches, load_objects,
     write_integers, write_npy,
@@ -134,6 +135,18 @@ fn every_experiment_can_run() {
         let sweep = Sweep::new(&plan, &touched).unwrap();
         assert!(sweep.n_cells() > 1, "{place} compares something");
     }
+}
+
+/// What `bubbletouch compare` says of the committed results of a simulated skin and of the real one that it was calibrated to.
+#[test]
+fn the_simulated_skin_ranks_designs_as_the_real_one_does() {
+    let tables = ["simulated_skin", "real_skin"].map(|name| {
+        let results = Path::new(env!("CARGO_MANIFEST_DIR")).join("results");
+        kinds::read_tables(&results.join(name)).unwrap().1
+    });
+    let ranks = rank_agreement(&tables[0], &tables[1]).unwrap();
+    assert_eq!(ranks.n_designs, 104);
+    assert!(ranks.tau >= 0.8, "{ranks:?}");
 }
 
 /// Ten frames of each class, in the place of recordings that are not part of the crate.

@@ -16,6 +16,7 @@ mod images;
 mod layouts;
 mod memory;
 mod quickstart;
+mod readings;
 mod recorded;
 mod repeatability;
 mod shear;

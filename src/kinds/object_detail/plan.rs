@@ -88,6 +88,7 @@ fn check_recognition(
     array: &TaxelArray,
 ) -> Result<()> {
     let key = |name: &str| format!("object_detail.recognition.{name}");
+    check.drawn(&key("ensemble"), [wanted.ensemble])?;
     let n_measurements = wanted.measurements;
     let n_taxels = array.n_taxels();
     if n_measurements > n_taxels {

@@ -3,7 +3,7 @@
 
 use crate::recognition::svm::Multiclass;
 use crate::sensing::{N_COMPONENTS, N_STEPS};
-use crate::study::measurement::LEARNED_FRAMES;
+use crate::study::measurement::WITH_COPIES;
 use crate::study::plan::Plan;
 use crate::study::sweep::Group;
 use crate::study::table::Cell;
@@ -44,16 +44,20 @@ pub(super) fn measure_s(plan: &Plan, group: &Group, (n_touches, m): (usize, usiz
     let n_values = plan.arrays[group.array].n_values();
     let project_s = (group.ensemble.about().taxel_s)(m as f64, n_values as f64);
     let learn_s = match group.learns() {
-        true => LEARNING_PRODUCTS * PRODUCT_S * (LEARNED_FRAMES * n_values * N_COMPONENTS) as f64,
+        true => LEARNING_PRODUCTS * PRODUCT_S * (WITH_COPIES * n_values * N_COMPONENTS) as f64,
         false => 0.0,
     };
-    let n_frames = (n_touches * group.frames) as f64;
+    let n_frames = (n_touches * group.n_readings(plan) * group.frames) as f64;
     let frame_s = n_values as f64 * (TAXEL_S + project_s) + image_s(plan, group);
     n_frames * frame_s + learn_s
 }
 
-/// A fit in one trial, with what it chooses, and its test.
-pub(super) fn fit_s(plan: &Plan, cell: &Cell, (n_classes, n_touches): (f64, f64)) -> f64 {
+/// A fit in one trial of so many readings of each training touch, with what it chooses, and its test.
+pub(super) fn fit_s(
+    plan: &Plan,
+    (cell, n_readings): (&Cell, usize),
+    (n_classes, n_touches): (f64, f64),
+) -> f64 {
     let n_train = cell.train_touches as f64 * n_classes;
     let recognition = &plan.spec.recognition;
     let n_test = match recognition.folds {
@@ -80,6 +84,7 @@ pub(super) fn fit_s(plan: &Plan, cell: &Cell, (n_classes, n_touches): (f64, f64)
                 * train_s(plan, cell, n_chosen, n_classes)
         }
     };
+    let n_train = n_train * n_readings as f64;
     let test_s = (cell.classifier.about().test_s)(n_train, cell.n_features() as f64, n_classes);
     choose_s + train_s(plan, cell, n_train, n_classes) + n_test * test_s
 }

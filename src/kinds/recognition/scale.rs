@@ -4,7 +4,7 @@ use super::study::RecognitionStudy;
 use crate::recognition::svm::{Multiclass, Solver};
 use crate::sensing::N_COMPONENTS;
 use crate::study::frames::{FramePlace, made_at_once, most_bytes};
-use crate::study::measurement::{LEARNED_FRAMES, UNTOUCHED};
+use crate::study::measurement::{UNTOUCHED, WITH_COPIES};
 use crate::study::memory::solver_memory;
 use crate::study::pieces::Scale;
 use crate::study::plan::Plan;
@@ -32,14 +32,14 @@ pub fn recognition_scale(
     let n_values = |(part, group): Placed| part.plan.arrays[group.array].n_values();
     let n_frames = |(part, group): Placed| (part.sweep.labels.len() * group.frames) as f64;
     let m = |group: &Group| group.projected().into_iter().max().unwrap_or(0) as f64;
+    let n_read = |on: Placed| n_frames(on) * on.1.n_readings(&on.0.plan) as f64;
     let measured = |on: Placed| {
         let matrix = on.1.ensemble.about().bytes;
         let of_images = on.1.features_of_images().into_iter();
         let shape = on.0.plan.arrays[on.1.array].frame_shape();
         let numbers: usize = of_images.map(|one| one.join.n_values(shape)).sum();
-        let learned =
-            learned_bytes(on.1, n_values(on) as f64) + 8.0 * n_frames(on) * numbers as f64;
-        8.0 * n_frames(on) * m(on.1) + matrix(m(on.1), n_values(on) as f64) + learned
+        let learned = learned_bytes(on.1, n_values(on) as f64) + 8.0 * n_read(on) * numbers as f64;
+        8.0 * n_read(on) * m(on.1) + matrix(m(on.1), n_values(on) as f64) + learned
     };
     let groups = || {
         let parts = study.parts().iter();
@@ -48,7 +48,9 @@ pub fn recognition_scale(
     let learned = |(part, group): Placed| {
         let n_test = part.sweep.splits.iter().map(|split| split.test.len());
         let (n_test, n_classes) = (n_test.max().unwrap_or(0), part.touched.class_names().len());
-        let bytes = |family: &[Cell]| family_bytes(&part.plan, &family[0], n_test, n_classes);
+        let n_read = n_classes * group.n_readings(&part.plan);
+        let bytes =
+            |family: &[Cell]| family_bytes(&part.plan, &family[0], n_test, (n_classes, n_read));
         largest(group.families().map(bytes))
     };
     let in_memory = largest(groups().map(|g| n_frames(g) * (most_bytes(n_values(g)) + 16) as f64));
@@ -80,7 +82,7 @@ pub fn recognition_scale(
 
 /// Frames that something is learned from before touches are measured, n values each, as they are read and about their mean; and what is learned.
 fn learned_bytes(group: &Group, n: f64) -> f64 {
-    let frames = (2 * LEARNED_FRAMES + UNTOUCHED) as f64;
+    let frames = (2 * WITH_COPIES + UNTOUCHED) as f64;
     let estimates: f64 = group.counts_of_images().iter().map(|&m| m as f64).sum();
     match group.learns() {
         true => 8.0 * n * (frames + estimates + 3.0 * N_COMPONENTS as f64),
@@ -89,7 +91,13 @@ fn learned_bytes(group: &Group, n: f64) -> f64 {
 }
 
 /// Rows that a family learns from and is tested on, the scores of these, and the kernel values of its solver.
-fn family_bytes(plan: &Plan, cell: &Cell, n_test: usize, n_classes: usize) -> f64 {
+/// `n_read`: readings of a touch of each class.
+fn family_bytes(
+    plan: &Plan,
+    cell: &Cell,
+    n_test: usize,
+    (n_classes, n_read): (usize, usize),
+) -> f64 {
     let learned = &plan.spec.recognition;
     let fuses = learned.fused_touches.values().iter().any(|&k| k > 1);
     let n_scores = match (cell.classifier.has_c(), learned.multiclass) {
@@ -98,7 +106,7 @@ fn family_bytes(plan: &Plan, cell: &Cell, n_test: usize, n_classes: usize) -> f6
         (true, Multiclass::OneVsOne) => n_classes * (n_classes - 1) / 2,
         _ => n_classes,
     };
-    let n_train = (cell.train_touches * n_classes) as f64;
+    let n_train = (cell.train_touches * n_read) as f64;
     let (m, n_test) = (cell.n_features() as f64, n_test as f64);
     let of_all = 8.0 * n_train * n_train;
     let is_kernel_svm = cell.classifier.about().kernel.is_some();

@@ -265,10 +265,13 @@ impl RecognitionStudy {
         Piece::one_by_one(TOUCH, planned_s / rayon::current_num_threads() as f64)
     }
 
-    fn learn_work(&self, (part, family): (&StudyPart, &[Cell])) -> Piece {
+    fn learn_work(&self, number: usize) -> Piece {
+        let (part, family) = self.family(number);
+        let group = self.group(self.families[number].group).1;
+        let n_readings = group.n_readings(&part.plan);
         let n_objects = part.touched.class_names().len();
         let of = (n_objects as f64, part.sweep.labels.len() as f64);
-        let fits = Group::fits(family).map(|cells| fit_s(&part.plan, &cells[0], of));
+        let fits = Group::fits(family).map(|cells| fit_s(&part.plan, (&cells[0], n_readings), of));
         Piece::of_stage(LEARN + family[0].classifier as u8, fits.sum())
     }
 
@@ -323,7 +326,8 @@ fn measured_content(plan: &Plan, group: &Group) -> String {
     let drawn = (plan.spec.seed, plan.spec.projections_per_split, plan.speed);
     let (ensemble, m) = (group.ensemble, group.projected());
     let images = group.features_of_images();
-    format!("{array} {steps:?} {split:?} {drawn:?} {ensemble:?} {m:?} {images:?}")
+    let n_readings = group.n_readings(plan);
+    format!("{array} {steps:?} {split:?} {drawn:?} {ensemble:?} {m:?} {images:?} {n_readings}")
 }
 
 impl RecognitionStudy {
@@ -372,7 +376,7 @@ impl PieceStudy for RecognitionStudy {
         let of_family = |family| {
             let (part, cells) = self.family(family);
             let name = family_name(&part.plan, cells);
-            (name, self.learn_work((part, cells)))
+            (name, self.learn_work(family))
         };
         let families: Vec<(String, Piece)> = families.map(of_family).collect();
         let mut pieces = Vec::with_capacity(self.n_trials() * families.len());

@@ -67,6 +67,7 @@ impl ReconstructionPlan {
         check.steps(&spec.signal)?;
         check.noise_is_last(&spec.signal)?;
         check.sensing(&spec.sensing, std::slice::from_ref(&array))?;
+        check.drawn("sensing.ensemble", spec.sensing.ensemble.values())?;
         let wanted = &spec.reconstruction;
         check.keys("reconstruction", wanted, KEYS)?;
         let dictionaries = check.dictionaries(wanted, array.grid())?;

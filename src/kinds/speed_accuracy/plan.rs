@@ -141,6 +141,7 @@ fn check_recognition(
         let allowed = "values of speed_accuracy.tolerances_mm";
         return Err(check.error(&key("tolerances_mm"), level, allowed));
     }
+    check.drawn(&key("ensemble"), spec.ensemble.iter().copied())?;
     let arrays = check.grids(&SkinSpec {
         pitch_mm: Axis::Many(spec.pitch_mm.clone()),
         size_mm: Some(Axis::One(spec.size_mm)),

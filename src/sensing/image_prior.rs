@@ -1,0 +1,142 @@
+//! What images are like, learned of frames that training touches read.
+//!
+//! What few frames say fits them better than those to come: their images would be closer to the truth than the images of test touches, and a classifier
+//! that learns from the ones errs on the others. So they are added to by copies that are moved over the array and mirrored.
+
+use super::{Basis, Dictionary};
+use crate::error::Result;
+use crate::random::Seed;
+use ndarray::{Array1, Array2, ArrayView2, Axis, s};
+use rand::Rng;
+
+/// Principal components, at most: what is beyond is the rest. More take longer to find and add what measurements, usually fewer, do not say.
+pub const N_COMPONENTS: usize = 512;
+
+/// Readings that the estimate is prepared from, one a row of n taxels, all through the same signal.
+#[derive(Clone, Copy, Debug)]
+pub struct Readings<'a> {
+    /// Of training touches.
+    pub training: ArrayView2<'a, f64>,
+    /// Of the untouched skin.
+    pub untouched: ArrayView2<'a, f64>,
+}
+
+/// What readings say of images, whatever they are measured by.
+#[derive(Clone, Debug)]
+pub struct ImagePrior {
+    /// ψⱼ and λⱼ.
+    pub(super) dictionary: Dictionary,
+    /// max(0, 1 − νⱼ / λⱼ).
+    pub(super) shrinkage: Array1<f64>,
+    pub(super) untouched: Array2<f64>,
+}
+
+/// Share of an array's sides by which copies of training frames are moved, at most. More moves contacts off the array, less leaves places that only
+/// these frames have.
+const MOVED: f64 = 0.25;
+
+impl ImagePrior {
+    /// Of an ny × nx array, from about `n_frames` frames: training readings, and where there are too few, copies of them.
+    ///
+    /// # Errors
+    /// No training readings, or of another length; readings that are not finite.
+    pub fn learned(
+        grid: (usize, usize),
+        readings: Readings,
+        n_frames: usize,
+        seed: &Seed,
+    ) -> Result<Self> {
+        let k = N_COMPONENTS.min(grid.0 * grid.1);
+        let training = with_copies(readings.training, grid, n_frames, seed);
+        let dictionary = Dictionary::learned(Basis::Pca, grid, training.view(), Some(k), seed)?;
+        let n_untouched = readings.untouched.nrows().max(1) as f64;
+        let atoms = dictionary.atoms(0..dictionary.n_atoms());
+        let of_noise = readings.untouched.dot(&atoms.t());
+        let mut shrinkage = of_noise.mapv(|c| c * c).sum_axis(Axis(0)) / n_untouched;
+        if let Some(energy) = dictionary.energy() {
+            shrinkage.zip_mut_with(&energy.of_atoms, |noise, all| {
+                *noise = (1.0 - *noise / all).max(0.0);
+            });
+        }
+        Ok(Self {
+            dictionary,
+            shrinkage,
+            untouched: readings.untouched.to_owned(),
+        })
+    }
+}
+
+/// Frames, then as many copies of each as there is room for below `n_frames`: moved by up to a quarter of the array, and mirrored or not. An image at
+/// another place is as likely, and what is learned of few frames fits them better than those to come, whose images then differ from theirs.
+fn with_copies(
+    frames: ArrayView2<f64>,
+    (ny, nx): (usize, usize),
+    n_frames: usize,
+    seed: &Seed,
+) -> Array2<f64> {
+    let n_each = (n_frames / frames.nrows().max(1)).max(1);
+    let mut all = Array2::zeros((n_each * frames.nrows(), frames.ncols()));
+    all.slice_mut(s![..frames.nrows(), ..]).assign(&frames);
+    let mut rng = seed.named("copies").rng();
+    let rest = all.outer_iter_mut().skip(frames.nrows());
+    for (mut copy, frame) in rest.zip(frames.outer_iter().cycle()) {
+        let mut place = |n: usize| {
+            let most = (MOVED * n as f64) as isize;
+            (rng.gen_range(-most..=most), rng.r#gen::<bool>())
+        };
+        let (along_y, along_x) = (place(ny), place(nx));
+        // Where the value at a place comes from, if it is on the array.
+        let from = |at: usize, (by, is_mirrored): (isize, bool), n: usize| {
+            let from = at.checked_add_signed(-by).filter(|&from| from < n)?;
+            Some(if is_mirrored { n - 1 - from } else { from })
+        };
+        for y in 0..ny {
+            for x in 0..nx {
+                if let (Some(row), Some(column)) = (from(y, along_y, ny), from(x, along_x, nx)) {
+                    copy[y * nx + x] = frame[row * nx + column];
+                }
+            }
+        }
+    }
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::image_estimate::tests::{GRID, bumps, error, estimated};
+    use super::super::{Ensemble, Projection};
+    use super::*;
+
+    #[test]
+    fn copies_tell_of_places_that_few_frames_do_not_have() {
+        let frames = bumps(30, "training");
+        assert_eq!(with_copies(frames.view(), GRID, 59, &Seed::new(1)), frames);
+        let copies = with_copies(frames.view(), GRID, 305, &Seed::new(1));
+        assert_eq!(copies.nrows(), 300);
+        assert_eq!(copies.slice(s![..30, ..]), frames);
+        // Each is its frame moved: none of its values is another's, and none is there twice.
+        for (copy, frame) in copies.outer_iter().zip(frames.outer_iter().cycle()) {
+            let sorted = |values: ndarray::ArrayView1<f64>| {
+                let mut values: Vec<f64> = values.iter().copied().filter(|&v| v > 0.0).collect();
+                values.sort_by(f64::total_cmp);
+                values
+            };
+            let (mut left, mut whole) = (sorted(copy), sorted(frame).into_iter());
+            left.retain(|value| !whole.any(|other| other == *value));
+            assert_eq!(left, Vec::<f64>::new());
+        }
+        let projection = Projection::new(Ensemble::BlockAverage, GRID, 16, &Seed::new(1)).unwrap();
+        let untouched = Array2::zeros((4, 144));
+        let readings = Readings {
+            training: frames.view(),
+            untouched: untouched.view(),
+        };
+        let test = bumps(100, "test");
+        let measured = projection.measure(test.view());
+        let [few, many] = [30, 600].map(|n_frames| {
+            let estimate = estimated(&projection, readings, n_frames);
+            error(&estimate.images(measured.view()), &test)
+        });
+        assert!(many < 0.9 * few, "{few} {many}");
+    }
+}

@@ -1,0 +1,143 @@
+//! Several readings of each training touch, each with its own noise.
+
+use crate::study::laid_out;
+use bubbletouch::random::Seed;
+use bubbletouch::recognition::ClassifierKind;
+use bubbletouch::recognition::classifiers::classifier::{Classifier, Cost};
+use bubbletouch::study::FeatureSet;
+use bubbletouch::study::progress::Silent;
+use ndarray::{Axis, s};
+
+const STUDY: &str = r#"
+question = "What does another reading bring?"
+trials = 1
+
+[objects]
+sets = ["household"]
+names = ["mug", "banana", "scissors", "power_drill", "fork", "bowl"]
+surface_error_mm = 1.0
+
+[skin]
+pitch_mm = 4.0
+size_mm = 64.0
+stroke_mm = 5.0
+
+[touches]
+per_object = 20
+offset_x_mm = { uniform = [-10.0, 10.0] }
+yaw_deg = { uniform = [0.0, 360.0] }
+depth_mm = 3.0
+
+[signal]
+noise_std_full_scale = 0.1
+
+[sensing]
+ensemble = "identity"
+
+[recognition]
+classifier = "linear_svm"
+c = 0.1
+"#;
+
+fn with(keys: &str) -> String {
+    format!("{STUDY}{keys}\n")
+}
+
+fn features(text: &str) -> FeatureSet {
+    let study = laid_out(text).unwrap();
+    study.first().features((0, 0), &Silent).unwrap()
+}
+
+/// Of every trial.
+fn n_correct(text: &str) -> Vec<usize> {
+    let tables = laid_out(text).unwrap().run(&Silent).unwrap();
+    let scores = tables.accuracy.iter().map(|(_, score)| score.n_correct);
+    scores.collect()
+}
+
+#[test]
+fn readings_differ_by_their_noise_alone_and_only_training_learns_of_them() {
+    let (once, thrice) = (features(STUDY), features(&with("training_readings = 3")));
+    let n = once.data.targets.len();
+    let reading = |k: usize| {
+        thrice
+            .data
+            .records
+            .slice(s![k * n..(k + 1) * n, ..])
+            .to_owned()
+    };
+    assert_eq!(reading(0), once.data.records);
+    assert_eq!(thrice.split.test, once.split.test);
+    let trained = once.split.train.iter();
+    let trained = (0..3).flat_map(|k| trained.clone().map(move |row| k * n + row));
+    assert_eq!(thrice.split.train, trained.collect::<Vec<_>>());
+    for (row, label) in thrice.data.targets.iter().enumerate() {
+        assert_eq!(*label, once.data.targets[row % n]);
+    }
+    // Independent noise of 0.1 of 5 mm: differences of two readings have √2 times its standard deviation.
+    for (a, b) in [(0, 1), (0, 2), (1, 2)] {
+        let difference = reading(a) - reading(b);
+        let std = (difference.mapv(|d| d * d).mean().unwrap() / 2.0).sqrt();
+        assert!((std / 5e-4 - 1.0).abs() < 0.02, "{a} {b}: {std}");
+    }
+}
+
+/// The run against training by hand on every reading.
+#[test]
+fn a_run_learns_all_readings_and_is_tested_on_one() {
+    let trials = |text: &str| text.replace("trials = 1", "trials = 5");
+    let text = trials(&with("training_readings = 4"));
+    let study = laid_out(&text).unwrap();
+    let by_hand = (0..5).map(|trial| {
+        let set = study.first().features((0, trial), &Silent).unwrap();
+        let classifier = Classifier {
+            c: Cost::Fixed(0.1),
+            ..Classifier::new(ClassifierKind::LinearSvm)
+        };
+        let trained = classifier.train(&set.training(None).unwrap(), &Seed::new(1));
+        let test = set.test().unwrap();
+        let found = trained.unwrap().labels(test.records.view()).unwrap();
+        let pairs = found.iter().zip(&test.targets);
+        pairs.filter(|(found, truth)| found == truth).count()
+    });
+    let found = n_correct(&text);
+    assert_eq!(found, by_hand.collect::<Vec<_>>());
+    assert_ne!(found, n_correct(&trials(STUDY)));
+}
+
+#[test]
+fn without_noise_a_touch_is_learned_once() {
+    let silent = |text: &str| text.replace("full_scale = 0.1", "full_scale = 0.0");
+    let (once, twice) = (silent(STUDY), silent(&with("training_readings = 2")));
+    assert_eq!(features(&twice).data, features(&once).data);
+    assert_eq!(features(&once).data.records.len_of(Axis(0)), 120);
+}
+
+/// Another reading of a touch that a fold holds out would make any C look good.
+#[test]
+fn a_choice_of_c_sees_first_readings_alone() {
+    let choose =
+        |keys: &str| STUDY.replace("c = 0.1", &format!("choose_c = [0.001, 0.1, 10.0]\n{keys}"));
+    let chosen = |keys: &str| {
+        let tables = laid_out(&choose(keys)).unwrap().run(&Silent).unwrap();
+        tables.accuracy[0].1.c_used
+    };
+    assert_eq!(chosen("training_readings = 5"), chosen(""));
+}
+
+#[test]
+fn readings_that_cannot_be_are_refused() {
+    for (keys, allowed) in [
+        ("training_readings = 0", "at least 1 and at most 100"),
+        ("training_readings = 101", "at most 100"),
+    ] {
+        let said = laid_out(&with(keys))
+            .err()
+            .expect("it is refused")
+            .to_string();
+        assert!(
+            said.contains("recognition.training_readings") && said.contains(allowed),
+            "{said}"
+        );
+    }
+}
