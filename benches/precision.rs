@@ -3,10 +3,10 @@
 //! `cargo bench --bench precision` prints a table; with `-- --write`, it also goes to `results/whole_body/precision.csv`, and as a chart
 //! to `precision.svg` and `.png` beside it.
 //!
-//! The same kernel in both: `contact::flat_rows`.
+//! The same kernel in both: `kinds::speed_accuracy::flat_press`.
 
-use bubbletouch::contact::flat_rows::{press_f32, press_f64};
 use bubbletouch::files::{CsvFile, write_bytes};
+use bubbletouch::kinds::speed_accuracy::flat_press::{press_f32, press_f64};
 use bubbletouch::random::Seed;
 use clock::seconds;
 use precision_chart::draw;

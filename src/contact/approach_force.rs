@@ -3,13 +3,12 @@
 use super::approach::Approach;
 use super::crossing::{Sample, crossing};
 use super::grid_force::{ACCURACY, check_force, too_much};
-use super::spring_load::spring_load;
+use super::spring_load::sample;
 use super::way::{Way, meeting};
 use super::{Contact, Workspace};
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::objects::Model;
-use crate::world::Taxel;
 
 impl Approach<'_> {
     /// Goes on until the springs carry `force` newtons together, Σ k δ: to within 1e-12 of it, or to the last bit of the travel.
@@ -57,10 +56,8 @@ impl Way<'_> {
         let Some([low, high]) = self.bracket(ends, force)? else {
             return Ok(None);
         };
-        let travel = crossing(low, high, ACCURACY * force, |travel| {
-            let Sample { value, slope } = self.sample(travel);
-            let value = value - force;
-            Sample { value, slope }
+        let travel = crossing([low, high], (force, ACCURACY * force), |travel| {
+            self.sample(travel)
         });
         Ok(Some(Contact {
             travel,
@@ -92,25 +89,14 @@ impl Way<'_> {
         Err(too_much(force, largest.0, &where_to))
     }
 
+    /// Σ k δ in N, and its slope over the travel in N/m.
     fn sample(&mut self, travel: f64) -> Sample {
         self.press(travel);
-        self.sample_of_last()
-    }
-
-    /// Σ k δ in N, and its slope over the travel in N/m.
-    fn sample_of_last(&self) -> Sample {
-        let contacts = self.workspace.contacts();
-        let slopes = contacts.iter().map(|contact| {
-            let taxel: &Taxel = self.patch.taxels().at(contact.taxel);
-            let rises = -contact.gradient().dot(self.direction);
-            match contact.is_saturated(taxel) {
-                true => 0.0,
-                false => taxel.stiffness * rises,
-            }
-        });
-        Sample {
-            slope: slopes.sum(),
-            value: spring_load(self.patch, contacts).spring_force,
-        }
+        sample(
+            self.patch,
+            self.workspace.contacts(),
+            -self.direction,
+            |_| true,
+        )
     }
 }

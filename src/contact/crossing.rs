@@ -1,4 +1,4 @@
-//! Where a function crosses zero from below: Newton's steps inside of a bracket.
+//! Where a function comes up to a value: Newton's steps inside of a bracket.
 
 /// A function at one place.
 #[derive(Clone, Copy, Debug)]
@@ -12,19 +12,19 @@ pub(super) struct Sample {
 /// found later.
 const HALVED_EACH: usize = 3;
 
-/// Where a function crosses zero on its way from a value below zero at `low` to one of zero or more at `high`: to `tolerance` of
+/// Where a function comes up to `wanted` on its way from a value below it at `low` to no lower one at `high`: to `tolerance` of
 /// its value, or to the last bit of the place.
 ///
-/// A function that jumps upwards past zero crosses it there: the upper side of the jump is named.
+/// A function that jumps upwards past the value comes up to it there: the upper side of the jump is named.
 pub(super) fn crossing(
-    mut low: f64,
-    mut high: f64,
-    tolerance: f64,
+    [mut low, mut high]: [f64; 2],
+    (wanted, tolerance): (f64, f64),
     mut sample: impl FnMut(f64) -> Sample,
 ) -> f64 {
     let mut at = high;
     for step in 1.. {
         let Sample { value, slope } = sample(at);
+        let value = value - wanted;
         if value.abs() <= tolerance {
             break;
         }
@@ -62,8 +62,8 @@ mod tests {
         for root in [1e-9, 0.1, 0.3, 0.5, 0.77] {
             let f = |x: f64| (x - 0.2).max(0.0) + 3.0 * (x - 0.4).max(0.0) + (x.min(0.1) - 0.1);
             let slope = |x: f64| f64::from(x > 0.2) + 3.0 * f64::from(x > 0.4) + f64::from(x < 0.1);
-            let found = crossing(0.0, 1.0, 0.0, |x| Sample {
-                value: f(x) - f(root),
+            let found = crossing([0.0, 1.0], (f(root), 0.0), |x| Sample {
+                value: f(x),
                 slope: slope(x),
             });
             assert!((f(found) - f(root)).abs() < 1e-15, "{root}: {found}");
@@ -74,10 +74,10 @@ mod tests {
     fn a_wrong_slope_finds_the_same() {
         let mut n_samples = 0;
         for slope in [0.0, -1.0, f64::NAN, 1e9, 1e-9] {
-            let found = crossing(0.0, 3.0, 0.0, |x| {
+            let found = crossing([0.0, 3.0], (2.0, 0.0), |x| {
                 n_samples += 1;
                 Sample {
-                    value: x * x - 2.0,
+                    value: x * x,
                     slope,
                 }
             });
@@ -92,6 +92,6 @@ mod tests {
             value: if x < 0.25 { -1.0 } else { 2.0 },
             slope: 0.0,
         };
-        assert_eq!(crossing(0.0, 1.0, 1e-12, step), 0.25);
+        assert_eq!(crossing([0.0, 1.0], (0.0, 1e-12), step), 0.25);
     }
 }

@@ -37,32 +37,21 @@ impl Envelope {
         let has_meshes = meshes.peek().is_some();
         let n_taxels = placed.lines.x.positions.len() * placed.lines.y.positions.len();
         self.clear(if has_meshes { n_taxels } else { 0 });
-        let limit = match goal {
-            Goal::Travel(travel) => Limit::Travel(travel),
-            Goal::Pose => Limit::Travel(0.0),
-            Goal::Depth(depth) => Limit::Past { depth, first },
-        };
         for (mesh, pose) in meshes {
-            self.lower(mesh, pose, placed.radius, placed.lines, limit);
+            self.lower(mesh, pose, placed, (goal, first));
         }
         has_meshes
     }
 
     /// Lowers the heights to those of a mesh where they are below the limit.
-    fn lower(
-        &mut self,
-        mesh: &MeshModel,
-        pose: &Pose,
-        radius: f64,
-        lines: &GridLines,
-        limit: Limit,
-    ) {
+    fn lower(&mut self, mesh: &MeshModel, pose: &Pose, placed: &Placed, goal: (Goal, f64)) {
         let first = Cell::new(self.first);
+        let radius = placed.radius;
         let sweep = Sweep {
-            view: MeshView::new(pose, radius, lines),
+            view: MeshView::new(pose, radius, placed.lines),
             radius,
-            lines,
-            limit,
+            lines: placed.lines,
+            goal,
             heights: Cell::from_mut(&mut self.heights[..]).as_slice_of_cells(),
             first: &first,
         };
@@ -88,7 +77,8 @@ struct Sweep<'a> {
     /// ρ.
     radius: f64,
     lines: &'a GridLines,
-    limit: Limit,
+    /// And the travel at which what has been looked at before touches.
+    goal: (Goal, f64),
     heights: &'a [Cell<f64>],
     first: &'a Cell<f64>,
 }
@@ -98,8 +88,13 @@ struct Sweep<'a> {
 const FEW: usize = 2;
 
 impl Sweep<'_> {
+    /// The travel up to which heights matter.
     fn limit(&self) -> f64 {
-        self.limit.travel(self.first.get())
+        match self.goal {
+            (Goal::Travel(travel), _) => travel,
+            (Goal::Pose, _) => 0.0,
+            (Goal::Depth(depth), others) => self.first.get().min(others) + depth,
+        }
     }
 
     /// The least travel at which something in a box can stop a taxel; infinite if it cannot lower any.
@@ -183,27 +178,6 @@ impl Sweep<'_> {
                     self.first.set(self.first.get().min(height));
                 }
             }
-        }
-    }
-}
-
-/// Up to which travel heights matter.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Limit {
-    /// This one, metres.
-    Travel(f64),
-    /// This far past first contact, metres; first contact with what has been looked at before.
-    Past { depth: f64, first: f64 },
-}
-
-impl Limit {
-    fn travel(self, first: f64) -> f64 {
-        match self {
-            Self::Travel(travel) => travel,
-            Self::Past {
-                depth,
-                first: other,
-            } => first.min(other) + depth,
         }
     }
 }

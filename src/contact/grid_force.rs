@@ -98,10 +98,8 @@ impl<'a> ForceCurve<'a> {
     /// Where it is a force that is not more than the largest.
     fn travel(&self, force: f64) -> f64 {
         let first = self.starts.iter().fold(self.end, |a, &b| a.min(b));
-        crossing(first, self.end, ACCURACY * force, |travel| {
-            let Sample { value, slope } = self.at(travel);
-            let value = value - force;
-            Sample { value, slope }
+        crossing([first, self.end], (force, ACCURACY * force), |travel| {
+            self.at(travel)
         })
     }
 }

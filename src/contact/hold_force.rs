@@ -1,8 +1,8 @@
 //! One object among others moved along a line so that a skin feels a force, no farther than it can go in a step.
 
-use super::crossing::{Sample, crossing};
+use super::crossing::crossing;
 use super::grid_force::ACCURACY;
-use super::spring_load::spring_load;
+use super::spring_load::sample;
 use super::{Workspace, press_with_contacts};
 use crate::geometry::Pose;
 use crate::objects::Model;
@@ -52,7 +52,9 @@ impl MovedObject<'_> {
         let start = poses[self.moving].translation;
         let mut carried = |travel: f64| {
             poses[self.moving].translation = start + travel * self.direction;
-            self.sample(poses, workspace)
+            press_with_contacts(self.patch, self.objects, poses, workspace);
+            let is_moved = |number| number == self.moving;
+            sample(self.patch, workspace.contacts(), self.direction, is_moved)
         };
         let tolerance = ACCURACY * force;
         let now = carried(here).value;
@@ -67,34 +69,12 @@ impl MovedObject<'_> {
         };
         let [low, high] = bracket;
         let travel = match low < high {
-            true => crossing(low, high, tolerance, |travel| {
-                let Sample { value, slope } = carried(travel);
-                let value = value - force;
-                Sample { value, slope }
-            }),
+            true => crossing([low, high], (force, tolerance), &mut carried),
             false => low,
         };
         HeldForce {
             travel,
             force: carried(travel).value,
-        }
-    }
-
-    /// Σ k δ in N, and its slope over the travel in N/m.
-    fn sample(&self, poses: &[Pose], workspace: &mut Workspace) -> Sample {
-        press_with_contacts(self.patch, self.objects, poses, workspace);
-        let contacts = workspace.contacts();
-        let moved = contacts.iter().filter(|c| c.object == self.moving);
-        let slopes = moved.map(|contact| {
-            let taxel = self.patch.taxels().at(contact.taxel);
-            match contact.is_saturated(taxel) {
-                true => 0.0,
-                false => taxel.stiffness * contact.gradient().dot(self.direction),
-            }
-        });
-        Sample {
-            slope: slopes.sum(),
-            value: spring_load(self.patch, contacts).spring_force,
         }
     }
 }

@@ -44,7 +44,6 @@ mod coulomb;
 mod crossing;
 mod damper;
 mod envelope;
-pub mod flat_rows;
 mod friction;
 mod grid_force;
 mod grid_lines;

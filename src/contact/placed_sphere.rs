@@ -255,6 +255,9 @@ impl PlacedSphere {
 
     /// Raises the deflections to what the sphere needs with its centre where it is, and marks those that it has raised. Where it is behind the
     /// substrate, which is at height `behind`, it does not count.
+    ///
+    /// The footprint is where the sphere needs more than zero: `b² < S² − max(h, 0)²`. Ranges are rounded outwards, those of small
+    /// footprints to a square; the comparison with S in the innermost loop is what decides.
     pub fn raise_and_mark<M: Copy>(
         &self,
         lines: &GridLines,
@@ -262,15 +265,28 @@ impl PlacedSphere {
         deflections: &mut [f64],
         (mark, marks): (M, &mut [M]),
     ) {
-        let height = self.center.z;
+        let DVec3 { x, y, z: height } = self.center;
         let gap = (behind - height).max(0.0);
-        self.each_row(lines, height, |taxels, places, row_reach2| {
-            let taxels = deflections[taxels.clone()]
+        let reach2 = self.reach * self.reach;
+        let lift = height.max(0.0);
+        let footprint = (reach2 - lift * lift).max(0.0);
+        let half_width = footprint.sqrt();
+        let square = lines.x.within(x, half_width);
+        for row in lines.y.within(y, half_width) {
+            let dy = lines.y.positions[row] - y;
+            let mut columns = square.clone();
+            if square.len() > SQUARE {
+                let half_width = (footprint - dy * dy).max(0.0).sqrt();
+                columns = lines.x.within(x, half_width);
+            }
+            let first = row * lines.x.positions.len();
+            let taxels = first + columns.start..first + columns.end;
+            let marked = deflections[taxels.clone()]
                 .iter_mut()
                 .zip(&mut marks[taxels]);
-            for ((deflection, marked), x) in taxels.zip(places) {
-                let dx = x - self.center.x;
-                let q = row_reach2 - dx * dx;
+            for ((deflection, marked), place) in marked.zip(&lines.x.positions[columns]) {
+                let dx = place - x;
+                let q = reach2 - dy * dy - dx * dx;
                 if q <= gap * gap {
                     continue;
                 }
@@ -283,39 +299,6 @@ impl PlacedSphere {
                     }
                 }
             }
-        });
-    }
-
-    /// Visits the rows of the footprint: taxels, their x, and S² − dy².
-    ///
-    /// The footprint is where the sphere needs more than zero: `b² < S² − max(h, 0)²`. Ranges are rounded outwards, those of small
-    /// footprints to a square; the comparison with S in the innermost loop is what decides.
-    #[inline]
-    fn each_row(
-        &self,
-        lines: &GridLines,
-        height: f64,
-        mut visit: impl FnMut(Range<usize>, &[f64], f64),
-    ) {
-        let reach2 = self.reach * self.reach;
-        let lift = height.max(0.0);
-        let footprint = (reach2 - lift * lift).max(0.0);
-        let half_width = footprint.sqrt();
-        let n_columns = lines.x.positions.len();
-        let square = lines.x.within(self.center.x, half_width);
-        let is_wide = square.len() > SQUARE;
-        for row in lines.y.within(self.center.y, half_width) {
-            let dy = lines.y.positions[row] - self.center.y;
-            let columns = match is_wide {
-                true => {
-                    let half_width = (footprint - dy * dy).max(0.0).sqrt();
-                    lines.x.within(self.center.x, half_width)
-                }
-                false => square.clone(),
-            };
-            let first = row * n_columns;
-            let taxels = first + columns.start..first + columns.end;
-            visit(taxels, &lines.x.positions[columns], reach2 - dy * dy);
         }
     }
 }

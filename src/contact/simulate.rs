@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::objects::Model;
 use crate::world::{Patch, VelocityPlan};
-use ndarray::{Array1, Array2};
+use ndarray::{Array1, Array2, ArrayView1};
 
 /// Frames over time.
 #[derive(Clone, Debug, PartialEq)]
@@ -79,16 +79,12 @@ pub fn simulate(
         workspace.hold_touched();
         state.step(patch.taxels(), dt, workspace.deflections());
         recording.n_saturated += contact.n_saturated;
-        copy_into(&mut recording.deflection, frame, &state.deflection);
-        copy_into(&mut recording.force, frame, &state.force);
+        let (mut deflection, mut force) = (
+            recording.deflection.row_mut(frame),
+            recording.force.row_mut(frame),
+        );
+        deflection.assign(&ArrayView1::from(&state.deflection));
+        force.assign(&ArrayView1::from(&state.force));
     }
     Ok(recording)
-}
-
-fn copy_into(frames: &mut Array2<f64>, frame: usize, values: &[f64]) {
-    frames
-        .row_mut(frame)
-        .iter_mut()
-        .zip(values)
-        .for_each(|(to, from)| *to = *from);
 }

@@ -1,5 +1,6 @@
 //! What the springs of a skin patch carry: forces, torques, and where.
 
+use super::crossing::Sample;
 use super::taxel_contact::TaxelContact;
 use crate::world::Patch;
 use glam::DVec3;
@@ -130,5 +131,26 @@ pub fn spring_load<'a>(
         } else {
             0.0
         },
+    }
+}
+
+/// Σ k δ of contacts in N, and its slope in N/m as those objects whose number is `moved` go along a direction (unit, in the patch frame).
+pub(super) fn sample(
+    patch: &Patch,
+    contacts: &[TaxelContact],
+    direction: DVec3,
+    moved: impl Fn(usize) -> bool,
+) -> Sample {
+    let moved = contacts.iter().filter(|contact| moved(contact.object));
+    let slopes = moved.map(|contact| {
+        let taxel = patch.taxels().at(contact.taxel);
+        match contact.is_saturated(taxel) {
+            true => 0.0,
+            false => taxel.stiffness * contact.gradient().dot(direction),
+        }
+    });
+    Sample {
+        slope: slopes.sum(),
+        value: spring_load(patch, contacts).spring_force,
     }
 }

@@ -11,6 +11,8 @@ use crate::world::{Extrusion, Layout, Patch, Rule, Taxel, Taxels};
 #[derive(Clone, Debug)]
 pub struct BodyPatch {
     name: String,
+    taxel: Taxel,
+    n_taxels: usize,
     surface: Surface,
 }
 
@@ -43,16 +45,21 @@ impl BodyPatch {
         };
         let depth = taxel.stroke + taxel.radius;
         let surface = match patch.layout().rule() {
-            Rule::Grid(grid) => Surface::Rows(RowPatch::new(Extrusion::grid(grid)?, taxel)),
-            Rule::Rows(rows) => Surface::Rows(RowPatch::new(rows.clone(), taxel)),
+            Rule::Grid(grid) => Surface::Rows(RowPatch::new(Extrusion::grid(grid)?, depth)),
+            Rule::Rows(rows) => Surface::Rows(RowPatch::new(rows.clone(), depth)),
             Rule::Dome(dome) if dome.radius() < depth => {
                 let allowed = format!("at least {depth} m, a taxel's stroke and radius");
                 return refuse("dome radius", format!("{} m", dome.radius()), allowed);
             }
-            Rule::Dome(dome) => Surface::Dome(DomePatch::new(dome.clone(), taxel)),
-            Rule::None => Surface::Draped(DrapedPatch::new(patch.layout(), taxel)),
+            Rule::Dome(dome) => Surface::Dome(DomePatch::new(dome.clone(), depth)),
+            Rule::None => Surface::Draped(DrapedPatch::new(patch.layout(), depth)),
         };
-        Ok(Self { name, surface })
+        Ok(Self {
+            name,
+            taxel,
+            n_taxels: patch.n_taxels(),
+            surface,
+        })
     }
 
     /// What it is called.
@@ -71,28 +78,20 @@ impl BodyPatch {
 
     /// What each of the taxels is.
     pub fn taxel(&self) -> &Taxel {
-        match &self.surface {
-            Surface::Rows(rows) => rows.taxel(),
-            Surface::Dome(dome) => dome.taxel(),
-            Surface::Draped(draped) => draped.taxel(),
-        }
+        &self.taxel
     }
 
     /// How many taxels.
     pub fn n_taxels(&self) -> usize {
-        match &self.surface {
-            Surface::Rows(rows) => rows.extrusion().n_taxels(),
-            Surface::Dome(dome) => dome.dome().n_taxels(),
-            Surface::Draped(draped) => draped.n_taxels(),
-        }
+        self.n_taxels
     }
 
     /// A ball in the patch frame that every sphere comes near to that pushes a taxel: nearer than the sum of the radii and ρ.
     pub fn ball(&self) -> Sphere {
         match &self.surface {
             Surface::Rows(rows) => rows.ball(),
-            Surface::Dome(dome) => dome.ball(),
-            Surface::Draped(draped) => draped.ball(),
+            Surface::Dome(dome) => dome.ball,
+            Surface::Draped(draped) => draped.ball,
         }
     }
 
@@ -106,7 +105,7 @@ impl BodyPatch {
         match &self.surface {
             Surface::Rows(rows) => rows.extrusion().rows().len(),
             Surface::Dome(dome) => dome.dome().rings().len(),
-            Surface::Draped(draped) => draped.n_taxels().div_ceil(draped_patch::BLOCK),
+            Surface::Draped(_) => self.n_taxels.div_ceil(draped_patch::BLOCK),
         }
     }
 

@@ -1,8 +1,8 @@
 //! A robot covered in skin: patches on the sides of its cylinders, on the half balls or the flat ends of these, and on boxes.
 
 use super::body_patch::WholeBody;
-use super::flat_ends::{FlatEnd, flat_ends};
-use super::half_balls::{HalfBall, half_balls};
+use super::flat_ends::flat_ends;
+use super::half_balls::{End, half_balls};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::world::{Dome, Extrusion, Grid, Layout, LinkGeometry, Patch, Robot, ShapeRole, Taxel};
@@ -82,7 +82,7 @@ impl CoveredRobot {
         Self::of(robot, Cover { taxel, pitch, side }, &flat_ends(robot)?)
     }
 
-    fn of(robot: &Robot, cover: Cover, ends: &[FlatEnd]) -> Result<Self> {
+    fn of(robot: &Robot, cover: Cover, ends: &[End]) -> Result<Self> {
         let mut covered = Covered::default();
         let half_balls = half_balls(robot)?;
         for (number, link) in robot.links().iter().enumerate() {
@@ -218,7 +218,7 @@ impl Covered {
     }
 
     /// Half a pitch is left to the rim.
-    fn add_end(&mut self, name: &str, end: &FlatEnd, cover: Cover) -> Result<()> {
+    fn add_end(&mut self, name: &str, end: &End, cover: Cover) -> Result<()> {
         let radius = (end.radius - 0.5 * cover.pitch).max(0.5 * end.radius);
         let layout = Layout::disc(radius, cover.pitch);
         let layout = layout.map_err(|error| error.under(format!("skin of {name}, ")))?;
@@ -228,7 +228,7 @@ impl Covered {
         Ok(())
     }
 
-    fn add_half_ball(&mut self, name: &str, half: &HalfBall, cover: Cover) -> Result<()> {
+    fn add_half_ball(&mut self, name: &str, half: &End, cover: Cover) -> Result<()> {
         let Cover { taxel, pitch, side } = cover;
         let area = TAU * half.radius * half.radius;
         let n_around = (area / (side * side)).round().max(1.0);
@@ -238,7 +238,7 @@ impl Covered {
             let turn = DQuat::from_rotation_z(TAU * place as f64 / n_around);
             let name = format!("{name}.{}", place + 1);
             let patch = Patch::new(name, part.clone(), taxel)?;
-            let link_from_patch = half.link_from_ball.compose(&Pose::from_rotation(turn));
+            let link_from_patch = half.link_from_end.compose(&Pose::from_rotation(turn));
             self.add(patch, half.link, link_from_patch);
         }
         Ok(())

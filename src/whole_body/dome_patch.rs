@@ -11,12 +11,11 @@
 //! and with B = R − s − ρ the sphere is not behind the substrate where `t + √(t² − Q) ≥ B`, which is where t is B or (B² + Q) / (2B) or more.
 //! On a ring t is A + A' cos(φ − φ_c): an interval.
 
-use super::lanes::{View, ball_around};
+use super::lanes::ball_around;
 use super::object_press::Pushed;
 use super::patch_state::PatchState;
-use crate::geometry::Pose;
 use crate::objects::Sphere;
-use crate::world::{Dome, DomeRing, Taxel};
+use crate::world::{Dome, DomeRing};
 use glam::{DVec3, Vec3Swizzles};
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
@@ -30,37 +29,29 @@ const ACOS_ROUNDING: f64 = 1e-7;
 #[derive(Clone, Debug)]
 pub(super) struct DomePatch {
     dome: Dome,
-    taxel: Taxel,
+    /// Of the sphere that the substrate is on, metres.
+    substrate: f64,
     /// Around all taxels from their rest centres back to the substrate, in the patch frame.
-    ball: Sphere,
+    pub ball: Sphere,
 }
 
 impl DomePatch {
-    /// Taxels that are good ones, of which a dome is large enough.
-    pub fn new(dome: Dome, taxel: Taxel) -> Self {
-        let depth = taxel.stroke + taxel.radius;
-        let (outer, inner) = (dome.radius(), dome.radius() - depth);
-        let ends = dome.axes().flat_map(|axis| [outer * axis, inner * axis]);
+    /// Taxels whose substrate is `depth` metres behind their rest centres, less than the dome's radius.
+    pub fn new(dome: Dome, depth: f64) -> Self {
+        let (outer, substrate) = (dome.radius(), dome.radius() - depth);
+        let ends = dome
+            .axes()
+            .flat_map(|axis| [outer * axis, substrate * axis]);
         Self {
             ball: ball_around(ends),
             dome,
-            taxel,
+            substrate,
         }
     }
 
     /// Where the taxels rest.
     pub fn dome(&self) -> &Dome {
         &self.dome
-    }
-
-    /// What each of the taxels is.
-    pub fn taxel(&self) -> &Taxel {
-        &self.taxel
-    }
-
-    /// As [`BodyPatch::ball`](super::BodyPatch::ball).
-    pub fn ball(&self) -> Sphere {
-        self.ball
     }
 
     /// Bytes that it holds on the heap.
@@ -80,11 +71,6 @@ impl DomePatch {
 }
 
 impl Pushed for DomePatch {
-    #[inline(always)]
-    fn view(&self, patch_from_object: &Pose) -> View {
-        View::of_pose(patch_from_object, self.taxel.radius, self.ball)
-    }
-
     /// Nothing is nearer than its ball, which has been looked at.
     #[inline(always)]
     fn is_near(&self, _: DVec3, _: f64) -> bool {
@@ -95,7 +81,7 @@ impl Pushed for DomePatch {
     fn push(&self, state: &mut PatchState, center: DVec3, reach: f64) {
         let radius = self.dome.radius();
         let power = center.length_squared() - reach * reach;
-        let substrate = radius - self.taxel.stroke - self.taxel.radius;
+        let substrate = self.substrate;
         let behind = substrate.min((substrate * substrate + power) / (2.0 * substrate));
         let least = self.least_along(power).max(behind);
         let across = center.xy().length();

@@ -3,13 +3,12 @@
 //! The taxels are kept eight by eight in the order of their layout. Balls are around these tiles, around eight tiles that follow each
 //! other, around eight of those, and so on: a sphere goes down to the tiles that it is near.
 
-use super::lanes::{Balls, FAR, LANES, View, ball_around, filled};
+use super::lanes::{Balls, FAR, LANES, ball_around, filled};
 use super::object_press::Pushed;
 use super::patch_state::PatchState;
 use crate::contact::{Below, beats, raise};
-use crate::geometry::Pose;
 use crate::objects::Sphere;
-use crate::world::{Layout, Taxel};
+use crate::world::Layout;
 use glam::DVec3;
 
 /// Taxels whose touched span is remembered together.
@@ -21,13 +20,14 @@ const MOST_LEVELS: usize = 10;
 #[derive(Clone, Debug)]
 pub(super) struct DrapedPatch {
     n_taxels: usize,
-    taxel: Taxel,
+    /// s + ρ, metres.
+    depth: f64,
     tiles: Vec<Tile>,
     /// The first level is one block of at most eight balls; a ball of a level is around the block of its number of the next one, and of
     /// the last level around a tile.
     levels: Vec<Vec<Balls>>,
-    /// Around all.
-    ball: Sphere,
+    /// Around all taxels from their rest centres back to the substrate, in the patch frame.
+    pub ball: Sphere,
 }
 
 /// Eight taxels, coordinate by coordinate. The last one is filled up with some far away.
@@ -40,11 +40,10 @@ struct Tile {
 }
 
 impl DrapedPatch {
-    /// Taxels that are good ones, at least one.
-    pub fn new(layout: &Layout, taxel: Taxel) -> Self {
+    /// Taxels, at least one, whose substrate is `depth` metres behind their rest centres.
+    pub fn new(layout: &Layout, depth: f64) -> Self {
         let taxels = layout.centers().iter().copied();
         let taxels: Vec<_> = taxels.zip(layout.axes().iter().copied()).collect();
-        let depth = taxel.stroke + taxel.radius;
         // From the rest centres back to the substrate.
         let ends = |&(center, axis): &(DVec3, DVec3)| [center, center - depth * axis];
         let ball = |taxels: &[_]| ball_around(taxels.iter().flat_map(ends));
@@ -57,26 +56,11 @@ impl DrapedPatch {
         }
         Self {
             n_taxels: taxels.len(),
-            taxel,
+            depth,
             tiles: taxels.chunks(LANES).map(Tile::new).collect(),
             levels,
             ball: ball(&taxels),
         }
-    }
-
-    /// How many taxels.
-    pub fn n_taxels(&self) -> usize {
-        self.n_taxels
-    }
-
-    /// What each of the taxels is.
-    pub fn taxel(&self) -> &Taxel {
-        &self.taxel
-    }
-
-    /// As [`BodyPatch::ball`](super::BodyPatch::ball).
-    pub fn ball(&self) -> Sphere {
-        self.ball
     }
 
     /// Every taxel by itself, in the same order.
@@ -100,7 +84,7 @@ impl DrapedPatch {
     /// Pushes a tile.
     #[inline(always)]
     fn push_tile(&self, state: &mut PatchState, tile: usize, center: DVec3, reach: f64) {
-        let behind = -self.taxel.stroke - self.taxel.radius;
+        let behind = -self.depth;
         // Of each taxel S² − b², negative behind the substrate, and h.
         let (mut squares, mut heights) = ([0.0; LANES], [0.0; LANES]);
         let Tile {
@@ -132,11 +116,6 @@ impl DrapedPatch {
 }
 
 impl Pushed for DrapedPatch {
-    #[inline(always)]
-    fn view(&self, patch_from_object: &Pose) -> View {
-        View::of_pose(patch_from_object, self.taxel.radius, self.ball)
-    }
-
     #[inline(always)]
     fn is_near(&self, center: DVec3, reach: f64) -> bool {
         Descent::new(&self.levels, center, reach).next().is_some()

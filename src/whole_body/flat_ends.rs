@@ -1,23 +1,14 @@
 //! The flat ends of a robot's cylinders that can be touched.
 
-use super::half_balls::{SAME, ends};
+use super::half_balls::{End, SAME, ends};
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::world::{LinkGeometry, LinkShape, Robot, ShapeRole};
-use glam::{DQuat, DVec3};
-
-/// The end of a cylinder on a link.
-pub(super) struct FlatEnd {
-    pub link: usize,
-    /// Its middle, and +z outwards.
-    pub link_from_end: Pose,
-    /// Metres.
-    pub radius: f64,
-}
+use glam::DVec3;
 
 /// Link by link, each link's in the order of the file, the lower end first. An end whose middle is in or on another shape that touches, all
 /// joints at zero, is left out: a ball makes it round, or a link goes on there.
-pub(super) fn flat_ends(robot: &Robot) -> Result<Vec<FlatEnd>> {
+pub(super) fn flat_ends(robot: &Robot) -> Result<Vec<End>> {
     let world_from_links = robot.forward(&Pose::IDENTITY, &vec![0.0; robot.n_positions()])?;
     let links = robot.links().iter().zip(&world_from_links).enumerate();
     let shapes: Vec<(usize, Pose, &LinkShape)> = links
@@ -45,12 +36,7 @@ pub(super) fn flat_ends(robot: &Robot) -> Result<Vec<FlatEnd>> {
                     )
             });
             if !is_buried {
-                let turn = DQuat::from_rotation_arc(DVec3::Z, outwards);
-                found.push(FlatEnd {
-                    link: *link,
-                    link_from_end: Pose::new(turn, middle),
-                    radius,
-                });
+                found.push(End::new(*link, (middle, outwards), radius));
             }
         }
     }

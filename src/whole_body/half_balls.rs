@@ -8,28 +8,38 @@ use glam::{DQuat, DVec3};
 /// Distances and radii that differ by less are meant to be the same, metres.
 pub(super) const SAME: f64 = 1e-6;
 
-/// Half a ball on a link.
-pub(super) struct HalfBall {
+/// Half a ball, or the flat end of a cylinder, on a link.
+pub(super) struct End {
     pub link: usize,
-    /// The centre, and +z to the pole.
-    pub link_from_ball: Pose,
+    /// The centre, and +z to the pole, or outwards.
+    pub link_from_end: Pose,
     /// Metres.
     pub radius: f64,
 }
 
+impl End {
+    pub fn new(link: usize, (center, outwards): (DVec3, DVec3), radius: f64) -> Self {
+        let rotation = DQuat::from_rotation_arc(DVec3::Z, outwards);
+        Self {
+            link,
+            link_from_end: Pose::new(rotation, center),
+            radius,
+        }
+    }
+}
+
 /// The outer halves of the balls that a robot's links touch with, link by link, each link's in the order of the file; both halves
 /// of a ball that is at no cylinder's end. Those within a larger ball of another link, all joints at zero, are left out.
-pub(super) fn half_balls(robot: &Robot) -> Result<Vec<HalfBall>> {
-    let all: Vec<HalfBall> = robot
+pub(super) fn half_balls(robot: &Robot) -> Result<Vec<End>> {
+    let all: Vec<End> = robot
         .links()
         .iter()
         .enumerate()
         .flat_map(|(link, of)| of_link(link, &of.shapes))
         .collect();
     let links = robot.forward(&Pose::IDENTITY, &vec![0.0; robot.n_positions()])?;
-    let center =
-        |half: &HalfBall| links[half.link].transform_point(half.link_from_ball.translation);
-    let is_within = |inner: &HalfBall, outer: &HalfBall| {
+    let center = |half: &End| links[half.link].transform_point(half.link_from_end.translation);
+    let is_within = |inner: &End, outer: &End| {
         let apart = center(inner).distance(center(outer));
         outer.link != inner.link && outer.radius > inner.radius + apart
     };
@@ -43,7 +53,7 @@ pub(super) fn half_balls(robot: &Robot) -> Result<Vec<HalfBall>> {
         .collect())
 }
 
-fn of_link(link: usize, shapes: &[LinkShape]) -> Vec<HalfBall> {
+fn of_link(link: usize, shapes: &[LinkShape]) -> Vec<End> {
     let touching = || {
         let collision = |shape: &&LinkShape| shape.role == ShapeRole::Collision;
         shapes.iter().filter(collision)
@@ -53,7 +63,7 @@ fn of_link(link: usize, shapes: &[LinkShape]) -> Vec<HalfBall> {
         match shape.geometry {
             LinkGeometry::Capsule { radius, length } => {
                 for end in ends(&shape.origin, length) {
-                    halves.push(half(link, end, radius));
+                    halves.push(End::new(link, end, radius));
                 }
             }
             LinkGeometry::Sphere { radius } => {
@@ -66,11 +76,11 @@ fn of_link(link: usize, shapes: &[LinkShape]) -> Vec<HalfBall> {
                     _ => None,
                 });
                 match cylinders.flatten().find(is_end) {
-                    Some(end) => halves.push(half(link, end, radius)),
+                    Some(end) => halves.push(End::new(link, end, radius)),
                     None => {
                         let up = shape.origin.transform_vector(DVec3::Z);
-                        halves.push(half(link, (center, up), radius));
-                        halves.push(half(link, (center, -up), radius));
+                        halves.push(End::new(link, (center, up), radius));
+                        halves.push(End::new(link, (center, -up), radius));
                     }
                 }
             }
@@ -89,13 +99,4 @@ pub(super) fn ends(link_from_cylinder: &Pose, length: f64) -> [(DVec3, DVec3); 2
             link_from_cylinder.transform_vector(outwards),
         )
     })
-}
-
-fn half(link: usize, (center, pole): (DVec3, DVec3), radius: f64) -> HalfBall {
-    let rotation = DQuat::from_rotation_arc(DVec3::Z, pole);
-    HalfBall {
-        link,
-        link_from_ball: Pose::new(rotation, center),
-        radius,
-    }
 }

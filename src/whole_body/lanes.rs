@@ -1,7 +1,6 @@
 //! Eight at a time: what is near a sphere is looked for among blocks of eight balls, and taxels are pushed by eight.
 
 use crate::contact::Below;
-use crate::geometry::Pose;
 use crate::objects::{ClusterBounds, MOST_IN_CLUSTER, Sphere, SphereClusters};
 use glam::{DMat3, DVec3};
 
@@ -78,13 +77,6 @@ impl View {
             taxel_radius,
             ball,
         }
-    }
-
-    /// The same of a pose in the patch's own frame.
-    #[inline(always)]
-    pub fn of_pose(patch_from_object: &Pose, taxel_radius: f64, ball: Sphere) -> Self {
-        let rotation = DMat3::from_quat(patch_from_object.rotation);
-        Self::new(rotation, patch_from_object.translation, taxel_radius, ball)
     }
 
     #[inline(always)]

@@ -1,18 +1,15 @@
 //! Presses an object on a patch: clusters of spheres, spheres, and then what the patch's surface makes of them.
 
 use super::SphereClusters;
-use super::body_patch::Surface;
+use super::body_patch::{BodyPatch, Surface};
 use super::lanes::{LANES, View};
 use super::patch_state::PatchState;
 use crate::contact::{Below, for_instructions};
 use crate::geometry::Pose;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 /// A surface of taxels that spheres push. (A trait, not closures: those would be compiled without vector instructions.)
 pub(super) trait Pushed {
-    /// The object's frame seen from that of the surface.
-    fn view(&self, patch_from_object: &Pose) -> View;
-
     /// Whether a ball comes near any of its taxels; centre in its frame and radius with ρ in it, metres.
     fn is_near(&self, center: DVec3, reach: f64) -> bool;
 
@@ -24,7 +21,7 @@ for_instructions! {
     /// Pushes a patch by one object.
     pub(super) fn push_object(
         state: &mut PatchState,
-        surface: &Surface,
+        patch: &BodyPatch,
         object: &SphereClusters,
         patch_from_object: &Pose,
     ) = push_surface
@@ -33,25 +30,31 @@ for_instructions! {
 #[inline(always)]
 fn push_surface(
     state: &mut PatchState,
-    surface: &Surface,
+    patch: &BodyPatch,
     object: &SphereClusters,
     patch_from_object: &Pose,
 ) {
-    match surface {
-        Surface::Rows(rows) => push_each(state, rows, object, patch_from_object),
-        Surface::Dome(dome) => push_each(state, dome, object, patch_from_object),
-        Surface::Draped(draped) => push_each(state, draped, object, patch_from_object),
+    let rotation = DMat3::from_quat(patch_from_object.rotation);
+    let (origin, radius) = (patch_from_object.translation, patch.taxel().radius);
+    match patch.surface() {
+        Surface::Rows(rows) => {
+            let uvw = rows.extrusion().uvw_from_patch();
+            let view = View::new(uvw * rotation, uvw * origin, radius, rows.ball_in_uvw());
+            push_each(state, rows, object, &view);
+        }
+        Surface::Dome(dome) => {
+            let view = View::new(rotation, origin, radius, dome.ball);
+            push_each(state, dome, object, &view);
+        }
+        Surface::Draped(draped) => {
+            let view = View::new(rotation, origin, radius, draped.ball);
+            push_each(state, draped, object, &view);
+        }
     }
 }
 
 #[inline(always)]
-fn push_each(
-    state: &mut PatchState,
-    surface: &impl Pushed,
-    object: &SphereClusters,
-    patch_from_object: &Pose,
-) {
-    let view = surface.view(patch_from_object);
+fn push_each(state: &mut PatchState, surface: &impl Pushed, object: &SphereClusters, view: &View) {
     let bounds = object.bounds();
     let mut gaps = std::mem::take(&mut state.gaps);
     gaps.clear();

@@ -92,7 +92,7 @@ impl PatchState {
         }
         self.relax(patch, relaxation_factor(patch.taxel(), dt));
         for (object, pose) in objects {
-            push_object(instructions, self, patch.surface(), object, &pose);
+            push_object(instructions, self, patch, object, &pose);
         }
         self.read(patch);
     }

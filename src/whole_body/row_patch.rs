@@ -3,14 +3,15 @@
 use super::lanes::{Balls, FAR, LANES, ball_around, filled};
 use crate::contact::Lines;
 use crate::objects::Sphere;
-use crate::world::{Extrusion, Taxel};
+use crate::world::Extrusion;
 use glam::DVec2;
 
 /// Equal taxels in a row that is repeated, and what finds those that a sphere is near.
 #[derive(Clone, Debug)]
 pub(super) struct RowPatch {
     extrusion: Extrusion,
-    taxel: Taxel,
+    /// s + ρ, metres.
+    depth: f64,
     bundles: Vec<Bundle>,
     circles: Vec<Balls>,
     lines: Lines,
@@ -28,9 +29,8 @@ pub(super) struct Bundle {
 }
 
 impl RowPatch {
-    /// Taxels that are good ones.
-    pub fn new(extrusion: Extrusion, taxel: Taxel) -> Self {
-        let depth = taxel.stroke + taxel.radius;
+    /// Taxels whose substrate is `depth` metres behind their rest centres.
+    pub fn new(extrusion: Extrusion, depth: f64) -> Self {
         let columns = extrusion.places().iter().copied();
         let columns: Vec<_> = columns.zip(extrusion.axes().iter().copied()).collect();
         let lines = Lines::at(extrusion.rows());
@@ -54,7 +54,7 @@ impl RowPatch {
             bundles: columns.chunks(LANES).map(Bundle::new).collect(),
             circles: Balls::blocks(&circles),
             extrusion,
-            taxel,
+            depth,
             lines,
         }
     }
@@ -64,15 +64,10 @@ impl RowPatch {
         &self.extrusion
     }
 
-    /// What each of the taxels is.
-    pub fn taxel(&self) -> &Taxel {
-        &self.taxel
-    }
-
     /// −s − ρ, metres: what is lower is behind the substrate.
     #[inline(always)]
     pub fn behind(&self) -> f64 {
-        -self.taxel.stroke - self.taxel.radius
+        -self.depth
     }
 
     /// As [`BodyPatch::ball`](super::BodyPatch::ball).

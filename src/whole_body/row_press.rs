@@ -4,29 +4,17 @@
 //! Of 32 spheres that touch all of 64 × 64 taxels singles were wrong by 5e-9 m (radius 45 mm, pressed lightly), 2e-7 m (as deep as
 //! its middle) and 6e-7 m (radius 4 m); of 512 × 512 by up to 5e-5 m. `cargo bench --bench precision` measures it again.
 
-use super::lanes::{LANES, View, largest};
+use super::lanes::{LANES, largest};
 use super::object_press::Pushed;
 use super::patch_state::PatchState;
 use super::row_patch::{Bundle, RowPatch};
 use crate::contact::{Below, beats, raise};
-use crate::geometry::Pose;
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 /// Under so few bundles a sphere is small: to know whether it needs more takes as long as the root.
 const FEW: usize = 3;
 
 impl Pushed for RowPatch {
-    #[inline(always)]
-    fn view(&self, patch_from_object: &Pose) -> View {
-        let uvw = self.extrusion().uvw_from_patch();
-        View::new(
-            uvw * DMat3::from_quat(patch_from_object.rotation),
-            uvw * patch_from_object.translation,
-            self.taxel().radius,
-            self.ball_in_uvw(),
-        )
-    }
-
     #[inline(always)]
     fn is_near(&self, center: DVec3, reach: f64) -> bool {
         let mut is_near = false;

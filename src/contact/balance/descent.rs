@@ -21,6 +21,8 @@ const AT_REST: f64 = 1e-7;
 const PROMISED: f64 = 1e-6;
 /// [Looseness](super::energy::Energy::looseness) of ties and stops at which a pose is at rest.
 const TIGHT: f64 = 1e-7;
+/// The same that one never has more of: where so many stops carry that steeper sides come to what rounding makes of them.
+const ENOUGH: f64 = 1e-5;
 /// Steps up to this share of the farthest are foreseen with all contacts that they make.
 const NEARBY: f64 = 0.04;
 /// Smoothing of ties as a share of the largest deflection, and of the one under which a taxel carries all the weight.
@@ -69,7 +71,7 @@ impl<'a, 'b> Descent<'a, 'b> {
         }
         let smallest = bodies.iter().map(Body::arm).fold(f64::INFINITY, f64::min);
         let stroke = if stroke.is_finite() { stroke } else { smallest };
-        let weight = total_weight(&bodies);
+        let weight: f64 = bodies.iter().map(|body| body.weight.length()).sum();
         let size = bodies.iter().map(Body::arm).fold(0.0, f64::max);
         Self {
             ground,
@@ -97,11 +99,12 @@ impl<'a, 'b> Descent<'a, 'b> {
         }
     }
 
-    /// Rounds of descents, each with better multipliers.
+    /// Rounds of descents, each with better multipliers; of those that come no nearer to rest any more, the best within what is promised.
     pub fn run(&mut self) -> End {
         self.look(&[]);
         let mut looseness = f64::INFINITY;
         let mut n_tightened = 0;
+        let (mut best, mut least) = (None, f64::INFINITY);
         for _ in 0..MAX_ROUNDS {
             match self.descend() {
                 End::Rest => {}
@@ -110,13 +113,17 @@ impl<'a, 'b> Descent<'a, 'b> {
             if self.is_at_rest(AT_REST, TIGHT) {
                 return End::Rest;
             }
+            let now = self.looseness();
+            if now < least && self.is_at_rest(PROMISED, ENOUGH) {
+                let (bodies, multipliers) = (self.bodies.clone(), self.multipliers.clone());
+                (best, least) = (Some((bodies, multipliers, self.smoothness)), now);
+            }
             let Some(deepest) = self.deepest() else {
                 // Less than the last bit above taxels that are too stiff to be pressed by it.
                 return End::Exhausted;
             };
-            let now = &self.balancer.now;
-            self.multipliers = now.loads.multipliers(&now.pairs);
-            let now = self.looseness();
+            let energy = &self.balancer.now;
+            self.multipliers = energy.loads.multipliers(&energy.pairs);
             if deepest > 0.0 {
                 self.smoothness.smoothing = self.smoothness.smoothing.min(SMOOTHING * deepest);
             }
@@ -129,15 +136,18 @@ impl<'a, 'b> Descent<'a, 'b> {
             looseness = now;
             self.look_again();
         }
-        match self.is_at_rest(PROMISED, 1e3 * TIGHT) {
-            true => End::Rest,
-            false => End::Exhausted,
-        }
+        let Some((bodies, multipliers, smoothness)) = best else {
+            return End::Exhausted;
+        };
+        (self.bodies, self.multipliers, self.smoothness) = (bodies, multipliers, smoothness);
+        self.look_again();
+        End::Rest
     }
 
     fn is_at_rest(&self, imbalance: f64, looseness: f64) -> bool {
         let now = &self.balancer.now;
-        self.imbalance(&now.pair_loads()) <= imbalance && self.looseness() <= looseness
+        let imbalances = self.imbalances(&now.pair_loads()).into_iter();
+        imbalances.fold(0.0, f64::max) <= imbalance && self.looseness() <= looseness
     }
 
     /// The largest of all islands.
@@ -181,6 +191,10 @@ impl<'a, 'b> Descent<'a, 'b> {
             };
             let length = norm(&step.motion);
             if length <= self.same_place() {
+                // Where the reach has come to nothing too soon, the next round sees farther.
+                if slope > AT_REST {
+                    self.reach = self.nearby();
+                }
                 return End::Rest;
             }
             match self.attempt(&step, slope) {
@@ -249,7 +263,7 @@ impl<'a, 'b> Descent<'a, 'b> {
     }
 
     /// Moves the bodies; what their weights do by that, joules.
-    pub(super) fn go(&mut self, motion: &[f64]) -> f64 {
+    fn go(&mut self, motion: &[f64]) -> f64 {
         let bodies = self.bodies.iter_mut().zip(motion.chunks(6));
         bodies
             .map(|(body, motion)| body.weight.dot(body.go(motion)))
@@ -314,13 +328,13 @@ impl<'a, 'b> Descent<'a, 'b> {
     }
 
     /// Looks at the pose with what was behind taxels before.
-    pub(super) fn look_again(&mut self) {
+    fn look_again(&mut self) {
         let behind = std::mem::take(&mut self.balancer.now.pairs.behind);
         self.look(&behind);
     }
 
     /// Steps up to this, metres, are foreseen with all contacts that they make.
-    pub(super) fn nearby(&self) -> f64 {
+    fn nearby(&self) -> f64 {
         NEARBY * self.farthest
     }
 
@@ -344,18 +358,4 @@ impl<'a, 'b> Descent<'a, 'b> {
         each.map(|(body, wrench)| body.imbalance_of(wrench))
             .collect()
     }
-
-    /// The largest of these.
-    pub(super) fn imbalance(&self, loads: &[PairLoad]) -> f64 {
-        self.imbalances(loads).into_iter().fold(0.0, f64::max)
-    }
-
-    /// Newtons.
-    pub(super) fn total_weight(&self) -> f64 {
-        total_weight(&self.bodies)
-    }
-}
-
-fn total_weight(bodies: &[Body]) -> f64 {
-    bodies.iter().map(|body| body.weight.length()).sum()
 }

@@ -2,7 +2,8 @@
 
 use super::body::Body;
 use super::free_object::Ground;
-use super::pairs::{Key, Pairs, Rigid};
+use super::pairs::{Key, Pairs};
+use super::reports::Touched;
 use glam::DVec3;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,7 +14,7 @@ const FLAT: f64 = 1e-8;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Loose {
     pub bodies: Vec<usize>,
-    planes: BTreeSet<u32>,
+    planes: BTreeSet<usize>,
     is_held: bool,
 }
 
@@ -29,8 +30,8 @@ impl Loose {
             for (body, ..) in pair.ends() {
                 let group = &mut all[islands[body]];
                 match pair.key {
-                    Key::Rigid(_, Rigid::Body(_)) => {}
-                    Key::Rigid(_, Rigid::Plane(plane)) => {
+                    Key::Rigid(_, Touched::Object(..)) => {}
+                    Key::Rigid(_, Touched::Plane(plane)) => {
                         group.planes.insert(plane);
                     }
                     _ => group.is_held = true,
@@ -39,7 +40,7 @@ impl Loose {
         }
         all.retain(|group| !group.bodies.is_empty() && !group.is_held);
         // Last what goes the same way, all together: side by side they may be in one another's way for ever.
-        let mut unions: BTreeMap<BTreeSet<u32>, Vec<usize>> = BTreeMap::new();
+        let mut unions: BTreeMap<BTreeSet<usize>, Vec<usize>> = BTreeMap::new();
         for group in &all {
             let union = unions.entry(group.planes.clone()).or_default();
             union.extend(&group.bodies);
@@ -57,10 +58,7 @@ impl Loose {
 
     /// Where its weight takes it, unit: `down`, along the planes that it touches; `None` if these hold it.
     pub fn way(&self, ground: &Ground, down: DVec3) -> Option<DVec3> {
-        let normals = self
-            .planes
-            .iter()
-            .map(|&plane| ground.planes[plane as usize].normal);
+        let normals = self.planes.iter().map(|&plane| ground.planes[plane].normal);
         let normals: Vec<DVec3> = normals.collect();
         // Of down what is along none, one, or two of them; the longest that leads into none is the nearest to it.
         let along_one = normals
@@ -118,7 +116,7 @@ impl Loose {
                 entry.is_finite(),
             );
         }
-        for (plane, number) in ground.planes.iter().zip(0..) {
+        for (number, plane) in ground.planes.iter().enumerate() {
             if !self.planes.contains(&number) {
                 let gap = body.center.dot(plane.normal) - plane.height - body.arm();
                 meet(gap, way.dot(plane.normal) < 0.0);

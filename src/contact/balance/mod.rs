@@ -15,10 +15,6 @@
 //! of k / (1 − φ) from there on. So in a step E = Σ ½ k/(1 − φ) (δ − φ δ_before)², and the forces are those of
 //! [`DamperState`](crate::contact::DamperState).
 //!
-//! Where both are so many, or springs so unlike, that this does not get there, an interior-point method ends it (`finish`): there the
-//! forces are unknowns of their own. It is our own because springs may be 10¹² times as stiff as their
-//! neighbours: normal equations lose the soft ones, an orthogonal factorisation with its rows sorted does not (`graded_rows`).
-//!
 //! # Sources
 //!
 //! - `[MS]` Moré, Sorensen, *Computing a trust region step*, 1983.
@@ -28,10 +24,7 @@ mod body;
 mod descent;
 mod energy;
 mod fall;
-mod finish;
 mod free_object;
-mod graded_rows;
-mod interior;
 mod loads;
 mod model;
 mod pairs;

@@ -5,7 +5,7 @@
 use super::body::Body;
 use super::free_object::Ground;
 use super::loads::{Loads, Multipliers, Smoothness};
-use super::pairs::{Pairs, Slopes};
+use super::pairs::{Key, Pairs, Slopes};
 use super::symmetric::{Six, Symmetric, best_step, dot, norm};
 use glam::DVec3;
 
@@ -54,17 +54,23 @@ impl Scene<'_> {
 impl Model {
     /// The model around the pose at which these are the pairs and loads.
     pub fn lay(&mut self, scene: &Scene, pairs: &Pairs, loads: &Loads) {
-        let mut force_of = vec![0.0; pairs.all.len()];
-        for (group, load) in loads.carrying(&pairs.groups) {
+        self.curvature.clear(6 * scene.bodies.len());
+        self.slopes.clear();
+        for (group, load) in pairs.groups.iter().zip(&loads.all) {
+            let axes = match group.key {
+                Key::Taxel(skin, _) => {
+                    let skin = &scene.ground.skins[skin as usize];
+                    let to_patch = skin.world_from_patch.rotation.conjugate();
+                    DVec3::AXES.map(|axis| to_patch * axis)
+                }
+                Key::Rigid(..) => DVec3::AXES,
+            };
             for at in group.pairs.clone() {
-                force_of[at] = loads.shares[at] * load.force;
+                let (pair, force) = (&pairs.all[at], loads.shares[at] * load.force);
+                let curvature = &mut self.curvature;
+                self.slopes.lay(scene.bodies, &axes, pair, curvature, force);
             }
         }
-        let Self {
-            slopes, curvature, ..
-        } = self;
-        let skins = &scene.ground.skins;
-        slopes.lay(scene.bodies, skins, pairs, curvature, |at| force_of[at]);
     }
 
     /// Energy after a motion, with the weights'; joules.
@@ -213,8 +219,7 @@ fn add_square(hessian: &mut Symmetric, factor: f64, v: &[(u32, Six)]) {
 mod tests {
     use super::*;
     use crate::contact::balance::energy::Energy;
-    use crate::contact::balance::pairs::{Key, Rigid};
-    use crate::contact::balance::{FreeObject, HalfSpace, Obstacle, PlacedSkin};
+    use crate::contact::balance::{FreeObject, HalfSpace, Obstacle, PlacedSkin, Touched};
     use crate::geometry::Pose;
     use crate::objects::{Sphere, SphereUnion};
     use crate::random::Seed;
@@ -320,9 +325,9 @@ mod tests {
             let all = energy.loads.carrying(&energy.pairs.groups);
             all.filter(|(group, _)| what(&group.key)).count()
         };
-        assert!(has(|key| matches!(key, Key::Rigid(_, Rigid::Plane(_)))) > 0);
-        assert!(has(|key| matches!(key, Key::Rigid(_, Rigid::Obstacle(..)))) > 0);
-        assert!(has(|key| matches!(key, Key::Rigid(_, Rigid::Body(_)))) > 0);
+        assert!(has(|key| matches!(key, Key::Rigid(_, Touched::Plane(_)))) > 0);
+        assert!(has(|key| matches!(key, Key::Rigid(_, Touched::Obstacle(..)))) > 0);
+        assert!(has(|key| matches!(key, Key::Rigid(_, Touched::Object(..)))) > 0);
         let mut all = energy.loads.carrying(&energy.pairs.groups);
         assert!(all.any(|(_, load)| load.n_sharing > 1), "ties");
         let mut all = energy.loads.carrying(&energy.pairs.groups);

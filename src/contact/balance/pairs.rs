@@ -7,6 +7,7 @@ use super::super::taxel_contact::GRAZING;
 use super::body::{Body, along, ways};
 use super::free_object::{Ground, PlacedSkin};
 use super::reach::Reach;
+use super::reports::Touched;
 use super::symmetric::{Six, Symmetric};
 use super::touching::Touching;
 use glam::{DMat3, DVec3};
@@ -20,17 +21,8 @@ pub(super) type Part = (u32, u32);
 pub(super) enum Key {
     /// A skin's number and a taxel's in it.
     Taxel(u32, u32),
-    /// Something rigid, by one sphere.
-    Rigid(Part, Rigid),
-}
-
-/// Something rigid.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Rigid {
-    Plane(u32),
-    /// An obstacle's number and a sphere's.
-    Obstacle(u32, u32),
-    Body(Part),
+    /// Something rigid, by one sphere; other free objects by their places among bodies.
+    Rigid(Part, Touched),
 }
 
 /// The part of a pair that is none of a free object: how far others push the taxel.
@@ -140,34 +132,14 @@ impl Slopes {
             .sum()
     }
 
-    /// Those at these pairs, and the energy's curvature where pair k carries `force_of(k)` newtons.
-    pub fn lay(
-        &mut self,
-        bodies: &[Body],
-        skins: &[PlacedSkin],
-        pairs: &Pairs,
-        curvature: &mut Symmetric,
-        force_of: impl Fn(usize) -> f64,
-    ) {
-        curvature.clear(6 * bodies.len());
+    pub fn clear(&mut self) {
         self.all.clear();
         self.first.clear();
         self.first.push(0);
-        for group in &pairs.groups {
-            let axes = match group.key {
-                Key::Taxel(skin, _) => {
-                    let rotation = skins[skin as usize].world_from_patch.rotation;
-                    DVec3::AXES.map(|axis| rotation.conjugate() * axis)
-                }
-                Key::Rigid(..) => DVec3::AXES,
-            };
-            for at in group.pairs.clone() {
-                self.lay_one(bodies, &axes, &pairs.all[at], curvature, force_of(at));
-            }
-        }
     }
 
-    fn lay_one(
+    /// Those of the next pair, with the `axes` of the world in the frame of its arm; adds the energy's curvature where it carries a force, newtons.
+    pub fn lay(
         &mut self,
         bodies: &[Body],
         axes: &[DVec3; 3],

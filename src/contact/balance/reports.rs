@@ -3,7 +3,7 @@
 use super::body::Body;
 use super::energy::PairLoad;
 use super::free_object::PlacedSkin;
-use super::pairs::{Pair, Rigid};
+use super::pairs::Pair;
 use crate::contact::Wrench;
 use glam::DVec3;
 
@@ -30,7 +30,7 @@ pub struct TaxelLoad {
 }
 
 /// What a sphere of a free object touches that is rigid.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Touched {
     /// A plane, by its number.
     Plane(usize),
@@ -83,23 +83,20 @@ impl Touch {
     /// `of_body`: the number of the object that is behind a place among bodies.
     pub(super) fn new(
         pair: &Pair,
-        rigid: Rigid,
+        touched: Touched,
         load: &PairLoad,
         body: &Body,
-        of_body: impl Fn(u32) -> usize,
+        of_body: impl Fn(usize) -> usize,
     ) -> Self {
         let sphere = pair.part.1 as usize;
         let push = pair.push(load.force);
         let out = push.try_normalize().unwrap_or(DVec3::ZERO);
         Self {
-            object: of_body(pair.part.0),
+            object: of_body(pair.part.0 as usize),
             sphere,
-            other: match rigid {
-                Rigid::Plane(plane) => Touched::Plane(plane as usize),
-                Rigid::Obstacle(number, sphere) => {
-                    Touched::Obstacle(number as usize, sphere as usize)
-                }
-                Rigid::Body((slot, sphere)) => Touched::Object(of_body(slot), sphere as usize),
+            other: match touched {
+                Touched::Object(slot, sphere) => Touched::Object(of_body(slot), sphere),
+                rigid => rigid,
             },
             point: body.center + pair.arm - body.object.spheres[sphere].radius * out,
             force: push,

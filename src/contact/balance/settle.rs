@@ -70,19 +70,6 @@ pub struct Balancer {
     numbers: Vec<usize>,
 }
 
-/// What a descent has come to.
-struct Pass<'s> {
-    /// All bodies, where they are now.
-    bodies: Vec<Body<'s>>,
-    /// Those of them that are taken out, ascending.
-    done: Vec<usize>,
-    /// Theirs; `None`: they have left.
-    outcome: Option<Outcome>,
-    /// Of all.
-    loads: Vec<PairLoad>,
-    n_steps: usize,
-}
-
 impl Balancer {
     /// A balancer that knows nothing yet.
     pub fn new() -> Self {
@@ -153,7 +140,8 @@ impl Balancer {
         Ok(balances)
     }
 
-    /// Pass by pass: what leaves, and what finds no rest, is taken out, and the others go on.
+    /// Descent by descent: what leaves, and what finds no rest, is taken out, and the others go on. Where no rest is found, once more from there
+    /// with forces known anew: those of a round that went astray lead the next ones astray, too.
     fn settle_bodies<'s>(
         &mut self,
         mut bodies: Vec<Body<'s>>,
@@ -161,23 +149,40 @@ impl Balancer {
     ) -> Vec<Balance> {
         let mut numbers: Vec<usize> = (0..bodies.len()).collect();
         let mut balances = vec![None; bodies.len()];
-        let mut n_steps = 0;
+        let (mut n_steps, mut is_again) = (0, false);
         self.loads.clear();
         self.touches.clear();
         while !bodies.is_empty() {
-            if self.numbers != numbers {
+            if is_again || self.numbers != numbers {
                 self.multipliers = Multipliers::default();
                 self.numbers.clone_from(&numbers);
             }
-            let pass = self.descend(bodies, ground);
-            bodies = pass.bodies;
-            n_steps += pass.n_steps;
-            self.report(&bodies, &pass.loads, (&numbers, &pass.done), &ground.skins);
-            let wrenches = wrenches(&pass.loads, &self.now.pairs.all, &bodies, &ground.skins);
-            for slot in pass.done.into_iter().rev() {
+            let mut descent = Descent::new(self, bodies, ground);
+            let end = descent.run();
+            n_steps += descent.n_steps;
+            let is_first = !std::mem::replace(&mut is_again, false);
+            // What leaves has no outcome yet: its direction is its own.
+            let (done, outcome) = match end {
+                End::Endless(gone) => (gone, None),
+                End::Rest => ((0..numbers.len()).collect(), Some(Outcome::Settled)),
+                End::Exhausted => (descent.most_restless(), Some(Outcome::Unsettled)),
+            };
+            bodies = std::mem::take(&mut descent.bodies);
+            self.multipliers = std::mem::take(&mut descent.multipliers);
+            if is_first && outcome == Some(Outcome::Unsettled) {
+                is_again = true;
+                continue;
+            }
+            let loads = match outcome {
+                Some(_) => self.now.pair_loads(),
+                None => Vec::new(),
+            };
+            self.report(&bodies, &loads, (&numbers, &done), &ground.skins);
+            let wrenches = wrenches(&loads, &self.now.pairs.all, &bodies, &ground.skins);
+            for slot in done.into_iter().rev() {
                 let number = numbers.remove(slot);
                 let body = bodies.remove(slot);
-                let outcome = pass.outcome.unwrap_or(Outcome::Escaped {
+                let outcome = outcome.unwrap_or(Outcome::Escaped {
                     direction: body.way_out(),
                 });
                 balances[number] =
@@ -190,50 +195,6 @@ impl Balancer {
             .into_iter()
             .map(|balance| balance.expect("each rests, has escaped, or does neither"))
             .collect()
-    }
-
-    /// Downhill; where no rest is found, once more from there with forces known anew: those of a round that went astray lead the next ones
-    /// astray, too.
-    fn descend<'s>(&mut self, bodies: Vec<Body<'s>>, ground: &'s Ground<'s>) -> Pass<'s> {
-        let pass = self.descend_once(bodies, ground);
-        if pass.outcome != Some(Outcome::Unsettled) {
-            return pass;
-        }
-        self.multipliers = Multipliers::default();
-        let again = self.descend_once(pass.bodies, ground);
-        Pass {
-            n_steps: pass.n_steps + again.n_steps,
-            ..again
-        }
-    }
-
-    /// Until all rest, some have left, or there are no steps left.
-    fn descend_once<'s>(&mut self, bodies: Vec<Body<'s>>, ground: &'s Ground<'s>) -> Pass<'s> {
-        let all = (0..bodies.len()).collect();
-        let mut descent = Descent::new(self, bodies, ground);
-        let (done, outcome, loads) = match descent.run() {
-            End::Endless(gone) => (gone, None, Vec::new()),
-            End::Rest => {
-                let loads = descent.balancer.now.pair_loads();
-                (all, Some(Outcome::Settled), loads)
-            }
-            End::Exhausted => match descent.finish() {
-                Some(loads) => (all, Some(Outcome::Settled), loads),
-                None => {
-                    let loads = descent.balancer.now.pair_loads();
-                    (descent.most_restless(), Some(Outcome::Unsettled), loads)
-                }
-            },
-        };
-        let pass = Pass {
-            done,
-            outcome,
-            loads,
-            n_steps: descent.n_steps,
-            bodies: std::mem::take(&mut descent.bodies),
-        };
-        self.multipliers = std::mem::take(&mut descent.multipliers);
-        pass
     }
 
     /// Of an object whose loads have been reported.
@@ -269,7 +230,7 @@ impl Balancer {
         (numbers, done): (&[usize], &[usize]),
         skins: &[PlacedSkin],
     ) {
-        let number = |slot: u32| numbers[slot as usize];
+        let number = |slot: usize| numbers[slot];
         for load in loads {
             let pair = &self.now.pairs.all[load.pair];
             if !done.contains(&(pair.part.0 as usize)) {
@@ -279,13 +240,13 @@ impl Balancer {
             match pair.key {
                 Key::Taxel(skin, taxel) => {
                     let taxel = (skin as usize, taxel as usize);
-                    let object = number(pair.part.0);
+                    let object = number(pair.part.0 as usize);
                     let found = TaxelLoad::new(taxel, object, pair, load, body, skins);
                     self.loads.push(found);
                 }
-                Key::Rigid(_, rigid) => {
+                Key::Rigid(_, touched) => {
                     self.touches
-                        .push(Touch::new(pair, rigid, load, body, number));
+                        .push(Touch::new(pair, touched, load, body, number));
                 }
             }
         }

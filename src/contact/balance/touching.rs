@@ -2,7 +2,8 @@
 
 use super::body::Body;
 use super::free_object::{Ground, HalfSpace};
-use super::pairs::{Key, Kind, Pair, Part, Rigid};
+use super::pairs::{Key, Kind, Pair, Part};
+use super::reports::Touched;
 use crate::geometry::Pose;
 use crate::objects::Sphere;
 use glam::{DMat3, DVec3};
@@ -39,17 +40,17 @@ struct Others<'a> {
 pub(super) fn gather(pairs: &mut Vec<Pair>, bodies: &[Body], ground: &Ground, may_move: f64) {
     let first = pairs.len();
     for (body, slot) in bodies.iter().zip(0..) {
-        for (plane, number) in ground.planes.iter().zip(0..) {
+        for (number, plane) in ground.planes.iter().enumerate() {
             gather_plane(pairs, (slot, body), (number, plane), may_move);
         }
-        for (obstacle, number) in ground.obstacles.iter().zip(0..) {
+        for (number, obstacle) in ground.obstacles.iter().enumerate() {
             let others = Others {
                 spheres: obstacle.spheres.spheres(),
                 pose: obstacle.pose,
                 body: None,
             };
-            let rigid = |sphere| Rigid::Obstacle(number, sphere);
-            gather_spheres(pairs, (slot, body), &others, rigid, may_move);
+            let touched = |sphere| Touched::Obstacle(number, sphere);
+            gather_spheres(pairs, (slot, body), &others, touched, may_move);
         }
         for (other, number) in bodies.iter().zip(0..).skip(slot as usize + 1) {
             let reach = body.arm() + other.arm() + 2.0 * may_move;
@@ -61,8 +62,8 @@ pub(super) fn gather(pairs: &mut Vec<Pair>, bodies: &[Body], ground: &Ground, ma
                 pose: other.pose(),
                 body: Some((number, other.center)),
             };
-            let rigid = |sphere| Rigid::Body((number, sphere));
-            gather_spheres(pairs, (slot, body), &others, rigid, 2.0 * may_move);
+            let touched = |sphere| Touched::Object(number as usize, sphere);
+            gather_spheres(pairs, (slot, body), &others, touched, 2.0 * may_move);
         }
     }
     pairs[first..].sort_unstable_by_key(|pair| pair.key);
@@ -71,7 +72,7 @@ pub(super) fn gather(pairs: &mut Vec<Pair>, bodies: &[Body], ground: &Ground, ma
 fn gather_plane(
     pairs: &mut Vec<Pair>,
     (slot, body): (u32, &Body),
-    (number, plane): (u32, &HalfSpace),
+    (number, plane): (usize, &HalfSpace),
     may_move: f64,
 ) {
     let above = |center: DVec3| center.dot(plane.normal) - plane.height;
@@ -82,7 +83,7 @@ fn gather_plane(
         let deflection = sphere.radius - above(sphere.center);
         if deflection > -may_move {
             pairs.push(Pair {
-                key: Key::Rigid((slot, index), Rigid::Plane(number)),
+                key: Key::Rigid((slot, index), Touched::Plane(number)),
                 part: (slot, index),
                 deflection,
                 kind: Kind::Rigid(Touching {
@@ -101,7 +102,7 @@ fn gather_spheres(
     pairs: &mut Vec<Pair>,
     (slot, body): (u32, &Body),
     others: &Others,
-    rigid: impl Fn(u32) -> Rigid,
+    touched: impl Fn(usize) -> Touched,
     gap: f64,
 ) {
     let is_near = |(_, sphere): &(u32, Sphere)| {
@@ -134,7 +135,7 @@ fn gather_spheres(
                         .map(|(body, middle)| (body, other.center - middle)),
                 };
                 pairs.push(Pair {
-                    key: Key::Rigid(part, rigid(*number)),
+                    key: Key::Rigid(part, touched(*number as usize)),
                     part,
                     deflection,
                     kind: Kind::Rigid(touching),

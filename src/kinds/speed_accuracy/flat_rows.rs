@@ -1,7 +1,7 @@
 //! A touch by rows of a flat patch, in doubles and in singles: what singles would gain, and what they cost beside the error of the model.
 
+use super::flat_press::{press_f32, press_f64};
 use super::rows::ContactWay;
-use crate::contact::flat_rows::{press_f32, press_f64};
 use crate::geometry::Pose;
 use crate::objects::Sphere;
 use crate::world::Patch;

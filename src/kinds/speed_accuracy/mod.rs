@@ -18,6 +18,7 @@ mod charts;
 mod contact;
 mod contact_points;
 mod engines;
+pub mod flat_press;
 mod flat_rows;
 mod models;
 mod plan;

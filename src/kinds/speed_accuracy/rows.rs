@@ -25,7 +25,7 @@ pub enum ContactWay {
     ImplicitEuler,
     /// Taxels as bodies in rapier, tuned for skin.
     Rapier,
-    /// [Rows of a flat patch](crate::contact::flat_rows) in doubles on packed spheres, the pose given.
+    /// [Rows of a flat patch](super::flat_press) in doubles on packed spheres, the pose given.
     RowsInDoubles,
     /// The same in singles.
     RowsInSingles,
