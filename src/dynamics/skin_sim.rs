@@ -11,12 +11,8 @@ pub const STIFFNESS: f64 = 16.37;
 pub const BASE_MASS: f64 = 0.01;
 /// c, N·s/m.
 pub const DAMPING: f64 = 0.13;
-/// M of the plunger, kg.
-pub const PLUNGER_MASS: f64 = 1.0;
 /// Δt, seconds.
 pub const DT: f64 = 0.5e-3;
-/// Iterations of the engine's solver a step.
-pub const SOLVER_ITERATIONS: usize = 750;
 /// Joints near which it was reported to be unstable.
 pub const UNSTABLE_JOINTS: usize = 280;
 

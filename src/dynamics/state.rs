@@ -34,21 +34,18 @@ impl State {
     /// Taxels that stand out, and an object that nothing has touched.
     pub fn start(system: &System) -> Self {
         let zeros = vec![0.0; system.n_taxels()];
+        let rider = Rider {
+            travel: system.first_travel(),
+            speed: 0.0,
+        };
         Self {
             time: 0.0,
             deflection: zeros.clone(),
             velocity: zeros.clone(),
             force: zeros,
-            travel: system.first_travel(),
-            speed: 0.0,
-            riders: system
-                .riders()
-                .iter()
-                .map(|_| Rider {
-                    travel: system.first_travel(),
-                    speed: 0.0,
-                })
-                .collect(),
+            travel: rider.travel,
+            speed: rider.speed,
+            riders: vec![rider; system.riders().len()],
         }
     }
 

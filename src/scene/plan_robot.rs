@@ -1,10 +1,10 @@
 //! Robots of a scene, their motions checked.
 
-use super::reader::{MM, Reader};
+use super::reader::Reader;
 use super::spec::{JointsSpec, RobotSpec};
 use crate::error::Result;
 use crate::spelling::nearest_names;
-use crate::world::{Dimension, JointTrajectory, Motion, Robot};
+use crate::world::{JointTrajectory, Motion, Robot};
 use ndarray::Array2;
 
 /// A robot whose motion is known.
@@ -104,9 +104,11 @@ impl Reader<'_> {
                 .enumerate()
                 .find_map(|(column, c)| {
                     let suffix = given.strip_prefix(&c.name)?;
-                    let mut units = units(c.dimension).into_iter();
-                    let (_, scale) = units.find(|(unit, _)| *unit == suffix)?;
-                    Some((column, scale))
+                    // A name is never without its unit here.
+                    let mut units = c.dimension.units().iter().skip(1);
+                    units
+                        .find(|(unit, _)| *unit == suffix)
+                        .map(|(_, scale)| (column, scale))
                 });
             let Some((column, scale)) = place else {
                 let bare = given
@@ -137,13 +139,5 @@ impl Reader<'_> {
             }
             None => Ok(positions),
         }
-    }
-}
-
-/// What the name of a coordinate ends in, and the size of that unit.
-fn units(dimension: Dimension) -> [(&'static str, f64); 2] {
-    match dimension {
-        Dimension::Angle => [("_rad", 1.0), ("_deg", std::f64::consts::PI / 180.0)],
-        Dimension::Length => [("_m", 1.0), ("_mm", MM)],
     }
 }

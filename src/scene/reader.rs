@@ -91,12 +91,8 @@ impl Reader<'_> {
         let key = &format!("{key}.motion");
         let has_phases = !motion.phases.is_empty();
         let has_way_points = !motion.way_points.is_empty();
-        if [has_phases, has_way_points, motion.csv.is_some()]
-            .map(usize::from)
-            .iter()
-            .sum::<usize>()
-            != 1
-        {
+        let ways = [has_phases, has_way_points, motion.csv.is_some()];
+        if ways.into_iter().filter(|&is_given| is_given).count() != 1 {
             let allowed = "exactly one of phases, way_points and csv";
             return Err(self.check.error(key, "none of them, or several", allowed));
         }

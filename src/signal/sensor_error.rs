@@ -136,13 +136,9 @@ impl Strength {
         allowed: &'static str,
     ) -> Self {
         Self {
-            key,
-            words,
-            unit: "%",
-            is_whole: false,
             is_allowed: |share| share.is_finite() && share >= 0.0,
             allowed,
-            names: &[],
+            ..Self::fraction(key, words)
         }
     }
 }

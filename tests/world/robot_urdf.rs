@@ -6,7 +6,6 @@ use bubbletouch::world::{Dimension, JointKind, LinkGeometry, Robot, ShapeRole};
 use bubbletouch::{Error, Result};
 use glam::{DMat3, DQuat, DVec3};
 use rand::Rng;
-use std::path::Path;
 
 const ARM: &str = include_str!("../../objects/robots/arm.urdf");
 const SIX_AXIS: &str = include_str!("../robots/six_axis.urdf");
@@ -147,25 +146,9 @@ fn what_skin_needs_of_a_link_is_kept() {
 }
 
 #[test]
-fn a_mesh_that_is_missing_is_said_only_when_asked() {
+fn a_folder_is_no_urdf_file() {
     let folder = tempfile::tempdir().unwrap();
-    let robots = folder.path().join("six_axis/robots");
-    let meshes = folder.path().join("six_axis/meshes");
-    std::fs::create_dir_all(&robots).unwrap();
-    std::fs::create_dir_all(&meshes).unwrap();
-    let path = robots.join("robot.urdf");
-    std::fs::write(&path, SIX_AXIS).unwrap();
-    let robot = Robot::read_urdf(&path).expect("meshes are not opened");
-    let error = robot.check_meshes(&robots).unwrap_err().to_string();
-    assert!(
-        error.contains("robot.urdf, line 9, link `upper_arm`: mesh "),
-        "{error}"
-    );
-    std::fs::write(meshes.join("upper_arm.stl"), "").unwrap();
-    robot
-        .check_meshes(&robots)
-        .expect("beside the robot's folder, in its package");
-    assert_eq!(Robot::read_urdf(&robots).unwrap_err().exit_code(), 2);
+    assert_eq!(Robot::read_urdf(folder.path()).unwrap_err().exit_code(), 2);
 }
 
 /// The error of the first robot below with `old` replaced.
@@ -554,6 +537,5 @@ fn used(text: &str) -> Result<()> {
             .expect("as many as it has");
         assert_eq!(poses.len(), robot.links().len());
     }
-    let _ = robot.check_meshes(Path::new("nowhere"));
     Ok(())
 }

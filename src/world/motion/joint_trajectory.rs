@@ -3,10 +3,10 @@
 use super::Interpolation;
 use super::curve::{Curve, Moment};
 use super::joint_limits::check_limits;
-use super::way_point_csv::{ANGLE, LENGTH, Table, Units};
+use super::way_point_csv::Table;
 use super::way_points::{Origin, WayPoints};
 use crate::error::{Error, Result};
-use crate::world::{Dimension, Robot};
+use crate::world::Robot;
 use ndarray::Array2;
 use std::io::Read;
 
@@ -67,7 +67,7 @@ impl JointTrajectory {
         let mut columns = Vec::new();
         for coordinate in robot.coordinates() {
             let name = &coordinate.name;
-            let column = table.claim(name, units(coordinate.dimension), is_name)?;
+            let column = table.claim(name, coordinate.dimension.units(), is_name)?;
             columns.push(column.ok_or_else(|| {
                 let given = format!("no column for `{name}`");
                 table.refuse_header(given, "every joint that moves and mimics none")
@@ -76,7 +76,7 @@ impl JointTrajectory {
         for joint in robot.joints().iter().filter(|joint| joint.mimic.is_some()) {
             let (_, dimension) = joint.kind.coordinates()[0];
             if table
-                .claim(&joint.name, units(dimension), is_name)?
+                .claim(&joint.name, dimension.units(), is_name)?
                 .is_some()
             {
                 let given = format!("a column for `{}`, which mimics another joint", joint.name);
@@ -150,12 +150,5 @@ impl JointTrajectory {
     pub fn velocities_at(&self, time: f64) -> Vec<f64> {
         let at = Moment::of(time, &self.times);
         self.curves.iter().map(|curve| curve.velocity(at)).collect()
-    }
-}
-
-fn units(dimension: Dimension) -> Units {
-    match dimension {
-        Dimension::Angle => ANGLE,
-        Dimension::Length => LENGTH,
     }
 }

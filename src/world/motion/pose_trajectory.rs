@@ -3,10 +3,11 @@
 use super::Interpolation;
 use super::curve::{Curve, Moment};
 use super::rotation_curve::RotationCurve;
-use super::way_point_csv::{ANGLE, Column, LENGTH, NUMBER, Table, Units};
+use super::way_point_csv::{Column, Table, Units};
 use super::way_points::{Origin, WayPoints};
 use crate::error::{Error, Result};
 use crate::geometry::{Pose, rotation_from_rpy, written_rotation};
+use crate::world::Dimension;
 use glam::{DQuat, DVec3};
 use ndarray::Array2;
 use std::io::Read;
@@ -54,12 +55,12 @@ impl PoseTrajectory {
     /// Errors begin with `place`, the file's name, and give the line.
     pub fn read_csv(place: &str, source: impl Read, interpolation: Interpolation) -> Result<Self> {
         let mut table = Table::read(place, source)?;
-        let mut columns = claim_all(&mut table, &POSITION, LENGTH)?;
+        let mut columns = claim_all(&mut table, &POSITION, Dimension::Length.units())?;
         if columns.is_empty() {
             return Err(table.refuse_header("no column x", "x, y, z in metres or x_mm, y_mm, z_mm"));
         }
-        let quaternion = claim_all(&mut table, &QUATERNION, NUMBER)?;
-        let rpy = claim_all(&mut table, &RPY, ANGLE)?;
+        let quaternion = claim_all(&mut table, &QUATERNION, &[("", 1.0)])?;
+        let rpy = claim_all(&mut table, &RPY, Dimension::Angle.units())?;
         if quaternion.is_empty() == rpy.is_empty() {
             let both = if rpy.is_empty() {
                 "no rotation"

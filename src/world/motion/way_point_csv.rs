@@ -5,7 +5,6 @@ use crate::error::{Error, Result};
 use crate::numbers_csv::{check_width, finite, line_of, rows_of, unreadable};
 use crate::spelling::nearest_names;
 use ndarray::Array2;
-use std::f64::consts::PI;
 use std::io::Read;
 
 /// The column of times.
@@ -29,15 +28,8 @@ pub(super) struct Column {
     scale: f64,
 }
 
-/// What the name of a column may end in, and the size of that unit in SI.
+/// What the name of a column may end in, and the size of that unit in SI; see [`Dimension::units`](crate::world::Dimension::units).
 pub(super) type Units = &'static [(&'static str, f64)];
-
-/// Of angles.
-pub(super) const ANGLE: Units = &[("", 1.0), ("_rad", 1.0), ("_deg", PI / 180.0)];
-/// Of lengths.
-pub(super) const LENGTH: Units = &[("", 1.0), ("_m", 1.0), ("_mm", 1e-3)];
-/// Of numbers without one.
-pub(super) const NUMBER: Units = &[("", 1.0)];
 
 impl Table {
     /// Reads all; errors begin with `place`, the file's name, and give the line.

@@ -1,5 +1,7 @@
 //! The coordinates of joints: what a position vector holds, and by which names.
 
+use std::f64::consts::PI;
+
 /// What a coordinate measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dimension {
@@ -15,6 +17,14 @@ impl Dimension {
         match self {
             Self::Angle => "rad",
             Self::Length => "m",
+        }
+    }
+
+    /// What a name with its unit ends in, and the size of that unit in SI; first a bare name.
+    pub(crate) fn units(self) -> &'static [(&'static str, f64)] {
+        match self {
+            Self::Angle => &[("", 1.0), ("_rad", 1.0), ("_deg", PI / 180.0)],
+            Self::Length => &[("", 1.0), ("_m", 1.0), ("_mm", 1e-3)],
         }
     }
 }

@@ -4,7 +4,6 @@ use super::xml::Element;
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use glam::DVec3;
-use std::path::{Path, PathBuf};
 
 /// A rigid body of a [`Robot`](super::Robot).
 #[derive(Clone, Debug, PartialEq)]
@@ -24,8 +23,6 @@ pub struct LinkShape {
     pub geometry: LinkGeometry,
     /// `link_from_shape`
     pub origin: Pose,
-    /// Line of the file where it begins, from 1.
-    pub line: usize,
 }
 
 /// What a shape on a link is for.
@@ -66,38 +63,11 @@ pub enum LinkGeometry {
     },
     /// Triangles in a file of their own.
     Mesh {
-        /// As it is written: a path beside the URDF's, `file://…` or `package://…`; see [`LinkGeometry::mesh_path`].
+        /// As it is written: a path beside the URDF's, `file://…` or `package://…`. It is not opened: skin lies on the other forms.
         file: String,
         /// Metres per unit of the mesh file along each axis; not zero, negative where it is mirrored.
         scale: DVec3,
     },
-}
-
-impl LinkGeometry {
-    /// The mesh's path for a URDF that lies in `folder`; `None` for a form without a mesh.
-    ///
-    /// `package://NAME/…` is looked for in the nearest folder above that is called NAME or holds one that is; if there is
-    /// none, beside the URDF.
-    pub fn mesh_path(&self, folder: &Path) -> Option<PathBuf> {
-        let Self::Mesh { file, .. } = self else {
-            return None;
-        };
-        if let Some(path) = file.strip_prefix("file://") {
-            return Some(folder.join(path));
-        }
-        let Some(inside) = file.strip_prefix("package://") else {
-            return Some(folder.join(file));
-        };
-        let (package, rest) = inside.split_once('/').unwrap_or((inside, ""));
-        let beside = || folder.join(rest);
-        let root = folder.ancestors().find_map(|above| {
-            let is_it = above.file_name().is_some_and(|name| name == package);
-            let held = above.join(package);
-            let held = held.is_dir().then_some(held);
-            if is_it { Some(above.to_owned()) } else { held }
-        });
-        Some(root.map_or_else(beside, |root| root.join(rest)))
-    }
 }
 
 /// The link of a `<link>` element.
@@ -122,7 +92,6 @@ fn read_shape(element: &Element, role: ShapeRole) -> Result<LinkShape> {
         role,
         geometry: read_geometry(&geometry)?,
         origin: element.origin()?,
-        line: element.line(),
     })
 }
 

@@ -35,7 +35,6 @@ use std::path::Path;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Robot {
     name: String,
-    place: String,
     links: Vec<Link>,
     joints: Vec<Joint>,
     tree: Tree,
@@ -53,7 +52,7 @@ impl Robot {
         read_urdf(place, text)
     }
 
-    /// A robot from a URDF file. Mesh files that it names are not opened: see [`check_meshes`](Self::check_meshes).
+    /// A robot from a URDF file. Mesh files that it names are not opened.
     ///
     /// # Errors
     /// A file that cannot be read; those of [`from_urdf`](Self::from_urdf).
@@ -72,7 +71,6 @@ impl Robot {
         };
         Self {
             name: name.to_owned(),
-            place: name.to_owned(),
             links: vec![link],
             joints: Vec::new(),
             tree: Tree {
@@ -112,7 +110,6 @@ impl Robot {
         }
         Ok(Self {
             name,
-            place: place.to_owned(),
             links,
             joints,
             tree,
@@ -249,27 +246,6 @@ impl Robot {
                 offset,
             } => Some((position, multiplier, offset)),
         }
-    }
-
-    /// Checks that every mesh file of its links is there, for a URDF that lies in `folder`.
-    ///
-    /// # Errors
-    /// The error gives the line.
-    pub fn check_meshes(&self, folder: &Path) -> Result<()> {
-        for link in &self.links {
-            for shape in &link.shapes {
-                if let Some(path) = shape.geometry.mesh_path(folder)
-                    && !path.is_file()
-                {
-                    return Err(Error::input(
-                        format!("{}, line {}, link `{}`", self.place, shape.line, link.name),
-                        format!("mesh {}, which is not there", path.display()),
-                        "a mesh file",
-                    ));
-                }
-            }
-        }
-        Ok(())
     }
 
     fn check_positions(&self, positions: &[f64]) -> Result<()> {
