@@ -149,10 +149,12 @@ impl Trial<'_> {
         let keys = self.sweep.group_keys.as_ref();
         let of = (cell, self.number);
         let labels = self.sweep.learned_labels(self.plan, of, split)?;
+        let (touches, labels) = with_copies(self.measurements, cell, &split.train, &labels);
         Ok(Training {
             recognition: &self.plan.spec.recognition,
             kind: cell.classifier,
-            data: rows(cell, (self.measurements, &split.train), &labels)?,
+            data: dataset(self.measurements.features(cell, &touches), labels)?,
+            n_touches: split.train.len(),
             group_keys: keys.map(|keys| keys.select(Axis(0), &split.train)),
             seed: self.seed("validation"),
         })
@@ -164,7 +166,21 @@ impl Trial<'_> {
     }
 }
 
-/// What a cell learns from, or is tested on, of some touches.
+/// Training touches with the copies of them that a cell learns from, and their labels.
+pub(super) fn with_copies(
+    measurements: &Measurements,
+    cell: &Cell,
+    train: &[usize],
+    labels: &Array1<usize>,
+) -> (Vec<usize>, Array1<usize>) {
+    let copies = measurements.copies(cell, train);
+    // Copies are of all touches in turn, as often as there are some of each.
+    let originals = train.iter().cycle().take(train.len() + copies.len());
+    let labels = originals.map(|&touch| labels[touch]).collect();
+    ([train, &copies].concat(), labels)
+}
+
+/// What a cell is tested on.
 fn rows(
     cell: &Cell,
     (measurements, touches): (&Measurements, &[usize]),

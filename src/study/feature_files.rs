@@ -9,6 +9,7 @@
 //! | `objects.csv` | one row an object: number, name |
 //! | `cell.toml` | the settings of the cell and the trial |
 
+use super::evaluation::with_copies;
 use super::frames::FramePlace;
 use super::measurement::{Measurements, measure_group};
 use super::npy::{write_integers, write_npy};
@@ -72,11 +73,21 @@ impl StudyPart {
         };
         let of = (group, n_projected);
         let measured = self.measured(of, (trial, &split), ("touch", progress))?;
-        let all: Vec<usize> = (0..sweep.labels.len()).collect();
-        let features = measured.features(cell, &all);
+        let labels = sweep.learned_labels(plan, (cell, trial), &split)?;
+        let (trained, trained_labels) = with_copies(&measured, cell, &split.train, &labels);
+        let n_touches = labels.len();
+        // All touches, then copies of those that train.
+        let copies = &trained[split.train.len()..];
+        let rows: Vec<usize> = (0..n_touches).chain(copies.iter().copied()).collect();
+        let of_copies = trained_labels.iter().skip(split.train.len());
+        let labels = labels.iter().chain(of_copies).copied().collect();
+        let train = split.train.iter().copied();
         Ok(FeatureSet {
-            data: dataset(features, sweep.learned_labels(plan, (cell, trial), &split)?)?,
-            split,
+            data: dataset(measured.features(cell, &rows), labels)?,
+            split: Split {
+                train: train.chain(n_touches..rows.len()).collect(),
+                test: split.test,
+            },
         })
     }
 

@@ -19,8 +19,10 @@ pub struct Training<'a> {
     pub recognition: &'a RecognitionSpec,
     /// Which classifier.
     pub kind: ClassifierKind,
-    /// Training rows in drawing order, one of each object in turn.
+    /// Training rows in drawing order, one of each object in turn: touches, then copies of them.
     pub data: Dataset,
+    /// How many rows are touches; copies take no part in a choice of C or γ.
+    pub n_touches: usize,
     /// The group of each row, when the study keeps groups together.
     pub group_keys: Option<Array1<usize>>,
     /// What the folds of a choice are drawn from.
@@ -116,7 +118,7 @@ impl Training<'_> {
         let n_objects = labels.iter().max().map_or(0, |last| last + 1);
         // Rows come one of each object in turn, so these hold as many of each.
         let touches = self.recognition.choose_touches.unwrap_or(usize::MAX);
-        let n_rows = touches.saturating_mul(n_objects).min(labels.len());
+        let n_rows = touches.saturating_mul(n_objects).min(self.n_touches);
         Dataset::new(
             self.data.records.slice(s![..n_rows, ..]).to_owned(),
             labels.slice(s![..n_rows]).to_owned(),

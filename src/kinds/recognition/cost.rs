@@ -54,7 +54,8 @@ pub(super) fn measure_s(plan: &Plan, group: &Group, (n_touches, m): (usize, usiz
 
 /// A fit in one trial, with what it chooses, and its test.
 pub(super) fn fit_s(plan: &Plan, cell: &Cell, (n_classes, n_touches): (f64, f64)) -> f64 {
-    let n_train = cell.train_touches as f64 * n_classes;
+    let n_rows = cell.train_touches * (1 + cell.tilted_copies.unwrap_or(0));
+    let n_train = n_rows as f64 * n_classes;
     let recognition = &plan.spec.recognition;
     let n_test = match recognition.folds {
         None => recognition.test_share() * n_touches,

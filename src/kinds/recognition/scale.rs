@@ -98,7 +98,8 @@ fn family_bytes(plan: &Plan, cell: &Cell, n_test: usize, n_classes: usize) -> f6
         (true, Multiclass::OneVsOne) => n_classes * (n_classes - 1) / 2,
         _ => n_classes,
     };
-    let n_train = (cell.train_touches * n_classes) as f64;
+    let n_rows = cell.train_touches * (1 + cell.tilted_copies.unwrap_or(0));
+    let n_train = (n_rows * n_classes) as f64;
     let (m, n_test) = (cell.n_features() as f64, n_test as f64);
     let of_all = 8.0 * n_train * n_train;
     let is_kernel_svm = cell.classifier.about().kernel.is_some();
