@@ -294,9 +294,10 @@ impl StudyAxis {
 }
 
 /// Words of keys whose last word says too little.
-const WORDS: [(&str, &str); 2] = [
+const WORDS: [(&str, &str); 3] = [
     ("skin.sensed", "sensed quantity"),
     ("recognition.keep_together", "group held out"),
+    ("recognition.split", "poses held out"),
 ];
 
 /// Units by the ends of keys, longer ends first.

@@ -58,6 +58,8 @@ pub struct Cell {
     /// How far behind the foremost point features of images see, as a fraction of the full scale, 1 of all others; only if the study
     /// has the key.
     pub foremost_full_scale: Option<f64>,
+    /// Copies of each training touch, tilted at random; only if the study has the key.
+    pub tilted_copies: Option<usize>,
     /// Which classifier.
     pub classifier: ClassifierKind,
     /// Soft-margin penalty C; empty when it is chosen by cross-validation, or when the classifier has none.
@@ -103,7 +105,7 @@ impl Serialize for Cell {
         put!(ensemble, measurements, ratio, frames);
         put_if_there!(over_time);
         put!(features);
-        put_if_there!(foremost_full_scale);
+        put_if_there!(foremost_full_scale, tilted_copies);
         put!(classifier, c, train_touches);
         put_if_there!(mislabelled_fraction, class_imbalance);
         put!(fused_touches);
@@ -144,6 +146,7 @@ impl Columns for Cell {
                 .optional(),
             Column::new("features", Choice, "features", "", Words).named(Features::NAMES),
             Column::new("foremost_full_scale", Choice, "foremost", "%", Share).optional(),
+            Column::new("tilted_copies", Choice, "tilted copies", "", Linear).optional(),
             Column::new("classifier", Choice, "classifier", "", Words).named(ClassifierKind::NAMES),
             Column::new("c", Choice, "C", "", Log).named(CHOSEN),
             Column::new("train_touches", Choice, "training touches", "", Log),
@@ -204,6 +207,7 @@ pub(crate) mod tests {
             over_time: None,
             features: Features::Raw,
             foremost_full_scale: None,
+            tilted_copies: None,
             classifier: ClassifierKind::LinearSvm,
             c: Some(1.0),
             train_touches: 75,

@@ -75,13 +75,17 @@ impl Range {
 }
 
 /// From 1 to what memory holds.
+/// Copies of a touch, at most: more than tell a classifier anything new.
+const MOST_COPIES: usize = 1000;
+/// Far above it a tilt adds no plane.
+const TILT: Range = Range::Of(|deg| deg > 0.0 && deg <= 45.0, "above 0, at most 45");
 pub const COUNT: Range = Range::Count(1, MOST_COUNTED);
 
 /// So many touches an object.
 pub const TOUCHES: Range = Range::Count(1, MOST_TOUCHES);
 
 /// The keys of the tables that kinds of study share, and what their numbers may be. A list has values, and none twice.
-const KEYS: [(&str, Range); 55] = [
+const KEYS: [(&str, Range); 57] = [
     ("objects.surface_error_mm", Range::Positive),
     ("objects.close_holes_mm", Range::Positive),
     ("objects.names", Range::Any),
@@ -115,6 +119,8 @@ const KEYS: [(&str, Range); 55] = [
     ("sensing.measurements", COUNT),
     ("recognition.features", Range::Any),
     ("recognition.foremost_full_scale", Range::Positive),
+    ("recognition.tilted_copies", Range::Count(0, MOST_COPIES)),
+    ("recognition.tilted_copies_deg", TILT),
     ("recognition.over_time", Range::Any),
     ("recognition.classifier", Range::Any),
     ("recognition.c", Range::Positive),

@@ -150,17 +150,11 @@ impl Trial<'_> {
         let keys = self.sweep.group_keys.as_ref();
         let of = (cell, self.number);
         let labels = self.sweep.learned_labels(self.plan, of, split)?;
-        let readings = self.measurements.readings(&split.train);
-        let n_touches = self.measurements.n_touches;
-        let labels = readings.iter().map(|reading| labels[reading % n_touches]);
-        let data = dataset(
-            self.measurements.features(cell, &readings),
-            labels.collect(),
-        )?;
+        let (rows, labels) = learned_rows(self.measurements, cell, &split.train, &labels);
         Ok(Training {
             recognition: &self.plan.spec.recognition,
             kind: cell.classifier,
-            data,
+            data: dataset(self.measurements.features(cell, &rows), labels)?,
             n_first: split.train.len(),
             group_keys: keys.map(|keys| keys.select(Axis(0), &split.train)),
             seed: self.seed("validation"),
@@ -171,4 +165,19 @@ impl Trial<'_> {
         let seed = Seed::new(self.plan.spec.seed).named(name);
         seed.numbered(self.number as u64)
     }
+}
+
+/// What a cell learns from: all readings of these training touches, then their tilted copies, and the labels of all.
+pub(super) fn learned_rows(
+    measurements: &Measurements,
+    cell: &Cell,
+    train: &[usize],
+    labels: &Array1<usize>,
+) -> (Vec<usize>, Array1<usize>) {
+    let mut rows = measurements.readings(train);
+    rows.extend(measurements.copies(cell, train));
+    // Readings and copies alike are of all touches in turn.
+    let touches = train.iter().cycle().take(rows.len());
+    let labels = touches.map(|&touch| labels[touch]).collect();
+    (rows, labels)
 }

@@ -9,6 +9,7 @@
 //! | `objects.csv` | one row an object: number, name |
 //! | `cell.toml` | the settings of the cell and the trial |
 
+use super::evaluation::learned_rows;
 use super::frames::FramePlace;
 use super::measurement::{Measurements, measure_group};
 use super::npy::{write_integers, write_npy};
@@ -72,17 +73,25 @@ impl StudyPart {
         };
         let of = (group, n_projected);
         let measured = self.measured(of, (trial, &split), ("touch", progress))?;
-        let all: Vec<usize> = (0..sweep.labels.len()).collect();
-        let all = measured.readings(&all);
-        let learned = sweep.learned_labels(plan, (cell, trial), &split)?;
-        let labels = all.iter().map(|row| learned[row % learned.len()]);
-        let split = Split {
-            train: measured.readings(&split.train),
-            ..split
-        };
+        let labels = sweep.learned_labels(plan, (cell, trial), &split)?;
+        let (trained, trained_labels) = learned_rows(&measured, cell, &split.train, &labels);
+        // All readings of all touches, then copies of those that train.
+        let touches: Vec<usize> = (0..labels.len()).collect();
+        let read = measured.readings(&touches);
+        let n_trained = measured.readings(&split.train).len();
+        let (trained, copies) = trained.split_at(n_trained);
+        let of_read = read.iter().map(|row| labels[row % labels.len()]);
+        let of_copies = trained_labels.iter().skip(n_trained).copied();
+        let rows = [&read[..], copies].concat();
         Ok(FeatureSet {
-            data: dataset(measured.features(cell, &all), labels.collect())?,
-            split,
+            data: dataset(
+                measured.features(cell, &rows),
+                of_read.chain(of_copies).collect(),
+            )?,
+            split: Split {
+                train: [trained, &Vec::from_iter(read.len()..rows.len())].concat(),
+                test: split.test,
+            },
         })
     }
 

@@ -8,6 +8,7 @@ use super::sensor_errors::{TestedOn, skin};
 use super::spec::StepSpec;
 use super::sweep::Group;
 use super::table::Cell;
+use super::tilted_copies::TiltedCopies;
 use super::touch_set::TouchSet;
 use crate::error::Result;
 use crate::random::Seed;
@@ -37,8 +38,10 @@ pub struct Measurements {
     pub of_ones: Array1<f64>,
     /// Φ, and how images are made of measurements.
     pub sensed: Arc<SensedBy>,
-    /// Features of images, n_touches × F·k each.
+    /// Features of images, n_touches × F·k each; below them those of tilted copies.
     pub of_images: Vec<(FeaturesOfImages, Array2<f64>)>,
+    /// What was copied.
+    pub copies: Option<TiltedCopies>,
     /// Processor-seconds, summed over threads.
     pub cpu_s: f64,
 }
@@ -91,6 +94,17 @@ impl Measurements {
             over_time.write(frames.expect("F frames of m"), row);
         }
         rows
+    }
+
+    /// What a cell learns from beside these training touches: the numbers of their tilted copies, which follow those of all touches. The
+    /// first copy of each touch, then the second of each.
+    pub fn copies(&self, cell: &Cell, train: &[usize]) -> Vec<usize> {
+        let (Some(copies), Some(n_copies)) = (&self.copies, cell.tilted_copies) else {
+            return Vec::new();
+        };
+        let n_touches = self.values.nrows() / self.n_frames.max(1);
+        let rows = copies.rows(train, n_copies);
+        rows.map(|row| n_touches + row).collect()
     }
 
     /// All frames of some touches one after the other, as the cell's kind of features: n × F·m.
@@ -212,12 +226,15 @@ pub fn measure_group(
         ..reading
     };
     let (values, cpu_s) = measure(reading, frames, &touches)?;
+    let mut copies = None;
     let of_images = match &sensed.images {
         None => Vec::new(),
         Some(images) => {
+            let train = (&split.train[..], touched.classes().len());
+            copies = tilted_copies(plan, group, train, chains[0][0].full_scale(), trial);
             let mut wanted = group.features_of_images();
             wanted.retain(|one| images.is_of(one.measurements));
-            let made = images.features((values.view(), n_frames), &wanted);
+            let made = images.features((values.view(), n_frames), &wanted, copies.as_ref());
             wanted.into_iter().zip(made).collect()
         }
     };
@@ -229,8 +246,24 @@ pub fn measure_group(
         of_ones: sensed.projection.measure(ones.view()).row(0).to_owned(),
         sensed,
         of_images,
+        copies,
         cpu_s,
     })
+}
+
+/// Copies of training touches, of n classes, for cells that want some: full scale is what a taxel reads at its stroke.
+fn tilted_copies(
+    plan: &Plan,
+    group: &Group,
+    train: (&[usize], usize),
+    full_scale: f64,
+    trial: usize,
+) -> Option<TiltedCopies> {
+    let array = &plan.arrays[group.array];
+    let steepest = plan.spec.recognition.copies_tilt().tan();
+    let a_taxel = steepest * array.pitch() / array.taxel().stroke * full_scale;
+    let seed = Seed::new(plan.spec.seed).named("tilted copies");
+    TiltedCopies::of(plan, group, train, a_taxel, &seed.numbered(trial as u64))
 }
 
 /// Draws Φ in a trial, or learns it, and what makes images of measurements, from training touches.

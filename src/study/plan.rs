@@ -84,6 +84,7 @@ impl Plan {
         check.recognition(&spec.recognition)?;
         check.images(&spec.recognition, &arrays)?;
         check.over_time(&spec.recognition, &frames)?;
+        check.split(&spec)?;
         check.folds(&spec)?;
         check.repeats(&spec)?;
         let plan = Self {

@@ -4,8 +4,10 @@ use super::axis::Axis;
 use super::check::Check;
 use super::plan::MM;
 use super::pose_groups::KeepTogether;
+use super::pose_splits::PoseSplit;
 use super::spec::{RecognitionSpec, SensingSpec, StudySpec};
 use super::taxel_array::TaxelArray;
+use super::tilted_copies::DEFAULT_TILT_DEG;
 use crate::error::Result;
 use crate::recognition::ClassifierKind;
 use crate::recognition::data::over_time::OverTime;
@@ -45,9 +47,10 @@ const ONE_OF: [[&str; 2]; 3] = [
 ];
 
 /// Keys that belong beside one of others.
-const BESIDE: [(&str, &[&str]); 4] = [
+const BESIDE: [(&str, &[&str]); 5] = [
     ("choose_folds", &["choose_c", "choose_gamma"]),
     ("choose_touches", &["choose_c", "choose_gamma"]),
+    ("tilted_copies_deg", &["tilted_copies"]),
     ("keep_together_mm", &["keep_together"]),
     ("keep_together_deg", &["keep_together"]),
 ];
@@ -133,12 +136,19 @@ impl Check<'_> {
     pub fn images(&self, recognition: &RecognitionSpec, arrays: &[TaxelArray]) -> Result<()> {
         let mut features = recognition.features.values().into_iter();
         let Some(features) = features.find(|features| features.of_image().is_some()) else {
-            return match &recognition.foremost_full_scale {
+            let foremost = recognition.foremost_full_scale.is_some();
+            let of_images = [
+                ("recognition.foremost_full_scale", foremost),
+                (
+                    "recognition.tilted_copies",
+                    recognition.tilted_copies.is_some(),
+                ),
+            ];
+            return match of_images.into_iter().find(|(_, is_given)| *is_given) {
                 None => Ok(()),
-                Some(_) => {
+                Some((key, _)) => {
                     let given = "given, but no features of the study are of images";
-                    let allowed = "features of images, or no such key";
-                    Err(self.error("recognition.foremost_full_scale", given, allowed))
+                    Err(self.error(key, given, "features of images, or no such key"))
                 }
             };
         };
@@ -167,6 +177,35 @@ impl Check<'_> {
                 let allowed = format!("at most {fewest}, the frames of a touch");
                 return Err(self.error("recognition.over_time", String::from(value), allowed));
             }
+        }
+        Ok(())
+    }
+
+    /// A split by poses: nothing beside it that splits otherwise.
+    pub fn split(&self, spec: &StudySpec) -> Result<()> {
+        let recognition = &spec.recognition;
+        if recognition.split == PoseSplit::Random {
+            return Ok(());
+        }
+        // Beside an axis it says what the random split of that axis holds out.
+        let is_axis = spec.axes.has("recognition.split");
+        let given = [
+            ("keep_together", recognition.keep_together.is_some()),
+            ("folds", recognition.folds.is_some()),
+            (
+                "test_fraction",
+                recognition.test_fraction.is_some() && !is_axis,
+            ),
+        ];
+        if let Some((key, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
+            let given = format!("given beside split = {:?}", recognition.split.name());
+            let allowed = "no such key: the split says what is held out";
+            return Err(self.error(&format!("recognition.{key}"), given, allowed));
+        }
+        if !spec.places_objects() {
+            let given = recognition.split.name();
+            let allowed = "\"random\": only touches that a study places have a known pose";
+            return Err(self.error("recognition.split", given, allowed));
         }
         Ok(())
     }
@@ -209,6 +248,21 @@ impl RecognitionSpec {
         }
     }
 
+    /// Copies of training touches: none for features of measurements.
+    pub fn copies(&self, features: Features) -> Vec<Option<usize>> {
+        match features.of_image() {
+            Some(_) => Axis::of(&self.tilted_copies),
+            None => vec![self.tilted_copies.as_ref().map(|_| 0)],
+        }
+    }
+
+    /// Most that a copy is tilted, radians.
+    pub fn copies_tilt(&self) -> f64 {
+        self.tilted_copies_deg
+            .unwrap_or(DEFAULT_TILT_DEG)
+            .to_radians()
+    }
+
     /// Folds of the cross-validation that chooses C and γ.
     pub fn n_choice_folds(&self) -> usize {
         self.choose_folds.unwrap_or(5)
@@ -217,7 +271,7 @@ impl RecognitionSpec {
     /// What stays on one side of a split, and how near is together where values are drawn.
     pub fn kept_together(&self) -> Option<KeepTogether> {
         Some(KeepTogether {
-            kind: self.keep_together?,
+            kind: self.keep_together.or(self.split.group())?,
             metres: self.keep_together_mm.map(|mm| MM * mm),
             radians: self.keep_together_deg.map(f64::to_radians),
         })

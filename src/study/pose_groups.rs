@@ -107,7 +107,7 @@ fn connected(touches: &[Touch], listed: &[Vec<usize>], drawn: &[(TouchAxis, f64)
     // Sorted along one axis, only touches within its distance are compared; a yaw comes once more a turn later.
     let mut order: Vec<(f64, usize)> = Vec::new();
     for (number, touch) in touches.iter().enumerate() {
-        let value = value(touch, along);
+        let value = touch.value(along);
         let turned = value.rem_euclid(TAU);
         match along {
             TouchAxis::Yaw if turned < distance => {
@@ -133,7 +133,7 @@ fn connected(touches: &[Touch], listed: &[Vec<usize>], drawn: &[(TouchAxis, f64)
 
 fn are_neighbours(a: &Touch, b: &Touch, drawn: &[(TouchAxis, f64)]) -> bool {
     let apart = |axis: TouchAxis| {
-        let apart = (value(a, axis) - value(b, axis)).abs();
+        let apart = (a.value(axis) - b.value(axis)).abs();
         match axis {
             TouchAxis::Yaw => {
                 let turned = apart.rem_euclid(TAU);
@@ -143,19 +143,6 @@ fn are_neighbours(a: &Touch, b: &Touch, drawn: &[(TouchAxis, f64)]) -> bool {
         }
     };
     drawn.iter().all(|&(axis, distance)| apart(axis) < distance)
-}
-
-/// The value of a drawn axis, SI; a resting pose has none.
-fn value(touch: &Touch, axis: TouchAxis) -> f64 {
-    match axis {
-        TouchAxis::Rest => 0.0,
-        TouchAxis::OffsetX => touch.offset[0],
-        TouchAxis::OffsetY => touch.offset[1],
-        TouchAxis::Yaw => touch.yaw,
-        TouchAxis::TiltX => touch.tilt[0],
-        TouchAxis::TiltY => touch.tilt[1],
-        TouchAxis::Depth => touch.depth,
-    }
 }
 
 /// The first of a touch's group; shortens the way there.

@@ -6,6 +6,7 @@ use super::axes::{self, AxisRules, StudyAxes};
 use super::axis::Axis;
 use super::cell::Cell;
 use super::defaults::{count, number};
+pub use super::pose_splits::PoseSplit;
 pub use super::spec_human::*;
 pub use super::spec_recorded::*;
 pub use super::spec_scene::*;
@@ -83,6 +84,7 @@ pub(crate) const MAY_CHANGE: &[&str] = &[
     "sensing.measurements",
     "recognition.features",
     "recognition.foremost_full_scale",
+    "recognition.tilted_copies",
     "recognition.over_time",
     "recognition.classifier",
     "recognition.c",
@@ -133,6 +135,11 @@ pub struct RecognitionSpec {
     /// Axis: features of images see only what is so far behind the foremost point, as a fraction of the full scale, as if each touch were pressed so
     /// deep; all that is there when left out. A depth that was never learned then looks like one that was.
     pub foremost_full_scale: Option<Axis<f64>>,
+    /// Axis: so many copies of each training touch are learned, too, tilted at random as far as images say what that looks like: a tilt that was
+    /// never learned then looks like one that was. Of features of images alone; none when left out.
+    pub tilted_copies: Option<Axis<usize>>,
+    /// Most that a copy is tilted about the array's x and y, evenly distributed; 5 when left out.
+    pub tilted_copies_deg: Option<f64>,
     /// Axis: what is made of the frames of a touch; all of them one after the other when left out. `deepest` frame, `stacked_8` evenly
     /// in time (or another number), `moments` of each measurement, `course` of the touch, or `summarised`: moments and course.
     pub over_time: Option<Axis<OverTime>>,
@@ -188,7 +195,10 @@ pub struct RecognitionSpec {
     /// are grouped at random; fewer than k that remain are left out.
     #[serde(default = "one_value")]
     pub fused_touches: Axis<usize>,
-    /// Fraction of the touches held out for testing (without `folds`; 0.25 when both are left out).
+    /// Which poses are held out: `random` ones, or those that [`PoseSplit`] says.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub split: PoseSplit,
+    /// Fraction of the touches that a random split holds out for testing (without `folds`; 0.25 when both are left out).
     pub test_fraction: Option<f64>,
     /// Instead of `test_fraction`: k of a k-fold split; `trials` is then a multiple of k.
     pub folds: Option<usize>,

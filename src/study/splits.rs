@@ -2,18 +2,23 @@
 
 use super::axis::Axis;
 use super::plan::Plan;
+use super::pose_splits::PoseSplit;
 use crate::error::{Error, Result};
 use crate::random::Seed;
 use crate::recognition::data::split::{
-    Split, group_hold_out, group_k_fold, stratified_hold_out, stratified_k_fold,
+    Split, given_hold_out, group_hold_out, group_k_fold, stratified_hold_out, stratified_k_fold,
 };
+use crate::world::Touch;
 use ndarray::Array1;
 
-/// The split of all touches in a trial.
+/// The split of all touches in a trial: of those that are placed, by their poses, or by groups (`keys`), or of each alone.
+///
+/// # Errors
+/// A pose that is drawn where the split goes by values, or a class that is left without training or test rows.
 pub fn draw_split(
     plan: &Plan,
     labels: &Array1<usize>,
-    keys: Option<&Array1<usize>>,
+    (poses, keys): (&[&Touch], Option<&Array1<usize>>),
     trial: usize,
 ) -> Result<Split> {
     let trial = plan.spec.split_of(trial);
@@ -22,6 +27,10 @@ pub fn draw_split(
     let fraction = recognition.test_share();
     let n_folds = recognition.folds.unwrap_or(1);
     let seed = Seed::new(plan.spec.seed).named("split");
+    if recognition.split != PoseSplit::Random {
+        let sides = recognition.split.sides(poses, trial)?;
+        return given_hold_out(labels, &sides, &seed.numbered(trial as u64));
+    }
     let seed = seed.numbered((trial / n_folds) as u64);
     let mut folds = match (recognition.folds, keys) {
         (None, None) => return stratified_hold_out(labels, fraction, &seed),

@@ -125,30 +125,55 @@ fn against(trials: &[Row], best: &[Row]) -> Result<Comparison> {
 const MOST_CONFUSED: usize = 15;
 
 /// The pairs of objects that a cell confuses most often, by the share of the touched object's test rows; of equals the one
-/// that the table has first.
-pub fn most_confused(confusion: &[Confusion], cell: usize) -> Vec<Confused> {
-    let rows = || confusion.iter().filter(|row| row.cell == cell);
-    let mut n_test: BTreeMap<&str, usize> = BTreeMap::new();
-    for row in rows() {
-        *n_test.entry(&row.object).or_default() += row.count;
-    }
-    let mut pairs: Vec<Confused> = rows()
-        .filter(|row| row.object != row.predicted)
-        .map(|row| {
-            let n_test = n_test[row.object.as_str()];
-            Confused {
-                cell,
-                object: row.object.clone(),
-                predicted: row.predicted.clone(),
-                count: row.count,
-                n_test,
-                share: row.count as f64 / n_test as f64,
-            }
+/// that the table has first. `fused` is the same cell with the most touches fused, and how many those are.
+///
+/// # Errors
+/// None for counts of a table.
+pub fn most_confused(
+    confusion: &[Confusion],
+    cell: usize,
+    fused: Option<(usize, usize)>,
+) -> Result<Vec<Confused>> {
+    let n_test = rows_of_objects(confusion, cell);
+    let of_fused = fused.map(|(cell, _)| rows_of_objects(confusion, cell));
+    let share_fused = |of: &Confusion| {
+        let ((cell, _), n_test) = (fused?, of_fused.as_ref()?);
+        let mut rows = confusion.iter().filter(|row| row.cell == cell);
+        let same = rows.find(|row| (&row.object, &row.predicted) == (&of.object, &of.predicted));
+        let n_test = *n_test.get(of.object.as_str())?;
+        Some(same.map_or(0, |row| row.count) as f64 / n_test as f64)
+    };
+    let pairs = confusion.iter();
+    let pairs = pairs.filter(|row| row.cell == cell && row.object != row.predicted);
+    let pairs = pairs.map(|row| {
+        let n_test = n_test[row.object.as_str()];
+        let interval = Interval::wilson(row.count, n_test, CONFIDENCE)?;
+        Ok(Confused {
+            cell,
+            object: row.object.clone(),
+            predicted: row.predicted.clone(),
+            count: row.count,
+            n_test,
+            share: row.count as f64 / n_test as f64,
+            share_low: interval.low,
+            share_high: interval.high,
+            most_fused: fused.map(|(_, n_fused)| n_fused),
+            share_fused: share_fused(row),
         })
-        .collect();
+    });
+    let mut pairs = pairs.collect::<Result<Vec<Confused>>>()?;
     pairs.sort_by(|a, b| b.share.total_cmp(&a.share));
     pairs.truncate(MOST_CONFUSED);
-    pairs
+    Ok(pairs)
+}
+
+/// Test rows of each object in a cell.
+fn rows_of_objects(confusion: &[Confusion], cell: usize) -> BTreeMap<&str, usize> {
+    let mut n_test = BTreeMap::new();
+    for row in confusion.iter().filter(|row| row.cell == cell) {
+        *n_test.entry(row.object.as_str()).or_default() += row.count;
+    }
+    n_test
 }
 
 /// What the accuracy of every cell costs, and which cells are worth their cost; both tables have the same rows.
@@ -235,7 +260,7 @@ mod tests {
             row(1, "bowl", "mug", 3), // 3 of 4: fewer, but a larger share
         ];
         let found = |table: &[Confusion]| -> Vec<(String, usize, usize, f64)> {
-            let pairs = most_confused(table, 1).into_iter();
+            let pairs = most_confused(table, 1, None).unwrap().into_iter();
             pairs
                 .map(|p| (p.object, p.count, p.n_test, p.share))
                 .collect()
@@ -245,11 +270,18 @@ mod tests {
             ("mug".to_owned(), 4, 10, 0.4),
         ];
         assert_eq!(found(&table), expected);
+        // Of ten decisions on two touches each, one is still wrong; of the bowl's none.
+        table.extend([row(2, "mug", "mug", 9), row(2, "mug", "bowl", 1)]);
+        table.push(row(2, "bowl", "bowl", 5));
+        let fused = most_confused(&table, 1, Some((2, 2))).unwrap();
+        let fused = fused.into_iter().map(|p| (p.most_fused, p.share_fused));
+        let expected = [(Some(2), Some(0.0)), (Some(2), Some(0.1))];
+        assert_eq!(fused.collect::<Vec<_>>(), expected);
         for other in 0..20 {
             table.push(row(1, "pear", &format!("apple {other}"), 1));
         }
         assert_eq!(found(&table).len(), MOST_CONFUSED);
-        assert!(most_confused(&table, 7).is_empty());
+        assert!(most_confused(&table, 7, None).unwrap().is_empty());
     }
 
     #[test]

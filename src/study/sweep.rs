@@ -88,7 +88,10 @@ impl Group {
     pub fn families(&self) -> impl Iterator<Item = &[Cell]> {
         let family = |cell: &Cell| {
             let (m, kind) = (cell.measurements, cell.classifier);
-            let rows = (cell.over_time, cell.features, cell.foremost_full_scale);
+            let rows = (
+                (cell.over_time, cell.features),
+                (cell.foremost_full_scale, cell.tilted_copies),
+            );
             let spoiled = (cell.mislabelled_fraction, cell.class_imbalance);
             (m, rows, kind, cell.train_touches, spoiled)
         };
@@ -171,10 +174,12 @@ impl Sweep {
             return Err(Error::input(place, given, allowed));
         }
         let labels = touched.labels();
+        let poses = touched.poses();
+        plan.spec.recognition.split.check(&poses)?;
         let together = plan.keep_together.as_ref();
         let keys = together.map(|together| touched.group_keys(together));
         let keys = keys.transpose()?.or_else(|| touched.own_groups());
-        let split = |trial| draw_split(plan, &labels, keys.as_ref(), trial);
+        let split = |trial| draw_split(plan, &labels, (&poses, keys.as_ref()), trial);
         let splits = (0..plan.spec.trials).map(split);
         let splits = splits.collect::<Result<Vec<_>>>()?;
         let train_touches = train_touches(plan, &splits, &labels)?;
@@ -287,6 +292,7 @@ impl Sweep {
             over_time in Axis::of(&learned.over_time);
             features in learned.features.values();
             foremost_full_scale in learned.foremost(features);
+            tilted_copies in learned.copies(features);
             classifier in learned.classifier.values();
             train_touches in train_touches.iter().copied();
             class_imbalance in Axis::of(&learned.class_imbalance);
@@ -311,6 +317,7 @@ impl Sweep {
                 over_time,
                 features,
                 foremost_full_scale,
+                tilted_copies,
                 classifier,
                 c,
                 train_touches,

@@ -89,7 +89,8 @@ pub struct Confusion {
 } }
 
 row! {
-/// A pair of objects that the best cell confuses most often: a row of `confused.csv`.
+/// A pair of objects that the best cell confuses most often: a row of `confused.csv`. Where touches are fused it is the best of the fewest touches, and
+/// what is left of it in the same cell of the most touches stands beside it.
 pub struct Confused {
     /// Number of the best cell.
     cell: usize => Subject: Linear;
@@ -102,7 +103,17 @@ pub struct Confused {
     /// The object's test rows, all trials.
     n_test: usize => Note "test rows of the object": Linear;
     /// `count / n_test`.
-    share: f64 => Value(Less) "share of the object's test rows": Share;
+    share: f64 => Value(Less) "share of the object's test rows": Share between [share_low, share_high];
+    /// Lower end of its 95 % Wilson interval.
+    share_low: f64 => Note "95 % interval, lower end": Share, optional;
+    /// Upper end of the same interval.
+    share_high: f64 => Note "95 % interval, upper end": Share, optional;
+    /// The most touches that are fused; only if the study fuses some.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    most_fused: Option<usize> => Note "most touches fused": Linear, optional;
+    /// The same share of decisions on so many; only if the study fuses some.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    share_fused: Option<f64> => Value(Less) "share with most touches fused": Share, optional;
 } }
 
 row! {

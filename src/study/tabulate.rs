@@ -34,11 +34,35 @@ pub fn tabulate(
     tables.summary = summarise(&tables.accuracy)?;
     tables.variance = variances(&tables.accuracy)?;
     tables.comparison = compare_with_best(&tables.accuracy)?;
-    let accuracies = tables.summary.iter();
-    let accuracies = accuracies.map(|(cell, score)| (cell.cell, score.accuracy));
+    // What one touch confuses says more than what is left of it once many are fused.
+    let cells = || tables.summary.iter().map(|(cell, _)| cell);
+    let fewest = cells().map(|cell| cell.fused_touches).min().unwrap_or(1);
+    let single = tables.summary.iter();
+    let single = single.filter(|(cell, _)| cell.fused_touches == fewest);
+    let accuracies = single.map(|(cell, score)| (cell.cell, score.accuracy));
     if let Some(best) = most_accurate(accuracies) {
-        tables.confused = most_confused(&tables.confusion, best);
+        let fused = most_fused(cells(), best);
+        tables.confused = most_confused(&tables.confusion, best, fused)?;
     }
     tables.pareto = pareto(&tables.accuracy, &tables.timing)?;
     Ok(())
+}
+
+/// The cell that differs from one in no more than in fusing the most touches, and how many; none where none fuses more.
+fn most_fused<'a>(
+    mut cells: impl Iterator<Item = &'a Cell> + Clone,
+    of: usize,
+) -> Option<(usize, usize)> {
+    let all = cells.clone();
+    let of = cells.find(|cell| cell.cell == of)?;
+    let same = all.filter(|cell| {
+        let alike = Cell {
+            cell: of.cell,
+            fused_touches: of.fused_touches,
+            ..(*cell).clone()
+        };
+        alike == *of && cell.fused_touches > of.fused_touches
+    });
+    let most = same.max_by_key(|cell| cell.fused_touches)?;
+    Some((most.cell, most.fused_touches))
 }

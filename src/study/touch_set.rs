@@ -13,6 +13,7 @@ use crate::contact::saturation_limit;
 use crate::error::Result;
 use crate::objects::Model;
 use crate::random::Seed;
+use crate::world::Touch;
 use ndarray::Array1;
 use rand::Rng;
 use rayon::prelude::*;
@@ -38,6 +39,11 @@ pub trait TouchSet: Sync {
     /// An axis that is spread uniformly, without a distance.
     fn group_keys(&self, _together: &KeepTogether) -> Result<Array1<usize>> {
         Ok((0..self.labels().len()).collect())
+    }
+
+    /// Where and how every touch is made; of none that is not placed.
+    fn poses(&self) -> Vec<&Touch> {
+        Vec::new()
     }
 
     /// Group of every touch, where they are what they are and no key says what stays together.
@@ -90,6 +96,10 @@ impl TouchSet for Vec<TouchedObject> {
 
     fn group_keys(&self, together: &KeepTogether) -> Result<Array1<usize>> {
         together.groups(self)
+    }
+
+    fn poses(&self) -> Vec<&Touch> {
+        self.iter().flat_map(|touched| &touched.touches).collect()
     }
 
     fn prepare(&self) {

@@ -19,9 +19,9 @@ pub struct Training<'a> {
     pub recognition: &'a RecognitionSpec,
     /// Which classifier.
     pub kind: ClassifierKind,
-    /// Training rows in drawing order, one of each object in turn; first readings before any second.
+    /// Training rows in drawing order, one of each object in turn: first readings, then further ones, then tilted copies.
     pub data: Dataset,
-    /// How many of them are first readings.
+    /// How many of them are first readings: the others take no part in a choice of C or γ.
     pub n_first: usize,
     /// The group of each row, when the study keeps groups together.
     pub group_keys: Option<Array1<usize>>,

@@ -183,6 +183,19 @@ impl Touch {
         axes.iter().map(index).collect()
     }
 
+    /// The value on an axis, SI; of a resting pose its number.
+    pub fn value(&self, axis: TouchAxis) -> f64 {
+        match axis {
+            TouchAxis::Rest => self.rest as f64,
+            TouchAxis::OffsetX => self.offset[0],
+            TouchAxis::OffsetY => self.offset[1],
+            TouchAxis::Yaw => self.yaw,
+            TouchAxis::TiltX => self.tilt[0],
+            TouchAxis::TiltY => self.tilt[1],
+            TouchAxis::Depth => self.depth,
+        }
+    }
+
     /// The object's pose in the patch frame, before the patch moves along its own axis: for the zero touch, the top of the
     /// object's box lies in the plane z = 0 and the rest of it in front (z > 0).
     pub fn patch_from_object(&self, rest: &RestPose) -> Pose {

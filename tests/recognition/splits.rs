@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::data::split::{
-    Split, group_hold_out, group_k_fold, stratified_hold_out, stratified_k_fold,
+    Side, Split, given_hold_out, group_hold_out, group_k_fold, stratified_hold_out,
+    stratified_k_fold,
 };
 use ndarray::Array1;
 
@@ -165,4 +166,20 @@ fn what_cannot_be_split_is_an_error_that_names_the_class() {
     assert!(group_k_fold(two.view(), one_group_per_class.view(), 3, &seed).is_err());
     assert!(group_hold_out(two.view(), Array1::zeros(3).view(), 0.5, &seed).is_err());
     assert!(stratified_hold_out(Array1::zeros(0).view(), 0.5, &seed).is_err());
+}
+
+#[test]
+fn a_given_hold_out_has_each_row_where_it_was_put_and_draws_the_order_alone() {
+    let labels = ndarray::arr1(&[0, 0, 0, 1, 1, 1, 0, 1]);
+    use Side::{LeftOut, Test, Train};
+    let sides = [Train, Test, Train, LeftOut, Train, Test, LeftOut, Train];
+    let split = given_hold_out(labels.view(), &sides, &Seed::new(1)).unwrap();
+    let mut train = split.train.clone();
+    train.sort_unstable();
+    assert_eq!((train, split.test), (vec![0, 2, 4, 7], vec![1, 5]));
+    // One of each class in turn.
+    let classes: Vec<usize> = split.train.iter().map(|&row| labels[row]).collect();
+    assert_eq!(classes, [0, 1, 0, 1]);
+    assert!(given_hold_out(labels.view(), &sides[1..], &Seed::new(1)).is_err());
+    assert!(given_hold_out(labels.view(), &[Train; 8], &Seed::new(1)).is_err());
 }

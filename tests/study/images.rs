@@ -158,3 +158,90 @@ fn what_has_no_image_stands_in_the_same_tables_as_what_is_behind_the_foremost_po
     let summary = summary.iter().find(|table| table.file == "summary.csv");
     assert!(summary.is_some());
 }
+
+/// Listed poses, so that a tilt can be left out.
+fn with_copies(keys: &str) -> String {
+    let poses = "offset_x_mm = [-4.0, 0.0, 5.0]\nyaw_deg = [0.0, 40.0, 100.0, 200.0, 300.0]\n\
+                 tilt_x_deg = [0.0, 5.0]\ntilt_y_deg = [0.0, 5.0]\n";
+    let start = STUDY.find("per_object").unwrap();
+    let end = STUDY.find("depth_mm").unwrap();
+    let text = format!("{}{poses}{}", &STUDY[..start], &STUDY[end..]);
+    let text = text.replace("\"raw\", ", "");
+    text.replace("classifier =", &format!("{keys}\nclassifier ="))
+}
+
+#[test]
+fn copies_follow_all_touches_are_as_deep_as_those_that_they_are_of_and_change_no_other() {
+    let [none, copied] = [0, 1].map(|cell| {
+        let keys = "split = \"unseen_tilt\"\ntilted_copies = [0, 2]\ntrain_touches = 20";
+        features(&with_copies(keys), cell, 0)
+    });
+    let (n_touches, n_train) = (none.data.records.nrows(), none.split.train.len());
+    assert_eq!((n_touches, n_train), (360, 6 * 20));
+    let records = &copied.data.records;
+    assert_eq!(records.nrows(), n_touches + 2 * n_train);
+    assert_eq!(
+        records.slice(ndarray::s![..n_touches, ..]),
+        none.data.records
+    );
+    assert_eq!(copied.split.test, none.split.test);
+    assert_eq!(copied.split.train[..n_train], none.split.train);
+    let of_copies = &copied.split.train[n_train..];
+    assert_eq!(
+        of_copies,
+        (n_touches..n_touches + 2 * n_train).collect::<Vec<_>>()
+    );
+    // The largest value is the first of the descriptors.
+    let deepest = 216 + 416;
+    let mut n_changed = 0;
+    for (place, &copy) in of_copies.iter().enumerate() {
+        let original = none.split.train[place % n_train];
+        assert_eq!(copied.data.targets[copy], none.data.targets[original]);
+        let apart = records[[copy, deepest]] - records[[original, deepest]];
+        assert!(apart.abs() < 1e-15, "{apart} m");
+        n_changed += usize::from(records.row(copy) != records.row(original));
+    }
+    // A single taxel has no tilt.
+    assert!(n_changed > 200, "{n_changed} of 240");
+    // Each copy has a tilt of its own.
+    assert_ne!(records.row(n_touches), records.row(n_touches + n_train));
+}
+
+#[test]
+fn copies_that_are_tilted_recognise_a_tilt_that_was_never_learned() {
+    let keys = "split = \"unseen_tilt\"\ntilted_copies = [0, 2]";
+    let text = with_copies(keys).replace("trials = 1", "trials = 4");
+    let tables = Study::new(&text).run();
+    let accuracies = tables.summary.iter().map(|(_, score)| score.accuracy);
+    let [none, copied] = accuracies.collect::<Vec<_>>().try_into().unwrap();
+    assert!(copied > none + 0.02, "{none} {copied}");
+}
+
+#[test]
+fn copies_are_of_images_and_their_tilt_belongs_to_them() {
+    for (keys, said) in [
+        (
+            "features = \"raw\"\ntilted_copies = 2",
+            "no features of the study are of images",
+        ),
+        (
+            "tilted_copies_deg = 2.0",
+            "no such key without recognition.tilted_copies",
+        ),
+        (
+            "tilted_copies = 2\ntilted_copies_deg = 60.0",
+            "above 0, at most 45",
+        ),
+    ] {
+        let text = with_copies(keys);
+        let text = match keys.starts_with("features") {
+            true => text.replace(
+                "features = [\"fourier_mellin+polar_harmonics+descriptors\"]",
+                "",
+            ),
+            false => text,
+        };
+        let error = Study::error(&text);
+        assert!(error.contains(said), "{error}");
+    }
+}

@@ -84,7 +84,7 @@ pub(super) fn fit_s(
                 * train_s(plan, cell, n_chosen, n_classes)
         }
     };
-    let n_train = n_train * n_readings as f64;
+    let n_train = n_train * (n_readings + cell.tilted_copies.unwrap_or(0)) as f64;
     let test_s = (cell.classifier.about().test_s)(n_train, cell.n_features() as f64, n_classes);
     choose_s + train_s(plan, cell, n_train, n_classes) + n_test * test_s
 }

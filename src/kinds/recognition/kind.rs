@@ -10,7 +10,7 @@ use crate::report::recognition;
 use crate::report::snapshots::snapshots;
 use crate::report::study_folder::NamedPicture;
 use crate::study::pieces::Scale;
-use crate::study::{GroupSpec, Samples, Snapshots, StudySpec};
+use crate::study::{GroupSpec, PoseSplit, Samples, Snapshots, StudySpec};
 use crate::table::{ChartSpec, Table};
 use std::path::Path;
 
@@ -115,7 +115,12 @@ fn split_words(spec: &StudySpec) -> String {
                 None => "random touches, whatever was recorded together".to_owned(),
             };
         }
-        _ if spec.axes.has("recognition.keep_together") => return "as each row says".to_owned(),
+        _ if spec.axes.has("recognition.keep_together") || spec.axes.has("recognition.split") => {
+            return "as each row says".to_owned();
+        }
+        _ if spec.recognition.split != PoseSplit::Random => {
+            return spec.recognition.split.words().to_owned();
+        }
         None => {
             return "random touches: most have neighbours in the pose that are learned".to_owned();
         }

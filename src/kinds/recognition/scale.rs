@@ -106,7 +106,8 @@ fn family_bytes(
         (true, Multiclass::OneVsOne) => n_classes * (n_classes - 1) / 2,
         _ => n_classes,
     };
-    let n_train = (cell.train_touches * n_read) as f64;
+    let n_copied = n_classes * cell.tilted_copies.unwrap_or(0);
+    let n_train = (cell.train_touches * (n_read + n_copied)) as f64;
     let (m, n_test) = (cell.n_features() as f64, n_test as f64);
     let of_all = 8.0 * n_train * n_train;
     let is_kernel_svm = cell.classifier.about().kernel.is_some();

@@ -27,7 +27,7 @@ use crate::study::taxel_array::TaxelArray;
 use crate::study::time_left::Piece;
 use crate::study::touch_set::TouchSet;
 use crate::table::Table;
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -319,6 +319,7 @@ fn measured_content(plan: &Plan, group: &Group) -> String {
     // Test touches are read by another skin only where there is one, and training touches learned from where anything is learned.
     let has_split = group.learns() || group.tested_on != TestedOn::SameSkin;
     let split = has_split.then_some((
+        recognition.split,
         plan.keep_together,
         recognition.folds,
         recognition.test_fraction,
@@ -327,7 +328,15 @@ fn measured_content(plan: &Plan, group: &Group) -> String {
     let (ensemble, m) = (group.ensemble, group.projected());
     let images = group.features_of_images();
     let n_readings = group.n_readings(plan);
-    format!("{array} {steps:?} {split:?} {drawn:?} {ensemble:?} {m:?} {images:?} {n_readings}")
+    let copied = group
+        .cells
+        .iter()
+        .map(|cell| (cell.tilted_copies, cell.train_touches));
+    let copied = copied.filter(|(n_copies, _)| n_copies.is_some_and(|n| n > 0));
+    let copied: BTreeSet<_> = copied.collect();
+    let copies = (copied, recognition.tilted_copies_deg);
+    let drawn = format!("{drawn:?} {n_readings} {copies:?}");
+    format!("{array} {steps:?} {split:?} {drawn} {ensemble:?} {m:?} {images:?}")
 }
 
 impl RecognitionStudy {

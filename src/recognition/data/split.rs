@@ -1,7 +1,7 @@
 //! Which rows train and which test: seeded splits, stratified by class, or keeping whole groups apart.
 //!
-//! Every split puts every row exactly once into `train` or `test`, and every class into both. Rows are drawn by
-//! named streams (one per class), so one class's split does not depend on the others' rows.
+//! Every split puts every class into `train` and `test`, and every row exactly once into one of them ([`given_hold_out`] may leave rows out).
+//! Rows are drawn by named streams (one per class), so one class's split does not depend on the others' rows.
 
 use std::collections::BTreeMap;
 
@@ -20,6 +20,17 @@ pub struct Split {
     pub train: Vec<usize>,
     /// Test rows, ascending.
     pub test: Vec<usize>,
+}
+
+/// Where a row belongs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// It is learned from.
+    Train,
+    /// It is tested.
+    Test,
+    /// Neither.
+    LeftOut,
 }
 
 impl Split {
@@ -76,15 +87,27 @@ pub fn stratified_hold_out(
     seed: &Seed,
 ) -> Result<Split> {
     check_fraction(test_fraction)?;
-    let mut is_test = vec![false; labels.len()];
+    let mut sides = vec![Side::Train; labels.len()];
     let drawn = draw_rows(labels, seed);
     for (class, rows) in &drawn {
         check_class_size(*class, rows.len(), 2)?;
         for &row in &rows[..share(rows.len(), test_fraction)] {
-            is_test[row] = true;
+            sides[row] = Side::Test;
         }
     }
-    split(labels, &drawn, &is_test)
+    split(labels, &drawn, &sides)
+}
+
+/// Hold-out of given rows: one side a row. Only the order of training rows is drawn.
+///
+/// # Errors
+/// Another number of sides than labels, or a class that is left with no training or no test row.
+pub fn given_hold_out(labels: ArrayView1<usize>, sides: &[Side], seed: &Seed) -> Result<Split> {
+    if sides.len() != labels.len() {
+        let allowed = format!("{}, one a label", labels.len());
+        return Err(Error::input("sides of a split", sides.len(), allowed));
+    }
+    split(labels, &draw_rows(labels, seed), sides)
 }
 
 /// Stratified k-fold: k splits whose test rows are disjoint and cover all rows; a class's rows, and all rows, spread
@@ -132,8 +155,9 @@ pub fn group_hold_out(
             is_test_group.insert(group, rank < n_test);
         }
     }
-    let is_test: Vec<bool> = groups.iter().map(|group| is_test_group[group]).collect();
-    split(labels, &draw_rows(labels, seed), &is_test)
+    let sides = groups.iter().map(|group| side(is_test_group[group]));
+    let sides: Vec<Side> = sides.collect();
+    split(labels, &draw_rows(labels, seed), &sides)
 }
 
 /// Group k-fold: k splits whose test rows are disjoint and cover all rows, each group tested in exactly one fold.
@@ -223,22 +247,30 @@ fn folds(
 ) -> Result<Vec<Split>> {
     (0..k)
         .map(|fold| {
-            let is_test: Vec<bool> = fold_of.iter().map(|&f| f == fold).collect();
-            split(labels, drawn, &is_test)
+            let sides: Vec<Side> = fold_of.iter().map(|&f| side(f == fold)).collect();
+            split(labels, drawn, &sides)
         })
         .collect()
+}
+
+fn side(is_test: bool) -> Side {
+    match is_test {
+        true => Side::Test,
+        false => Side::Train,
+    }
 }
 
 /// The split in its stated order; refuses one that leaves a class without a training or without a test row.
 fn split(
     labels: ArrayView1<usize>,
     drawn: &BTreeMap<usize, Vec<usize>>,
-    is_test: &[bool],
+    sides: &[Side],
 ) -> Result<Split> {
     let mut ranked = Vec::new();
     for (&class, rows) in drawn {
-        let train: Vec<usize> = rows.iter().copied().filter(|&row| !is_test[row]).collect();
-        let n_test = rows.len() - train.len();
+        let on = |side: Side| rows.iter().copied().filter(move |&row| sides[row] == side);
+        let train: Vec<usize> = on(Side::Train).collect();
+        let n_test = on(Side::Test).count();
         if train.is_empty() || n_test == 0 {
             return Err(Error::input(
                 format!("split, class {class}"),
@@ -259,7 +291,9 @@ fn split(
     }
     Ok(Split {
         train: ranked.into_iter().map(|(_, row)| row).collect(),
-        test: (0..labels.len()).filter(|&row| is_test[row]).collect(),
+        test: (0..labels.len())
+            .filter(|&row| sides[row] == Side::Test)
+            .collect(),
     })
 }
 

@@ -29,11 +29,13 @@ pub mod measured;
 mod moments;
 mod rings;
 mod spectrum;
+mod tilted;
 
 use feature::image_features;
 pub use feature::{Feature, FeatureAbout, ImageFeatures, Join, Workspace};
 pub use image::{Cut, Image};
 pub use moments::{N_MOMENTS, Weight, moments};
+pub use tilted::tilt_frame;
 
 use crate::error::Error;
 use serde::{Deserialize, Serialize};

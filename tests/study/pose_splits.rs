@@ -1,0 +1,200 @@
+//! Splits by pose: no test touch has a neighbour of the held-out kind among what is learned.
+
+use crate::study::Study;
+use bubbletouch::recognition::data::split::Split;
+use bubbletouch::world::Touch;
+
+/// Values that are out of order, so that halves are of sizes and not of places in a list.
+const STUDY: &str = r#"
+question = "Which poses are held out?"
+trials = 8
+
+[objects]
+sets = ["household"]
+names = ["mug", "banana"]
+surface_error_mm = 2.0
+
+[skin]
+pitch_mm = 4.0
+size_mm = 48.0
+stroke_mm = 3.5
+
+[touches]
+offset_x_mm = [6.0, 0.0]
+offset_y_mm = [0.0, 10.0, 5.0]
+yaw_deg = [30.0, 0.0, 40.0, 10.0, 20.0]
+tilt_x_deg = [5.0, 0.0]
+tilt_y_deg = [0.0, 5.0]
+depth_mm = [2.0, 1.0, 3.0]
+
+[sensing]
+ratio = 4
+
+[recognition]
+classifier = "linear_svm"
+"#;
+
+fn with_split(split: &str) -> String {
+    format!("{STUDY}split = \"{split}\"\n")
+}
+
+fn degrees(touch: &Touch) -> usize {
+    touch.yaw.to_degrees().round() as usize
+}
+
+fn tilt(touch: &Touch) -> [usize; 2] {
+    touch.tilt.map(|t| t.to_degrees().round() as usize)
+}
+
+fn tenths_of_mm(metres: f64) -> usize {
+    (1e4 * metres).round() as usize
+}
+
+/// The touches of each side of each trial's split; every object has as many of each.
+fn sides(split: &str, check: impl Fn(usize, &[&Touch], &[&Touch])) {
+    let study = Study::new(&with_split(split));
+    let touches: Vec<&Touch> = study.touched.iter().flat_map(|t| &t.touches).collect();
+    for (trial, Split { train, test }) in study.sweep.splits.iter().enumerate() {
+        let mut all = [train.clone(), test.clone()].concat();
+        all.sort_unstable();
+        all.dedup();
+        assert_eq!(all.len(), train.len() + test.len(), "each touch once");
+        let of = |rows: &[usize]| rows.iter().map(|&row| touches[row]).collect::<Vec<_>>();
+        check(trial, &of(train), &of(test));
+    }
+}
+
+/// Values of a side, each once, rising.
+fn values<T: Ord>(side: &[&Touch], value: impl Fn(&Touch) -> T) -> Vec<T> {
+    let mut all: Vec<T> = side.iter().map(|touch| value(touch)).collect();
+    all.sort_unstable();
+    all.dedup();
+    all
+}
+
+const N_TOUCHES: usize = 2 * 2 * 3 * 5 * 4 * 3;
+
+#[test]
+fn each_yaw_is_left_out_in_turn() {
+    sides("leave_one_yaw_out", |trial, train, test| {
+        let held_out = [0, 10, 20, 30, 40][trial % 5];
+        assert_eq!(values(test, degrees), [held_out]);
+        assert!(train.iter().all(|touch| degrees(touch) != held_out));
+        assert_eq!(train.len() + test.len(), N_TOUCHES);
+    });
+}
+
+#[test]
+fn each_half_of_the_yaws_is_tested_in_turn_and_the_smaller_has_the_middle_one() {
+    sides("half_of_yaws", |trial, train, test| {
+        let (smaller, larger) = match trial % 2 {
+            0 => (train, test),
+            _ => (test, train),
+        };
+        assert_eq!(values(smaller, degrees), [0, 10, 20]);
+        assert_eq!(values(larger, degrees), [30, 40]);
+        assert_eq!(train.len() + test.len(), N_TOUCHES);
+    });
+}
+
+#[test]
+fn opposite_blocks_share_no_offset_and_no_yaw_and_each_is_tested_in_turn() {
+    let blocks = std::cell::RefCell::new(Vec::new());
+    sides("opposite_blocks", |_, train, test| {
+        type Of = fn(&Touch) -> usize;
+        let axes: [Of; 3] = [
+            |touch| tenths_of_mm(touch.offset[0]),
+            |touch| tenths_of_mm(touch.offset[1]),
+            degrees,
+        ];
+        let block = axes.map(|axis| {
+            let (learned, tested) = (values(train, axis), values(test, axis));
+            let is_above = tested[0] > learned[learned.len() - 1];
+            assert!(is_above || tested[tested.len() - 1] < learned[0]);
+            is_above
+        });
+        // Of all tilts and depths on both sides.
+        for side in [train, test] {
+            assert_eq!(values(side, tilt).len(), 4);
+            assert_eq!(values(side, |touch| tenths_of_mm(touch.depth)).len(), 3);
+        }
+        blocks.borrow_mut().push(block);
+    });
+    let mut blocks = blocks.into_inner();
+    assert_eq!(blocks[0], [true; 3]);
+    blocks.sort_unstable();
+    blocks.dedup();
+    assert_eq!(blocks.len(), 8);
+}
+
+#[test]
+fn no_tilt_and_no_depth_that_is_tested_is_learned() {
+    sides("unseen_tilt", |trial, train, test| {
+        let held_out = [[0, 0], [0, 5], [5, 0], [5, 5]][trial % 4];
+        assert_eq!(values(test, tilt), [held_out]);
+        assert!(train.iter().all(|touch| tilt(touch) != held_out));
+    });
+    sides("unseen_depth", |trial, train, test| {
+        let held_out = [10, 20, 30][trial % 3];
+        let depth = |touch: &Touch| tenths_of_mm(touch.depth);
+        assert_eq!(values(test, depth), [held_out]);
+        assert!(train.iter().all(|touch| depth(touch) != held_out));
+    });
+}
+
+#[test]
+fn a_random_split_has_neighbours_of_every_kind_on_both_sides_and_is_what_no_key_says() {
+    sides("random", |_, train, test| {
+        assert_eq!(values(test, degrees), values(train, degrees));
+        assert_eq!(values(test, tilt), values(train, tilt));
+    });
+    let [none, random] = [STUDY.to_owned(), with_split("random")].map(|text| Study::new(&text));
+    assert_eq!(none.sweep.splits, random.sweep.splits);
+}
+
+#[test]
+fn a_split_that_poses_cannot_make_is_refused() {
+    for (text, said) in [
+        (
+            with_split("half_of_yaws").replace(
+                "yaw_deg = [30.0, 0.0, 40.0, 10.0, 20.0]",
+                "yaw_deg = { uniform = [0.0, 90.0] }\nper_object = 9",
+            ),
+            "key recognition.split: yaw spread uniformly",
+        ),
+        (
+            with_split("unseen_depth").replace("depth_mm = [2.0, 1.0, 3.0]", "depth_mm = 2.0"),
+            "key recognition.split: one depth; at least two",
+        ),
+        (
+            with_split("unseen_tilt") + "keep_together = \"yaw\"\n",
+            "key recognition.keep_together: given beside split = \"unseen_tilt\"",
+        ),
+        (
+            with_split("unseen_tilt") + "test_fraction = 0.5\n",
+            "key recognition.test_fraction: given beside",
+        ),
+        (
+            with_split("unseen_tilt") + "folds = 2\n",
+            "key recognition.folds: given beside",
+        ),
+        (with_split("unseen"), "unknown variant `unseen`"),
+    ] {
+        let error = Study::error(&text);
+        assert!(error.contains(said), "{error}");
+    }
+}
+
+#[test]
+fn a_split_is_an_axis_beside_which_the_random_one_has_its_fraction() {
+    let axes = "trials = 2\n[axes]\n\"recognition.split\" = [\"random\", \"unseen_tilt\"]\n";
+    let text = STUDY.replace("trials = 8\n", axes) + "test_fraction = 0.5\n";
+    let tables = crate::study::laid_out(&text).unwrap();
+    let tables = tables.run(&bubbletouch::study::progress::Silent).unwrap();
+    let n_test: Vec<usize> = tables
+        .accuracy
+        .iter()
+        .map(|(_, score)| score.n_test)
+        .collect();
+    assert_eq!(n_test, [360, 360, 180, 180]);
+}
