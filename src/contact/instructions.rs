@@ -1,10 +1,12 @@
 //! Which vector instructions the kernels use.
 
+use serde::{Deserialize, Serialize};
 use std::sync::OnceLock;
 
 /// Vector instructions of x86-64; other processors have the baseline of theirs alone. All give the same bits, as nothing is fused:
 /// whoever does not want to compare them needs no other than the best.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Instructions {
     /// The last of those below that the processor has.
     #[default]

@@ -1,6 +1,7 @@
 //! Where results come from: the program, the machine, the study and its objects.
 
 use super::journal::Identity;
+use crate::contact::Instructions;
 use crate::error::{Error, Result};
 use chrono::{DateTime, SecondsFormat, Utc};
 use serde::{Deserialize, Serialize};
@@ -51,6 +52,9 @@ pub struct Manifest {
     pub target: String,
     /// The processor's name, or `unknown`.
     pub cpu: String,
+    /// Its best vector instructions, by which products of the learning engine round; none in manifests of earlier versions.
+    #[serde(default)]
+    pub instructions: Option<Instructions>,
     /// Threads that the machine runs at once.
     pub cores: usize,
     /// Threads that the last run used.
@@ -96,6 +100,7 @@ impl Manifest {
             rustc: RUSTC.to_owned(),
             target: TARGET.to_owned(),
             cpu: cpu(),
+            instructions: Some(Instructions::Best.resolved()),
             cores: std::thread::available_parallelism().map_or(1, usize::from),
             threads: rayon::current_num_threads(),
             started: time(started),

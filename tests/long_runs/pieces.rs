@@ -4,6 +4,7 @@
 use crate::command::Case;
 use crate::faults::{full_disk, keys, pieces, said, signal, start};
 use crate::kinds::Kind;
+use bubbletouch::contact::Instructions;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::collections::{BTreeMap, BTreeSet};
@@ -79,6 +80,8 @@ impl Faults {
         let manifest: serde_json::Value = serde_json::from_str(&manifest).unwrap();
         assert_eq!(manifest["n_cells"], faults.n_pieces());
         assert_eq!(manifest["n_failed"], 0);
+        let best = serde_json::to_value(Instructions::here().last()).unwrap();
+        assert_eq!(manifest["instructions"], best);
         let hashes = manifest["tables_sha256"].as_object().unwrap();
         let names = hashes.keys().map(String::as_str);
         let names: Vec<&str> = names.collect();
