@@ -66,10 +66,12 @@ class _World:
 
     def scores(self, frames: NDArray[np.float32]) -> Floats:
         """(n, n_objects); zero of a frame that nothing touches."""
-        # The estimator's own checks cost as much as what it computes.
-        values = self.classifier._model.decision_values(self.features(frames))
-        touched = np.asarray(frames.any(axis=(1, 2)), np.float64)[:, None]
-        return values * touched
+        scores = np.zeros((len(frames), len(self.classifier.problems_)))
+        touched = np.flatnonzero(frames.any(axis=(1, 2)))
+        if len(touched):
+            # The estimator's own checks cost as much as what it computes.
+            scores[touched] = self.classifier._model.decision_values(self.features(frames[touched]))
+        return scores
 
     def touch(self, which: NDArray[np.int64], offset: Floats, yaw: Floats) -> NDArray[np.float32]:
         """Frames (n, ny, nx), metres, of the patch over places of the table seen from each object's own middle."""
