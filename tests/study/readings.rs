@@ -115,6 +115,24 @@ fn without_noise_a_touch_is_learned_once() {
 
 /// Another reading of a touch that a fold holds out would make any C look good.
 #[test]
+fn tilted_copies_come_after_all_readings_and_are_of_the_first() {
+    let tilted = "features = \"descriptors\"\ntilted_copies = 2";
+    let (once, twice) = (
+        features(&with(tilted)),
+        features(&with(&format!("{tilted}\ntraining_readings = 2"))),
+    );
+    let (n, n_train) = (120, 90);
+    assert_eq!(once.data.targets.len(), n + 2 * n_train);
+    assert_eq!(twice.data.targets.len(), 2 * n + 2 * n_train);
+    assert_eq!(twice.split.train.len(), 4 * n_train);
+    let copies =
+        |set: &FeatureSet, first: usize| set.data.records.slice(s![first.., ..]).to_owned();
+    assert_eq!(copies(&once, n), copies(&twice, 2 * n));
+    let labels = |set: &FeatureSet, first: usize| set.data.targets.slice(s![first..]).to_owned();
+    assert_eq!(labels(&once, n), labels(&twice, 2 * n));
+}
+
+#[test]
 fn a_choice_of_c_sees_first_readings_alone() {
     let choose =
         |keys: &str| STUDY.replace("c = 0.1", &format!("choose_c = [0.001, 0.1, 10.0]\n{keys}"));
