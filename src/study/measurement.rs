@@ -96,15 +96,15 @@ impl Measurements {
         rows
     }
 
-    /// What a cell learns from beside these training touches: the numbers of their tilted copies, which follow those of all touches. The
+    /// What a cell learns from beside these training touches: the numbers of their tilted copies, which follow those of all readings. The
     /// first copy of each touch, then the second of each.
     pub fn copies(&self, cell: &Cell, train: &[usize]) -> Vec<usize> {
         let (Some(copies), Some(n_copies)) = (&self.copies, cell.tilted_copies) else {
             return Vec::new();
         };
-        let n_touches = self.values.nrows() / self.n_frames.max(1);
+        let n_read = self.values.nrows() / self.n_frames.max(1);
         let rows = copies.rows(train, n_copies);
-        rows.map(|row| n_touches + row).collect()
+        rows.map(|row| n_read + row).collect()
     }
 
     /// All frames of some touches one after the other, as the cell's kind of features: n × F·m.

@@ -6,7 +6,7 @@ use ndarray::{Array2, ArrayView1, ArrayView2, ArrayViewMut2};
 use serde::{Deserialize, Serialize};
 
 use crate::recognition::svm::gram::extent::Extent;
-use crate::recognition::svm::linalg::products::{multiply, own_products};
+use crate::recognition::svm::linalg::products::{multiply, with_each_other};
 use crate::recognition::svm::linalg::scalar::Scalar;
 use crate::{Error, Result};
 
@@ -227,14 +227,7 @@ impl KernelFunction {
 
     /// The same of all rows (n × m) with each other: n × n.
     pub fn own_pairwise<T: Scalar>(&self, rows: ArrayView2<T>) -> Array2<T> {
-        match self {
-            Self::Laplacian { .. } => {
-                let mut own = Array2::zeros((rows.nrows(), rows.nrows()));
-                absolute_differences(rows, rows, own.view_mut());
-                own
-            }
-            _ => own_products(rows),
-        }
+        with_each_other(rows, |left, right, to| self.pairwise(left, right, to))
     }
 
     /// `K(x, x)` of a row's squared norm.

@@ -19,12 +19,20 @@ pub(crate) fn multiply<T: Scalar>(left: ArrayView2<T>, right: ArrayView2<T>, to:
 
 /// `z_i · z_j` of all rows (n × m): n × n, symmetric.
 pub(crate) fn own_products<T: Scalar>(rows: ArrayView2<T>) -> Array2<T> {
+    with_each_other(rows, multiply)
+}
+
+/// What `pairwise` makes of rows with others, as [`multiply`] does and the same in either order, of all rows (n × m): n × n, half of it copied.
+pub(crate) fn with_each_other<T: Scalar>(
+    rows: ArrayView2<T>,
+    pairwise: impl Fn(ArrayView2<T>, ArrayView2<T>, ArrayViewMut2<T>),
+) -> Array2<T> {
     let n = rows.nrows();
     let mut products = Array2::zeros((n, n));
     for start in (0..n).step_by(ROWS_AT_ONCE) {
         let end = n.min(start + ROWS_AT_ONCE);
         let (left, right) = (rows.slice(s![start..end, ..]), rows.slice(s![..end, ..]));
-        multiply(left, right, products.slice_mut(s![start..end, ..end]));
+        pairwise(left, right, products.slice_mut(s![start..end, ..end]));
     }
     mirror(&mut products.view_mut());
     products
