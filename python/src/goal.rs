@@ -3,10 +3,7 @@
 use crate::arrays::view;
 use crate::errors::bad_input;
 use bubbletouch::Result;
-use bubbletouch::contact::{
-    Approach, Contact, Workspace, first_contact, press_at_pose, press_to_depth, press_to_force,
-    press_to_travel, press_with_contacts,
-};
+use bubbletouch::contact::{self, Approach, Contact, Row, Workspace, first_contact};
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::Model;
 use bubbletouch::world::Patch;
@@ -124,8 +121,12 @@ impl Goal {
             patch,
             models: from_ref(model),
             poses: from_ref(pose),
-            until: self.until,
-            amount: self.amount(number),
+            goal: match self.until {
+                Until::Pose => contact::Goal::Pose,
+                Until::Depth => contact::Goal::Depth(self.amount(number)),
+                Until::Travel => contact::Goal::Travel(self.amount(number)),
+                Until::Force => contact::Goal::Force(self.amount(number)),
+            },
         }
     }
 }
@@ -135,8 +136,7 @@ pub struct Press<'a> {
     patch: &'a Patch,
     models: &'a [Model],
     poses: &'a [Pose],
-    until: Until,
-    amount: f64,
+    goal: contact::Goal,
 }
 
 impl Press<'_> {
@@ -145,19 +145,22 @@ impl Press<'_> {
     /// # Errors
     /// A force that cannot be reached.
     pub fn deflect(&self, workspace: &mut Workspace) -> Result<Option<Contact>> {
-        let &Self {
-            patch,
-            models,
-            poses,
-            until,
-            amount,
-        } = self;
-        Ok(match until {
-            Until::Pose => Some(press_at_pose(patch, models, poses, workspace)),
-            Until::Depth => press_to_depth(patch, models, poses, amount, workspace),
-            Until::Travel => Some(press_to_travel(patch, models, poses, amount, workspace)),
-            Until::Force => press_to_force(patch, models, poses, amount, workspace)?,
-        })
+        contact::press(self.patch, self.models, self.poses, self.goal, workspace)
+    }
+
+    /// The same, written into a row.
+    ///
+    /// # Errors
+    /// A force that cannot be reached.
+    pub fn deflect_into(&self, row: Row, workspace: &mut Workspace) -> Result<Option<Contact>> {
+        contact::press_into(
+            self.patch,
+            self.models,
+            self.poses,
+            self.goal,
+            row,
+            workspace,
+        )
     }
 
     /// The same press, to rounding, that leaves what touches what; `None` where nothing does, whatever the workspace holds then.
@@ -165,25 +168,25 @@ impl Press<'_> {
     /// # Errors
     /// A force that cannot be reached.
     pub fn meet(&self, workspace: &mut Workspace) -> Result<Option<Contact>> {
-        let &Self {
-            patch,
-            models,
-            poses,
-            until,
-            amount,
-        } = self;
+        let (patch, models, poses) = (self.patch, self.models, self.poses);
         let approach = Approach::new(patch, DVec3::Z)?;
-        Ok(match until {
-            Until::Pose => Some(press_with_contacts(patch, models, poses, workspace)),
-            Until::Depth => approach.press_to_depth(models, poses, amount, workspace),
-            Until::Travel => {
+        let to_depth = |depth, workspace: &mut Workspace| {
+            approach.press_to_depth(models, poses, depth, workspace)
+        };
+        Ok(match self.goal {
+            contact::Goal::Pose => Some(contact::press_with_contacts(
+                patch, models, poses, workspace,
+            )),
+            contact::Goal::Depth(depth) => to_depth(depth, workspace),
+            contact::Goal::Travel(travel) => {
                 let first = first_contact(patch, models, poses, workspace);
-                let depth = first
-                    .map(|first| amount - first)
-                    .filter(|depth| *depth > 0.0);
-                depth.and_then(|depth| approach.press_to_depth(models, poses, depth, workspace))
+                let depth = first.map(|first| travel - first);
+                let depth = depth.filter(|depth| *depth > 0.0);
+                depth.and_then(|depth| to_depth(depth, workspace))
             }
-            Until::Force => approach.press_to_force(models, poses, amount, workspace)?,
+            contact::Goal::Force(force) => {
+                approach.press_to_force(models, poses, force, workspace)?
+            }
         })
     }
 }

@@ -9,7 +9,7 @@ use crate::jacobian;
 use crate::model::model_of;
 use crate::patch::Patch;
 use crate::poses::Poses;
-use bubbletouch::contact::Workspace;
+use bubbletouch::contact::{Row, Workspace};
 use glam::DVec3;
 use numpy::{
     Element, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods,
@@ -23,20 +23,18 @@ use std::time::Instant;
 
 /// What frames can be made of.
 trait Real: Element + Copy + Default + Send + Sync {
-    fn write(to: &mut [Self], deflections: &[f64]);
+    fn row(frame: &mut [Self]) -> Row<'_>;
 }
 
 impl Real for f64 {
-    fn write(to: &mut [Self], deflections: &[f64]) {
-        to.copy_from_slice(deflections);
+    fn row(frame: &mut [Self]) -> Row<'_> {
+        Row::Double(frame)
     }
 }
 
 impl Real for f32 {
-    fn write(to: &mut [Self], deflections: &[f64]) {
-        for (to, deflection) in to.iter_mut().zip(deflections) {
-            *to = *deflection as f32;
-        }
+    fn row(frame: &mut [Self]) -> Row<'_> {
+        Row::Single(frame)
     }
 }
 
@@ -204,13 +202,13 @@ impl<'py> Batch<'_, 'py> {
         type Item<'a, T> = (&'a mut [T], Option<&'a mut [f64]>);
         let work = |number: usize, (frame, changes): Item<T>, workspace: &mut Workspace| {
             let press = goal.of_pose(number, patch, (model, &poses[number]));
-            let pressed = press.deflect(workspace);
+            let pressed = match are_zero {
+                true => press.deflect(workspace),
+                false => press.deflect_into(T::row(frame), workspace),
+            };
             let pressed = pressed.map_err(|error| named(number, error))?;
-            if !are_zero {
-                frame.fill(T::default());
-            }
-            if pressed.is_some() {
-                workspace.write_deflections(frame, T::write);
+            if are_zero {
+                workspace.write_onto_zeros(T::row(frame));
             }
             if !wanted.contacts && changes.is_none() {
                 return Ok(());

@@ -6,7 +6,7 @@ use super::press_place::Place;
 use super::press_poses::{self, press_poses};
 use super::streams::{note, write_out};
 use super::which_object::catalogue;
-use bubbletouch::contact::{Workspace, press_at_pose, press_to_depth, press_to_force};
+use bubbletouch::contact::{self, Goal, Workspace};
 use bubbletouch::geometry::Pose;
 use bubbletouch::mesh::{LengthUnit, SizeLimits};
 use bubbletouch::objects::Model;
@@ -109,22 +109,17 @@ pub fn press(args: &Args) -> Result<()> {
     let patch = args.patch()?;
     let (model, pose) = args.placed_object()?;
     let objects = [model];
-    let depth = args.depth(patch.taxels().at(0))?;
+    let goal = match (args.force_n, args.depth(patch.taxels().at(0))?) {
+        (Some(force), _) => Goal::Force(force),
+        (_, Some(depth)) => Goal::Depth(depth),
+        (None, None) => Goal::Pose,
+    };
     if let Some(path) = &args.many.poses {
-        return press_poses(
-            &args.many,
-            path,
-            (&patch, &objects),
-            depth,
-            args.out.as_deref(),
-        );
+        let out = args.out.as_deref();
+        return press_poses(&args.many, path, (&patch, &objects), goal, out);
     }
     let mut workspace = Workspace::new();
-    let contact = match (args.force_n, depth) {
-        (Some(force), _) => press_to_force(&patch, &objects, &[pose], force, &mut workspace)?,
-        (_, Some(depth)) => press_to_depth(&patch, &objects, &[pose], depth, &mut workspace),
-        (None, None) => Some(press_at_pose(&patch, &objects, &[pose], &mut workspace)),
-    };
+    let contact = contact::press(&patch, &objects, &[pose], goal, &mut workspace)?;
     let contact = contact.ok_or_else(|| {
         let allowed = "an offset that brings some of it over a taxel";
         Error::input("press", "the object is not over the array", allowed)

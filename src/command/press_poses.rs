@@ -2,7 +2,7 @@
 
 use super::output::check_ending;
 use super::streams::say;
-use bubbletouch::contact::{Contact, Workspace, press_at_pose, press_to_depth};
+use bubbletouch::contact::{self, Contact, Goal, Workspace};
 use bubbletouch::files::table_error;
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::Model;
@@ -58,12 +58,12 @@ struct Reading {
     us: f64,
 }
 
-/// Presses at the poses of the file at `path`, `depth` metres past first contact or where they are.
+/// Presses to a goal at each of the poses of the file at `path`.
 pub fn press_poses(
     args: &Args,
     path: &Path,
     (patch, objects): (&Patch, &[Model; 1]),
-    depth: Option<f64>,
+    goal: Goal,
     out: Option<&Path>,
 ) -> Result<()> {
     if !(1..=MOST_REPEATS).contains(&args.repeat) {
@@ -76,13 +76,12 @@ pub fn press_poses(
     let (ny, nx) = grid.map_or((1, patch.n_taxels()), |grid| (grid.ny, grid.nx));
     let mut frames = Array3::zeros((poses.len(), ny, nx));
     let mut workspace = Workspace::new();
-    let press = |pose: &Pose, workspace: &mut Workspace| match depth {
-        None => Some(press_at_pose(patch, objects, &[*pose], workspace)),
-        Some(depth) => press_to_depth(patch, objects, &[*pose], depth, workspace),
+    let press = |pose: &Pose, workspace: &mut Workspace| {
+        contact::press(patch, objects, &[*pose], goal, workspace)
     };
     let mut contacts: Vec<Option<Contact>> = Vec::with_capacity(poses.len());
     for (pose, mut frame) in poses.iter().zip(frames.outer_iter_mut()) {
-        contacts.push(press(pose, &mut workspace));
+        contacts.push(press(pose, &mut workspace)?);
         let read = ArrayView2::from_shape(frame.dim(), workspace.deflections());
         frame.assign(&read.expect("a press gives one deflection a taxel"));
     }
@@ -91,7 +90,7 @@ pub fn press_poses(
     for _ in 0..args.repeat {
         for (pose, times) in poses.iter().zip(&mut times) {
             let start = Instant::now();
-            press(pose, &mut workspace);
+            press(pose, &mut workspace)?;
             times.push(1e6 * start.elapsed().as_secs_f64());
         }
     }

@@ -1,7 +1,7 @@
 //! How far a patch can go over a mesh: the height at which the mesh stops each taxel, only where it can be reached.
 
 use super::grid_lines::GridLines;
-use super::grid_press::{Goal, Placed};
+use super::grid_press::{Placed, Until};
 use super::swept_triangle::{SweptEdge, SweptFace, corner_height};
 use crate::geometry::{Aabb, Pose};
 use crate::mesh::Triangle;
@@ -27,7 +27,7 @@ impl Envelope {
     }
 
     /// Looks where meshes stop the taxels, up to the goal; whether there is any mesh. `first`: the travel at which the spheres touch.
-    pub fn look(&mut self, placed: &Placed, (goal, first): (Goal, f64)) -> bool {
+    pub fn look(&mut self, placed: &Placed, (goal, first): (Until, f64)) -> bool {
         let pairs = placed.objects.iter().zip(placed.patch_from_objects);
         let meshes = pairs.filter_map(|(object, pose)| match object {
             Model::Mesh(mesh) => Some((mesh, pose)),
@@ -44,7 +44,7 @@ impl Envelope {
     }
 
     /// Lowers the heights to those of a mesh where they are below the limit.
-    fn lower(&mut self, mesh: &MeshModel, pose: &Pose, placed: &Placed, goal: (Goal, f64)) {
+    fn lower(&mut self, mesh: &MeshModel, pose: &Pose, placed: &Placed, goal: (Until, f64)) {
         let first = Cell::new(self.first);
         let radius = placed.radius;
         let sweep = Sweep {
@@ -78,7 +78,7 @@ struct Sweep<'a> {
     radius: f64,
     lines: &'a GridLines,
     /// And the travel at which what has been looked at before touches.
-    goal: (Goal, f64),
+    goal: (Until, f64),
     heights: &'a [Cell<f64>],
     first: &'a Cell<f64>,
 }
@@ -91,9 +91,9 @@ impl Sweep<'_> {
     /// The travel up to which heights matter.
     fn limit(&self) -> f64 {
         match self.goal {
-            (Goal::Travel(travel), _) => travel,
-            (Goal::Pose, _) => 0.0,
-            (Goal::Depth(depth), others) => self.first.get().min(others) + depth,
+            (Until::Travel(travel), _) => travel,
+            (Until::Pose, _) => 0.0,
+            (Until::Depth(depth), others) => self.first.get().min(others) + depth,
         }
     }
 

@@ -6,7 +6,8 @@
 
 use super::Contact;
 use super::crossing::{Sample, crossing};
-use super::grid_press::{Goal, GridPress};
+use super::grid_press::{GridPress, Until};
+use super::row::Zeroing;
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::objects::Model;
@@ -21,11 +22,11 @@ pub(super) fn press(
     objects: &[Model],
     patch_from_objects: &[Pose],
     force: f64,
-    press: &mut GridPress,
+    (press, zeroing): (&mut GridPress, &mut Zeroing),
 ) -> Result<Option<Contact>> {
     check_force(force)?;
     let stroke = grid.stroke;
-    let gathered = press.gather(grid, objects, patch_from_objects, Goal::Depth(stroke));
+    let gathered = press.gather(grid, objects, patch_from_objects, Until::Depth(stroke));
     let Some(first) = gathered else {
         press.touch_nothing(grid);
         return Ok(None);
@@ -34,7 +35,7 @@ pub(super) fn press(
     if curve.largest() < force {
         // Not before the first taxel is saturated: then all that is there counts.
         let depth = top(objects, patch_from_objects) + stroke - first;
-        press.gather(grid, objects, patch_from_objects, Goal::Depth(depth));
+        press.gather(grid, objects, patch_from_objects, Until::Depth(depth));
         curve = ForceCurve::of(press, (grid, stiffness), first + depth);
     }
     let largest = curve.largest();
@@ -47,7 +48,7 @@ pub(super) fn press(
         return Err(too_much(force, largest, &where_to));
     }
     let travel = curve.travel(force.min(largest));
-    Ok(Some(press.indent(grid, travel)))
+    Ok(Some(press.indent(grid, travel, zeroing)))
 }
 
 /// What summing thousands of springs rounds a force by, as a share: far above 1e-16, far below what is felt.

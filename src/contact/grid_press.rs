@@ -5,6 +5,7 @@ use super::envelope::Envelope;
 use super::grid_lines::GridLines;
 use super::instructions::{Instructions, for_instructions};
 use super::placed_sphere::PlacedSphere;
+use super::row::Zeroing;
 use super::sheet::Sheet;
 use super::sphere_search::{SphereSearch, search};
 use crate::geometry::Pose;
@@ -46,7 +47,7 @@ impl GridPress {
         grid: &EvenGrid,
         objects: &[Model],
         patch_from_objects: &[Pose],
-        goal: Goal,
+        goal: Until,
     ) -> Option<f64> {
         assert_eq!(
             objects.len(),
@@ -55,8 +56,8 @@ impl GridPress {
         );
         self.lines.lay(&grid.grid);
         self.behind = match goal {
-            Goal::Pose => grid.behind(),
-            Goal::Travel(_) | Goal::Depth(_) => f64::NEG_INFINITY,
+            Until::Pose => grid.behind(),
+            Until::Travel(_) | Until::Depth(_) => f64::NEG_INFINITY,
         };
         let placed = Placed {
             objects,
@@ -73,9 +74,14 @@ impl GridPress {
     }
 
     /// Indents the patch at a travel, after a depth of at least as much has been gathered for.
-    pub(super) fn indent(&mut self, grid: &EvenGrid, travel: f64) -> Contact {
+    pub(super) fn indent(
+        &mut self,
+        grid: &EvenGrid,
+        travel: f64,
+        zeroing: &mut Zeroing,
+    ) -> Contact {
         let stroke = grid.stroke;
-        self.push(grid, travel);
+        self.push(grid, travel, zeroing);
         let [n_touched, n_saturated] = stop_at_stroke(self.instructions, &mut self.sheet, stroke);
         Contact {
             travel,
@@ -86,7 +92,7 @@ impl GridPress {
 
     /// For each taxel that what has been gathered reaches up to `travel`, the travel at which it begins to move, metres.
     pub(super) fn starts(&mut self, grid: &EvenGrid, travel: f64) -> &[f64] {
-        self.push(grid, travel);
+        self.push(grid, travel, &mut Zeroing::nothing());
         self.starts.clear();
         self.starts.reserve(grid.grid.n_taxels());
         let Self { sheet, starts, .. } = self;
@@ -103,14 +109,16 @@ impl GridPress {
     }
 
     /// Sets the deflections to what the taxels need at a travel, without a stop.
-    fn push(&mut self, grid: &EvenGrid, travel: f64) {
+    fn push(&mut self, grid: &EvenGrid, travel: f64, zeroing: &mut Zeroing) {
         self.touch_nothing(grid);
+        zeroing.in_steps(self.search.found.len());
         raise_all(
             self.instructions,
             &self.search.found,
             &self.lines,
             (travel, self.behind),
             &mut self.sheet,
+            zeroing,
         );
         if !self.envelope.heights.is_empty() {
             self.sheet.cover(&(0..grid.grid.ny), &(0..grid.grid.nx));
@@ -126,12 +134,13 @@ impl GridPress {
 }
 
 for_instructions! {
-    /// Raises the deflections to what the spheres need at a travel, if they are not behind the substrate.
+    /// Raises the deflections to what the spheres need at a travel, if they are not behind the substrate, and fills a row meanwhile.
     fn raise_all(
         spheres: &[PlacedSphere],
         lines: &GridLines,
         travel_and_behind: (f64, f64),
         sheet: &mut Sheet,
+        zeroing: &mut Zeroing,
     ) = raise_each
 }
 
@@ -141,8 +150,10 @@ fn raise_each(
     lines: &GridLines,
     (travel, behind): (f64, f64),
     sheet: &mut Sheet,
+    zeroing: &mut Zeroing,
 ) {
     for sphere in spheres {
+        zeroing.step();
         let height = sphere.center.z - travel;
         if height < behind {
             sphere.raise_through(lines, height, behind, sheet);
@@ -154,7 +165,7 @@ fn raise_each(
 
 /// How far a press goes, and what counts on the way.
 #[derive(Clone, Copy)]
-pub(super) enum Goal {
+pub(super) enum Until {
     /// To this travel, metres, from the front: all counts.
     Travel(f64),
     /// Nowhere: what is behind the substrate does not count.

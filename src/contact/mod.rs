@@ -54,6 +54,7 @@ mod near_spheres;
 mod placed_sphere;
 mod press;
 mod raise;
+mod row;
 mod sheet;
 mod simulate;
 mod skin_mesh;
@@ -76,10 +77,11 @@ pub use hold_force::{HeldForce, MovedObject};
 pub use instructions::Instructions;
 pub(crate) use instructions::for_instructions;
 pub use press::{
-    Contact, first_contact, press_at_pose, press_to_depth, press_to_force, press_to_travel,
-    press_with_contacts,
+    Contact, Goal, first_contact, press, press_at_pose, press_into, press_to_depth, press_to_force,
+    press_to_travel, press_with_contacts,
 };
 pub(crate) use raise::{beats, raise};
+pub use row::Row;
 pub use simulate::{Recording, simulate};
 pub use spring_load::{AxialLoad, SpringLoad, Wrench, axial_load, spring_load};
 pub use swept_triangle::stopping_height;

@@ -4,7 +4,8 @@
 //! (`approach`); what both can do is the same, to rounding.
 
 use super::approach::Approach;
-use super::grid_press::Goal;
+use super::grid_press::Until;
+use super::row::{Row, Zeroing};
 use super::workspace::Workspace;
 use super::{grid_force, tree_press};
 use crate::error::Result;
@@ -23,6 +24,74 @@ pub struct Contact {
     pub n_saturated: usize,
 }
 
+/// What ends a press.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Goal {
+    /// Nothing: [`press_at_pose`].
+    Pose,
+    /// Metres past first contact: [`press_to_depth`].
+    Depth(f64),
+    /// Metres from the pose: [`press_to_travel`].
+    Travel(f64),
+    /// Newtons that the springs carry: [`press_to_force`].
+    Force(f64),
+}
+
+/// The press that a goal asks for; `None` (and zero deflections) where the patch meets nothing on its way.
+///
+/// # Errors
+/// Those of [`press_to_force`].
+///
+/// # Panics
+/// If there are not as many poses as objects.
+pub fn press(
+    patch: &Patch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    goal: Goal,
+    workspace: &mut Workspace,
+) -> Result<Option<Contact>> {
+    let placed = (objects, patch_from_objects);
+    to_goal(patch, placed, goal, (workspace, &mut Zeroing::nothing()))
+}
+
+/// The same press, whose deflections are written into a row, too: faster than a copy of them, where rows are many.
+///
+/// # Errors
+/// Those of [`press_to_force`]; then nobody knows what is in the row.
+///
+/// # Panics
+/// If there are not as many poses as objects, or the row has not one place a taxel.
+pub fn press_into(
+    patch: &Patch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    goal: Goal,
+    mut row: Row,
+    workspace: &mut Workspace,
+) -> Result<Option<Contact>> {
+    let mut zeroing = Zeroing::of(row.again());
+    let placed = (objects, patch_from_objects);
+    let contact = to_goal(patch, placed, goal, (workspace, &mut zeroing))?;
+    zeroing.finish();
+    workspace.write_onto_zeros(row);
+    Ok(contact)
+}
+
+fn to_goal(
+    patch: &Patch,
+    placed: (&[Model], &[Pose]),
+    goal: Goal,
+    scratch: (&mut Workspace, &mut Zeroing),
+) -> Result<Option<Contact>> {
+    Ok(match goal {
+        Goal::Pose => Some(at_pose(patch, placed, scratch)),
+        Goal::Depth(depth) => to_depth(patch, placed, depth, scratch),
+        Goal::Travel(travel) => Some(to_travel(patch, placed, travel, scratch)),
+        Goal::Force(force) => to_force(patch, placed, force, scratch)?,
+    })
+}
+
 /// How far the patch must travel along z until the first taxel is touched, metres (negative: it already is); `None` where no
 /// travel would touch anything.
 ///
@@ -38,10 +107,10 @@ pub fn first_contact(
 ) -> Option<f64> {
     match patch.even_grid() {
         Some(grid) => {
-            let goal = Goal::Depth(0.0);
+            let until = Until::Depth(0.0);
             workspace
                 .on_grid()
-                .gather(grid, objects, patch_from_objects, goal)
+                .gather(grid, objects, patch_from_objects, until)
         }
         None => Approach::ahead(patch).first_contact(objects, patch_from_objects),
     }
@@ -61,6 +130,16 @@ pub fn press_to_depth(
     depth: f64,
     workspace: &mut Workspace,
 ) -> Option<Contact> {
+    let placed = (objects, patch_from_objects);
+    to_depth(patch, placed, depth, (workspace, &mut Zeroing::nothing()))
+}
+
+fn to_depth(
+    patch: &Patch,
+    (objects, patch_from_objects): (&[Model], &[Pose]),
+    depth: f64,
+    (workspace, zeroing): (&mut Workspace, &mut Zeroing),
+) -> Option<Contact> {
     let Some(grid) = patch.even_grid() else {
         let approach = Approach::ahead(patch);
         let first = approach.first_contact(objects, patch_from_objects);
@@ -68,11 +147,11 @@ pub fn press_to_depth(
         return approach.deflect(objects, patch_from_objects, travels, workspace);
     };
     let press = workspace.on_grid();
-    let first = press.gather(grid, objects, patch_from_objects, Goal::Depth(depth));
+    let first = press.gather(grid, objects, patch_from_objects, Until::Depth(depth));
     if first.is_none() {
         press.touch_nothing(grid);
     }
-    first.map(|first| press.indent(grid, first + depth))
+    first.map(|first| press.indent(grid, first + depth, zeroing))
 }
 
 /// Presses until the patch has moved `travel` metres along z from the pose given, from the front: the press of [`press_to_depth`]
@@ -87,6 +166,16 @@ pub fn press_to_travel(
     travel: f64,
     workspace: &mut Workspace,
 ) -> Contact {
+    let placed = (objects, patch_from_objects);
+    to_travel(patch, placed, travel, (workspace, &mut Zeroing::nothing()))
+}
+
+fn to_travel(
+    patch: &Patch,
+    (objects, patch_from_objects): (&[Model], &[Pose]),
+    travel: f64,
+    (workspace, zeroing): (&mut Workspace, &mut Zeroing),
+) -> Contact {
     let Some(grid) = patch.even_grid() else {
         let approach = Approach::ahead(patch);
         let first = approach.first_contact(objects, patch_from_objects);
@@ -97,8 +186,8 @@ pub fn press_to_travel(
         return Contact { travel, ..contact };
     };
     let press = workspace.on_grid();
-    press.gather(grid, objects, patch_from_objects, Goal::Travel(travel));
-    press.indent(grid, travel)
+    press.gather(grid, objects, patch_from_objects, Until::Travel(travel));
+    press.indent(grid, travel, zeroing)
 }
 
 /// Presses until the springs carry `force` newtons together, Σ k δ: to within 1e-12 of it, or to the last bit of the travel.
@@ -139,13 +228,23 @@ pub fn press_to_force(
     force: f64,
     workspace: &mut Workspace,
 ) -> Result<Option<Contact>> {
+    let placed = (objects, patch_from_objects);
+    to_force(patch, placed, force, (workspace, &mut Zeroing::nothing()))
+}
+
+fn to_force(
+    patch: &Patch,
+    (objects, patch_from_objects): (&[Model], &[Pose]),
+    force: f64,
+    (workspace, zeroing): (&mut Workspace, &mut Zeroing),
+) -> Result<Option<Contact>> {
     match (patch.even_grid(), patch.taxels()) {
         (Some(grid), Taxels::Equal(taxel)) => grid_force::press(
             (grid, taxel.stiffness),
             objects,
             patch_from_objects,
             force,
-            workspace.on_grid(),
+            (workspace.on_grid(), zeroing),
         ),
         _ => Approach::ahead(patch).press_to_force(objects, patch_from_objects, force, workspace),
     }
@@ -206,12 +305,21 @@ pub fn press_at_pose(
     patch_from_objects: &[Pose],
     workspace: &mut Workspace,
 ) -> Contact {
+    let placed = (objects, patch_from_objects);
+    at_pose(patch, placed, (workspace, &mut Zeroing::nothing()))
+}
+
+fn at_pose(
+    patch: &Patch,
+    (objects, patch_from_objects): (&[Model], &[Pose]),
+    (workspace, zeroing): (&mut Workspace, &mut Zeroing),
+) -> Contact {
     let are_spheres = || objects.iter().all(|object| object.spheres().is_some());
     match patch.even_grid() {
         Some(grid) if are_spheres() && !workspace.holds_any() => {
             let press = workspace.on_grid();
-            press.gather(grid, objects, patch_from_objects, Goal::Pose);
-            press.indent(grid, 0.0)
+            press.gather(grid, objects, patch_from_objects, Until::Pose);
+            press.indent(grid, 0.0, zeroing)
         }
         _ => tree_press::deflect(patch, objects, patch_from_objects, workspace),
     }

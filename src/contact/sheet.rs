@@ -1,6 +1,7 @@
 //! The deflections of a grid patch, and where they are.
 
 use super::placed_sphere::{BLOCK, WIDE};
+use super::row::Row;
 use std::ops::Range;
 
 /// The deflections of a grid, row by row, and the rectangle outside of which all are zero.
@@ -20,13 +21,12 @@ impl Sheet {
         &self.deflections[..self.n_taxels]
     }
 
-    /// The same as other numbers, n_taxels zeros: `write` makes them of what is covered, the rest is not looked at.
-    pub fn write_onto<T>(&self, zeros: &mut [T], write: impl Fn(&mut [T], &[f64])) {
-        assert_eq!(zeros.len(), self.n_taxels, "one number a taxel");
+    /// Writes what is covered into a row of n_taxels zeros.
+    pub fn write_onto_zeros(&self, zeros: &mut Row) {
         for row in self.rows.clone() {
             let first = row * self.n_columns;
             let columns = first + self.columns.start..first + self.columns.end;
-            write(&mut zeros[columns.clone()], &self.deflections[columns]);
+            zeros.write(columns.start, &self.deflections[columns]);
         }
     }
 

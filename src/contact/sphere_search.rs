@@ -1,7 +1,7 @@
 //! Which spheres can press a flat grid: clusters of neighbours first, then the spheres of those that are near.
 
 use super::below::Below;
-use super::grid_press::{Goal, Placed};
+use super::grid_press::{Placed, Until};
 use super::instructions::for_instructions;
 use super::placed_sphere::{PlacedSphere, View};
 use crate::objects::{Model, SphereClusters};
@@ -25,23 +25,23 @@ for_instructions! {
     /// infinite if none is, or if the goal is no depth.
     ///
     /// For a depth, the cluster that is nearest is looked at beforehand, so that most others need no look to know what is first.
-    pub(super) fn search(search: &mut SphereSearch, placed: &Placed, goal: Goal) -> f64 = run
+    pub(super) fn search(search: &mut SphereSearch, placed: &Placed, goal: Until) -> f64 = run
 }
 
 #[inline(always)]
-fn run(search: &mut SphereSearch, placed: &Placed, goal: Goal) -> f64 {
+fn run(search: &mut SphereSearch, placed: &Placed, goal: Until) -> f64 {
     search.lay(placed);
     match goal {
-        Goal::Travel(travel) => {
+        Until::Travel(travel) => {
             search.gather(placed.objects, travel, |_| true);
             f64::INFINITY
         }
-        Goal::Depth(depth) => {
+        Until::Depth(depth) => {
             let first = search.first_touch(placed);
             search.gather(placed.objects, first + depth, |_| true);
             first
         }
-        Goal::Pose => {
+        Until::Pose => {
             search.gather(placed.objects, 0.0, |sphere| {
                 sphere.center.z + sphere.reach > placed.behind
             });

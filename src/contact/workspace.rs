@@ -3,6 +3,7 @@
 use super::grid_lines::GridLines;
 use super::grid_press::GridPress;
 use super::instructions::Instructions;
+use super::row::Row;
 use super::taxel_contact::TaxelContact;
 use crate::geometry::Pose;
 
@@ -65,15 +66,16 @@ impl Workspace {
         }
     }
 
-    /// The same onto an array's row, n_taxels zeros of any numbers: `write` makes them of deflections, and what a press of a grid has not
-    /// come near is left alone. Zeros of many rows at once are several times faster than a copy of each.
+    /// Writes them into a row of n_taxels zeros. What a press of a grid has not come near is left alone: an array whose pages
+    /// were never written costs nothing there.
     ///
     /// # Panics
     /// If the row has not one place a taxel.
-    pub fn write_deflections<T>(&self, zeros: &mut [T], write: impl Fn(&mut [T], &[f64])) {
+    pub fn write_onto_zeros(&self, mut row: Row) {
+        assert_eq!(row.len(), self.deflections().len(), "one number a taxel");
         match self.is_on_grid {
-            true => self.grid.sheet().write_onto(zeros, write),
-            false => write(zeros, &self.deflections),
+            true => self.grid.sheet().write_onto_zeros(&mut row),
+            false => row.write(0, &self.deflections),
         }
     }
 

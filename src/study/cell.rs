@@ -31,6 +31,8 @@ pub struct Cell {
     pub nx: usize,
     /// Taxel rows.
     pub ny: usize,
+    /// Rows and columns of its images.
+    pub image_shape: (usize, usize),
     /// Side length of the array along x: nx × pitch.
     pub size_mm: f64,
     /// Noise standard deviation, in `noise_unit`.
@@ -161,8 +163,7 @@ impl Columns for Cell {
 impl Cell {
     /// Numbers that each of its frames is told by.
     pub fn n_frame_features(&self) -> usize {
-        let shape = (self.ny, self.nx);
-        self.features.n_values(self.measurements, shape)
+        self.features.n_values(self.measurements, self.image_shape)
     }
 
     /// What it learns from, where that is made of images.
@@ -194,6 +195,7 @@ pub(crate) mod tests {
             pitch_mm: 2.0,
             nx: 32,
             ny: 32,
+            image_shape: (32, 32),
             size_mm: 64.0,
             noise_std: 0.1,
             noise_unit: NoiseUnit::FullScale,

@@ -1,10 +1,11 @@
 //! Features of images: from measurements of a trial by way of an estimate of the frame.
 
 use super::measurement::{LEARNED_FRAMES, WITH_COPIES};
+use super::taxel_array::TaxelArray;
 use super::tilted_copies::TiltedCopies;
 use crate::error::Result;
 use crate::random::Seed;
-use crate::recognition::features::{Cut, ImageFeatures, Join, Workspace, tilt_frame};
+use crate::recognition::features::{Chart, Cut, ImageFeatures, Join, Workspace, tilt_frame};
 use crate::sensing::{Ensemble, ImageEstimate, ImagePrior, Projection, Readings};
 use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis, s};
 use rayon::prelude::*;
@@ -27,32 +28,40 @@ pub struct FeaturesOfImages {
 /// Images of the frames of a group, from so many measurements as its cells have.
 #[derive(Clone, Debug)]
 pub struct Images {
-    /// ny, nx.
+    /// Rows and columns.
     shape: (usize, usize),
+    /// Where taxels are no pixels.
+    chart: Option<Chart>,
     full_scale: f64,
     /// By m.
     estimates: Vec<(usize, ImageEstimate)>,
 }
 
 impl Images {
-    /// For these projections of one array, its full scale (a reading's unit), and what they are learned from.
+    /// For these projections of an array, its full scale (a reading's unit), and what they are learned from.
     ///
     /// # Errors
     /// What an estimate refuses.
     pub fn new(
         projections: &[Projection],
-        (shape, full_scale): ((usize, usize), f64),
+        (array, full_scale): (&TaxelArray, f64),
         readings: Readings,
         seed: &Seed,
     ) -> Result<Self> {
         let is_whole = |projection: &Projection| projection.ensemble() == Ensemble::Identity;
-        let n_frames = match readings.training.nrows() < LEARNED_FRAMES {
-            true => WITH_COPIES,
-            false => LEARNED_FRAMES,
+        let (chart, n_training) = (array.chart(), readings.training.nrows());
+        // Copies are moved by rows and columns.
+        let n_frames = match (&chart, n_training < LEARNED_FRAMES) {
+            (Some(_), _) => n_training,
+            (None, true) => WITH_COPIES,
+            (None, false) => LEARNED_FRAMES,
         };
         let prior = match projections.iter().all(is_whole) {
             true => None,
-            false => Some(ImagePrior::learned(shape, readings, n_frames, seed)?),
+            false => {
+                let shape = array.frame_shape();
+                Some(ImagePrior::learned(shape, readings, n_frames, seed)?)
+            }
         };
         let estimates = projections.iter().map(|projection| {
             let estimate = match prior.as_ref().filter(|_| !is_whole(projection)) {
@@ -62,7 +71,8 @@ impl Images {
             Ok((projection.n_measurements(), estimate))
         });
         Ok(Self {
-            shape,
+            shape: array.image().0,
+            chart,
             full_scale,
             estimates: estimates.collect::<Result<_>>()?,
         })
@@ -100,7 +110,7 @@ impl Images {
             let blocks = blocks(rows, n_touches, 1).into_par_iter();
             blocks.for_each_init(Workspace::default, |workspace, (touches, mut rows)| {
                 let frames = touches.start * n_frames..touches.end * n_frames;
-                let images = estimate.images(values.slice(s![frames, ..*m]));
+                let images = self.images(estimate, values.slice(s![frames, ..*m]));
                 for (row, images) in images.axis_chunks_iter(Axis(0), n_frames).enumerate() {
                     write(&features, images, workspace, (&mut rows, row));
                 }
@@ -116,7 +126,7 @@ impl Images {
                 let frames = touches[places].iter();
                 let frames = frames.flat_map(|touch| touch * n_frames..(touch + 1) * n_frames);
                 let measured = values.select(Axis(0), &frames.collect::<Vec<usize>>());
-                let images = estimate.images(measured.slice(s![.., ..*m]));
+                let images = self.images(estimate, measured.slice(s![.., ..*m]));
                 for (place, images) in images.axis_chunks_iter(Axis(0), n_frames).enumerate() {
                     for copy in 0..n_copies {
                         let row = place * n_copies + copy;
@@ -127,6 +137,15 @@ impl Images {
             });
         }
         all
+    }
+
+    /// Of frames of measurements.
+    fn images(&self, estimate: &ImageEstimate, measured: ArrayView2<f64>) -> Array2<f64> {
+        let frames = estimate.images(measured);
+        match &self.chart {
+            Some(chart) => chart.images(frames.view()),
+            None => frames,
+        }
     }
 
     /// The images of a touch (F × n), tilted.

@@ -261,9 +261,9 @@ fn tilted_copies(
 ) -> Option<TiltedCopies> {
     let array = &plan.arrays[group.array];
     let steepest = plan.spec.recognition.copies_tilt().tan();
-    let a_taxel = steepest * array.pitch() / array.taxel().stroke * full_scale;
+    let a_pixel = steepest * array.image().1 / array.taxel().stroke * full_scale;
     let seed = Seed::new(plan.spec.seed).named("tilted copies");
-    TiltedCopies::of(plan, group, train, a_taxel, &seed.numbered(trial as u64))
+    TiltedCopies::of(plan, group, train, a_pixel, &seed.numbered(trial as u64))
 }
 
 /// Draws Φ in a trial, or learns it, and what makes images of measurements, from training touches.
@@ -274,7 +274,8 @@ fn sensed_by(
     (trial, split): (usize, &Split),
     n_measurements: usize,
 ) -> Result<SensedBy> {
-    let shape = plan.arrays[group.array].frame_shape();
+    let array = &plan.arrays[group.array];
+    let shape = array.frame_shape();
     let drawn = plan.spec.projection_of(trial) as u64;
     let drawn = Seed::new(plan.spec.seed)
         .named("projection")
@@ -311,7 +312,7 @@ fn sensed_by(
         let full_scale = whole.chains[0][0].full_scale();
         images = Some(Images::new(
             &projections,
-            (shape, full_scale),
+            (array, full_scale),
             readings,
             &drawn,
         )?);

@@ -132,7 +132,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Features of images: of one value a taxel, in rows and columns.
+    /// Features of images: of one value a taxel.
     pub fn images(&self, recognition: &RecognitionSpec, arrays: &[TaxelArray]) -> Result<()> {
         let mut features = recognition.features.values().into_iter();
         let Some(features) = features.find(|features| features.of_image().is_some()) else {
@@ -152,16 +152,12 @@ impl Check<'_> {
                 }
             };
         };
-        let is_image = |array: &&TaxelArray| array.is_image() && array.sensed().n_channels() == 1;
-        match arrays.iter().find(|array| !is_image(array)) {
+        match arrays.iter().find(|array| array.sensed().n_channels() > 1) {
             None => Ok(()),
-            Some(array) => {
-                let given = match array.sensed().n_channels() > 1 {
-                    true => format!("{} of shear", String::from(features)),
-                    false => format!("{} of a {}", String::from(features), array.layout().words()),
-                };
+            Some(_) => {
+                let given = format!("{} of shear", String::from(features));
                 let allowed = "features of measurements (raw, centred, unit_norm, centred_unit_norm): \
-                               those of images need rows and columns of one value a taxel";
+                               those of images need one value a taxel";
                 Err(self.error("recognition.features", given, allowed))
             }
         }

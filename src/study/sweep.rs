@@ -304,6 +304,7 @@ impl Sweep {
                 pitch_mm: millimetres(array.pitch()),
                 nx,
                 ny,
+                image_shape: array.image().0,
                 size_mm: millimetres(array.pitch() * array.grid().nx as f64),
                 noise_std: group.condition.noise,
                 noise_unit: plan.noise_unit,

@@ -3,8 +3,9 @@
 use super::plan::millimetres;
 use super::sensed::Sensed;
 use crate::error::Result;
+use crate::recognition::features::Chart;
 use crate::world::{ArrayLayout, Grid, Patch, Taxel, Taxels};
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use ndarray::Array2;
 use std::sync::Arc;
 
@@ -90,6 +91,39 @@ impl TaxelArray {
     /// Whether its taxels lie in straight rows and columns, one pitch apart along the surface.
     pub fn is_image(&self) -> bool {
         matches!(self.layout, ArrayLayout::Grid | ArrayLayout::Cylinder)
+    }
+
+    /// Rows and columns of its images, and their pixels' size, metres: a square around all taxels.
+    pub fn image(&self) -> ((usize, usize), f64) {
+        let (n, pitch) = (self.grid.nx, self.pitch());
+        if self.is_image() {
+            return ((self.grid.ny, n), pitch);
+        }
+        let farthest = |far: f64, place: DVec2| far.max(place.abs().max_element());
+        let half = self.chart_places().into_iter().fold(0.0, farthest);
+        // Places are centres: a pixel's side is between the outermost two of a row and what they feel.
+        ((n, n), (2.0 * half + pitch) / n as f64)
+    }
+
+    /// How its taxels make images; `None` where they are pixels.
+    pub fn chart(&self) -> Option<Chart> {
+        let chart = || Chart::new(&self.chart_places(), self.pitch(), self.image());
+        (!self.is_image()).then(chart)
+    }
+
+    /// Where taxels are on a plane, metres: on a flat patch where they are, on a sphere as far along its surface from the middle, in the same direction
+    /// (the azimuthal equidistant projection).
+    fn chart_places(&self) -> Vec<DVec2> {
+        let radius = self.radius;
+        let place = |center: &DVec3| match self.layout {
+            ArrayLayout::Cap => {
+                let away = center.truncate();
+                let angle = away.length().atan2(center.z + radius);
+                away.normalize_or_zero() * radius * angle
+            }
+            _ => center.truncate(),
+        };
+        self.patch.layout().centers().iter().map(place).collect()
     }
 
     /// How far it goes along its own x and y once it is pressed, metres.

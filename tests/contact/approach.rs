@@ -1,8 +1,8 @@
 //! A skin of any layout moved past first contact: against the grid's own press, and against all pairs of spheres.
 
 use bubbletouch::contact::{
-    Approach, Contact, Workspace, first_contact, press_to_depth, press_to_force, press_to_travel,
-    press_with_contacts,
+    Approach, Contact, Goal, Row, Workspace, first_contact, press, press_into, press_to_depth,
+    press_to_force, press_to_travel, press_with_contacts,
 };
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{MeshModel, Model, Sphere, SphereUnion};
@@ -32,14 +32,10 @@ fn random_union(rng: &mut impl Rng) -> SphereUnion {
 fn assert_rows_are_written(workspace: &Workspace) {
     let deflections = workspace.deflections();
     let mut doubles = vec![0.0; deflections.len()];
-    workspace.write_deflections(&mut doubles, <[f64]>::copy_from_slice);
+    workspace.write_onto_zeros(Row::Double(&mut doubles));
     assert_eq!(doubles, deflections);
     let mut singles = vec![0_f32; deflections.len()];
-    workspace.write_deflections(&mut singles, |row, deflections| {
-        for (single, double) in row.iter_mut().zip(deflections) {
-            *single = *double as f32;
-        }
-    });
+    workspace.write_onto_zeros(Row::Single(&mut singles));
     let rounded = deflections.iter().map(|double| *double as f32);
     assert!(singles.into_iter().eq(rounded));
 }
@@ -81,6 +77,51 @@ fn on_a_grid_it_is_the_grids_own_press() {
         }
     }
     assert!(n_touched > 200 && n_deep > 50, "{n_touched} {n_deep}");
+}
+
+/// Whatever is in the row, and wherever its last taxels are in the kernel's steps.
+#[test]
+fn a_press_into_a_row_leaves_the_frame_and_nothing_else_there() {
+    let mut rng = rng("approach", 5);
+    let (mut workspace, mut into) = (Workspace::new(), Workspace::new());
+    let mut n_touched = [0; 4];
+    for case in 0..400 {
+        let grid = Grid {
+            nx: rng.gen_range(1..40),
+            ny: rng.gen_range(1..40),
+            ..GRID
+        };
+        let patch = match case % 5 {
+            0 => {
+                let layout = ArrayLayout::Hexagonal.taxels(&GRID, 0.02).unwrap();
+                Patch::new("skin", layout, Taxels::Equal(TAXEL)).unwrap()
+            }
+            _ => Patch::grid(grid, TAXEL).unwrap(),
+        };
+        let object: Model = match case % 7 {
+            0 => MeshModel::new(mesh_shapes::cuboid(DVec3::splat(5e-3))).into(),
+            _ => random_union(&mut rng).into(),
+        };
+        let (objects, poses) = ([object], [random_pose(&mut rng, 0.03)]);
+        let goal = match case % 4 {
+            0 => Goal::Pose,
+            1 => Goal::Depth(1e-3),
+            2 => Goal::Travel(rng.gen_range(-0.02..0.02)),
+            _ => Goal::Force(1e-3),
+        };
+        let pressed = press(&patch, &objects, &poses, goal, &mut workspace).unwrap();
+        let (mut doubles, mut singles) = (vec![f64::NAN; patch.n_taxels()], Vec::new());
+        singles.resize(patch.n_taxels(), f32::NAN);
+        for row in [Row::Double(&mut doubles), Row::Single(&mut singles)] {
+            let same = press_into(&patch, &objects, &poses, goal, row, &mut into).unwrap();
+            assert_eq!(same, pressed, "case {case}");
+        }
+        assert_eq!(doubles, workspace.deflections(), "case {case}");
+        let rounded = doubles.iter().map(|double| *double as f32);
+        assert!(singles.into_iter().eq(rounded), "case {case}");
+        n_touched[case % 4] += usize::from(pressed.is_some_and(|c| c.n_touched > 0));
+    }
+    assert!(n_touched.iter().all(|n| *n > 20), "{n_touched:?}");
 }
 
 #[test]

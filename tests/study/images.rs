@@ -128,19 +128,38 @@ fn a_depth_changes_no_feature_of_what_is_behind_the_foremost_point() {
 }
 
 #[test]
-fn skins_without_rows_and_shear_have_no_images() {
-    let refused = |text: &str| {
-        let spec = StudySpec::parse("study.toml", text).unwrap();
-        Plan::new("study.toml", spec).unwrap_err().to_string()
-    };
-    let hexagonal = STUDY.replace("stroke_mm = 5.0", "stroke_mm = 5.0\nlayout = \"hexagonal\"");
+fn shear_has_no_image() {
     let shear =
         "stroke_mm = 5.0\nsensed = \"shear\"\nfriction = 0.5\nshear_stiffness_n_per_m = 50.0";
-    for text in [hexagonal, STUDY.replace("stroke_mm = 5.0", shear)] {
-        let said = refused(&text);
-        for words in ["recognition.features", "fourier_mellin", "rows and columns"] {
-            assert!(said.contains(words), "{said}");
-        }
+    let spec = StudySpec::parse("study.toml", &STUDY.replace("stroke_mm = 5.0", shear)).unwrap();
+    let said = Plan::new("study.toml", spec).unwrap_err().to_string();
+    for words in [
+        "recognition.features",
+        "fourier_mellin",
+        "one value a taxel",
+    ] {
+        assert!(said.contains(words), "{said}");
+    }
+}
+
+/// Flat layouts, as dense: what differs is where taxels are. Bent so little, so are the others.
+#[test]
+fn every_layout_has_images_and_their_invariants_recognise_as_those_of_the_grid() {
+    let skin = "stroke_mm = 5.0\ncurvature_radius_mm = 2000.0";
+    let axes =
+        "[axes]\n\"skin.layout\" = [\"grid\", \"hexagonal\", \"disc\", \"cylinder\", \"cap\"]\n";
+    let text = STUDY.replace("stroke_mm = 5.0", skin) + axes;
+    let tables = laid_out(&text).unwrap().run(&Silent).unwrap();
+    let accuracies = tables.accuracy.iter();
+    let accuracies: Vec<f64> = accuracies.map(|(_, score)| score.accuracy).collect();
+    let [of_grid, others @ ..] = accuracies.as_chunks::<2>().0 else {
+        panic!("a pair a layout");
+    };
+    assert_eq!(others.len(), 4);
+    for [raw, invariant] in others {
+        assert!(invariant > raw, "{raw} {invariant}");
+        let difference = (invariant - of_grid[1]).abs();
+        assert!(difference < 0.1, "{invariant} for {of_grid:?}");
     }
 }
 

@@ -7,7 +7,7 @@
 //!
 //! **Of images** ([`ImageFeature`], and joins of several): numbers that stay as they are when the contact moves over the array or turns on it,
 //! which is most of what differs between two touches of one object that nothing holds in place. They need the frame; where it was
-//! compressed, its [linear estimate](crate::sensing::ImageEstimate) stands for it.
+//! compressed, its [linear estimate](crate::sensing::ImageEstimate) stands for it. Of a patch without rows and columns they see its [`Chart`].
 //!
 //! | feature | numbers (64 × 64) | shift | turn | mirror image | more pressure | deeper |
 //! |---|---|---|---|---|---|---|
@@ -23,6 +23,7 @@
 //! shifts and turns change what taxels sample of the object, and features as much as that. Four
 //! times the pressure makes magnitudes and harmonics, of which these are roots, four times as large.
 
+mod chart;
 mod feature;
 mod image;
 pub mod measured;
@@ -31,6 +32,7 @@ mod rings;
 mod spectrum;
 mod tilted;
 
+pub use chart::Chart;
 use feature::image_features;
 pub use feature::{Feature, FeatureAbout, ImageFeatures, Join, Workspace};
 pub use image::{Cut, Image};

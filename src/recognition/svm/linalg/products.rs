@@ -1,20 +1,54 @@
 //! Products of rows with other rows, by matrix products.
 
 use ndarray::linalg::general_mat_mul;
-use ndarray::{Array2, ArrayView2, ArrayViewMut2, s};
+use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis, s};
 
 use crate::recognition::svm::linalg::scalar::Scalar;
 
 /// Rows whose products with each other and with all before are one matrix product: of n rows half of n / 256 are computed twice.
 const ROWS_AT_ONCE: usize = 128;
+/// So few rows are multiplied where the others lie; of more, a matrix product's copy pays.
+pub(crate) const FEW_ROWS: usize = 4;
 /// Rows and columns mirrored at once: a cache line of f32.
 const TILE: usize = 16;
 
 /// `x_i · z_j` of rows x (n_left × m) with rows z (n × m): into n_left × n.
-pub(crate) fn multiply<T: Scalar>(left: ArrayView2<T>, right: ArrayView2<T>, to: ArrayViewMut2<T>) {
+pub(crate) fn multiply<T: Scalar>(
+    left: ArrayView2<T>,
+    right: ArrayView2<T>,
+    mut to: ArrayViewMut2<T>,
+) {
+    if left.nrows() <= FEW_ROWS && in_place(left, right, &mut to) {
+        return;
+    }
     // Transposed, so that a row's products with many of these are written side by side.
     let (one, zero) = (T::one(), T::zero());
     general_mat_mul(one, &right, &left.t(), zero, &mut to.reversed_axes());
+}
+
+/// The same of a few rows with many, where they lie: a matrix product would copy the many first. `false`, and nothing written, where that
+/// cannot be.
+fn in_place<T: Scalar>(
+    left: ArrayView2<T>,
+    right: ArrayView2<T>,
+    to: &mut ArrayViewMut2<T>,
+) -> bool {
+    let (Some(few), Some(many)) = (slices(left), slices(right)) else {
+        return false;
+    };
+    let mut products = vec![T::zero(); few.len() * many.len()];
+    let is_done = T::products_in_place(&few, &many, &mut products);
+    if is_done {
+        let values = to.iter_mut().zip(products);
+        values.for_each(|(to, product)| *to = product);
+    }
+    is_done
+}
+
+/// Rows, if each of them lies in one piece.
+fn slices<T>(rows: ArrayView2<'_, T>) -> Option<Vec<&[T]>> {
+    let row = |row: usize| rows.index_axis_move(Axis(0), row).to_slice();
+    (0..rows.nrows()).map(row).collect()
 }
 
 /// `z_i · z_j` of all rows (n × m): n × n, symmetric.

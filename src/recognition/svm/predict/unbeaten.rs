@@ -9,13 +9,14 @@
 //! order has the same sign.
 
 use multiversion::multiversion;
-use ndarray::{Array1, ArrayView2};
+use ndarray::{Array1, ArrayView1, ArrayView2};
 
 use crate::recognition::svm::linalg::scalar::Scalar;
 use crate::recognition::svm::predict::class_weights::ClassWeights;
 
-/// Sums side by side, so that no addition waits for the one before.
+/// Sums side by side, so that no addition waits for the one before; of products that lie side by side, too, of a vector register.
 const LANES: usize = 4;
+const WIDE: usize = 16;
 
 /// The decision functions of all pairs of classes by their support vectors alone: of the vectors of two classes, most
 /// support no boundary between these two.
@@ -55,47 +56,136 @@ impl<T: Scalar> Pairs<T> {
     /// The class that certainly wins all its pairs, per row of kernel values (n × n_vectors); `None` where no class does,
     /// or rounding might decide a pair.
     pub fn unbeaten(&self, kernel_values: ArrayView2<T>) -> Vec<Option<usize>> {
-        let rows = kernel_values.rows().into_iter();
-        rows.map(|row| unbeaten(self, row.to_slice().expect("kernel values lie row by row")))
-            .collect()
-    }
-
-    /// Whether the first of two classes wins, which comes before the second; `None` if rounding might decide.
-    #[inline(always)]
-    fn wins(&self, kernel_values: &[T], first: usize, second: usize) -> Option<bool> {
-        let pair = first * (2 * self.n_classes - first - 1) / 2 + second - first - 1;
-        let start = if pair == 0 { 0 } else { self.ends[pair - 1].0 };
-        let (end, rho) = self.ends[pair];
-        let (sum, size) = sum_and_size(&self.terms[start..end], kernel_values);
-        let value = sum.wide() - rho;
-        // n products added one by one err by at most n u Σ|products|, u half an epsilon; this way and another by twice
-        // that. The 8 are for adding up lanes and classes.
-        let error = (end - start + 8) as f64 * T::epsilon().wide() * size.wide();
-        if value > error {
-            Some(true)
-        } else if value < -error {
-            Some(false)
-        } else {
-            None
-        }
+        unbeaten(self, kernel_values)
     }
 }
 
-#[multiversion(targets("x86_64+avx2+fma"))]
-fn unbeaten<T: Scalar>(pairs: &Pairs<T>, kernel_values: &[T]) -> Option<usize> {
+/// The same of rows (n × m) by the hyperplanes' normals (n_pairs × m) and ρ of all pairs of some classes.
+pub(crate) fn unbeaten_by_hyperplanes<'a, T: Scalar>(
+    n_classes: usize,
+    (normals, rho): (ArrayView2<'a, T>, ArrayView1<'a, f64>),
+    rows: ArrayView2<T>,
+) -> Vec<Option<usize>> {
+    let hyperplanes = Hyperplanes {
+        n_classes,
+        normals: normals.to_slice().expect("normals are stored one by one"),
+        rho,
+    };
+    unbeaten(&hyperplanes, rows)
+}
+
+/// What decides pairs of classes.
+trait Decides<T> {
+    fn n_classes(&self) -> usize;
+
+    /// `Σ w k` of a pair, `Σ |w k|`, how many terms they have, and ρ.
+    fn value(&self, pair: usize, row: &[T]) -> (T, T, usize, f64);
+}
+
+impl<T: Scalar> Decides<T> for Pairs<T> {
+    #[inline(always)]
+    fn n_classes(&self) -> usize {
+        self.n_classes
+    }
+
+    #[inline(always)]
+    fn value(&self, pair: usize, kernel_values: &[T]) -> (T, T, usize, f64) {
+        let start = if pair == 0 { 0 } else { self.ends[pair - 1].0 };
+        let (end, rho) = self.ends[pair];
+        let (sum, size) = sum_and_size(&self.terms[start..end], kernel_values);
+        (sum, size, end - start, rho)
+    }
+}
+
+struct Hyperplanes<'a, T> {
+    n_classes: usize,
+    normals: &'a [T],
+    rho: ArrayView1<'a, f64>,
+}
+
+impl<T: Scalar> Decides<T> for Hyperplanes<'_, T> {
+    #[inline(always)]
+    fn n_classes(&self) -> usize {
+        self.n_classes
+    }
+
+    #[inline(always)]
+    fn value(&self, pair: usize, row: &[T]) -> (T, T, usize, f64) {
+        let normal = &self.normals[pair * row.len()..][..row.len()];
+        let (sum, size) = product_and_size(normal, row);
+        (sum, size, row.len(), self.rho[pair])
+    }
+}
+
+fn unbeaten<T: Scalar>(pairs: &impl Decides<T>, rows: ArrayView2<T>) -> Vec<Option<usize>> {
+    let rows = rows.rows().into_iter();
+    rows.map(|row| unbeaten_in(pairs, row.to_slice().expect("they lie row by row")))
+        .collect()
+}
+
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
+fn unbeaten_in<T: Scalar, P: Decides<T>>(pairs: &P, row: &[T]) -> Option<usize> {
     let mut champion = 0;
-    for other in 1..pairs.n_classes {
-        if !pairs.wins(kernel_values, champion, other)? {
+    for other in 1..pairs.n_classes() {
+        if !wins(pairs, row, (champion, other))? {
             champion = other;
         }
     }
     // It has met all classes after it.
     for other in 0..champion {
-        if pairs.wins(kernel_values, other, champion)? {
+        if wins(pairs, row, (other, champion))? {
             return None;
         }
     }
     Some(champion)
+}
+
+/// Whether the first of two classes wins, which comes before the second; `None` if rounding might decide.
+#[inline(always)]
+fn wins<T: Scalar>(
+    pairs: &impl Decides<T>,
+    row: &[T],
+    (first, second): (usize, usize),
+) -> Option<bool> {
+    let pair = first * (2 * pairs.n_classes() - first - 1) / 2 + second - first - 1;
+    let (sum, size, n_terms, rho) = pairs.value(pair, row);
+    let value = sum.wide() - rho;
+    // n products added one by one err by at most n u Σ|products|, u half an epsilon; this way and another by twice
+    // that. The 8 are for adding up lanes and classes.
+    let error = (n_terms + 8) as f64 * T::epsilon().wide() * size.wide();
+    if value > error {
+        Some(true)
+    } else if value < -error {
+        Some(false)
+    } else {
+        None
+    }
+}
+
+/// `Σ w x` and `Σ |w x|` of a normal w and a row x.
+#[inline(always)]
+fn product_and_size<T: Scalar>(normal: &[T], row: &[T]) -> (T, T) {
+    let (mut sums, mut sizes) = ([T::zero(); WIDE], [T::zero(); WIDE]);
+    let (weights, last_weights) = normal.as_chunks::<WIDE>();
+    let (values, last_values) = row.as_chunks::<WIDE>();
+    for at in 0..values.len() {
+        for lane in 0..WIDE {
+            let product = weights[at][lane] * values[at][lane];
+            sums[lane] += product;
+            sizes[lane] += product.abs();
+        }
+    }
+    let (mut sum, mut size) = (T::zero(), T::zero());
+    for at in 0..last_values.len() {
+        let product = last_weights[at] * last_values[at];
+        sum += product;
+        size += product.abs();
+    }
+    for lane in 0..WIDE {
+        sum += sums[lane];
+        size += sizes[lane];
+    }
+    (sum, size)
 }
 
 /// `Σ w k` and `Σ |w k|` of coefficients w and their kernel values k.

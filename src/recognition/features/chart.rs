@@ -1,0 +1,134 @@
+//! Images of layouts that have no rows and columns.
+
+use glam::DVec2;
+use ndarray::{Array2, ArrayView2};
+
+/// Taxels farther than this from a pixel do not show in it, in pitches. No place between taxels of a hexagonal lattice with one an area of a
+/// square pitch is farther than 0.62 from one, of rings on a sphere than 0.8: less, and there are holes; more, and images are blurred.
+const NEAR: f64 = 1.0;
+/// A pixel without a taxel as near as this lies beside the patch and is 0, in pitches.
+const ON_PATCH: f64 = 0.8;
+
+/// A chart of a patch: the places of its taxels on a plane, and an image of them. The value of a pixel is the mean of the taxels near it, with
+/// weights that fall linearly to 0 a pitch away: the image of a square grid is the grid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chart {
+    shape: (usize, usize),
+    /// Pixel by pixel, which taxels and their weights, of sum 1.
+    terms: Vec<(u32, f64)>,
+    /// Where the terms of each pixel end.
+    ends: Vec<usize>,
+}
+
+impl Chart {
+    /// Of taxels at places on the plane (metres), about so far from each other, as an image (rows, columns) of square pixels of a size about the origin,
+    /// metres.
+    pub fn new(
+        places: &[DVec2],
+        pitch: f64,
+        ((rows, columns), pixel): ((usize, usize), f64),
+    ) -> Self {
+        let (mut terms, mut ends) = (Vec::new(), Vec::with_capacity(rows * columns));
+        for row in 0..rows {
+            for column in 0..columns {
+                let at = |k: usize, n: usize| (k as f64 - 0.5 * (n as f64 - 1.0)) * pixel;
+                let place = DVec2::new(at(column, columns), at(row, rows));
+                let start = terms.len();
+                let distances = places.iter().map(|taxel| taxel.distance(place) / pitch);
+                let near = distances.enumerate().filter(|(_, d)| *d < NEAR);
+                terms.extend(near.map(|(taxel, d)| (taxel as u32, 1.0 - d / NEAR)));
+                let own = &mut terms[start..];
+                let largest = own.iter().fold(0.0, |a: f64, (_, weight)| a.max(*weight));
+                if largest < 1.0 - ON_PATCH / NEAR {
+                    terms.truncate(start);
+                } else {
+                    let sum: f64 = own.iter().map(|(_, weight)| weight).sum();
+                    own.iter_mut().for_each(|(_, weight)| *weight /= sum);
+                }
+                ends.push(terms.len());
+            }
+        }
+        let shape = (rows, columns);
+        Self { shape, terms, ends }
+    }
+
+    /// Images (n × pixels, row by row) of frames (n × taxels).
+    ///
+    /// # Panics
+    /// If frames have fewer taxels.
+    pub fn images(&self, frames: ArrayView2<f64>) -> Array2<f64> {
+        let mut images = Array2::zeros((frames.nrows(), self.ends.len()));
+        for (mut image, frame) in images.outer_iter_mut().zip(frames.outer_iter()) {
+            let mut start = 0;
+            for (pixel, &end) in image.iter_mut().zip(&self.ends) {
+                let terms = self.terms[start..end].iter();
+                *pixel = terms.map(|&(taxel, w)| w * frame[taxel as usize]).sum();
+                start = end;
+            }
+        }
+        images
+    }
+
+    /// Rows and columns.
+    pub fn shape(&self) -> (usize, usize) {
+        self.shape
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Places of a hexagonal lattice with a taxel an area of 1, on a square of this half side.
+    fn hexagonal(half: f64) -> Vec<DVec2> {
+        let (step, row_step) = (1.0746, 0.9306);
+        let n = half.ceil() as i32 + 1;
+        let all = (-n..=n).flat_map(|row| (-n..=n).map(move |column| (row, column)));
+        let shifted = |row: i32| 0.5 * f64::from(row.rem_euclid(2));
+        let place = |(row, column): (i32, i32)| {
+            DVec2::new(
+                (f64::from(column) + shifted(row)) * step,
+                f64::from(row) * row_step,
+            )
+        };
+        all.map(place)
+            .filter(|p| p.abs().max_element() <= half)
+            .collect()
+    }
+
+    #[test]
+    fn the_image_of_a_square_grid_is_the_grid() {
+        let places: Vec<DVec2> = (0..12)
+            .map(|k| DVec2::new(f64::from(k % 4) - 1.5, f64::from(k / 4) - 1.0) * 2e-3)
+            .collect();
+        let chart = Chart::new(&places, 2e-3, ((3, 4), 2e-3));
+        let frames = Array2::from_shape_fn((5, 12), |(i, j)| (7 * i + j) as f64);
+        let difference = chart.images(frames.view()) - &frames;
+        assert!(difference.iter().all(|d| d.abs() < 1e-12));
+    }
+
+    #[test]
+    fn a_constant_stays_and_a_slope_is_followed_wherever_the_patch_is() {
+        let places = hexagonal(8.0);
+        let chart = Chart::new(&places, 1.0, ((30, 30), 1.0));
+        let slope = DVec2::new(0.3, -0.2);
+        let values = |of: &dyn Fn(&DVec2) -> f64| {
+            let frame: Vec<f64> = places.iter().map(of).collect();
+            let frame = Array2::from_shape_vec((1, places.len()), frame).unwrap();
+            chart.images(frame.view())
+        };
+        let (ones, sloping) = (values(&|_| 1.0), values(&|p| slope.dot(*p)));
+        for (pixel, (&one, &value)) in ones.iter().zip(&sloping).enumerate() {
+            let [row, column] = [pixel / 30, pixel % 30];
+            let place = DVec2::new(column as f64 - 14.5, row as f64 - 14.5);
+            let outermost = place.abs().max_element();
+            if outermost > 9.0 {
+                assert_eq!(one, 0.0, "{place} is beside the patch");
+            } else if outermost < 7.0 {
+                assert!((one - 1.0).abs() < 1e-12);
+                // A mean of taxels less than a pitch away, mostly on both sides.
+                assert!((value - slope.dot(place)).abs() < 0.5 * slope.length());
+            }
+        }
+    }
+}
