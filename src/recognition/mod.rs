@@ -6,7 +6,7 @@
 //! | [`features`] | frames, or measurements of them | what does not change with constant pressure, stiffness, place or turn |
 //! | [`classifiers`] | training rows | a [trained classifier](classifiers::trained_classifier) of any [kind](ClassifierKind) |
 //! | [`svm`] | training rows | soft-margin [SVMs](svm), and the [choice](svm::cross_validation::choice) of their C and γ |
-//! | [`evaluation`] | labels | a [confusion matrix](evaluation::metrics), [fused](evaluation::fusion) touches |
+//! | [`evaluation`] | labels | a [confusion matrix](evaluation::metrics), [fused](evaluation::fusion) touches, [where to touch next](evaluation::next_touch) |
 //! | [`statistics`] | scores of trials | [intervals](statistics::interval), [comparisons](statistics::comparison), [what each source of chance brings](statistics::variance) |
 //!
 //! A [`Classifier`](classifiers::classifier::Classifier) learns its scaling, its choices and its model from training rows alone, and test rows

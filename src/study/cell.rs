@@ -5,6 +5,7 @@ use super::images::FeaturesOfImages;
 use super::sensor_errors::{Strengths, TestedOn, strength_columns};
 use crate::recognition::ClassifierKind;
 use crate::recognition::data::over_time::OverTime;
+use crate::recognition::evaluation::next_touch::NextTouch;
 use crate::recognition::features::Features;
 use crate::sensing::Ensemble;
 use crate::signal::NoiseUnit;
@@ -74,6 +75,8 @@ pub struct Cell {
     pub class_imbalance: Option<f64>,
     /// Test touches of an object that are decided on together, by the sum of their scores.
     pub fused_touches: usize,
+    /// How the touches after the first of these are chosen; only if the study has the key.
+    pub next_touch: Option<NextTouch>,
     /// Where it is on the study's own axes: a column for each.
     pub variant: AxisValues,
 }
@@ -111,6 +114,7 @@ impl Serialize for Cell {
         put!(classifier, c, train_touches);
         put_if_there!(mislabelled_fraction, class_imbalance);
         put!(fused_touches);
+        put_if_there!(next_touch);
         for axis in self.variant.values.iter() {
             if let Cow::Borrowed(name) = axis.column.name {
                 row.serialize_field(name, &axis.value)?;
@@ -155,6 +159,7 @@ impl Columns for Cell {
             Column::new("mislabelled_fraction", Condition, "mislabelled", "%", Share).optional(),
             Column::new("class_imbalance", Condition, "class imbalance", ":1", Log).optional(),
             Column::new("fused_touches", Choice, "touches fused", "", Log),
+            Column::new("next_touch", Choice, "next touch", "", Words).optional(),
         ]);
         columns
     }
@@ -216,6 +221,7 @@ pub(crate) mod tests {
             mislabelled_fraction: None,
             class_imbalance: None,
             fused_touches: 1,
+            next_touch: None,
             variant: AxisValues::default(),
         }
     }

@@ -20,7 +20,10 @@ pub fn family_name(plan: &Plan, family: &[Cell]) -> String {
     let steps = active_steps(plan, &family[0]);
     let path = solved_together(family);
     let settings = settings(plan, &family[0]);
-    let differ = family.iter().map(|cell| (cell.c, cell.fused_touches));
+    let differ = family.iter().map(|cell| {
+        let next_touch = cell.next_touch.unwrap_or_default();
+        (cell.c, cell.fused_touches, next_touch)
+    });
     let differ: Vec<_> = differ.collect();
     let content = format!("{settings:?} {steps:?} {path:?} {differ:?}");
     short_hash(content, DIGITS)
@@ -41,6 +44,8 @@ fn settings(plan: &Plan, cell: &Cell) -> Cell {
             None => 0,
             Some(_) => cell.train_touches,
         },
+        // Among what the cells of a family differ in.
+        next_touch: None,
         variant: AxisValues {
             number: 0,
             ..cell.variant.clone()

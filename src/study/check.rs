@@ -85,7 +85,7 @@ pub const COUNT: Range = Range::Count(1, MOST_COUNTED);
 pub const TOUCHES: Range = Range::Count(1, MOST_TOUCHES);
 
 /// The keys of the tables that kinds of study share, and what their numbers may be. A list has values, and none twice.
-const KEYS: [(&str, Range); 57] = [
+const KEYS: [(&str, Range); 58] = [
     ("objects.surface_error_mm", Range::Positive),
     ("objects.close_holes_mm", Range::Positive),
     ("objects.names", Range::Any),
@@ -142,6 +142,7 @@ const KEYS: [(&str, Range); 57] = [
     ("recognition.mislabelled_fraction", Range::Fraction),
     ("recognition.class_imbalance", Range::AtLeastOne),
     ("recognition.fused_touches", COUNT),
+    ("recognition.next_touch", Range::Any),
     ("recognition.test_fraction", Range::Part),
     ("recognition.folds", Range::Count(2, MOST_COUNTED)),
     ("recognition.keep_together_mm", Range::Positive),

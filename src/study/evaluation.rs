@@ -11,6 +11,7 @@ use crate::recognition::data::dataset::{Dataset, dataset};
 use crate::recognition::data::split::Split;
 use crate::recognition::evaluation::fusion::{fuse_rows, fuse_scores};
 use crate::recognition::evaluation::metrics::ConfusionMatrix;
+use crate::recognition::evaluation::next_touch::{AnswerModel, NextTouch};
 use crate::recognition::statistics::interval::Interval;
 use ndarray::{Array1, Axis};
 use serde::{Deserialize, Serialize};
@@ -46,16 +47,25 @@ pub struct Trial<'a> {
 }
 
 /// Test touches, answered by one fit.
-struct AnsweredTouches<'a> {
+pub(super) struct AnsweredTouches<'a> {
     fitted: &'a Fitted,
-    test: &'a Dataset,
-    decide: Decide<'a>,
+    pub test: &'a Dataset,
+    /// Their numbers.
+    pub touches: &'a [usize],
+    pub decide: Decide<'a>,
     answer_s: f64,
     n_train: usize,
+    /// What touches are expected to be answered, where any cell goes by that, and the seconds to learn it.
+    pub model: Option<AnswerModel<'a>>,
+    model_s: f64,
 }
 
 /// One label for each group of touches.
-type Decide<'a> = Box<dyn Fn(&[Vec<usize>]) -> Array1<usize> + 'a>;
+pub(super) type Decide<'a> = Box<dyn Fn(&[Vec<usize>]) -> Array1<usize> + 'a>;
+
+fn is_informed(cell: &Cell) -> bool {
+    cell.next_touch == Some(NextTouch::MostInformative)
+}
 
 /// How a fit decides on test touches of its cells.
 fn decider<'a>(fitted: &'a Fitted, test: &Dataset, cells: &[Cell]) -> Result<Decide<'a>> {
@@ -85,13 +95,21 @@ impl Trial<'_> {
         let mut evaluations = Vec::with_capacity(family.len());
         for (fitted, cells) in fitted.iter().zip(same_fit) {
             let start = Instant::now();
-            let answered = AnsweredTouches {
+            let mut answered = AnsweredTouches {
                 fitted,
                 test: &test,
                 decide: decider(fitted, &test, cells)?,
                 answer_s: start.elapsed().as_secs_f64(),
                 n_train: split.train.len(),
+                touches: &split.test,
+                model: None,
+                model_s: 0.0,
             };
+            if cells.iter().any(is_informed) {
+                let start = Instant::now();
+                answered.model = self.answer_model(&training, fitted, &split)?;
+                answered.model_s = start.elapsed().as_secs_f64();
+            }
             for cell in cells {
                 evaluations.push(self.decide(cell, &answered)?);
             }
@@ -103,8 +121,9 @@ impl Trial<'_> {
     fn decide(&self, cell: &Cell, answered: &AnsweredTouches) -> Result<Evaluation> {
         let truth = &answered.test.targets;
         let seed = self.seed("fused_touches");
-        let rows = fuse_rows(truth.view(), cell.fused_touches, &seed);
         let start = Instant::now();
+        let mut rows = fuse_rows(truth.view(), cell.fused_touches, &seed);
+        rows.groups = self.choose_touches(cell, answered, rows.groups);
         let predicted = (answered.decide)(&rows.groups);
         let predict_s = answered.answer_s + start.elapsed().as_secs_f64();
         let truth = rows.groups.iter().map(|group| truth[group[0]]).collect();
@@ -136,7 +155,12 @@ impl Trial<'_> {
             },
             time: TrialTime {
                 trial: self.number,
-                fit_s: answered.fitted.fit_s,
+                fit_s: answered.fitted.fit_s
+                    + if is_informed(cell) {
+                        answered.model_s
+                    } else {
+                        0.0
+                    },
                 predict_s,
                 predict_us_per_touch: 1e6 * predict_s / answered.test.targets.len() as f64,
             },

@@ -25,6 +25,7 @@ mod images;
 pub mod journal;
 pub(crate) mod measurement;
 pub mod memory;
+mod next_touch;
 pub(crate) mod npy;
 mod npy_numbers;
 pub(crate) mod object_files;

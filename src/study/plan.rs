@@ -85,6 +85,7 @@ impl Plan {
         check.images(&spec.recognition, &arrays)?;
         check.over_time(&spec.recognition, &frames)?;
         check.split(&spec)?;
+        check.next_touch(&spec)?;
         check.folds(&spec)?;
         check.repeats(&spec)?;
         let plan = Self {

@@ -11,8 +11,10 @@ use super::tilted_copies::DEFAULT_TILT_DEG;
 use crate::error::Result;
 use crate::recognition::ClassifierKind;
 use crate::recognition::data::over_time::OverTime;
+use crate::recognition::evaluation::next_touch::NextTouch;
 use crate::recognition::features::Features;
 use crate::sensing::Ensemble;
+use crate::world::RestPoses;
 
 /// What a classifier may have a use for.
 type Has = fn(ClassifierKind) -> bool;
@@ -48,7 +50,7 @@ const ONE_OF: [[&str; 2]; 3] = [
 
 /// Keys that belong beside one of others.
 const BESIDE: [(&str, &[&str]); 5] = [
-    ("choose_folds", &["choose_c", "choose_gamma"]),
+    ("choose_folds", &["choose_c", "choose_gamma", "next_touch"]),
     ("choose_touches", &["choose_c", "choose_gamma"]),
     ("tilted_copies_deg", &["tilted_copies"]),
     ("keep_together_mm", &["keep_together"]),
@@ -124,9 +126,14 @@ impl Check<'_> {
         }
         // With folds there may be no rows of the rarest objects for them.
         let is_open = recognition.choose_c.is_some() || recognition.choose_gamma.is_some();
-        if is_open && recognition.class_imbalance.is_some() {
-            let allowed = "a given c and gamma: folds need touches of every object";
-            let given = "given beside choose_c or choose_gamma";
+        let folded = match (is_open, recognition.is_informed()) {
+            (true, _) => Some(("choose_c or choose_gamma", "a given c and gamma")),
+            (_, true) => Some(("next_touch = \"most_informative\"", "another next_touch")),
+            _ => None,
+        };
+        if let (Some((key, other)), Some(_)) = (folded, &recognition.class_imbalance) {
+            let allowed = format!("{other}: folds need touches of every object");
+            let given = format!("given beside {key}");
             return Err(self.error("recognition.class_imbalance", given, allowed));
         }
         Ok(())
@@ -206,6 +213,33 @@ impl Check<'_> {
         Ok(())
     }
 
+    /// A next touch that is chosen: where there is one, in a pose that can be commanded whatever the object.
+    pub fn next_touch(&self, spec: &StudySpec) -> Result<()> {
+        let recognition = &spec.recognition;
+        let Some(chosen) = recognition.chosen_next().next() else {
+            return Ok(());
+        };
+        let (given, allowed) = if !spec.places_objects() {
+            let allowed = "only touches that a study places have a known pose";
+            (String::new(), format!("\"random\": {allowed}"))
+        } else if spec.touches.rest != RestPoses::AsModelled {
+            let allowed = "how an unknown object lies cannot be commanded";
+            let given = " beside touches.rest = \"stable\"";
+            (
+                given.to_owned(),
+                format!("rest = \"as_modelled\", or \"random\": {allowed}"),
+            )
+        } else if recognition.fused_touches.values().iter().all(|&k| k == 1) {
+            let given = " beside recognition.fused_touches = 1";
+            let allowed = "a fused_touches of 2 or more, or \"random\": one touch has no next";
+            (given.to_owned(), allowed.to_owned())
+        } else {
+            return Ok(());
+        };
+        let name = toml::Value::try_from(chosen).expect("every choice has a TOML form");
+        Err(self.error("recognition.next_touch", format!("{name}{given}"), allowed))
+    }
+
     /// Folds that trials come out even with.
     pub fn folds(&self, spec: &StudySpec) -> Result<()> {
         match spec.recognition.folds {
@@ -250,6 +284,26 @@ impl RecognitionSpec {
             Some(_) => Axis::of(&self.tilted_copies),
             None => vec![self.tilted_copies.as_ref().map(|_| 0)],
         }
+    }
+
+    /// How the touches after the first of k are chosen: of one there are none, and all choices are the same.
+    pub fn next_touches(&self, k: usize) -> Vec<Option<NextTouch>> {
+        match (k, &self.next_touch) {
+            (1, Some(_)) => vec![Some(NextTouch::Random)],
+            _ => Axis::of(&self.next_touch),
+        }
+    }
+
+    /// The choices among them that are not random.
+    pub fn chosen_next(&self) -> impl Iterator<Item = NextTouch> {
+        let all = self.next_touch.iter().flat_map(Axis::values);
+        all.filter(|next| *next != NextTouch::Random)
+    }
+
+    /// Whether any goes by answers to training touches.
+    pub fn is_informed(&self) -> bool {
+        let mut chosen = self.chosen_next();
+        chosen.any(|next| next == NextTouch::MostInformative)
     }
 
     /// Most that a copy is tilted, radians.

@@ -15,6 +15,7 @@ use crate::error::Result;
 use crate::recognition::ClassifierKind;
 use crate::recognition::data::over_time::OverTime;
 use crate::recognition::data::scaling::Scaling;
+use crate::recognition::evaluation::next_touch::NextTouch;
 use crate::recognition::features::Features;
 use crate::recognition::svm::{Multiclass, Solver};
 use crate::sensing::Ensemble;
@@ -92,6 +93,7 @@ pub(crate) const MAY_CHANGE: &[&str] = &[
     "recognition.mislabelled_fraction",
     "recognition.class_imbalance",
     "recognition.fused_touches",
+    "recognition.next_touch",
 ];
 
 /// Trials split the same touches again, and words and reports are of the whole study.
@@ -162,7 +164,8 @@ pub struct RecognitionSpec {
     pub gamma: Option<f64>,
     /// Instead of `gamma`: candidates as multiples of 'scale', of which each fit chooses one together with C.
     pub choose_gamma: Option<Vec<f64>>,
-    /// Folds of the cross-validation that chooses C and γ; 5 when left out. What the split keeps together, they do.
+    /// Folds of the cross-validation that chooses C and γ, or that says how touches which are not learned are answered (`most_informative`); 5 when left
+    /// out. What the split keeps together, they do.
     pub choose_folds: Option<usize>,
     /// Training touches an object that take part in that choice, at most; all when left out.
     pub choose_touches: Option<usize>,
@@ -195,6 +198,10 @@ pub struct RecognitionSpec {
     /// are grouped at random; fewer than k that remain are left out.
     #[serde(default = "one_value")]
     pub fused_touches: Axis<usize>,
+    /// Axis: how the touches after the first are chosen: at `random`; the `farthest` pose from those touched; or the `most_informative` one, of which
+    /// the least entropy of the belief in objects is expected. Chosen ones are of all test touches of the object, each once at most among those that are
+    /// decided on together.
+    pub next_touch: Option<Axis<NextTouch>>,
     /// Which poses are held out: `random` ones, or those that [`PoseSplit`] says.
     #[serde(default, skip_serializing_if = "is_default")]
     pub split: PoseSplit,

@@ -66,8 +66,10 @@ pub fn train_touches(plan: &Plan, splits: &[Split], labels: &Array1<usize>) -> R
         at_most("fused_touches", k as f64, fewest_tested, what)?;
     }
     let least = train_touches.iter().min().copied().unwrap_or(0);
-    if recognition.choose_c.is_some() || recognition.choose_gamma.is_some() {
-        let of_folds = least.min(recognition.choose_touches.unwrap_or(least));
+    let chooses = recognition.choose_c.is_some() || recognition.choose_gamma.is_some();
+    if chooses || recognition.is_informed() {
+        let choose_touches = recognition.choose_touches.filter(|_| chooses);
+        let of_folds = least.min(choose_touches.unwrap_or(least));
         let n_folds = recognition.n_choice_folds() as f64;
         let what = "the training touches of every object that take part";
         at_most("choose_folds", n_folds, of_folds, what)?;

@@ -5,13 +5,14 @@
 //!   └─ condition of the signal × test skin × ensemble (a group), and trial ── frames read and projected once, at the largest m
 //!        └─ m × over time × features × classifier × training rows (a family) ── rows made once
 //!             └─ C ── fit, score test touches
-//!                  └─ fused touches (a cell) ── decide
+//!                  └─ fused touches × how they are chosen (a cell) ── decide
 //! ```
 
 use super::axes::AxisValues;
 use super::axis::Axis;
 use super::images::FeaturesOfImages;
 use super::measurement::signal_steps;
+use super::next_touch::scaled_poses;
 use super::plan::{Plan, millimetres};
 use super::plan_signal::Condition;
 use super::samples::named_samples;
@@ -24,6 +25,7 @@ use crate::random::Seed;
 use crate::recognition::ClassifierKind;
 use crate::recognition::data::split::Split;
 use crate::recognition::data::spoiled::mislabelled;
+use crate::recognition::evaluation::next_touch::Poses;
 use crate::sensing::Ensemble;
 use ndarray::Array1;
 use std::sync::Arc;
@@ -53,6 +55,8 @@ pub struct Sweep {
     pub labels: Array1<usize>,
     /// The group of every touch, when the study keeps groups together.
     pub group_keys: Option<Array1<usize>>,
+    /// Where every touch is made, when the study chooses by that.
+    pub poses: Option<Poses>,
 }
 
 /// Cells that are read from the same measurements.
@@ -84,7 +88,7 @@ pub struct StudyPart {
 
 impl Group {
     /// Its cells by family. The cells of a family learn from the same rows of the same features: they differ only in C
-    /// and in how many touches are fused, those with the same C following each other.
+    /// and in which touches are fused, those with the same C following each other.
     pub fn families(&self) -> impl Iterator<Item = &[Cell]> {
         let family = |cell: &Cell| {
             let (m, kind) = (cell.measurements, cell.classifier);
@@ -183,11 +187,13 @@ impl Sweep {
         let splits = (0..plan.spec.trials).map(split);
         let splits = splits.collect::<Result<Vec<_>>>()?;
         let train_touches = train_touches(plan, &splits, &labels)?;
+        let is_chosen = plan.spec.recognition.chosen_next().next().is_some();
         let mut sweep = Self {
             groups: Vec::new(),
             splits,
             labels,
             group_keys: keys,
+            poses: is_chosen.then(|| scaled_poses(&plan.placement, &poses)),
         };
         nested! {
             array in 0..plan.arrays.len();
@@ -299,6 +305,7 @@ impl Sweep {
             mislabelled_fraction in Axis::of(&learned.mislabelled_fraction);
             c in penalties(classifier);
             fused_touches in learned.fused_touches.values();
+            next_touch in learned.next_touches(fused_touches);
             group.cells.push(Cell {
                 cell: first + group.cells.len(),
                 pitch_mm: millimetres(array.pitch()),
@@ -325,6 +332,7 @@ impl Sweep {
                 mislabelled_fraction,
                 class_imbalance,
                 fused_touches,
+                next_touch,
                 variant: AxisValues::default(),
             })
         }

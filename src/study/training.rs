@@ -5,12 +5,12 @@ use super::spec::RecognitionSpec;
 use crate::error::Result;
 use crate::random::Seed;
 use crate::recognition::ClassifierKind;
-use crate::recognition::classifiers::classifier::{Classifier, TrainedClassifier};
-use crate::recognition::data::dataset::Dataset;
+use crate::recognition::classifiers::classifier::{Classifier, Cost, TrainedClassifier};
+use crate::recognition::data::dataset::{Dataset, rows};
 use crate::recognition::data::split::{Split, group_k_fold, stratified_k_fold};
 use crate::recognition::svm::cross_validation::choice::Candidates;
 use crate::recognition::svm::kernel::Gamma;
-use ndarray::{Array1, s};
+use ndarray::{Array1, Axis, s};
 use std::time::Instant;
 
 /// The training rows of a family in one trial, and what they are trained with.
@@ -101,6 +101,33 @@ impl Training<'_> {
         })
     }
 
+    /// What classifiers trained as a fitted one answer to each touch (its first reading): of each fold those that have learned none of it.
+    ///
+    /// # Errors
+    /// What a fold or a training refuses.
+    pub(super) fn held_out_answers(&self, like: &Fitted) -> Result<Vec<usize>> {
+        let n_first = self.n_first;
+        let usual = self.classifier();
+        let classifier = Classifier {
+            c: like.c.map_or(usual.c.clone(), Cost::Fixed),
+            gamma: like.gamma.map_or(usual.gamma, Gamma::Value),
+            ..usual
+        };
+        let mut answers = vec![0; n_first];
+        for fold in self.folds(&self.leading(n_first))? {
+            // Further readings and copies are of all touches in turn.
+            let starts = (0..self.data.targets.len()).step_by(n_first);
+            let learned = starts.flat_map(|start| fold.train.iter().map(move |row| start + row));
+            let learned = rows(&self.data, &learned.collect::<Vec<_>>())?;
+            let trained = classifier.train(&learned, &self.seed)?;
+            let held_out = self.data.records.select(Axis(0), &fold.test);
+            for (&row, label) in fold.test.iter().zip(trained.labels(held_out.view())?) {
+                answers[row] = label;
+            }
+        }
+        Ok(answers)
+    }
+
     /// The γ of a classifier that has one, where it is not chosen.
     fn gamma(&self) -> Result<Option<f64>> {
         let kernel = self.kind.about().kernel.filter(|_| self.kind.has_gamma());
@@ -120,10 +147,14 @@ impl Training<'_> {
         let n_objects = labels.iter().max().map_or(0, |last| last + 1);
         // Rows come one of each object in turn, so these hold as many of each.
         let touches = self.recognition.choose_touches.unwrap_or(usize::MAX);
-        let n_rows = touches.saturating_mul(n_objects).min(self.n_first);
+        self.leading(touches.saturating_mul(n_objects).min(self.n_first))
+    }
+
+    /// The first of the training rows.
+    fn leading(&self, n_rows: usize) -> Dataset {
         Dataset::new(
             self.data.records.slice(s![..n_rows, ..]).to_owned(),
-            labels.slice(s![..n_rows]).to_owned(),
+            self.data.targets.slice(s![..n_rows]).to_owned(),
         )
     }
 

@@ -11,5 +11,6 @@ mod kinds;
 mod libsvm;
 mod limits;
 mod linear;
+mod next_touch;
 mod splits;
 mod svm;

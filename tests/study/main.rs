@@ -15,6 +15,7 @@ mod hardware;
 mod images;
 mod layouts;
 mod memory;
+mod next_touch;
 mod pose_splits;
 mod quickstart;
 mod readings;

@@ -23,6 +23,11 @@ const FEATURE_S: f64 = 1e-8;
 /// Seconds of an SVM's solver for an entry of the kernel matrices of its binary problems.
 const ENTRY_S: f64 = 1.5e-9;
 
+/// Seconds to compare the poses of two touches.
+const POSES_S: f64 = 2e-8;
+/// How often all training touches of an object are compared until bandwidths are chosen.
+const COMPARISONS: f64 = 60.0;
+
 /// To make all touches on an array, so many frames each.
 pub(super) fn touch_s(
     array: &TaxelArray,
@@ -84,9 +89,19 @@ pub(super) fn fit_s(
                 * train_s(plan, cell, n_chosen, n_classes)
         }
     };
-    let n_train = n_train * (n_readings + cell.tilted_copies.unwrap_or(0)) as f64;
+    let n_first = n_train;
+    let n_train = n_first * (n_readings + cell.tilted_copies.unwrap_or(0)) as f64;
     let test_s = (cell.classifier.about().test_s)(n_train, cell.n_features() as f64, n_classes);
-    choose_s + train_s(plan, cell, n_train, n_classes) + n_test * test_s
+    let informed_s = match recognition.is_informed() {
+        false => 0.0,
+        true => {
+            let n_folds = recognition.n_choice_folds() as f64;
+            let n_learned = n_train * (1.0 - 1.0 / n_folds);
+            let n_pairs = n_first * (COMPARISONS * n_first / n_classes + n_test);
+            n_folds * train_s(plan, cell, n_learned, n_classes) + POSES_S * n_pairs
+        }
+    };
+    choose_s + train_s(plan, cell, n_train, n_classes) + informed_s + n_test * test_s
 }
 
 /// To make features of a frame, by way of its image.

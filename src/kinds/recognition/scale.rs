@@ -117,7 +117,13 @@ fn family_bytes(
         // At most as many as the solver is allowed.
         _ => of_all.min(solver_memory(learned.solver_memory_gib) as f64),
     };
-    TRAINING_BYTES * n_train * m
+    // Folds beside what was learned from all rows; of each object's test poses what every object is answered there.
+    let (n_copies, n_tables) = match learned.is_informed() {
+        false => (1.0, 0),
+        true => (2.0, rayon::current_num_threads() * n_classes),
+    };
+    TRAINING_BYTES * n_copies * n_train * m
+        + 8.0 * n_test * n_tables as f64
         + TEST_BYTES * n_test * m
         + SCORE_BYTES * n_test * n_scores as f64
         + kernel_values

@@ -2,3 +2,4 @@
 
 pub mod fusion;
 pub mod metrics;
+pub mod next_touch;

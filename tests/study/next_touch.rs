@@ -1,0 +1,251 @@
+//! The next touch as an axis of a study: against choosing by hand, touch by touch.
+
+use crate::command::Case;
+use crate::study::{Study, laid_out, trials_of};
+use bubbletouch::random::Seed;
+use bubbletouch::recognition::ClassifierKind;
+use bubbletouch::recognition::classifiers::classifier::{Classifier, Cost};
+use bubbletouch::recognition::data::dataset::rows;
+use bubbletouch::recognition::data::split::stratified_k_fold;
+use bubbletouch::recognition::evaluation::fusion::{fuse_rows, fuse_scores};
+use bubbletouch::recognition::evaluation::next_touch::{
+    AnswerModel, NextTouch, PoseAnswers, Poses, most_informative,
+};
+use bubbletouch::study::FeatureSet;
+use bubbletouch::study::progress::Silent;
+use bubbletouch::study::table::Cell;
+use ndarray::{Array2, Axis};
+use std::f64::consts::TAU;
+
+const STUDY: &str = r#"
+question = "Where to touch next?"
+trials = 2
+
+[objects]
+sets = ["household"]
+names = ["mug", "banana", "scissors", "power_drill", "fork", "bowl"]
+surface_error_mm = 2.0
+
+[skin]
+pitch_mm = 4.0
+size_mm = 64.0
+stroke_mm = 5.0
+
+[touches]
+per_object = 32
+offset_x_mm = { uniform = [-10.0, 10.0] }
+offset_y_mm = 3.0
+yaw_deg = { uniform = [0.0, 360.0] }
+depth_mm = [1.0, 4.0]
+
+[signal]
+noise_std_full_scale = 0.2
+
+[sensing]
+measurements = 16
+
+[recognition]
+classifier = "linear_svm"
+test_fraction = 0.375
+"#;
+
+const HUMAN: &str = r#"
+question = "Which kind of touch is it?"
+
+[human_touch]
+per_kind = 20
+frames_hz = 15.0
+duration_s = 1.0
+
+[skin]
+pitch_mm = 12.0
+taxels = 16
+stroke_mm = 6.0
+
+[sensing]
+ratio = 4
+
+[recognition]
+classifier = "linear_svm"
+"#;
+
+const ALL: &str = r#"next_touch = ["random", "farthest", "most_informative"]"#;
+
+fn with(keys: &str) -> String {
+    format!("{STUDY}{keys}\n")
+}
+
+/// Decisions of a cell, each after one touch after the other.
+fn n_correct_by_hand(study: &Study, set: &FeatureSet, (cell, trial): (&Cell, usize)) -> usize {
+    let classifier = Classifier {
+        c: Cost::Fixed(1.0),
+        ..Classifier::new(ClassifierKind::LinearSvm)
+    };
+    let (training, test) = (set.training(None).unwrap(), set.test().unwrap());
+    let seed = Seed::new(2018).named("validation").numbered(trial as u64);
+    let trained = classifier.train(&training, &seed).unwrap();
+    let scores = trained.scores(test.records.view()).unwrap();
+    let answers = trained.labels_of_scores(scores.view()).to_vec();
+    // What is answered to training touches that are not learned.
+    let mut told = Vec::new();
+    for fold in stratified_k_fold(training.targets.view(), 5, &seed).unwrap() {
+        let of_fold = classifier.train(&rows(&training, &fold.train).unwrap(), &seed);
+        let held_out = training.records.select(Axis(0), &fold.test);
+        let labels = of_fold.unwrap().labels(held_out.view()).unwrap();
+        for (&row, answer) in fold.test.iter().zip(labels) {
+            told.push((set.split.train[row], training.targets[row], answer));
+        }
+    }
+    let touches: Vec<_> = study.touched.iter().flat_map(|t| &t.touches).collect();
+    let coordinates = Array2::from_shape_fn((touches.len(), 3), |(touch, axis)| {
+        let touch = touches[touch];
+        [touch.offset[0] / 20e-3, touch.yaw / TAU, touch.depth / 3e-3][axis]
+    });
+    let poses = Poses {
+        coordinates,
+        turns: vec![None, Some(1.0), None],
+    };
+    let model = AnswerModel::new(&poses, &told, 6);
+    let at: Vec<PoseAnswers> = set
+        .split
+        .test
+        .iter()
+        .map(|&touch| model.at(touch))
+        .collect();
+    let numbers = |places: &[usize]| -> Vec<usize> {
+        places.iter().map(|&place| set.split.test[place]).collect()
+    };
+    let seed = Seed::new(2018)
+        .named("fused_touches")
+        .numbered(trial as u64);
+    let fused = fuse_rows(test.targets.view(), cell.fused_touches, &seed);
+    let mut n_correct = 0;
+    for group in &fused.groups {
+        let object = test.targets[group[0]];
+        let mut made = vec![group[0]];
+        while made.len() < cell.fused_touches {
+            let all = 0..test.targets.len();
+            let left = all.filter(|place| test.targets[*place] == object && !made.contains(place));
+            let left: Vec<usize> = left.collect();
+            let next = match cell.next_touch.unwrap() {
+                NextTouch::Random => group[made.len()],
+                NextTouch::Farthest => left[poses.farthest(&numbers(&made), &numbers(&left))],
+                NextTouch::MostInformative => left[most_informative((&at, &answers), &made, &left)],
+            };
+            made.push(next);
+        }
+        let sums = fuse_scores(scores.view(), &[made]);
+        n_correct += usize::from(trained.labels_of_scores(sums.view())[0] == object);
+    }
+    n_correct
+}
+
+#[test]
+fn each_choice_scores_what_a_robot_that_makes_it_touch_by_touch_does() {
+    let text = with(&format!("{ALL}\nfused_touches = [1, 2, 4]"));
+    let study = Study::new(&text);
+    let tables = study.run();
+    let sets: Vec<FeatureSet> = (0..2)
+        .map(|trial| {
+            study
+                .of_items()
+                .first()
+                .features((0, trial), &Silent)
+                .unwrap()
+        })
+        .collect();
+    // One touch has no next.
+    assert_eq!(tables.accuracy.len(), 2 * (1 + 3 + 3));
+    let mut found = Vec::new();
+    for (cell, score) in &tables.accuracy {
+        let by_hand = n_correct_by_hand(&study, &sets[score.trial], (cell, score.trial));
+        assert_eq!(score.n_correct, by_hand, "{cell:?}");
+        assert_eq!(score.n_test, 72 / cell.fused_touches);
+        found.push(score.n_correct);
+    }
+    println!("{found:?}");
+    let random = |cells: &[usize]| {
+        cells
+            .iter()
+            .map(|cell| &found[2 * cell..][..2])
+            .collect::<Vec<_>>()
+    };
+    assert_ne!(random(&[1, 4]), random(&[2, 5]));
+    assert_ne!(random(&[1, 4]), random(&[3, 6]));
+}
+
+#[test]
+fn choices_are_the_same_bytes_at_any_number_of_threads() {
+    let case = Case::new();
+    case.file("study.toml", with(&format!("{ALL}\nfused_touches = 3")));
+    let accuracy = ["1", "5"].map(|threads| {
+        case.succeeds(&["run", "study.toml", "--threads", threads, "--out", threads]);
+        std::fs::read(case.path(threads).join("accuracy.csv")).unwrap()
+    });
+    assert!(!accuracy[0].is_empty() && accuracy[0] == accuracy[1]);
+}
+
+#[test]
+fn random_is_what_a_study_without_the_key_does_and_neither_changes_beside_others() {
+    let without = Study::new(&with("fused_touches = [1, 3]")).run();
+    let random = Study::new(&with("next_touch = \"random\"\nfused_touches = [1, 3]")).run();
+    let among = Study::new(&with(&format!(
+        "{ALL}\nfused_touches = [1, 3]\nc = [0.1, 1.0]"
+    )))
+    .run();
+    for (cell, score) in &without.accuracy {
+        let named = Cell {
+            next_touch: Some(NextTouch::Random),
+            ..cell.clone()
+        };
+        assert!(trials_of(&random, &named).contains(&score));
+        let named = Cell {
+            c: Some(1.0),
+            ..named
+        };
+        assert!(trials_of(&among, &named).contains(&score));
+    }
+}
+
+#[test]
+fn a_choice_that_cannot_be_made_is_refused_by_its_key() {
+    let fused = format!("{ALL}\nfused_touches = 2\n");
+    let recorded = fused.replace("\"random\", ", "");
+    for (text, said) in [
+        (
+            with(ALL),
+            "key recognition.next_touch: \"farthest\" beside recognition.fused_touches = 1",
+        ),
+        (
+            with(&fused).replace("[touches]", "[touches]\nrest = \"stable\""),
+            "key recognition.next_touch: \"farthest\" beside touches.rest = \"stable\"",
+        ),
+        (
+            with(&format!("{fused}class_imbalance = 2.0")),
+            "key recognition.class_imbalance: given beside next_touch = \"most_informative\"",
+        ),
+        (
+            with(&format!("{fused}train_touches = 4")),
+            "key recognition.choose_folds: 5; at most 4",
+        ),
+        (
+            with("next_touch = [\"random\", \"random\"]"),
+            "key recognition.next_touch: \"random\" twice",
+        ),
+        (
+            with("next_touch = \"nearest\""),
+            "unknown variant `nearest`",
+        ),
+        (
+            with("choose_folds = 3"),
+            "key recognition.choose_folds: 3; no such key without",
+        ),
+        (
+            HUMAN.to_owned() + &recorded,
+            "key recognition.next_touch: \"farthest\"; \"random\": only touches that",
+        ),
+    ] {
+        let error = laid_out(&text).err().expect("it is refused").to_string();
+        assert!(error.contains(said), "{error}");
+    }
+}
