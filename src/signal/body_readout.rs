@@ -5,8 +5,8 @@
 //! skin's name, the taxel, the frame and the time. What a taxel reads is the same whether it is read alone, with those that are
 //! touched, or with all of its patch.
 //!
-//! Steps and strengths are those of a chain, with the same distributions and other draws; but zeros [drift](super::Drift) along straight lines
-//! between 64 times of a session, and each taxel [fails](super::Faults) by itself, so that the share of dead and stuck ones is one on average.
+//! Steps and strengths are those of a chain, with the same distributions and other draws; but zeros [drift](super::SensorError::Drift) along straight lines
+//! between 64 times of a session, and each taxel [fails](super::SensorError::Faults) by itself, so that the share of dead and stuck ones is one on average.
 
 use super::faults::check_together;
 use super::taxel_step::{CHUNK, Chunk, TaxelStep};
