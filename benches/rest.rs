@@ -66,7 +66,8 @@ fn rest(criterion: &mut Criterion) {
         ("ball", ellipsoid(3000, DVec3::splat(0.04))),
     ] {
         group.bench_function(BenchmarkId::new(name, 3000), |bencher| {
-            bencher.iter(|| stable_poses(&union));
+            let object = union.clone().into();
+            bencher.iter(|| stable_poses(&object));
         });
         group.bench_function(BenchmarkId::new(format!("{name}_mass"), 3000), |bencher| {
             bencher.iter(|| center_of_mass(&union));

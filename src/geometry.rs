@@ -4,7 +4,7 @@ use glam::{DQuat, DVec3, EulerRot};
 use std::collections::HashSet;
 
 /// A rigid motion: rotate, then translate. `a_from_b` maps points of frame b to frame a.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pose {
     /// Unit quaternion.
     pub rotation: DQuat,

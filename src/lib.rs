@@ -157,6 +157,7 @@ pub mod error;
 pub mod files;
 pub mod geometry;
 pub mod guide;
+mod in_range;
 pub mod kinds;
 pub mod mesh;
 mod numbers_csv;

@@ -51,3 +51,58 @@ pub(crate) fn finite(place: &str, column: &str, field: &str, allowed: &str) -> R
         )),
     }
 }
+
+/// A header of names, and rows that have a number under each.
+#[derive(Debug, Default)]
+pub(crate) struct NumberTable {
+    /// The file's name, for errors.
+    pub place: String,
+    header_line: u64,
+    pub names: Vec<String>,
+    /// One a name.
+    pub columns: Vec<Vec<f64>>,
+    /// Where each row is in the file.
+    pub lines: Vec<u64>,
+}
+
+impl NumberTable {
+    /// Reads all; errors begin with `place`, the file's name, and give line and column. `allowed`: what such a file has.
+    pub fn read(place: &str, source: impl Read, allowed: &str) -> Result<Self> {
+        let not_text = |error| unreadable(place, error, allowed);
+        let mut reader = rows_of(source);
+        let mut records = reader.records();
+        let Some(header) = records.next().transpose().map_err(not_text)? else {
+            return Err(Error::input(place, "an empty file", allowed));
+        };
+        let names: Vec<String> = header.iter().map(str::to_owned).collect();
+        let mut table = Self {
+            place: place.to_owned(),
+            header_line: line_of(&header),
+            columns: vec![Vec::new(); names.len()],
+            names,
+            lines: Vec::new(),
+        };
+        for record in records {
+            let record = record.map_err(not_text)?;
+            let place = format!("{place}, line {}", line_of(&record));
+            check_width(&place, &record, table.names.len())?;
+            let cells = record.iter().zip(&table.names);
+            for ((cell, name), column) in cells.zip(&mut table.columns) {
+                column.push(finite(&place, name, cell, "a finite number")?);
+            }
+            table.lines.push(line_of(&record));
+        }
+        Ok(table)
+    }
+
+    /// An error in the header.
+    pub fn refuse_header(&self, given: impl ToString, allowed: impl ToString) -> Error {
+        let place = format!("{}, line {}", self.place, self.header_line);
+        Error::input(place, given, allowed)
+    }
+
+    /// Where a column is, by its name.
+    pub fn position(&self, name: &str) -> Option<usize> {
+        self.names.iter().position(|known| known == name)
+    }
+}

@@ -1,5 +1,7 @@
 //! Names that were perhaps meant, numbers of things, and durations.
 
+use crate::error::{Error, Result};
+
 /// At most this many are offered: more is a list that nobody reads.
 const OFFERED: usize = 8;
 
@@ -18,6 +20,16 @@ pub(crate) fn duration(seconds: f64) -> String {
         s if s < 172_800.0 => format!("{:.1} h", s / 3600.0),
         s => format!("{:.1} days", s / 86_400.0),
     }
+}
+
+/// The place of a name among `names`; the error offers those it resembles.
+pub(crate) fn known<'a>(
+    place: impl ToString,
+    name: &str,
+    names: impl IntoIterator<Item = &'a str> + Clone,
+) -> Result<usize> {
+    let found = names.clone().into_iter().position(|known| known == name);
+    found.ok_or_else(|| Error::input(place, format!("`{name}`"), nearest_names(name, names)))
 }
 
 /// The error's last part for a name that is not among `names`: those it resembles, else the first few there are.

@@ -57,11 +57,6 @@ impl<'a> Approach<'a> {
         self.travelling.get_or_init(make)
     }
 
-    /// The patch.
-    pub fn patch(&self) -> &'a Patch {
-        self.patch
-    }
-
     /// How far the patch goes until a taxel meets an object, metres, negative if it is past that; `None` where the way misses all of them.
     ///
     /// `patch_from_objects`: where the objects are, one an object.

@@ -2,12 +2,13 @@
 
 use super::approach::Approach;
 use super::crossing::{Sample, crossing};
-use super::grid_force::{ACCURACY, check_force, too_much};
+use super::grid_force::{ACCURACY, too_much};
 use super::spring_load::sample;
 use super::way::{Way, meeting};
 use super::{Contact, Workspace};
 use crate::error::Result;
 use crate::geometry::Pose;
+use crate::in_range::positive;
 use crate::objects::Model;
 
 impl Approach<'_> {
@@ -31,7 +32,7 @@ impl Approach<'_> {
         force: f64,
         workspace: &mut Workspace,
     ) -> Result<Option<Contact>> {
-        check_force(force)?;
+        positive("touch force", force, "N")?;
         workspace.hold([]);
         let mut way = self.way(objects, patch_from_objects, workspace);
         let pressed = way.go(force);
@@ -68,7 +69,7 @@ impl Way<'_> {
     /// Two travels, with less than the force at the first and not less at the second; `None` if nothing is touched.
     fn bracket(&mut self, [start, end]: [f64; 2], force: f64) -> Result<Option<[f64; 2]>> {
         let mut largest = (0.0, start);
-        let n_steps = self.n_steps(end - start);
+        let n_steps = self.patch.n_steps(end - start);
         let mut low = start;
         for k in 1..=n_steps {
             let high = start + (end - start) * (k as f64 / n_steps as f64);

@@ -146,7 +146,7 @@ impl FrictionState {
     /// # Errors
     /// Those of [`Shears::check`].
     pub fn at_rest(patch: &Patch, shears: Shears) -> Result<Self> {
-        shears.check(patch)?;
+        shears.check_on(patch)?;
         Ok(Self {
             shears,
             forces: vec![DVec3::ZERO; patch.n_taxels()],

@@ -10,6 +10,7 @@ use super::grid_press::{GridPress, Until};
 use super::row::Zeroing;
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
+use crate::in_range::positive;
 use crate::objects::Model;
 use crate::world::EvenGrid;
 
@@ -24,7 +25,7 @@ pub(super) fn press(
     force: f64,
     (press, zeroing): (&mut GridPress, &mut Zeroing),
 ) -> Result<Option<Contact>> {
-    check_force(force)?;
+    positive("touch force", force, "N")?;
     let stroke = grid.stroke;
     let gathered = press.gather(grid, objects, patch_from_objects, Until::Depth(stroke));
     let Some(first) = gathered else {
@@ -103,18 +104,6 @@ impl<'a> ForceCurve<'a> {
             self.at(travel)
         })
     }
-}
-
-/// The error names a force that is not a positive number.
-pub(super) fn check_force(force: f64) -> Result<()> {
-    if force.is_finite() && force > 0.0 {
-        return Ok(());
-    }
-    Err(Error::input(
-        "touch force",
-        format!("{force} N"),
-        "a finite positive number",
-    ))
 }
 
 /// The error of a force that cannot be reached; `where_to`: what happens at the largest one.

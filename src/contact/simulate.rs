@@ -3,6 +3,7 @@
 use super::{DamperState, Workspace, tree_press};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
+use crate::in_range::positive;
 use crate::objects::Model;
 use crate::world::{Patch, VelocityPlan};
 use ndarray::{Array1, Array2, ArrayView1};
@@ -38,13 +39,7 @@ pub fn simulate(
     dt: f64,
     n_frames: usize,
 ) -> Result<Recording> {
-    if !(dt.is_finite() && dt > 0.0) {
-        return Err(Error::input(
-            "time step",
-            format!("{dt} s"),
-            "a positive number",
-        ));
-    }
+    positive("time step", dt, "s")?;
     if world_from_objects.len() != objects.len() {
         return Err(Error::input(
             "object trajectories",

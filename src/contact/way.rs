@@ -35,6 +35,19 @@ pub(super) enum Contacts {
     Needless,
 }
 
+impl Patch {
+    /// In how many steps a part of a way past objects is looked at; its length in metres.
+    pub(crate) fn n_steps(&self, length: f64) -> usize {
+        let step = STEP * self.least(|taxel| taxel.stroke);
+        (length / step).ceil().clamp(1.0, MOST_STEPS) as usize
+    }
+
+    fn least(&self, of: fn(&Taxel) -> f64) -> f64 {
+        let values = self.taxels().all().iter().map(of);
+        values.fold(f64::INFINITY, f64::min)
+    }
+}
+
 impl Way<'_> {
     /// An error unless a direction's length is one.
     pub fn check(direction: DVec3) -> Result<()> {
@@ -48,24 +61,13 @@ impl Way<'_> {
         }
     }
 
-    /// In how many steps a part of the way is looked at; its length in metres.
-    pub fn n_steps(&self, length: f64) -> usize {
-        let step = STEP * self.least(|taxel| taxel.stroke);
-        (length / step).ceil().clamp(1.0, MOST_STEPS) as usize
-    }
-
-    /// The same where friction drags the taxels' tips.
+    /// In how many steps a part of the way (metres) is looked at where friction drags the taxels' tips.
     pub fn n_friction_steps(&self, length: f64) -> usize {
-        let step = FRICTION_STEP * self.least(|taxel| taxel.radius);
+        let step = FRICTION_STEP * self.patch.least(|taxel| taxel.radius);
         // A whole number of steps is not one more for the last bit of a length.
         let n_steps = (length / step * (1.0 - 1e-9)).ceil();
         let n_steps = n_steps.clamp(1.0, MOST_STEPS) as usize;
-        n_steps.max(self.n_steps(length))
-    }
-
-    fn least(&self, of: fn(&Taxel) -> f64) -> f64 {
-        let values = self.patch.taxels().all().iter().map(of);
-        values.fold(f64::INFINITY, f64::min)
+        n_steps.max(self.patch.n_steps(length))
     }
 
     /// Presses after a travel.
@@ -129,7 +131,7 @@ impl Way<'_> {
         };
         let n_steps = |length| match friction {
             Some(_) => self.n_friction_steps(length),
-            None => self.n_steps(length),
+            None => self.patch.n_steps(length),
         };
         let direction = self.direction;
         let depth = travel - first;

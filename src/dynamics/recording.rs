@@ -4,6 +4,7 @@ use super::state::{Integrator, State};
 use super::system::System;
 use crate::contact::Recording;
 use crate::error::{Error, Result};
+use crate::in_range::positive;
 use ndarray::{Array1, Array2};
 
 /// How far to go, and what to keep.
@@ -79,10 +80,7 @@ pub fn run(
 }
 
 fn check(steps: &Steps) -> Result<()> {
-    if !(steps.dt.is_finite() && steps.dt > 0.0) {
-        let given = format!("{} s", steps.dt);
-        return Err(Error::input("time step", given, "a positive number"));
-    }
+    positive("time step", steps.dt, "s")?;
     let is_rising = steps.frames.windows(2).all(|pair| pair[0] < pair[1]);
     let are_within = steps.frames.iter().all(|step| (1..=steps.n).contains(step));
     if !(is_rising && are_within) {

@@ -3,6 +3,7 @@
 use crate::contact::{Workspace, press_with_contacts};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
+use crate::in_range::positive;
 use crate::objects::Model;
 use crate::world::{Patch, VelocityPlan};
 use glam::DVec3;
@@ -140,14 +141,6 @@ impl<'a> System<'a> {
     pub(super) fn imposed(&self, plan: &VelocityPlan, time: f64) -> f64 {
         plan.pose_at(0.0).translation.z - plan.pose_at(time).translation.z
     }
-}
-
-fn positive(place: &str, value: f64, unit: &str) -> Result<()> {
-    if value.is_finite() && value > 0.0 {
-        return Ok(());
-    }
-    let allowed = "a finite positive number";
-    Err(Error::input(place, format!("{value} {unit}"), allowed))
 }
 
 /// Along the axes a taxel that is pushed is pushed as much further as the object goes: one press at the end of the reach tells all.

@@ -50,30 +50,25 @@ fn patches(plan: &ScenePlan, summary: &Summary) -> String {
 
 fn objects(plan: &ScenePlan, summary: &Summary) -> String {
     let all = plan.objects.iter().zip(&plan.models);
-    let counts = summary.n_unsettled.iter().zip(&summary.n_off);
-    let counts = counts.zip(&summary.imbalance);
-    let ends = all.zip(summary.objects.iter().zip(counts));
-    let rows = ends.map(
-        |((object, model), (held, ((n_unsettled, n_off), imbalance)))| {
-            let parts = match model.spheres() {
-                Some(union) if union.n_spheres() == 1 => "1 sphere".to_owned(),
-                Some(union) => format!("{} spheres", union.n_spheres()),
-                None => format!("{} triangles", model.n_triangles()),
-            };
-            let mut end = ending(&object.movement, held);
-            if *n_unsettled > 0 {
-                end += &format!("; not at rest in {n_unsettled} frames");
-            }
-            if *imbalance > 0.0 {
-                let share = short_number(*imbalance);
-                end += &format!("; at most {share} of its weight not balanced");
-            }
-            if *n_off > 0 {
-                end += &format!("; not with the force wanted in {n_off} frames");
-            }
-            vec![object.name.clone(), parts, end]
-        },
-    );
+    let rows = all.zip(&summary.objects).map(|((object, model), summary)| {
+        let parts = match model.spheres() {
+            Some(union) if union.n_spheres() == 1 => "1 sphere".to_owned(),
+            Some(union) => format!("{} spheres", union.n_spheres()),
+            None => format!("{} triangles", model.n_triangles()),
+        };
+        let mut end = ending(&object.movement, &summary.held);
+        if summary.n_unsettled > 0 {
+            end += &format!("; not at rest in {} frames", summary.n_unsettled);
+        }
+        if summary.imbalance > 0.0 {
+            let share = short_number(summary.imbalance);
+            end += &format!("; at most {share} of its weight not balanced");
+        }
+        if summary.n_off > 0 {
+            end += &format!("; not with the force wanted in {} frames", summary.n_off);
+        }
+        vec![object.name.clone(), parts, end]
+    });
     rows_text(&["object", "parts", "at the end"], &[0, 1, 2], rows)
 }
 

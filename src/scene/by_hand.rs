@@ -8,7 +8,7 @@ use super::plan_object::Movement;
 use super::simulation::Simulation;
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
-use crate::spelling::nearest_names;
+use crate::spelling::known;
 use crate::study::positive;
 use crate::world::{Interpolation, JointTrajectory};
 use ndarray::Array2;
@@ -96,7 +96,7 @@ impl Simulation<'_> {
     /// A name that no object of the scene has; an object that a robot carries; a pose that is not finite.
     pub fn set_object_pose(&mut self, object: &str, pose: Pose) -> Result<()> {
         let objects = self.plan.objects.iter();
-        let number = find("object", object, objects.map(|object| object.name.as_str()))?;
+        let number = known("object", object, objects.map(|object| object.name.as_str()))?;
         let key = format!("objects.{object}");
         check_pose(&key, &pose)?;
         match self.plan.objects[number].movement {
@@ -112,20 +112,8 @@ impl Simulation<'_> {
 
     fn robot(&self, name: &str) -> Result<usize> {
         let robots = self.plan.robots.iter();
-        find("robot", name, robots.map(|robot| robot.name.as_str()))
+        known("robot", name, robots.map(|robot| robot.name.as_str()))
     }
-}
-
-/// The number of what has this name.
-fn find<'a>(
-    place: &str,
-    name: &str,
-    mut names: impl Iterator<Item = &'a str> + Clone,
-) -> Result<usize> {
-    let all = names.clone();
-    names
-        .position(|known| known == name)
-        .ok_or_else(|| Error::input(place, format!("`{name}`"), nearest_names(name, all)))
 }
 
 fn check_pose(place: &str, pose: &Pose) -> Result<()> {

@@ -20,7 +20,7 @@ pub struct Frame {
 }
 
 /// What a patch feels, and where it is.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct PatchReading {
     /// `world_from_patch`.
     pub pose: Pose,
@@ -73,9 +73,10 @@ pub struct ObjectReading {
 }
 
 /// What holds an object.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Held {
     /// Its motion.
+    #[default]
     Imposed,
     /// Its motion, and a force that a patch is to feel.
     Pressed {

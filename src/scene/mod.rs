@@ -88,4 +88,4 @@ pub use plan_robot::PlannedRobot;
 pub use plan_signal::PlannedSignal;
 pub use simulation::{Simulation, Stepping};
 pub use spec::*;
-pub use summary::{PatchPeaks, Summary};
+pub use summary::{ObjectSummary, PatchPeaks, Summary};

@@ -6,7 +6,6 @@ use super::robot_state::RobotState;
 use super::spec::{ObjectSpec, PatchSpec, PoseSpec};
 use crate::error::Result;
 use crate::geometry::Pose;
-use crate::spelling::nearest_names;
 
 /// What carries something.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,10 +68,7 @@ impl Reader<'_> {
             return Err(self.check.error(key, "given beside a robot", allowed));
         }
         let names = objects.iter().map(|object| object.name.as_str());
-        let Some(object) = names.clone().position(|known| known == name) else {
-            let allowed = nearest_names(name, names);
-            return Err(self.check.error(key, format!("`{name}`"), allowed));
-        };
+        let object = self.known(key, name, names)?;
         if objects[object].free.is_some() || objects[object].press.is_some() {
             let given = format!("`{name}`, which does not go where it is told");
             let allowed = "an object that is neither free nor pushed";
@@ -104,12 +100,7 @@ impl Reader<'_> {
             };
         };
         let names = robots.iter().map(|robot| robot.name.as_str());
-        let Some(robot) = names.clone().position(|known| known == name) else {
-            let key = format!("{key}.robot");
-            return Err(self
-                .check
-                .error(&key, format!("`{name}`"), nearest_names(name, names)));
-        };
+        let robot = self.known(&format!("{key}.robot"), name, names)?;
         let carrier = &robots[robot].robot;
         let link = match link {
             Some(link) => self.under(&format!("{key}.link"), carrier.link(link))?,

@@ -12,7 +12,7 @@ use crate::mesh::SizeLimits;
 use crate::objects::{Catalogue, Model};
 use crate::spelling::nearest_names;
 use crate::study::{ObjectsSpec, load_catalogue, load_mesh, load_spheres, positive};
-use crate::world::{Body, Motion};
+use crate::world::Motion;
 use glam::DVec3;
 
 /// An object whose motion is known, or what it needs to find its own.

@@ -70,7 +70,7 @@ impl Reader<'_> {
         let (taxels, shears) = self.taxels(key, spec, layout.n_taxels())?;
         let skin = self.under(key, Patch::new(&spec.name, layout, taxels))?;
         if let Some(shears) = &shears {
-            self.under(key, shears.check(&skin))?;
+            self.under(key, shears.check_on(&skin))?;
         }
         Ok(PlannedPatch {
             signal: self.signal(key, &spec.signal, &skin, seed)?,

@@ -5,7 +5,6 @@ use super::plan_patch::PlannedPatch;
 use super::reader::{MM, Reader};
 use super::spec::PressSpec;
 use crate::error::Result;
-use crate::spelling::nearest_names;
 use crate::study::{not_negative, positive};
 use glam::DVec3;
 
@@ -55,11 +54,7 @@ impl Reader<'_> {
     ) -> Result<PlannedPress> {
         let key = &format!("{key}.press");
         let names = patches.iter().map(|patch| patch.skin.name());
-        let Some(patch) = names.clone().position(|known| known == spec.patch) else {
-            let given = format!("`{}`", spec.patch);
-            let allowed = nearest_names(&spec.patch, names);
-            return Err(self.check.error(&format!("{key}.patch"), given, allowed));
-        };
+        let patch = self.known(&format!("{key}.patch"), &spec.patch, names)?;
         let direction_key = format!("{key}.direction");
         let direction = self.vector(&direction_key, spec.direction, 1.0)?;
         if direction == DVec3::ZERO {

@@ -5,12 +5,11 @@ use super::reader::{MM, Reader};
 use super::spec::SignalStepSpec;
 use crate::error::Result;
 use crate::random::Seed;
-use crate::signal::{
-    Chain, MOST_STRENGTHS, Noise, Quantity, Recording, SENSOR_ERRORS, Scratch, SignalStep, Strength,
-};
+use crate::signal::{Chain, MOST_STRENGTHS, Noise, Quantity, Recording, Scratch, SignalStep};
 use crate::spelling::nearest_names;
-use crate::study::{NOISES, not_negative};
+use crate::study::{NOISES, all_strengths, not_negative};
 use crate::world::Patch;
+use std::collections::BTreeMap;
 
 /// The key of smoothing, beside those of [noise](NOISES) and of sensor errors.
 const SMOOTHING: &str = "smoothing_mm";
@@ -63,28 +62,22 @@ impl Reader<'_> {
         skin: &Patch,
         seed: &Seed,
     ) -> Result<Option<PlannedSignal>> {
-        let Some(first) = steps.first() else {
-            return Ok(None);
-        };
         let key = &format!("{key}.signal");
-        let is_force = |step: &SignalStepSpec| matches!(step, SignalStepSpec::Word(_));
-        let begins = match is_force(first) {
-            true => Quantity::Force,
-            false => Quantity::Deflection,
+        let (begins, rest) = match steps {
+            [] => return Ok(None),
+            [SignalStepSpec::Word(word), rest @ ..] if word == "force" => (Quantity::Force, rest),
+            _ => (Quantity::Deflection, steps),
         };
-        for (place, step) in steps.iter().enumerate() {
-            let SignalStepSpec::Word(word) = step else {
-                continue;
-            };
-            if word != "force" || place > 0 {
-                let given = format!("{word:?} as step {}", place + 1);
-                let allowed = "\"force\" as the first, and steps such as { noise_std_n = 0.1 }";
-                return Err(self.check.error(key, given, allowed));
-            }
-        }
         let owner = seed.named("skin").named(skin.name());
-        let steps = steps.iter().filter(|step| !is_force(step));
-        let steps = steps.map(|step| self.signal_step(key, step, owner));
+        let first = 1 + steps.len() - rest.len();
+        let steps = rest.iter().zip(first..).map(|(step, place)| match step {
+            SignalStepSpec::Strengths(given) => self.signal_step(key, given, owner),
+            SignalStepSpec::Word(word) => {
+                let given = format!("{word:?} as step {place}");
+                let allowed = "\"force\" as the first, and steps such as { noise_std_n = 0.1 }";
+                Err(self.check.error(key, given, allowed))
+            }
+        });
         let steps = steps.collect::<Result<Vec<_>>>()?;
         Ok(Some(PlannedSignal {
             chain: self.under(key, Chain::of(&steps, skin, begins))?,
@@ -92,10 +85,12 @@ impl Reader<'_> {
         }))
     }
 
-    fn signal_step(&self, key: &str, step: &SignalStepSpec, skin: Seed) -> Result<SignalStep> {
-        let SignalStepSpec::Strengths(given) = step else {
-            unreachable!("words are no steps of the chain");
-        };
+    fn signal_step(
+        &self,
+        key: &str,
+        given: &BTreeMap<String, f64>,
+        skin: Seed,
+    ) -> Result<SignalStep> {
         let Some((first, &value)) = given.first_key_value() else {
             let allowed = "one step's keys: { noise_std_n = 0.1 }";
             return Err(self.check.error(key, "a step without a key", allowed));
@@ -115,16 +110,9 @@ impl Reader<'_> {
                 None => SignalStep::Smoothing { width: value * MM },
             });
         }
-        let has = |name| move |strength: &Strength| strength.key == name;
-        let found = SENSOR_ERRORS.iter().find(|error| {
-            let mut strengths = error.about().strengths.iter();
-            strengths.any(has(first.as_str()))
-        });
-        let Some(error) = found else {
-            let strengths = SENSOR_ERRORS
-                .iter()
-                .flat_map(|error| error.about().strengths);
-            let errors = strengths.map(|strength| strength.key);
+        let found = all_strengths().find(|(_, strength)| strength.key == first);
+        let Some((error, _)) = found else {
+            let errors = all_strengths().map(|(_, strength)| strength.key);
             let noises = NOISES.iter().map(|(name, _)| *name);
             let names = noises.chain([SMOOTHING]).chain(errors);
             let given = format!("`{first}`");
@@ -138,7 +126,8 @@ impl Reader<'_> {
         }
         let mut strengths = [0.0; MOST_STRENGTHS];
         for (name, &value) in given {
-            let Some(place) = about.strengths.iter().position(has(name.as_str())) else {
+            let mut all = about.strengths.iter();
+            let Some(place) = all.position(|strength| strength.key == name) else {
                 let given = format!("`{name}` beside `{first}`");
                 return Err(self.check.error(key, given, "one step in each { }"));
             };
@@ -148,10 +137,6 @@ impl Reader<'_> {
                 self.check
                     .value(key, value, strength.is_allowed, strength.allowed)?;
         }
-        Ok(SignalStep::Error {
-            error: *error,
-            strengths,
-            skin,
-        })
+        Ok(error.step(&strengths, skin))
     }
 }

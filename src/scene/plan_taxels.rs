@@ -4,11 +4,10 @@ use super::numbers::Numbers;
 use super::reader::{MM, Reader};
 use super::spec::PatchSpec;
 use crate::error::{Error, Result};
-use crate::numbers_csv::{check_width, finite, line_of, rows_of, unreadable};
+use crate::numbers_csv::NumberTable;
 use crate::spelling::nearest_names;
 use crate::study::{not_negative, positive};
 use crate::world::{PerTaxel, Shear, Shears, Taxel, Taxels};
-use std::collections::BTreeMap;
 
 /// Stiffness of taxels of which nothing is said, N/m.
 const STIFFNESS: f64 = 100.0;
@@ -21,21 +20,13 @@ const FRICTION: &str = "friction";
 const SHEAR: &str = "shear_stiffness_n_per_m";
 const NAMES: [&str; 6] = [RADIUS, STROKE, STIFF, DAMPING, FRICTION, SHEAR];
 
-/// A file with a row a taxel.
-#[derive(Debug, Default)]
-struct TaxelTable {
-    place: String,
-    /// Of each row.
-    lines: Vec<u64>,
-    columns: BTreeMap<&'static str, Vec<f64>>,
-}
-
 /// Where the numbers of one patch are looked up.
 struct Lookup<'a> {
     reader: &'a Reader<'a>,
     /// Of the patch.
     key: &'a str,
-    table: TaxelTable,
+    /// A row a taxel.
+    table: NumberTable,
     n_taxels: usize,
 }
 
@@ -50,11 +41,11 @@ impl Reader<'_> {
         let table = match &spec.taxels_csv {
             Some(path) => {
                 let (place, file) = self.open(&format!("{key}.taxels_csv"), path)?;
-                read_table(place, file)?
+                read_table(&place, file)?
             }
-            None => TaxelTable::default(),
+            None => NumberTable::default(),
         };
-        let has = |name| table.columns.contains_key(name);
+        let has = |name| table.position(name).is_some();
         let (has_stiffness, has_damping) = (has(STIFF), has(DAMPING));
         let default = |given: &mut Option<Numbers>, has_column: bool, value| {
             if given.is_none() && !has_column {
@@ -131,7 +122,7 @@ impl Lookup<'_> {
     ) -> Result<Option<PerTaxel<f64>>> {
         let check = &self.reader.check;
         let key = format!("{}.{name}", self.key);
-        match (given, self.table.columns.get(name)) {
+        match (given, self.table.position(name)) {
             (None, None) => Ok(None),
             (Some(_), Some(_)) => {
                 let given = format!("here and as a column of {}", self.table.place);
@@ -152,7 +143,7 @@ impl Lookup<'_> {
                 Ok(Some(PerTaxel::Each(numbers.clone())))
             }
             (None, Some(column)) => {
-                let place = &self.table.place;
+                let (place, column) = (&self.table.place, &self.table.columns[column]);
                 self.check_count(column.len(), "rows", |given, allowed| {
                     Error::input(place, given, allowed)
                 })?;
@@ -199,50 +190,18 @@ impl Lookup<'_> {
     }
 }
 
-/// Reads a header of names and a number in every cell; the error gives line and column.
-fn read_table(place: String, source: impl std::io::Read) -> Result<TaxelTable> {
-    let rows = "a header and one row a taxel, of as many numbers";
-    let not_text = |error| unreadable(&place, error, rows);
-    let mut reader = rows_of(source);
-    let mut records = reader.records();
-    let header = records.next().transpose().map_err(not_text)?;
-    let Some(header) = header else {
-        return Err(Error::input(place, "an empty file", rows));
-    };
-    let names = names(&place, &header)?;
-    let mut lines = Vec::new();
-    let mut columns = vec![Vec::new(); names.len()];
-    for record in records {
-        let record = record.map_err(not_text)?;
-        let place = format!("{place}, line {}", line_of(&record));
-        check_width(&place, &record, names.len())?;
-        for ((cell, name), column) in record.iter().zip(&names).zip(&mut columns) {
-            column.push(finite(&place, name, cell, "a finite number")?);
+/// Reads a number a taxel of each property that the columns are; the error gives line and column, and a name that is none or is there twice.
+fn read_table(place: &str, source: impl std::io::Read) -> Result<NumberTable> {
+    let allowed = "a header and one row a taxel, of as many numbers";
+    let table = NumberTable::read(place, source, allowed)?;
+    for (index, given) in table.names.iter().enumerate() {
+        if !NAMES.contains(&given.as_str()) {
+            let offered = nearest_names(given, NAMES);
+            return Err(table.refuse_header(format!("column `{given}`"), offered));
         }
-        lines.push(line_of(&record));
-    }
-    Ok(TaxelTable {
-        place,
-        lines,
-        columns: names.into_iter().zip(columns).collect(),
-    })
-}
-
-/// The properties that the columns are; the error is a name that is none, or is there twice.
-fn names(place: &str, header: &csv::StringRecord) -> Result<Vec<&'static str>> {
-    let mut names = Vec::new();
-    let refuse = |given: String, allowed: &str| {
-        let place = format!("{place}, line {}", line_of(header));
-        Err(Error::input(place, given, allowed))
-    };
-    for given in header {
-        let Some(name) = NAMES.into_iter().find(|name| *name == given) else {
-            return refuse(format!("column `{given}`"), &nearest_names(given, NAMES));
-        };
-        if names.contains(&name) {
-            return refuse(format!("column `{name}` twice"), "each once");
+        if table.names[..index].contains(given) {
+            return Err(table.refuse_header(format!("column `{given}` twice"), "each once"));
         }
-        names.push(name);
     }
-    Ok(names)
+    Ok(table)
 }

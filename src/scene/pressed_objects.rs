@@ -6,13 +6,6 @@ use super::skin_state::{PlacedObjects, SkinState};
 use crate::contact::{HeldForce, MovedObject, TaxelContact, Workspace};
 use crate::geometry::Pose;
 
-/// The way of a step is looked at in parts of at most this share of the shortest stroke. Larger: a short peak of the force may be
-/// jumped over; smaller: more presses in vain.
-const PART: f64 = 0.5;
-
-/// At most so many parts a step.
-const MOST_PARTS: f64 = 4096.0;
-
 /// All objects of a scene that are pushed for a force.
 #[derive(Clone, Debug)]
 pub(super) struct PressedObjects {
@@ -125,12 +118,10 @@ impl Pressed {
         workspace: &mut Workspace,
     ) {
         let start = poses[self.object];
-        let strokes = moved.patch.taxels().all().iter().map(|taxel| taxel.stroke);
-        let part = PART * strokes.fold(f64::INFINITY, f64::min);
-        let n_parts = (way / part).ceil().clamp(1.0, MOST_PARTS);
-        let step = way / n_parts;
+        let n_parts = moved.patch.n_steps(way);
+        let step = way / n_parts as f64;
         let is_let_go = self.wanted == 0.0;
-        for _ in 0..n_parts as usize {
+        for _ in 0..n_parts {
             let here = self.now.travel;
             let back = (here - step).max(0.0);
             // Without a force it goes back whether it touches anything or not.

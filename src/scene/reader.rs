@@ -5,6 +5,7 @@ use crate::contact::balance::HalfSpace;
 use crate::error::Result;
 use crate::geometry::{Pose, rotation_from_rpy};
 use crate::objects::Model;
+use crate::spelling::known;
 use crate::study::{Check, not_negative};
 use crate::world::{Motion, Phase, PoseTrajectory, VelocityPlan};
 use glam::DVec3;
@@ -29,6 +30,16 @@ impl Reader<'_> {
     /// The same, its error with the file and the key before what it says.
     pub fn under<T>(&self, key: &str, result: Result<T>) -> Result<T> {
         result.map_err(|error| error.under(format!("{}, key {key}: ", self.check.place)))
+    }
+
+    /// The place of a name among those that `key` may say.
+    pub fn known<'n>(
+        &self,
+        key: &str,
+        name: &str,
+        names: impl Iterator<Item = &'n str> + Clone,
+    ) -> Result<usize> {
+        known(format!("{}, key {key}", self.check.place), name, names)
     }
 
     /// Where a file of the scene is.

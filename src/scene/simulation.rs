@@ -7,8 +7,7 @@ use super::plan_object::Movement;
 use super::plan_patch::PlannedPatch;
 use super::pressed_objects::PressedObjects;
 use super::robot_state::RobotState;
-use super::skin_state::{PlacedObjects, SkinState};
-use crate::contact::Wrench;
+use super::skin_state::{Detail, PlacedObjects, SkinState};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::random::Seed;
@@ -222,7 +221,7 @@ impl<'p> Simulation<'p> {
         let plan = self.plan;
         for (skin, patch) in self.skins.iter_mut().zip(&plan.patches) {
             if patch.remembers() || self.stepping == Stepping::Always {
-                skin.step(patch, &plan.models, &self.objects, dt);
+                skin.feel(patch, &plan.models, &self.objects, dt, Detail::Deflections);
             }
         }
     }
@@ -263,16 +262,9 @@ impl<'p> Simulation<'p> {
 fn untouched(patch: &PlannedPatch) -> PatchReading {
     let n_taxels = patch.skin.n_taxels();
     PatchReading {
-        pose: Pose::IDENTITY,
         deflection: vec![0.0; n_taxels],
         force: vec![0.0; n_taxels],
-        signal: None,
-        n_touched: 0,
-        n_saturated: 0,
-        n_grazing: 0,
-        stop_force: 0.0,
-        wrench: Wrench::default(),
         friction: patch.shears.as_ref().map(|_| FrictionReading::default()),
-        center_of_pressure: None,
+        ..PatchReading::default()
     }
 }

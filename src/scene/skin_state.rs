@@ -76,8 +76,6 @@ pub(super) struct SkinState {
     grips: GripCounts,
     /// `patch_from_object`, one an object.
     poses: Vec<Pose>,
-    /// One a taxel: what nothing pushes.
-    untouched: Vec<f64>,
     counts: Contact,
 }
 
@@ -98,7 +96,6 @@ impl SkinState {
             friction: friction.map(at_rest),
             grips: GripCounts::default(),
             poses: Vec::new(),
-            untouched: vec![0.0; n_taxels],
             counts: Contact::default(),
         }
     }
@@ -108,23 +105,12 @@ impl SkinState {
         self.workspace.hold(contacts);
     }
 
-    /// Feels for `dt` seconds what is there at their end; for an endless `dt`, as if it had been there for long.
-    pub fn step(
-        &mut self,
-        patch: &PlannedPatch,
-        models: &[Model],
-        objects: &PlacedObjects,
-        dt: f64,
-    ) {
-        self.feel(patch, models, objects, dt, Detail::Deflections);
-    }
-
     /// How far its taxels are in, metres.
     pub fn deflection(&self) -> &[f64] {
         &self.damper.deflection
     }
 
-    /// The same, and reports; `loads`: what its taxels carry of free objects, taxel by taxel.
+    /// [Feels](Self::feel), and reports; `loads`: what its taxels carry of free objects, taxel by taxel.
     pub fn step_and_read(
         &mut self,
         patch: &PlannedPatch,
@@ -135,11 +121,7 @@ impl SkinState {
         reading: &mut PatchReading,
     ) {
         self.feel(patch, models, objects, dt, Detail::Contacts);
-        // Out of reach, the workspace still has what touched it last.
-        let contacts = match self.counts.n_touched {
-            0 => &[],
-            _ => self.workspace.contacts(),
-        };
+        let contacts = self.workspace.contacts();
         reading.pose = self.pose;
         reading.deflection.clone_from(&self.damper.deflection);
         reading.force.clone_from(&self.damper.force);
@@ -170,7 +152,8 @@ impl SkinState {
         }
     }
 
-    fn feel(
+    /// Feels for `dt` seconds what is there at their end; for an endless `dt`, as if it had been there for long.
+    pub fn feel(
         &mut self,
         patch: &PlannedPatch,
         models: &[Model],
@@ -178,43 +161,32 @@ impl SkinState {
         dt: f64,
         detail: Detail,
     ) {
-        if !self.workspace.holds_any() && !objects.can_reach(patch, &self.pose) {
-            self.counts = Contact::default();
-            if !self.is_idle {
-                self.damper.step(patch.skin.taxels(), dt, &self.untouched);
-                self.grip(patch, &Pressed::Nowhere);
-                self.is_idle = self
-                    .damper
-                    .deflection
-                    .iter()
-                    .all(|&deflection| deflection == 0.0);
-            }
+        let is_reached = self.workspace.holds_any() || objects.can_reach(patch, &self.pose);
+        if !is_reached && self.is_idle {
             return;
         }
-        self.is_idle = false;
         self.poses.clear();
-        self.poses.extend(objects.seen_by(patch, &self.pose));
-        let workspace = &mut self.workspace;
-        if self.friction.is_some() || detail == Detail::Contacts {
-            self.counts = press_with_contacts(&patch.skin, models, &self.poses, workspace);
-        } else {
-            press_at_pose(&patch.skin, models, &self.poses, workspace);
-        }
-        let pushed = self.workspace.deflections();
-        self.damper.step(patch.skin.taxels(), dt, pushed);
-        self.grip(patch, &Pressed::ByContacts);
-    }
-
-    /// Drags the tips along with what touches them.
-    fn grip(&mut self, patch: &PlannedPatch, pressed: &Pressed) {
-        let contacts = match pressed {
-            Pressed::ByContacts => self.workspace.contacts(),
-            Pressed::Nowhere => &[],
+        let models = match is_reached {
+            true => models,
+            false => &[],
         };
+        let seen = objects.seen_by(patch, &self.pose);
+        self.poses.extend(seen.take(models.len()));
+        let workspace = &mut self.workspace;
+        let press = match self.friction.is_some() || detail == Detail::Contacts {
+            true => press_with_contacts,
+            false => press_at_pose,
+        };
+        self.counts = press(&patch.skin, models, &self.poses, workspace);
+        self.damper
+            .step(patch.skin.taxels(), dt, workspace.deflections());
         if let Some(friction) = &mut self.friction {
+            // Drags the tips along with what touches them.
             let normal = NormalForce::Dampers(&self.damper);
-            self.grips = friction.step(&patch.skin, contacts, &self.poses, normal);
+            self.grips = friction.step(&patch.skin, workspace.contacts(), &self.poses, normal);
         }
+        let mut deflections = self.damper.deflection.iter();
+        self.is_idle = !is_reached && deflections.all(|&deflection| deflection == 0.0);
     }
 }
 
@@ -259,15 +231,9 @@ fn on_objects(
         .fold(on_others, |sum, load| sum + load.on_object)
 }
 
-/// What presses a patch in a step.
-enum Pressed {
-    Nowhere,
-    ByContacts,
-}
-
 /// What is asked of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Detail {
+pub(super) enum Detail {
     Deflections,
     /// Also what touches what.
     Contacts,

@@ -24,6 +24,19 @@ pub struct PatchPeaks {
     pub n_slipping: usize,
 }
 
+/// What came of an object.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ObjectSummary {
+    /// What holds it in the last frame.
+    pub held: Held,
+    /// Frames in which it was unsettled.
+    pub n_unsettled: usize,
+    /// The most of a free object's [imbalance](crate::contact::balance::Balance::imbalance) in any frame; 0 of others.
+    pub imbalance: f64,
+    /// Frames in which it was pressed with another force than was wanted.
+    pub n_off: usize,
+}
+
 /// Peaks so far; a sink that keeps no frames.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Summary {
@@ -31,14 +44,8 @@ pub struct Summary {
     pub n_frames: usize,
     /// One a patch, in the plan's order.
     pub patches: Vec<PatchPeaks>,
-    /// What holds each object in the last frame, in the plan's order.
-    pub objects: Vec<Held>,
-    /// Frames in which each object was unsettled.
-    pub n_unsettled: Vec<usize>,
-    /// The most of each free object's [imbalance](crate::contact::balance::Balance::imbalance) in any frame; 0 of others.
-    pub imbalance: Vec<f64>,
-    /// Frames in which each object was pressed with another force than was wanted.
-    pub n_off: Vec<usize>,
+    /// One an object, in the plan's order.
+    pub objects: Vec<ObjectSummary>,
 }
 
 impl FrameSink for Summary {
@@ -59,20 +66,14 @@ impl FrameSink for Summary {
                 peaks.n_slipping = peaks.n_slipping.max(friction.n_slipping);
             }
         }
-        self.objects.clear();
         self.objects
-            .extend(frame.objects.iter().map(|object| object.held));
-        self.n_unsettled.resize(frame.objects.len(), 0);
-        for (count, object) in self.n_unsettled.iter_mut().zip(&frame.objects) {
-            *count += usize::from(object.held == Held::Unsettled);
-        }
-        self.imbalance.resize(frame.objects.len(), 0.0);
-        for (most, object) in self.imbalance.iter_mut().zip(&frame.objects) {
-            *most = most.max(object.balance.map_or(0.0, |balance| balance.imbalance));
-        }
-        self.n_off.resize(frame.objects.len(), 0);
-        for (count, object) in self.n_off.iter_mut().zip(&frame.objects) {
-            *count += usize::from(object.held.is_off());
+            .resize(frame.objects.len(), ObjectSummary::default());
+        for (summary, object) in self.objects.iter_mut().zip(&frame.objects) {
+            let imbalance = object.balance.map_or(0.0, |balance| balance.imbalance);
+            summary.held = object.held;
+            summary.n_unsettled += usize::from(object.held == Held::Unsettled);
+            summary.imbalance = summary.imbalance.max(imbalance);
+            summary.n_off += usize::from(object.held.is_off());
         }
         Ok(())
     }

@@ -5,9 +5,10 @@
 //! skin's name, the taxel, the frame and the time. What a taxel reads is the same whether it is read alone, with those that are
 //! touched, or with all of its patch.
 //!
-//! Steps and strengths are those of a chain, with the same distributions and other draws; but zeros [drift](super::Drift) along straight lines
-//! between 64 times of a session, and each taxel [fails](super::Faults) by itself, so that the share of dead and stuck ones is one on average.
+//! Steps and strengths are those of a chain, with the same distributions and other draws; but zeros [drift](super::SensorError::Drift) along straight lines
+//! between 64 times of a session, and each taxel [fails](super::SensorError::Faults) by itself, so that the share of dead and stuck ones is one on average.
 
+use super::faults::check_together;
 use super::taxel_step::{CHUNK, Chunk, TaxelStep};
 use super::{MOST_STRENGTHS, Moment, Quantisation, Quantity, SensorError, SignalStep};
 use crate::error::{Error, Result};
@@ -282,20 +283,15 @@ fn taxel_step(
             key,
             std: first * full_scale,
         },
-        SensorError::Faults if first + second > 1.0 => {
-            let given = format!("{first} and {second}");
-            return Err(Error::input(
-                "dead and stuck fractions",
-                given,
-                "at most 1 together",
-            ));
+        SensorError::Faults => {
+            check_together(first, second)?;
+            TaxelStep::Faults {
+                key,
+                dead: first,
+                stuck: second,
+                full_scale,
+            }
         }
-        SensorError::Faults => TaxelStep::Faults {
-            key,
-            dead: first,
-            stuck: second,
-            full_scale,
-        },
         SensorError::Quantisation => {
             let converter = Quantisation::new(first as u32, [0.0, full_scale])?;
             TaxelStep::Quantisation(converter)

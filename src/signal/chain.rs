@@ -1,7 +1,7 @@
 //! Signal steps in the order in which the study lists them.
 
 use super::surface_smoothing::SurfaceSmoothing;
-use super::{Effect, Noise, Quantity, SignalStep, Skin, Smoothing, TouchRead, force, noise};
+use super::{Effect, Quantity, SignalStep, Skin, Smoothing, TouchRead, force, noise};
 use crate::error::{Error, Result};
 use crate::random::Seed;
 use crate::world::{Patch, Taxel};
@@ -84,7 +84,7 @@ impl Chain {
     /// # Errors
     /// Those of [`new`](Self::new).
     pub fn of(steps: &[SignalStep], patch: &Patch, quantity: Quantity) -> Result<Self> {
-        Self::at_rest(patch, quantity, false)?.with(steps, patch)
+        Self::prepared(steps, patch, quantity, false)
     }
 
     /// The same of forces across the axes of taxels that read these too: newtons of either sign, with the full scale of those along the axes.
@@ -95,7 +95,7 @@ impl Chain {
     pub fn of_shear(steps: &[SignalStep], patch: &Patch) -> Result<Self> {
         let mut steps = steps.to_vec();
         steps.retain(|step| *step != SignalStep::Force);
-        Self::at_rest(patch, Quantity::Force, true)?.with(&steps, patch)
+        Self::prepared(&steps, patch, Quantity::Force, true)
     }
 
     /// The most that a taxel reads: its stroke, or the force at it; of what the frames are when the chain has read them.
@@ -103,9 +103,13 @@ impl Chain {
         self.quantity.full_scale(&self.taxel)
     }
 
-    /// Without steps.
-    fn at_rest(patch: &Patch, quantity: Quantity, is_signed: bool) -> Result<Self> {
-        Ok(Self {
+    fn prepared(
+        steps: &[SignalStep],
+        patch: &Patch,
+        quantity: Quantity,
+        is_signed: bool,
+    ) -> Result<Self> {
+        let mut chain = Self {
             steps: Vec::new(),
             n_remembering: 0,
             n_taxels: patch.n_taxels(),
@@ -113,21 +117,18 @@ impl Chain {
             quantity,
             is_signed,
             scratch_len: 0,
-        })
-    }
-
-    fn with(mut self, steps: &[SignalStep], patch: &Patch) -> Result<Self> {
+        };
         let mut n_noises = 0;
         for step in steps {
             n_noises += u64::from(matches!(step, SignalStep::Noise(_)));
-            let n_before = self.steps.len();
-            let prepared = self.prepare(step, n_noises, patch)?;
-            self.steps.extend(prepared);
-            if self.steps.len() > n_before && step.remembers() {
-                self.n_remembering = self.steps.len();
+            let n_before = chain.steps.len();
+            let prepared = chain.prepare(step, n_noises, patch)?;
+            chain.steps.extend(prepared);
+            if chain.steps.len() > n_before && step.remembers() {
+                chain.n_remembering = chain.steps.len();
             }
         }
-        Ok(self)
+        Ok(chain)
     }
 
     /// What the frames are after the chain.
@@ -237,7 +238,10 @@ impl Chain {
     ) -> Result<Option<Prepared>> {
         Ok(Some(match step {
             SignalStep::Force => self.prepare_force()?,
-            SignalStep::Noise(noise) => self.prepare_noise(noise, n_noises)?,
+            SignalStep::Noise(noise) => Prepared::Noise {
+                std: noise.std_of(self.quantity, &self.taxel)?,
+                place: n_noises,
+            },
             SignalStep::Smoothing { width } => self.prepare_smoothing(*width, patch)?,
             SignalStep::Error { strengths, .. } if strengths.iter().all(|&s| s == 0.0) => {
                 return Ok(None);
@@ -269,11 +273,6 @@ impl Chain {
         }
         self.quantity = Quantity::Force;
         Ok(Prepared::Force)
-    }
-
-    fn prepare_noise(&self, noise: &Noise, place: u64) -> Result<Prepared> {
-        let std = noise.std_of(self.quantity, &self.taxel)?;
-        Ok(Prepared::Noise { std, place })
     }
 
     fn prepare_smoothing(&mut self, width: f64, patch: &Patch) -> Result<Prepared> {

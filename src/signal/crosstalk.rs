@@ -7,8 +7,8 @@
 //! leaking twice.
 
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
-use super::strength::fraction;
 use crate::error::Result;
+use crate::in_range::fraction;
 use crate::world::{Grid, Neighbours};
 
 /// A leak, prepared for one grid.

@@ -10,8 +10,8 @@
 //! variance; c makes the variance at the end σ² exactly.
 
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
-use super::strength::not_negative;
 use crate::error::Result;
+use crate::in_range::not_negative;
 use crate::random::Seed;
 use rand::Rng;
 use rand_distr::StandardNormal;
@@ -21,18 +21,9 @@ use std::f64::consts::{PI, SQRT_2};
 /// which those of a true walk do not let it (with 8, a linear one shrugs off any drift); more cost time and memory.
 const N_MODES: usize = 64;
 
-/// How far the zeros of a skin's taxels wander.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Drift {
-    /// Standard deviation of the zeros when the session ends, as a fraction of the full scale; zero or positive.
-    pub std: f64,
-    /// The skin whose zeros wander. Skins that differ in `std` alone wander alike.
-    pub skin: Seed,
-}
-
 /// The wandering zeros of a skin, at any time of its session.
 #[derive(Clone, Debug)]
-pub struct Zeros {
+struct Zeros {
     n_taxels: usize,
     /// ξ, mode after mode, one for each taxel.
     coefficients: Vec<f64>,
@@ -40,32 +31,28 @@ pub struct Zeros {
     amplitudes: Vec<f64>,
 }
 
-impl Drift {
-    /// The zeros of a skin whose frames have this full scale (in their own unit).
-    ///
-    /// # Errors
-    /// A negative or non-finite `std`.
-    pub fn zeros(&self, n_taxels: usize, full_scale: f64) -> Result<Zeros> {
-        not_negative("drift std", self.std)?;
+impl Zeros {
+    /// Of a skin whose frames have this full scale (in their own unit), of which `std` is the fraction that zeros wander by until the session
+    /// ends. Skins that differ in `std` alone wander alike. The error is a negative or non-finite `std`.
+    fn of(std: f64, skin: &Seed, n_taxels: usize, full_scale: f64) -> Result<Self> {
+        not_negative("drift std", std, "")?;
         let usual: Vec<f64> = (0..N_MODES).map(|mode| SQRT_2 / frequency(mode)).collect();
         let at_end = usual.iter().map(|a| a * a).sum::<f64>().sqrt();
-        let mut rng = self.skin.named("drift").rng();
-        Ok(Zeros {
+        let mut rng = skin.named("drift").rng();
+        Ok(Self {
             n_taxels,
             coefficients: (0..N_MODES * n_taxels)
                 .map(|_| rng.sample(StandardNormal))
                 .collect(),
             amplitudes: usual
                 .iter()
-                .map(|a| self.std * full_scale * a / at_end)
+                .map(|a| std * full_scale * a / at_end)
                 .collect(),
         })
     }
-}
 
-impl Zeros {
     /// Writes the zeros at a time of the session (0 its beginning, 1 its end), one for each taxel.
-    pub fn at(&self, time: f64, zeros: &mut [f64]) {
+    fn at(&self, time: f64, zeros: &mut [f64]) {
         zeros.fill(0.0);
         let modes = self.coefficients.chunks_exact(self.n_taxels);
         for (mode, coefficients) in modes.enumerate() {
@@ -98,13 +85,13 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
             "zero or a positive fraction of the full scale",
         )],
         |&[std, _], skin| {
-            let drift = Drift {
+            let n_taxels = skin.patch.n_taxels();
+            Ok(Box::new(Zeros::of(
                 std,
-                skin: skin.name,
-            };
-            Ok(Box::new(
-                drift.zeros(skin.patch.n_taxels(), skin.full_scale)?,
-            ))
+                &skin.name,
+                n_taxels,
+                skin.full_scale,
+            )?))
         },
     )
 };
@@ -130,8 +117,7 @@ mod tests {
     use super::*;
 
     fn zeros_at(time: f64, n_taxels: usize) -> Vec<f64> {
-        let skin = Seed::new(3);
-        let zeros = Drift { std: 0.1, skin }.zeros(n_taxels, 5e-3).unwrap();
+        let zeros = Zeros::of(0.1, &Seed::new(3), n_taxels, 5e-3).unwrap();
         let mut values = vec![f64::NAN; n_taxels];
         zeros.at(time, &mut values);
         values
@@ -178,8 +164,7 @@ mod tests {
     #[test]
     fn a_negative_or_undefined_drift_is_refused() {
         for std in [-0.1, f64::NAN, f64::INFINITY] {
-            let skin = Seed::new(3);
-            let error = Drift { std, skin }.zeros(4, 1.0).unwrap_err();
+            let error = Zeros::of(std, &Seed::new(3), 4, 1.0).unwrap_err();
             assert!(error.to_string().starts_with("drift std"), "{error}");
         }
     }

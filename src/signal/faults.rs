@@ -4,39 +4,29 @@
 //! front and the stuck from its back: a skin with more faults has all those of a skin with fewer.
 
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
-use super::strength::fraction;
 use crate::error::{Error, Result};
+use crate::in_range::fraction;
 use crate::random::Seed;
 use rand::Rng;
 use rand::seq::SliceRandom;
 
-/// How much of a skin is at fault.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Faults {
-    /// Fraction of the taxels that read 0; rounded to whole taxels.
-    pub dead: f64,
-    /// Fraction of the taxels that read a level of their own, drawn evenly from all that they can read.
-    pub stuck: f64,
-    /// The skin that they belong to.
-    pub skin: Seed,
-}
+/// What each taxel at fault reads in place of what it feels.
+#[derive(Debug)]
+struct Levels(Vec<(usize, f64)>);
 
-impl Faults {
-    /// The taxels at fault, each with what it reads, of those that can read from the least to the largest value: first the dead, then the stuck.
-    ///
-    /// # Errors
-    /// A fraction that is not from 0 to 1; fractions whose sum is above 1.
-    pub fn taxels(&self, n_taxels: usize, [least, largest]: [f64; 2]) -> Result<Vec<(usize, f64)>> {
-        let dead = fraction("dead fraction", self.dead)?;
-        let stuck = fraction("stuck fraction", self.stuck)?;
-        if dead + stuck > 1.0 {
-            return Err(Error::input(
-                "dead and stuck fractions",
-                format!("{dead} and {stuck}"),
-                "at most 1 together",
-            ));
-        }
-        let mut rng = self.skin.named("faults").rng();
+impl Levels {
+    /// Of a skin: the dead, then the stuck, whose levels are drawn evenly from all that they can read, the least to the largest value. The
+    /// fractions are rounded to whole taxels; the error is one that is not from 0 to 1, or a sum above 1.
+    fn of(
+        [dead, stuck]: [f64; 2],
+        skin: &Seed,
+        n_taxels: usize,
+        [least, largest]: [f64; 2],
+    ) -> Result<Self> {
+        fraction("dead fraction", dead)?;
+        fraction("stuck fraction", stuck)?;
+        check_together(dead, stuck)?;
+        let mut rng = skin.named("faults").rng();
         let levels: Vec<f64> = (0..n_taxels)
             .map(|_| least + (largest - least) * rng.r#gen::<f64>())
             .collect();
@@ -47,10 +37,19 @@ impl Faults {
         let n_stuck = count(stuck).min(n_taxels - n_dead);
         let dead = order.iter().take(n_dead).map(|&taxel| (taxel, 0.0));
         let stuck = order.iter().rev().take(n_stuck);
-        Ok(dead
-            .chain(stuck.map(|&taxel| (taxel, levels[taxel])))
-            .collect())
+        let stuck = stuck.map(|&taxel| (taxel, levels[taxel]));
+        Ok(Self(dead.chain(stuck).collect()))
     }
+}
+
+/// No taxel is dead and stuck.
+pub(super) fn check_together(dead: f64, stuck: f64) -> Result<()> {
+    if dead + stuck <= 1.0 {
+        return Ok(());
+    }
+    let given = format!("{dead} and {stuck}");
+    let allowed = "at most 1 together";
+    Err(Error::input("dead and stuck fractions", given, allowed))
 }
 
 pub(super) const ABOUT: ErrorAbout = ErrorAbout {
@@ -61,22 +60,14 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
             Strength::fraction("dead_fraction", "dead taxels"),
             Strength::fraction("stuck_fraction", "stuck taxels"),
         ],
-        |&[dead, stuck], skin| {
-            let faults = Faults {
-                dead,
-                stuck,
-                skin: skin.name,
-            };
-            let range = [skin.least, skin.full_scale];
-            let taxels = faults.taxels(skin.patch.n_taxels(), range)?;
-            Ok(Box::new(Levels(taxels)))
+        |strengths, skin| {
+            let (n_taxels, range) = (skin.patch.n_taxels(), [skin.least, skin.full_scale]);
+            Ok(Box::new(Levels::of(
+                *strengths, &skin.name, n_taxels, range,
+            )?))
         },
     )
 };
-
-/// What each taxel at fault reads in place of what it feels.
-#[derive(Debug)]
-struct Levels(Vec<(usize, f64)>);
 
 impl Effect for Levels {
     fn apply(&self, frames: &mut [f64], touch: &TouchRead, _: &mut [f64]) {
@@ -93,8 +84,7 @@ mod tests {
     use super::*;
 
     fn taxels(dead: f64, stuck: f64) -> Result<Vec<(usize, f64)>> {
-        let skin = Seed::new(11);
-        Faults { dead, stuck, skin }.taxels(1000, [0.0, 5e-3])
+        Levels::of([dead, stuck], &Seed::new(11), 1000, [0.0, 5e-3]).map(|levels| levels.0)
     }
 
     #[test]

@@ -4,35 +4,22 @@
 //! deviation `std`, above zero at any strength. Imaging calls this fixed-pattern noise, \[SD\] mismatching.
 
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
-use super::strength::not_negative;
 use crate::error::Result;
+use crate::in_range::not_negative;
 use crate::random::Seed;
 use rand::Rng;
 use rand_distr::StandardNormal;
 
-/// How unlike the gains of a skin's taxels are.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GainMismatch {
-    /// Standard deviation of the gains, whose mean is 1; zero or positive.
-    pub std: f64,
-    /// The skin whose gains these are: the same in every touch. Skins that differ in `std` alone share the pattern.
-    pub skin: Seed,
-}
-
-impl GainMismatch {
-    /// One gain for each taxel.
-    ///
-    /// # Errors
-    /// A negative or non-finite `std`.
-    pub fn gains(&self, n_taxels: usize) -> Result<Vec<f64>> {
-        not_negative("gain std", self.std)?;
-        let variance = self.std.powi(2).ln_1p();
-        let mut rng = self.skin.named("gain").rng();
-        let gain = |z: f64| (variance.sqrt() * z - 0.5 * variance).exp();
-        Ok((0..n_taxels)
-            .map(|_| gain(rng.sample(StandardNormal)))
-            .collect())
-    }
+/// One gain for each taxel of a skin, the same in every touch. Skins that differ in `std` alone share the pattern.
+///
+/// The error is a negative or non-finite `std`.
+fn gains(std: f64, skin: &Seed, n_taxels: usize) -> Result<Vec<f64>> {
+    let variance = not_negative("gain std", std, "")?.powi(2).ln_1p();
+    let mut rng = skin.named("gain").rng();
+    let gain = |z: f64| (variance.sqrt() * z - 0.5 * variance).exp();
+    Ok((0..n_taxels)
+        .map(|_| gain(rng.sample(StandardNormal)))
+        .collect())
 }
 
 pub(super) const ABOUT: ErrorAbout = ErrorAbout {
@@ -45,11 +32,11 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
             "zero or a positive number",
         )],
         |&[std, _], skin| {
-            let mismatch = GainMismatch {
+            Ok(Box::new(Gains(gains(
                 std,
-                skin: skin.name,
-            };
-            Ok(Box::new(Gains(mismatch.gains(skin.patch.n_taxels())?)))
+                &skin.name,
+                skin.patch.n_taxels(),
+            )?)))
         },
     )
 };
@@ -73,8 +60,7 @@ mod tests {
     use super::*;
 
     fn gains(std: f64, n_taxels: usize) -> Vec<f64> {
-        let skin = Seed::new(7).named("skin");
-        GainMismatch { std, skin }.gains(n_taxels).unwrap()
+        super::gains(std, &Seed::new(7).named("skin"), n_taxels).unwrap()
     }
 
     #[test]
@@ -105,8 +91,7 @@ mod tests {
     fn no_mismatch_is_gain_one_exactly() {
         assert_eq!(gains(0.0, 9), [1.0; 9]);
         for std in [-0.1, f64::NAN, f64::INFINITY] {
-            let skin = Seed::new(7);
-            let error = GainMismatch { std, skin }.gains(4).unwrap_err();
+            let error = super::gains(std, &Seed::new(7), 4).unwrap_err();
             assert!(error.to_string().starts_with("gain std"), "{error}");
         }
     }

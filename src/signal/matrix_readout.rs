@@ -15,8 +15,8 @@
 //! \[DA\] D'Alessio, *Measurement errors in the scanning of piezoresistive sensors arrays*, Sensors and Actuators A 72, 1999.
 
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
-use super::strength::not_negative;
 use crate::error::{Error, Result};
+use crate::in_range::not_negative;
 use crate::world::Grid;
 
 /// A reader of one line resistance, prepared for one grid and full scale.
@@ -40,7 +40,7 @@ impl MatrixReadout {
         Ok(Self {
             nx: grid.nx,
             ny: grid.ny,
-            resistance: not_negative("line resistance", resistance)?,
+            resistance: not_negative("line resistance", resistance, "")?,
             full_scale,
         })
     }

@@ -46,7 +46,6 @@ mod noise;
 mod sensor_error;
 mod smoothing;
 mod step;
-mod strength;
 mod surface_smoothing;
 mod taxel_step;
 
@@ -66,15 +65,9 @@ sensor_errors! {
 pub use body_readout::{BodyReading, BodyReadout, WORTH_THREADS};
 pub use chain::{Chain, Recording, Scratch};
 pub use crosstalk::Crosstalk;
-pub use drift::{Drift, Zeros};
-pub use faults::Faults;
 pub use force::force;
-pub use gain::GainMismatch;
-pub use hysteresis::Hysteresis;
-pub use matrix_readout::MatrixReadout;
 pub use noise::{Noise, NoiseUnit};
 pub use quantisation::Quantisation;
-pub use scan::Scan;
 pub use sensor_error::{Effect, ErrorAbout, MOST_STRENGTHS, Prepare, Skin, Strength, TouchRead};
 pub use smoothing::Smoothing;
 pub use step::SignalStep;

@@ -1,8 +1,8 @@
 //! Additive Gaussian noise.
 
 use super::Quantity;
-use super::strength::not_negative;
 use crate::error::{Error, Result};
+use crate::in_range::not_negative;
 use crate::random::Seed;
 use crate::world::Taxel;
 use rand::Rng;
@@ -36,7 +36,7 @@ impl Noise {
     /// # Errors
     /// A negative or non-finite `std`; millimetres asked of forces; newtons asked of deflections.
     pub fn std_of(&self, quantity: Quantity, taxel: &Taxel) -> Result<f64> {
-        not_negative("noise std", self.std)?;
+        not_negative("noise std", self.std, "")?;
         match (self.unit, quantity) {
             (NoiseUnit::FullScale, Quantity::Deflection) => Ok(self.std * taxel.stroke),
             (NoiseUnit::FullScale, Quantity::Force) => {

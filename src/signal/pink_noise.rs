@@ -11,7 +11,7 @@
 //! the last frame is the same however many come before it.
 
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
-use super::strength::not_negative;
+use crate::in_range::not_negative;
 use crate::random::Seed;
 use rand::Rng;
 use rand_distr::StandardNormal;
@@ -29,7 +29,7 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
             "zero or a positive fraction of the full scale",
         )],
         |&[std, _], skin| {
-            let std = not_negative("pink noise std", std)? * skin.full_scale;
+            let std = not_negative("pink noise std", std, "")? * skin.full_scale;
             Ok(Box::new(PinkNoise { std }))
         },
     )

@@ -6,8 +6,8 @@
 //! and the last frame of any touch, is read at rest and not changed; nor is a touch that waits at each depth.
 
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
-use super::strength::not_negative;
 use crate::error::Result;
+use crate::in_range::not_negative;
 
 /// A scan of one duration.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,7 +21,7 @@ impl Scan {
     /// # Errors
     /// A negative or non-finite time.
     pub fn new(seconds: f64) -> Result<Self> {
-        not_negative("scan time", seconds)?;
+        not_negative("scan time", seconds, "")?;
         Ok(Self { seconds })
     }
 

@@ -10,7 +10,7 @@ use crate::random::{CounterKey, GROUP};
 pub(super) const CHUNK: usize = 512;
 /// Counters that are mixed together: f64 lanes of 512 bits.
 const LANES: usize = 8;
-/// Halvings of the session between which zeros drift along straight lines: 2⁶ pieces, as many numbers a taxel as [`Drift`](super::Drift) has.
+/// Halvings of the session between which zeros drift along straight lines: 2⁶ pieces, as many numbers a taxel as [`Drift`](super::SensorError::Drift) has.
 const N_HALVINGS: u32 = 6;
 
 /// When a body is read.

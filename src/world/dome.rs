@@ -2,8 +2,8 @@
 
 use super::extrusion::check_angle;
 use super::layout::check_count;
-use super::taxel::check_positive;
 use crate::error::Result;
+use crate::in_range::positive;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
@@ -51,8 +51,8 @@ impl Dome {
     /// # Errors
     /// The error names an argument out of its range, or a layout of too many taxels.
     pub fn new(radius: f64, polar: f64, arc: f64, pitch: f64) -> Result<Self> {
-        check_positive("taxel pitch", pitch, "m")?;
-        check_positive("dome radius", radius, "m")?;
+        positive("taxel pitch", pitch, "m")?;
+        positive("dome radius", radius, "m")?;
         check_angle("dome polar angle", polar, PI)?;
         check_angle("dome arc", arc, TAU)?;
         let area = arc * radius * radius * (1.0 - polar.cos());

@@ -6,8 +6,8 @@
 use super::Grid;
 use super::layout::check_count;
 use super::ring::{Ring, ends_of_steps, n_steps};
-use super::taxel::check_positive;
 use crate::error::{Error, Result};
+use crate::in_range::{not_negative, positive};
 use glam::{DMat3, DVec2, DVec3};
 use std::f64::consts::TAU;
 
@@ -59,15 +59,9 @@ impl Extrusion {
     /// # Errors
     /// Those of [`Layout::cylinder`](super::Layout::cylinder).
     pub fn cylinder(radius: f64, length: f64, arc: f64, pitch: f64) -> Result<Self> {
-        check_positive("taxel pitch", pitch, "m")?;
-        check_positive("cylinder radius", radius, "m")?;
-        if !(length.is_finite() && length >= 0.0) {
-            return Err(Error::input(
-                "cylinder length",
-                format!("{length} m"),
-                "zero or a positive number",
-            ));
-        }
+        positive("taxel pitch", pitch, "m")?;
+        positive("cylinder radius", radius, "m")?;
+        not_negative("cylinder length", length, "m")?;
         check_angle("cylinder arc", arc, TAU)?;
         let (around, along) = (arc * radius / pitch, length / pitch);
         check_count("cylinder layout", (around + 1.0) * (along + 1.0))?;

@@ -3,9 +3,9 @@
 use super::extrusion::check_angle;
 use super::layout::{Layout, check_count};
 use super::ring::{Ring, n_steps};
-use super::taxel::check_positive;
 use super::{Extrusion, Grid};
 use crate::error::Result;
+use crate::in_range::positive;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
@@ -47,8 +47,8 @@ impl Layout {
     /// # Errors
     /// The error names an argument out of its range, or a layout of more than [`MOST_TAXELS`](super::MOST_TAXELS).
     pub fn sphere_cap(radius: f64, half_angle: f64, pitch: f64) -> Result<Self> {
-        check_positive("taxel pitch", pitch, "m")?;
-        check_positive("cap radius", radius, "m")?;
+        positive("taxel pitch", pitch, "m")?;
+        positive("cap radius", radius, "m")?;
         check_angle("cap half angle", half_angle, PI)?;
         let area = TAU * radius * radius * (1.0 - half_angle.cos());
         check_count("cap layout", (area / (pitch * pitch)).max(1.0))?;

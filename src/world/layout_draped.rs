@@ -1,8 +1,8 @@
 //! A layout draped over a triangle mesh: taxels at least so far apart, and no place without one nearby.
 
 use super::Layout;
-use super::taxel::check_positive;
 use crate::error::{Error, Result};
+use crate::in_range::positive;
 use crate::mesh::{Triangle, TriangleMesh};
 use crate::random::Seed;
 use glam::DVec3;
@@ -34,7 +34,7 @@ impl Layout {
     /// The error names a pitch that is not positive, a surface without area, or a pitch too fine for its surface: there is
     /// memory for some 100,000 taxels.
     pub fn draped(mesh: &TriangleMesh, pitch: f64, seed: &Seed) -> Result<Self> {
-        check_positive("taxel pitch", pitch, "m")?;
+        positive("taxel pitch", pitch, "m")?;
         let too_fine = || {
             Error::input(
                 "draped layout",

@@ -2,8 +2,8 @@
 
 use super::layout::{Layout, check_count};
 use super::ring::{Ring, ends_of_steps, n_steps};
-use super::taxel::check_positive;
 use crate::error::{Error, Result};
+use crate::in_range::positive;
 use glam::DVec3;
 
 /// Rows of a hexagonal lattice are this many pitches apart: √3 / 2.
@@ -17,7 +17,7 @@ impl Layout {
     /// The error names a pitch that is not positive, or a number of taxels that is zero or beyond
     /// [`MOST_TAXELS`](super::MOST_TAXELS).
     pub fn hexagonal(nx: usize, ny: usize, pitch: f64) -> Result<Self> {
-        check_positive("taxel pitch", pitch, "m")?;
+        positive("taxel pitch", pitch, "m")?;
         check_count("hexagonal layout", nx as f64 * ny as f64)?;
         let middle = |n: usize| 0.5 * (n as f64 - 1.0);
         let taxels = (0..ny).flat_map(|row| {
@@ -40,8 +40,8 @@ impl Layout {
     /// The error names a length that is not positive, or a disc of more than [`MOST_TAXELS`](super::MOST_TAXELS). A
     /// radius below the pitch leaves the one taxel in the middle.
     pub fn disc(radius: f64, pitch: f64) -> Result<Self> {
-        check_positive("taxel pitch", pitch, "m")?;
-        check_positive("disc radius", radius, "m")?;
+        positive("taxel pitch", pitch, "m")?;
+        positive("disc radius", radius, "m")?;
         // A place on the rim belongs to the disc, however it was rounded.
         let reach = radius / pitch * (1.0 + 1e-9);
         check_count(
@@ -73,9 +73,9 @@ impl Layout {
     /// The error names a length that is not positive, radii that are not in ascending order, or a ring of more than
     /// [`MOST_TAXELS`](super::MOST_TAXELS).
     pub fn annulus(inner: f64, outer: f64, pitch: f64) -> Result<Self> {
-        check_positive("taxel pitch", pitch, "m")?;
-        check_positive("annulus inner radius", inner, "m")?;
-        check_positive("annulus outer radius", outer, "m")?;
+        positive("taxel pitch", pitch, "m")?;
+        positive("annulus inner radius", inner, "m")?;
+        positive("annulus outer radius", outer, "m")?;
         if inner > outer {
             return Err(Error::input(
                 "annulus layout",

@@ -33,7 +33,6 @@ mod touches;
 mod trajectory;
 
 pub use array_layout::ArrayLayout;
-pub use body::Body;
 pub use dome::{Dome, DomeRing};
 pub use extrusion::Extrusion;
 pub use human_touch::{HandState, HumanTouch, TOUCH_KINDS, TouchKind, TouchRanges};

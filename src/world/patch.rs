@@ -2,7 +2,7 @@
 
 use super::taxel_tree::TaxelTree;
 use super::{Grid, Layout, PerTaxel, Taxel};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use glam::DVec3;
 use std::sync::OnceLock;
 
@@ -69,12 +69,7 @@ impl Patch {
         taxels: impl Into<Taxels>,
     ) -> Result<Self> {
         let (name, layout, taxels) = (name.into(), layout.into(), taxels.into());
-        match &taxels {
-            Taxels::Equal(taxel) => taxel
-                .check()
-                .map_err(|error| error.under(format!("skin patch {name}, ")))?,
-            Taxels::Each(each) => check_each(&name, each, layout.n_taxels())?,
-        }
+        taxels.check(&name, layout.n_taxels(), Taxel::check)?;
         Ok(Self::of_checked(name, layout, taxels))
     }
 
@@ -156,21 +151,6 @@ impl EvenGrid {
     pub fn behind(&self) -> f64 {
         -self.stroke - self.radius
     }
-}
-
-fn check_each(name: &str, taxels: &[Taxel], n_places: usize) -> Result<()> {
-    if taxels.len() != n_places {
-        return Err(Error::input(
-            format!("skin patch {name}"),
-            format!("{} taxels for {n_places} places", taxels.len()),
-            "one taxel a place, or one for all",
-        ));
-    }
-    for (index, taxel) in taxels.iter().enumerate() {
-        let place = || format!("skin patch {name}, taxel {}, ", index + 1);
-        taxel.check().map_err(|error| error.under(place()))?;
-    }
-    Ok(())
 }
 
 #[cfg(test)]

@@ -8,10 +8,10 @@
 //!
 //! How far along its own axis the patch goes is left to the contact stage: to first contact, then `depth` further.
 
-use super::body::Body;
 use super::rest::{RestPose, as_modelled, stable_poses};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
+use crate::objects::Model;
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
@@ -45,10 +45,10 @@ pub enum RestPoses {
 
 impl RestPoses {
     /// The poses of one object.
-    pub fn of(self, body: &impl Body) -> Vec<RestPose> {
+    pub fn of(self, object: &Model) -> Vec<RestPose> {
         match self {
-            Self::AsModelled => vec![as_modelled(body)],
-            Self::Stable => stable_poses(body),
+            Self::AsModelled => vec![as_modelled(object)],
+            Self::Stable => stable_poses(object),
         }
     }
 }
@@ -73,17 +73,6 @@ pub enum TouchAxis {
 }
 
 impl TouchAxis {
-    /// In the order in which products run, slowest first.
-    pub const ALL: [Self; 7] = [
-        Self::Rest,
-        Self::OffsetX,
-        Self::OffsetY,
-        Self::Yaw,
-        Self::TiltX,
-        Self::TiltY,
-        Self::Depth,
-    ];
-
     /// The word in a study file and in a table's header, without its unit.
     pub fn name(self) -> &'static str {
         match self {
@@ -100,7 +89,7 @@ impl TouchAxis {
 
 /// How the touches of an object are chosen; [`touches`](super::touches()) does it.
 ///
-/// - No uniform spread, no `per_object`: every combination, resting poses × values; [`TouchAxis::ALL`] runs slowest first.
+/// - No uniform spread, no `per_object`: every combination, resting poses × values; the first of [`TouchAxis`] runs slowest.
 /// - No uniform spread, `per_object` given: that many different combinations, drawn without replacement, all equally likely.
 /// - A uniform spread: `per_object` touches, each drawn alone by its number; resting poses by their probability.
 ///
@@ -138,28 +127,20 @@ pub struct Touch {
     pub tilt: [f64; 2],
     /// Travel past first contact, metres.
     pub depth: f64,
-    /// For each of [`TouchAxis::ALL`], which of the listed values this is; `None` where the spread is uniform.
+    /// For each of [`TouchAxis`], which of the listed values this is; `None` where the spread is uniform.
     pub indices: [Option<usize>; 7],
 }
 
 impl Placement {
     /// Touches of an object that has one resting pose.
     pub fn n_touches(&self) -> f64 {
-        let spreads = [
-            &self.offset_x,
-            &self.offset_y,
-            &self.yaw,
-            &self.tilt_x,
-            &self.tilt_y,
-            &self.depth,
-        ];
-        let n_values = |spread: &Spread| match spread {
+        let n_values = |(_, spread): (_, &Spread)| match spread {
             Spread::Values(values) => values.len() as f64,
             Spread::Uniform { .. } => 1.0,
         };
         match self.per_object {
             Some(count) => count as f64,
-            None => spreads.map(n_values).iter().product(),
+            None => self.spreads().map(n_values).iter().product(),
         }
     }
 }

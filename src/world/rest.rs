@@ -7,9 +7,9 @@
 //! statistics*, 1999).
 
 use super::basins::basins;
-use super::body::Body;
 use super::support::Support;
 use crate::geometry::Pose;
+use crate::objects::Model;
 use glam::{DQuat, DVec3};
 
 /// The least barrier between two poses, as a share of the farthest point's distance. Smaller: the bumps of spheres on a round
@@ -30,24 +30,24 @@ pub struct RestPose {
 }
 
 /// The pose with the object's own z up.
-pub fn as_modelled(body: &impl Body) -> RestPose {
-    resting(body, DVec3::NEG_Z, 1.0)
+pub fn as_modelled(object: &Model) -> RestPose {
+    resting(object, DVec3::NEG_Z, 1.0)
 }
 
-/// The poses in which a body, as a homogeneous solid ([`Body::center_of_mass`]), rests on a table, likeliest first; at least one.
+/// The poses in which a object, as a homogeneous solid ([`Model::center_of_mass`]), rests on a table, likeliest first; at least one.
 ///
 /// A round object that rolls has one pose for all the directions it rolls through. Poses less likely than 2 % are left
 /// out. Takes 15 to 30 ms for 3,000 spheres, most where a long side rolls.
-pub fn stable_poses(body: &impl Body) -> Vec<RestPose> {
-    stable_poses_about(body, body.center_of_mass())
+pub fn stable_poses(object: &Model) -> Vec<RestPose> {
+    stable_poses_about(object, object.center_of_mass())
 }
 
 /// [`stable_poses`] with a given centre of mass, metres, in the body's frame.
-pub fn stable_poses_about(body: &impl Body, center_of_mass: DVec3) -> Vec<RestPose> {
-    let support = Support::about(center_of_mass, &body.extremes());
+pub fn stable_poses_about(object: &Model, center_of_mass: DVec3) -> Vec<RestPose> {
+    let support = Support::about(center_of_mass, &object.extremes());
     let mut poses: Vec<_> = basins(&support, BARRIER * support.radius())
         .into_iter()
-        .map(|basin| resting(body, basin.lowest, basin.share))
+        .map(|basin| resting(object, basin.lowest, basin.share))
         .collect();
     poses.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     let least = LEAST_PROBABILITY.min(poses[0].probability);
@@ -60,14 +60,14 @@ pub fn stable_poses_about(body: &impl Body, center_of_mass: DVec3) -> Vec<RestPo
 }
 
 /// The pose with `down` (unit, object frame) pointing at the table, by the shortest turn from upright or upside-down.
-fn resting(body: &impl Body, down: DVec3, probability: f64) -> RestPose {
+fn resting(object: &Model, down: DVec3, probability: f64) -> RestPose {
     let upside_down = DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0);
     let rotation = if down.z <= 0.0 {
         DQuat::from_rotation_arc(down, DVec3::NEG_Z)
     } else {
         upside_down * DQuat::from_rotation_arc(down, DVec3::Z)
     };
-    let bounds = body.turned_bounds(rotation);
+    let bounds = object.turned_bounds(rotation);
     let middle = bounds.center();
     RestPose {
         table_from_object: Pose::new(rotation, DVec3::new(-middle.x, -middle.y, -bounds.min.z)),

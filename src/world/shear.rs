@@ -1,8 +1,8 @@
 //! What a taxel's tip does sideways: a shear spring, and how well it grips.
 
-use super::taxel::check_positive;
 use super::{Patch, PerTaxel};
-use crate::error::{Error, Result};
+use crate::error::Result;
+use crate::in_range::{not_negative, positive};
 
 /// A taxel's shear spring and its friction; an option beside a [`Patch`], whose taxels slide along their axes without it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,15 +24,8 @@ impl Shear {
     /// # Errors
     /// The first property that is out of its range, by its name.
     pub fn check(&self) -> Result<()> {
-        check_positive("shear stiffness", self.stiffness, "N/m")?;
-        if self.friction.is_finite() && self.friction >= 0.0 {
-            return Ok(());
-        }
-        Err(Error::input(
-            "friction coefficient",
-            self.friction,
-            "zero or a positive number",
-        ))
+        positive("shear stiffness", self.stiffness, "N/m")?;
+        not_negative("friction coefficient", self.friction, "").map(drop)
     }
 }
 
@@ -44,25 +37,7 @@ impl Shears {
     ///
     /// # Errors
     /// The error names a property out of its range and its taxel (from 1), or the numbers of shear springs and taxels if they differ.
-    pub fn check(&self, patch: &Patch) -> Result<()> {
-        match self {
-            Self::Equal(equal) => equal.check(),
-            Self::Each(each) if each.len() != patch.n_taxels() => Err(Error::input(
-                format!("skin patch {}", patch.name()),
-                format!(
-                    "{} shear springs for {} taxels",
-                    each.len(),
-                    patch.n_taxels()
-                ),
-                "one a taxel, or one for all",
-            )),
-            Self::Each(each) => {
-                for (index, shear) in each.iter().enumerate() {
-                    let place = || format!("taxel {}, ", index + 1);
-                    shear.check().map_err(|error| error.under(place()))?;
-                }
-                Ok(())
-            }
-        }
+    pub fn check_on(&self, patch: &Patch) -> Result<()> {
+        self.check(patch.name(), patch.n_taxels(), Shear::check)
     }
 }

@@ -1,6 +1,7 @@
 //! A taxel, and a rectangular grid of them.
 
 use crate::error::{Error, Result};
+use crate::in_range::{not_negative, positive};
 use glam::DVec3;
 
 /// One sensing element: a sphere on a spring and damper, sliding along one axis.
@@ -22,17 +23,10 @@ impl Taxel {
     /// # Errors
     /// The first property that is out of its range, by its name.
     pub fn check(&self) -> Result<()> {
-        check_positive("taxel radius", self.radius, "m")?;
-        check_positive("taxel stiffness", self.stiffness, "N/m")?;
-        check_positive("taxel stroke", self.stroke, "m")?;
-        if self.damping.is_finite() && self.damping >= 0.0 {
-            return Ok(());
-        }
-        Err(Error::input(
-            "taxel damping",
-            format!("{} N·s/m", self.damping),
-            "zero or a positive number",
-        ))
+        positive("taxel radius", self.radius, "m")?;
+        positive("taxel stiffness", self.stiffness, "N/m")?;
+        positive("taxel stroke", self.stroke, "m")?;
+        not_negative("taxel damping", self.damping, "N·s/m").map(drop)
     }
 }
 
@@ -84,17 +78,6 @@ impl Grid {
                 "at least one taxel each way",
             ));
         }
-        check_positive("taxel pitch", self.pitch, "m")
+        positive("taxel pitch", self.pitch, "m").map(drop)
     }
-}
-
-pub(super) fn check_positive(place: &str, value: f64, unit: &str) -> Result<()> {
-    if value.is_finite() && value > 0.0 {
-        return Ok(());
-    }
-    Err(Error::input(
-        place,
-        format!("{value} {unit}"),
-        "a finite positive number",
-    ))
 }

@@ -182,7 +182,7 @@ fn drawn_rest(rests: &[RestPose], position: f64) -> usize {
     rests.len() - 1
 }
 
-/// Coordinates in the order of [`TouchAxis::ALL`] after the resting pose.
+/// Coordinates in the order of [`TouchAxis`] after the resting pose.
 fn touch_at(coordinates: [f64; 6], indices: [Option<usize>; 7]) -> Touch {
     let [offset_x, offset_y, yaw, tilt_x, tilt_y, depth] = coordinates;
     Touch {

@@ -500,14 +500,14 @@ fn what_cannot_be_a_shear_spring_is_refused_with_its_taxel() {
     };
     assert_eq!(
         message(Shears::Equal(soft)),
-        "shear stiffness: 0 N/m; a finite positive number"
+        "skin patch patch, shear stiffness: 0 N/m; a finite positive number"
     );
     assert_eq!(
         message(Shears::Each(vec![SHEAR, SHEAR, sticky, SHEAR])),
-        "taxel 3, friction coefficient: NaN; zero or a positive number"
+        "skin patch patch, taxel 3, friction coefficient: NaN; zero or a positive number"
     );
     assert_eq!(
         message(Shears::Each(vec![SHEAR])),
-        "skin patch patch: 1 shear springs for 4 taxels; one a taxel, or one for all"
+        "skin patch patch: 1 taxels for 4 places; one taxel a place, or one for all"
     );
 }

@@ -307,11 +307,6 @@ fn what_no_hand_can_do_is_refused_by_its_name() {
         ..usual()
     };
     assert!(refused(glued).starts_with("tap, range of lift: 0 m between contacts; "));
-    let unknown = TouchKind::named("pta").unwrap_err().to_string();
-    assert!(
-        unknown.starts_with("kind of touch: pta; perhaps `"),
-        "{unknown}"
-    );
     let drawn = HumanTouch::draw(TouchKind::Tap, &usual(), f64::NAN, &Seed::new(1));
     assert!(
         drawn

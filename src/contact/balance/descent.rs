@@ -4,7 +4,7 @@ use super::body::Body;
 use super::energy::{PairLoad, wrenches};
 use super::fall::Loose;
 use super::free_object::Ground;
-use super::loads::{Multipliers, Smoothness};
+use super::loads::Smoothness;
 use super::model::{Scene, Step};
 use super::pairs::{Key, Part};
 use super::settle::Balancer;
@@ -37,13 +37,10 @@ const SAME_PLACE: f64 = 1e-15;
 /// Bodies on their way down.
 pub(super) struct Descent<'a, 'b> {
     pub balancer: &'b mut Balancer,
-    pub ground: &'a Ground<'a>,
-    pub bodies: Vec<Body<'a>>,
+    /// What is known of the forces inside taxels gets better from round to round.
+    pub scene: Scene<'a>,
     /// No step is longer, metres.
     pub farthest: f64,
-    smoothness: Smoothness,
-    /// What is known of the forces inside taxels; better from round to round.
-    pub multipliers: Multipliers,
     /// The longest step that is trusted now, metres.
     pub reach: f64,
     pub n_steps: usize,
@@ -74,28 +71,21 @@ impl<'a, 'b> Descent<'a, 'b> {
         let weight: f64 = bodies.iter().map(|body| body.weight.length()).sum();
         let size = bodies.iter().map(Body::arm).fold(0.0, f64::max);
         Self {
-            ground,
-            bodies,
             farthest: 0.5 * stroke,
-            smoothness: Smoothness {
-                smoothing: 1e-3 * stroke,
-                load: SMOOTHING,
-                least: LAST_BITS * f64::EPSILON * size,
-                stop_stiffness: (1e3 * stiffness).max(weight / (1e-3 * stroke)),
+            scene: Scene {
+                ground,
+                bodies,
+                multipliers: std::mem::take(&mut balancer.multipliers),
+                smoothness: Smoothness {
+                    smoothing: 1e-3 * stroke,
+                    load: SMOOTHING,
+                    least: LAST_BITS * f64::EPSILON * size,
+                    stop_stiffness: (1e3 * stiffness).max(weight / (1e-3 * stroke)),
+                },
             },
-            multipliers: std::mem::take(&mut balancer.multipliers),
             reach: 0.125 * stroke,
             n_steps: 0,
             balancer,
-        }
-    }
-
-    fn scene(&self) -> Scene<'_> {
-        Scene {
-            bodies: &self.bodies,
-            ground: self.ground,
-            multipliers: &self.multipliers,
-            smoothness: self.smoothness,
         }
     }
 
@@ -115,31 +105,31 @@ impl<'a, 'b> Descent<'a, 'b> {
             }
             let now = self.looseness();
             if now < least && self.is_at_rest(PROMISED, ENOUGH) {
-                let (bodies, multipliers) = (self.bodies.clone(), self.multipliers.clone());
-                (best, least) = (Some((bodies, multipliers, self.smoothness)), now);
+                (best, least) = (Some(self.scene.clone()), now);
             }
             let Some(deepest) = self.deepest() else {
                 // Less than the last bit above taxels that are too stiff to be pressed by it.
                 return End::Exhausted;
             };
             let energy = &self.balancer.now;
-            self.multipliers = energy.loads.multipliers(&energy.pairs);
+            self.scene.multipliers = energy.loads.multipliers(&energy.pairs);
+            let smoothness = &mut self.scene.smoothness;
             if deepest > 0.0 {
-                self.smoothness.smoothing = self.smoothness.smoothing.min(SMOOTHING * deepest);
+                smoothness.smoothing = smoothness.smoothing.min(SMOOTHING * deepest);
             }
             // Where the energy bends down between ties, multipliers need steeper sides to converge.
             if now > TIGHT.max(0.25 * looseness) && n_tightened < MOST_TIGHTENED {
                 n_tightened += 1;
-                self.smoothness.tighten(0.2);
-                self.smoothness.stop_stiffness *= 5.0;
+                smoothness.tighten(0.2);
+                smoothness.stop_stiffness *= 5.0;
             }
             looseness = now;
             self.look_again();
         }
-        let Some((bodies, multipliers, smoothness)) = best else {
+        let Some(best) = best else {
             return End::Exhausted;
         };
-        (self.bodies, self.multipliers, self.smoothness) = (bodies, multipliers, smoothness);
+        self.scene = best;
         self.look_again();
         End::Rest
     }
@@ -153,14 +143,14 @@ impl<'a, 'b> Descent<'a, 'b> {
     /// The largest of all islands.
     fn looseness(&self) -> f64 {
         let now = &self.balancer.now;
-        let islands = now.pairs.islands(self.bodies.len());
+        let islands = now.pairs.islands(self.scene.bodies.len());
         now.looseness(&islands).into_iter().fold(0.0, f64::max)
     }
 
     /// Of bodies that touch one another, those that are farthest from rest.
     pub(super) fn most_restless(&self) -> Vec<usize> {
         let now = &self.balancer.now;
-        let islands = now.pairs.islands(self.bodies.len());
+        let islands = now.pairs.islands(self.scene.bodies.len());
         let mut unrest = now.looseness(&islands);
         for (body, imbalance) in self.imbalances(&now.pair_loads()).into_iter().enumerate() {
             let unrest = &mut unrest[islands[body]];
@@ -174,7 +164,7 @@ impl<'a, 'b> Descent<'a, 'b> {
 
     /// Down to a stationary point of the smooth energy that is no saddle.
     fn descend(&mut self) -> End {
-        while self.n_steps < MAX_STEPS * self.bodies.len() {
+        while self.n_steps < MAX_STEPS * self.scene.bodies.len() {
             if let Some((loose, way, room)) = self.loose() {
                 match room.is_finite() {
                     true => self.fall(&loose, room * way),
@@ -212,30 +202,24 @@ impl<'a, 'b> Descent<'a, 'b> {
     /// The [slope](Scene::slope) of the energy, and the best step; `None` at a stationary point that is no saddle.
     fn best(&mut self) -> Option<(f64, Step)> {
         let (gradient, hessian) = self.derivatives();
-        let slope = self.scene().slope(&gradient);
+        let slope = self.scene.slope(&gradient);
         if slope <= 0.1 * AT_REST && hessian.is_convex() {
             return None;
         }
-        let mut model = std::mem::take(&mut self.balancer.model);
-        let (scene, now) = (self.scene(), &self.balancer.now);
-        let step = model.best(&scene, &now.pairs, (gradient, hessian), self.reach);
-        self.balancer.model = model;
+        let Balancer { now, model, .. } = &mut *self.balancer;
+        let step = model.best(&self.scene, now, (gradient, hessian), self.reach);
         Some((slope, step))
     }
 
     /// Lays the model at the pose that was looked at last; gradient (N) and Hessian (N/m) there.
     fn derivatives(&mut self) -> (Vec<f64>, Symmetric) {
-        let mut model = std::mem::take(&mut self.balancer.model);
-        let (scene, now) = (self.scene(), &self.balancer.now);
-        model.lay(&scene, &now.pairs, &now.loads);
-        let found = model.at_pose(&scene, &now.pairs);
-        self.balancer.model = model;
-        found
+        let Balancer { now, model, .. } = &mut *self.balancer;
+        model.lay(&self.scene, now)
     }
 
     /// Goes a step if it leads down; how much of the promised gain it brought, `None` if it was not gone.
     fn attempt(&mut self, step: &Step, slope: f64) -> Option<f64> {
-        let bodies = self.bodies.clone();
+        let bodies = self.scene.bodies.clone();
         let fallen = self.go(&step.motion);
         let before = self.balancer.now.loads.elastic;
         std::mem::swap(&mut self.balancer.now, &mut self.balancer.next);
@@ -250,7 +234,7 @@ impl<'a, 'b> Descent<'a, 'b> {
         let is_better = match is_noise {
             true => {
                 let (gradient, _) = self.derivatives();
-                self.scene().slope(&gradient) < slope
+                self.scene.slope(&gradient) < slope
             }
             false => gain >= 1e-4 * step.gain,
         };
@@ -258,13 +242,13 @@ impl<'a, 'b> Descent<'a, 'b> {
             return Some(if is_noise { 1.0 } else { gain / step.gain });
         }
         std::mem::swap(&mut self.balancer.now, &mut self.balancer.next);
-        self.bodies = bodies;
+        self.scene.bodies = bodies;
         None
     }
 
     /// Moves the bodies; what their weights do by that, joules.
     fn go(&mut self, motion: &[f64]) -> f64 {
-        let bodies = self.bodies.iter_mut().zip(motion.chunks(6));
+        let bodies = self.scene.bodies.iter_mut().zip(motion.chunks(6));
         bodies
             .map(|(body, motion)| body.weight.dot(body.go(motion)))
             .sum()
@@ -272,11 +256,11 @@ impl<'a, 'b> Descent<'a, 'b> {
 
     /// Bodies that nothing holds, if there are any, their way down (unit), and how far they may go, metres.
     fn loose(&self) -> Option<(Loose, DVec3, f64)> {
-        let down = self.bodies[0].weight.normalize();
-        let all = Loose::all(&self.balancer.now.pairs, self.bodies.len());
+        let down = self.scene.bodies[0].weight.normalize();
+        let all = Loose::all(&self.balancer.now.pairs, self.scene.bodies.len());
         all.into_iter().find_map(|loose| {
-            let way = loose.way(self.ground, down)?;
-            let room = match loose.room(&self.bodies, self.ground, way) {
+            let way = loose.way(self.scene.ground, down)?;
+            let room = match loose.room(&self.scene.bodies, self.scene.ground, way) {
                 // Steps find the way along a plane, with what is near.
                 None if loose.slides() => return None,
                 room => room.unwrap_or(0.0).max(self.farthest),
@@ -287,7 +271,10 @@ impl<'a, 'b> Descent<'a, 'b> {
 
     /// Bodies go a way together, not deeper into what is below than to where they are no worse off.
     fn fall(&mut self, loose: &Loose, mut way: DVec3) {
-        let weights = loose.bodies.iter().map(|&body| self.bodies[body].weight);
+        let weights = loose
+            .bodies
+            .iter()
+            .map(|&body| self.scene.bodies[body].weight);
         let weight: DVec3 = weights.sum();
         let before = self.balancer.now.loads.elastic;
         let behind = std::mem::take(&mut self.balancer.now.pairs.behind);
@@ -305,26 +292,22 @@ impl<'a, 'b> Descent<'a, 'b> {
 
     fn shift(&mut self, loose: &Loose, by: DVec3) {
         let bodies = loose.bodies.iter();
-        bodies.for_each(|&body| self.bodies[body].center += by);
+        bodies.for_each(|&body| self.scene.bodies[body].center += by);
     }
 
     /// Metres that are none.
     fn same_place(&self) -> f64 {
-        let sizes = self
-            .bodies
-            .iter()
-            .map(|body| body.arm() + body.center.length());
+        let bodies = self.scene.bodies.iter();
+        let sizes = bodies.map(|body| body.arm() + body.center.length());
         SAME_PLACE * sizes.fold(f64::INFINITY, f64::min)
     }
 
     /// Looks at the pose; `behind`: the spheres that were behind taxels where it comes from.
     fn look(&mut self, behind: &[(Key, Part)]) {
         self.n_steps += 1;
-        let mut now = std::mem::take(&mut self.balancer.now);
         // Of far steps not all is foreseen: that would be most spheres.
         let step = self.reach.min(self.nearby());
-        now.look(&self.scene(), step, behind);
-        self.balancer.now = now;
+        self.balancer.now.look(&self.scene, step, behind);
     }
 
     /// Looks at the pose with what was behind taxels before.
@@ -353,8 +336,8 @@ impl<'a, 'b> Descent<'a, 'b> {
     /// Of each body with these loads.
     fn imbalances(&self, loads: &[PairLoad]) -> Vec<f64> {
         let pairs = &self.balancer.now.pairs.all;
-        let wrenches = wrenches(loads, pairs, &self.bodies, &self.ground.skins);
-        let each = self.bodies.iter().zip(wrenches);
+        let wrenches = wrenches(loads, pairs, &self.scene.bodies, &self.scene.ground.skins);
+        let each = self.scene.bodies.iter().zip(wrenches);
         each.map(|(body, wrench)| body.imbalance_of(wrench))
             .collect()
     }

@@ -16,7 +16,6 @@ const RIGID_MISS: f64 = 1e-7 / 3e-10;
 pub(super) struct Energy {
     pub pairs: Pairs,
     pub loads: Loads,
-    deflections: Vec<f64>,
 }
 
 /// What one pair puts on its taxel, or on something rigid.
@@ -38,16 +37,10 @@ impl Energy {
             step,
             window: 2.0 * scene.smoothness.smoothing + 4.0 * step,
         };
-        self.pairs.look(scene.bodies, scene.ground, margins, behind);
-        self.deflections.clear();
-        self.deflections
-            .extend(self.pairs.all.iter().map(|pair| pair.deflection));
-        self.loads.weigh(
-            &self.pairs,
-            &self.deflections,
-            scene.multipliers,
-            scene.smoothness,
-        );
+        self.pairs
+            .look(&scene.bodies, scene.ground, margins, behind);
+        self.loads
+            .weigh(scene, &self.pairs, |(_, pair)| pair.deflection);
     }
 
     /// What each pair carries, if each taxel carries k times its deflection and what its stop carries.

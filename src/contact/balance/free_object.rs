@@ -3,6 +3,7 @@
 use crate::contact::relaxation_factor;
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
+use crate::in_range::positive;
 use crate::objects::{Sphere, SphereUnion};
 use crate::world::Patch;
 use glam::DVec3;
@@ -23,13 +24,7 @@ impl<'a> FreeObject<'a> {
     /// # Errors
     /// The error names what is not finite or not positive.
     pub fn new(spheres: &'a SphereUnion, mass: f64, center_of_mass: DVec3) -> Result<Self> {
-        if !(mass.is_finite() && mass > 0.0) {
-            return Err(Error::input(
-                "object mass",
-                format!("{mass} kg"),
-                "a finite positive number",
-            ));
-        }
+        positive("object mass", mass, "kg")?;
         if !center_of_mass.is_finite() {
             return Err(Error::input(
                 "centre of mass",

@@ -11,6 +11,7 @@
 //! the second part being the augmented Lagrangian of the rigid stop ψ ≤ s \[RW\]: with the right λ the stop holds exactly, and
 //! λ is what it carries.
 
+use super::model::Scene;
 use super::pairs::{Group, Key, Pair, Pairs, Part};
 use super::tied_max::tied_max;
 use std::collections::BTreeMap;
@@ -77,40 +78,40 @@ pub(super) struct Loads {
     pub shares: Vec<f64>,
     /// E, joules.
     pub elastic: f64,
+    /// One a pair.
+    deflections: Vec<f64>,
     known: Vec<f64>,
     sharing: Vec<f64>,
 }
 
 impl Loads {
-    /// Of pairs whose deflections are these.
+    /// Of pairs of these deflections, metres.
     pub fn weigh(
         &mut self,
+        scene: &Scene,
         pairs: &Pairs,
-        deflections: &[f64],
-        multipliers: &Multipliers,
-        smoothness: Smoothness,
+        deflection: impl Fn((usize, &Pair)) -> f64,
     ) {
         self.all.clear();
         self.shares.clear();
         self.elastic = 0.0;
+        let mut deflections = std::mem::take(&mut self.deflections);
+        deflections.clear();
+        deflections.extend(pairs.all.iter().enumerate().map(deflection));
         for group in &pairs.groups {
             let places = group.pairs.clone();
-            self.weigh_one(
-                group,
-                (&pairs.all[places.clone()], &deflections[places]),
-                multipliers,
-                smoothness,
-            );
+            let pairs = (&pairs.all[places.clone()], &deflections[places]);
+            self.weigh_one(scene, group, pairs);
         }
+        self.deflections = deflections;
     }
 
-    fn weigh_one(
-        &mut self,
-        group: &Group,
-        (pairs, deflections): (&[Pair], &[f64]),
-        multipliers: &Multipliers,
-        smoothness: Smoothness,
-    ) {
+    fn weigh_one(&mut self, scene: &Scene, group: &Group, (pairs, deflections): (&[Pair], &[f64])) {
+        let Scene {
+            multipliers,
+            smoothness,
+            ..
+        } = scene;
         let known = multipliers.shares.get(&group.key);
         if let Some(known) = known {
             let of = |p: &Pair| known.iter().find(|k| k.0 == p.part).map_or(0.0, |k| k.1);

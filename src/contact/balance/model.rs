@@ -3,6 +3,7 @@
 //! So it knows which taxels a step lifts off, and which it meets: what makes the energy itself bend is in the model.
 
 use super::body::Body;
+use super::energy::Energy;
 use super::free_object::Ground;
 use super::loads::{Loads, Multipliers, Smoothness};
 use super::pairs::{Key, Pairs, Slopes};
@@ -16,14 +17,12 @@ const MAX_STEPS: usize = 40;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Model {
     slopes: Slopes,
-    deflections: Vec<f64>,
+    /// After the motion that was looked at last.
     loads: Loads,
     curvature: Symmetric,
     /// Of the loads of one taxel: weighted means and sums of slopes, one a body that pushes it.
     means: Vec<(u32, Six)>,
     sums: Vec<(u32, Six)>,
-    /// Energy at the pose, joules.
-    energy: f64,
 }
 
 /// A step, and how much lower the model is there, joules.
@@ -33,12 +32,12 @@ pub(super) struct Step {
     pub gain: f64,
 }
 
-/// What is to be put to rest, and what stays the same for all motions.
-#[derive(Clone, Copy)]
+/// What is to be put to rest, and what its energy depends on besides.
+#[derive(Clone)]
 pub(super) struct Scene<'a> {
-    pub bodies: &'a [Body<'a>],
+    pub bodies: Vec<Body<'a>>,
     pub ground: &'a Ground<'a>,
-    pub multipliers: &'a Multipliers,
+    pub multipliers: Multipliers,
     pub smoothness: Smoothness,
 }
 
@@ -52,8 +51,12 @@ impl Scene<'_> {
 }
 
 impl Model {
-    /// The model around the pose at which these are the pairs and loads.
-    pub fn lay(&mut self, scene: &Scene, pairs: &Pairs, loads: &Loads) {
+    /// The model around the pose of this energy; gradient (N) and Hessian (N/m) there.
+    pub fn lay(
+        &mut self,
+        scene: &Scene,
+        Energy { pairs, loads }: &Energy,
+    ) -> (Vec<f64>, Symmetric) {
         self.curvature.clear(6 * scene.bodies.len());
         self.slopes.clear();
         for (group, load) in pairs.groups.iter().zip(&loads.all) {
@@ -68,24 +71,20 @@ impl Model {
             for at in group.pairs.clone() {
                 let (pair, force) = (&pairs.all[at], loads.shares[at] * load.force);
                 let curvature = &mut self.curvature;
-                self.slopes.lay(scene.bodies, &axes, pair, curvature, force);
+                self.slopes
+                    .lay(&scene.bodies, &axes, pair, curvature, force);
             }
         }
+        let still = vec![0.0; self.curvature.n()];
+        self.derivatives(scene, pairs, loads, &still)
     }
 
     /// Energy after a motion, with the weights'; joules.
     fn energy_after(&mut self, scene: &Scene, pairs: &Pairs, motion: &[f64]) -> f64 {
-        let moved = pairs.all.iter().enumerate();
-        self.deflections.clear();
-        self.deflections
-            .extend(moved.map(|(at, pair)| pair.deflection + self.slopes.dot(at, motion)));
-        let Scene {
-            multipliers,
-            smoothness,
-            ..
-        } = *scene;
-        self.loads
-            .weigh(pairs, &self.deflections, multipliers, smoothness);
+        let Self { loads, slopes, .. } = self;
+        loads.weigh(scene, pairs, |(at, pair)| {
+            pair.deflection + slopes.dot(at, motion)
+        });
         let bodies = scene.bodies.iter().zip(motion.chunks(6));
         let fallen: f64 = bodies
             .map(|(body, motion)| body.weight.dot(DVec3::from_slice(motion)))
@@ -94,11 +93,12 @@ impl Model {
         self.loads.elastic + bent - fallen
     }
 
-    /// Gradient (N) and Hessian (N/m) after the motion that was looked at last.
+    /// Gradient (N) and Hessian (N/m) after a motion that leads to these loads.
     fn derivatives(
         &mut self,
         scene: &Scene,
         pairs: &Pairs,
+        loads: &Loads,
         motion: &[f64],
     ) -> (Vec<f64>, Symmetric) {
         let mut gradient = self.curvature.times(motion);
@@ -107,7 +107,6 @@ impl Model {
         }
         let mut hessian = self.curvature.clone();
         let Self {
-            loads,
             slopes,
             means,
             sums,
@@ -142,23 +141,16 @@ impl Model {
         (gradient, hessian)
     }
 
-    /// Gradient and Hessian of the energy itself, at the pose.
-    pub fn at_pose(&mut self, scene: &Scene, pairs: &Pairs) -> (Vec<f64>, Symmetric) {
-        let still = vec![0.0; self.curvature.n()];
-        self.energy = self.energy_after(scene, pairs, &still);
-        self.derivatives(scene, pairs, &still)
-    }
-
     /// A motion of at most `reach` that is good for the model: trust-region Newton steps inside it. The model must have been
-    /// looked at [at its pose](Self::at_pose), where it has this gradient and Hessian.
+    /// [laid](Self::lay) around this energy, where it has this gradient and Hessian.
     pub fn best(
         &mut self,
         scene: &Scene,
-        pairs: &Pairs,
+        Energy { pairs, loads }: &Energy,
         (mut gradient, mut hessian): (Vec<f64>, Symmetric),
         reach: f64,
     ) -> Step {
-        let start = self.energy;
+        let start = loads.elastic;
         let enough = 0.03 * scene.slope(&gradient);
         let (mut motion, mut energy) = (vec![0.0; gradient.len()], start);
         let mut part = reach;
@@ -176,7 +168,9 @@ impl Model {
             }
             if after < energy {
                 (motion, energy) = (next, after);
-                (gradient, hessian) = self.derivatives(scene, pairs, &motion);
+                let loads = std::mem::take(&mut self.loads);
+                (gradient, hessian) = self.derivatives(scene, pairs, &loads, &motion);
+                self.loads = loads;
                 if is_far || scene.slope(&gradient) <= enough {
                     break;
                 }
@@ -218,7 +212,6 @@ fn add_square(hessian: &mut Symmetric, factor: f64, v: &[(u32, Six)]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::balance::energy::Energy;
     use crate::contact::balance::{FreeObject, HalfSpace, Obstacle, PlacedSkin, Touched};
     use crate::geometry::Pose;
     use crate::objects::{Sphere, SphereUnion};
@@ -282,9 +275,9 @@ mod tests {
             Body::new(object, weights[k], &start)
         });
         let scene = Scene {
-            bodies: &bodies,
+            bodies: bodies.to_vec(),
             ground: &ground,
-            multipliers: &Multipliers::default(),
+            multipliers: Multipliers::default(),
             smoothness: Smoothness {
                 smoothing: 2e-4,
                 load: f64::INFINITY,
@@ -294,16 +287,12 @@ mod tests {
         };
         let mut energy = Energy::default();
         let mut value = |motion: &[f64; 12]| {
-            let mut moved = bodies.clone();
+            let mut moved = scene.clone();
             let mut fallen = 0.0;
-            for (body, motion) in moved.iter_mut().zip(motion.chunks(6)) {
+            for (body, motion) in moved.bodies.iter_mut().zip(motion.chunks(6)) {
                 fallen += body.weight.dot(body.go(motion));
             }
-            let scene = Scene {
-                bodies: &moved,
-                ..scene
-            };
-            energy.look(&scene, 0.0, &[]);
+            energy.look(&moved, 0.0, &[]);
             energy.loads.elastic - fallen
         };
         let mut at = |steps: &[(usize, f64)]| {
@@ -334,8 +323,7 @@ mod tests {
         let is_stop = |key: &Key| matches!(key, Key::Taxel(..));
         assert!(all.any(|(group, load)| is_stop(&group.key) && load.stop > 0.0));
         let mut model = Model::default();
-        model.lay(&scene, &energy.pairs, &energy.loads);
-        let (gradient, hessian) = model.at_pose(&scene, &energy.pairs);
+        let (gradient, hessian) = model.lay(&scene, &energy);
         let largest = hessian.size();
         for i in 0..12 {
             assert!(

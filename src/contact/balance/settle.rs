@@ -167,8 +167,8 @@ impl Balancer {
                 End::Rest => ((0..numbers.len()).collect(), Some(Outcome::Settled)),
                 End::Exhausted => (descent.most_restless(), Some(Outcome::Unsettled)),
             };
-            bodies = std::mem::take(&mut descent.bodies);
-            self.multipliers = std::mem::take(&mut descent.multipliers);
+            bodies = std::mem::take(&mut descent.scene.bodies);
+            self.multipliers = std::mem::take(&mut descent.scene.multipliers);
             if is_first && outcome == Some(Outcome::Unsettled) {
                 is_again = true;
                 continue;

@@ -1,7 +1,5 @@
 //! The kinds of touch.
 
-use crate::error::{Error, Result};
-use crate::spelling::nearest_names;
 use serde::{Deserialize, Serialize};
 
 /// What a hand does.
@@ -43,15 +41,5 @@ impl TouchKind {
             Self::Pat => "pat",
             Self::Grab => "grab",
         }
-    }
-
-    /// The kind of a name.
-    ///
-    /// # Errors
-    /// The error says which it perhaps meant.
-    pub fn named(name: &str) -> Result<Self> {
-        let found = TOUCH_KINDS.into_iter().find(|kind| kind.name() == name);
-        let names = TOUCH_KINDS.map(Self::name);
-        found.ok_or_else(|| Error::input("kind of touch", name, nearest_names(name, names)))
     }
 }

@@ -21,60 +21,48 @@ pub(super) fn check_limits(robot: &Robot, curves: &[Curve], way_points: &WayPoin
         let (position, multiplier, offset) = drive;
         let extremes = curves[position].extremes(&way_points.times);
         let moved = extremes.driven(multiplier, offset);
-        if let Some((taken, bound)) = first_beyond(&moved, &limits) {
-            let unit = joint.kind.coordinates()[0].1;
+        let unit = joint.kind.coordinates()[0].1;
+        if let Some((taken, given, allowed)) = first_beyond(&moved, &limits, unit) {
             return Err(Error::input(
                 format!("{}: joint `{}`", way_points.origin.place(), joint.name),
-                format!(
-                    "{} at {}",
-                    bound.given(taken.value, unit),
-                    when(&taken, way_points)
-                ),
-                bound.allowed(unit),
+                format!("{given} at {}", when(&taken, way_points)),
+                allowed,
             ));
         }
     }
     Ok(())
 }
 
-/// A limit that is passed.
-enum Bound {
-    Lower(f64),
-    Upper(f64),
-    Velocity(f64),
-}
-
-impl Bound {
-    fn given(&self, value: f64, unit: Dimension) -> String {
-        match self {
-            Self::Lower(_) | Self::Upper(_) => position(value, unit),
-            Self::Velocity(_) => format!("velocity {}", velocity(value, unit)),
-        }
-    }
-
-    fn allowed(&self, unit: Dimension) -> String {
-        match *self {
-            Self::Lower(bound) => format!("at least {}", position(bound, unit)),
-            Self::Upper(bound) => format!("at most {}", position(bound, unit)),
-            Self::Velocity(bound) => format!("at most {}", velocity(bound, unit)),
-        }
-    }
-}
-
-fn first_beyond(extremes: &Extremes, limits: &Limits) -> Option<(Taken, Bound)> {
+/// Where a joint is farthest beyond the first limit that it passes, what it does there, and what is allowed.
+fn first_beyond(
+    extremes: &Extremes,
+    limits: &Limits,
+    unit: Dimension,
+) -> Option<(Taken, String, String)> {
     let Extremes {
         lowest,
         highest,
         fastest,
     } = *extremes;
+    let at = |value| position(value, unit);
     if lowest.value < limits.lower - SLACK {
-        return Some((lowest, Bound::Lower(limits.lower)));
+        let allowed = format!("at least {}", at(limits.lower));
+        return Some((lowest, at(lowest.value), allowed));
     }
     if highest.value > limits.upper + SLACK {
-        return Some((highest, Bound::Upper(limits.upper)));
+        let allowed = format!("at most {}", at(limits.upper));
+        return Some((highest, at(highest.value), allowed));
     }
-    let is_fast = fastest.value.abs() > limits.velocity + SLACK;
-    is_fast.then_some((fastest, Bound::Velocity(limits.velocity)))
+    if fastest.value.abs() <= limits.velocity + SLACK {
+        return None;
+    }
+    let speed = |value: f64| format!("{value:.6} {}/s", unit.unit());
+    let given = format!("velocity {}", speed(fastest.value));
+    Some((
+        fastest,
+        given,
+        format!("at most {}", speed(limits.velocity)),
+    ))
 }
 
 impl Extremes {
@@ -120,8 +108,4 @@ fn position(value: f64, unit: Dimension) -> String {
         Dimension::Angle => format!("{value:.6} rad ({:.2}°)", value.to_degrees()),
         Dimension::Length => format!("{value:.6} m"),
     }
-}
-
-fn velocity(value: f64, unit: Dimension) -> String {
-    format!("{value:.6} {}/s", unit.unit())
 }

@@ -4,23 +4,15 @@ use super::xml::Element;
 use super::{Joint, Mimic};
 use crate::error::{Error, Result};
 
-/// Where a joint's coordinates come from.
+/// Where a joint's coordinates come from: its own, or `multiplier · position + offset` of the one at the end of the chain that it follows.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Drive {
-    /// Its own, from this index of the positions on; none for a fixed joint.
-    Own {
-        /// Index of the first.
-        first: usize,
-    },
-    /// `multiplier · position + offset` of a single position.
-    Follows {
-        /// Index of the position.
-        position: usize,
-        /// Of the whole chain.
-        multiplier: f64,
-        /// Of the whole chain.
-        offset: f64,
-    },
+pub(super) struct Drive {
+    /// Index of the first position of the joint at the end of the chain.
+    pub position: usize,
+    /// Of the whole chain; 1 of its end.
+    pub multiplier: f64,
+    /// Of the whole chain; 0 of its end.
+    pub offset: f64,
 }
 
 /// The drive of each joint. The error, at a joint's element, is a chain that ends in itself, in a joint of no coordinate or
@@ -30,7 +22,11 @@ pub(super) fn drives(joints: &[Joint], elements: &[Element]) -> Result<Vec<Drive
     let mut first = 0;
     for (joint, drive) in joints.iter().zip(&mut known) {
         if joint.mimic.is_none() {
-            *drive = Some(Drive::Own { first });
+            *drive = Some(Drive {
+                position: first,
+                multiplier: 1.0,
+                offset: 0.0,
+            });
             first += joint.kind.coordinates().len();
         }
     }
@@ -59,8 +55,9 @@ pub(super) fn drives(joints: &[Joint], elements: &[Element]) -> Result<Vec<Drive
                     "a revolute, continuous or prismatic joint to follow",
                 ));
             }
-            drive = drive.followed(mimic.multiplier, mimic.offset);
-            if !drive.is_finite() {
+            drive.offset = mimic.multiplier * drive.offset + mimic.offset;
+            drive.multiplier *= mimic.multiplier;
+            if !(drive.multiplier.is_finite() && drive.offset.is_finite()) {
                 let given = format!(
                     "joint `{}` mimics with numbers too large",
                     joints[joint].name
@@ -72,37 +69,6 @@ pub(super) fn drives(joints: &[Joint], elements: &[Element]) -> Result<Vec<Drive
         drives.push(drive);
     }
     Ok(drives)
-}
-
-impl Drive {
-    /// The drive of a joint that follows one with this drive.
-    fn followed(self, multiplier: f64, offset: f64) -> Self {
-        match self {
-            Self::Own { first } => Self::Follows {
-                position: first,
-                multiplier,
-                offset,
-            },
-            Self::Follows {
-                position,
-                multiplier: inner,
-                offset: inner_offset,
-            } => Self::Follows {
-                position,
-                multiplier: multiplier * inner,
-                offset: multiplier * inner_offset + offset,
-            },
-        }
-    }
-
-    fn is_finite(self) -> bool {
-        match self {
-            Self::Own { .. } => true,
-            Self::Follows {
-                multiplier, offset, ..
-            } => multiplier.is_finite() && offset.is_finite(),
-        }
-    }
 }
 
 fn circle(chain: &[(usize, Mimic)], end: usize, joints: &[Joint], elements: &[Element]) -> Error {

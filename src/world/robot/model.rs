@@ -6,7 +6,7 @@ use super::urdf::read_urdf;
 use super::{Coordinate, Joint, Link};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
-use crate::spelling::nearest_names;
+use crate::spelling::known;
 use std::collections::HashSet;
 use std::path::Path;
 
@@ -153,11 +153,8 @@ impl Robot {
     /// # Errors
     /// The error offers names that resemble it.
     pub fn link(&self, name: &str) -> Result<usize> {
-        self.find(
-            "link",
-            name,
-            self.links.iter().map(|link| link.name.as_str()),
-        )
+        let names = self.links.iter().map(|link| link.name.as_str());
+        known(format!("link of robot `{}`", self.name), name, names)
     }
 
     /// Index of a joint by its name.
@@ -165,24 +162,8 @@ impl Robot {
     /// # Errors
     /// The error offers names that resemble it.
     pub fn joint(&self, name: &str) -> Result<usize> {
-        self.find(
-            "joint",
-            name,
-            self.joints.iter().map(|joint| joint.name.as_str()),
-        )
-    }
-
-    fn find<'a>(
-        &self,
-        what: &str,
-        name: &str,
-        mut names: impl Iterator<Item = &'a str> + Clone,
-    ) -> Result<usize> {
-        let all = names.clone();
-        names.position(|known| known == name).ok_or_else(|| {
-            let place = format!("{what} of robot `{}`", self.name);
-            Error::input(place, format!("`{name}`"), nearest_names(name, all))
-        })
+        let names = self.joints.iter().map(|joint| joint.name.as_str());
+        known(format!("joint of robot `{}`", self.name), name, names)
     }
 
     /// `world_from_link` of every link, in their order; `world_from_base` is where the base is. See
@@ -215,16 +196,11 @@ impl Robot {
         world_from_link[self.tree.root] = *world_from_base;
         for &index in &self.tree.outward {
             let joint = &self.joints[index];
-            let parent_from_child = match self.drives[index] {
-                Drive::Own { first } => {
-                    let n = joint.kind.coordinates().len();
-                    joint.pose(&positions[first..first + n])
-                }
-                Drive::Follows {
-                    position,
-                    multiplier,
-                    offset,
-                } => joint.pose(&[multiplier * positions[position] + offset]),
+            let drive = &self.drives[index];
+            let own = &positions[drive.position..];
+            let parent_from_child = match joint.mimic {
+                None => joint.pose(&own[..joint.kind.coordinates().len()]),
+                Some(_) => joint.pose(&[drive.multiplier * own[0] + drive.offset]),
             };
             world_from_link[joint.child] =
                 world_from_link[joint.parent].compose(&parent_from_child);
@@ -235,17 +211,9 @@ impl Robot {
     /// Which position moves a joint of one coordinate, and how: `(position, multiplier, offset)`; `None` for the others.
     /// A joint that mimics none has multiplier 1 and offset 0.
     pub fn drive_of(&self, joint: usize) -> Option<(usize, f64, f64)> {
-        match self.drives[joint] {
-            Drive::Own { first } => {
-                let is_one = self.joints[joint].kind.has_one_coordinate();
-                is_one.then_some((first, 1.0, 0.0))
-            }
-            Drive::Follows {
-                position,
-                multiplier,
-                offset,
-            } => Some((position, multiplier, offset)),
-        }
+        let drive = self.drives[joint];
+        let is_one = self.joints[joint].kind.has_one_coordinate();
+        is_one.then_some((drive.position, drive.multiplier, drive.offset))
     }
 
     fn check_positions(&self, positions: &[f64]) -> Result<()> {
