@@ -2,6 +2,7 @@
 
 use crate::error::Result;
 use crate::recognition::ClassifierKind;
+use crate::recognition::statistics::grouped::FEW_GROUPS;
 use crate::report::csv_tables::LIMITS_FILE;
 use crate::study::StudySpec;
 use crate::study::table::{
@@ -107,6 +108,11 @@ impl From<'_> {
         }
         tables.push(self.table(&LIMITS, |tables| &tables.limits, &[])?);
         tables.iter_mut().for_each(say);
+        for table in &mut tables {
+            if let Some(note) = note_of_groups(table) {
+                table.note = note;
+            }
+        }
         let cells = cells_of(&tables);
         tables.extend(cells);
         Ok(tables)
@@ -151,6 +157,19 @@ fn say(table: &mut Table) {
             _ => {}
         }
     }
+}
+
+/// What intervals of accuracies are where whole groups are held out; none where single rows are.
+pub(super) fn note_of_groups(table: &Table) -> Option<String> {
+    let n_groups = table.numbers("n_groups")?;
+    let least = n_groups.iter().copied().fold(f64::INFINITY, f64::min);
+    let few = match least < FEW_GROUPS as f64 {
+        true => format!("; some come from {least}: fewer than {FEW_GROUPS} groups say little"),
+        false => format!(", at least {least}"),
+    };
+    Some(format!(
+        "Intervals are 95 % intervals from the groups that are held out, not from single test decisions{few}."
+    ))
 }
 
 /// Each cell with its distance to the best of its condition and with what it costs.
