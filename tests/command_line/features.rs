@@ -143,7 +143,7 @@ fn the_library_reads_what_the_command_writes_and_threads_change_no_byte() {
 fn groups_that_a_study_keeps_together_are_written_for_classify() {
     let case = Case::new();
     let keys = "keep_together = \"yaw\"\nkeep_together_deg = 3.0\ntrain_touches = [4";
-    case.file("study.toml", &STUDY.replace("train_touches = [4", keys));
+    case.file("study.toml", STUDY.replace("train_touches = [4", keys));
     let folder = written(&case, 0, 0);
     let groups: Array1<i64> = read_npy(folder.join("groups.npy")).unwrap();
     assert_eq!(groups.len(), 72);
