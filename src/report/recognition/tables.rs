@@ -2,13 +2,14 @@
 
 use crate::error::Result;
 use crate::recognition::ClassifierKind;
+use crate::recognition::statistics::bootstrap::coverage_of_95;
 use crate::recognition::statistics::grouped::FEW_GROUPS;
 use crate::report::csv_tables::LIMITS_FILE;
-use crate::study::StudySpec;
 use crate::study::table::{
     Cell, CellScore, Comparison, Confused, Confusion, Limit, Pareto, Published, StageTime, Tables,
     TrialScore, TrialTime, Variance,
 };
+use crate::study::{CONFIDENCE, StudySpec};
 use crate::table::{Better, Column, Columns, Data, File, Role, Scale, Table};
 use serde::Serialize;
 use std::path::Path;
@@ -112,6 +113,9 @@ impl From<'_> {
             if let Some(note) = note_of_groups(table) {
                 table.note = note;
             }
+            if let Some(note) = note_of_few_trials(table) {
+                table.note += &note;
+            }
         }
         let cells = cells_of(&tables);
         tables.extend(cells);
@@ -169,6 +173,19 @@ pub(super) fn note_of_groups(table: &Table) -> Option<String> {
     };
     Some(format!(
         "Intervals are 95 % intervals from the groups that are held out, not from single test decisions{few}."
+    ))
+}
+
+/// How often the bootstrap's intervals truly hold the mean where that is not 95 times in a hundred.
+fn note_of_few_trials(table: &Table) -> Option<String> {
+    let low = table.numbers("bootstrap_low")?;
+    let n_trials = table.numbers("n_trials")?.iter().zip(low);
+    let n_trials = n_trials.filter(|(_, low)| low.is_finite());
+    let fewest = n_trials.map(|(&n, _)| n as usize).min()?;
+    let coverage = coverage_of_95(fewest).filter(|&coverage| coverage < CONFIDENCE)?;
+    let percent = (100.0 * coverage).round();
+    Some(format!(
+        " Bootstrap intervals are nominally of 95 %, about {percent} % with {fewest} trials."
     ))
 }
 
