@@ -171,6 +171,9 @@ pub mod scene;
 pub mod sensing;
 pub mod signal;
 mod spelling;
+#[cfg(test)]
+#[path = "../tests/fixtures/standard_errors/mod.rs"]
+mod standard_errors;
 pub mod study;
 pub mod table;
 mod toml_text;

@@ -8,14 +8,17 @@ use bubbletouch::recognition::ClassifierKind;
 use bubbletouch::recognition::classifiers::classifier::{Classifier, Cost, TrainedClassifier};
 use bubbletouch::recognition::data::dataset::Dataset;
 use bubbletouch::recognition::data::scaling::Scaling;
-use bubbletouch::recognition::data::split::{Split, stratified_k_fold};
+use bubbletouch::recognition::data::split::{Split, group_k_fold, stratified_k_fold};
+use bubbletouch::recognition::statistics::grouped::{
+    FEW_GROUPS, GroupedTest, count_groups, interval_of_groups,
+};
 use bubbletouch::recognition::statistics::interval::Interval;
 use bubbletouch::recognition::svm::cross_validation::choice::{Candidates, Chosen};
 use bubbletouch::recognition::svm::kernel::Gamma;
 use bubbletouch::recognition::svm::{Multiclass, Solver};
 use bubbletouch::study::{CONFIDENCE, FeatureSet, read_features, write_integers};
 use bubbletouch::{Error, Result};
-use ndarray::Array1;
+use ndarray::{Array1, Axis};
 use serde::de::IntoDeserializer;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -29,6 +32,10 @@ pub struct Args {
     /// Which classifier, by its name in studies: linear_svm, rbf_svm, polynomial_svm …
     #[arg(long, value_name = "NAME", value_parser = word::<ClassifierKind>)]
     classifier: ClassifierKind,
+    /// A .npy file of integers, the group of every row of features (poses, grasps, days …): refuses a group that both trains and
+    /// tests, keeps groups whole in the folds of --choose-c, and takes the interval of the accuracy from groups, not rows
+    #[arg(long, value_name = "FILE")]
+    groups: Option<PathBuf>,
     /// Soft-margin penalty C
     #[arg(long, value_name = "C", default_value_t = 1.0)]
     c: f64,
@@ -105,8 +112,14 @@ struct Findings {
     c: Option<f64>,
     /// What C, and γ, was chosen from.
     chosen: Option<Chosen>,
+    /// How training and test rows are told apart, and what the interval comes from: "rows" or "groups".
+    split_by: &'static str,
     n_train: usize,
     n_test: usize,
+    /// Groups of the training rows; `None` without groups.
+    n_train_groups: Option<usize>,
+    /// Groups of the test rows, from which the interval comes; `None` without groups.
+    n_test_groups: Option<usize>,
     n_measurements: usize,
     n_correct: usize,
     accuracy: f64,
@@ -139,6 +152,10 @@ pub fn classify(args: &Args) -> Result<()> {
         return Err(Error::input("--repeat", 0, "at least 1"));
     }
     let set = read_features(&args.folder)?;
+    let set = match &args.groups {
+        None => set,
+        Some(path) => set.with_groups(path)?,
+    };
     let (findings, predicted) = args.train_and_test(&set)?;
     if let Some(path) = &args.predictions {
         write_integers(path, predicted)?;
@@ -156,12 +173,16 @@ impl Args {
     fn train_and_test(&self, set: &FeatureSet) -> Result<(Findings, Array1<usize>)> {
         let classifier = self.classifier();
         let (training, test) = (set.training(self.train_rows)?, set.test()?);
+        let groups_of = |rows: &[usize]| Some(set.groups.as_ref()?.select(Axis(0), rows));
+        let n_train = training.targets.len();
+        let train_groups = groups_of(&set.split.train[..n_train]);
+        let folds = || self.folds(&training, train_groups.as_ref());
         let seed = Seed::new(self.seed);
         let (mut fit_s, mut predict_s) = (Vec::new(), Vec::new());
         let mut last = None;
         for _ in 0..self.repeat {
             let start = Instant::now();
-            let trained = classifier.train_validated(&training, &self.folds(&training)?, &seed)?;
+            let trained = classifier.train_validated(&training, &folds()?, &seed)?;
             fit_s.push(start.elapsed().as_secs_f64());
             let start = Instant::now();
             let predicted = trained.labels(test.records.view())?;
@@ -171,10 +192,20 @@ impl Args {
         let (trained, predicted) = last.expect("at least one repeat");
         let n_test = predicted.len();
         let pairs = predicted.iter().zip(&test.targets);
-        let n_correct = pairs
-            .filter(|(predicted, truth)| predicted == truth)
-            .count();
-        let interval = Interval::wilson(n_correct, n_test, CONFIDENCE)?;
+        let is_correct: Vec<bool> = pairs.map(|(predicted, truth)| predicted == truth).collect();
+        let n_correct = is_correct.iter().filter(|is_correct| **is_correct).count();
+        let (interval, n_test_groups) = match groups_of(&set.split.test) {
+            None => (Interval::wilson(n_correct, n_test, CONFIDENCE)?, None),
+            Some(groups) => {
+                let tested = GroupedTest {
+                    n_rows: n_test,
+                    n_correct,
+                    groups: &count_groups(groups.into_iter().zip(is_correct)),
+                };
+                let (interval, n_groups) = interval_of_groups(&[tested], CONFIDENCE)?;
+                (interval, Some(n_groups))
+            }
+        };
         let findings = Findings {
             program: concat!("bubbletouch ", env!("CARGO_PKG_VERSION")),
             classifier: self.classifier,
@@ -183,8 +214,14 @@ impl Args {
             solver: self.solver,
             c: trained.c(),
             chosen: trained.chosen().cloned(),
-            n_train: training.records.nrows(),
+            split_by: match n_test_groups {
+                None => "rows",
+                Some(_) => "groups",
+            },
+            n_train,
             n_test,
+            n_train_groups: train_groups.map(|groups| groups.iter().collect::<BTreeSet<_>>().len()),
+            n_test_groups,
             n_measurements: training.records.ncols(),
             n_correct,
             accuracy: n_correct as f64 / n_test as f64,
@@ -199,13 +236,17 @@ impl Args {
         Ok((findings, predicted))
     }
 
-    /// Folds of the choice, if there is one.
-    fn folds(&self, training: &Dataset) -> Result<Vec<Split>> {
+    /// Folds of the choice, if there is one, each of whole groups, if there are groups.
+    fn folds(&self, training: &Dataset, groups: Option<&Array1<usize>>) -> Result<Vec<Split>> {
         if self.choose_c.is_empty() {
             return Ok(Vec::new());
         }
         let seed = Seed::new(self.seed).named("validation");
-        stratified_k_fold(training.targets.view(), self.choose_folds, &seed)
+        let (labels, k) = (training.targets.view(), self.choose_folds);
+        match groups {
+            None => stratified_k_fold(labels, k, &seed),
+            Some(groups) => group_k_fold(labels, groups.view(), k, &seed),
+        }
     }
 
     fn classifier(&self) -> Classifier {
@@ -251,6 +292,15 @@ fn tell(found: &Findings) -> Result<()> {
         "rows      {} to train on, {} to test, {} measurements each",
         found.n_train, found.n_test, found.n_measurements
     ))?;
+    if let (Some(n_train), Some(n_test)) = (found.n_train_groups, found.n_test_groups) {
+        let few = match n_test < FEW_GROUPS {
+            true => ", too few to say much",
+            false => "",
+        };
+        say(format_args!(
+            "split     by groups: {n_train} to train on, {n_test} to test; the interval comes from {n_test} groups{few}"
+        ))?;
+    }
     say(format_args!(
         "accuracy  {:.4} ({:.4} to {:.4}): {} of {}",
         found.accuracy, found.accuracy_low, found.accuracy_high, found.n_correct, found.n_test

@@ -5,7 +5,9 @@
 //! do not divide by them.
 
 use crate::recognition::statistics::interval::Interval;
-use crate::recognition::statistics::rank_correlation::{kendall, kendall_interval};
+use crate::recognition::statistics::rank_correlation::{
+    ENOUGH_SETTINGS, kendall, kendall_interval,
+};
 use crate::report::swept::Setting;
 use crate::study::CONFIDENCE;
 use crate::table::{Column, Role, Table, Value, short_number};
@@ -72,9 +74,13 @@ impl RankAgreement {
         let choices = self.choices.iter();
         let choices = choices.map(|(words, same, all)| format!("{same} of {all} of {words}"));
         let choices: Vec<String> = choices.collect();
+        let few = match self.n_designs < ENOUGH_SETTINGS {
+            true => ", which holds it less often where designs are so few",
+            false => "",
+        };
         vec![
             format!(
-                "Both rank {} designs with a Kendall's τ of {tau} (95 % bootstrap interval {low} to {high}).",
+                "Both rank {} designs with a Kendall's τ of {tau} (95 % bootstrap interval {low} to {high}{few}).",
                 self.n_designs
             ),
             format!(

@@ -12,9 +12,13 @@ use crate::recognition::data::split::Split;
 use crate::recognition::evaluation::fusion::{fuse_rows, fuse_scores};
 use crate::recognition::evaluation::metrics::ConfusionMatrix;
 use crate::recognition::evaluation::next_touch::{AnswerModel, NextTouch};
+use crate::recognition::statistics::grouped::{
+    GroupCount, GroupedTest, count_groups, interval_of_groups,
+};
 use crate::recognition::statistics::interval::Interval;
 use ndarray::{Array1, Axis};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 use std::time::Instant;
 
 /// Confidence of every interval in the tables.
@@ -29,6 +33,9 @@ pub struct Evaluation {
     pub time: TrialTime,
     /// Non-zero counts: (object, predicted, how many).
     pub confusion: Vec<(usize, usize, usize)>,
+    /// Test rows group by group; none where rows are held out one by one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub groups: Vec<GroupCount>,
 }
 
 /// What the evaluations of a group share in a trial.
@@ -52,6 +59,8 @@ pub(super) struct AnsweredTouches<'a> {
     pub test: &'a Dataset,
     /// Their numbers.
     pub touches: &'a [usize],
+    /// The group of each of them.
+    groups: Option<&'a [usize]>,
     pub decide: Decide<'a>,
     answer_s: f64,
     n_train: usize,
@@ -89,6 +98,7 @@ impl Trial<'_> {
         let training = self.training(&family[0], &split)?;
         let labels = self.sweep.labels.select(Axis(0), &split.test);
         let test = dataset(self.tested.features(&family[0], &split.test), labels)?;
+        let groups = self.sweep.test_groups(self.plan, self.number, &split.test);
         let same_fit: Vec<&[Cell]> = Group::fits(family).collect();
         let penalties: Vec<Option<f64>> = same_fit.iter().map(|cells| cells[0].c).collect();
         let fitted = training.train_all(&penalties)?;
@@ -98,6 +108,7 @@ impl Trial<'_> {
             let mut answered = AnsweredTouches {
                 fitted,
                 test: &test,
+                groups: groups.as_deref(),
                 decide: decider(fitted, &test, cells)?,
                 answer_s: start.elapsed().as_secs_f64(),
                 n_train: split.train.len(),
@@ -135,7 +146,30 @@ impl Trial<'_> {
         let is_crossed = spec.projections_per_split.is_some();
         let counts = matrix.counts.indexed_iter();
         let counts = counts.filter(|(_, count)| **count > 0);
-        let interval = Interval::wilson(matrix.n_correct(), matrix.n_rows(), CONFIDENCE)?;
+        let groups = answered.groups.map_or_else(Vec::new, |groups| {
+            let decisions = rows.groups.iter().enumerate();
+            // A decision on touches of several groups is a row of each.
+            count_groups(decisions.flat_map(|(row, touches)| {
+                let of: BTreeSet<usize> = touches.iter().map(|&touch| groups[touch]).collect();
+                let is_correct = predicted[row] == truth[row];
+                of.into_iter().map(move |group| (group, is_correct))
+            }))
+        });
+        let tested = GroupedTest {
+            n_rows: matrix.n_rows(),
+            n_correct: matrix.n_correct(),
+            groups: &groups,
+        };
+        let (interval, n_groups) = match answered.groups {
+            None => (
+                Interval::wilson(tested.n_correct, tested.n_rows, CONFIDENCE)?,
+                None,
+            ),
+            Some(_) => {
+                let (interval, n_groups) = interval_of_groups(&[tested], CONFIDENCE)?;
+                (interval, Some(n_groups))
+            }
+        };
         Ok(Evaluation {
             score: TrialScore {
                 trial: self.number,
@@ -148,6 +182,7 @@ impl Trial<'_> {
                 accuracy: matrix.accuracy(),
                 accuracy_low: interval.low,
                 accuracy_high: interval.high,
+                n_groups,
                 macro_f1: matrix.macro_f1(),
                 c_used: answered.fitted.c,
                 gamma_used: answered.fitted.gamma,
@@ -167,6 +202,7 @@ impl Trial<'_> {
             confusion: counts
                 .map(|((object, predicted), &count)| (object, predicted, count))
                 .collect(),
+            groups,
         })
     }
 

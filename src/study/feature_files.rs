@@ -6,6 +6,7 @@
 //! | `labels.npy` | n, i64: the object's number (of mislabelled training touches another's) |
 //! | `train.npy` | i64: the rows that the trial trains on, in its order; a prefix is a smaller training set |
 //! | `test.npy` | i64: the rows that it tests, ascending |
+//! | `groups.npy` | n, i64: the group of every row, where the study has groups of touches that are never on both sides of a split |
 //! | `objects.csv` | one row an object: number, name |
 //! | `cell.toml` | the settings of the cell and the trial |
 
@@ -13,7 +14,7 @@ use super::evaluation::learned_rows;
 use super::frames::FramePlace;
 use super::measurement::{Measurements, measure_group};
 use super::npy::{write_integers, write_npy};
-use super::npy_numbers::{read_labels, read_matrix, read_rows};
+use super::npy_numbers::{read_labels, read_matrix, read_rows, read_whole_numbers};
 use super::progress::Progress;
 use super::spec::RecognitionSpec;
 use super::sweep::{Group, StudyPart, Sweep};
@@ -22,8 +23,9 @@ use crate::error::{Error, Result};
 use crate::files::{CsvFile, write_bytes};
 use crate::recognition::data::dataset::{Dataset, dataset, rows};
 use crate::recognition::data::split::Split;
-use ndarray::Array1;
+use ndarray::{Array1, Axis};
 use serde::Serialize;
+use std::collections::HashMap;
 use std::path::Path;
 
 /// Labelled measurements and the rows that one trial trains on and tests.
@@ -33,6 +35,8 @@ pub struct FeatureSet {
     pub data: Dataset,
     /// The trial's rows.
     pub split: Split,
+    /// The group of every row, if no group is on both sides of the split.
+    pub groups: Option<Array1<usize>>,
 }
 
 #[derive(Serialize)]
@@ -83,7 +87,12 @@ impl StudyPart {
         let of_read = read.iter().map(|row| labels[row % labels.len()]);
         let of_copies = trained_labels.iter().skip(n_trained).copied();
         let rows = [&read[..], copies].concat();
+        let copied = split.train.iter().cycle().take(copies.len()).copied();
+        let touched = read.iter().map(|row| row % labels.len()).chain(copied);
+        let touched: Vec<usize> = touched.collect();
+        let groups = sweep.group_keys.as_ref();
         Ok(FeatureSet {
+            groups: groups.map(|groups| groups.select(Axis(0), &touched)),
             data: dataset(
                 measured.features(cell, &rows),
                 of_read.chain(of_copies).collect(),
@@ -129,6 +138,9 @@ impl StudyPart {
         write_integers(&folder.join("labels.npy"), set.data.targets.to_vec())?;
         write_integers(&folder.join("train.npy"), train.clone())?;
         write_integers(&folder.join("test.npy"), test.clone())?;
+        if let Some(groups) = &set.groups {
+            write_integers(&folder.join("groups.npy"), groups.to_vec())?;
+        }
         let mut objects = CsvFile::create(&folder.join("objects.csv"))?;
         for (label, object) in self.touched.class_names().into_iter().enumerate() {
             objects.row(ObjectRow { label, object })?;
@@ -171,10 +183,47 @@ pub fn read_features(folder: &Path) -> Result<FeatureSet> {
     let features = features.as_standard_layout().into_owned();
     let data = dataset(features, Array1::from(labels));
     let data = data.map_err(|error| error.under(format!("{}: ", folder.display())))?;
-    Ok(FeatureSet { data, split })
+    Ok(FeatureSet {
+        data,
+        split,
+        groups: None,
+    })
 }
 
 impl FeatureSet {
+    /// The same with the group of every row out of a file: whole numbers from 0 on, of any type of integer.
+    ///
+    /// # Errors
+    /// No such file, or one of another type; another number of groups than rows; a group with rows on both sides of the split.
+    pub fn with_groups(self, path: &Path) -> Result<Self> {
+        let groups = Array1::from(read_whole_numbers(path)?);
+        let n_rows = self.data.records.nrows();
+        let refused = |given: String, allowed: String| {
+            let place = path.display();
+            Err(Error::input(place, given, allowed))
+        };
+        if groups.len() != n_rows {
+            let given = format!("{} groups", groups.len());
+            return refused(given, format!("{n_rows}, one for each row of features"));
+        }
+        let Split { train, test } = &self.split;
+        let trained: HashMap<usize, usize> = train.iter().map(|&row| (groups[row], row)).collect();
+        let both = test
+            .iter()
+            .find_map(|&row| Some((row, trained.get(&groups[row])?)));
+        if let Some((tested, learned)) = both {
+            let group = groups[tested];
+            let given =
+                format!("group {group} of row {learned} in train.npy and row {tested} in test.npy");
+            let allowed = "groups that train.npy and test.npy leave whole on one side (as GroupShuffleSplit and GroupKFold of scikit-learn do)";
+            return refused(given, allowed.to_owned());
+        }
+        Ok(Self {
+            groups: Some(groups),
+            ..self
+        })
+    }
+
     /// The training rows, or the first `n` of them.
     ///
     /// # Errors

@@ -40,16 +40,19 @@ pub fn read_frames(path: &Path, shape: (usize, usize)) -> Result<Array2<f64>> {
 /// Reads whole numbers from zero on, one dimension of them.
 ///
 /// # Errors
-/// No such file; another type, or other dimensions; a number below zero, by its position.
+/// No such file; another type, or other dimensions; a number below zero or beyond 2⁵³, by its position.
 pub fn read_whole_numbers(path: &Path) -> Result<Vec<usize>> {
     const WHAT: &str = "one dimension of int8 to int64, uint8 to uint32 or bool";
     let (numbers, elements): (Array1<f64>, _) = read(path, WHAT)?;
     if elements == Elements::Floats {
         return Err(wrong_type(path, WHAT));
     }
-    if let Some(position) = numbers.iter().position(|&number| number < 0.0) {
+    // Beyond it f64 does not tell neighbours apart.
+    let wrong = |number: &f64| !(0.0..=2.0_f64.powi(53)).contains(number);
+    if let Some(position) = numbers.iter().position(wrong) {
         let place = format!("{}, position {position}", path.display());
-        return Err(Error::input(place, numbers[position], "zero or more"));
+        let allowed = "zero or more, up to 2^53";
+        return Err(Error::input(place, numbers[position], allowed));
     }
     Ok(numbers.iter().map(|&number| number as usize).collect())
 }

@@ -80,6 +80,11 @@ impl PoseSplit {
         }
     }
 
+    /// The number of the block that a trial tests, of a split by blocks: all that it tests is near each other.
+    pub(super) fn tested_block(self, trial: usize) -> Option<usize> {
+        (self == Self::OppositeBlocks).then_some(trial % (1 << BLOCK.len()))
+    }
+
     /// Whether it can split these touches.
     ///
     /// # Errors

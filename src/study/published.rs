@@ -140,6 +140,7 @@ mod tests {
                         accuracy_std: 0.0,
                         accuracy_low: accuracy - 0.1,
                         accuracy_high: accuracy + 0.1,
+                        n_groups: None,
                         bootstrap_low: None,
                         bootstrap_high: None,
                         macro_f1: accuracy,

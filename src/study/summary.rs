@@ -9,6 +9,7 @@ use super::table::{
 use crate::error::Result;
 use crate::recognition::statistics::bootstrap::Bootstrap;
 use crate::recognition::statistics::comparison::TrialSize;
+use crate::recognition::statistics::grouped::{GroupCount, GroupedTest, interval_of_groups};
 use crate::recognition::statistics::interval::Interval;
 use crate::recognition::statistics::many_tests::holm_of_some;
 use crate::table::front;
@@ -17,19 +18,29 @@ use std::collections::BTreeMap;
 /// A row of the accuracy table.
 type Row = (Cell, TrialScore);
 
-/// One row a cell from one row a cell and trial; the trials of a cell follow each other.
-pub fn summarise<C: Clone + PartialEq>(rows: &[(C, TrialScore)]) -> Result<Vec<(C, CellScore)>> {
+/// One row a cell from one row a cell and trial; the trials of a cell follow each other. `groups` are those that the trials tested, row by row, if
+/// there are any.
+pub fn summarise<C: Clone + PartialEq>(
+    rows: &[(C, TrialScore)],
+    mut groups: &[Vec<GroupCount>],
+) -> Result<Vec<(C, CellScore)>> {
     let mut bootstrap = Bootstrap::default();
     rows.chunk_by(|a, b| a.0 == b.0)
         .map(|trials| {
             let scores: Vec<&TrialScore> = trials.iter().map(|(_, score)| score).collect();
-            Ok((trials[0].0.clone(), score(&scores, &mut bootstrap)?))
+            let here = groups.split_off(..trials.len()).unwrap_or_default();
+            let score = score(&scores, here, &mut bootstrap)?;
+            Ok((trials[0].0.clone(), score))
         })
         .collect()
 }
 
 /// What the trials of a cell say together.
-fn score(trials: &[&TrialScore], bootstrap: &mut Bootstrap) -> Result<CellScore> {
+fn score(
+    trials: &[&TrialScore],
+    groups: &[Vec<GroupCount>],
+    bootstrap: &mut Bootstrap,
+) -> Result<CellScore> {
     let mean = |value: fn(&TrialScore) -> f64| {
         trials.iter().map(|trial| value(trial)).sum::<f64>() / trials.len() as f64
     };
@@ -37,7 +48,21 @@ fn score(trials: &[&TrialScore], bootstrap: &mut Bootstrap) -> Result<CellScore>
     let squares: f64 = trials.iter().map(|t| (t.accuracy - accuracy).powi(2)).sum();
     let n_test = trials.iter().map(|t| t.n_test).min().unwrap_or(0);
     let n_correct = (accuracy * n_test as f64).round() as usize;
-    let interval = Interval::wilson(n_correct, n_test, CONFIDENCE)?;
+    let tested = trials.iter().zip(groups);
+    let tested = tested.filter(|(_, groups)| !groups.is_empty());
+    let tested = tested.map(|(trial, groups)| GroupedTest {
+        n_rows: trial.n_test,
+        n_correct: trial.n_correct,
+        groups,
+    });
+    let tested: Vec<GroupedTest> = tested.collect();
+    let (interval, n_groups) = match tested.is_empty() {
+        true => (Interval::wilson(n_correct, n_test, CONFIDENCE)?, None),
+        false => {
+            let (interval, n_groups) = interval_of_groups(&tested, CONFIDENCE)?;
+            (interval, Some(n_groups))
+        }
+    };
     let repeats: Vec<Repeat> = trials.iter().map(|trial| Repeat::of(trial)).collect();
     let of_mean = match scores(&repeats) {
         Some(scores) => bootstrap.mean(scores.view(), CONFIDENCE)?,
@@ -53,6 +78,7 @@ fn score(trials: &[&TrialScore], bootstrap: &mut Bootstrap) -> Result<CellScore>
         },
         accuracy_low: interval.low,
         accuracy_high: interval.high,
+        n_groups,
         bootstrap_low: of_mean.map(|interval| interval.low),
         bootstrap_high: of_mean.map(|interval| interval.high),
         macro_f1: mean(|t| t.macro_f1),

@@ -245,6 +245,19 @@ impl Sweep {
         }
     }
 
+    /// The group of each of a trial's test touches, where whole groups are held out.
+    pub fn test_groups(&self, plan: &Plan, trial: usize, test: &[usize]) -> Option<Vec<usize>> {
+        let split = plan.spec.recognition.split;
+        match (
+            split.tested_block(plan.spec.split_of(trial)),
+            &self.group_keys,
+        ) {
+            (Some(block), _) => Some(vec![block; test.len()]),
+            (None, Some(keys)) => Some(test.iter().map(|&touch| keys[touch]).collect()),
+            (None, None) => None,
+        }
+    }
+
     /// The label of every touch as a cell learns it in a trial: some of the split's training touches may have another
     /// object's.
     ///

@@ -30,10 +30,13 @@ pub struct TrialScore {
     n_correct: usize => Note "test rows recognised": Linear;
     /// `n_correct / n_test`.
     accuracy: f64 => Value(More): Share between [accuracy_low, accuracy_high];
-    /// Lower end of the 95 % Wilson interval.
+    /// Lower end of the 95 % interval: Wilson's of the test rows, or [of the groups](crate::recognition::statistics::grouped) that are held out.
     accuracy_low: f64 => Note "95 % interval, lower end": Share;
-    /// Upper end of the 95 % Wilson interval.
+    /// Upper end of the 95 % interval.
     accuracy_high: f64 => Note "95 % interval, upper end": Share;
+    /// Groups that it comes from; test rows where none are held out. Only if the study holds out groups.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    n_groups: Option<usize> => Note "groups of the interval": Linear, optional;
     /// Mean over classes of the F1 score.
     macro_f1: f64 => Value(More) "macro F1": Share;
     /// The C that was used (given, or chosen by cross-validation within the training rows); empty without one.
@@ -55,12 +58,15 @@ pub struct CellScore {
     accuracy: f64 => Value(More): Share between [accuracy_low, accuracy_high];
     /// Standard deviation of the accuracy over trials (0 for one trial).
     accuracy_std: f64 => Note "standard deviation over trials": Share;
-    /// Lower end of the 95 % Wilson interval at one trial's test rows.
+    /// Lower end of the 95 % Wilson interval at one trial's test rows, or of the interval of the groups that all trials hold out.
     ///
-    /// Trials split the same touches again, so counting all their rows would promise too much.
+    /// Trials split the same touches again, so counting all their rows would promise too much; a group counts once.
     accuracy_low: f64 => Note "95 % interval, lower end": Share;
     /// Upper end of the same interval.
     accuracy_high: f64 => Note "95 % interval, upper end": Share;
+    /// Groups that it comes from, all trials; test rows of a trial where none are held out. Only if the study holds out groups.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    n_groups: Option<usize> => Note "groups of the interval": Linear, optional;
     /// Lower end of the 95 % bootstrap interval of the mean over trials: where it would be with other splits, projections and
     /// noise on the same touches. Empty with fewer than five trials (or splits, or projections).
     #[serde(default)]

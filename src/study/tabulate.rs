@@ -15,8 +15,12 @@ pub fn tabulate(
     name: impl Fn(&Cell, usize) -> String,
 ) -> Result<()> {
     scored.sort_by_key(|(cell, evaluation)| (cell.cell, evaluation.score.trial));
+    let is_grouped = scored.iter().any(|(_, found)| !found.groups.is_empty());
+    // Columns are those of all rows: where a combination of axes holds out no groups, each row is one.
+    let or_rows = |n_groups: Option<usize>, n_test| n_groups.or(is_grouped.then_some(n_test));
+    let mut groups = Vec::new();
     let mut confusions = BTreeMap::new();
-    for (cell, evaluation) in scored {
+    for (cell, mut evaluation) in scored {
         for &(object, predicted, count) in &evaluation.confusion {
             let known = confusions.entry((cell.cell, object, predicted));
             let row = known.or_insert_with(|| Confusion {
@@ -27,11 +31,17 @@ pub fn tabulate(
             });
             row.count += count;
         }
+        let score = &mut evaluation.score;
+        score.n_groups = or_rows(score.n_groups, score.n_test);
+        groups.push(evaluation.groups);
         tables.accuracy.push((cell.clone(), evaluation.score));
         tables.timing.push((cell, evaluation.time));
     }
     tables.confusion = confusions.into_values().collect();
-    tables.summary = summarise(&tables.accuracy)?;
+    tables.summary = summarise(&tables.accuracy, &groups)?;
+    for (_, score) in &mut tables.summary {
+        score.n_groups = or_rows(score.n_groups, score.n_test);
+    }
     tables.variance = variances(&tables.accuracy)?;
     tables.comparison = compare_with_best(&tables.accuracy)?;
     // What one touch confuses says more than what is left of it once many are fused.

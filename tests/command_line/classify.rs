@@ -5,6 +5,9 @@ use bubbletouch::random::Seed;
 use bubbletouch::recognition::ClassifierKind;
 use bubbletouch::recognition::classifiers::classifier::Classifier;
 use bubbletouch::recognition::data::dataset::dataset;
+use bubbletouch::recognition::statistics::grouped::{
+    GroupedTest, count_groups, interval_of_groups,
+};
 use ndarray::{Array1, Array2, Axis, array};
 use ndarray_npy::{read_npy, write_npy};
 use serde_json::Value;
@@ -275,6 +278,121 @@ fn rows_that_are_not_there_or_named_twice_are_refused() {
     labels[4] = -2;
     write_npy(case.path("labels.npy"), &labels).unwrap();
     refused(&case, &LINEAR, &["labels.npy, position 4: -2"]);
+}
+
+/// Five groups of 12 rows: each has rows of all classes, and of either side of the split are some whole ones.
+fn groups() -> Array1<i64> {
+    (0..N_ROWS as i64).map(|row| 7 * (row / 12)).collect()
+}
+
+/// Two of five groups are tested.
+fn grouped_folder() -> Case {
+    let case = folder();
+    let side = |is_tested: bool| -> Array1<i64> {
+        let rows = 0..N_ROWS as i64;
+        rows.filter(|row| (row / 12 % 2 == 1) == is_tested)
+            .collect()
+    };
+    write_npy(case.path("train.npy"), &side(false)).unwrap();
+    write_npy(case.path("test.npy"), &side(true)).unwrap();
+    write_npy(case.path("groups.npy"), &groups()).unwrap();
+    case
+}
+
+const GROUPED: [&str; 4] = ["--classifier", "linear_svm", "--groups", "groups.npy"];
+
+#[test]
+fn groups_change_the_interval_and_the_folds_and_nothing_else() {
+    let case = grouped_folder();
+    let (by_rows, by_groups) = (json(&case, &LINEAR), json(&case, &GROUPED));
+    assert_eq!(
+        [&by_rows["split_by"], &by_groups["split_by"]],
+        ["rows", "groups"]
+    );
+    assert!(by_rows["n_test_groups"].is_null());
+    assert_eq!(by_groups["n_train_groups"], 3);
+    assert_eq!(by_groups["n_test_groups"], 2);
+    assert_eq!(by_rows["n_correct"], by_groups["n_correct"]);
+    // Of the groups that are tested, out of the predictions.
+    case.succeeds(
+        &[
+            &["classify", "."],
+            &GROUPED[..],
+            &["--predictions", "out.npy"],
+        ]
+        .concat(),
+    );
+    let predicted: Array1<i64> = read_npy(case.path("out.npy")).unwrap();
+    let tested: Array1<i64> = read_npy(case.path("test.npy")).unwrap();
+    let rows = tested.iter().zip(&predicted);
+    let rows = rows.map(|(&row, &label)| (groups()[row as usize] as usize, label == row % 3));
+    let counts = count_groups(rows);
+    let test = GroupedTest {
+        n_rows: tested.len(),
+        n_correct: counts.iter().map(|count| count.n_correct).sum(),
+        groups: &counts,
+    };
+    let (interval, _) = interval_of_groups(&[test], 0.95).unwrap();
+    assert_eq!(by_groups["accuracy_low"].as_f64(), Some(interval.low));
+    assert_eq!(by_groups["accuracy_high"].as_f64(), Some(interval.high));
+    let wider = |low: &str| by_groups[low].as_f64() < by_rows[low].as_f64();
+    assert!(wider("accuracy_low"));
+    // Folds of whole groups choose on other rows.
+    let chosen = ["--choose-c", "0.01,0.1,1", "--choose-folds", "3"];
+    let validated = |of: &[&str]| json(&case, &[of, &chosen].concat())["chosen"]["tried"].clone();
+    assert_ne!(validated(&GROUPED), validated(&LINEAR));
+}
+
+#[test]
+fn people_read_that_groups_were_held_out_and_that_two_are_few() {
+    let (said, _) = grouped_folder().succeeds(&[&["classify", "."], &GROUPED[..]].concat());
+    let line = "split     by groups: 3 to train on, 2 to test; the interval comes from 2 groups, too few to say much";
+    assert!(said.contains(line), "{said}");
+}
+
+#[test]
+fn groups_that_do_not_fit_the_rows_or_the_split_are_refused() {
+    let case = grouped_folder();
+    let with = |groups: Array1<i64>, arguments: &[&str], words: &[&str]| {
+        write_npy(case.path("groups.npy"), &groups).unwrap();
+        refused(&case, &[&GROUPED[..], arguments].concat(), words);
+    };
+    with(
+        array![1, 2, 3],
+        &[],
+        &["groups.npy: 3 groups", "60, one for each row of features"],
+    );
+    with(
+        Array1::zeros(N_ROWS),
+        &[],
+        &["groups.npy: group 0 of row", "train.npy", "test.npy"],
+    );
+    let mut one_row = groups();
+    one_row[30] = 7;
+    with(
+        one_row,
+        &[],
+        &["group 7 of row 30 in train.npy and row 12 in test.npy"],
+    );
+    let mut below = groups();
+    below[4] = -1;
+    with(below, &[], &["groups.npy, position 4: -1", "zero or more"]);
+    with(
+        groups(),
+        &["--choose-c", "1,10"],
+        &["folds: 5", "number of groups, 3"],
+    );
+    write_npy(
+        case.path("groups.npy"),
+        &groups().mapv(|group| group as f64),
+    )
+    .unwrap();
+    refused(&case, &GROUPED, &["groups.npy", "int8 to int64"]);
+    refused(
+        &case,
+        &["--classifier", "linear_svm", "--groups", "none.npy"],
+        &["none.npy", "cannot be read"],
+    );
 }
 
 #[test]

@@ -140,6 +140,26 @@ fn the_library_reads_what_the_command_writes_and_threads_change_no_byte() {
 }
 
 #[test]
+fn groups_that_a_study_keeps_together_are_written_for_classify() {
+    let case = Case::new();
+    let keys = "keep_together = \"yaw\"\nkeep_together_deg = 3.0\ntrain_touches = [4";
+    case.file("study.toml", STUDY.replace("train_touches = [4", keys));
+    let folder = written(&case, 0, 0);
+    let groups: Array1<i64> = read_npy(folder.join("groups.npy")).unwrap();
+    assert_eq!(groups.len(), 72);
+    let folder = folder.display().to_string();
+    let classify = [
+        "classify",
+        &folder,
+        "--classifier",
+        "linear_svm",
+        "--groups",
+    ];
+    let (said, _) = case.succeeds(&[&classify[..], &[&format!("{folder}/groups.npy")]].concat());
+    assert!(said.contains("split     by groups:"), "{said}");
+}
+
+#[test]
 fn a_cell_or_a_trial_that_the_study_has_not_is_refused() {
     let case = Case::new();
     case.file("study.toml", STUDY);

@@ -2,6 +2,8 @@
 
 #[path = "../fixtures/command/mod.rs"]
 mod command;
+#[path = "../fixtures/reference_data/mod.rs"]
+mod reference_data;
 #[path = "../fixtures/recording/mod.rs"]
 mod stored;
 #[path = "../fixtures/study/mod.rs"]
@@ -12,6 +14,7 @@ mod calibrate;
 mod classify;
 mod events;
 mod features;
+mod instructions;
 mod mesh;
 mod press;
 mod readme;

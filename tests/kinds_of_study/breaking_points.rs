@@ -1,6 +1,7 @@
 //! The study of where recognition breaks, and the axes of a study that spoil what is learned.
 
 use crate::command::Case;
+use crate::standard_errors::{assert_expected, of_share};
 use bubbletouch::kinds;
 use bubbletouch::kinds::breaking_points::rows::{
     BreakingPoint, CellScore, Side, TrialScore, WayCell,
@@ -123,7 +124,12 @@ fn each_way_breaks_where_it_must_and_threads_change_no_byte() {
         at("noise", 0.0)
     );
     // Noise of ten full scales leaves chance; with all labels wrong it is below.
-    assert!(at("noise", 10.0).iter().all(|&a| (a - chance).abs() < 0.12));
+    for (cell, score) in cells.iter().zip(&scores) {
+        if (&cell.way[..], cell.value) == ("noise", 10.0) {
+            let standard_error = of_share(chance, score.n_trials * score.n_test);
+            assert_expected("noise 10", score.accuracy, chance, standard_error);
+        }
+    }
     assert!(at("mislabelled", 1.0).iter().all(|&a| a < chance));
     let rows: Vec<BreakingPoint> = read_rows(&case.path("1/breaking_points.csv")).unwrap();
     for row in &rows {

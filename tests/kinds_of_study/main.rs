@@ -6,6 +6,8 @@ mod command;
 mod kinds;
 #[path = "../fixtures/mesh_shapes/mod.rs"]
 mod mesh_shapes;
+#[path = "../fixtures/standard_errors/mod.rs"]
+mod standard_errors;
 
 mod asked;
 mod breaking_points;

@@ -189,6 +189,38 @@ fn the_first_charts_are_drawn_and_the_page_says_which_are_left_out() {
 }
 
 #[test]
+fn notes_say_which_intervals_come_from_groups_and_which_hold_less_often_than_they_say() {
+    let note = |made: &Tables, file: &str| {
+        let mut made = tables_of(made).unwrap().into_iter();
+        made.find(|table| table.file == file).unwrap().note
+    };
+    let made = |n_trials| tables(quickstart_cells(), n_trials, 3);
+    let few = note(&made(5), "summary.csv");
+    assert!(
+        few.contains("Wilson") && few.contains("about 92 % with 5 trials"),
+        "{few}"
+    );
+    for n_trials in [4, 15] {
+        let enough = note(&made(n_trials), "summary.csv");
+        assert!(!enough.contains("ootstrap"), "{enough}");
+    }
+    let mut grouped = made(10);
+    for (cell, score) in &mut grouped.summary {
+        score.n_groups = Some(12 - cell.cell % 2);
+    }
+    let said = note(&grouped, "summary.csv");
+    let all = "from the groups that are held out, not from single test decisions, at least 11.";
+    assert!(said.contains(all) && !said.contains("Wilson"), "{said}");
+    assert!(note(&grouped, "accuracy.csv").contains("Wilson"));
+    grouped.summary[1].1.n_groups = Some(2);
+    let said = note(&grouped, "summary.csv");
+    assert!(
+        said.contains("some come from 2: fewer than 5 groups say little"),
+        "{said}"
+    );
+}
+
+#[test]
 fn equal_tables_give_equal_bytes_in_every_file() {
     let dir = tempfile::tempdir().unwrap();
     let made = tables(noise_cells(), 3, 24);

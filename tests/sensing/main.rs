@@ -2,6 +2,8 @@
 
 #[path = "../fixtures/counting/mod.rs"]
 mod counting;
+#[path = "../fixtures/standard_errors/mod.rs"]
+mod standard_errors;
 
 mod body_readout;
 mod sensing_dictionaries;

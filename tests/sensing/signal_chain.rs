@@ -1,5 +1,6 @@
 //! Laws of the signal stage, against SciPy and against slow obvious code.
 
+use crate::standard_errors::{assert_expected, mean_and_std, of_mean, of_std};
 use bubbletouch::random::Seed;
 use bubbletouch::signal::{Chain, Noise, NoiseUnit, Quantity, Scratch, SignalStep};
 use bubbletouch::world::{Grid, Patch, Taxel};
@@ -103,18 +104,17 @@ fn one_width_smooths_the_same_patch_of_skin_at_every_pitch() {
 fn noise_has_the_asked_mean_and_spread_and_no_correlation_between_neighbours() {
     let z = applied(
         &[noise(0.2, NoiseUnit::Mm)],
-        &patch(200, 200),
-        &[0.0; 40_000],
+        &patch(250, 250),
+        &[0.0; 62_500],
         3,
     );
-    let n = z.len() as f64;
-    let mean = z.iter().sum::<f64>() / n;
-    let variance = z.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n;
-    let neighbours = z.windows(2).map(|w| w[0] * w[1]).sum::<f64>() / n;
-    // Four standard errors of each estimate.
-    assert!(mean.abs() < 4.0 * 0.2e-3 / n.sqrt());
-    assert!((variance.sqrt() / 0.2e-3 - 1.0).abs() < 4.0 / (2.0 * n).sqrt());
-    assert!(neighbours.abs() < 4.0 * 0.2e-3f64.powi(2) / n.sqrt());
+    let (mean, std) = mean_and_std(&z);
+    let products: Vec<f64> = z.windows(2).map(|w| w[0] * w[1]).collect();
+    let (neighbours, _) = mean_and_std(&products);
+    let n = z.len();
+    assert_expected("mean", mean, 0.0, of_mean(0.2e-3, n));
+    assert_expected("std", std, 0.2e-3, of_std(0.2e-3, n));
+    assert_expected("neighbours", neighbours, 0.0, of_mean(0.2e-3f64.powi(2), n));
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Where frames and measurements could break: noise of ten times the full scale, smoothing wider than the array, one measurement
 //! and as many as taxels. Each case has the behaviour that `guide::limits` states.
 
+use crate::standard_errors::assert_expected;
 use bubbletouch::random::Seed;
 use bubbletouch::sensing::{Ensemble, Projection};
 use bubbletouch::signal::{Chain, Noise, NoiseUnit, Scratch, SensorError, SignalStep};
@@ -42,7 +43,7 @@ fn applied(steps: &[SignalStep], patch: &Patch, frame: &[f64]) -> Vec<f64> {
 
 #[test]
 fn noise_of_ten_times_the_full_scale_is_neither_clipped_nor_bounded() {
-    let patch = patch(128);
+    let patch = patch(160);
     let full_scale = patch.taxels().at(0).stroke;
     for std in [0.1, 1.0, 10.0] {
         let noise = SignalStep::Noise(Noise {
@@ -57,10 +58,13 @@ fn noise_of_ten_times_the_full_scale_is_neither_clipped_nor_bounded() {
             .collect();
         let mean = z.iter().sum::<f64>() / n;
         let moment = |power| z.iter().map(|v| (v - mean).powi(power)).sum::<f64>() / n;
-        // Four standard errors of mean, variance and fourth moment.
-        assert!(mean.abs() < 4.0 / n.sqrt(), "{std}: mean {mean}");
-        assert!((moment(2) - 1.0).abs() < 4.0 * (2.0 / n).sqrt(), "{std}");
-        assert!((moment(4) - 3.0).abs() < 4.0 * (96.0 / n).sqrt(), "{std}");
+        let near = |what: &str, found, expected, variance: f64| {
+            let what = format!("{std}: {what}");
+            assert_expected(&what, found, expected, (variance / n).sqrt());
+        };
+        near("mean", mean, 0.0, 1.0);
+        near("variance", moment(2), 1.0, 2.0);
+        near("fourth moment", moment(4), 3.0, 96.0);
         let beyond = noisy.iter().filter(|&&v| v < 0.0 || v > full_scale).count() as f64 / n;
         assert!(
             std < 1.0 || beyond > 0.5,

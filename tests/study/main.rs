@@ -2,6 +2,8 @@
 
 #[path = "../fixtures/command/mod.rs"]
 mod command;
+#[path = "../fixtures/standard_errors/mod.rs"]
+mod standard_errors;
 #[path = "../fixtures/study/mod.rs"]
 mod study;
 

@@ -2,6 +2,9 @@
 
 use crate::study::Study;
 use bubbletouch::recognition::data::split::Split;
+use bubbletouch::recognition::statistics::grouped::{GroupCount, GroupedTest, interval_of_groups};
+use bubbletouch::recognition::statistics::interval::Interval;
+use bubbletouch::study::table::Tables;
 use bubbletouch::world::Touch;
 
 /// Values that are out of order, so that halves are of sizes and not of places in a list.
@@ -191,10 +194,89 @@ fn a_split_is_an_axis_beside_which_the_random_one_has_its_fraction() {
     let text = STUDY.replace("trials = 8\n", axes) + "test_fraction = 0.5\n";
     let tables = crate::study::laid_out(&text).unwrap();
     let tables = tables.run(&bubbletouch::study::progress::Silent).unwrap();
-    let n_test: Vec<usize> = tables
-        .accuracy
-        .iter()
-        .map(|(_, score)| score.n_test)
+    let rows = tables.accuracy.iter();
+    let rows: Vec<_> = rows
+        .map(|(_, score)| (score.n_test, score.n_groups))
         .collect();
-    assert_eq!(n_test, [360, 360, 180, 180]);
+    // Each row is a group where none are held out, so that the column is of all rows.
+    let random = (360, Some(360));
+    assert_eq!(rows, [random, random, (180, Some(1)), (180, Some(1))]);
+    let (random, tilted) = (&tables.summary[0].1, &tables.summary[1].1);
+    assert_eq!((random.n_groups, tilted.n_groups), (Some(360), Some(2)));
+    let wilson = |n_correct| Interval::wilson(n_correct, 360, 0.95).unwrap();
+    let by_rows = wilson((random.accuracy * 360.0).round() as usize);
+    assert_eq!(
+        (random.accuracy_low, random.accuracy_high),
+        (by_rows.low, by_rows.high)
+    );
+}
+
+fn run(text: &str) -> Tables {
+    Study::new(text).run()
+}
+
+/// The groups of trials that each test one whole group, by its number.
+fn tests_of(tables: &Tables, group: impl Fn(usize) -> usize) -> Vec<[GroupCount; 1]> {
+    let scores = tables.accuracy.iter().map(|(_, score)| score);
+    let counts = scores.map(|score| {
+        [GroupCount {
+            group: group(score.trial),
+            n_rows: score.n_test,
+            n_correct: score.n_correct,
+        }]
+    });
+    counts.collect()
+}
+
+#[test]
+fn the_interval_of_poses_held_out_comes_from_them_and_not_from_touches() {
+    for (split, n_groups) in [
+        ("leave_one_yaw_out", 5),
+        ("opposite_blocks", 8),
+        ("unseen_tilt", 4),
+        ("unseen_depth", 3),
+    ] {
+        let tables = run(&with_split(split));
+        // Nothing is known of other yaws from one yaw.
+        for (_, score) in &tables.accuracy {
+            let interval = (score.accuracy_low, score.accuracy_high);
+            assert_eq!((score.n_groups, interval), (Some(1), (0.0, 1.0)), "{split}");
+        }
+        let counts = tests_of(&tables, |trial| trial % n_groups);
+        let tests = counts.iter().map(|groups| GroupedTest {
+            n_rows: groups[0].n_rows,
+            n_correct: groups[0].n_correct,
+            groups,
+        });
+        let (expected, n) = interval_of_groups(&tests.collect::<Vec<_>>(), 0.95).unwrap();
+        let found = &tables.summary[0].1;
+        assert_eq!((found.n_groups, n), (Some(n_groups), n_groups), "{split}");
+        assert_eq!(
+            (found.accuracy_low, found.accuracy_high),
+            (expected.low, expected.high)
+        );
+        // All touches that were tested, each as if it were for itself.
+        let tested = &counts[..n_groups];
+        let sum = |of: fn(&GroupCount) -> usize| tested.iter().map(|[group]| of(group)).sum();
+        let (n_correct, n_rows) = (sum(|group| group.n_correct), sum(|group| group.n_rows));
+        let by_rows = Interval::wilson(n_correct, n_rows, 0.95).unwrap();
+        assert!(found.accuracy_low < by_rows.low, "{split}: {found:?}");
+    }
+    let random = run(&with_split("random"));
+    assert_eq!(random.accuracy[0].1.n_groups, None);
+    assert_eq!(random.summary[0].1.n_groups, None);
+}
+
+#[test]
+fn groups_kept_together_count_once_however_many_touches_are_decided_on_together() {
+    let keys = "keep_together = \"yaw\"\ntest_fraction = 0.4\nfused_touches = [1, 3]\n";
+    let tables = run(&format!("{STUDY}{keys}"));
+    for (cell, score) in &tables.accuracy {
+        assert_eq!(score.n_groups, Some(2), "{cell:?}");
+    }
+    for (cell, score) in &tables.summary {
+        assert_eq!(score.n_groups, Some(5), "all yaws are tested in some trial");
+        assert!(score.accuracy_low <= score.accuracy && score.accuracy <= score.accuracy_high);
+        assert!(score.accuracy_low > 0.0, "{cell:?}: {score:?}");
+    }
 }

@@ -1,5 +1,6 @@
 //! Several readings of each training touch, each with its own noise.
 
+use crate::standard_errors::{assert_expected, of_std};
 use crate::study::laid_out;
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::ClassifierKind;
@@ -7,6 +8,7 @@ use bubbletouch::recognition::classifiers::classifier::{Classifier, Cost};
 use bubbletouch::study::FeatureSet;
 use bubbletouch::study::progress::Silent;
 use ndarray::{Axis, s};
+use std::collections::BTreeSet;
 
 const STUDY: &str = r#"
 question = "What does another reading bring?"
@@ -78,7 +80,8 @@ fn readings_differ_by_their_noise_alone_and_only_training_learns_of_them() {
     for (a, b) in [(0, 1), (0, 2), (1, 2)] {
         let difference = reading(a) - reading(b);
         let std = (difference.mapv(|d| d * d).mean().unwrap() / 2.0).sqrt();
-        assert!((std / 5e-4 - 1.0).abs() < 0.02, "{a} {b}: {std}");
+        let standard_error = of_std(5e-4, difference.len());
+        assert_expected(&format!("{a} {b}"), std, 5e-4, standard_error);
     }
 }
 
@@ -130,6 +133,28 @@ fn tilted_copies_come_after_all_readings_and_are_of_the_first() {
     assert_eq!(copies(&once, n), copies(&twice, 2 * n));
     let labels = |set: &FeatureSet, first: usize| set.data.targets.slice(s![first..]).to_owned();
     assert_eq!(labels(&once, n), labels(&twice, 2 * n));
+}
+
+#[test]
+fn readings_and_copies_are_of_the_group_of_their_touch() {
+    let keys = "features = \"descriptors\"\ntilted_copies = 2\ntraining_readings = 2\n\
+                keep_together = \"yaw\"\nkeep_together_deg = 12.0";
+    let study = laid_out(&with(keys)).unwrap();
+    let keys = study.first().sweep.group_keys.as_ref().unwrap();
+    let set = study.first().features((0, 0), &Silent).unwrap();
+    let groups = set.groups.unwrap();
+    let (n, n_train) = (120, set.split.train.len() / 4);
+    assert_eq!(groups.len(), 2 * n + 2 * n_train);
+    for (row, &group) in groups.iter().enumerate() {
+        let touch = match row.checked_sub(2 * n) {
+            None => row % n,
+            Some(copy) => set.split.train[copy % n_train],
+        };
+        assert_eq!(group, keys[touch], "row {row}");
+    }
+    let of = |rows: &[usize]| rows.iter().map(|&row| groups[row]).collect::<BTreeSet<_>>();
+    assert!(of(&set.split.train).is_disjoint(&of(&set.split.test)));
+    assert_eq!(features(STUDY).groups, None);
 }
 
 #[test]

@@ -8,6 +8,8 @@ mod counting;
 mod random_scenes;
 #[path = "../fixtures/reference_data/mod.rs"]
 mod reference_data;
+#[path = "../fixtures/standard_errors/mod.rs"]
+mod standard_errors;
 #[path = "../fixtures/recording/mod.rs"]
 mod stored;
 

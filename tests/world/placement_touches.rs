@@ -1,5 +1,6 @@
 //! Laws of touch placement.
 
+use crate::standard_errors::{assert_expected, mean_and_std, of_mean, of_share};
 use bubbletouch::geometry::Pose;
 use bubbletouch::random::Seed;
 use bubbletouch::world::{Placement, RestPose, RestPoses, Spread, Touch, TouchAxis, touches};
@@ -100,11 +101,11 @@ fn each_combination_is_equally_likely_to_be_drawn() {
             count[touch.rest * 12 + within + index(TouchAxis::Depth)] += 1;
         }
     }
-    // 1,000 expected each, standard deviation 27; five of them, at a fixed set of seeds.
-    assert!(
-        count.iter().all(|&c: &i32| (c - 1000).abs() < 137),
-        "{count:?}"
-    );
+    // Six of 24 in each of 4,000 placements.
+    for count in count {
+        let share = f64::from(count) / 4000.0;
+        assert_expected("combination", share, 0.25, of_share(0.25, 4000));
+    }
 }
 
 #[test]
@@ -119,16 +120,17 @@ fn uniform_spreads_fill_their_range_and_resting_poses_follow_their_probability()
         ..grid()
     };
     let all = made(&placement, &[0.7, 0.1, 0.2]);
-    let n = all.len() as f64;
-    let mean = all.iter().map(|t| t.yaw).sum::<f64>() / n;
-    assert!((mean - 1.0).abs() < 5.0 * 4.0 / (12.0 * n).sqrt());
+    let n = all.len();
+    let yaws: Vec<f64> = all.iter().map(|t| t.yaw).collect();
+    let (mean, _) = mean_and_std(&yaws);
+    assert_expected("yaw", mean, 1.0, of_mean(4.0 / f64::sqrt(12.0), n));
     assert!(all.iter().all(|t| (-1.0..3.0).contains(&t.yaw)));
     for (rest, probability) in [0.7, 0.1, 0.2].into_iter().enumerate() {
-        let share = all.iter().filter(|t| t.rest == rest).count() as f64 / n;
-        assert!((share - probability).abs() < 5.0 * 0.5 / n.sqrt());
+        let share = all.iter().filter(|t| t.rest == rest).count() as f64 / n as f64;
+        assert_expected("rest", share, probability, of_share(probability, n));
     }
-    let deep = all.iter().filter(|t| t.depth == 0.004).count() as f64 / n;
-    assert!((deep - 0.5).abs() < 5.0 * 0.5 / n.sqrt());
+    let deep = all.iter().filter(|t| t.depth == 0.004).count() as f64 / n as f64;
+    assert_expected("depth", deep, 0.5, of_share(0.5, n));
 }
 
 #[test]

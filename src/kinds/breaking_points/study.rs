@@ -120,7 +120,7 @@ impl PieceStudy for BreakingPointsStudy {
         let n_objects: BTreeMap<String, usize> = n_objects.into_iter().collect();
         let scores = rows.iter();
         let scores = scores.map(|(cell, score, _)| (cell.clone(), score.clone()));
-        let summary = summarise(&scores.collect::<Vec<_>>())?;
+        let summary = summarise(&scores.collect::<Vec<_>>(), &[])?;
         let mut breaks = Vec::new();
         for way in &self.plan.ways {
             let name = &way.spec.name;

@@ -10,16 +10,25 @@ use crate::report::recognition;
 use crate::report::snapshots::snapshots;
 use crate::report::study_folder::NamedPicture;
 use crate::study::pieces::Scale;
+use crate::study::sweep::StudyPart;
 use crate::study::{GroupSpec, PoseSplit, Samples, Snapshots, StudySpec};
 use crate::table::{ChartSpec, Table};
 use std::path::Path;
 
-/// How intervals and p-values are made, by table and columns. Everything is at 95 %.
-const METHODS: [(&str, &str); 5] = [
-    (
-        "accuracy.csv, summary.csv: accuracy_low, accuracy_high",
-        "Wilson score interval of the test rows of one trial",
-    ),
+/// Where the intervals of accuracies stand.
+const ACCURACIES: &str = "accuracy.csv, summary.csv: accuracy_low, accuracy_high";
+/// How they are made where test rows are held out one by one, and where whole groups are.
+const BY_ROWS: (&str, &str) = (
+    ACCURACIES,
+    "Wilson score interval of the test rows of one trial",
+);
+const BY_GROUPS: (&str, &str) = (
+    ACCURACIES,
+    "score interval of the groups that are held out: Wilson's of the test rows divided by the design effect (Rao, Scott 1992), Student's t of groups - 1",
+);
+
+/// How other intervals and p-values are made, by table and columns. Everything is at 95 %.
+const METHODS: [(&str, &str); 4] = [
     (
         "summary.csv: bootstrap_low, bootstrap_high",
         "bootstrap of the mean over trials, expanded percentiles; with projections_per_split, splits and projections drawn apart",
@@ -51,8 +60,13 @@ impl Kind for RecognitionStudy {
 
     fn facts(&self) -> Result<Facts> {
         let spec = &self.first().plan.spec;
+        let is_grouped = |part: &StudyPart| part.sweep.test_groups(&part.plan, 0, &[]).is_some();
+        let accuracies = match self.parts().iter().any(is_grouped) {
+            true => BY_GROUPS,
+            false => BY_ROWS,
+        };
         Ok(Facts {
-            methods: METHODS.into(),
+            methods: [&[accuracies], &METHODS[..]].concat(),
             ..Facts::of_toml(spec.to_toml(), self.content()?)
         })
     }

@@ -100,6 +100,7 @@ fn rows_by_class(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::standard_errors::{assert_expected, of_share};
 
     fn labels() -> Array1<usize> {
         (0..500).map(|row| 3 * (row % 5)).collect()
@@ -122,10 +123,10 @@ mod tests {
             }
             before = wrong;
         }
-        // All wrong, each of the four others about as often: 125 ± 4 standard errors.
+        // All wrong, each of the four others about as often: a quarter of the 400 rows of other classes.
         for class in 0..5 {
             let n = before.iter().filter(|&&label| label == 3 * class).count();
-            assert!((60..140).contains(&n), "{n}");
+            assert_expected("label", n as f64, 100.0, 400.0 * of_share(0.25, 400));
         }
         for fraction in [-0.1, 1.1, f64::NAN] {
             assert!(mislabelled(labels.view(), fraction, &seed).is_err());

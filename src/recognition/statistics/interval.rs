@@ -18,7 +18,8 @@ impl Interval {
     /// the normal approximation is not (Wilson 1927; without continuity correction).
     ///
     /// `confidence` is the coverage, such as 0.95. The rows are taken as independent: touches of one object in
-    /// neighbouring poses are not quite, so the interval is rather too narrow than too wide.
+    /// neighbouring poses are not quite, so the interval is rather too narrow than too wide. Of rows that are held out in
+    /// groups it is [of the groups](super::grouped::interval_of_groups).
     ///
     /// # Errors
     /// No rows, more correct than rows, or a confidence outside 0..1.
@@ -33,16 +34,20 @@ impl Interval {
         check_confidence(confidence)?;
         let z = Normal::standard().inverse_cdf(0.5 + 0.5 * confidence);
         let n = n_rows as f64;
-        let share = n_correct as f64 / n;
+        Ok(Self::score(n_correct as f64 / n, n, z))
+    }
+
+    /// The score interval of a share of n independent rows, z standard errors to either side.
+    pub(super) fn score(share: f64, n: f64, z: f64) -> Self {
         let z2 = z * z;
         let centre = (share + z2 / (2.0 * n)) / (1.0 + z2 / n);
         let variance = share * (1.0 - share) / n + z2 / (4.0 * n * n);
         let half_width = z * variance.sqrt() / (1.0 + z2 / n);
         // At the ends the two terms are equal; rounding must not leave 0..=1 or exclude the estimate.
-        Ok(Self {
+        Self {
             low: (centre - half_width).clamp(0.0, share),
             high: (centre + half_width).clamp(share, 1.0),
-        })
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 pub mod bootstrap;
 pub mod comparison;
+pub mod grouped;
 pub mod interval;
 pub mod many_tests;
 pub(crate) mod mean_squares;

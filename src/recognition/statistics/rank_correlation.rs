@@ -29,6 +29,10 @@ pub fn kendall(pairs: &[[f64; 2]]) -> Option<f64> {
     (scale > 0.0).then(|| difference / scale)
 }
 
+/// Settings from which on the interval of [`kendall_interval`] holds τ as often as it says. Of five it holds a τ of 0 in 98 of a hundred, of 0.6 in 87, of
+/// 0.8 in 63: resamples of few settings that are ordered nearly alike hardly differ.
+pub const ENOUGH_SETTINGS: usize = 10;
+
 /// Its percentile bootstrap interval over settings (Efron and Tibshirani, *An introduction to the bootstrap*, 1993, chapter 13). A setting that is drawn
 /// twice is tied with itself. Draws depend on nothing but the number of settings.
 pub fn kendall_interval(pairs: &[[f64; 2]], confidence: f64) -> Option<Interval> {
@@ -80,6 +84,8 @@ fn sort_counting(values: &mut [f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::standard_errors::{assert_at_least, assert_expected, of_share};
+    use rand_distr::{Distribution, StandardNormal};
 
     /// By all pairs.
     fn slow(pairs: &[[f64; 2]]) -> Option<f64> {
@@ -147,5 +153,46 @@ mod tests {
             width = interval.high - interval.low;
         }
         assert_eq!(kendall_interval(&[], 0.95), None);
+    }
+
+    /// How often the interval of normal numbers of a correlation ρ holds τ = 2/π asin ρ.
+    fn coverage(n_draws: usize, n: usize, correlation: f64) -> f64 {
+        let mut rng = Seed::new(7).rng();
+        let tau = correlation.asin() * std::f64::consts::FRAC_2_PI;
+        let rest = (1.0 - correlation * correlation).sqrt();
+        let holds = (0..n_draws).filter(|_| {
+            let mut normal = || -> f64 { StandardNormal.sample(&mut rng) };
+            let pairs: Vec<[f64; 2]> = (0..n)
+                .map(|_| {
+                    let x = normal();
+                    [x, correlation * x + rest * normal()]
+                })
+                .collect();
+            let interval = kendall_interval(&pairs, 0.95).unwrap();
+            interval.low <= tau && tau <= interval.high
+        });
+        holds.count() as f64 / n_draws as f64
+    }
+
+    #[test]
+    fn intervals_of_enough_settings_hold_it_as_often_as_they_say_and_those_of_five_do_not() {
+        const N_DRAWS: usize = 400;
+        for correlation in [0.0, 0.8, 0.95] {
+            let held = coverage(N_DRAWS, ENOUGH_SETTINGS, correlation);
+            let what = format!("{correlation}");
+            assert_at_least(&what, held, 0.95, of_share(0.95, N_DRAWS));
+        }
+        let held = coverage(N_DRAWS, 5, 0.95);
+        assert_expected("five", held, 0.64, of_share(0.64, N_DRAWS));
+    }
+
+    /// `cargo test --release --lib print_the_table_of_the_guide -- --ignored --nocapture`
+    #[test]
+    #[ignore = "prints the table of guide/statistics.md"]
+    fn print_the_table_of_the_guide_of_orders() {
+        for n in [5, 7, 10, 20] {
+            let [none, some, most] = [0.0, 0.8, 0.95].map(|rho| coverage(2_000, n, rho));
+            println!("| {n} | {none:.2} | {some:.2} | {most:.2} |");
+        }
     }
 }

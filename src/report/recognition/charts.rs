@@ -3,6 +3,7 @@
 //! Every setting that varies has a place, so no chart mixes cells that differ in something it does not show: x takes the number of most
 //! values, lines and panels the others of most values, of equals words before numbers; each combination of the rest gets a chart of its own.
 
+use super::tables::note_of_groups;
 use super::{CELLS, filled};
 use crate::report::swept::{Setting, Swept, without};
 use crate::table::{Along, ChartSpec, Mark, Role, Rule, Table, Value};
@@ -89,7 +90,10 @@ fn charts_along(
         ChartSpec {
             name: format!("accuracy_by_{}{}", word(&x), name_ending(fixed, rows[0])),
             title: title(cells, &x, (used, fixed), rows[0]),
-            note: "Points are means over trials; intervals are 95 % Wilson intervals at the test decisions of one trial.".to_owned(),
+            note: match note_of_groups(cells) {
+                Some(note) => format!("Points are means over trials. {note}"),
+                None => "Points are means over trials; intervals are 95 % Wilson intervals at the test decisions of one trial.".to_owned(),
+            },
             shown: chart.shown.iter().cloned().chain(here).collect(),
             x: x.clone(),
             lines: lines.iter().cloned().collect(),

@@ -2,12 +2,14 @@
 
 use crate::error::Result;
 use crate::recognition::ClassifierKind;
+use crate::recognition::statistics::bootstrap::coverage_of_95;
+use crate::recognition::statistics::grouped::FEW_GROUPS;
 use crate::report::csv_tables::LIMITS_FILE;
-use crate::study::StudySpec;
 use crate::study::table::{
     Cell, CellScore, Comparison, Confused, Confusion, Limit, Pareto, Published, StageTime, Tables,
     TrialScore, TrialTime, Variance,
 };
+use crate::study::{CONFIDENCE, StudySpec};
 use crate::table::{Better, Column, Columns, Data, File, Role, Scale, Table};
 use serde::Serialize;
 use std::path::Path;
@@ -107,6 +109,14 @@ impl From<'_> {
         }
         tables.push(self.table(&LIMITS, |tables| &tables.limits, &[])?);
         tables.iter_mut().for_each(say);
+        for table in &mut tables {
+            if let Some(note) = note_of_groups(table) {
+                table.note = note;
+            }
+            if let Some(note) = note_of_few_trials(table) {
+                table.note += &note;
+            }
+        }
         let cells = cells_of(&tables);
         tables.extend(cells);
         Ok(tables)
@@ -151,6 +161,32 @@ fn say(table: &mut Table) {
             _ => {}
         }
     }
+}
+
+/// What intervals of accuracies are where whole groups are held out; none where single rows are.
+pub(super) fn note_of_groups(table: &Table) -> Option<String> {
+    let n_groups = table.numbers("n_groups")?;
+    let least = n_groups.iter().copied().fold(f64::INFINITY, f64::min);
+    let few = match least < FEW_GROUPS as f64 {
+        true => format!("; some come from {least}: fewer than {FEW_GROUPS} groups say little"),
+        false => format!(", at least {least}"),
+    };
+    Some(format!(
+        "Intervals are 95 % intervals from the groups that are held out, not from single test decisions{few}."
+    ))
+}
+
+/// How often the bootstrap's intervals truly hold the mean where that is not 95 times in a hundred.
+fn note_of_few_trials(table: &Table) -> Option<String> {
+    let low = table.numbers("bootstrap_low")?;
+    let n_trials = table.numbers("n_trials")?.iter().zip(low);
+    let n_trials = n_trials.filter(|(_, low)| low.is_finite());
+    let fewest = n_trials.map(|(&n, _)| n as usize).min()?;
+    let coverage = coverage_of_95(fewest).filter(|&coverage| coverage < CONFIDENCE)?;
+    let percent = (100.0 * coverage).round();
+    Some(format!(
+        " Bootstrap intervals are nominally of 95 %, about {percent} % with {fewest} trials."
+    ))
 }
 
 /// Each cell with its distance to the best of its condition and with what it costs.

@@ -1,0 +1,134 @@
+//! Every set of vector instructions on one machine: the same program on emulated processors, which every kernel asks what they have, those of
+//! `matrixmultiply`, too. Of AVX-512 there is no emulator; it is tested where the machine has it.
+
+use crate::command::Case;
+use crate::reference_data::folder;
+use bubbletouch::contact::Instructions;
+use bubbletouch::report::csv_tables::read_rows;
+use bubbletouch::study::table::TrialScore;
+use ndarray::Array1;
+use ndarray_npy::read_npy;
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+/// SVMs of every kind of kernel, that choose C in folds; and frames that are projected by products of matrices.
+const STUDY: &str = r#"
+question = "Do processors agree?"
+trials = 2
+
+[objects]
+sets = ["household"]
+names = ["mug", "banana", "scissors", "bowl"]
+surface_error_mm = 2.0
+
+[skin]
+pitch_mm = 4.0
+taxels = 12
+stroke_mm = 5.0
+
+[touches]
+per_object = 30
+offset_x_mm = { uniform = [-8.0, 8.0] }
+yaw_deg = { uniform = [0.0, 360.0] }
+depth_mm = 3.0
+
+[signal]
+noise_std_full_scale = 0.1
+
+[sensing]
+ensemble = ["gaussian", "block_average"]
+measurements = 36
+
+[recognition]
+classifier = ["linear_svm", "rbf_svm", "polynomial_svm", "laplacian_svm", "logistic_regression", "k_nearest"]
+choose_c = [0.1, 1.0, 10.0]
+choose_folds = 3
+"#;
+
+/// The command on this machine, or on a processor that is emulated.
+fn succeeds(case: &Case, emulated: Option<(&Path, &str)>, arguments: &[&str]) -> String {
+    let command = env!("CARGO_BIN_EXE_bubbletouch");
+    let mut process = match emulated {
+        None => Command::new(command),
+        Some((emulator, processor)) => {
+            let mut process = Command::new(emulator);
+            process.args(["-cpu", processor, command]);
+            process
+        }
+    };
+    let output = process.args(arguments).current_dir(case.folder()).output();
+    let output = output.unwrap();
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{emulated:?}: {error}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// What a processor finds.
+struct Found {
+    /// The instructions that it has.
+    instructions: Instructions,
+    /// Rows of a study, and their γ, which is of the scale of its features.
+    scores: Vec<TrialScore>,
+    gammas: Vec<f64>,
+    /// The dual objectives of SVMs, and their labels of test rows.
+    duals: Vec<f64>,
+    labels: Vec<Array1<i64>>,
+}
+
+fn found(case: &Case, emulated: Option<(&Path, &str)>) -> Found {
+    let out = emulated.map_or("here", |(_, processor)| processor);
+    let run = ["run", "study.toml", "--threads", "1", "--out", out];
+    succeeds(case, emulated, &run);
+    let file = |name: &str| case.path(out).join(name);
+    let manifest = fs::read(file("manifest.json")).unwrap();
+    let manifest: Value = serde_json::from_slice(&manifest).unwrap();
+    let mut scores: Vec<TrialScore> = read_rows(&file("accuracy.csv")).unwrap();
+    let gammas = scores.iter_mut();
+    let gammas = gammas.filter_map(|score| score.gamma_used.take()).collect();
+    let (mut duals, mut labels) = (Vec::new(), Vec::new());
+    for classifier in ["linear_svm", "rbf_svm", "polynomial_svm", "laplacian_svm"] {
+        let train = ["classify", "features", "--classifier", classifier, "--json"];
+        let written = ["--threads", "1", "--predictions", "labels.npy"];
+        let said = succeeds(case, emulated, &[&train[..], &written].concat());
+        let said: Value = serde_json::from_str(&said).unwrap();
+        duals.push(said["svm"]["dual_objective"].as_f64().unwrap());
+        labels.push(read_npy(case.path("labels.npy")).unwrap());
+    }
+    Found {
+        instructions: serde_json::from_value(manifest["instructions"].clone()).unwrap(),
+        scores,
+        gammas,
+        duals,
+        labels,
+    }
+}
+
+#[test]
+fn avx2_and_plain_code_find_what_this_machine_finds() {
+    let Some(folder) = folder("BUBBLETOUCH_QEMU") else {
+        return;
+    };
+    let case = Case::new();
+    case.file("study.toml", STUDY);
+    case.succeeds(&["features", "study.toml", "--out", "features"]);
+    let emulator = folder.join("qemu-x86_64");
+    let ours = found(&case, None);
+    for (processor, instructions) in [
+        ("Haswell", Instructions::Avx2),
+        ("Nehalem", Instructions::Baseline),
+    ] {
+        let theirs = found(&case, Some((&emulator, processor)));
+        assert_eq!(theirs.instructions, instructions);
+        let numbers = |found: &Found| [&found.gammas[..], &found.duals].concat();
+        assert_eq!(numbers(&ours).len(), numbers(&theirs).len());
+        for (ours, theirs) in numbers(&ours).iter().zip(numbers(&theirs)) {
+            // Sums are of some hundred terms, rounded in another order: 1e-16 each, and steps that follow from them.
+            let off = (ours / theirs - 1.0).abs();
+            assert!(off < 1e-12, "{processor}: {theirs} in place of {ours}");
+        }
+        assert_eq!(theirs.labels, ours.labels, "{processor}");
+        assert_eq!(theirs.scores, ours.scores, "{processor}");
+    }
+}
