@@ -144,7 +144,7 @@ impl FrictionState {
     /// An untouched patch.
     ///
     /// # Errors
-    /// Those of [`Shears::check`].
+    /// Those of [`Shears::check_on`].
     pub fn at_rest(patch: &Patch, shears: Shears) -> Result<Self> {
         shears.check_on(patch)?;
         Ok(Self {

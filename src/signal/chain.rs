@@ -73,7 +73,7 @@ impl Chain {
     /// Checks the steps in their order and prepares them for the layout and the taxels of a patch.
     ///
     /// # Errors
-    /// Force listed twice; a noise level or unit that the frame does not have by then (see [`Noise::std_of`]); a
+    /// Force listed twice; a noise level or unit that the frame does not have by then (see [`Noise::std_of`](super::Noise::std_of)); a
     /// strength out of its step's range (see each step's own type); taxels that do not read alike; a step that this layout cannot have.
     pub fn new(steps: &[SignalStep], patch: &Patch) -> Result<Self> {
         Self::of(steps, patch, Quantity::Deflection)
