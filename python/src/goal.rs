@@ -11,23 +11,10 @@ use glam::DVec3;
 use pyo3::prelude::*;
 use std::slice::from_ref;
 
-/// Until when, and how much of it: one number for all poses or one each.
+/// What ends a press, and how much of it: one number for all poses or one each.
 pub struct Goal {
-    until: Until,
+    kind: fn(f64) -> contact::Goal,
     amounts: Vec<f64>,
-}
-
-/// What ends a press.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Until {
-    /// Nothing: the patch is read where it is.
-    Pose,
-    /// Metres past first contact.
-    Depth,
-    /// Metres from the pose.
-    Travel,
-    /// Newtons that the springs carry.
-    Force,
 }
 
 impl Goal {
@@ -40,21 +27,42 @@ impl Goal {
         travel: Option<&Bound<PyAny>>,
         force: Option<&Bound<PyAny>>,
     ) -> PyResult<Self> {
-        let (place, until, given) = match (depth, travel, force) {
-            (None, None, None) => {
-                return Ok(Self {
-                    until: Until::Pose,
-                    amounts: vec![0.0],
-                });
-            }
-            (Some(depth), None, None) => ("depth", Until::Depth, depth),
-            (None, Some(travel), None) => ("travel", Until::Travel, travel),
-            (None, None, Some(force)) => ("force", Until::Force, force),
-            _ => {
-                let given = "more than one of depth, travel and force";
-                return Err(bad_input("press", given, "one of them, or none"));
-            }
-        };
+        type Kind = fn(f64) -> contact::Goal;
+        type IsAllowed = fn(f64) -> bool;
+        let (place, given, kind, is_allowed, allowed): (_, _, Kind, IsAllowed, _) =
+            match (depth, travel, force) {
+                (None, None, None) => {
+                    return Ok(Self {
+                        kind: |_| contact::Goal::Pose,
+                        amounts: vec![0.0],
+                    });
+                }
+                (Some(depth), None, None) => (
+                    "depth",
+                    depth,
+                    contact::Goal::Depth,
+                    |x| x.is_finite() && x >= 0.0,
+                    "a finite number of metres, zero or more",
+                ),
+                (None, Some(travel), None) => (
+                    "travel",
+                    travel,
+                    contact::Goal::Travel,
+                    f64::is_finite,
+                    "a finite number of metres",
+                ),
+                (None, None, Some(force)) => (
+                    "force",
+                    force,
+                    contact::Goal::Force,
+                    |x| x.is_finite() && x > 0.0,
+                    "a finite positive number of newtons",
+                ),
+                _ => {
+                    let given = "more than one of depth, travel and force";
+                    return Err(bad_input("press", given, "one of them, or none"));
+                }
+            };
         let amounts = match given.extract::<f64>() {
             Ok(amount) => vec![amount],
             Err(_) => {
@@ -64,20 +72,9 @@ impl Goal {
                 })?
             }
         };
-        let (is_allowed, allowed): (fn(f64) -> bool, _) = match until {
-            Until::Depth => (
-                |x: f64| x.is_finite() && x >= 0.0,
-                "a finite number of metres, zero or more",
-            ),
-            Until::Force => (
-                |x| x.is_finite() && x > 0.0,
-                "a finite positive number of newtons",
-            ),
-            _ => (f64::is_finite, "a finite number of metres"),
-        };
         match amounts.iter().find(|amount| !is_allowed(**amount)) {
             Some(bad) => Err(bad_input(place, bad, allowed)),
-            None => Ok(Self { until, amounts }),
+            None => Ok(Self { kind, amounts }),
         }
     }
 
@@ -98,9 +95,9 @@ impl Goal {
         ))
     }
 
-    /// What ends it.
-    pub fn until(&self) -> Until {
-        self.until
+    /// What ends it, whatever the amount.
+    pub fn kind(&self) -> contact::Goal {
+        (self.kind)(0.0)
     }
 
     fn amount(&self, number: usize) -> f64 {
@@ -121,12 +118,7 @@ impl Goal {
             patch,
             models: from_ref(model),
             poses: from_ref(pose),
-            goal: match self.until {
-                Until::Pose => contact::Goal::Pose,
-                Until::Depth => contact::Goal::Depth(self.amount(number)),
-                Until::Travel => contact::Goal::Travel(self.amount(number)),
-                Until::Force => contact::Goal::Force(self.amount(number)),
-            },
+            goal: (self.kind)(self.amount(number)),
         }
     }
 }

@@ -10,8 +10,7 @@
 //! A saturated taxel, and one that nothing touches, does not change.
 
 use crate::errors::bad_input;
-use crate::goal::Until;
-use bubbletouch::contact::TaxelContact;
+use bubbletouch::contact::{Goal, TaxelContact};
 use bubbletouch::world::Patch;
 use glam::DVec3;
 use pyo3::prelude::*;
@@ -28,8 +27,8 @@ fn is_flat(patch: &Patch) -> bool {
 ///
 /// # Errors
 /// It is not: a depth on a patch that is not flat.
-pub fn check(until: Until, patch: &Patch) -> PyResult<()> {
-    if until != Until::Depth || is_flat(patch) {
+pub fn check(goal: Goal, patch: &Patch) -> PyResult<()> {
+    if !matches!(goal, Goal::Depth(_)) || is_flat(patch) {
         return Ok(());
     }
     let given = "with a depth, on a patch that is not flat";
@@ -43,7 +42,7 @@ pub fn check(until: Until, patch: &Patch) -> PyResult<()> {
 /// Writes the changes of all taxels (n_taxels × 6, zero before), from the contacts of a press; `origin`: of the object, where the press left it.
 pub fn fill(
     changes: &mut [f64],
-    until: Until,
+    goal: Goal,
     patch: &Patch,
     (contacts, origin): (&[TaxelContact], DVec3),
 ) {
@@ -59,13 +58,13 @@ pub fn fill(
             .filter(|contact| !contact.is_saturated(taxel(contact)))
     };
     let rise = |contact: &TaxelContact| -contact.gradient().z;
-    let travel = match until {
-        Until::Pose | Until::Travel => [0.0; N],
-        Until::Depth => {
+    let travel = match goal {
+        Goal::Pose | Goal::Travel(_) => [0.0; N],
+        Goal::Depth(_) => {
             let deepest = contacts.iter().max_by(|a, b| a.needed.total_cmp(&b.needed));
             deepest.map_or([0.0; N], |deepest| change(deepest).map(|change| -change))
         }
-        Until::Force => {
+        Goal::Force(_) => {
             let (mut sum, mut rises) = ([0.0; N], 0.0);
             for contact in moving() {
                 let stiffness = taxel(contact).stiffness;

@@ -62,7 +62,7 @@ pub fn press<'py>(
     let given = Poses::of("poses", poses)?;
     goal.check(given.poses.len())?;
     if wanted.jacobian {
-        jacobian::check(goal.until(), patch.inner())?;
+        jacobian::check(goal.kind(), patch.inner())?;
     }
     let batch = Batch {
         patch,
@@ -202,14 +202,14 @@ impl<'py> Batch<'_, 'py> {
         type Item<'a, T> = (&'a mut [T], Option<&'a mut [f64]>);
         let work = |number: usize, (frame, changes): Item<T>, workspace: &mut Workspace| {
             let press = goal.of_pose(number, patch, (model, &poses[number]));
+            let row = T::row(frame);
             let pressed = match are_zero {
-                true => press.deflect(workspace),
-                false => press.deflect_into(T::row(frame), workspace),
+                true => press
+                    .deflect(workspace)
+                    .inspect(|_| workspace.write_onto_zeros(row)),
+                false => press.deflect_into(row, workspace),
             };
             let pressed = pressed.map_err(|error| named(number, error))?;
-            if are_zero {
-                workspace.write_onto_zeros(T::row(frame));
-            }
             if !wanted.contacts && changes.is_none() {
                 return Ok(());
             }
@@ -217,7 +217,7 @@ impl<'py> Batch<'_, 'py> {
             let met = met.map_err(|error| named(number, error))?;
             if let (Some(changes), Some(pressed), Some(_)) = (changes, pressed, met) {
                 let origin = poses[number].translation - pressed.travel * DVec3::Z;
-                jacobian::fill(changes, goal.until(), patch, (workspace.contacts(), origin));
+                jacobian::fill(changes, goal.kind(), patch, (workspace.contacts(), origin));
             }
             if wanted.contacts {
                 let of_pose = OfPose::new(patch, (pressed, met), workspace);

@@ -10,9 +10,8 @@ use bubbletouch::recognition::data::dataset::Dataset;
 use bubbletouch::recognition::data::scaling::Scaling;
 use bubbletouch::recognition::data::split::{Split, group_k_fold, stratified_k_fold};
 use bubbletouch::recognition::statistics::grouped::{
-    FEW_GROUPS, GroupedTest, count_groups, interval_of_groups,
+    FEW_GROUPS, GroupedTest, count_groups, interval_of,
 };
-use bubbletouch::recognition::statistics::interval::Interval;
 use bubbletouch::recognition::svm::cross_validation::choice::{Candidates, Chosen};
 use bubbletouch::recognition::svm::kernel::Gamma;
 use bubbletouch::recognition::svm::{Multiclass, Solver};
@@ -194,18 +193,15 @@ impl Args {
         let pairs = predicted.iter().zip(&test.targets);
         let is_correct: Vec<bool> = pairs.map(|(predicted, truth)| predicted == truth).collect();
         let n_correct = is_correct.iter().filter(|is_correct| **is_correct).count();
-        let (interval, n_test_groups) = match groups_of(&set.split.test) {
-            None => (Interval::wilson(n_correct, n_test, CONFIDENCE)?, None),
-            Some(groups) => {
-                let tested = GroupedTest {
-                    n_rows: n_test,
-                    n_correct,
-                    groups: &count_groups(groups.into_iter().zip(is_correct)),
-                };
-                let (interval, n_groups) = interval_of_groups(&[tested], CONFIDENCE)?;
-                (interval, Some(n_groups))
-            }
-        };
+        let groups = groups_of(&set.split.test);
+        let groups = groups.map(|groups| count_groups(groups.into_iter().zip(is_correct)));
+        let tested = groups.as_ref().map(|groups| GroupedTest {
+            n_rows: n_test,
+            n_correct,
+            groups,
+        });
+        let (interval, n_test_groups) =
+            interval_of([n_correct, n_test], tested.as_slice(), CONFIDENCE)?;
         let findings = Findings {
             program: concat!("bubbletouch ", env!("CARGO_PKG_VERSION")),
             classifier: self.classifier,

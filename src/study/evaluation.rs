@@ -12,10 +12,7 @@ use crate::recognition::data::split::Split;
 use crate::recognition::evaluation::fusion::{fuse_rows, fuse_scores};
 use crate::recognition::evaluation::metrics::ConfusionMatrix;
 use crate::recognition::evaluation::next_touch::{AnswerModel, NextTouch};
-use crate::recognition::statistics::grouped::{
-    GroupCount, GroupedTest, count_groups, interval_of_groups,
-};
-use crate::recognition::statistics::interval::Interval;
+use crate::recognition::statistics::grouped::{GroupCount, GroupedTest, count_groups, interval_of};
 use ndarray::{Array1, Axis};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -155,30 +152,22 @@ impl Trial<'_> {
                 of.into_iter().map(move |group| (group, is_correct))
             }))
         });
-        let tested = GroupedTest {
-            n_rows: matrix.n_rows(),
-            n_correct: matrix.n_correct(),
+        let (n_rows, n_correct) = (matrix.n_rows(), matrix.n_correct());
+        let tested = answered.groups.map(|_| GroupedTest {
+            n_rows,
+            n_correct,
             groups: &groups,
-        };
-        let (interval, n_groups) = match answered.groups {
-            None => (
-                Interval::wilson(tested.n_correct, tested.n_rows, CONFIDENCE)?,
-                None,
-            ),
-            Some(_) => {
-                let (interval, n_groups) = interval_of_groups(&[tested], CONFIDENCE)?;
-                (interval, Some(n_groups))
-            }
-        };
+        });
+        let (interval, n_groups) = interval_of([n_correct, n_rows], tested.as_slice(), CONFIDENCE)?;
         Ok(Evaluation {
             score: TrialScore {
                 trial: self.number,
                 split: is_crossed.then(|| spec.split_of(self.number)),
                 projection: is_crossed.then(|| spec.projection_of(self.number)),
                 n_train: answered.n_train,
-                n_test: matrix.n_rows(),
+                n_test: n_rows,
                 n_left_out: rows.n_left_out,
-                n_correct: matrix.n_correct(),
+                n_correct,
                 accuracy: matrix.accuracy(),
                 accuracy_low: interval.low,
                 accuracy_high: interval.high,

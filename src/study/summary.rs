@@ -9,7 +9,7 @@ use super::table::{
 use crate::error::Result;
 use crate::recognition::statistics::bootstrap::Bootstrap;
 use crate::recognition::statistics::comparison::TrialSize;
-use crate::recognition::statistics::grouped::{GroupCount, GroupedTest, interval_of_groups};
+use crate::recognition::statistics::grouped::{GroupCount, GroupedTest, interval_of};
 use crate::recognition::statistics::interval::Interval;
 use crate::recognition::statistics::many_tests::holm_of_some;
 use crate::table::front;
@@ -56,13 +56,7 @@ fn score(
         groups,
     });
     let tested: Vec<GroupedTest> = tested.collect();
-    let (interval, n_groups) = match tested.is_empty() {
-        true => (Interval::wilson(n_correct, n_test, CONFIDENCE)?, None),
-        false => {
-            let (interval, n_groups) = interval_of_groups(&tested, CONFIDENCE)?;
-            (interval, Some(n_groups))
-        }
-    };
+    let (interval, n_groups) = interval_of([n_correct, n_test], &tested, CONFIDENCE)?;
     let repeats: Vec<Repeat> = trials.iter().map(|trial| Repeat::of(trial)).collect();
     let of_mean = match scores(&repeats) {
         Some(scores) => bootstrap.mean(scores.view(), CONFIDENCE)?,

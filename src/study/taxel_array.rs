@@ -193,7 +193,7 @@ impl TaxelArray {
     /// of three cells a pitch, seen along the axis in the middle, and none where none is near.
     pub fn picture_cells(&self) -> Array2<Option<usize>> {
         let (ny, nx) = self.shape();
-        if !self.is_drawn() {
+        if self.is_image() {
             return Array2::from_shape_fn((ny, nx), |(row, column)| Some(row * nx + column));
         }
         let centers = self.patch.layout().centers();
@@ -214,15 +214,10 @@ impl TaxelArray {
 
     /// Millimetres between the cells of a picture.
     pub fn picture_pitch_mm(&self) -> f64 {
-        match self.is_drawn() {
-            true => 1e3 * self.pitch() / PICTURE_CELLS,
-            false => millimetres(self.pitch()),
+        match self.is_image() {
+            true => millimetres(self.pitch()),
+            false => 1e3 * self.pitch() / PICTURE_CELLS,
         }
-    }
-
-    /// Whether its pictures show other cells than rows and columns.
-    fn is_drawn(&self) -> bool {
-        !matches!(self.layout, ArrayLayout::Grid | ArrayLayout::Cylinder)
     }
 
     /// All that its frames depend on.

@@ -34,7 +34,7 @@ pub fn as_modelled(object: &Model) -> RestPose {
     resting(object, DVec3::NEG_Z, 1.0)
 }
 
-/// The poses in which a object, as a homogeneous solid ([`Model::center_of_mass`]), rests on a table, likeliest first; at least one.
+/// The poses in which an object, as a homogeneous solid ([`Model::center_of_mass`]), rests on a table, likeliest first; at least one.
 ///
 /// A round object that rolls has one pose for all the directions it rolls through. Poses less likely than 2 % are left
 /// out. Takes 15 to 30 ms for 3,000 spheres, most where a long side rolls.
@@ -42,7 +42,7 @@ pub fn stable_poses(object: &Model) -> Vec<RestPose> {
     stable_poses_about(object, object.center_of_mass())
 }
 
-/// [`stable_poses`] with a given centre of mass, metres, in the body's frame.
+/// [`stable_poses`] with a given centre of mass, metres, in the object's frame.
 pub fn stable_poses_about(object: &Model, center_of_mass: DVec3) -> Vec<RestPose> {
     let support = Support::about(center_of_mass, &object.extremes());
     let mut poses: Vec<_> = basins(&support, BARRIER * support.radius())

@@ -78,23 +78,7 @@ impl Chart {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Places of a hexagonal lattice with a taxel an area of 1, on a square of this half side.
-    fn hexagonal(half: f64) -> Vec<DVec2> {
-        let (step, row_step) = (1.0746, 0.9306);
-        let n = half.ceil() as i32 + 1;
-        let all = (-n..=n).flat_map(|row| (-n..=n).map(move |column| (row, column)));
-        let shifted = |row: i32| 0.5 * f64::from(row.rem_euclid(2));
-        let place = |(row, column): (i32, i32)| {
-            DVec2::new(
-                (f64::from(column) + shifted(row)) * step,
-                f64::from(row) * row_step,
-            )
-        };
-        all.map(place)
-            .filter(|p| p.abs().max_element() <= half)
-            .collect()
-    }
+    use crate::world::{ArrayLayout, Grid};
 
     #[test]
     fn the_image_of_a_square_grid_is_the_grid() {
@@ -109,7 +93,14 @@ mod tests {
 
     #[test]
     fn a_constant_stays_and_a_slope_is_followed_wherever_the_patch_is() {
-        let places = hexagonal(8.0);
+        let grid = Grid {
+            nx: 16,
+            ny: 16,
+            pitch: 1.0,
+        };
+        let hexagonal = ArrayLayout::Hexagonal.taxels(&grid, 0.0).unwrap();
+        let centers = hexagonal.centers().iter();
+        let places: Vec<DVec2> = centers.map(|center| center.truncate()).collect();
         let chart = Chart::new(&places, 1.0, ((30, 30), 1.0));
         let slope = DVec2::new(0.3, -0.2);
         let values = |of: &dyn Fn(&DVec2) -> f64| {

@@ -139,6 +139,24 @@ pub fn interval_of_groups(tests: &[GroupedTest], confidence: f64) -> Result<(Int
     Ok((Interval::score(share, n / effect, t), n_groups))
 }
 
+/// The interval of an accuracy: Wilson's of so many right of some rows where there are no tests of groups, else [that of the groups](interval_of_groups)
+/// and their number.
+///
+/// # Errors
+/// Those of [`Interval::wilson`] and [`interval_of_groups`].
+pub fn interval_of(
+    [n_correct, n_rows]: [usize; 2],
+    tests: &[GroupedTest],
+    confidence: f64,
+) -> Result<(Interval, Option<usize>)> {
+    if tests.is_empty() {
+        let interval = Interval::wilson(n_correct, n_rows, confidence)?;
+        return Ok((interval, None));
+    }
+    let (interval, n_groups) = interval_of_groups(tests, confidence)?;
+    Ok((interval, Some(n_groups)))
+}
+
 impl GroupedTest<'_> {
     fn check(&self) -> Result<()> {
         let Self {
