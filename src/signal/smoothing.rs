@@ -8,6 +8,7 @@
 use super::sensor_error::{Effect, TouchRead};
 use crate::error::{Error, Result};
 use crate::world::Grid;
+use multiversion::multiversion;
 
 /// The kernel's reach in widths.
 const TRUNCATE: f64 = 4.0;
@@ -95,14 +96,10 @@ fn smooth_columns(frame: &[f64], out: &mut [f64], nx: usize, taps: &[f64]) {
     };
     for (y, out) in out.chunks_exact_mut(nx).enumerate() {
         let y = y as isize;
-        for (out, value) in out.iter_mut().zip(row(y)) {
-            *out = taps[0] * value;
-        }
+        start(out, row(y), taps[0]);
         for (distance, tap) in taps.iter().enumerate().skip(1) {
             let (above, below) = (row(y - distance as isize), row(y + distance as isize));
-            for ((out, a), b) in out.iter_mut().zip(above).zip(below) {
-                *out += tap * (a + b);
-            }
+            add_pair(out, (above, below), *tap);
         }
     }
 }
@@ -115,15 +112,27 @@ fn smooth_row(row: &[f64], out: &mut [f64], line: &mut [f64], taps: &[f64]) {
         line[reach - distance] = row[mirrored(-(distance as isize), nx)];
         line[reach + nx - 1 + distance] = row[mirrored((nx - 1 + distance) as isize, nx)];
     }
-    for (out, value) in out.iter_mut().zip(row) {
-        *out = taps[0] * value;
-    }
+    start(out, row, taps[0]);
     for (distance, tap) in taps.iter().enumerate().skip(1) {
         let left = &line[reach - distance..][..nx];
         let right = &line[reach + distance..][..nx];
-        for ((out, a), b) in out.iter_mut().zip(left).zip(right) {
-            *out += tap * (a + b);
-        }
+        add_pair(out, (left, right), *tap);
+    }
+}
+
+fn start(out: &mut [f64], values: &[f64], tap: f64) {
+    for (out, value) in out.iter_mut().zip(values) {
+        *out = tap * value;
+    }
+}
+
+/// Adds what taxels on both sides weigh.
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
+fn add_pair(out: &mut [f64], (a, b): (&[f64], &[f64]), tap: f64) {
+    let n = out.len();
+    let (a, b) = (&a[..n], &b[..n]);
+    for at in 0..n {
+        out[at] += tap * (a[at] + b[at]);
     }
 }
 

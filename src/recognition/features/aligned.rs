@@ -12,7 +12,7 @@
 //! Source: Hu (1962), *Visual pattern recognition by moment invariants*, IRE Transactions on Information Theory 8, 179, section III.
 
 use super::feature::{Feature, FeatureAbout, Workspace};
-use super::image::Image;
+use super::image::{Image, Touched};
 
 /// Taxels between what is read.
 const STEP: usize = 2;
@@ -49,8 +49,13 @@ impl Feature for Aligned {
 fn axis(image: &Image) -> (f64, f64) {
     let (x, y) = image.centroid;
     let from_centroid = || {
-        let touched = image.touched.iter();
-        touched.map(|&(column, row, value)| (column as f64 - x, row as f64 - y, value))
+        let Touched {
+            x: columns,
+            y: rows,
+            value,
+        } = &image.touched;
+        let places = columns.iter().zip(rows).zip(value);
+        places.map(move |((column, row), &value)| (column - x, row - y, value))
     };
     let (mut along_x, mut along_y, mut across) = (0.0, 0.0, 0.0);
     for (x, y, value) in from_centroid() {

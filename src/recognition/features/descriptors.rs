@@ -17,8 +17,9 @@
 //! granulometry: Serra (1982), *Image Analysis and Mathematical Morphology*.
 
 use super::feature::{Feature, FeatureAbout, Workspace};
-use super::image::Image;
+use super::image::{Image, Touched};
 use super::moments::{N_MOMENTS, Weight, moments};
+use multiversion::multiversion;
 use std::f64::consts::PI;
 
 /// Levels of each kind, and rings: an image of 64 × 64 taxels pressed at half its stroke by ± 1 of full scale / 24 tells all of them apart.
@@ -40,72 +41,109 @@ struct Descriptors {
 impl Feature for Descriptors {
     fn write(&self, image: &Image, _: &mut Workspace, out: &mut [f64]) {
         out.fill(0.0);
-        let (scale, deepest) = (self.full_scale, image.largest);
+        let deepest = image.largest;
         if deepest == 0.0 {
             return;
         }
-        let squares = image.touched.iter().map(|(.., value)| value * value);
-        out[..3].copy_from_slice(&[deepest, image.sum, squares.sum::<f64>().sqrt()]);
-        let (levels, out) = out[3..].split_at_mut(3 * N_LEVELS);
-        let (fixed, levels) = levels.split_at_mut(N_LEVELS);
-        let (relative, behind) = levels.split_at_mut(N_LEVELS);
-        let step = scale / N_LEVELS as f64;
-        let relative_step = deepest / (N_LEVELS + 1) as f64;
-        for (.., value) in &image.touched {
-            // The highest level that a value reaches, counted from 1.
-            count(fixed, (value / step) as usize);
-            count(relative, (value / relative_step) as usize);
-            // Counted from the other end: the least ℓ with δ ≥ δ_max − ℓ.
-            let least = ((deepest - value) / step).ceil() as usize;
-            count(behind, (N_LEVELS + 1).saturating_sub(least.max(1)));
-        }
-        [fixed, relative, &mut *behind]
-            .into_iter()
-            .for_each(areas_above);
-        behind.reverse();
+        let (of_levels, out) = out.split_at_mut(3 + 3 * N_LEVELS);
         let (of_moments, profile) = out.split_at_mut(3 * N_MOMENTS);
+        let counts = Counts::of(image, self.full_scale / N_LEVELS as f64);
+        of_levels[..3].copy_from_slice(&[deepest, image.sum, counts.squares.sqrt()]);
+        let levels = of_levels[3..].chunks_exact_mut(N_LEVELS);
+        let Counts {
+            fixed,
+            relative,
+            behind,
+            ..
+        } = counts;
+        for (out, counts) in levels.zip([fixed, relative, behind]) {
+            areas_above(&counts, out);
+        }
+        of_levels[3 + 2 * N_LEVELS..].reverse();
         let weights = [
             Weight::Pressure,
             Weight::Touched,
             Weight::Above(0.5 * deepest),
         ];
-        for (out, weight) in of_moments.chunks_exact_mut(N_MOMENTS).zip(weights) {
-            out.copy_from_slice(&moments(image, weight));
-        }
+        of_moments.copy_from_slice(moments(image, weights).as_flattened());
         write_profile(image, profile);
     }
 }
 
-/// One more at a level, counted from 1; the last level takes what is above it.
-fn count(levels: &mut [f64], level: usize) {
-    if level > 0 {
-        levels[level.min(levels.len()) - 1] += 1.0;
+/// Taxels by the highest level that they reach; the last level takes what is above it.
+#[derive(Default)]
+struct Counts {
+    fixed: [u32; N_LEVELS],
+    relative: [u32; N_LEVELS],
+    /// Counted from the other end: by the least ℓ with δ ≥ δ_max − ℓ.
+    behind: [u32; N_LEVELS],
+    /// Σ δ².
+    squares: f64,
+}
+
+impl Counts {
+    fn of(image: &Image, step: f64) -> Self {
+        let mut counts = Self::default();
+        let relative_step = image.largest / (N_LEVELS + 1) as f64;
+        let steps = (step, relative_step);
+        count_levels(&mut counts, &image.touched.value, steps, image.largest);
+        counts
     }
 }
 
-/// From counts at each level to roots of counts at it or above.
-fn areas_above(levels: &mut [f64]) {
-    let mut above = 0.0;
-    for level in levels.iter_mut().rev() {
-        above += *level;
-        *level = above.sqrt();
+#[multiversion(targets("x86_64+avx2"))]
+fn count_levels(
+    counts: &mut Counts,
+    values: &[f64],
+    (step, relative_step): (f64, f64),
+    deepest: f64,
+) {
+    for value in values {
+        counts.squares += value * value;
+        count(&mut counts.fixed, (value / step) as i32);
+        count(&mut counts.relative, (value / relative_step) as i32);
+        let least = ((deepest - value) / step).ceil() as i32;
+        count(&mut counts.behind, N_LEVELS as i32 + 1 - least.max(1));
+    }
+}
+
+/// One more at a level, counted from 1; the last level takes what is above it.
+#[inline(always)]
+fn count(counts: &mut [u32; N_LEVELS], level: i32) {
+    if level > 0 {
+        counts[(level as usize).min(N_LEVELS) - 1] += 1;
+    }
+}
+
+/// Roots of how many are at each level or above.
+fn areas_above(counts: &[u32; N_LEVELS], out: &mut [f64]) {
+    let mut above = 0;
+    for (to, count) in out.iter_mut().zip(counts).rev() {
+        above += count;
+        *to = f64::from(above).sqrt();
     }
 }
 
 /// Mean pressure of rings; what of a ring is beyond the array counts as 0.
+#[multiversion(targets("x86_64+avx2"))]
 fn write_profile(image: &Image, profile: &mut [f64]) {
     let width = 0.5 * image.nx.min(image.ny) as f64 / N_RINGS as f64;
     let (x, y) = image.centroid;
-    for &(column, row, value) in &image.touched {
-        let (along, across) = (column as f64 - x, row as f64 - y);
-        let ring = ((along * along + across * across).sqrt() / width) as usize;
-        if let Some(sum) = profile.get_mut(ring) {
-            *sum += value;
+    let Touched {
+        x: columns,
+        y: rows,
+        value,
+    } = &image.touched;
+    for at in 0..value.len() {
+        let (along, across) = (columns[at] - x, rows[at] - y);
+        let ring = ((along * along + across * across).sqrt() / width) as i32 as usize;
+        if ring < profile.len() {
+            profile[ring] += value[at];
         }
     }
-    for (ring, sum) in profile.iter_mut().enumerate() {
-        let [inner, outer] = [ring, ring + 1].map(|k| k as f64 * width);
-        *sum /= PI * (outer * outer - inner * inner);
+    for ring in 0..profile.len() {
+        let (inner, outer) = (ring as f64 * width, (ring + 1) as f64 * width);
+        profile[ring] /= PI * (outer * outer - inner * inner);
     }
 }
 

@@ -15,7 +15,7 @@
 
 use super::feature::{Feature, FeatureAbout, Workspace};
 use super::image::Image;
-use super::rings::Rings;
+use super::rings::{Rings, roots};
 use super::spectrum::Spectrum;
 use std::f64::consts::PI;
 
@@ -89,13 +89,18 @@ impl Feature for FourierMellin {
     fn write(&self, image: &Image, workspace: &mut Workspace, out: &mut [f64]) {
         let Workspace { fourier, rings, .. } = workspace;
         self.spectrum.transform(image, fourier);
-        rings.values.clear();
-        rings.values.extend(self.reads.iter().map(|read| {
-            let terms = read.iter();
-            let terms = terms.map(|&(place, weight)| weight * fourier.magnitudes[place as usize]);
-            terms.sum::<f64>().sqrt()
-        }));
+        rings.values.resize(self.reads.len(), 0.0);
+        write_reads(&self.reads, &fourier.magnitudes, &mut rings.values);
+        roots(&mut rings.values);
         self.rings.write(rings, out);
+    }
+}
+
+/// Weighted sums of four magnitudes.
+fn write_reads(reads: &[Read], magnitudes: &[f64], out: &mut [f64]) {
+    for (to, read) in out.iter_mut().zip(reads) {
+        let [a, b, c, d] = read.map(|(place, weight)| weight * magnitudes[place as usize]);
+        *to = a + b + c + d;
     }
 }
 

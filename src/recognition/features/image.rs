@@ -1,5 +1,6 @@
 //! A frame as an image: what all features of images start from.
 
+use multiversion::multiversion;
 use ndarray::ArrayView2;
 
 /// What of a frame is no part of its image. Both are in the frame's unit.
@@ -21,14 +22,25 @@ pub struct Image {
     pub nx: usize,
     /// Rows.
     pub ny: usize,
-    /// Column, row and value of each that is above zero, in reading order.
-    pub touched: Vec<(usize, usize, f64)>,
+    /// Those that are above zero, in reading order.
+    pub touched: Touched,
     /// Σ δ.
     pub sum: f64,
     /// Σ δ (x, y) / Σ δ, in columns and rows; the middle of an image of nothing.
     pub centroid: (f64, f64),
     /// The largest δ.
     pub largest: f64,
+}
+
+/// Places and values of some taxels: three lists of one length, so that sums over them run many at a time.
+#[derive(Clone, Debug, Default)]
+pub struct Touched {
+    /// Columns.
+    pub x: Vec<f64>,
+    /// Rows.
+    pub y: Vec<f64>,
+    /// δ.
+    pub value: Vec<f64>,
 }
 
 impl Image {
@@ -39,36 +51,7 @@ impl Image {
     pub fn read(&mut self, frame: &[f64], nx: usize, cut: Cut) {
         assert!(nx > 0 && frame.len().is_multiple_of(nx), "whole rows");
         (self.nx, self.ny) = (nx, frame.len() / nx);
-        self.values.clear();
-        self.touched.clear();
-        (self.sum, self.largest) = (0.0, 0.0);
-        let least = cut.level.max(f64::MIN_POSITIVE);
-        let largest = frame
-            .iter()
-            .fold(0.0, |largest: f64, &value| largest.max(value));
-        let off = cut
-            .foremost
-            .map_or(0.0, |foremost| (largest - foremost).max(0.0));
-        let (mut along_x, mut along_y) = (0.0, 0.0);
-        for (y, row) in frame.chunks_exact(nx).enumerate() {
-            for (x, &value) in row.iter().enumerate() {
-                let is_felt = value >= least && value > off;
-                let value = value - off;
-                self.values.push(if is_felt { value } else { 0.0 });
-                if is_felt {
-                    self.touched.push((x, y, value));
-                    self.sum += value;
-                    along_x += x as f64 * value;
-                    along_y += y as f64 * value;
-                    self.largest = self.largest.max(value);
-                }
-            }
-        }
-        let middle = |n: usize| 0.5 * (n as f64 - 1.0);
-        self.centroid = match self.sum > 0.0 {
-            true => (along_x / self.sum, along_y / self.sum),
-            false => (middle(self.nx), middle(self.ny)),
-        };
+        read(self, frame, cut);
     }
 
     /// As rows and columns.
@@ -77,7 +60,14 @@ impl Image {
         view.expect("ny · nx values")
     }
 
+    /// The values at places (columns and rows) moved by an offset, as [`at`](Self::at) gives them, in place of `out`.
+    pub fn write_at(&self, places: &[(f64, f64)], offset: (f64, f64), out: &mut Vec<f64>) {
+        out.resize(places.len(), 0.0);
+        write_at(self, places, offset, out);
+    }
+
     /// The value between taxels, by bilinear interpolation; 0 outside.
+    #[inline(always)]
     pub fn at(&self, x: f64, y: f64) -> f64 {
         let (left, below) = (x.floor(), y.floor());
         let (along, up) = (x - left, y - below);
@@ -98,5 +88,81 @@ impl Image {
         let low = (1.0 - along) * value(column, row) + along * value(column + 1, row);
         let high = (1.0 - along) * value(column, row + 1) + along * value(column + 1, row + 1);
         (1.0 - up) * low + up * high
+    }
+}
+
+/// Reads the frame that an image's shape is of.
+#[multiversion(targets("x86_64+avx2"))]
+fn read(image: &mut Image, frame: &[f64], cut: Cut) {
+    let Touched { x, y, value } = &mut image.touched;
+    x.clear();
+    y.clear();
+    value.clear();
+    image.values.clear();
+    image.values.resize(frame.len(), 0.0);
+    let least = cut.level.max(f64::MIN_POSITIVE);
+    let off = match cut.foremost {
+        Some(foremost) => (largest(frame) - foremost).max(0.0),
+        None => 0.0,
+    };
+    let nx = image.nx;
+    let (mut along_x, mut along_y) = (0.0, 0.0);
+    (image.sum, image.largest) = (0.0, 0.0);
+    for row in 0..image.ny {
+        let from = &frame[row * nx..][..nx];
+        if largest(from) < least {
+            continue;
+        }
+        let to = &mut image.values[row * nx..][..nx];
+        for column in 0..nx {
+            let own = from[column];
+            if own >= least && own > off {
+                let own = own - off;
+                to[column] = own;
+                x.push(column as f64);
+                y.push(row as f64);
+                value.push(own);
+                image.sum += own;
+                along_x += column as f64 * own;
+                along_y += row as f64 * own;
+                image.largest = image.largest.max(own);
+            }
+        }
+    }
+    let middle = |n: usize| 0.5 * (n as f64 - 1.0);
+    image.centroid = match image.sum > 0.0 {
+        true => (along_x / image.sum, along_y / image.sum),
+        false => (middle(nx), middle(image.ny)),
+    };
+}
+
+/// The largest value, at least 0; what is not a number does not count.
+#[inline(always)]
+fn largest(values: &[f64]) -> f64 {
+    let (lanes, last) = values.as_chunks::<8>();
+    let mut most = [0.0; 8];
+    for values in lanes {
+        for lane in 0..8 {
+            most[lane] = if values[lane] > most[lane] {
+                values[lane]
+            } else {
+                most[lane]
+            };
+        }
+    }
+    let mut largest = 0.0;
+    for value in last {
+        largest = if *value > largest { *value } else { largest };
+    }
+    for value in most {
+        largest = if value > largest { value } else { largest };
+    }
+    largest
+}
+
+#[multiversion(targets("x86_64+avx2"))]
+fn write_at(image: &Image, places: &[(f64, f64)], (x, y): (f64, f64), out: &mut [f64]) {
+    for at in 0..places.len() {
+        out[at] = image.at(x + places[at].0, y + places[at].1);
     }
 }

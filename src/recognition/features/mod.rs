@@ -35,7 +35,7 @@ mod tilted;
 pub use chart::Chart;
 use feature::image_features;
 pub use feature::{Feature, FeatureAbout, ImageFeatures, Join, Workspace};
-pub use image::{Cut, Image};
+pub use image::{Cut, Image, Touched};
 pub use moments::{N_MOMENTS, Weight, moments};
 pub use tilted::tilt_frame;
 

@@ -12,7 +12,8 @@
 //! Sources: Hu (1962), IRE Transactions on Information Theory 8, 179; Flusser (2000), *On the independence of rotation moment
 //! invariants*, Pattern Recognition 33, 1405 (the complex form).
 
-use super::image::Image;
+use super::image::{Image, Touched};
+use multiversion::multiversion;
 use realfft::num_complex::Complex;
 
 /// How many there are.
@@ -29,56 +30,100 @@ pub enum Weight {
     Above(f64),
 }
 
-/// The nine of an image, in columns and rows; zeros of one that weighs nothing.
-pub fn moments(image: &Image, weight: Weight) -> [f64; N_MOMENTS] {
-    let weighted = || {
-        let touched = image.touched.iter();
-        touched.map(move |&(x, y, value)| {
-            let weight = match weight {
-                Weight::Pressure => value,
-                Weight::Touched => 1.0,
-                Weight::Above(level) => f64::from(value > level),
-            };
-            (x as f64, y as f64, weight)
-        })
-    };
-    let (mut total, mut x_mean, mut y_mean) = (0.0, 0.0, 0.0);
-    for (x, y, weight) in weighted() {
-        total += weight;
-        x_mean += weight * x;
-        y_mean += weight * y;
+/// Weights that are summed side by side.
+const LANES: usize = 4;
+
+/// The nine of an image by each of up to four weights, in columns and rows; zeros where nothing weighs.
+pub fn moments<const N: usize>(image: &Image, weights: [Weight; N]) -> [[f64; N_MOMENTS]; N] {
+    const { assert!(N <= LANES) };
+    let mut lanes = [Weight::Touched; LANES];
+    lanes[..N].copy_from_slice(&weights);
+    let sums = central_sums(&image.touched, lanes);
+    std::array::from_fn(|lane| match sums.total[lane] == 0.0 {
+        true => [0.0; N_MOMENTS],
+        false => sums.invariants(lane),
+    })
+}
+
+/// Σ w and the sums that the C_pq are of.
+#[derive(Default)]
+struct Sums {
+    total: [f64; LANES],
+    c11: [f64; LANES],
+    /// Real and imaginary parts.
+    c20: [[f64; LANES]; 2],
+    c21: [[f64; LANES]; 2],
+    c30: [[f64; LANES]; 2],
+}
+
+#[multiversion(targets("x86_64+avx2"))]
+fn central_sums(Touched { x, y, value }: &Touched, weights: [Weight; LANES]) -> Sums {
+    let (mut is_pressure, mut level) = ([false; LANES], [0.0; LANES]);
+    for lane in 0..LANES {
+        match weights[lane] {
+            Weight::Pressure => is_pressure[lane] = true,
+            Weight::Touched => {}
+            Weight::Above(above) => level[lane] = above,
+        }
     }
-    if total == 0.0 {
-        return [0.0; N_MOMENTS];
+    let mut sums = Sums::default();
+    let (mut x_mean, mut y_mean) = ([0.0; LANES], [0.0; LANES]);
+    for at in 0..value.len() {
+        for lane in 0..LANES {
+            let one = if value[at] > level[lane] { 1.0 } else { 0.0 };
+            let weight = if is_pressure[lane] { value[at] } else { one };
+            sums.total[lane] += weight;
+            x_mean[lane] += weight * x[at];
+            y_mean[lane] += weight * y[at];
+        }
     }
-    (x_mean, y_mean) = (x_mean / total, y_mean / total);
-    let mut c11 = 0.0;
-    let [mut c20, mut c21, mut c30] = [Complex::<f64>::default(); 3];
-    for (x, y, weight) in weighted() {
-        let z = Complex::new(x - x_mean, y - y_mean);
-        let (square, norm) = (z * z, z.norm_sqr());
-        c11 += weight * norm;
-        c20 += square * weight;
-        c21 += z * (weight * norm);
-        c30 += square * z * weight;
+    for lane in 0..LANES {
+        x_mean[lane] /= sums.total[lane];
+        y_mean[lane] /= sums.total[lane];
     }
-    c11 /= total;
-    [c20, c21, c30] = [c20, c21, c30].map(|c| c / total);
-    let spread = c20.norm();
-    let second = c20 * (c21 * c21).conj();
-    let third = c30 * (c21 * c21 * c21).conj();
-    let root = |value: f64, power: f64| value.abs().powf(1.0 / power).copysign(value);
-    [
-        c11.sqrt(),
-        (0.5 * (c11 + spread)).sqrt(),
-        (0.5 * (c11 - spread)).max(0.0).sqrt(),
-        spread.sqrt(),
-        c30.norm().cbrt(),
-        c21.norm().cbrt(),
-        root(second.re, 8.0),
-        root(third.re, 12.0),
-        root(third.im, 12.0),
-    ]
+    for at in 0..value.len() {
+        for lane in 0..LANES {
+            let one = if value[at] > level[lane] { 1.0 } else { 0.0 };
+            let weight = if is_pressure[lane] { value[at] } else { one };
+            let (re, im) = (x[at] - x_mean[lane], y[at] - y_mean[lane]);
+            let square = (re * re - im * im, re * im + im * re);
+            let norm = re * re + im * im;
+            let cube = (square.0 * re - square.1 * im, square.0 * im + square.1 * re);
+            sums.c11[lane] += weight * norm;
+            sums.c20[0][lane] += square.0 * weight;
+            sums.c20[1][lane] += square.1 * weight;
+            sums.c21[0][lane] += re * (weight * norm);
+            sums.c21[1][lane] += im * (weight * norm);
+            sums.c30[0][lane] += cube.0 * weight;
+            sums.c30[1][lane] += cube.1 * weight;
+        }
+    }
+    sums
+}
+
+impl Sums {
+    /// The nine of a weight.
+    fn invariants(&self, lane: usize) -> [f64; N_MOMENTS] {
+        let total = self.total[lane];
+        let c11 = self.c11[lane] / total;
+        let [c20, c21, c30] =
+            [self.c20, self.c21, self.c30].map(|[re, im]| Complex::new(re[lane], im[lane]) / total);
+        let spread = c20.norm();
+        let second = c20 * (c21 * c21).conj();
+        let third = c30 * (c21 * c21 * c21).conj();
+        let root = |value: f64, power: f64| value.abs().powf(1.0 / power).copysign(value);
+        [
+            c11.sqrt(),
+            (0.5 * (c11 + spread)).sqrt(),
+            (0.5 * (c11 - spread)).max(0.0).sqrt(),
+            spread.sqrt(),
+            c30.norm().cbrt(),
+            c21.norm().cbrt(),
+            root(second.re, 8.0),
+            root(third.re, 12.0),
+            root(third.im, 12.0),
+        ]
+    }
 }
 
 #[cfg(test)]
@@ -98,12 +143,13 @@ mod tests {
         image.read(&frame, 20, Cut::default());
         let variance = |n: usize| ((n * n - 1) as f64) / 12.0;
         let (x, y) = (variance(width), variance(height));
-        let found = moments(&image, Weight::Touched);
+        let weights = [Weight::Touched, Weight::Pressure, Weight::Above(1.0)];
+        let [found, by_pressure, above] = moments(&image, weights);
         let expected = [(x + y).sqrt(), x.sqrt(), y.sqrt(), (x - y).sqrt(), 0.0, 0.0];
         for (found, expected) in found.iter().zip(expected) {
             assert!((found - expected).abs() < 1e-6, "{found} {expected}");
         }
-        assert_eq!(found, moments(&image, Weight::Pressure));
-        assert_eq!(moments(&image, Weight::Above(1.0)), [0.0; 9]);
+        assert_eq!(found, by_pressure);
+        assert_eq!(above, [0.0; 9]);
     }
 }

@@ -12,7 +12,7 @@
 
 use super::feature::{Feature, FeatureAbout, Workspace};
 use super::image::Image;
-use super::rings::Rings;
+use super::rings::{Rings, roots};
 use std::f64::consts::TAU;
 
 /// Rings; on 64 × 64 taxels 1.2 pitches apart.
@@ -54,12 +54,9 @@ impl PolarHarmonics {
 
 impl Feature for PolarHarmonics {
     fn write(&self, image: &Image, workspace: &mut Workspace, out: &mut [f64]) {
-        let (x, y) = image.centroid;
-        let values = &mut workspace.rings.values;
-        values.clear();
-        values.extend(self.places.iter().map(|p| image.at(x + p.0, y + p.1)));
+        image.write_at(&self.places, image.centroid, &mut workspace.rings.values);
         self.rings.write(&mut workspace.rings, out);
-        out.iter_mut().for_each(|value| *value = value.sqrt());
+        roots(out);
     }
 }
 

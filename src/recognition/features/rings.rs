@@ -1,5 +1,6 @@
 //! Harmonics around rings: what an angle may be chosen freely of.
 
+use multiversion::multiversion;
 use realfft::num_complex::Complex;
 use realfft::{RealFftPlanner, RealToComplex};
 use std::fmt;
@@ -48,9 +49,20 @@ impl Rings {
             let done = self.around.process_with_scratch(ring, of_ring, scratch);
             done.expect("rings of n values");
             for (to, value) in out.iter_mut().zip(&*of_ring) {
-                *to = value.norm_sqr().sqrt() / self.n_angles as f64;
+                *to = value.norm_sqr();
             }
         }
+        roots(out);
+        out.iter_mut()
+            .for_each(|value| *value /= self.n_angles as f64);
+    }
+}
+
+/// Square roots, in place, many at a time.
+#[multiversion(targets("x86_64+avx2"))]
+pub(super) fn roots(values: &mut [f64]) {
+    for value in values {
+        *value = value.sqrt();
     }
 }
 

@@ -3,6 +3,7 @@
 //! F(u, v) = Σ δ(x, y) exp(−2πi (u x / nx + v y / ny)). The image is real, so F(−u, −v) is the conjugate of F(u, v): columns u ≥ 0 say all.
 
 use super::image::Image;
+use super::rings::roots;
 use realfft::num_complex::Complex;
 use realfft::{RealFftPlanner, RealToComplex};
 use rustfft::{Fft, FftPlanner};
@@ -62,8 +63,8 @@ impl Spectrum {
         of_line.resize(self.nx / 2 + 1, zero);
         let of_rows = self.along_x.get_scratch_len();
         scratch.resize(of_rows.max(self.along_y.get_inplace_scratch_len()), zero);
-        for row in image.touched.chunk_by(|a, b| a.1 == b.1) {
-            let y = row[0].1;
+        for row in image.touched.y.chunk_by(|a, b| a == b) {
+            let y = row[0] as usize;
             line.clear();
             line.extend_from_slice(&image.values[y * self.nx..(y + 1) * self.nx]);
             let along_x = &self.along_x;
@@ -75,7 +76,8 @@ impl Spectrum {
         }
         self.along_y.process_with_scratch(columns, scratch);
         magnitudes.clear();
-        magnitudes.extend(columns.iter().map(|value| value.norm_sqr().sqrt()));
+        magnitudes.extend(columns.iter().map(|value| value.norm_sqr()));
+        roots(magnitudes);
     }
 }
 
@@ -94,8 +96,9 @@ pub(super) mod tests {
 
     /// |F(u, v)| by its definition; u may be negative.
     pub(crate) fn by_definition(image: &Image, u: isize, v: isize) -> f64 {
-        let of = |n: usize, k: isize, i: usize| k as f64 * i as f64 / n as f64;
-        let terms = image.touched.iter().map(|&(x, y, value)| {
+        let of = |n: usize, k: isize, i: f64| k as f64 * i / n as f64;
+        let super::super::image::Touched { x, y, value } = &image.touched;
+        let terms = x.iter().zip(y).zip(value).map(|((&x, &y), &value)| {
             let angle = -TAU * (of(image.nx, u, x) + of(image.ny, v, y));
             Complex::from_polar(value, angle)
         });

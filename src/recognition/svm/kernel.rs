@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::recognition::svm::gram::extent::Extent;
 use crate::recognition::svm::linalg::products::{multiply, with_each_other};
+use crate::recognition::svm::linalg::row_products;
 use crate::recognition::svm::linalg::scalar::Scalar;
 use crate::{Error, Result};
 
@@ -222,6 +223,18 @@ impl KernelFunction {
         match self {
             Self::Laplacian { .. } => absolute_differences(left, right, to),
             _ => multiply(left, right, to),
+        }
+    }
+
+    /// The same of one row (m) with others, each of which lies in one piece.
+    pub fn pairwise_of_row<T: Scalar>(&self, row: &[T], others: &[&[T]], to: &mut [T]) {
+        match self {
+            Self::Laplacian { .. } => {
+                for (to, other) in to.chunks_exact_mut(1).zip(others) {
+                    absolute_differences_of(row, other, to);
+                }
+            }
+            _ => row_products::multiply(&[row], others, to),
         }
     }
 

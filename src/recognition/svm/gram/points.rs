@@ -125,6 +125,12 @@ impl<T: Scalar> Points<T> {
         }
     }
 
+    /// One of them, and its squared norm.
+    #[inline]
+    pub fn row(&self, row: usize) -> (&[T], T) {
+        (self.in_place().row(row), self.norms[row])
+    }
+
     /// All of them.
     pub fn all(&self) -> PointsView<'_, T> {
         self.range(0..self.len())

@@ -115,6 +115,22 @@ mod tests {
     }
 
     #[test]
+    fn a_row_alone_has_the_bits_that_it_has_among_others() {
+        for m in [1, 16, 37, 1024, 1500] {
+            let values: Vec<f32> = values(11, m).iter().map(|&value| value as f32).collect();
+            let all: Vec<&[f32]> = values.chunks_exact(m).collect();
+            let (rows, others) = all.split_at(3);
+            let mut together = vec![0.0; 24];
+            multiply(rows, others, &mut together);
+            for (row, expected) in rows.iter().zip(together.chunks_exact(8)) {
+                let mut alone = vec![0.0; 8];
+                multiply(&[row], others, &mut alone);
+                assert_eq!(alone, expected, "{m}");
+            }
+        }
+    }
+
+    #[test]
     fn weighted_sums_add_each_row_as_often_as_asked() {
         let (n, m) = (9, 13);
         let values = values(n, m);

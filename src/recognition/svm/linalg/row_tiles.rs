@@ -97,7 +97,39 @@ mod avx512 {
 
     #[target_feature(enable = "avx512f")]
     pub fn products(rows: &[&[f32]], others: &[&[f32]], products: &mut [f32]) {
-        super::by_tiles((rows, others), products, |left, right| tile(left, right));
+        match rows {
+            [_] => super::by_tiles((rows, others), products, |left, right| [row(left, right)]),
+            _ => super::by_tiles((rows, others), products, |left, right| tile(left, right)),
+        }
+    }
+
+    /// The products of one row with a few others: the same bits as in a [`tile`].
+    #[target_feature(enable = "avx512f")]
+    fn row([left]: [&[f32]; 1], right: [&[f32]; N]) -> [f32; N] {
+        let n = left.len();
+        let left_lanes: &[[f32; LANES]] = left.as_chunks().0;
+        let mut right_lanes: [&[[f32; LANES]]; N] = [&[]; N];
+        for j in 0..N {
+            right_lanes[j] = right[j][..n].as_chunks().0;
+        }
+        let mut sums = [_mm512_setzero_ps(); N];
+        for at in 0..left_lanes.len() {
+            let mut own = sums;
+            for j in 0..N {
+                own[j] = load(&right_lanes[j][at]);
+            }
+            sums = add_products(sums, load(&left_lanes[at]), own);
+        }
+        let zero = _mm512_setzero_ps();
+        let sums = store(add_parts(add_parts(add_lanes(sums), zero), zero));
+        let mut products = [0.0; N];
+        for j in 0..N {
+            products[j] = sums[j];
+            for at in left_lanes.len() * LANES..n {
+                products[j] += left[at] * right[j][at];
+            }
+        }
+        products
     }
 
     /// All products of a few rows with a few others. Each lane keeps its own sums; they meet at the end.
@@ -196,14 +228,21 @@ mod avx2 {
 
     #[target_feature(enable = "avx2,fma")]
     pub fn products(rows: &[&[f32]], others: &[&[f32]], products: &mut [f32]) {
-        super::by_tiles((rows, others), products, |left, right| tile(left, right));
+        match rows {
+            [_] => super::by_tiles((rows, others), products, |left, right| {
+                tile::<1>(left, right)
+            }),
+            _ => super::by_tiles((rows, others), products, |left, right| {
+                tile::<N>(left, right)
+            }),
+        }
     }
 
     /// All products of a few rows with a few others. Each lane keeps its own sums; they meet at the end.
     ///
     /// Loops, not closures: a function of the standard library that calls a closure has not got its vector instructions.
     #[target_feature(enable = "avx2,fma")]
-    fn tile(left: [&[f32]; N], right: [&[f32]; M]) -> [[f32; M]; N] {
+    fn tile<const N: usize>(left: [&[f32]; N], right: [&[f32]; M]) -> [[f32; M]; N] {
         let n = left[0].len();
         let mut left_lanes: [&[[f32; LANES]]; N] = [&[]; N];
         let mut right_lanes: [&[[f32; LANES]]; M] = [&[]; M];

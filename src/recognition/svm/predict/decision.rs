@@ -119,6 +119,18 @@ impl<T: Scalar> DecisionFunctions<T> {
                 support @ Support {
                     pairs: Some(pairs), ..
                 },
+            ) if points.len() <= FEW_ROWS => {
+                let Support {
+                    vectors, kernel, ..
+                } = support;
+                elect_open(pairs.unbeaten_by_few(&points, vectors, kernel), |open| {
+                    elect(self.sums_of(&points.select(open), &mut room))
+                })
+            }
+            Sums::Support(
+                support @ Support {
+                    pairs: Some(pairs), ..
+                },
             ) => {
                 let values = support.kernel_values(&points, &mut room);
                 elect_open(pairs.unbeaten(values), |open| {
@@ -135,9 +147,8 @@ impl<T: Scalar> DecisionFunctions<T> {
                 if between.1 == Multiclass::OneVsOne && points.len() <= FEW_ROWS =>
             {
                 let hyperplanes = (normals.view(), self.rho.view());
-                let rows = points.all().values;
                 elect_open(
-                    unbeaten_by_hyperplanes(between.0, hyperplanes, rows),
+                    unbeaten_by_hyperplanes(between.0, hyperplanes, &points),
                     |open| elect(self.sums_of(&points.select(open), &mut room)),
                 )
             }
@@ -166,7 +177,11 @@ impl<T: Scalar> DecisionFunctions<T> {
         match &self.sums {
             Sums::Hyperplanes(normals) => {
                 let mut sums = Array2::zeros((normals.nrows(), points.len()));
-                multiply(normals.view(), points.all().values, sums.view_mut());
+                let (normals, rows) = (normals.view(), points.all().values);
+                match points.len() <= FEW_ROWS {
+                    true => multiply(rows, normals, sums.view_mut().reversed_axes()),
+                    false => multiply(normals, rows, sums.view_mut()),
+                }
                 sums
             }
             Sums::Support(support) => {

@@ -7,10 +7,14 @@
 //!
 //! A pair counts only if its value is farther from ρ than rounding can move it, so that the same value summed in any other
 //! order has the same sign.
+//!
+//! Of few rows, kernel values are computed as pairs ask for them: what supports only pairs that do not meet is never read.
 
 use multiversion::multiversion;
 use ndarray::{Array1, ArrayView1, ArrayView2};
 
+use crate::recognition::svm::gram::points::Points;
+use crate::recognition::svm::kernel::KernelFunction;
 use crate::recognition::svm::linalg::scalar::Scalar;
 use crate::recognition::svm::predict::class_weights::ClassWeights;
 
@@ -56,51 +60,169 @@ impl<T: Scalar> Pairs<T> {
     /// The class that certainly wins all its pairs, per row of kernel values (n × n_vectors); `None` where no class does,
     /// or rounding might decide a pair.
     pub fn unbeaten(&self, kernel_values: ArrayView2<T>) -> Vec<Option<usize>> {
-        unbeaten(self, kernel_values)
+        let rows = kernel_values.rows().into_iter();
+        let rows = rows.map(|row| row.to_slice().expect("they lie row by row"));
+        rows.map(|kernel_values| {
+            unbeaten(&mut Known {
+                pairs: self,
+                kernel_values,
+            })
+        })
+        .collect()
+    }
+
+    /// The same per row (n × m), of a few, by those kernel values with the vectors that it takes.
+    pub fn unbeaten_by_few(
+        &self,
+        rows: &Points<T>,
+        vectors: &Points<T>,
+        kernel: &KernelFunction,
+    ) -> Vec<Option<usize>> {
+        let rows = (0..rows.len()).map(|row| rows.row(row));
+        rows.map(|row| unbeaten(&mut Asked::new(self, row, vectors, kernel)))
+            .collect()
+    }
+
+    /// The terms of a pair, and ρ.
+    #[inline(always)]
+    fn of(&self, pair: usize) -> (&[(u32, T)], f64) {
+        let start = if pair == 0 { 0 } else { self.ends[pair - 1].0 };
+        let (end, rho) = self.ends[pair];
+        (&self.terms[start..end], rho)
     }
 }
-
-/// The same of rows (n × m) by the hyperplanes' normals (n_pairs × m) and ρ of all pairs of some classes.
+/// The class that certainly wins all its pairs, per row (n × m), by the hyperplanes' normals (n_pairs × m) and ρ of all
+/// pairs of some classes.
 pub(crate) fn unbeaten_by_hyperplanes<'a, T: Scalar>(
     n_classes: usize,
     (normals, rho): (ArrayView2<'a, T>, ArrayView1<'a, f64>),
-    rows: ArrayView2<T>,
+    rows: &'a Points<T>,
 ) -> Vec<Option<usize>> {
-    let hyperplanes = Hyperplanes {
-        n_classes,
-        normals: normals.to_slice().expect("normals are stored one by one"),
-        rho,
+    let normals = normals.to_slice().expect("normals are stored one by one");
+    let of_row = |row| {
+        unbeaten(&mut Hyperplanes {
+            n_classes,
+            normals,
+            rho,
+            row: rows.row(row).0,
+        })
     };
-    unbeaten(&hyperplanes, rows)
+    (0..rows.len()).map(of_row).collect()
 }
 
-/// What decides pairs of classes.
+/// What decides pairs of classes about one row.
 trait Decides<T> {
     fn n_classes(&self) -> usize;
 
     /// `Σ w k` of a pair, `Σ |w k|`, how many terms they have, and ρ.
-    fn value(&self, pair: usize, row: &[T]) -> (T, T, usize, f64);
+    fn value(&mut self, pair: usize) -> (T, T, usize, f64);
 }
 
-impl<T: Scalar> Decides<T> for Pairs<T> {
+/// Kernel values with all vectors.
+struct Known<'a, T> {
+    pairs: &'a Pairs<T>,
+    kernel_values: &'a [T],
+}
+
+impl<T: Scalar> Decides<T> for Known<'_, T> {
     #[inline(always)]
     fn n_classes(&self) -> usize {
-        self.n_classes
+        self.pairs.n_classes
     }
 
     #[inline(always)]
-    fn value(&self, pair: usize, kernel_values: &[T]) -> (T, T, usize, f64) {
-        let start = if pair == 0 { 0 } else { self.ends[pair - 1].0 };
-        let (end, rho) = self.ends[pair];
-        let (sum, size) = sum_and_size(&self.terms[start..end], kernel_values);
-        (sum, size, end - start, rho)
+    fn value(&mut self, pair: usize) -> (T, T, usize, f64) {
+        let (terms, rho) = self.pairs.of(pair);
+        let (sum, size) = sum_and_size(terms, self.kernel_values);
+        (sum, size, terms.len(), rho)
     }
 }
 
+/// Kernel values that are computed when the first pair asks for them.
+struct Asked<'a, T> {
+    pairs: &'a Pairs<T>,
+    kernel: &'a KernelFunction,
+    vectors: &'a Points<T>,
+    /// The row and its squared norm.
+    row: (&'a [T], T),
+    /// Per vector.
+    kernel_values: Vec<T>,
+    is_known: Vec<bool>,
+    /// Those that are computed together: numbers, rows, squared norms and values.
+    asked: Vec<u32>,
+    others: Vec<&'a [T]>,
+    norms: Vec<T>,
+    values: Vec<T>,
+}
+
+impl<'a, T: Scalar> Asked<'a, T> {
+    fn new(
+        pairs: &'a Pairs<T>,
+        row: (&'a [T], T),
+        vectors: &'a Points<T>,
+        kernel: &'a KernelFunction,
+    ) -> Self {
+        Self {
+            pairs,
+            kernel,
+            vectors,
+            row,
+            kernel_values: vec![T::zero(); vectors.len()],
+            is_known: vec![false; vectors.len()],
+            asked: Vec::new(),
+            others: Vec::new(),
+            norms: Vec::new(),
+            values: Vec::new(),
+        }
+    }
+
+    /// Computes the kernel values of these terms that are not known.
+    fn ask(&mut self, terms: &[(u32, T)]) {
+        self.asked.clear();
+        self.others.clear();
+        self.norms.clear();
+        for &(vector, _) in terms {
+            let is_known = &mut self.is_known[vector as usize];
+            if !*is_known {
+                *is_known = true;
+                let (other, norm) = self.vectors.row(vector as usize);
+                self.asked.push(vector);
+                self.others.push(other);
+                self.norms.push(norm);
+            }
+        }
+        let (row, norm) = self.row;
+        self.values.resize(self.asked.len(), T::zero());
+        self.kernel
+            .pairwise_of_row(row, &self.others, &mut self.values);
+        self.kernel.of_pairwise(&mut self.values, norm, &self.norms);
+        for (vector, &value) in self.asked.iter().zip(&self.values) {
+            self.kernel_values[*vector as usize] = value;
+        }
+    }
+}
+
+impl<T: Scalar> Decides<T> for Asked<'_, T> {
+    #[inline(always)]
+    fn n_classes(&self) -> usize {
+        self.pairs.n_classes
+    }
+
+    #[inline(always)]
+    fn value(&mut self, pair: usize) -> (T, T, usize, f64) {
+        let (terms, rho) = self.pairs.of(pair);
+        self.ask(terms);
+        let (sum, size) = sum_and_size(terms, &self.kernel_values);
+        (sum, size, terms.len(), rho)
+    }
+}
+
+/// Normals of hyperplanes.
 struct Hyperplanes<'a, T> {
     n_classes: usize,
     normals: &'a [T],
     rho: ArrayView1<'a, f64>,
+    row: &'a [T],
 }
 
 impl<T: Scalar> Decides<T> for Hyperplanes<'_, T> {
@@ -110,30 +232,24 @@ impl<T: Scalar> Decides<T> for Hyperplanes<'_, T> {
     }
 
     #[inline(always)]
-    fn value(&self, pair: usize, row: &[T]) -> (T, T, usize, f64) {
-        let normal = &self.normals[pair * row.len()..][..row.len()];
-        let (sum, size) = product_and_size(normal, row);
-        (sum, size, row.len(), self.rho[pair])
+    fn value(&mut self, pair: usize) -> (T, T, usize, f64) {
+        let normal = &self.normals[pair * self.row.len()..][..self.row.len()];
+        let (sum, size) = product_and_size(normal, self.row);
+        (sum, size, self.row.len(), self.rho[pair])
     }
 }
 
-fn unbeaten<T: Scalar>(pairs: &impl Decides<T>, rows: ArrayView2<T>) -> Vec<Option<usize>> {
-    let rows = rows.rows().into_iter();
-    rows.map(|row| unbeaten_in(pairs, row.to_slice().expect("they lie row by row")))
-        .collect()
-}
-
 #[multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
-fn unbeaten_in<T: Scalar, P: Decides<T>>(pairs: &P, row: &[T]) -> Option<usize> {
+fn unbeaten<T: Scalar, P: Decides<T>>(pairs: &mut P) -> Option<usize> {
     let mut champion = 0;
     for other in 1..pairs.n_classes() {
-        if !wins(pairs, row, (champion, other))? {
+        if !wins(pairs, (champion, other))? {
             champion = other;
         }
     }
     // It has met all classes after it.
     for other in 0..champion {
-        if wins(pairs, row, (other, champion))? {
+        if wins(pairs, (other, champion))? {
             return None;
         }
     }
@@ -142,13 +258,9 @@ fn unbeaten_in<T: Scalar, P: Decides<T>>(pairs: &P, row: &[T]) -> Option<usize> 
 
 /// Whether the first of two classes wins, which comes before the second; `None` if rounding might decide.
 #[inline(always)]
-fn wins<T: Scalar>(
-    pairs: &impl Decides<T>,
-    row: &[T],
-    (first, second): (usize, usize),
-) -> Option<bool> {
+fn wins<T: Scalar>(pairs: &mut impl Decides<T>, (first, second): (usize, usize)) -> Option<bool> {
     let pair = first * (2 * pairs.n_classes() - first - 1) / 2 + second - first - 1;
-    let (sum, size, n_terms, rho) = pairs.value(pair, row);
+    let (sum, size, n_terms, rho) = pairs.value(pair);
     let value = sum.wide() - rho;
     // n products added one by one err by at most n u Σ|products|, u half an epsilon; this way and another by twice
     // that. The 8 are for adding up lanes and classes.
@@ -281,6 +393,35 @@ mod tests {
         assert!(unbeaten.iter().any(|winner| winner.is_none()));
         for class in classes {
             assert!(unbeaten.contains(&Some(class)), "{class} is never elected");
+        }
+    }
+
+    #[test]
+    fn kernel_values_that_are_asked_for_decide_as_all_of_them_do() {
+        let n_features = 21;
+        let n_vectors = N_CLASSES * N_VECTORS;
+        let vectors = Array2::from_shape_fn((n_vectors, n_features), |(i, j)| {
+            ((i * 37 + j) as f64 * 1.7).sin()
+        });
+        // Each near one of them.
+        let asking = Array2::from_shape_fn((300, n_features), |(i, j)| {
+            vectors[[i % n_vectors, j]] + 0.3 * ((i * 11 + j) as f64 * 0.9).sin()
+        });
+        let rho = Array1::zeros(15);
+        let weights = weights();
+        let pairs = Pairs::new(&weights, &rho);
+        let centre = Array1::from_elem(n_features, 0.1);
+        let [vectors, asking] =
+            [vectors, asking].map(|rows| Points::<f64>::new(rows.view(), centre.view()));
+        for kernel in [
+            KernelFunction::Rbf { gamma: 0.2 },
+            KernelFunction::Laplacian { gamma: 0.2 },
+        ] {
+            let values = asking.all().kernel(vectors.all(), &kernel);
+            let expected = pairs.unbeaten(values.view());
+            assert_eq!(pairs.unbeaten_by_few(&asking, &vectors, &kernel), expected);
+            assert!(expected.iter().any(|winner| winner.is_none()));
+            assert!(expected.iter().any(|winner| *winner > Some(0)));
         }
     }
 
