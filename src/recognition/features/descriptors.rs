@@ -141,9 +141,9 @@ fn write_profile(image: &Image, profile: &mut [f64]) {
             profile[ring] += value[at];
         }
     }
-    for ring in 0..profile.len() {
+    for (ring, sum) in profile.iter_mut().enumerate() {
         let (inner, outer) = (ring as f64 * width, (ring + 1) as f64 * width);
-        profile[ring] /= PI * (outer * outer - inner * inner);
+        *sum /= PI * (outer * outer - inner * inner);
     }
 }
 
