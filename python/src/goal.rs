@@ -140,19 +140,21 @@ impl Press<'_> {
         contact::press(self.patch, self.models, self.poses, self.goal, workspace)
     }
 
-    /// The same, written into a row.
+    /// The same, written into a row, of zeros or of anything.
     ///
     /// # Errors
     /// A force that cannot be reached.
-    pub fn deflect_into(&self, row: Row, workspace: &mut Workspace) -> Result<Option<Contact>> {
-        contact::press_into(
-            self.patch,
-            self.models,
-            self.poses,
-            self.goal,
-            row,
-            workspace,
-        )
+    pub fn deflect_into(
+        &self,
+        (row, is_zeros): (Row, bool),
+        workspace: &mut Workspace,
+    ) -> Result<Option<Contact>> {
+        let press = match is_zeros {
+            true => contact::press_onto_zeros,
+            false => contact::press_into,
+        };
+        let (patch, models, poses) = (self.patch, self.models, self.poses);
+        press(patch, models, poses, self.goal, row, workspace)
     }
 
     /// The same press, to rounding, that leaves what touches what; `None` where nothing does, whatever the workspace holds then.

@@ -203,12 +203,7 @@ impl<'py> Batch<'_, 'py> {
         let work = |number: usize, (frame, changes): Item<T>, workspace: &mut Workspace| {
             let press = goal.of_pose(number, patch, (model, &poses[number]));
             let row = T::row(frame);
-            let pressed = match are_zero {
-                true => press
-                    .deflect(workspace)
-                    .inspect(|_| workspace.write_onto_zeros(row)),
-                false => press.deflect_into(row, workspace),
-            };
+            let pressed = press.deflect_into((row, are_zero), workspace);
             let pressed = pressed.map_err(|error| named(number, error))?;
             if !wanted.contacts && changes.is_none() {
                 return Ok(());

@@ -7,7 +7,7 @@
 use super::Contact;
 use super::crossing::{Sample, crossing};
 use super::grid_press::{GridPress, Until};
-use super::row::Zeroing;
+use super::row::Filling;
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::in_range::positive;
@@ -23,7 +23,7 @@ pub(super) fn press(
     objects: &[Model],
     patch_from_objects: &[Pose],
     force: f64,
-    (press, zeroing): (&mut GridPress, &mut Zeroing),
+    (press, filling): (&mut GridPress, &mut Filling),
 ) -> Result<Option<Contact>> {
     positive("touch force", force, "N")?;
     let stroke = grid.stroke;
@@ -49,7 +49,7 @@ pub(super) fn press(
         return Err(too_much(force, largest, &where_to));
     }
     let travel = curve.travel(force.min(largest));
-    Ok(Some(press.indent(grid, travel, zeroing)))
+    Ok(Some(press.indent(grid, travel, filling)))
 }
 
 /// What summing thousands of springs rounds a force by, as a share: far above 1e-16, far below what is felt.

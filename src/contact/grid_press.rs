@@ -5,7 +5,7 @@ use super::envelope::Envelope;
 use super::grid_lines::GridLines;
 use super::instructions::{Instructions, for_instructions};
 use super::placed_sphere::PlacedSphere;
-use super::row::Zeroing;
+use super::row::{Filling, Row};
 use super::sheet::Sheet;
 use super::sphere_search::{SphereSearch, search};
 use crate::geometry::Pose;
@@ -33,11 +33,6 @@ impl GridPress {
     /// Deflections of the last press: n_taxels, metres, row (patch y, ascending) by row.
     pub fn deflections(&self) -> &[f64] {
         self.sheet.deflections()
-    }
-
-    /// Where they are, and how to copy them.
-    pub fn sheet(&self) -> &Sheet {
-        &self.sheet
     }
 
     /// Keeps the spheres that press a taxel on the way to the goal, and returns the travel to first contact if the
@@ -78,11 +73,14 @@ impl GridPress {
         &mut self,
         grid: &EvenGrid,
         travel: f64,
-        zeroing: &mut Zeroing,
+        filling: &mut Filling,
     ) -> Contact {
         let stroke = grid.stroke;
-        self.push(grid, travel, zeroing);
-        let [n_touched, n_saturated] = stop_at_stroke(self.instructions, &mut self.sheet, stroke);
+        self.push(grid, travel, filling);
+        filling.finish();
+        let row = &mut filling.row;
+        let [n_touched, n_saturated] =
+            stop_at_stroke(self.instructions, &mut self.sheet, stroke, row);
         Contact {
             travel,
             n_touched,
@@ -92,11 +90,11 @@ impl GridPress {
 
     /// For each taxel that what has been gathered reaches up to `travel`, the travel at which it begins to move, metres.
     pub(super) fn starts(&mut self, grid: &EvenGrid, travel: f64) -> &[f64] {
-        self.push(grid, travel, &mut Zeroing::nothing());
+        self.push(grid, travel, &mut Filling::nothing());
         self.starts.clear();
         self.starts.reserve(grid.grid.n_taxels());
         let Self { sheet, starts, .. } = self;
-        sheet.each_row(|taxels| {
+        sheet.each_row(|_, taxels| {
             let touched = taxels.iter().filter(|needed| **needed > 0.0);
             starts.extend(touched.map(|needed| travel - *needed));
         });
@@ -109,21 +107,21 @@ impl GridPress {
     }
 
     /// Sets the deflections to what the taxels need at a travel, without a stop.
-    fn push(&mut self, grid: &EvenGrid, travel: f64, zeroing: &mut Zeroing) {
+    fn push(&mut self, grid: &EvenGrid, travel: f64, filling: &mut Filling) {
         self.touch_nothing(grid);
-        zeroing.in_steps(self.search.found.len());
+        filling.in_steps(self.search.found.len());
         raise_all(
             self.instructions,
             &self.search.found,
             &self.lines,
             (travel, self.behind),
             &mut self.sheet,
-            zeroing,
+            filling,
         );
         if !self.envelope.heights.is_empty() {
             self.sheet.cover(&(0..grid.grid.ny), &(0..grid.grid.nx));
             let mut heights = self.envelope.heights.chunks_exact(grid.grid.nx);
-            self.sheet.each_row(|taxels| {
+            self.sheet.each_row(|_, taxels| {
                 let heights = heights.next().unwrap_or_default();
                 for (deflection, height) in taxels.iter_mut().zip(heights) {
                     *deflection = deflection.max(travel - height);
@@ -140,7 +138,7 @@ for_instructions! {
         lines: &GridLines,
         travel_and_behind: (f64, f64),
         sheet: &mut Sheet,
-        zeroing: &mut Zeroing,
+        filling: &mut Filling,
     ) = raise_each
 }
 
@@ -150,10 +148,10 @@ fn raise_each(
     lines: &GridLines,
     (travel, behind): (f64, f64),
     sheet: &mut Sheet,
-    zeroing: &mut Zeroing,
+    filling: &mut Filling,
 ) {
     for sphere in spheres {
-        zeroing.step();
+        filling.step();
         let height = sphere.center.z - travel;
         if height < behind {
             sphere.raise_through(lines, height, behind, sheet);
@@ -194,20 +192,56 @@ pub(crate) fn saturation_limit(stroke: f64) -> f64 {
 }
 
 for_instructions! {
-    /// Counts touched and saturated taxels and stops the latter at their stroke.
-    fn stop_at_stroke(sheet: &mut Sheet, stroke: f64) -> [usize; 2] = stop_each
+    /// Counts touched and saturated taxels, stops the latter at their stroke, and writes all into a row of zeros, if it is one.
+    fn stop_at_stroke(sheet: &mut Sheet, stroke: f64, row: &mut Row) -> [usize; 2] = stop_each
 }
 
 #[inline(always)]
-fn stop_each(sheet: &mut Sheet, stroke: f64) -> [usize; 2] {
-    let limit = saturation_limit(stroke);
-    let (mut n_touched, mut n_saturated) = (0, 0);
-    sheet.each_row(|taxels| {
-        for deflection in taxels {
-            n_touched += usize::from(*deflection > 0.0);
-            n_saturated += usize::from(*deflection > limit);
-            *deflection = deflection.min(stroke);
-        }
-    });
-    [n_touched, n_saturated]
+fn stop_each(sheet: &mut Sheet, stroke: f64, row: &mut Row) -> [usize; 2] {
+    let mut stop = Stop {
+        stroke,
+        limit: saturation_limit(stroke),
+        n_touched: 0,
+        n_saturated: 0,
+    };
+    match row {
+        Row::Double([]) => sheet.each_row(|_, taxels| {
+            for taxel in taxels {
+                *taxel = stop.of(*taxel);
+            }
+        }),
+        Row::Double(row) => sheet.each_row(|first, taxels| {
+            let to = &mut row[first..][..taxels.len()];
+            for at in 0..taxels.len() {
+                taxels[at] = stop.of(taxels[at]);
+                to[at] = taxels[at];
+            }
+        }),
+        Row::Single(row) => sheet.each_row(|first, taxels| {
+            let to = &mut row[first..][..taxels.len()];
+            for at in 0..taxels.len() {
+                taxels[at] = stop.of(taxels[at]);
+                to[at] = taxels[at] as f32;
+            }
+        }),
+    }
+    [stop.n_touched, stop.n_saturated]
+}
+
+/// The end of the taxels' strokes.
+struct Stop {
+    stroke: f64,
+    limit: f64,
+    n_touched: usize,
+    n_saturated: usize,
+}
+
+impl Stop {
+    /// Counts a deflection, and what is left of it.
+    #[inline(always)]
+    fn of(&mut self, deflection: f64) -> f64 {
+        self.n_touched += usize::from(deflection > 0.0);
+        self.n_saturated += usize::from(deflection > self.limit);
+        deflection.min(self.stroke)
+    }
 }

@@ -77,8 +77,8 @@ pub use hold_force::{HeldForce, MovedObject};
 pub use instructions::Instructions;
 pub(crate) use instructions::for_instructions;
 pub use press::{
-    Contact, Goal, first_contact, press, press_at_pose, press_into, press_to_depth, press_to_force,
-    press_to_travel, press_with_contacts,
+    Contact, Goal, first_contact, press, press_at_pose, press_into, press_onto_zeros,
+    press_to_depth, press_to_force, press_to_travel, press_with_contacts,
 };
 pub(crate) use raise::{beats, raise};
 pub use row::Row;

@@ -5,7 +5,7 @@
 
 use super::approach::Approach;
 use super::grid_press::Until;
-use super::row::{Row, Zeroing};
+use super::row::{Filling, Row};
 use super::workspace::Workspace;
 use super::{grid_force, tree_press};
 use crate::error::Result;
@@ -52,7 +52,7 @@ pub fn press(
     workspace: &mut Workspace,
 ) -> Result<Option<Contact>> {
     let placed = (objects, patch_from_objects);
-    to_goal(patch, placed, goal, (workspace, &mut Zeroing::nothing()))
+    to_goal(patch, placed, goal, (workspace, &mut Filling::nothing()))
 }
 
 /// The same press, whose deflections are written into a row, too: faster than a copy of them, where rows are many.
@@ -67,14 +67,45 @@ pub fn press_into(
     objects: &[Model],
     patch_from_objects: &[Pose],
     goal: Goal,
-    mut row: Row,
+    row: Row,
     workspace: &mut Workspace,
 ) -> Result<Option<Contact>> {
-    let mut zeroing = Zeroing::of(row.again());
     let placed = (objects, patch_from_objects);
-    let contact = to_goal(patch, placed, goal, (workspace, &mut zeroing))?;
-    zeroing.finish();
-    workspace.write_onto_zeros(row);
+    press_filling(patch, placed, goal, (workspace, Filling::of(row)))
+}
+
+/// The same press into a row of zeros. What nothing has come near is left alone: an array whose pages were never written costs nothing there.
+///
+/// # Errors
+/// Those of [`press_into`].
+///
+/// # Panics
+/// As [`press_into`].
+pub fn press_onto_zeros(
+    patch: &Patch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    goal: Goal,
+    zeros: Row,
+    workspace: &mut Workspace,
+) -> Result<Option<Contact>> {
+    let placed = (objects, patch_from_objects);
+    press_filling(patch, placed, goal, (workspace, Filling::of_zeros(zeros)))
+}
+
+fn press_filling(
+    patch: &Patch,
+    placed: (&[Model], &[Pose]),
+    goal: Goal,
+    (workspace, mut filling): (&mut Workspace, Filling),
+) -> Result<Option<Contact>> {
+    assert_eq!(filling.row.len(), patch.n_taxels(), "one number a taxel");
+    let contact = to_goal(patch, placed, goal, (workspace, &mut filling))?;
+    match workspace.is_on_grid() {
+        // Written there, or nothing is touched.
+        true => filling.finish(),
+        false => filling.row.write(workspace.deflections()),
+    }
     Ok(contact)
 }
 
@@ -82,7 +113,7 @@ fn to_goal(
     patch: &Patch,
     placed: (&[Model], &[Pose]),
     goal: Goal,
-    scratch: (&mut Workspace, &mut Zeroing),
+    scratch: (&mut Workspace, &mut Filling),
 ) -> Result<Option<Contact>> {
     Ok(match goal {
         Goal::Pose => Some(at_pose(patch, placed, scratch)),
@@ -131,14 +162,14 @@ pub fn press_to_depth(
     workspace: &mut Workspace,
 ) -> Option<Contact> {
     let placed = (objects, patch_from_objects);
-    to_depth(patch, placed, depth, (workspace, &mut Zeroing::nothing()))
+    to_depth(patch, placed, depth, (workspace, &mut Filling::nothing()))
 }
 
 fn to_depth(
     patch: &Patch,
     (objects, patch_from_objects): (&[Model], &[Pose]),
     depth: f64,
-    (workspace, zeroing): (&mut Workspace, &mut Zeroing),
+    (workspace, filling): (&mut Workspace, &mut Filling),
 ) -> Option<Contact> {
     let Some(grid) = patch.even_grid() else {
         let approach = Approach::ahead(patch);
@@ -151,7 +182,7 @@ fn to_depth(
     if first.is_none() {
         press.touch_nothing(grid);
     }
-    first.map(|first| press.indent(grid, first + depth, zeroing))
+    first.map(|first| press.indent(grid, first + depth, filling))
 }
 
 /// Presses until the patch has moved `travel` metres along z from the pose given, from the front: the press of [`press_to_depth`]
@@ -167,14 +198,14 @@ pub fn press_to_travel(
     workspace: &mut Workspace,
 ) -> Contact {
     let placed = (objects, patch_from_objects);
-    to_travel(patch, placed, travel, (workspace, &mut Zeroing::nothing()))
+    to_travel(patch, placed, travel, (workspace, &mut Filling::nothing()))
 }
 
 fn to_travel(
     patch: &Patch,
     (objects, patch_from_objects): (&[Model], &[Pose]),
     travel: f64,
-    (workspace, zeroing): (&mut Workspace, &mut Zeroing),
+    (workspace, filling): (&mut Workspace, &mut Filling),
 ) -> Contact {
     let Some(grid) = patch.even_grid() else {
         let approach = Approach::ahead(patch);
@@ -187,7 +218,7 @@ fn to_travel(
     };
     let press = workspace.on_grid();
     press.gather(grid, objects, patch_from_objects, Until::Travel(travel));
-    press.indent(grid, travel, zeroing)
+    press.indent(grid, travel, filling)
 }
 
 /// Presses until the springs carry `force` newtons together, Σ k δ: to within 1e-12 of it, or to the last bit of the travel.
@@ -229,14 +260,14 @@ pub fn press_to_force(
     workspace: &mut Workspace,
 ) -> Result<Option<Contact>> {
     let placed = (objects, patch_from_objects);
-    to_force(patch, placed, force, (workspace, &mut Zeroing::nothing()))
+    to_force(patch, placed, force, (workspace, &mut Filling::nothing()))
 }
 
 fn to_force(
     patch: &Patch,
     (objects, patch_from_objects): (&[Model], &[Pose]),
     force: f64,
-    (workspace, zeroing): (&mut Workspace, &mut Zeroing),
+    (workspace, filling): (&mut Workspace, &mut Filling),
 ) -> Result<Option<Contact>> {
     match (patch.even_grid(), patch.taxels()) {
         (Some(grid), Taxels::Equal(taxel)) => grid_force::press(
@@ -244,7 +275,7 @@ fn to_force(
             objects,
             patch_from_objects,
             force,
-            (workspace.on_grid(), zeroing),
+            (workspace.on_grid(), filling),
         ),
         _ => Approach::ahead(patch).press_to_force(objects, patch_from_objects, force, workspace),
     }
@@ -306,20 +337,20 @@ pub fn press_at_pose(
     workspace: &mut Workspace,
 ) -> Contact {
     let placed = (objects, patch_from_objects);
-    at_pose(patch, placed, (workspace, &mut Zeroing::nothing()))
+    at_pose(patch, placed, (workspace, &mut Filling::nothing()))
 }
 
 fn at_pose(
     patch: &Patch,
     (objects, patch_from_objects): (&[Model], &[Pose]),
-    (workspace, zeroing): (&mut Workspace, &mut Zeroing),
+    (workspace, filling): (&mut Workspace, &mut Filling),
 ) -> Contact {
     let are_spheres = || objects.iter().all(|object| object.spheres().is_some());
     match patch.even_grid() {
         Some(grid) if are_spheres() && !workspace.holds_any() => {
             let press = workspace.on_grid();
             press.gather(grid, objects, patch_from_objects, Until::Pose);
-            press.indent(grid, 0.0, zeroing)
+            press.indent(grid, 0.0, filling)
         }
         _ => tree_press::deflect(patch, objects, patch_from_objects, workspace),
     }

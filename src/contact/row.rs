@@ -20,21 +20,13 @@ impl Row<'_> {
         }
     }
 
-    /// The same row, once more.
-    pub(super) fn again(&mut self) -> Row<'_> {
+    /// Writes a deflection for each taxel.
+    pub(super) fn write(&mut self, deflections: &[f64]) {
         match self {
-            Self::Single(row) => Row::Single(row),
-            Self::Double(row) => Row::Double(row),
-        }
-    }
-
-    /// Writes deflections from a taxel on.
-    pub(super) fn write(&mut self, first: usize, deflections: &[f64]) {
-        let taxels = first..first + deflections.len();
-        match self {
-            Self::Double(row) => row[taxels].copy_from_slice(deflections),
+            Self::Double(row) => row.copy_from_slice(deflections),
             Self::Single(row) => {
-                for (single, double) in row[taxels].iter_mut().zip(deflections) {
+                assert_eq!(row.len(), deflections.len(), "one number a taxel");
+                for (single, double) in row.iter_mut().zip(deflections) {
                     *single = *double as f32;
                 }
             }
@@ -42,27 +34,41 @@ impl Row<'_> {
     }
 }
 
-/// What of a row is still to be filled with zeros.
-pub(super) struct Zeroing<'a> {
-    left: Row<'a>,
+/// A row that is filled with zeros while the spheres press, and then takes what they have pressed.
+pub(super) struct Filling<'a> {
+    pub row: Row<'a>,
+    n_filled: usize,
     /// How much of it at a time.
     step: usize,
 }
 
-impl<'a> Zeroing<'a> {
-    /// All of a row.
+impl<'a> Filling<'a> {
+    /// Of a row that holds anything.
     pub fn of(row: Row<'a>) -> Self {
-        Self { left: row, step: 0 }
+        Self {
+            row,
+            n_filled: 0,
+            step: 0,
+        }
     }
 
-    /// Nothing.
+    /// Of a row of zeros.
+    pub fn of_zeros(row: Row<'a>) -> Self {
+        Self {
+            n_filled: row.len(),
+            row,
+            step: 0,
+        }
+    }
+
+    /// Of no row.
     pub fn nothing() -> Self {
         Self::of(Row::Double(&mut []))
     }
 
     /// From now on so many steps fill the row.
     pub fn in_steps(&mut self, n_steps: usize) {
-        let step = self.left.len().div_ceil(n_steps.max(1));
+        let step = (self.row.len() - self.n_filled).div_ceil(n_steps.max(1));
         self.step = step.next_multiple_of(LINE);
     }
 
@@ -70,27 +76,26 @@ impl<'a> Zeroing<'a> {
     #[inline(always)]
     pub fn step(&mut self) {
         if self.step > 0 {
-            match &mut self.left {
-                Row::Single(left) => fill_first(left, self.step),
-                Row::Double(left) => fill_first(left, self.step),
-            }
+            self.fill(self.step);
         }
     }
 
     /// Fills what is left.
-    pub fn finish(mut self) {
-        self.step = self.left.len();
-        self.step();
+    pub fn finish(&mut self) {
+        self.fill(self.row.len());
+    }
+
+    #[inline(always)]
+    fn fill(&mut self, n: usize) {
+        let end = self.row.len().min(self.n_filled + n);
+        let bit = self.n_filled..end;
+        match &mut self.row {
+            Row::Single(row) => row[bit].fill(0.0),
+            Row::Double(row) => row[bit].fill(0.0),
+        }
+        self.n_filled = end;
     }
 }
 
 /// Numbers of whole lines of a cache: of 64 bytes, or two of them.
 const LINE: usize = 16;
-
-#[inline(always)]
-fn fill_first<T: Copy + Default>(left: &mut &mut [T], n: usize) {
-    let n = n.min(left.len());
-    let (first, later) = std::mem::take(left).split_at_mut(n);
-    first.fill(T::default());
-    *left = later;
-}

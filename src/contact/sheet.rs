@@ -1,7 +1,6 @@
 //! The deflections of a grid patch, and where they are.
 
 use super::placed_sphere::{BLOCK, WIDE};
-use super::row::Row;
 use std::ops::Range;
 
 /// The deflections of a grid, row by row, and the rectangle outside of which all are zero.
@@ -21,19 +20,10 @@ impl Sheet {
         &self.deflections[..self.n_taxels]
     }
 
-    /// Writes what is covered into a row of n_taxels zeros.
-    pub fn write_onto_zeros(&self, zeros: &mut Row) {
-        for row in self.rows.clone() {
-            let first = row * self.n_columns;
-            let columns = first + self.columns.start..first + self.columns.end;
-            zeros.write(columns.start, &self.deflections[columns]);
-        }
-    }
-
     /// Leaves all taxels of a grid at rest. What was not covered is not looked at.
     pub fn clear(&mut self, n_columns: usize, n_rows: usize) {
         if (self.n_columns, self.n_taxels) == (n_columns, n_columns * n_rows) {
-            self.each_row(|taxels| taxels.fill(0.0));
+            self.each_row(|_, taxels| taxels.fill(0.0));
         } else {
             (self.n_columns, self.n_taxels) = (n_columns, n_columns * n_rows);
             self.deflections.clear();
@@ -73,11 +63,12 @@ impl Sheet {
         block.expect("a row is as long")
     }
 
-    /// Visits what is covered, row by row.
+    /// Visits what is covered, row by row, each from which taxel on.
     #[inline(always)]
-    pub fn each_row(&mut self, mut visit: impl FnMut(&mut [f64])) {
+    pub fn each_row(&mut self, mut visit: impl FnMut(usize, &mut [f64])) {
         for row in self.rows.clone() {
-            visit(self.row(row, self.columns.clone()));
+            let first = row * self.n_columns + self.columns.start;
+            visit(first, self.row(row, self.columns.clone()));
         }
     }
 }

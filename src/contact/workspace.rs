@@ -3,7 +3,6 @@
 use super::grid_lines::GridLines;
 use super::grid_press::GridPress;
 use super::instructions::Instructions;
-use super::row::Row;
 use super::taxel_contact::TaxelContact;
 use crate::geometry::Pose;
 
@@ -66,17 +65,9 @@ impl Workspace {
         }
     }
 
-    /// Writes them into a row of n_taxels zeros. What a press of a grid has not come near is left alone: an array whose pages
-    /// were never written costs nothing there.
-    ///
-    /// # Panics
-    /// If the row has not one place a taxel.
-    pub fn write_onto_zeros(&self, mut row: Row) {
-        assert_eq!(row.len(), self.deflections().len(), "one number a taxel");
-        match self.is_on_grid {
-            true => self.grid.sheet().write_onto_zeros(&mut row),
-            false => row.write(0, &self.deflections),
-        }
+    /// Whether the last press was of a flat grid along its axis.
+    pub(super) fn is_on_grid(&self) -> bool {
+        self.is_on_grid
     }
 
     /// The touched taxels of the last press, ascending; none if it was a [press](super::press_at_pose) that does not say what touches what.
