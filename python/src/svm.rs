@@ -5,7 +5,7 @@ use crate::errors::{bad_input, exception, guarded};
 use crate::threads::{aside, pool};
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::classifiers::class_model::ClassModel;
-use bubbletouch::recognition::classifiers::linear_svm::{LinearMargin, LinearSvm, LinearSvmParams};
+use bubbletouch::recognition::classifiers::linear_svm::{LinearSvm, LinearSvmParams};
 use bubbletouch::recognition::data::dataset::{Dataset, dataset};
 use bubbletouch::recognition::data::split::Split;
 use bubbletouch::recognition::svm::cross_validation::choice::{Candidates, choose};
@@ -246,7 +246,7 @@ impl KernelSvm {
 #[pyclass(frozen, module = "bubbletouch._core")]
 pub struct LinearModel {
     svm: LinearSvm,
-    asked: (String, f64, f64, usize, u64),
+    asked: (f64, f64, usize, u64),
     data: Arc<Dataset>,
 }
 
@@ -257,32 +257,22 @@ impl LinearModel {
     fn train(
         features: &Bound<PyAny>,
         labels: &Bound<PyAny>,
-        multiclass: &str,
         c: f64,
         tolerance: f64,
         max_passes: i64,
         seed: u64,
     ) -> PyResult<Self> {
         guarded(|| {
-            let margin = match multiclass {
-                "ovr" => LinearMargin::OneVsRest,
-                "crammer_singer" => LinearMargin::CrammerSinger,
-                other => {
-                    let given = format!("`{other}`");
-                    return Err(bad_input("multi_class", given, "ovr or crammer_singer"));
-                }
-            };
             let max_passes = usize::try_from(max_passes)
                 .map_err(|_| bad_input("max_iter", max_passes, "at least 1"))?;
             let params = LinearSvmParams {
-                margin,
                 c,
                 tolerance,
                 max_passes,
             };
             let seeded = Seed::new(seed);
             let (svm, data) = trained(features, labels, move |rows| params.train(rows, &seeded))?;
-            let asked = (multiclass.to_owned(), c, tolerance, max_passes, seed);
+            let asked = (c, tolerance, max_passes, seed);
             Ok(Self { svm, asked, data })
         })
     }
@@ -342,8 +332,8 @@ impl LinearModel {
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let train = py.get_type::<Self>().getattr("train")?;
         let (features, labels) = arrays_of(py, &self.data);
-        let (multiclass, c, tolerance, max_passes, seed) = &self.asked;
-        let given = (features, labels, multiclass, c, tolerance, max_passes, seed);
+        let (c, tolerance, max_passes, seed) = &self.asked;
+        let given = (features, labels, c, tolerance, max_passes, seed);
         Ok((train, given.into_pyobject(py)?))
     }
 }

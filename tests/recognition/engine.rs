@@ -8,7 +8,7 @@ use bubbletouch::recognition::data::split::{Split, stratified_k_fold};
 use bubbletouch::recognition::svm::cross_validation::choice::{Candidates, Chosen, choose};
 use bubbletouch::recognition::svm::kernel::{Gamma, Kernel};
 use bubbletouch::recognition::svm::predict::svm_model::SvmModel;
-use bubbletouch::recognition::svm::{BinaryProblem, Multiclass, SvmParams};
+use bubbletouch::recognition::svm::{BinaryProblem, Multiclass, Solver, SvmParams};
 use linfa::DatasetBase;
 use linfa::traits::Fit;
 use linfa_svm::Svm;
@@ -721,7 +721,7 @@ fn a_choice_for_a_problem_that_training_would_refuse_is_refused() {
     let data = clouds(&[20, 20], 4, 1.0, 19);
     let folds = stratified_k_fold(data.targets.view(), 2, &Seed::new(1)).unwrap();
     let params = SvmParams {
-        multiclass: Multiclass::CrammerSinger,
+        solver: Solver::CoordinateDescent,
         ..SvmParams::default()
     };
     let expected = params.train(&data).unwrap_err().to_string();

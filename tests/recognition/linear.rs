@@ -1,13 +1,12 @@
 //! Linear SVMs without a kernel matrix, and logistic regression.
 //!
-//! Goldens: scikit-learn 1.9.1, `LinearSVC(C=0.5, loss="hinge", dual=True, tol=1e-9, max_iter=10**6)` with `multi_class`
-//! "ovr" and "crammer_singer", and `LogisticRegression(tol=1e-10)`, on the rows of [`waves`].
+//! Goldens: scikit-learn 1.9.1, `LinearSVC(C=0.5, loss="hinge", dual=True, tol=1e-9, max_iter=10**6)` and `LogisticRegression(tol=1e-10)`, on the rows of [`waves`].
 
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::ClassifierKind;
 use bubbletouch::recognition::classifiers::class_model::ClassModel;
 use bubbletouch::recognition::classifiers::classifier::{Classifier, Cost};
-use bubbletouch::recognition::classifiers::linear_svm::{LinearMargin, LinearSvm, LinearSvmParams};
+use bubbletouch::recognition::classifiers::linear_svm::{LinearSvm, LinearSvmParams};
 use bubbletouch::recognition::classifiers::logistic_regression::LogisticParams;
 use bubbletouch::recognition::data::dataset::{Dataset, dataset, rows};
 use bubbletouch::recognition::svm::cross_validation::choice::Candidates;
@@ -37,9 +36,8 @@ fn clusters(n_rows: usize, m: usize, n_classes: usize, seed: u64) -> Dataset {
     dataset(features, Array1::from_iter((0..n_rows).map(class))).unwrap()
 }
 
-fn train(data: &Dataset, margin: LinearMargin, c: f64, tolerance: f64) -> LinearSvm {
+fn train(data: &Dataset, c: f64, tolerance: f64) -> LinearSvm {
     let params = LinearSvmParams {
-        margin,
         c,
         tolerance,
         max_passes: 1_000_000,
@@ -60,7 +58,7 @@ fn assert_near(found: impl IntoIterator<Item = f64>, expected: &[f64], tolerance
 
 #[test]
 fn one_vs_rest_equals_scikit_learns_linear_svc() {
-    let svm = train(&waves(), LinearMargin::OneVsRest, 0.5, 1e-9);
+    let svm = train(&waves(), 0.5, 1e-9);
     let ends = svm.convergence();
     let objectives = [
         15.366914573528,
@@ -88,67 +86,24 @@ fn one_vs_rest_equals_scikit_learns_linear_svc() {
 }
 
 #[test]
-fn crammer_singer_equals_scikit_learns() {
-    let svm = train(&waves(), LinearMargin::CrammerSinger, 0.5, 1e-9);
-    let end = svm.convergence()[0];
-    assert_near([end.primal, end.dual], &[29.669554141512; 2], 1e-6);
-    let first = [
-        0.065811460015,
-        0.037655876507,
-        -0.006224908467,
-        0.048936601095,
-        0.097268419958,
-    ];
-    assert_near(svm.model().weights.row(0).to_vec(), &first, 1e-6);
-    let bias = [
-        -0.035806073627,
-        0.140612766187,
-        -0.073424913735,
-        -0.031381778826,
-    ];
-    assert_near(svm.model().bias.to_vec(), &bias, 1e-6);
-}
-
-#[test]
 fn the_duality_gap_is_never_negative_and_closes_with_the_tolerance() {
     for seed in 0..4 {
         let data = clusters(150, 8, 5, seed);
-        for margin in [LinearMargin::OneVsRest, LinearMargin::CrammerSinger] {
-            for c in [0.01, 1.0, 30.0] {
-                let gap = |tolerance: f64| {
-                    let svm = train(&data, margin, c, tolerance);
-                    assert_eq!(svm.n_capped(), 0);
-                    let ends = svm.convergence().iter();
-                    ends.map(|end| {
-                        let gap = (end.primal - end.dual) / end.primal;
-                        assert!(gap > -1e-12, "{gap}");
-                        gap
-                    })
-                    .fold(0.0, f64::max)
-                };
-                let (coarse, fine) = (gap(0.1), gap(1e-6));
-                assert!(
-                    coarse < 0.2 && fine < 2e-6,
-                    "{margin:?} {c} {coarse} {fine}"
-                );
-            }
+        for c in [0.01, 1.0, 30.0] {
+            let gap = |tolerance: f64| {
+                let svm = train(&data, c, tolerance);
+                assert_eq!(svm.n_capped(), 0);
+                let ends = svm.convergence().iter();
+                ends.map(|end| {
+                    let gap = (end.primal - end.dual) / end.primal;
+                    assert!(gap > -1e-12, "{gap}");
+                    gap
+                })
+                .fold(0.0, f64::max)
+            };
+            let (coarse, fine) = (gap(0.1), gap(1e-6));
+            assert!(coarse < 0.2 && fine < 2e-6, "{c} {coarse} {fine}");
         }
-    }
-}
-
-#[test]
-fn crammer_singer_of_two_classes_is_the_binary_svm_of_twice_the_cost() {
-    // With w_0 = −w_1 and u = w_1 − w_0 the problem reads ¼|u|² + C Σ hinge(u) = ½ (½|u|² + 2C Σ hinge(u)).
-    let data = clusters(120, 6, 2, 9);
-    for c in [0.05, 1.0] {
-        let both = train(&data, LinearMargin::CrammerSinger, c, 1e-9);
-        let binary = train(&data, LinearMargin::OneVsRest, 2.0 * c, 1e-9);
-        let weights = &both.model().weights;
-        let difference = &weights.row(1) - &weights.row(0);
-        let expected = binary.model().weights.row(1);
-        assert_near(difference, expected.to_slice().unwrap(), 1e-5);
-        let half = 0.5 * binary.convergence()[1].primal;
-        assert_near([both.convergence()[0].primal], &[half], 1e-6);
     }
 }
 
@@ -157,38 +112,27 @@ fn the_optimum_does_not_depend_on_the_order_of_rows_or_draws() {
     let data = clusters(100, 6, 3, 2);
     let reversed: Vec<usize> = (0..100).rev().collect();
     let other = rows(&data, &reversed).unwrap();
-    for margin in [LinearMargin::OneVsRest, LinearMargin::CrammerSinger] {
-        let (a, b) = (
-            train(&data, margin, 1.0, 1e-9),
-            train(&other, margin, 1.0, 1e-9),
-        );
-        let expected = a.model().weights.as_standard_layout().into_owned();
-        assert_near(
-            b.model().weights.iter().copied(),
-            expected.as_slice().unwrap(),
-            1e-5,
-        );
-        assert_eq!(a, train(&data, margin, 1.0, 1e-9), "same seed, same bits");
-    }
+    let (a, b) = (train(&data, 1.0, 1e-9), train(&other, 1.0, 1e-9));
+    let expected = a.model().weights.as_standard_layout().into_owned();
+    assert_near(
+        b.model().weights.iter().copied(),
+        expected.as_slice().unwrap(),
+        1e-5,
+    );
+    assert_eq!(a, train(&data, 1.0, 1e-9), "same seed, same bits");
 }
 
 #[test]
 fn a_pass_cap_that_is_hit_is_counted() {
     let data = clusters(200, 4, 3, 3);
-    for (margin, n_capped) in [
-        (LinearMargin::OneVsRest, 3),
-        (LinearMargin::CrammerSinger, 1),
-    ] {
-        let params = LinearSvmParams {
-            margin,
-            c: 100.0,
-            tolerance: 1e-9,
-            max_passes: 2,
-        };
-        let svm = params.train(&data, &Seed::new(0)).unwrap();
-        assert_eq!(svm.n_capped(), n_capped);
-        assert!(svm.convergence().iter().all(|end| end.n_passes == 2));
-    }
+    let params = LinearSvmParams {
+        c: 100.0,
+        tolerance: 1e-9,
+        max_passes: 2,
+    };
+    let svm = params.train(&data, &Seed::new(0)).unwrap();
+    assert_eq!(svm.n_capped(), 3);
+    assert!(svm.convergence().iter().all(|end| end.n_passes == 2));
 }
 
 #[test]
@@ -261,24 +205,7 @@ fn the_choice_of_solver_and_margin_is_kept() {
     let trained = linear.fit(&data).unwrap();
     assert!(trained.svm().is_none());
     assert_eq!(trained.c(), trained.chosen().map(|chosen| chosen.best.c));
-    let one = Classifier {
-        multiclass: Multiclass::CrammerSinger,
-        c: Cost::Fixed(0.1),
-        ..Classifier::new(ClassifierKind::LinearSvm)
-    };
-    assert_eq!(
-        one.fit(&data)
-            .unwrap()
-            .scores(data.records.view())
-            .unwrap()
-            .ncols(),
-        3
-    );
     let refused = [
-        Classifier {
-            kind: ClassifierKind::RbfSvm,
-            ..one.clone()
-        },
         Classifier {
             kind: ClassifierKind::RbfSvm,
             ..linear.clone()

@@ -735,7 +735,6 @@ class LinearModel:
     def train(
         features: ArrayLike,
         labels: ArrayLike,
-        multiclass: str,
         c: float,
         tolerance: float,
         max_passes: int,

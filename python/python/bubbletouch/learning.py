@@ -169,7 +169,7 @@ class SVC(_Classifier):
 class LinearSVC(_Classifier):
     """A linear support vector machine without a kernel matrix, by dual coordinate descent.
 
-    C: what a unit of margin violation (hinge) costs, above 0. multi_class: "ovr" or "crammer_singer". tol: the spread of projected
+    C: what a unit of margin violation (hinge) costs, above 0; every class against all others. tol: the spread of projected
     gradients at which it stops. max_iter: passes over the rows. random_state: seed of the order in which rows are visited (None: 0). The intercept
     is regularised with the weights, as LIBLINEAR's: centre the features.
 
@@ -185,13 +185,11 @@ class LinearSVC(_Classifier):
         self,
         C: float = 1.0,
         *,
-        multi_class: str = "ovr",
         tol: float = 1e-3,
         max_iter: int = 1000,
         random_state: int | None = None,
     ) -> None:
         self.C = C
-        self.multi_class = multi_class
         self.tol = tol
         self.max_iter = max_iter
         self.random_state = random_state
@@ -203,7 +201,6 @@ class LinearSVC(_Classifier):
         self._model = _core.LinearModel.train(
             features,
             numbers,
-            self.multi_class,
             float(self.C),
             float(self.tol),
             int(self.max_iter),

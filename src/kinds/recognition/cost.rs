@@ -127,7 +127,7 @@ fn train_s(plan: &Plan, cell: &Cell, n_train: f64, n_classes: f64) -> f64 {
     // Entries of all binary problems.
     let n_entries = match recognition.multiclass {
         Multiclass::OneVsOne => 2.0 * n_train * n_train,
-        Multiclass::OneVsRest | Multiclass::CrammerSinger => n_classes * n_train * n_train,
+        Multiclass::OneVsRest => n_classes * n_train * n_train,
     };
     n_entries * ENTRY_S + 0.5 * PRODUCT_S * n_train * n_train * m
 }

@@ -113,7 +113,7 @@ fn family_bytes(
     let is_kernel_svm = cell.classifier.about().kernel.is_some();
     let kernel_values = match (learned.solver, learned.multiclass) {
         _ if !is_kernel_svm => 0.0,
-        (Solver::CoordinateDescent, _) | (_, Multiclass::CrammerSinger) => 0.0,
+        (Solver::CoordinateDescent, _) => 0.0,
         // At most as many as the solver is allowed.
         _ => of_all.min(solver_memory(learned.solver_memory_gib) as f64),
     };

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use crate::random::Seed;
 use crate::recognition::ClassifierKind;
 use crate::recognition::classifiers::class_model::ClassModel;
-use crate::recognition::classifiers::linear_svm::{LinearMargin, LinearSvmParams};
+use crate::recognition::classifiers::linear_svm::LinearSvmParams;
 use crate::recognition::classifiers::trained_classifier::Model;
 use crate::recognition::data::dataset::{Dataset, rows};
 use crate::recognition::data::scaling::{FittedScaling, Scaling};
@@ -256,9 +256,7 @@ impl Classifier {
     /// What the kernel SVM is trained with, if that is what the options ask for.
     fn kernel_svm(&self, c: f64) -> Option<SvmParams> {
         let kernel = self.kind.about().kernel?(self);
-        let is_kernel_free = self.multiclass == Multiclass::CrammerSinger
-            || self.solver == Solver::CoordinateDescent;
-        (!is_kernel_free).then_some(SvmParams {
+        (self.solver != Solver::CoordinateDescent).then_some(SvmParams {
             kernel,
             multiclass: self.multiclass,
             c,
@@ -271,24 +269,13 @@ impl Classifier {
     /// What the linear SVM without a kernel matrix is trained with.
     fn linear_svm(&self, c: f64) -> Result<LinearSvmParams> {
         let is_linear = self.kind == ClassifierKind::LinearSvm;
-        let margin = match (self.multiclass, self.solver) {
-            (Multiclass::CrammerSinger, Solver::Smo | Solver::CoordinateDescent) if is_linear => {
-                LinearMargin::CrammerSinger
-            }
-            (Multiclass::CrammerSinger, solver) => {
-                let given = format!("crammer_singer with {:?} and {solver:?}", self.kind);
-                let allowed = "linear_svm with its own solver is allowed: leave 'solver' out";
-                return Err(Error::input("multiclass", given, allowed));
-            }
-            (Multiclass::OneVsRest, _) if is_linear => LinearMargin::OneVsRest,
-            (multiclass, _) => {
-                let given = format!("coordinate_descent with {:?} and {multiclass:?}", self.kind);
-                let allowed = "it trains linear_svm with one_vs_rest alone";
-                return Err(Error::input("solver", given, allowed));
-            }
-        };
+        if !is_linear || self.multiclass != Multiclass::OneVsRest {
+            let (kind, multiclass) = (self.kind, self.multiclass);
+            let given = format!("coordinate_descent with {kind:?} and {multiclass:?}");
+            let allowed = "it trains linear_svm with one_vs_rest alone";
+            return Err(Error::input("solver", given, allowed));
+        }
         Ok(LinearSvmParams {
-            margin,
             c,
             tolerance: self.tolerance,
             ..LinearSvmParams::default()

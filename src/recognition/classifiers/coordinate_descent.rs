@@ -70,12 +70,7 @@ impl Rows {
 
 /// Solves one binary problem with y = `sign` (±1 per row): the signed multipliers `y_i a_i`.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
-pub(crate) fn solve(
-    rows: &Rows,
-    sign: &[f64],
-    params: &LinearSvmParams,
-    seed: &Seed,
-) -> Solved<Vec<f64>> {
+pub(crate) fn solve(rows: &Rows, sign: &[f64], params: &LinearSvmParams, seed: &Seed) -> Solved {
     let n_rows = rows.n_rows();
     let mut rng = seed.rng();
     let mut alpha = vec![0.0; n_rows];
@@ -129,7 +124,7 @@ pub(crate) fn solve(
     solved(alpha, sign, params.max_passes, true)
 }
 
-fn solved(alpha: Vec<f64>, sign: &[f64], n_passes: usize, is_capped: bool) -> Solved<Vec<f64>> {
+fn solved(alpha: Vec<f64>, sign: &[f64], n_passes: usize, is_capped: bool) -> Solved {
     Solved {
         multipliers: alpha.iter().zip(sign).map(|(a, y)| a * y).collect(),
         n_passes,

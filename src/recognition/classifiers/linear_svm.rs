@@ -3,10 +3,7 @@
 //! The bias is the weight of an added feature of constant 1, and so is regularised with the others, as in LIBLINEAR
 //! (`intercept_scaling = 1`): centre the features, or expect a bias closer to 0 than the kernel SVM's.
 //!
-//! - One-vs-rest: for each class `½|w|² + C Σ_i max(0, 1 − y_i w·x_i)`, by dual coordinate
-//!   descent.
-//! - Crammer–Singer: all classes in one problem, `½ Σ_k |w_k|² + C Σ_i max_k (1[k ≠ y_i] + w_k·x_i − w_{y_i}·x_i)`, by
-//!   the sequential dual method.
+//! One-vs-rest: for each class `½|w|² + C Σ_i max(0, 1 − y_i w·x_i)`, by dual coordinate descent.
 
 use crate::recognition::classifiers::classifier_about::{ClassifierAbout, PRODUCT_S};
 use crate::recognition::svm::kernel::Kernel;
@@ -15,7 +12,6 @@ use ndarray::{Array1, Array2, ArrayView2, Axis, Zip, s};
 use crate::random::Seed;
 use crate::recognition::classifiers::class_model::{ClassModel, positions};
 use crate::recognition::classifiers::coordinate_descent::{self, Rows};
-use crate::recognition::classifiers::crammer_singer;
 use crate::recognition::classifiers::linear_model::LinearModel;
 use crate::recognition::data::dataset::{Dataset, check_features, check_labels, distinct};
 use crate::{Error, Result};
@@ -29,20 +25,9 @@ pub(crate) const ABOUT: ClassifierAbout = ClassifierAbout {
 /// Passes over the rows after which a solver gives up: scikit-learn's default for LinearSVC.
 pub const MAX_PASSES: usize = 1000;
 
-/// How one linear SVM tells many classes apart.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum LinearMargin {
-    /// One binary problem per class against all others.
-    OneVsRest,
-    /// One problem in which the true class must beat every other by a margin of 1.
-    CrammerSinger,
-}
-
 /// What a linear SVM is trained with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinearSvmParams {
-    /// How it tells many classes apart.
-    pub margin: LinearMargin,
     /// C > 0: what a unit of margin violation costs.
     pub c: f64,
     /// The largest violation of the optimality conditions (spread of projected gradients) when the solver stops, in
@@ -53,10 +38,9 @@ pub struct LinearSvmParams {
 }
 
 impl Default for LinearSvmParams {
-    /// One-vs-rest, C = 1, tolerance 1e-3, [`MAX_PASSES`].
+    /// C = 1, tolerance 1e-3, [`MAX_PASSES`].
     fn default() -> Self {
         Self {
-            margin: LinearMargin::OneVsRest,
             c: 1.0,
             tolerance: 1e-3,
             max_passes: MAX_PASSES,
@@ -87,9 +71,9 @@ pub struct LinearSvm {
 
 /// The multipliers of a solved problem, and how the solver ended.
 #[derive(Clone, Debug)]
-pub(crate) struct Solved<A> {
+pub(crate) struct Solved {
     /// Signed multipliers: `w = Σ a_i x_i`.
-    pub multipliers: A,
+    pub multipliers: Vec<f64>,
     pub n_passes: usize,
     pub is_capped: bool,
 }
@@ -105,30 +89,21 @@ impl LinearSvmParams {
         let classes = checked_classes(data)?;
         let rows = Rows::new(data.records.view())?;
         let label = positions(data.targets.view(), &classes);
-        let n_classes = classes.len();
-        Ok(match self.margin {
-            LinearMargin::OneVsRest => {
-                let mut multipliers = Array2::zeros((n_classes, label.len()));
-                let mut ends = Vec::with_capacity(n_classes);
-                for class in 0..n_classes {
-                    let sign: Vec<f64> = label
-                        .iter()
-                        .map(|&label| if label == class { 1.0 } else { -1.0 })
-                        .collect();
-                    let seed = seed.named("class").numbered(class as u64);
-                    let solved = coordinate_descent::solve(&rows, &sign, self, &seed);
-                    multipliers
-                        .row_mut(class)
-                        .assign(&Array1::from(solved.multipliers));
-                    ends.push((solved.n_passes, solved.is_capped));
-                }
-                self.against_rest(data, classes, &label, multipliers, &ends)
-            }
-            LinearMargin::CrammerSinger => {
-                let solved = crammer_singer::solve(&rows, &label, n_classes, self, seed);
-                self.all_at_once(data, classes, &label, solved)
-            }
-        })
+        let mut multipliers = Array2::zeros((classes.len(), label.len()));
+        let mut ends = Vec::with_capacity(classes.len());
+        for class in 0..classes.len() {
+            let sign: Vec<f64> = label
+                .iter()
+                .map(|&label| if label == class { 1.0 } else { -1.0 })
+                .collect();
+            let seed = seed.named("class").numbered(class as u64);
+            let solved = coordinate_descent::solve(&rows, &sign, self, &seed);
+            multipliers
+                .row_mut(class)
+                .assign(&Array1::from(solved.multipliers));
+            ends.push((solved.n_passes, solved.is_capped));
+        }
+        Ok(self.against_rest(data, classes, &label, multipliers, &ends))
     }
 
     fn check(&self) -> Result<()> {
@@ -181,42 +156,6 @@ impl LinearSvmParams {
             convergence,
         }
     }
-
-    /// Weights and duality gap of the Crammer–Singer problem, from its multipliers (n_rows × n_classes).
-    fn all_at_once(
-        &self,
-        data: &Dataset,
-        classes: Vec<usize>,
-        label: &[usize],
-        solved: Solved<Array2<f64>>,
-    ) -> LinearSvm {
-        let by_class = solved.multipliers.t().as_standard_layout().into_owned();
-        let model = weights(&by_class, data.records.view());
-        let values = data.records.dot(&model.weights.t()) + &model.bias;
-        let half = 0.5 * squared_norms(&model).sum();
-        let mut loss = 0.0;
-        let mut sum = 0.0;
-        for (row, &truth) in label.iter().enumerate() {
-            let values = values.row(row);
-            let worst = (0..values.len())
-                .filter(|&class| class != truth)
-                .map(|class| values[class] + 1.0)
-                .fold(values[truth], f64::max);
-            loss += worst - values[truth];
-            // The multipliers of a row sum to 0: that of its class balances the others, each with a margin of 1.
-            sum += solved.multipliers[[row, truth]];
-        }
-        LinearSvm {
-            classes,
-            model,
-            convergence: vec![Convergence {
-                primal: half + self.c * loss,
-                dual: sum - half,
-                n_passes: solved.n_passes,
-                is_capped: solved.is_capped,
-            }],
-        }
-    }
 }
 
 impl LinearSvm {
@@ -225,7 +164,7 @@ impl LinearSvm {
         &self.model
     }
 
-    /// How each problem's solver ended: one per class, or a single one for Crammer–Singer.
+    /// How each problem's solver ended: one per class.
     pub fn convergence(&self) -> &[Convergence] {
         &self.convergence
     }

@@ -7,7 +7,6 @@ mod classifier_about;
 pub mod class_model;
 pub mod classifier;
 pub(crate) mod coordinate_descent;
-pub(crate) mod crammer_singer;
 pub(crate) mod lbfgs;
 pub mod linear_model;
 pub(crate) mod ranked;

@@ -54,9 +54,6 @@ pub enum Multiclass {
     OneVsOne,
     /// One classifier per class against all others; the largest decision value wins. On a tie, the lowest index.
     OneVsRest,
-    /// All classes in one problem, by Crammer and Singer: the true class must beat every other by a margin of 1. Linear
-    /// only; see [`linear_svm`](crate::recognition::classifiers::linear_svm). The largest decision value wins, on a tie the lowest index.
-    CrammerSinger,
 }
 
 impl Multiclass {
@@ -66,7 +63,7 @@ impl Multiclass {
             Self::OneVsOne => (0..n)
                 .flat_map(|first| (first + 1..n).map(move |second| (first, Some(second))))
                 .collect(),
-            Self::OneVsRest | Self::CrammerSinger => (0..n).map(|class| (class, None)).collect(),
+            Self::OneVsRest => (0..n).map(|class| (class, None)).collect(),
         }
     }
 }
@@ -270,13 +267,6 @@ impl SvmParams {
                 "solver",
                 "coordinate_descent",
                 "smo solves the dual problem of a kernel; coordinate_descent is for linear SVMs, one-vs-rest",
-            ));
-        }
-        if self.multiclass == Multiclass::CrammerSinger {
-            return Err(Error::input(
-                "multiclass",
-                "crammer_singer with a kernel",
-                "it is linear only: one_vs_one or one_vs_rest is allowed here",
             ));
         }
         Ok(())
