@@ -47,7 +47,7 @@ impl Feature for Descriptors {
         }
         let (of_levels, out) = out.split_at_mut(3 + 3 * N_LEVELS);
         let (of_moments, profile) = out.split_at_mut(3 * N_MOMENTS);
-        let counts = Counts::of(image, self.full_scale / N_LEVELS as f64);
+        let counts = count_levels(image, self.full_scale / N_LEVELS as f64);
         of_levels[..3].copy_from_slice(&[deepest, image.sum, counts.squares.sqrt()]);
         let levels = of_levels[3..].chunks_exact_mut(N_LEVELS);
         let Counts {
@@ -81,30 +81,18 @@ struct Counts {
     squares: f64,
 }
 
-impl Counts {
-    fn of(image: &Image, step: f64) -> Self {
-        let mut counts = Self::default();
-        let relative_step = image.largest / (N_LEVELS + 1) as f64;
-        let steps = (step, relative_step);
-        count_levels(&mut counts, &image.touched.value, steps, image.largest);
-        counts
-    }
-}
-
 #[multiversion(targets("x86_64+avx2"))]
-fn count_levels(
-    counts: &mut Counts,
-    values: &[f64],
-    (step, relative_step): (f64, f64),
-    deepest: f64,
-) {
-    for value in values {
+fn count_levels(image: &Image, step: f64) -> Counts {
+    let mut counts = Counts::default();
+    let relative_step = image.largest / (N_LEVELS + 1) as f64;
+    for value in &image.touched.value {
         counts.squares += value * value;
         count(&mut counts.fixed, (value / step) as i32);
         count(&mut counts.relative, (value / relative_step) as i32);
-        let least = ((deepest - value) / step).ceil() as i32;
+        let least = ((image.largest - value) / step).ceil() as i32;
         count(&mut counts.behind, N_LEVELS as i32 + 1 - least.max(1));
     }
+    counts
 }
 
 /// One more at a level, counted from 1; the last level takes what is above it.

@@ -63,7 +63,7 @@ impl<T: Scalar> Pairs<T> {
         let rows = kernel_values.rows().into_iter();
         let rows = rows.map(|row| row.to_slice().expect("they lie row by row"));
         rows.map(|kernel_values| {
-            unbeaten(&mut Known {
+            unbeaten(&mut ByKernel {
                 pairs: self,
                 kernel_values,
             })
@@ -79,8 +79,13 @@ impl<T: Scalar> Pairs<T> {
         kernel: &KernelFunction,
     ) -> Vec<Option<usize>> {
         let rows = (0..rows.len()).map(|row| rows.row(row));
-        rows.map(|row| unbeaten(&mut Asked::new(self, row, vectors, kernel)))
-            .collect()
+        rows.map(|row| {
+            unbeaten(&mut ByKernel {
+                pairs: self,
+                kernel_values: Asked::new(row, vectors, kernel),
+            })
+        })
+        .collect()
     }
 
     /// The terms of a pair, and ρ.
@@ -118,13 +123,27 @@ trait Decides<T> {
     fn value(&mut self, pair: usize) -> (T, T, usize, f64);
 }
 
-/// Kernel values with all vectors.
-struct Known<'a, T> {
-    pairs: &'a Pairs<T>,
-    kernel_values: &'a [T],
+/// Kernel values of a row, per vector.
+trait KernelValues<T> {
+    /// All values; those of these terms are right.
+    fn with(&mut self, terms: &[(u32, T)]) -> &[T];
 }
 
-impl<T: Scalar> Decides<T> for Known<'_, T> {
+/// All that there are.
+impl<T> KernelValues<T> for &[T] {
+    #[inline(always)]
+    fn with(&mut self, _: &[(u32, T)]) -> &[T] {
+        self
+    }
+}
+
+/// Pairs by kernel values.
+struct ByKernel<'a, T, K> {
+    pairs: &'a Pairs<T>,
+    kernel_values: K,
+}
+
+impl<T: Scalar, K: KernelValues<T>> Decides<T> for ByKernel<'_, T, K> {
     #[inline(always)]
     fn n_classes(&self) -> usize {
         self.pairs.n_classes
@@ -133,14 +152,13 @@ impl<T: Scalar> Decides<T> for Known<'_, T> {
     #[inline(always)]
     fn value(&mut self, pair: usize) -> (T, T, usize, f64) {
         let (terms, rho) = self.pairs.of(pair);
-        let (sum, size) = sum_and_size(terms, self.kernel_values);
+        let (sum, size) = sum_and_size(terms, self.kernel_values.with(terms));
         (sum, size, terms.len(), rho)
     }
 }
 
 /// Kernel values that are computed when the first pair asks for them.
 struct Asked<'a, T> {
-    pairs: &'a Pairs<T>,
     kernel: &'a KernelFunction,
     vectors: &'a Points<T>,
     /// The row and its squared norm.
@@ -156,14 +174,8 @@ struct Asked<'a, T> {
 }
 
 impl<'a, T: Scalar> Asked<'a, T> {
-    fn new(
-        pairs: &'a Pairs<T>,
-        row: (&'a [T], T),
-        vectors: &'a Points<T>,
-        kernel: &'a KernelFunction,
-    ) -> Self {
+    fn new(row: (&'a [T], T), vectors: &'a Points<T>, kernel: &'a KernelFunction) -> Self {
         Self {
-            pairs,
             kernel,
             vectors,
             row,
@@ -175,9 +187,11 @@ impl<'a, T: Scalar> Asked<'a, T> {
             values: Vec::new(),
         }
     }
+}
 
-    /// Computes the kernel values of these terms that are not known.
-    fn ask(&mut self, terms: &[(u32, T)]) {
+impl<T: Scalar> KernelValues<T> for Asked<'_, T> {
+    /// Computes those of the terms that are not known.
+    fn with(&mut self, terms: &[(u32, T)]) -> &[T] {
         self.asked.clear();
         self.others.clear();
         self.norms.clear();
@@ -199,21 +213,7 @@ impl<'a, T: Scalar> Asked<'a, T> {
         for (vector, &value) in self.asked.iter().zip(&self.values) {
             self.kernel_values[*vector as usize] = value;
         }
-    }
-}
-
-impl<T: Scalar> Decides<T> for Asked<'_, T> {
-    #[inline(always)]
-    fn n_classes(&self) -> usize {
-        self.pairs.n_classes
-    }
-
-    #[inline(always)]
-    fn value(&mut self, pair: usize) -> (T, T, usize, f64) {
-        let (terms, rho) = self.pairs.of(pair);
-        self.ask(terms);
-        let (sum, size) = sum_and_size(terms, &self.kernel_values);
-        (sum, size, terms.len(), rho)
+        &self.kernel_values
     }
 }
 
