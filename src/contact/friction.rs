@@ -12,6 +12,9 @@
 //! `coulomb` has the step of u in closed form: the predictor u + Δ, returned to the cone of the normal force at the step's end.
 //! Rolling has X₁ a − X₀ a and X₁ b − X₀ b that cancel to second order, and drags nothing.
 //!
+//! What drags a free object's contacts is not known before its balance, which these tips hold: there b is left out, and u + Δ returned to the
+//! cone radially (`balance::tips`); on a straight way that is the same.
+//!
 //! **What is normal**: the sensor's axis, f_n = f = k δ (+ c δ̇ with a damper), not the contact normal n_c. A friction across
 //! the axis has no part along it, so δ and f stay as they are without friction, in closed form; no wedge can jam a taxel; and
 //! the cone is one that the sensor's own readings show. The taxel slides on rigid guides, so what the inclined contact pushes
@@ -29,6 +32,7 @@
 //! carries k s as far as its spring says; what its stop carries beyond is not known, so its friction is the least that it can be; press
 //! counts such taxels.
 
+use super::balance::{Tip, TipLoad};
 use super::coulomb::{Dragged, drag};
 use super::{DamperState, TaxelContact, Wrench};
 use crate::error::Result;
@@ -136,6 +140,9 @@ struct Held {
     object: usize,
     /// The material point that it touches, metres, in the object's frame.
     point: DVec3,
+    /// Where that is, and where the friction acts, metres, in the patch frame.
+    place: DVec3,
+    acts_at: DVec3,
     /// u, metres, along x and y of the taxel's frame.
     displacement: DVec2,
 }
@@ -181,8 +188,53 @@ impl FrictionState {
 
     /// u of one taxel along x and y of its [frame](crate::world::Layout::frame), metres; zero out of contact.
     pub fn displacement(&self, taxel: usize) -> DVec2 {
+        self.held(taxel)
+            .map_or(DVec2::ZERO, |held| held.displacement)
+    }
+
+    fn held(&self, taxel: usize) -> Option<&Held> {
         let found = self.held.binary_search_by_key(&taxel, |held| held.taxel);
-        found.map_or(DVec2::ZERO, |index| self.held[index].displacement)
+        found.ok().map(|index| &self.held[index])
+    }
+
+    /// The tips in contact, ascending by taxel: what holds free objects in the next step.
+    pub fn tips(&self) -> impl Iterator<Item = Tip> {
+        self.held.iter().map(|held| Tip {
+            taxel: held.taxel,
+            object: held.object,
+            point: held.point,
+            place: held.place,
+            displacement: held.displacement,
+            shear: *self.shears.at(held.taxel),
+            force: self.forces[held.taxel].z,
+        })
+    }
+
+    /// From now on an object is held by these contacts (ascending) alone, at this pose, as if it had just been put there.
+    pub fn put(
+        &mut self,
+        patch: &Patch,
+        contacts: &[TaxelContact],
+        (object, patch_from_object): (usize, &Pose),
+    ) {
+        self.held.retain(|held| held.object != object);
+        let to_object = patch_from_object.inverse();
+        for contact in contacts.iter().filter(|contact| contact.object == object) {
+            let taxel = contact.taxel;
+            if let Err(at) = self.held.binary_search_by_key(&taxel, |held| held.taxel) {
+                let force = patch.taxels().at(taxel).stiffness * contact.deflection;
+                self.forces[taxel] = DVec3::new(0.0, 0.0, force);
+                let held = Held {
+                    taxel,
+                    object,
+                    point: to_object.transform_point(contact.point),
+                    place: contact.point,
+                    acts_at: contact.point,
+                    displacement: DVec2::ZERO,
+                };
+                self.held.insert(at, held);
+            }
+        }
     }
 
     /// A step to the end of which the patch was pressed with these contacts (ascending, as a press gives them) by objects at
@@ -196,6 +248,22 @@ impl FrictionState {
         contacts: &[TaxelContact],
         patch_from_objects: &[Pose],
         normal: NormalForce,
+    ) -> GripCounts {
+        self.step_with(patch, contacts, patch_from_objects, normal, &[])
+    }
+
+    /// The same where tips hold free objects as their [balance](super::balance) says (ascending by taxel): what it put to rest with the
+    /// [tips](Self::tips) of the step before.
+    ///
+    /// # Panics
+    /// If a contact has a taxel or an object that there is not.
+    pub fn step_with(
+        &mut self,
+        patch: &Patch,
+        contacts: &[TaxelContact],
+        patch_from_objects: &[Pose],
+        normal: NormalForce,
+        held_at_rest: &[TipLoad],
     ) -> GripCounts {
         std::mem::swap(&mut self.held, &mut self.before);
         self.held.clear();
@@ -217,8 +285,15 @@ impl FrictionState {
             let frame = patch.layout().frame(taxel);
             let end = &patch_from_objects[contact.object];
             let point = end.inverse().transform_point(contact.point);
-            let dragged = match (held, self.poses.get(contact.object)) {
-                (Some(held), Some(start)) => {
+            let at_rest = held_at_rest.binary_search_by_key(&taxel, |tip| tip.taxel);
+            let at_rest = at_rest.ok().map(|at| &held_at_rest[at]);
+            let at_rest = at_rest.filter(|tip| tip.object == contact.object);
+            let dragged = match (at_rest, held, self.poses.get(contact.object)) {
+                (Some(tip), ..) => Dragged {
+                    displacement: tip.displacement,
+                    has_slipped: tip.has_slipped,
+                },
+                (None, Some(held), Some(start)) => {
                     let moved = |p| end.transform_point(p) - start.transform_point(p);
                     let motion = 0.5 * (moved(held.point) + moved(point));
                     let limit = self.shears.at(taxel).reach(force);
@@ -230,6 +305,8 @@ impl FrictionState {
                 taxel,
                 object: contact.object,
                 point,
+                place: contact.point,
+                acts_at: at_rest.map_or(contact.point, |tip| tip.place),
                 displacement: dragged.displacement,
             });
             let friction = self.shears.at(taxel).stiffness * dragged.displacement;
@@ -253,9 +330,12 @@ impl FrictionState {
         let (mut springs, mut friction) = (Wrench::default(), Wrench::default());
         for contact in contacts {
             let taxel = contact.taxel;
-            let tangential = patch.layout().frame(taxel) * self.friction(taxel).extend(0.0);
             springs = springs + contact.push(self.forces[taxel].z);
-            friction = friction + Wrench::at(contact.point, -tangential);
+            if let Some(held) = self.held(taxel) {
+                let force = self.shears.at(taxel).stiffness * held.displacement;
+                let force = patch.layout().frame(taxel) * force.extend(0.0);
+                friction = friction + Wrench::at(held.acts_at, -force);
+            }
         }
         FrictionLoad {
             on_object: springs + friction,

@@ -3,9 +3,11 @@
 use super::frame::{Held, ObjectReading};
 use super::plan::ScenePlan;
 use super::plan_object::Movement;
+use super::plan_patch::PlannedPatch;
 use super::skin_state::{OUT_OF_REACH, PlacedObjects, SkinState};
 use crate::contact::balance::{
-    Balance, Balancer, FreeObject, Ground, Obstacle, Outcome, PlacedSkin, TaxelLoad, Touch, Touched,
+    Balance, Balancer, FreeObject, Ground, Obstacle, Outcome, PlacedSkin, TaxelLoad, Tip, TipLoad,
+    Touch, Touched,
 };
 use crate::contact::{Workspace, press_with_contacts};
 use crate::error::Result;
@@ -33,6 +35,8 @@ struct Free {
     mass: f64,
     center_of_mass: glam::DVec3,
     reading: ObjectReading,
+    /// It has been put where it is, and not been at rest since.
+    is_put: bool,
 }
 
 impl FreeObjects {
@@ -51,6 +55,7 @@ impl FreeObjects {
                 mass,
                 center_of_mass,
                 reading: at_start(start),
+                is_put: true,
             }),
         });
         Self {
@@ -69,6 +74,7 @@ impl FreeObjects {
     pub fn put(&mut self, object: usize, pose: Pose) {
         for free in self.all.iter_mut().filter(|free| free.object == object) {
             free.reading = at_start(pose);
+            free.is_put = true;
         }
     }
 
@@ -76,7 +82,7 @@ impl FreeObjects {
     pub fn settle(
         &mut self,
         plan: &ScenePlan,
-        skins: &[SkinState],
+        skins: &mut [SkinState],
         objects: &mut PlacedObjects,
         [time, dt]: [f64; 2],
     ) -> Result<bool> {
@@ -87,17 +93,27 @@ impl FreeObjects {
             objects.poses[free.object] = OUT_OF_REACH;
         }
         self.push_by_others(plan, skins, objects);
-        let skins = skins.iter().zip(&plan.patches).zip(&self.pushed);
+        self.hold_by_tips(plan, skins, objects);
+        let is_there = |free: &&mut Free| !matches!(free.reading.held, Held::Escaped { .. });
+        let mut there: Vec<&mut Free> = self.all.iter_mut().filter(is_there).collect();
+        let own = |tip: Tip| {
+            let object = there.iter().position(|free| free.object == tip.object)?;
+            Some(Tip { object, ..tip })
+        };
+        let tips: Vec<Vec<Tip>> = skins
+            .iter()
+            .map(|skin| skin.tips().filter_map(own).collect())
+            .collect();
+        let skins = skins.iter().zip(&plan.patches).zip(&self.pushed).zip(&tips);
         let skins: Vec<PlacedSkin> = skins
-            .map(|((skin, patch), pushed)| PlacedSkin {
+            .map(|(((skin, patch), pushed), tips)| PlacedSkin {
                 patch: &patch.skin,
                 world_from_patch: skin.pose,
                 pushed,
                 before: (patch.remembers() && dt.is_finite()).then(|| (skin.deflection(), dt)),
+                tips,
             })
             .collect();
-        let is_there = |free: &&mut Free| !matches!(free.reading.held, Held::Escaped { .. });
-        let mut there: Vec<&mut Free> = self.all.iter_mut().filter(is_there).collect();
         let bodies = there.iter().map(|free| {
             FreeObject::new(spheres(plan, free.object), free.mass, free.center_of_mass)
         });
@@ -133,6 +149,16 @@ impl FreeObjects {
         loads.filter(move |load| load.skin == patch)
     }
 
+    /// What holds them on a patch with friction, in the order of its taxels, by the scene's numbers of objects.
+    pub fn tips_on(&self, patch: usize) -> Vec<TipLoad> {
+        let tips = self.balancer.tips().iter();
+        let own = tips.filter(|tip| tip.skin == patch).map(|tip| TipLoad {
+            object: self.there[tip.object],
+            ..*tip
+        });
+        own.collect()
+    }
+
     /// What rigid things carry of them, by the scene's numbers of objects and planes.
     pub fn touches(&self) -> impl Iterator<Item = Touch> {
         self.balancer.touches().iter().map(|touch| Touch {
@@ -146,6 +172,29 @@ impl FreeObjects {
             },
             ..*touch
         })
+    }
+
+    /// The tips of patches with friction hold those that were put somewhere, where they are.
+    fn hold_by_tips(
+        &mut self,
+        plan: &ScenePlan,
+        skins: &mut [SkinState],
+        objects: &mut PlacedObjects,
+    ) {
+        let has_friction = plan.patches.iter().any(PlannedPatch::has_friction);
+        for free in self.all.iter_mut().filter(|free| free.is_put) {
+            free.is_put = false;
+            if !has_friction {
+                continue;
+            }
+            let mut only = objects.clone();
+            only.poses.fill(OUT_OF_REACH);
+            only.poses[free.object] = free.reading.pose;
+            for (skin, patch) in skins.iter_mut().zip(&plan.patches) {
+                let one = (free.object, &only);
+                skin.put(patch, &plan.models, one, &mut self.workspace);
+            }
+        }
     }
 
     /// How far the objects that are not free push each patch.

@@ -22,8 +22,8 @@
 //! A scene begins as if it had stood as it does at t = 0 for long. One without dampers, friction, free and pushed objects remembers
 //! nothing, so it is evaluated at its frames only, with the same result.
 //!
-//! What is not modelled: free objects on a skin with friction are refused, since their balance holds no shear forces; planes and
-//! objects hold free ones without friction; imposed objects touch free ones and skin, not each other or planes; free objects neither swing nor bounce (\[BT\] is quasi-static); an
+//! What is not modelled: planes and objects hold free ones without friction, and so does skin that a free object meets only on its way to rest
+//! (what it touched when a step began, or where it was put, holds it); imposed objects touch free ones and skin, not each other or planes; free objects neither swing nor bounce (\[BT\] is quasi-static); an
 //! object that has escaped touches nothing any more.
 //!
 //! ```

@@ -74,7 +74,7 @@ impl Reader<'_> {
                     .check
                     .error(key, "a free object with a motion", allowed));
             }
-            (Some(free), None) => self.free(key, spec, free, patches, &model)?,
+            (Some(free), None) => self.free(key, spec, free, &model)?,
         };
         let press = spec.press.as_ref();
         let press = press.map(|press| self.press(key, press, patches));
@@ -198,22 +198,12 @@ impl Reader<'_> {
         key: &str,
         spec: &ObjectSpec,
         free: &FreeSpec,
-        patches: &[PlannedPatch],
         model: &Model,
     ) -> Result<Movement> {
         if spec.press.is_some() {
             let given = "a free object that is pushed";
             let allowed = "free, or press beside a motion";
             return Err(self.check.error(&format!("{key}.press"), given, allowed));
-        }
-        if let Some(patch) = patches.iter().find(|patch| patch.has_friction()) {
-            let given = format!(
-                "a free object beside friction on patch `{}`",
-                patch.skin.name()
-            );
-            let allowed =
-                "patches without friction: the balance of a free object holds no shear forces";
-            return Err(self.check.error(&format!("{key}.free"), given, allowed));
         }
         if model.spheres().is_none() {
             let given = "a free object of triangles";

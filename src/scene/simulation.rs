@@ -211,7 +211,7 @@ impl<'p> Simulation<'p> {
         }
         let is_settled = self
             .free
-            .settle(plan, &self.skins, &mut self.objects, [time, dt])?;
+            .settle(plan, &mut self.skins, &mut self.objects, [time, dt])?;
         self.n_unsettled += usize::from(!is_settled);
         Ok(())
     }
@@ -219,9 +219,16 @@ impl<'p> Simulation<'p> {
     /// Patches feel a step of which nobody is told.
     fn feel(&mut self, dt: f64) {
         let plan = self.plan;
-        for (skin, patch) in self.skins.iter_mut().zip(&plan.patches) {
+        for (number, (skin, patch)) in self.skins.iter_mut().zip(&plan.patches).enumerate() {
             if patch.remembers() || self.stepping == Stepping::Always {
-                skin.feel(patch, &plan.models, &self.objects, dt, Detail::Deflections);
+                let tips = self.free.tips_on(number);
+                skin.feel(
+                    patch,
+                    &plan.models,
+                    &self.objects,
+                    (dt, &tips),
+                    Detail::Deflections,
+                );
             }
         }
     }
@@ -243,7 +250,8 @@ impl<'p> Simulation<'p> {
         let patches = patches.zip(&mut self.frame.patches).enumerate();
         for (number, ((skin, patch), reading)) in patches {
             let loads: Vec<_> = self.free.on_patch(number).collect();
-            skin.step_and_read(patch, &plan.models, &self.objects, dt, &loads, reading);
+            let carried = (&loads[..], &self.free.tips_on(number)[..]);
+            skin.step_and_read(patch, &plan.models, &self.objects, dt, carried, reading);
             if let Some(signal) = &patch.signal {
                 let name = self.noise[number].numbered(self.n_read as u64);
                 signal.read(reading, &name, share, &mut self.scratch);

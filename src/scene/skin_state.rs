@@ -3,7 +3,7 @@
 use super::frame::PatchReading;
 use super::mount::Mount;
 use super::plan_patch::PlannedPatch;
-use crate::contact::balance::TaxelLoad;
+use crate::contact::balance::{TaxelLoad, Tip, TipLoad};
 use crate::contact::{
     Contact, DamperState, FrictionState, GripCounts, NormalForce, TaxelContact, Workspace, Wrench,
     axial_load, press_at_pose, press_with_contacts,
@@ -105,22 +105,42 @@ impl SkinState {
         self.workspace.hold(contacts);
     }
 
+    /// Its tips that hold something, by the scene's numbers of objects.
+    pub fn tips(&self) -> impl Iterator<Item = Tip> {
+        self.friction.iter().flat_map(FrictionState::tips)
+    }
+
+    /// Its tips hold an object by what it touches where it is, as if it had just been put there; all others are out of reach.
+    pub fn put(
+        &mut self,
+        patch: &PlannedPatch,
+        models: &[Model],
+        (object, only): (usize, &PlacedObjects),
+        workspace: &mut Workspace,
+    ) {
+        if let Some(friction) = &mut self.friction {
+            let poses: Vec<Pose> = only.seen_by(patch, &self.pose).collect();
+            press_with_contacts(&patch.skin, models, &poses, workspace);
+            friction.put(&patch.skin, workspace.contacts(), (object, &poses[object]));
+        }
+    }
+
     /// How far its taxels are in, metres.
     pub fn deflection(&self) -> &[f64] {
         &self.damper.deflection
     }
 
-    /// [Feels](Self::feel), and reports; `loads`: what its taxels carry of free objects, taxel by taxel.
+    /// [Feels](Self::feel), and reports; `loads` and `tips`: what its taxels carry of free objects, taxel by taxel.
     pub fn step_and_read(
         &mut self,
         patch: &PlannedPatch,
         models: &[Model],
         objects: &PlacedObjects,
         dt: f64,
-        loads: &[&TaxelLoad],
+        (loads, tips): (&[&TaxelLoad], &[TipLoad]),
         reading: &mut PatchReading,
     ) {
-        self.feel(patch, models, objects, dt, Detail::Contacts);
+        self.feel(patch, models, objects, (dt, tips), Detail::Contacts);
         let contacts = self.workspace.contacts();
         reading.pose = self.pose;
         reading.deflection.clone_from(&self.damper.deflection);
@@ -138,7 +158,7 @@ impl SkinState {
         reading.wrench = on_patch(on_objects(patch, contacts, loads, forces));
         if let (Some(state), Some(friction)) = (&self.friction, &mut reading.friction) {
             let load = state.load(&patch.skin, contacts);
-            reading.wrench = on_patch(load.on_object);
+            reading.wrench = reading.wrench + on_patch(load.friction);
             friction.shear = on_patch(load.friction).force;
             friction.n_sticking = self.grips.n_sticking;
             friction.n_slipping = self.grips.n_slipping;
@@ -152,13 +172,13 @@ impl SkinState {
         }
     }
 
-    /// Feels for `dt` seconds what is there at their end; for an endless `dt`, as if it had been there for long.
+    /// Feels for `dt` seconds what is there at their end; for an endless `dt`, as if it had been there for long. `tips`: what holds free objects.
     pub fn feel(
         &mut self,
         patch: &PlannedPatch,
         models: &[Model],
         objects: &PlacedObjects,
-        dt: f64,
+        (dt, tips): (f64, &[TipLoad]),
         detail: Detail,
     ) {
         let is_reached = self.workspace.holds_any() || objects.can_reach(patch, &self.pose);
@@ -183,7 +203,8 @@ impl SkinState {
         if let Some(friction) = &mut self.friction {
             // Drags the tips along with what touches them.
             let normal = NormalForce::Dampers(&self.damper);
-            self.grips = friction.step(&patch.skin, workspace.contacts(), &self.poses, normal);
+            let contacts = workspace.contacts();
+            self.grips = friction.step_with(&patch.skin, contacts, &self.poses, normal, tips);
         }
         let mut deflections = self.damper.deflection.iter();
         self.is_idle = !is_reached && deflections.all(|&deflection| deflection == 0.0);

@@ -17,6 +17,7 @@ mod balance_limits;
 mod dynamics_laws;
 mod force;
 mod friction;
+mod held;
 mod laws;
 mod limits;
 mod many_bodies;

@@ -224,31 +224,70 @@ fn a_recording_of_a_patch_with_friction_has_forces_in_three_dimensions() {
     assert!(slipping.eq(expected));
 }
 
-#[test]
-fn a_free_object_on_a_skin_with_friction_is_refused_with_the_reason() {
-    let text = |friction| {
-        format!(
-            r#"
-            title = "A ball on a bed"
-            [[patches]]
-            name = "bed"
-            layout = {{ grid = {{ nx = 10, ny = 10, pitch_mm = 4.0 }} }}
-            stroke_mm = 8.0
-            friction = {friction}
-            [[objects]]
-            name = "ball"
-            object = "tennis"
-            free = {{ mass_kg = 0.058 }}
-            "#
-        )
-    };
-    let error = try_plan(&text("0.5"), Path::new("")).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "s.toml, key objects.ball.free: a free object beside friction on patch `bed`; patches without friction: the balance of a \
-         free object holds no shear forces"
+/// A plate of spheres lies on a tray, which goes sideways and then tilts by 12 degrees.
+fn on_a_tray(folder: &Path, friction: f64) -> Vec<Frame> {
+    let places = (0..25).map(|k| (4 * (k % 5) - 8, 4 * (k / 5) - 8));
+    let rows = places.map(|(x, y)| format!("{x},{y},0,4\n"));
+    let table = format!("x,y,z,r\n{}", rows.collect::<String>());
+    fs::write(folder.join("plate.csv"), table).unwrap();
+    let text = format!(
+        r#"
+        title = "A plate on a tray"
+        output_hz = 20.0
+        [[robots]]
+        name = "tray"
+        floating = true
+        motion = {{ phases = [
+            {{ duration_s = 0.5, linear_mm_per_s = [40.0, 20.0, 0.0] }},
+            {{ duration_s = 1.0, angular_deg_per_s = [0.0, 12.0, 0.0] }},
+        ] }}
+        [[patches]]
+        name = "bed"
+        robot = "tray"
+        layout = {{ grid = {{ nx = 24, ny = 24, pitch_mm = 2.0 }} }}
+        stroke_mm = 6.0
+        friction = {friction}
+        [[objects]]
+        name = "plate"
+        spheres = "plate.csv"
+        unit = "mm"
+        at = {{ position_mm = [0.3, -0.2, 4.0] }}
+        free = {{ mass_kg = 0.15, center_of_mass_mm = [0.0, 0.0, 0.0] }}
+        "#
     );
-    assert!(try_plan(&text("0.0"), Path::new("")).is_ok());
+    frames(&try_plan(&text, folder).unwrap())
+}
+
+#[test]
+fn a_skin_with_friction_carries_a_free_object_along_and_on_a_slope() {
+    let folder = tempfile::tempdir().unwrap();
+    let frames = on_a_tray(folder.path(), 0.6);
+    let weight = 0.15 * 9.81;
+    let seen = |frame: &Frame| frame.objects[0].pose.seen_from(&frame.patches[0].pose);
+    let start = seen(&frames[0]);
+    for frame in &frames {
+        assert_eq!(frame.objects[0].held, Held::AtRest, "{}", frame.time);
+        let patch = &frame.patches[0];
+        // What it feels is the weight, in its own frame.
+        let down = patch.pose.rotation.conjugate() * DVec3::new(0.0, 0.0, -weight);
+        assert!((patch.wrench.force - down).length() < 1e-6 * weight);
+        let friction = patch.friction.as_ref().unwrap();
+        assert!(friction.n_sticking + friction.n_slipping > 20);
+        let moved = seen(frame).translation - start.translation;
+        assert!(moved.length() < 1e-3, "{}: {moved}", frame.time);
+    }
+    let last = frames.last().unwrap();
+    let slope = last.patches[0].pose.rotation * DVec3::X;
+    let shear = last.patches[0].friction.as_ref().unwrap().shear.x;
+    let pull = -weight * slope.z;
+    assert!(
+        pull > 0.2 * weight && shear > 0.5 * pull,
+        "{shear} of {pull}"
+    );
+
+    let frames = on_a_tray(folder.path(), 0.02);
+    let last = frames.last().unwrap();
+    assert!(matches!(last.objects[0].held, Held::Escaped { .. }));
 }
 
 #[test]

@@ -9,6 +9,8 @@ use glam::{DQuat, DVec3};
 /// through it, times its arm (metres).
 #[derive(Clone, Debug)]
 pub(super) struct Body<'a> {
+    /// Of the object, among those that are put to rest.
+    pub number: usize,
     pub object: FreeObject<'a>,
     /// m g, newtons.
     pub weight: DVec3,
@@ -19,9 +21,10 @@ pub(super) struct Body<'a> {
 }
 
 impl<'a> Body<'a> {
-    pub fn new(object: FreeObject<'a>, gravity: DVec3, start: &Pose) -> Self {
+    pub fn new((number, object): (usize, FreeObject<'a>), gravity: DVec3, start: &Pose) -> Self {
         let center = start.transform_point(object.center_of_mass);
         Self {
+            number,
             object,
             weight: object.mass * gravity,
             start: center,

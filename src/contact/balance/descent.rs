@@ -9,6 +9,7 @@ use super::model::{Scene, Step};
 use super::pairs::{Key, Part};
 use super::settle::Balancer;
 use super::symmetric::{Symmetric, norm};
+use super::tips::{self, Spring};
 use glam::DVec3;
 
 /// Poses looked at for each body, at most: one that rolls across a whole skin takes some hundreds.
@@ -74,6 +75,7 @@ impl<'a, 'b> Descent<'a, 'b> {
             farthest: 0.5 * stroke,
             scene: Scene {
                 ground,
+                springs: Spring::all(&bodies, ground),
                 bodies,
                 multipliers: std::mem::take(&mut balancer.multipliers),
                 smoothness: Smoothness {
@@ -100,11 +102,15 @@ impl<'a, 'b> Descent<'a, 'b> {
                 End::Rest => {}
                 end => return end,
             }
-            if self.is_at_rest(AT_REST, TIGHT) {
+            let Scene {
+                springs, bodies, ..
+            } = &mut self.scene;
+            let change = tips::renew(springs, bodies, &self.balancer.now);
+            if change <= AT_REST && self.is_at_rest(AT_REST, TIGHT) {
                 return End::Rest;
             }
             let now = self.looseness();
-            if now < least && self.is_at_rest(PROMISED, ENOUGH) {
+            if now < least && change <= PROMISED && self.is_at_rest(PROMISED, ENOUGH) {
                 (best, least) = (Some(self.scene.clone()), now);
             }
             let Some(deepest) = self.deepest() else {
@@ -336,8 +342,14 @@ impl<'a, 'b> Descent<'a, 'b> {
     /// Of each body with these loads.
     fn imbalances(&self, loads: &[PairLoad]) -> Vec<f64> {
         let pairs = &self.balancer.now.pairs.all;
-        let wrenches = wrenches(loads, pairs, &self.scene.bodies, &self.scene.ground.skins);
-        let each = self.scene.bodies.iter().zip(wrenches);
+        let Scene {
+            springs,
+            bodies,
+            ground,
+            ..
+        } = &self.scene;
+        let wrenches = wrenches((loads, pairs), springs, bodies, &ground.skins);
+        let each = bodies.iter().zip(wrenches);
         each.map(|(body, wrench)| body.imbalance_of(wrench))
             .collect()
     }

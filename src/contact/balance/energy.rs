@@ -5,6 +5,7 @@ use super::free_object::PlacedSkin;
 use super::loads::{Load, Loads};
 use super::model::Scene;
 use super::pairs::{Group, Key, Kind, Margins, Pair, Pairs, Part};
+use super::tips::{self, Spring};
 use glam::DVec3;
 
 /// What misses of rigid things count as in [`Energy::looseness`], per metre: a nanometre is a hundred-thousandth.
@@ -41,6 +42,7 @@ impl Energy {
             .look(&scene.bodies, scene.ground, margins, behind);
         self.loads
             .weigh(scene, &self.pairs, |(_, pair)| pair.deflection);
+        self.loads.elastic += tips::energy(&scene.springs, &scene.bodies);
     }
 
     /// What each pair carries, if each taxel carries k times its deflection and what its stop carries.
@@ -121,10 +123,10 @@ impl Pair {
     }
 }
 
-/// Force (N) and torque about the centre of mass (N·m) that loads of pairs put on each body, in the world.
+/// Force (N) and torque about the centre of mass (N·m) that loads of pairs and springs of tips put on each body, in the world.
 pub(super) fn wrenches(
-    loads: &[PairLoad],
-    pairs: &[Pair],
+    (loads, pairs): (&[PairLoad], &[Pair]),
+    springs: &[Spring],
     bodies: &[Body],
     skins: &[PlacedSkin],
 ) -> Vec<(DVec3, DVec3)> {
@@ -141,5 +143,6 @@ pub(super) fn wrenches(
             all[body].1 += to_world(arm.cross(sign * push));
         }
     }
+    tips::add_wrenches(springs, bodies, &mut all);
     all
 }

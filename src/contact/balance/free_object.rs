@@ -1,5 +1,6 @@
 //! What is to be put to rest, and on what.
 
+use super::tips::Tip;
 use crate::contact::relaxation_factor;
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
@@ -53,6 +54,8 @@ pub struct PlacedSkin<'a> {
     /// How far each taxel was in a step ago, metres, and that step, seconds: what its damper holds in. `None` if all stood like this for
     /// long, or without dampers.
     pub before: Option<(&'a [f64], f64)>,
+    /// Those of its tips that hold objects; none without friction.
+    pub tips: &'a [Tip],
 }
 
 impl<'a> PlacedSkin<'a> {
@@ -63,6 +66,7 @@ impl<'a> PlacedSkin<'a> {
             world_from_patch,
             pushed: &[],
             before: None,
+            tips: &[],
         }
     }
 

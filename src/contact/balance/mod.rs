@@ -15,9 +15,12 @@
 //! of k / (1 − φ) from there on. So in a step E = Σ ½ k/(1 − φ) (δ − φ δ_before)², and the forces are those of
 //! [`DamperState`](crate::contact::DamperState).
 //!
+//! A skin with friction holds by shear springs, too: those of the taxels that touched an object when the step began (`tips`).
+//!
 //! # Sources
 //!
 //! - `[MS]` Moré, Sorensen, *Computing a trust region step*, 1983.
+//! - `[NJ]` Nečas, Jarušek, Haslinger, *On the solution of the variational inequality to the Signorini problem with small friction*, 1980.
 //! - `[RW]` Rockafellar, *Augmented Lagrangians and applications of the proximal point algorithm in convex programming*, 1976.
 
 mod body;
@@ -33,8 +36,10 @@ mod reports;
 mod settle;
 mod symmetric;
 mod tied_max;
+mod tips;
 mod touching;
 
 pub use free_object::{FreeObject, Ground, HalfSpace, Obstacle, PlacedSkin};
 pub use reports::{TaxelLoad, Touch, Touched};
 pub use settle::{Balance, Balancer, Outcome};
+pub use tips::{Tip, TipLoad};

@@ -8,6 +8,7 @@ use super::free_object::Ground;
 use super::loads::{Loads, Multipliers, Smoothness};
 use super::pairs::{Key, Pairs, Slopes};
 use super::symmetric::{Six, Symmetric, best_step, dot, norm};
+use super::tips::{Held, Spring};
 use glam::DVec3;
 
 /// Steps inside the model, at most.
@@ -20,6 +21,7 @@ pub(super) struct Model {
     /// After the motion that was looked at last.
     loads: Loads,
     curvature: Symmetric,
+    held: Held,
     /// Of the loads of one taxel: weighted means and sums of slopes, one a body that pushes it.
     means: Vec<(u32, Six)>,
     sums: Vec<(u32, Six)>,
@@ -39,6 +41,7 @@ pub(super) struct Scene<'a> {
     pub ground: &'a Ground<'a>,
     pub multipliers: Multipliers,
     pub smoothness: Smoothness,
+    pub springs: Vec<Spring>,
 }
 
 impl Scene<'_> {
@@ -75,6 +78,8 @@ impl Model {
                     .lay(&scene.bodies, &axes, pair, curvature, force);
             }
         }
+        self.held
+            .lay(&scene.springs, &scene.bodies, &mut self.curvature);
         let still = vec![0.0; self.curvature.n()];
         self.derivatives(scene, pairs, loads, &still)
     }
@@ -90,7 +95,7 @@ impl Model {
             .map(|(body, motion)| body.weight.dot(DVec3::from_slice(motion)))
             .sum();
         let bent = 0.5 * dot(motion, &self.curvature.times(motion));
-        self.loads.elastic + bent - fallen
+        self.loads.elastic + self.held.energy_after(motion) + bent - fallen
     }
 
     /// Gradient (N) and Hessian (N/m) after a motion that leads to these loads.
@@ -106,6 +111,8 @@ impl Model {
             add(gradient, -1.0, &body.weight.to_array());
         }
         let mut hessian = self.curvature.clone();
+        self.held
+            .add_derivatives(motion, &mut gradient, &mut hessian);
         let Self {
             slopes,
             means,
@@ -212,16 +219,16 @@ fn add_square(hessian: &mut Symmetric, factor: f64, v: &[(u32, Six)]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::balance::{FreeObject, HalfSpace, Obstacle, PlacedSkin, Touched};
+    use crate::contact::balance::{FreeObject, HalfSpace, Obstacle, PlacedSkin, Tip, Touched};
     use crate::geometry::Pose;
     use crate::objects::{Sphere, SphereUnion};
     use crate::random::Seed;
-    use crate::world::{Grid, Patch, Taxel};
-    use glam::DQuat;
+    use crate::world::{Grid, Patch, Shear, Taxel};
+    use glam::{DQuat, DVec2};
     use rand::Rng;
 
     /// Two objects of seven spheres inside of one another, of an obstacle, and of a plane, on a bed that is tilted in the world, deep enough for
-    /// some stops, in a step of its dampers.
+    /// some stops, in a step of its dampers, held by some of its tips.
     #[test]
     fn gradient_and_hessian_are_the_differences_of_the_energy() {
         let taxel = Taxel {
@@ -243,7 +250,26 @@ mod tests {
         );
         let skin = PlacedSkin::new(&patch, world_from_patch);
         let before = Some((&before[..], 0.01));
-        let skins = [PlacedSkin { before, ..skin }];
+        // Some stick, some slip.
+        let tips: Vec<Tip> = (0..12)
+            .map(|k| Tip {
+                taxel: 100 + 7 * k,
+                object: k % 2,
+                point: DVec3::new(2e-3, 1e-3 * k as f64, -3e-3),
+                place: DVec3::new(3e-3 * k as f64, 2e-3, 3e-3),
+                displacement: DVec2::new(1e-4 * k as f64, -2e-4),
+                shear: Shear {
+                    stiffness: 150.0,
+                    friction: 0.5,
+                },
+                force: if k < 6 { 100.0 } else { 0.4 },
+            })
+            .collect();
+        let skins = [PlacedSkin {
+            before,
+            tips: &tips,
+            ..skin
+        }];
         let mut rng = Seed::new(5).named("model").rng();
         let mut random = || DVec3::from_array(std::array::from_fn(|_| rng.gen_range(-1.0..1.0)));
         let mut union = |n: usize| {
@@ -272,9 +298,10 @@ mod tests {
             let center = DVec3::new(1e-3, 2e-3, -1e-3);
             let object = FreeObject::new(&unions[k], 1.0, center).unwrap();
             let start = Pose::from_translation(at(14e-3 * k as f64));
-            Body::new(object, weights[k], &start)
+            Body::new((k, object), weights[k], &start)
         });
         let scene = Scene {
+            springs: Spring::all(&bodies, &ground),
             bodies: bodies.to_vec(),
             ground: &ground,
             multipliers: Multipliers::default(),

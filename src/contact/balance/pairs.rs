@@ -173,7 +173,7 @@ impl Slopes {
 }
 
 /// Second order of a rotation θ, which takes r to r + θ × r + ½ θ × (θ × r): a·½ θ × (θ × r) = ½ ((a·θ)(r·θ) − (a·r) θ²).
-fn add_turning(
+pub(super) fn add_turning(
     curvature: &mut Symmetric,
     body: usize,
     force: f64,

@@ -8,6 +8,7 @@ use super::loads::Multipliers;
 use super::model::Model;
 use super::pairs::Key;
 use super::reports::{TaxelLoad, Touch};
+use super::tips::TipLoad;
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use glam::DVec3;
@@ -66,6 +67,7 @@ pub struct Balancer {
     pub(super) multipliers: Multipliers,
     loads: Vec<TaxelLoad>,
     touches: Vec<Touch>,
+    tips: Vec<TipLoad>,
     /// Of the objects that it put to rest last, those that its multipliers are of.
     numbers: Vec<usize>,
 }
@@ -80,6 +82,11 @@ impl Balancer {
     /// Its forces are those of the last [`Balance`]s, with the [touches](Self::touches)'.
     pub fn loads(&self) -> &[TaxelLoad] {
         &self.loads
+    }
+
+    /// What the tips of skins with friction hold of them, in the order of skins and taxels.
+    pub fn tips(&self) -> &[TipLoad] {
+        &self.tips
     }
 
     /// What rigid things put on them.
@@ -128,8 +135,8 @@ impl Balancer {
         let origin = starts.first().map_or(DVec3::ZERO, |pose| pose.translation);
         let ground = ground.seen_from(origin);
         let from_there = |pose: &Pose| Pose::new(pose.rotation, pose.translation - origin);
-        let bodies = objects.iter().zip(starts);
-        let bodies = bodies.map(|(object, start)| Body::new(*object, gravity, &from_there(start)));
+        let bodies = objects.iter().copied().enumerate().zip(starts);
+        let bodies = bodies.map(|(object, start)| Body::new(object, gravity, &from_there(start)));
         let mut balances = self.settle_bodies(bodies.collect(), &ground);
         for balance in &mut balances {
             balance.pose.translation += origin;
@@ -152,6 +159,7 @@ impl Balancer {
         let (mut n_steps, mut is_again) = (0, false);
         self.loads.clear();
         self.touches.clear();
+        self.tips.clear();
         while !bodies.is_empty() {
             if is_again || self.numbers != numbers {
                 self.multipliers = Multipliers::default();
@@ -168,6 +176,7 @@ impl Balancer {
                 End::Exhausted => (descent.most_restless(), Some(Outcome::Unsettled)),
             };
             bodies = std::mem::take(&mut descent.scene.bodies);
+            let springs = std::mem::take(&mut descent.scene.springs);
             self.multipliers = std::mem::take(&mut descent.scene.multipliers);
             if is_first && outcome == Some(Outcome::Unsettled) {
                 is_again = true;
@@ -178,7 +187,20 @@ impl Balancer {
                 None => Vec::new(),
             };
             self.report(&bodies, &loads, (&numbers, &done), &ground.skins);
-            let wrenches = wrenches(&loads, &self.now.pairs.all, &bodies, &ground.skins);
+            let wrenches = wrenches(
+                (&loads, &self.now.pairs.all),
+                &springs,
+                &bodies,
+                &ground.skins,
+            );
+            if outcome.is_some() {
+                let tips = springs
+                    .iter()
+                    .map(|spring| spring.load(&bodies, &ground.skins));
+                self.tips.extend(
+                    tips.filter(|tip| done.iter().any(|&slot| numbers[slot] == tip.object)),
+                );
+            }
             for slot in done.into_iter().rev() {
                 let number = numbers.remove(slot);
                 let body = bodies.remove(slot);
@@ -191,6 +213,7 @@ impl Balancer {
         }
         let own = |load: &TaxelLoad| (load.skin, load.taxel, load.object, load.sphere);
         self.loads.sort_by_key(own);
+        self.tips.sort_by_key(|tip| (tip.skin, tip.taxel));
         balances
             .into_iter()
             .map(|balance| balance.expect("each rests, has escaped, or does neither"))
