@@ -38,7 +38,7 @@ fn body(n_taxels: usize) -> (WholeBody, Vec<Pose>) {
     (body, (0..n).map(pose).collect())
 }
 
-/// A ball of `radius` metres as n equal spheres on its surface.
+/// A ball of `radius` metres as n spheres: one as large as lets the others, equal ones, lie on its surface, as packings have them.
 fn ball(n: usize, radius: f64) -> SphereClusters {
     let golden = PI * (3.0 - 5f64.sqrt());
     let each = radius.min(2.0 * radius / (n as f64).sqrt());
@@ -51,7 +51,12 @@ fn ball(n: usize, radius: f64) -> SphereClusters {
             radius: each,
         }
     });
-    SphereClusters::new(&SphereUnion::new(spheres.collect()).expect("radii are positive"))
+    let inner = Sphere {
+        center: DVec3::ZERO,
+        radius: radius - each,
+    };
+    let all = (n > 1).then_some(inner).into_iter().chain(spheres).take(n);
+    SphereClusters::new(&SphereUnion::new(all.collect()).expect("radii are positive"))
 }
 
 /// A body with an object that moves over its trunk, about its middle and so deep.
@@ -92,13 +97,19 @@ impl Bench {
     /// How deep so many taxels are touched.
     fn touching(n_taxels: usize, n_spheres: usize, n_touched: usize) -> Self {
         let (mut deep, mut high) = (0.065, 0.165);
+        let at = |away| Self::new(40_000, n_spheres, away).step();
         for _ in 0..30 {
             let away = 0.5 * (deep + high);
-            match Self::new(40_000, n_spheres, away).step() < n_touched {
+            match at(away) < n_touched {
                 true => high = away,
                 false => deep = away,
             }
         }
+        let found = at(deep);
+        assert!(
+            found.abs_diff(n_touched) * 20 <= n_touched,
+            "{found} are touched"
+        );
         Self::new(n_taxels, n_spheres, deep)
     }
 }
