@@ -70,6 +70,7 @@ fn add_held(readings: &mut [f64], scale: f64, hold: usize, stream: &Seed) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::standard_errors::{assert_expected, of_mean};
 
     /// The noise of a touch of so many readings, of standard deviation 1.
     fn noise(touch: u64, n_readings: usize) -> Vec<f64> {
@@ -95,9 +96,9 @@ mod tests {
             let found = products.sum::<f64>() / N as f64;
             let of_source = |k: usize| (1.0 - lag as f64 / f64::from(1 << k)).max(0.0);
             let expected = (0..N_SOURCES).map(of_source).sum::<f64>() / N_SOURCES as f64;
-            // Five standard errors of a mean of products of normal numbers of variance 1.
-            let error = ((1.0 + expected * expected) / N as f64).sqrt();
-            assert!((found - expected).abs() < 5.0 * error, "{lag}: {found}");
+            // Of products of normal numbers of variance 1.
+            let standard_error = of_mean((1.0 + expected * expected).sqrt(), N);
+            assert_expected(&format!("lag {lag}"), found, expected, standard_error);
         }
     }
 
