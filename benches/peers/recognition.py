@@ -35,6 +35,11 @@ from sklearn.svm import SVC, LinearSVC
 from sklearn.tree import DecisionTreeClassifier
 from threadpoolctl import threadpool_limits
 
+try:
+    from sklearnex.svm import SVC as IntelSVC
+except ImportError:
+    IntelSVC = None
+
 ROOT = Path(__file__).resolve().parents[2]
 
 # Peer, its maker, what of ours answers the same question, and whether both solve the same optimisation problem.
@@ -56,6 +61,13 @@ COMPARISONS = [
     ("DecisionTree", lambda jobs: DecisionTreeClassifier(random_state=0), ["--classifier", "decision_tree"], False),
     ("RandomForest(100)", lambda jobs: RandomForestClassifier(random_state=0, n_jobs=jobs), ["--classifier", "random_forest"], False),
 ]
+
+# Intel's own SVMs beside scikit-learn's, where they install.
+if IntelSVC:
+    for kernel, ours in [("linear", "linear_svm"), ("rbf", "rbf_svm"), ("poly", "polynomial_svm")]:
+        name = f"sklearnex SVC({kernel})"
+        make = lambda jobs, kernel=kernel: IntelSVC(kernel=kernel, coef0=1.0, n_jobs=jobs)
+        COMPARISONS.append((name, make, ["--classifier", ours, *OVO], False))
 
 COLUMNS = [
     "date", "machine", "bubbletouch", "scikit_learn", "numpy", "threads", "noise_std", "smoothing_mm", "measurements", "n_train", "n_test",
