@@ -279,6 +279,7 @@ def parse():
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--threads", type=int, nargs="+", default=[1, os.cpu_count()])
     parser.add_argument("--only", default="", help="only peers whose names hold this")
+    parser.add_argument("--skip", default=None, help="no peers whose names hold this")
     parser.add_argument("--grid", action="store_true", help="only the grid of C and gamma against GridSearchCV")
     parser.add_argument("--out", type=Path, default=ROOT / "results/peers/recognition.csv")
     return parser.parse_args()
@@ -320,7 +321,8 @@ def measure(folder, ours, threads, arguments, slow):
         yield from compare_grid(folder, ours, threads, arguments.repeats)
         return
     for comparison in COMPARISONS:
-        if arguments.only in comparison[0]:
+        is_skipped = arguments.skip is not None and arguments.skip in comparison[0]
+        if arguments.only in comparison[0] and not is_skipped:
             yield compare(folder, ours, comparison, threads, arguments.repeats, slow)
 
 
