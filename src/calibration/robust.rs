@@ -106,7 +106,6 @@ fn student(freedom: f64) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::random::Seed;
-    use crate::standard_errors::{assert_expected, of_share, of_variance};
     use rand::Rng;
     use rand_distr::StandardNormal;
 
@@ -118,9 +117,7 @@ mod tests {
     #[test]
     fn wild_values_move_neither_spread_nor_mode() {
         let mut values = normal(20_000, "values");
-        // Of normal values it tells more than eight tenths of what the plain variance does.
-        let standard_error = of_variance(1.0, values.len()) / 0.8_f64.sqrt();
-        assert_expected("variance", variance(&values), 1.0, standard_error);
+        assert!((variance(&values) - 1.0).abs() < 0.02);
         assert!(mode(&mut values).abs() < 0.1);
         values.extend((0..2000).map(|k| 50.0 + f64::from(k)));
         assert!((variance(&values) - 1.0).abs() < 0.25);
@@ -144,7 +141,6 @@ mod tests {
                 _ => false,
             }
         });
-        let share = holds.count() as f64 / 200.0;
-        assert_expected("coverage", share, 0.95, of_share(0.95, 200));
+        assert!((180..=199).contains(&holds.count()));
     }
 }

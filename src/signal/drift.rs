@@ -115,7 +115,6 @@ impl Effect for Zeros {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::standard_errors::{assert_expected, assert_uniform, of_mean};
 
     fn zeros_at(time: f64, n_taxels: usize) -> Vec<f64> {
         let zeros = Zeros::of(0.1, &Seed::new(3), n_taxels, 5e-3).unwrap();
@@ -133,20 +132,16 @@ mod tests {
         let n = 40_000;
         let (early, late, end) = (zeros_at(0.3, n), zeros_at(0.8, n), zeros_at(1.0, n));
         let variance = 0.5e-3f64.powi(2);
-        // Of products of two normal numbers of variances v and w and covariance c the variance is v w + c². 64 terms leave 0.3 % out.
-        let assert_covariance = |a: &[f64], b: &[f64], [v, w, c]: [f64; 3], left_out: f64| {
-            let standard_error = of_mean((v * w + c * c).sqrt(), n);
-            let found = covariance(a, b) / variance;
-            let nearest = found.clamp(c - left_out, c + left_out);
-            assert_expected("covariance", found, nearest, standard_error);
-        };
-        assert_covariance(&end, &end, [1.0, 1.0, 1.0], 0.0);
-        assert_covariance(&early, &early, [0.3, 0.3, 0.3], 0.003);
-        assert_covariance(&late, &late, [0.8, 0.8, 0.8], 0.003);
+        // Four standard errors and the 0.3 % that 64 terms leave out.
+        let near = |found: f64, of: f64| (found / variance - of).abs() < 0.003 + 4.0 * 1.5 / 200.0;
+        assert!((covariance(&end, &end) / variance - 1.0).abs() < 4.0 * (2.0 / n as f64).sqrt());
+        assert!(near(covariance(&early, &early), 0.3));
+        assert!(near(covariance(&late, &late), 0.8));
         // Cov(W(s), W(t)) = min(s, t): what came earlier stays.
-        assert_covariance(&early, &late, [0.3, 0.8, 0.3], 0.003);
-        assert_covariance(&early, &end, [0.3, 1.0, 0.3], 0.003);
-        assert_covariance(&end[1..], &end[..n - 1], [1.0, 1.0, 0.0], 0.0);
+        assert!(near(covariance(&early, &late), 0.3));
+        assert!(near(covariance(&early, &end), 0.3));
+        let neighbours = covariance(&end[1..], &end[..n - 1]);
+        assert!(neighbours.abs() < 4.0 * variance / (n as f64).sqrt());
     }
 
     #[test]
@@ -160,7 +155,10 @@ mod tests {
             .map(|t| time_of(&Seed::new(1).numbered(t)))
             .collect();
         times.sort_by(f64::total_cmp);
-        assert_uniform("times", &times);
+        for (rank, time) in times.iter().enumerate() {
+            // The Kolmogorov–Smirnov distance of so many: below 0.044 in 999 of 1000 series.
+            assert!((time - rank as f64 / 2000.0).abs() < 0.044);
+        }
     }
 
     #[test]

@@ -82,7 +82,6 @@ impl Effect for Levels {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::standard_errors::assert_uniform;
 
     fn taxels(dead: f64, stuck: f64) -> Result<Vec<(usize, f64)>> {
         Levels::of([dead, stuck], &Seed::new(11), 1000, [0.0, 5e-3]).map(|levels| levels.0)
@@ -104,10 +103,12 @@ mod tests {
 
     #[test]
     fn stuck_levels_are_spread_evenly_over_the_full_scale() {
-        let faults = taxels(0.0, 1.0).unwrap();
-        let mut levels: Vec<f64> = faults.iter().map(|fault| fault.1 / 5e-3).collect();
+        let mut levels: Vec<f64> = taxels(0.0, 1.0).unwrap().iter().map(|f| f.1).collect();
         levels.sort_by(f64::total_cmp);
-        assert_uniform("levels", &levels);
+        for (rank, level) in levels.iter().enumerate() {
+            // The Kolmogorov–Smirnov distance of so many: below 0.062 in 999 of 1000 skins.
+            assert!((level / 5e-3 - rank as f64 / 1000.0).abs() < 0.062);
+        }
     }
 
     #[test]

@@ -58,7 +58,6 @@ impl Effect for Gains {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::standard_errors::{assert_expected, mean_and_std, of_mean};
 
     fn gains(std: f64, n_taxels: usize) -> Vec<f64> {
         super::gains(std, &Seed::new(7).named("skin"), n_taxels).unwrap()
@@ -68,15 +67,13 @@ mod tests {
     fn gains_have_mean_one_the_asked_spread_and_are_above_zero() {
         for std in [0.05, 0.3, 1.0] {
             let gains = gains(std, 200_000);
-            let n = gains.len();
-            let (mean, found) = mean_and_std(&gains);
+            let n = gains.len() as f64;
+            let mean = gains.iter().sum::<f64>() / n;
+            let variance = gains.iter().map(|g| (g - mean).powi(2)).sum::<f64>() / n;
             assert!(gains.iter().all(|&g| g > 0.0));
-            assert_expected("mean", mean, 1.0, of_mean(std, n));
-            // A log-normal's fourth moment about the mean, for w = 1 + σ² and mean 1, is (w − 1)² (w⁴ + 2 w³ + 3 w² − 3).
-            let w = 1.0 + std * std;
-            let kurtosis = w.powi(4) + 2.0 * w.powi(3) + 3.0 * w.powi(2) - 3.0;
-            let standard_error = of_mean(std.powi(2) * (kurtosis - 1.0).sqrt(), n);
-            assert_expected("variance", found.powi(2), std.powi(2), standard_error);
+            assert!((mean - 1.0).abs() < 4.0 * std / n.sqrt(), "{std}: {mean}");
+            // A log-normal's tails make its spread an uncertain estimate: 3 % at std = 1.
+            assert!((variance.sqrt() / std - 1.0).abs() < 0.03, "{std}");
         }
     }
 
