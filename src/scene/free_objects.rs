@@ -175,12 +175,7 @@ impl FreeObjects {
     }
 
     /// The tips of patches with friction hold those that were put somewhere, where they are.
-    fn hold_by_tips(
-        &mut self,
-        plan: &ScenePlan,
-        skins: &mut [SkinState],
-        objects: &mut PlacedObjects,
-    ) {
+    fn hold_by_tips(&mut self, plan: &ScenePlan, skins: &mut [SkinState], objects: &PlacedObjects) {
         let has_friction = plan.patches.iter().any(PlannedPatch::has_friction);
         for free in self.all.iter_mut().filter(|free| free.is_put) {
             free.is_put = false;

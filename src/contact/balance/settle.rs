@@ -194,12 +194,9 @@ impl Balancer {
                 &ground.skins,
             );
             if outcome.is_some() {
-                let tips = springs
-                    .iter()
-                    .map(|spring| spring.load(&bodies, &ground.skins));
-                self.tips.extend(
-                    tips.filter(|tip| done.iter().any(|&slot| numbers[slot] == tip.object)),
-                );
+                let held = springs.iter().filter(|spring| done.contains(&spring.body));
+                let tips = held.map(|spring| spring.load(&bodies, &ground.skins));
+                self.tips.extend(tips);
             }
             for slot in done.into_iter().rev() {
                 let number = numbers.remove(slot);

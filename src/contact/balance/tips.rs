@@ -64,7 +64,7 @@ pub(super) struct Spring {
     skin: usize,
     tip: Tip,
     /// The body's place among those on their way.
-    body: usize,
+    pub body: usize,
     /// x and y of the taxel's frame, in the world.
     axes: [DVec3; 2],
     /// Where the point was, seen from the patch where it is now; in the world.
