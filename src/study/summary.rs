@@ -9,8 +9,8 @@ use super::table::{
 use crate::error::Result;
 use crate::recognition::statistics::bootstrap::Bootstrap;
 use crate::recognition::statistics::comparison::TrialSize;
-use crate::recognition::statistics::grouped::{GroupCount, GroupedTest, interval_of};
-use crate::recognition::statistics::interval::Interval;
+use crate::recognition::statistics::grouped::{GroupCount, GroupedTest, interval_of_groups};
+use crate::recognition::statistics::interval::{Interval, RowTest};
 use crate::recognition::statistics::many_tests::holm_of_some;
 use crate::table::front;
 use std::collections::BTreeMap;
@@ -18,18 +18,19 @@ use std::collections::BTreeMap;
 /// A row of the accuracy table.
 type Row = (Cell, TrialScore);
 
-/// One row a cell from one row a cell and trial; the trials of a cell follow each other. `groups` are those that the trials tested, row by row, if
-/// there are any.
+/// Returns one row per cell from one row per cell and trial; the trials of a cell follow each other. `groups` are the groups that the trials tested,
+/// row by row, if there are any. `n_folds` returns the number of folds of a cell's study, 1 without folds.
 pub fn summarise<C: Clone + PartialEq>(
     rows: &[(C, TrialScore)],
     mut groups: &[Vec<GroupCount>],
+    n_folds: impl Fn(&C) -> usize,
 ) -> Result<Vec<(C, CellScore)>> {
     let mut bootstrap = Bootstrap::default();
     rows.chunk_by(|a, b| a.0 == b.0)
         .map(|trials| {
             let scores: Vec<&TrialScore> = trials.iter().map(|(_, score)| score).collect();
             let here = groups.split_off(..trials.len()).unwrap_or_default();
-            let score = score(&scores, here, &mut bootstrap)?;
+            let score = score(&scores, (here, n_folds(&trials[0].0)), &mut bootstrap)?;
             Ok((trials[0].0.clone(), score))
         })
         .collect()
@@ -38,7 +39,7 @@ pub fn summarise<C: Clone + PartialEq>(
 /// What the trials of a cell say together.
 fn score(
     trials: &[&TrialScore],
-    groups: &[Vec<GroupCount>],
+    (groups, n_folds): (&[Vec<GroupCount>], usize),
     bootstrap: &mut Bootstrap,
 ) -> Result<CellScore> {
     let mean = |value: fn(&TrialScore) -> f64| {
@@ -47,7 +48,6 @@ fn score(
     let accuracy = mean(|t| t.accuracy);
     let squares: f64 = trials.iter().map(|t| (t.accuracy - accuracy).powi(2)).sum();
     let n_test = trials.iter().map(|t| t.n_test).min().unwrap_or(0);
-    let n_correct = (accuracy * n_test as f64).round() as usize;
     let tested = trials.iter().zip(groups);
     let tested = tested.filter(|(_, groups)| !groups.is_empty());
     let tested = tested.map(|(trial, groups)| GroupedTest {
@@ -56,7 +56,21 @@ fn score(
         groups,
     });
     let tested: Vec<GroupedTest> = tested.collect();
-    let (interval, n_groups) = interval_of([n_correct, n_test], &tested, CONFIDENCE)?;
+    let (interval, n_groups) = match tested.is_empty() {
+        true => {
+            let tests = trials.iter().map(|trial| RowTest {
+                part: trial.split.unwrap_or(trial.trial) % n_folds,
+                n_rows: trial.n_test,
+                n_correct: trial.n_correct,
+            });
+            let tests: Vec<RowTest> = tests.collect();
+            (Interval::wilson_of_tests(&tests, CONFIDENCE)?, None)
+        }
+        false => {
+            let (interval, n_groups) = interval_of_groups(&tested, CONFIDENCE)?;
+            (interval, Some(n_groups))
+        }
+    };
     let repeats: Vec<Repeat> = trials.iter().map(|trial| Repeat::of(trial)).collect();
     let of_mean = match scores(&repeats) {
         Some(scores) => bootstrap.mean(scores.view(), CONFIDENCE)?,

@@ -58,9 +58,10 @@ pub struct CellScore {
     accuracy: f64 => Value(More): Share between [accuracy_low, accuracy_high];
     /// Standard deviation of the accuracy over trials (0 for one trial).
     accuracy_std: f64 => Note "standard deviation over trials": Share;
-    /// Lower end of the 95 % Wilson interval at one trial's test rows, or of the interval of the groups that all trials hold out.
+    /// Lower end of the 95 % Wilson interval of the counts of all trials, at the test rows of one trial or of all folds; or of the interval of the
+    /// groups that all trials hold out.
     ///
-    /// Trials split the same touches again, so counting all their rows would promise too much; a group counts once.
+    /// Trials split the same touches again, so counting all their rows would promise too much; the row of a fold and a group count once.
     accuracy_low: f64 => Note "95 % interval, lower end": Share;
     /// Upper end of the same interval.
     accuracy_high: f64 => Note "95 % interval, upper end": Share;
@@ -134,7 +135,7 @@ pub struct Published {
     published_accuracy: f64 => Value(Neither) "published accuracy": Share;
     /// Our mean accuracy over trials.
     accuracy: f64 => Value(More): Share between [accuracy_low, accuracy_high];
-    /// Lower end of its 95 % Wilson interval at one trial's test rows.
+    /// Lower end of its 95 % interval, as in `summary.csv`.
     accuracy_low: f64 => Note "95 % interval, lower end": Share;
     /// Upper end of the same interval.
     accuracy_high: f64 => Note "95 % interval, upper end": Share;
@@ -276,4 +277,6 @@ pub struct Tables {
     pub variance: Vec<Variance>,
     /// How often limits of the model were reached.
     pub limits: Vec<Limit>,
+    /// Whether trials test the folds of the touches in turn.
+    pub has_folds: bool,
 }

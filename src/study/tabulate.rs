@@ -8,11 +8,13 @@ use super::variance_table::variances;
 use crate::error::Result;
 use std::collections::BTreeMap;
 
-/// Fills every table but those of stages and of published numbers; `name` says the class of a label in a cell.
+/// Fills every table but those of stages and of published numbers; `name` returns the class of a label in a cell, `n_folds` the number of folds of a
+/// cell's study, 1 without folds.
 pub fn tabulate(
     tables: &mut Tables,
     mut scored: Vec<(Cell, Evaluation)>,
     name: impl Fn(&Cell, usize) -> String,
+    n_folds: impl Fn(&Cell) -> usize,
 ) -> Result<()> {
     scored.sort_by_key(|(cell, evaluation)| (cell.cell, evaluation.score.trial));
     let is_grouped = scored.iter().any(|(_, found)| !found.groups.is_empty());
@@ -38,7 +40,7 @@ pub fn tabulate(
         tables.timing.push((cell, evaluation.time));
     }
     tables.confusion = confusions.into_values().collect();
-    tables.summary = summarise(&tables.accuracy, &groups)?;
+    tables.summary = summarise(&tables.accuracy, &groups, n_folds)?;
     for (_, score) in &mut tables.summary {
         score.n_groups = or_rows(score.n_groups, score.n_test);
     }

@@ -15,6 +15,7 @@ mod families;
 mod frames;
 mod hardware;
 mod images;
+mod intervals;
 mod layouts;
 mod memory;
 mod next_touch;

@@ -29,7 +29,7 @@ pub struct BreakingPoint {
     side: Side => Subject "to values that are";
     /// The highest mean accuracy (the first of equals).
     best: f64 => Value(More) "best accuracy": Share between [best_low, best_high];
-    /// Lower end of its 95 % Wilson interval at one trial's test rows.
+    /// Lower end of its 95 % Wilson interval, at one trial's test rows or those of all folds.
     best_low: f64 => Note "95 % interval of the best, lower end": Share;
     /// Upper end of the same interval.
     best_high: f64 => Note "95 % interval of the best, upper end": Share;

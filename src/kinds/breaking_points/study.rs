@@ -118,9 +118,10 @@ impl PieceStudy for BreakingPointsStudy {
 
     fn tables(&self, (rows, n_objects): DrivenRows) -> Result<Vec<Table>> {
         let n_objects: BTreeMap<String, usize> = n_objects.into_iter().collect();
+        let n_folds = self.plan.spec.recognition.folds.unwrap_or(1);
         let scores = rows.iter();
         let scores = scores.map(|(cell, score, _)| (cell.clone(), score.clone()));
-        let summary = summarise(&scores.collect::<Vec<_>>(), &[])?;
+        let summary = summarise(&scores.collect::<Vec<_>>(), &[], |_| n_folds)?;
         let mut breaks = Vec::new();
         for way in &self.plan.ways {
             let name = &way.spec.name;

@@ -20,7 +20,11 @@ const ACCURACIES: &str = "accuracy.csv, summary.csv: accuracy_low, accuracy_high
 /// How they are made where test rows are held out one by one, and where whole groups are.
 const BY_ROWS: (&str, &str) = (
     ACCURACIES,
-    "Wilson score interval of the test rows of one trial",
+    "Wilson score interval of the counts of all trials, at the test rows of one trial",
+);
+const BY_FOLDS: (&str, &str) = (
+    ACCURACIES,
+    "Wilson score interval of the counts of all trials; accuracy.csv: at the test rows of the trial; summary.csv: at those of all folds, each touch once",
 );
 const BY_GROUPS: (&str, &str) = (
     ACCURACIES,
@@ -63,6 +67,7 @@ impl Kind for RecognitionStudy {
         let is_grouped = |part: &StudyPart| part.sweep.test_groups(&part.plan, 0, &[]).is_some();
         let accuracies = match self.parts().iter().any(is_grouped) {
             true => BY_GROUPS,
+            false if spec.recognition.folds.is_some() => BY_FOLDS,
             false => BY_ROWS,
         };
         Ok(Facts {

@@ -360,9 +360,14 @@ impl RecognitionStudy {
         });
         let names: Vec<Vec<&str>> = self.parts.iter().map(|p| p.touched.class_names()).collect();
         let name = |cell: &Cell, label: usize| names[cell.variant.number][label].to_owned();
-        tabulate(&mut tables, scored.collect(), name)?;
+        let n_folds = |cell: &Cell| {
+            let spec = &self.parts[cell.variant.number].plan.spec;
+            spec.recognition.folds.unwrap_or(1)
+        };
+        tabulate(&mut tables, scored.collect(), name, n_folds)?;
         let published = &self.first().plan.spec.report.published;
         tables.published = compare_with_published(published, &tables.summary)?;
+        tables.has_folds = self.first().plan.spec.recognition.folds.is_some();
         tables.stages = self.stages(&touches);
         tables.limits = self.limits(&tables.accuracy, &touches);
         Ok(tables)

@@ -3,7 +3,7 @@
 //! Every setting that varies has a place, so no chart mixes cells that differ in something it does not show: x takes the number of most
 //! values, lines and panels the others of most values, of equals words before numbers; each combination of the rest gets a chart of its own.
 
-use super::tables::note_of_groups;
+use super::tables::{OVER_FOLDS, OVER_TRIAL, note_of_groups};
 use super::{CELLS, filled};
 use crate::report::swept::{Setting, Swept, without};
 use crate::table::{Along, ChartSpec, Mark, Role, Rule, Table, Value};
@@ -18,7 +18,14 @@ pub fn charts(tables: &[Table], pareto: Option<bool>) -> Vec<ChartSpec> {
         return Vec::new();
     };
     let confusion = filled(tables, "confusion.csv");
+    let summary_note = filled(tables, "summary.csv").map_or("", |table| &table.note);
+    let over = match note_of_groups(cells) {
+        Some(note) => note,
+        None if summary_note.contains(OVER_FOLDS) => OVER_FOLDS.to_owned(),
+        None => OVER_TRIAL.to_owned(),
+    };
     let chart = ChartSpec {
+        note: format!("Points are means over trials. {over}"),
         table: CELLS,
         y: "accuracy".to_owned(),
         rules: confusion.map(chance).into_iter().collect(),
@@ -90,10 +97,6 @@ fn charts_along(
         ChartSpec {
             name: format!("accuracy_by_{}{}", word(&x), name_ending(fixed, rows[0])),
             title: title(cells, &x, (used, fixed), rows[0]),
-            note: match note_of_groups(cells) {
-                Some(note) => format!("Points are means over trials. {note}"),
-                None => "Points are means over trials; intervals are 95 % Wilson intervals at the test decisions of one trial.".to_owned(),
-            },
             shown: chart.shown.iter().cloned().chain(here).collect(),
             x: x.clone(),
             lines: lines.iter().cloned().collect(),

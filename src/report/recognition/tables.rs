@@ -25,9 +25,14 @@ const ACCURACY: File<(Cell, TrialScore)> = File::new(
 const SUMMARY: File<(Cell, CellScore)> = File::new(
     "summary.csv",
     "Cells over their trials",
-    "Means over trials; intervals are 95 % Wilson intervals at the test decisions of one trial.",
+    "Means over trials.",
 )
 .summary();
+/// What the intervals of `summary.csv` are over where no groups are held out: without folds, and with folds.
+pub(super) const OVER_TRIAL: &str =
+    "Intervals are 95 % Wilson intervals at the test decisions of one trial.";
+pub(super) const OVER_FOLDS: &str =
+    "Intervals are 95 % Wilson intervals at the test decisions of all folds, each touch once.";
 const CONFUSION: File<Confusion> =
     File::new("confusion.csv", "What was taken for what", "").summary();
 const COMPARISON: File<Comparison> = File::new(
@@ -65,7 +70,7 @@ pub fn tables_of(tables: &Tables) -> Result<Vec<Table>> {
     let first = tables.accuracy.first();
     let axes = first.map_or_else(Vec::new, |(cell, _)| cell.variant.values.to_vec());
     let axes = axes.into_iter().map(|axis| axis.column.clone().optional());
-    From::Rows(tables).all(axes.collect())
+    From::Rows(tables).all(axes.collect(), tables.has_folds)
 }
 
 /// The same of the files of a folder.
@@ -76,8 +81,12 @@ pub fn read_tables(folder: &Path) -> Result<Vec<Table>> {
     let study = folder.join("study.toml");
     let text = std::fs::read_to_string(&study).unwrap_or_default();
     let study = StudySpec::parse(&study.display().to_string(), &text);
+    let has_folds = study
+        .as_ref()
+        .is_ok_and(|study| study.recognition.folds.is_some());
     let axes = study.map_or_else(|_| Vec::new(), |study| study.axis_columns());
-    From::Folder(folder).all(axes.into_iter().map(Column::optional).collect())
+    let axes = axes.into_iter().map(Column::optional).collect();
+    From::Folder(folder).all(axes, has_folds)
 }
 
 /// Where rows come from.
@@ -88,7 +97,7 @@ enum From<'a> {
 
 impl From<'_> {
     /// Those of cells have the columns of the axes that the study names itself.
-    fn all(&self, axes: Vec<Column>) -> Result<Vec<Table>> {
+    fn all(&self, axes: Vec<Column>, has_folds: bool) -> Result<Vec<Table>> {
         let mut tables = vec![
             self.table(&ACCURACY, |tables| &tables.accuracy, &axes)?,
             self.table(&SUMMARY, |tables| &tables.summary, &axes)?,
@@ -110,6 +119,10 @@ impl From<'_> {
         tables.push(self.table(&LIMITS, |tables| &tables.limits, &[])?);
         tables.iter_mut().for_each(say);
         for table in &mut tables {
+            if table.file == SUMMARY.name() {
+                table.note += " ";
+                table.note += if has_folds { OVER_FOLDS } else { OVER_TRIAL };
+            }
             if let Some(note) = note_of_groups(table) {
                 table.note = note;
             }

@@ -1,0 +1,92 @@
+//! Intervals of accuracies over trials come from the counts of the trials.
+
+use crate::study::Study;
+use bubbletouch::recognition::statistics::interval::Interval;
+use bubbletouch::study::table::{CellScore, Tables};
+
+const STUDY: &str = r#"
+question = "What is an interval over?"
+[objects]
+sets = ["balls"]
+names = ["golf", "tennis", "baseball"]
+[skin]
+pitch_mm = 4.0
+taxels = 8
+stroke_mm = 5.0
+[touches]
+per_object = 40
+offset_x_mm = { uniform = [-6.0, 6.0] }
+offset_y_mm = { uniform = [-6.0, 6.0] }
+depth_mm = 2.0
+[signal]
+noise_std_full_scale = [0.1, 0.2, 0.3, 0.4]
+[sensing]
+measurements = 16
+[recognition]
+classifier = "linear_svm"
+"#;
+
+fn run(keys: &str) -> Tables {
+    let (head, recognition) = keys.split_once('|').unwrap_or((keys, ""));
+    Study::new(&format!("{head}\n{STUDY}{recognition}")).run()
+}
+
+/// Of each cell its summary, the numbers of test rows and of right answers of all trials.
+fn cells(tables: &Tables) -> Vec<(CellScore, usize, usize)> {
+    let found = tables.summary.iter().map(|(cell, score)| {
+        let trials = tables
+            .accuracy
+            .iter()
+            .filter(|(of, _)| of.cell == cell.cell);
+        let (n_test, n_correct) = trials.fold((0, 0), |sums, (_, trial)| {
+            (sums.0 + trial.n_test, sums.1 + trial.n_correct)
+        });
+        (score.clone(), n_test, n_correct)
+    });
+    found.collect()
+}
+
+#[test]
+fn five_folds_have_the_interval_of_all_rows_that_they_test() {
+    let once = run("trials = 5|folds = 5");
+    for (score, n_test, n_correct) in cells(&once) {
+        assert_eq!((score.n_test, n_test), (24, 120));
+        let all = Interval::wilson(n_correct, n_test, 0.95).unwrap();
+        assert_eq!(
+            (score.accuracy_low, score.accuracy_high),
+            (all.low, all.high)
+        );
+    }
+    // The second round of folds tests the same touches again.
+    for (score, _, n_correct) in cells(&run("trials = 10|folds = 5")) {
+        let share = n_correct as f64 / 240.0;
+        let below = Interval::wilson((120.0 * share).floor() as usize, 120, 0.95).unwrap();
+        let above = Interval::wilson((120.0 * share).ceil() as usize, 120, 0.95).unwrap();
+        assert!((below.low..=above.low).contains(&score.accuracy_low));
+        assert!((below.high..=above.high).contains(&score.accuracy_high));
+    }
+}
+
+#[test]
+fn cells_with_other_counts_over_their_trials_have_other_intervals() {
+    let mut found = cells(&run("trials = 7"));
+    found.sort_by_key(|(.., n_correct)| *n_correct);
+    assert!(found[0].2 < found[3].2);
+    for pair in found.windows(2) {
+        let [(less, _, fewer), (more, _, n)] = pair else {
+            continue;
+        };
+        // Rounding to the rows of one trial hides differences of fewer than seven answers.
+        assert_eq!(fewer < n, less.accuracy_low < more.accuracy_low);
+        assert_eq!(fewer < n, less.accuracy_high < more.accuracy_high);
+    }
+    for (score, n_test, n_correct) in found {
+        assert_eq!((score.n_test, n_test), (30, 210));
+        // The Wilson score interval solves (accuracy − p)² = z² p (1 − p) / n, with n of one trial.
+        let share = n_correct as f64 / 210.0;
+        for p in [score.accuracy_low, score.accuracy_high] {
+            let z2 = (share - p).powi(2) * 30.0 / (p * (1.0 - p));
+            assert!((z2 - 3.841_458_820_694).abs() < 1e-6, "{p} {z2}");
+        }
+    }
+}
