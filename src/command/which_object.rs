@@ -1,12 +1,11 @@
 //! Which object a command is about: a mesh file or a built-in one; and its packing, with progress shown.
 
-use super::streams::note;
-use bubbletouch::mesh::{LengthUnit, SizeLimits, Surface, TriangleMesh};
+use bubbletouch::mesh::{LengthUnit, SizeLimits, Surface};
 use bubbletouch::objects::{Catalogue, SphereUnion};
 use bubbletouch::packing::{Body, error_of_file, pack_mesh_watched};
 use bubbletouch::report::fit_picture::Original;
 use bubbletouch::report::progress::to_stderr;
-use bubbletouch::study::{load_catalogue, read_mesh_file};
+use bubbletouch::study::{load_catalogue, read_mesh};
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
 
@@ -53,21 +52,9 @@ impl WhichObject {
         } else {
             Body::Solid
         };
-        let mesh = read_mesh_file(path, self.unit, &SizeLimits::ANY)?.into_mesh(&self.object)?;
-        let surface = Box::new(Surface::new(self.closed(mesh)?));
-        Ok(Original::Mesh(surface, body))
-    }
-
-    /// The mesh without the holes that are to be closed.
-    fn closed(&self, mesh: TriangleMesh) -> Result<TriangleMesh> {
-        let Some(widest_mm) = self.close_holes_mm else {
-            return Ok(mesh);
-        };
-        let closed = mesh
-            .with_holes_closed(widest_mm * 1e-3)
-            .map_err(|error| error.under("--close-holes-mm: "))?;
-        note(format_args!("note: {}: {closed}", self.object));
-        Ok(closed.mesh)
+        let widest = self.close_holes_mm.map(|width| width * 1e-3);
+        let (mesh, _) = read_mesh(path, self.unit, &SizeLimits::ANY, widest)?;
+        Ok(Original::Mesh(Box::new(Surface::new(mesh)), body))
     }
 
     /// Few spheres within a tolerance (metres) of what spheres shall stand for.

@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | a PLY, OBJ or STL file | [`MeshFormat::read`] | a [`MeshFile`]: corners and polygons as written, in metres |
 //! | a [`MeshFile`] | [`MeshFile::into_mesh`] | a [`TriangleMesh`] |
+//! | a [`TriangleMesh`] | [`TriangleMesh::turned_outwards`] | the mesh with closed parts outwards, and an [`Orientation`] |
 //! | a [`TriangleMesh`] | [`MeshReport::new`] | what is wrong with it: holes, flipped or degenerate faces |
 //! | a [`TriangleMesh`] | [`Surface::new`] | nearest points, signed distances, winding numbers |
 //!
@@ -24,7 +25,7 @@
 //! other back to back are none. On a mesh with holes it is the generalised winding number \[GWN\], summed over a
 //! tree of dipoles \[FWN\], right within about 0.1.
 //!
-//! Nothing is repaired here but what [`TriangleMesh::with_holes_closed`] is asked to close.
+//! Readers repair nothing. [`TriangleMesh::with_holes_closed`] closes holes, [`TriangleMesh::turned_outwards`] turns triangles.
 
 mod box_tree;
 mod box_tree_build;
@@ -35,6 +36,7 @@ mod holes;
 mod measures;
 mod mesh_file;
 mod obj;
+mod orientation;
 mod ply;
 mod pseudonormals;
 mod report;
@@ -43,6 +45,7 @@ mod size_limits;
 mod slab;
 mod stl;
 mod surface;
+mod text_lines;
 mod triangle;
 mod triangle_mesh;
 mod welded;
@@ -54,6 +57,7 @@ pub use format::{LengthUnit, MeshFormat};
 pub use holes::{ClosedHoles, Hole};
 pub use mesh_file::MeshFile;
 pub use obj::read_obj;
+pub use orientation::Orientation;
 pub use ply::read_ply;
 pub use report::MeshReport;
 pub use size_limits::SizeLimits;

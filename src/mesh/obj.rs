@@ -1,85 +1,89 @@
-//! Meshes from Wavefront OBJ files: positions and faces; groups, materials, normals and texture are left out.
+//! Meshes from Wavefront OBJ files: positions and faces; groups, materials, normals and texture are ignored.
 
 use super::MeshFile;
+use super::text_lines::{coordinates, each_line};
 use crate::error::{Error, Result};
 use glam::DVec3;
-use std::io::{BufRead, Cursor};
-use tobj::{LoadError, LoadOptions};
+use std::io::BufRead;
 
-/// A mesh from an OBJ file's content.
+/// Stands for a vertex that no face has used yet.
+const UNUSED: u32 = u32::MAX;
+
+/// Reads the mesh in an OBJ file; all objects and groups of the file form one mesh.
 ///
-/// Only vertices that a face has are kept.
+/// Only vertices that a face uses are kept, in the order of their first use.
 ///
 /// # Errors
-/// A file without faces, a number that is none, or an index of no vertex.
+/// If the file has no faces, a face has fewer than three corners, a coordinate is not a finite number, or an index names no
+/// vertex. The error begins with `place` and the line.
 pub fn read_obj(place: &str, source: impl BufRead) -> Result<MeshFile> {
-    let shape = positions_and_faces(place, source)?;
-    let options = LoadOptions {
-        ignore_points: true,
-        ignore_lines: true,
-        ..LoadOptions::default()
-    };
-    let (models, _) = tobj::load_obj_buf(&mut Cursor::new(shape), &options, |_| {
-        Err(LoadError::GenericFailure)
-    })
-    .map_err(|e| {
-        Error::input(
-            place,
-            format!("not readable as OBJ: {e}"),
-            "lines such as `v 0 0 1` and `f 1 2 3`",
-        )
+    let mut vertices: Vec<DVec3> = Vec::new();
+    // Each face with its line; indices count from 1. A face may precede its vertices.
+    let mut faces: Vec<(usize, Vec<usize>)> = Vec::new();
+    each_line(place, source, |number, line| {
+        let line = line.split('#').next().unwrap_or_default();
+        let mut words = line.split_whitespace();
+        let at = || format!("{place}, line {number}");
+        match words.next() {
+            Some("v") => vertices.push(coordinates(at(), words)?),
+            Some("f") => {
+                let corners =
+                    words.map(|word| index(word, vertices.len()).map_err(|e| e.under(at())));
+                let corners = corners.collect::<Result<Vec<_>>>()?;
+                if corners.len() < 3 {
+                    let given = format!("a face with {} corners", corners.len());
+                    return Err(Error::input(at(), given, "three corners or more"));
+                }
+                faces.push((number, corners));
+            }
+            _ => {}
+        }
+        Ok(())
     })?;
-    let mut meshes = models.into_iter().map(|model| model.mesh);
-    let Some(mesh) = meshes.find(|mesh| !mesh.indices.is_empty()) else {
-        return Err(Error::input(
-            place,
-            "no faces",
-            "an OBJ file with lines `f 1 2 3`",
-        ));
-    };
-    let vertices = mesh.positions.chunks_exact(3).map(DVec3::from_slice);
-    // No arities: triangles only.
-    let polygons = if mesh.face_arities.is_empty() {
-        mesh.indices.chunks(3).map(<[u32]>::to_vec).collect()
-    } else {
-        let mut left = &mesh.indices[..];
-        let arities = mesh.face_arities.iter();
-        arities
-            .map(|&arity| {
-                let (polygon, rest) = left.split_at(left.len().min(arity as usize));
-                left = rest;
-                polygon.to_vec()
-            })
-            .collect()
-    };
-    MeshFile::new(place, vertices.collect(), polygons)
+    if faces.is_empty() {
+        let allowed = "an OBJ file with lines `v 0 0 1` and `f 1 2 3`";
+        return Err(Error::input(place, "no faces", allowed));
+    }
+    let mut places = vec![UNUSED; vertices.len()];
+    let mut used = Vec::new();
+    let mut polygons = Vec::with_capacity(faces.len());
+    for (number, corners) in faces {
+        let mut polygon = Vec::with_capacity(corners.len());
+        for corner in corners {
+            let Some(place_in_use) = places.get_mut(corner - 1) else {
+                let given = format!("vertex index {corner}");
+                let allowed = format!("1 to {}, the number of vertices", vertices.len());
+                return Err(Error::input(
+                    format!("{place}, line {number}"),
+                    given,
+                    allowed,
+                ));
+            };
+            if *place_in_use == UNUSED {
+                *place_in_use = used.len() as u32;
+                used.push(vertices[corner - 1]);
+            }
+            polygon.push(*place_in_use);
+        }
+        polygons.push(polygon);
+    }
+    MeshFile::new(place, used, polygons)
 }
 
-/// The lines that begin with `v` and `f`, positions only: one model without groups, materials or seams.
-fn positions_and_faces(place: &str, source: impl BufRead) -> Result<Vec<u8>> {
-    let mut text = String::new();
-    for line in source.lines() {
-        let line = line.map_err(|e| match e.kind() {
-            std::io::ErrorKind::InvalidData => {
-                Error::input(place, "not readable as OBJ: not text", "a text file")
-            }
-            _ => Error::io(place, "read", e),
-        })?;
-        let mut words = line.split_whitespace();
-        let Some(kind @ ("v" | "f")) = words.next() else {
-            continue;
-        };
-        text.push_str(kind);
-        // x, y, z and no weight or colour.
-        for word in words.take(if kind == "v" { 3 } else { usize::MAX }) {
-            text.push(' ');
-            text.push_str(if kind == "f" {
-                word.split('/').next().unwrap_or(word)
-            } else {
-                word
-            });
-        }
-        text.push('\n');
-    }
-    Ok(text.into_bytes())
+/// The vertex index of a corner `v`, `v/vt`, `v//vn` or `v/vt/vn`, from 1. Negative indices count back from the last of
+/// `n_vertices` read so far.
+fn index(word: &str, n_vertices: usize) -> Result<usize> {
+    let vertex = word.split('/').next().unwrap_or_default();
+    let index = match vertex.parse::<i64>() {
+        Ok(index) if index > 0 => usize::try_from(index).ok(),
+        Ok(index) if index < 0 => usize::try_from(index.unsigned_abs())
+            .ok()
+            .and_then(|back| (n_vertices + 1).checked_sub(back))
+            .filter(|&index| index > 0),
+        _ => None,
+    };
+    index.ok_or_else(|| {
+        let allowed = format!("1 to the number of vertices, or -{n_vertices} to -1 here");
+        Error::input("", format!("vertex index `{vertex}`"), allowed)
+    })
 }

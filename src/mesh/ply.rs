@@ -4,6 +4,7 @@
 //! `vertex_indices` or `vertex_index`. Other elements and properties are skipped.
 
 use super::MeshFile;
+use super::text_lines::BYTE_ORDER_MARK;
 use crate::error::{Error, Result};
 use glam::DVec3;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
@@ -68,7 +69,15 @@ fn polygons(place: &str, faces: &[Face]) -> Result<Vec<Vec<u32>>> {
 }
 
 fn check_magic(place: &str, source: &mut impl BufRead) -> Result<()> {
-    let start = source.fill_buf().map_err(|e| Error::io(place, "read", e))?;
+    let read = |e| Error::io(place, "read", e);
+    if source
+        .fill_buf()
+        .map_err(read)?
+        .starts_with(&BYTE_ORDER_MARK)
+    {
+        source.consume(BYTE_ORDER_MARK.len());
+    }
+    let start = source.fill_buf().map_err(read)?;
     if start.starts_with(b"ply") {
         return Ok(());
     }

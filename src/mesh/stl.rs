@@ -1,50 +1,49 @@
-//! Meshes from STL files, ascii or binary. Corners at exactly the same place become one vertex; normals are left out.
+//! Meshes from STL files, ascii or binary. Corners at exactly the same place become one vertex; normals are ignored.
 
 use super::MeshFile;
+use super::text_lines::{BYTE_ORDER_MARK, coordinates, each_line};
 use crate::error::{Error, Result};
+use crate::geometry::place_bits;
 use glam::DVec3;
-use std::io::{BufRead, Cursor, ErrorKind};
+use std::collections::HashMap;
+use std::io::BufRead;
 
-/// What a binary file has before its triangles: 80 bytes of any content and their number.
+/// Bytes before the triangles of a binary file: a header of 80 bytes and the number of triangles.
 const HEADER: usize = 84;
-/// What a triangle takes in a binary file.
+/// Bytes of a triangle in a binary file: normal, three corners, two bytes of attributes.
 const TRIANGLE: usize = 50;
 
-/// A mesh from an STL file's content; errors begin with `place`, the file's name.
+/// Reads the mesh in an STL file; all solids of an ascii file form one mesh.
 ///
 /// # Errors
-/// An error for a file that is cut off, or that is neither kind of STL.
+/// If the file is cut off, or is neither kind of STL. The error begins with `place`.
 pub fn read_stl(place: &str, mut source: impl BufRead) -> Result<MeshFile> {
     let mut content = Vec::new();
     source
         .read_to_end(&mut content)
         .map_err(|e| Error::io(place, "read", e))?;
+    // The length decides: some programs begin a binary header with the first word of an ascii file.
     if is_binary(&content) {
-        // Some programs begin a binary header with the word by which an ascii file is known.
-        content[..80].fill(0);
-    } else if !content.starts_with(b"solid") {
-        let given = match content.len() {
-            0 => "an empty file",
-            n if n < HEADER => "not an STL file",
-            _ => "not an STL file, or cut off",
-        };
-        return Err(Error::input(
-            place,
-            given,
-            "a text that begins with `solid`, or 84 bytes and 50 for each triangle",
-        ));
-    } else {
-        // The word may stand alone; the crate wants a space after it.
-        content.insert(5, b' ');
+        return merged(place, &binary_corners(&content));
     }
-    let mesh = stl_io::read_stl(&mut Cursor::new(content)).map_err(|e| malformed(place, &e))?;
-    let vertex = |v: &stl_io::Vertex| DVec3::from_array(v.0.map(f64::from));
-    let vertices = mesh.vertices.iter().map(vertex).collect();
-    let face = |f: &stl_io::IndexedTriangle| f.vertices.map(|corner| corner as u32).to_vec();
-    MeshFile::new(place, vertices, mesh.faces.iter().map(face).collect())
+    let text = content.strip_prefix(&BYTE_ORDER_MARK).unwrap_or(&content);
+    let text = text.trim_ascii_start();
+    if text.len() >= 5 && text[..5].eq_ignore_ascii_case(b"solid") {
+        return merged(place, &ascii_corners(place, &content)?);
+    }
+    let given = match content.len() {
+        0 => "an empty file",
+        n if n < HEADER => "not an STL file",
+        _ => "not an STL file, or cut off",
+    };
+    Err(Error::input(
+        place,
+        given,
+        "a text that begins with `solid`, or 84 bytes and 50 for each triangle",
+    ))
 }
 
-/// Whether the content is exactly as long as its number of triangles says.
+/// Whether the content is exactly as long as its number of triangles requires.
 fn is_binary(content: &[u8]) -> bool {
     let Some(&[a, b, c, d]) = content.get(80..HEADER) else {
         return false;
@@ -53,19 +52,90 @@ fn is_binary(content: &[u8]) -> bool {
     content.len() - HEADER == n_triangles.saturating_mul(TRIANGLE)
 }
 
-fn malformed(place: &str, error: &std::io::Error) -> Error {
-    let text = error.to_string();
-    let first = text.lines().next().unwrap_or_default();
-    match error.kind() {
-        ErrorKind::UnexpectedEof => Error::input(
+/// Three corners for each triangle of a binary file.
+fn binary_corners(content: &[u8]) -> Vec<DVec3> {
+    let triangles = content[HEADER..].chunks_exact(TRIANGLE);
+    let corners = triangles.flat_map(|triangle| triangle[12..48].chunks_exact(12));
+    let number =
+        |bytes: &[u8]| f64::from(f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]));
+    corners
+        .map(|corner| {
+            DVec3::new(
+                number(&corner[..4]),
+                number(&corner[4..8]),
+                number(&corner[8..]),
+            )
+        })
+        .collect()
+}
+
+/// Three corners for each facet of all solids of an ascii file. Keywords may be in upper case.
+fn ascii_corners(place: &str, content: &[u8]) -> Result<Vec<DVec3>> {
+    let mut corners = Vec::new();
+    // Whether a solid and a facet are open, and the corners of the facet so far.
+    let (mut in_solid, mut in_facet, mut n_corners) = (false, false, 0);
+    each_line(place, content, |number, line| {
+        let mut words = line.split_whitespace();
+        let Some(word) = words.next() else {
+            return Ok(());
+        };
+        let at = || format!("{place}, line {number}");
+        let allowed = match word.to_ascii_lowercase().as_str() {
+            "solid" if !in_facet => {
+                in_solid = true;
+                return Ok(());
+            }
+            "endsolid" if in_solid && !in_facet => {
+                in_solid = false;
+                return Ok(());
+            }
+            "facet" if in_solid && !in_facet => {
+                (in_facet, n_corners) = (true, 0);
+                return Ok(());
+            }
+            "vertex" if in_facet && n_corners < 3 => {
+                corners.push(coordinates(at(), words)?);
+                n_corners += 1;
+                return Ok(());
+            }
+            "endfacet" if in_facet && n_corners == 3 => {
+                in_facet = false;
+                return Ok(());
+            }
+            "outer" | "endloop" if in_facet => return Ok(()),
+            "vertex" | "endfacet" if in_facet => "exactly three vertices in each facet",
+            _ => "`solid`, facets of three vertices, and `endsolid`, in this order",
+        };
+        Err(Error::input(
+            at(),
+            format!("not readable as STL: `{word}` here"),
+            allowed,
+        ))
+    })?;
+    if in_solid || in_facet {
+        let allowed = "facets and `endsolid` at the end";
+        return Err(Error::input(
             place,
-            format!("cut off: {first}"),
-            "facets and `endsolid` at the end",
-        ),
-        _ => Error::input(
-            place,
-            format!("not readable as STL: {first}"),
-            "facets of three vertices with finite numbers",
-        ),
+            "cut off: a solid without its end",
+            allowed,
+        ));
     }
+    Ok(corners)
+}
+
+/// The mesh of triangles whose corners follow one another; equal places are one vertex, in the order of first occurrence.
+fn merged(place: &str, corners: &[DVec3]) -> Result<MeshFile> {
+    let (mut numbers, mut vertices) = (HashMap::new(), Vec::new());
+    let number = |&corner: &DVec3| {
+        *numbers.entry(place_bits(corner)).or_insert_with(|| {
+            vertices.push(corner);
+            vertices.len() as u32 - 1
+        })
+    };
+    let indices: Vec<u32> = corners.iter().map(number).collect();
+    MeshFile::new(
+        place,
+        vertices,
+        indices.chunks(3).map(<[u32]>::to_vec).collect(),
+    )
 }

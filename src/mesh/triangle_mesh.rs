@@ -65,6 +65,19 @@ impl TriangleMesh {
         Aabb::around(boxes).expect("a mesh has at least one triangle")
     }
 
+    /// The mesh with some triangles turned: their second and third corners are exchanged.
+    pub(super) fn with_turned(mut self, is_turned: &[bool]) -> Self {
+        for (triangle, _) in self
+            .triangles
+            .iter_mut()
+            .zip(is_turned)
+            .filter(|(_, turned)| **turned)
+        {
+            triangle.swap(1, 2);
+        }
+        self
+    }
+
     /// The same mesh after a rigid motion.
     pub fn moved(&self, pose: &Pose) -> Self {
         let vertices = self.vertices.iter().map(|&v| pose.transform_point(v));

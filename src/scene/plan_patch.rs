@@ -8,7 +8,7 @@ use super::spec::{LayoutSpec, ObjectSpec, PatchSpec};
 use crate::error::Result;
 use crate::mesh::SizeLimits;
 use crate::random::Seed;
-use crate::study::{positive, read_mesh_file};
+use crate::study::{positive, read_mesh};
 use crate::world::{Grid, Layout, Patch, Shears};
 
 /// A patch and where it is mounted.
@@ -102,9 +102,12 @@ impl Reader<'_> {
             } => Layout::sphere_cap(radius_mm * MM, half_angle_deg.to_radians(), pitch),
             LayoutSpec::Draped { ref mesh, unit, .. } => {
                 let (place, _) = self.open(&format!("{key}.mesh"), mesh)?;
-                let mesh = read_mesh_file(&self.path(mesh), unit, &SizeLimits::ANY);
-                let mesh = mesh.and_then(|mesh| mesh.into_mesh(&place));
-                Layout::draped(&self.under(key, mesh)?, pitch, seed)
+                let read = read_mesh(&self.path(mesh), unit, &SizeLimits::ANY, None);
+                let outward = read.and_then(|(mesh, orientation)| {
+                    orientation.require(&place)?;
+                    Ok(mesh)
+                });
+                Layout::draped(&self.under(key, outward)?, pitch, seed)
             }
         };
         self.under(key, layout)

@@ -81,7 +81,7 @@ pub use human_touches::{HumanTouches, RecordedTouch, record_touch};
 pub use npy::{write_integers, write_npy};
 pub use object_files::{
     NamedMesh, file_content, load_catalogue, load_mesh, load_named_meshes, load_objects,
-    load_spheres, objects_content, read_mesh_file,
+    load_spheres, objects_content, read_mesh, read_mesh_file,
 };
 pub use packings::{Packed, pack_within, packing_path};
 pub(crate) use plan::MM;

@@ -5,12 +5,15 @@ use super::packings::pack_within;
 use super::spec::{ModelSpec, ObjectsSpec};
 use crate::error::{Error, Result};
 use crate::geometry::Aabb;
-use crate::mesh::{LengthUnit, MeshFile, MeshFormat, SizeLimits, Surface, TriangleMesh};
+use crate::mesh::{
+    LengthUnit, MeshFile, MeshFormat, Orientation, SizeLimits, Surface, TriangleMesh,
+};
 use crate::objects::{
     Catalogue, Entry, MeshModel, Object, Sphere, SphereUnion, read_spheres, vertex_spheres,
 };
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Display;
 use std::fs::File;
 use std::io::{BufReader, Write};
 use std::path::{Path, PathBuf};
@@ -165,7 +168,7 @@ fn check_regular(path: &Path) -> Result<()> {
 pub fn load_mesh(path: &Path, spec: &ObjectsSpec, packings: Option<&Path>) -> Result<Object> {
     let place = path.display().to_string();
     let mesh = read_mesh_file(path, spec.unit, &spec.sizes())?;
-    let closed = |mesh| closed(mesh, &place, spec.close_holes());
+    let closed = |file| outward_mesh(file, &place, spec.close_holes()).map(|(mesh, _)| mesh);
     let model = match spec.model.unwrap_or_default() {
         ModelSpec::VertexSpheres => vertex_spheres(&place, mesh.vertices())?.into(),
         ModelSpec::Mesh => MeshModel::new(closed(mesh)?).into(),
@@ -178,18 +181,44 @@ pub fn load_mesh(path: &Path, spec: &ObjectsSpec, packings: Option<&Path>) -> Re
     Ok(Object::of_one_part(stem(path), model))
 }
 
-/// The triangles of a file, without the holes that are to be closed; which, is said on standard error.
-fn closed(file: MeshFile, place: &str, widest: Option<f64>) -> Result<TriangleMesh> {
-    let mesh = file.into_mesh(place)?;
-    let Some(widest) = widest else {
-        return Ok(mesh);
-    };
-    let closed = mesh.with_holes_closed(widest)?;
-    if !closed.widths.is_empty() {
-        // That nobody reads it changes nothing.
-        let _ = writeln!(std::io::stderr(), "note: {place}: {closed}");
+/// Reads the triangles of a mesh file with its closed parts turned outwards, and which way they face. Holes up to `close_holes`
+/// metres wide are closed first. Both changes are reported on standard error.
+///
+/// # Errors
+/// If [`read_mesh_file`] fails, a face is not convex, or the width is negative.
+pub fn read_mesh(
+    path: &Path,
+    unit: Option<LengthUnit>,
+    sizes: &SizeLimits,
+    close_holes: Option<f64>,
+) -> Result<(TriangleMesh, Orientation)> {
+    let place = path.display().to_string();
+    outward_mesh(read_mesh_file(path, unit, sizes)?, &place, close_holes)
+}
+
+/// The triangles of a file, as [`read_mesh`] returns them.
+fn outward_mesh(
+    file: MeshFile,
+    place: &str,
+    close_holes: Option<f64>,
+) -> Result<(TriangleMesh, Orientation)> {
+    // A closed standard error changes nothing.
+    let note = |text: &dyn Display| drop(writeln!(std::io::stderr(), "note: {place}: {text}"));
+    let (mut mesh, mut orientation) = file.into_mesh(place)?.turned_outwards();
+    if orientation.is_turned() {
+        note(&orientation);
     }
-    Ok(closed.mesh)
+    if let Some(widest) = close_holes {
+        let closed = mesh.with_holes_closed(widest)?;
+        if !closed.widths.is_empty() {
+            note(&closed);
+        }
+        (mesh, orientation) = closed.mesh.turned_outwards();
+        if orientation.is_turned() {
+            note(&orientation);
+        }
+    }
+    Ok((mesh, orientation))
 }
 
 /// The meshes of a study as triangles, by file name.
@@ -200,8 +229,7 @@ pub fn load_named_meshes(folder: &Path, spec: &ObjectsSpec) -> Result<Vec<NamedM
     let paths = mesh_paths(folder, spec)?;
     let meshes = paths.par_iter().map(|path| {
         let place = path.display().to_string();
-        let file = read_mesh_file(path, spec.unit, &spec.sizes())?;
-        let mesh = closed(file, &place, spec.close_holes())?;
+        let (mesh, _) = read_mesh(path, spec.unit, &spec.sizes(), spec.close_holes())?;
         Ok(NamedMesh {
             name: stem(path),
             place,

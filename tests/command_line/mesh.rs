@@ -60,6 +60,98 @@ fn a_pressed_cube_is_flat_under_its_face_and_not_inflated() {
     assert_eq!(under.count(), 400);
 }
 
+/// The faces of a mesh, each the other way round.
+fn inside_out(text: &str) -> String {
+    let turned = text.lines().map(|line| match line.strip_prefix("f ") {
+        None => line.to_owned(),
+        Some(face) => {
+            let mut corners: Vec<&str> = face.split(' ').collect();
+            corners[1..].reverse();
+            format!("f {}", corners.join(" "))
+        }
+    });
+    turned.collect::<Vec<_>>().join("\n") + "\n"
+}
+
+#[test]
+fn a_closed_mesh_that_faces_inwards_is_turned_with_a_note() {
+    let case = Case::new();
+    case.file("cube.obj", cube());
+    case.file("turned.obj", inside_out(&cube()));
+    case.file(
+        "mirrored.obj",
+        cube().replace("v ", "v -").replace("--", ""),
+    );
+    for model in ["mesh", "packed"] {
+        for (file, has_note) in [("cube", false), ("turned", true), ("mirrored", true)] {
+            let press = format!(
+                "press --mesh {file}.obj --unit mm --model {model} --taxels 32x32 --depth-mm 2 --out {file}.csv"
+            );
+            let (_, said) = case.succeeds(&words(&press));
+            let note = format!(
+                "note: {file}.obj: 12 of 12 triangles faced inwards and were turned outwards\n"
+            );
+            assert_eq!(said.contains(&note), has_note, "{said}");
+            assert!(said.contains("400 of 1024 taxels touched"), "{said}");
+        }
+    }
+    case.succeeds(&words(
+        "objects pack turned.obj --unit mm --surface-error-mm 1 --out turned.csv",
+    ));
+    // The file itself is described as it is.
+    let (said, _) = case.succeeds(&words("objects mesh turned.obj --unit mm"));
+    assert!(said.contains("faces that face inwards"), "{said}");
+}
+
+#[test]
+fn skin_over_a_mesh_points_outwards_whichever_way_the_file_faces() {
+    let case = Case::new();
+    case.file("cube.obj", cube());
+    case.file("turned.obj", inside_out(&cube()));
+    let open = |text: String| {
+        text.lines()
+            .filter(|line| !line.contains("f 5 "))
+            .map(|l| format!("{l}\n"))
+            .collect::<String>()
+    };
+    case.file("open.obj", open(inside_out(&cube())));
+    let scene = "title = \"A cube of skin\"\ndt_ms = 10.0\noutput_hz = 100.0\nduration_s = 0.05\n[[patches]]\nname = \"pad\"\n\
+                 layout = { draped = { mesh = \"FILE\", unit = \"mm\", pitch_mm = 5.0 } }\nstroke_mm = 5.0\nstiffness_n_per_m = 100.0\n\
+                 [[objects]]\nname = \"ball\"\nobject = \"tennis\"\nat = { position_mm = [0.0, 0.0, 38.0] }\n";
+    let mut frames = Vec::new();
+    for (file, has_note) in [("cube", false), ("turned", true)] {
+        case.file("scene.toml", scene.replace("FILE", &format!("{file}.obj")));
+        let (_, said) = case.succeeds(&words(&format!("simulate scene.toml --out {file}")));
+        assert_eq!(
+            said.contains("12 of 12 triangles faced inwards"),
+            has_note,
+            "{said}"
+        );
+        let mut files: Vec<_> = std::fs::read_dir(case.path(file))
+            .unwrap()
+            .map(|e| e.unwrap().path())
+            .collect();
+        files.retain(|path| path.extension().is_some_and(|e| e == "npz" || e == "npy"));
+        files.sort();
+        assert!(!files.is_empty());
+        frames.push(
+            files
+                .iter()
+                .map(|path| std::fs::read(path).unwrap())
+                .collect::<Vec<_>>(),
+        );
+    }
+    assert_eq!(frames[0], frames[1]);
+    case.file("scene.toml", scene.replace("FILE", "open.obj"));
+    let output = case.run(&words("simulate scene.toml --out open"));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(
+        said.contains("open.obj: an open mesh whose faces face inwards; "),
+        "{said}"
+    );
+}
+
 #[test]
 fn packed_spheres_are_written_and_shown_beside_the_mesh() {
     let case = Case::new();

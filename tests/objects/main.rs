@@ -13,6 +13,7 @@ mod catalogue;
 mod files;
 mod mesh_files;
 mod mesh_surface;
+mod orientation;
 mod packing;
 mod packing_laws;
 mod solids;

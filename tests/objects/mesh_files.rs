@@ -29,12 +29,7 @@ fn ascii_stl(mesh: &TriangleMesh) -> String {
     for t in 0..mesh.n_triangles() {
         text.push_str("facet normal 0 0 0\nouter loop\n");
         for v in mesh.triangle(t).0 {
-            writeln!(
-                text,
-                "  vertex {} {} {}",
-                v.x as f32, v.y as f32, v.z as f32
-            )
-            .unwrap();
+            writeln!(text, "  vertex {} {} {}", v.x, v.y, v.z).unwrap();
         }
         text.push_str("endloop\nendfacet\n");
     }
@@ -96,11 +91,13 @@ fn both_kinds_of_stl_give_the_mesh_with_its_corners_merged() {
     let ascii = read_stl("ball.stl", ascii_stl(&ball).as_bytes()).unwrap();
     assert_eq!(ascii.vertices().len(), ball.vertices().len());
     let ascii = ascii.into_mesh("ball.stl").unwrap();
-    assert_eq!(corners(&ascii), as_f32(&ball));
+    assert_eq!(corners(&ascii), corners(&ball), "every digit counts");
     // Some programs begin a binary file with the word of an ascii one.
     for header in [&b"made by hand"[..], b"solid ball"] {
         let binary = read_stl("ball.stl", &binary_stl(&ball, header)[..]).unwrap();
-        assert_eq!(binary.into_mesh("ball.stl").unwrap(), ascii);
+        let binary = binary.into_mesh("ball.stl").unwrap();
+        assert_eq!(corners(&binary), as_f32(&ball));
+        assert!(Surface::new(binary).is_closed());
     }
     let nameless = ascii_stl(&ball).replace(" thing of mine", "");
     assert_eq!(
@@ -134,11 +131,11 @@ fn files_that_are_no_meshes_say_why() {
         ),
         (
             stl_error(text.replacen("vertex -1", "vertex one", 1).as_bytes()),
-            "m.stl: not readable as STL",
+            "m.stl, line 4: coordinate `one`",
         ),
         (
             stl_error(text.replacen("vertex -1", "vertex NaN", 1).as_bytes()),
-            "m.stl: ",
+            "m.stl, line 4: coordinate `NaN`; a finite number",
         ),
         (
             stl_error(b"solid empty\nendsolid empty\n"),
@@ -148,31 +145,31 @@ fn files_that_are_no_meshes_say_why() {
         (obj_error("v 0 0 0\nv 1 0 0\nv 0 1 0\n"), "m.obj: no faces"),
         (
             obj_error("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n"),
-            "m.obj: not readable as OBJ: face vertex index",
+            "m.obj, line 4: vertex index 4; 1 to 3",
         ),
         (
             obj_error("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 0\n"),
-            "m.obj: not readable as OBJ",
+            "m.obj, line 4: vertex index `0`",
         ),
         (
             obj_error("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -4\n"),
-            "m.obj: not readable as OBJ",
+            "m.obj, line 4: vertex index `-4`",
         ),
         (
             obj_error("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\n"),
-            "m.obj: no ",
+            "m.obj, line 4: a face with 2 corners; three corners or more",
         ),
         (
             obj_error("v 0 0 0\nv 1 0 0\nv 0 1 0\nf\nf 1 2 3\n"),
-            "m.obj: ",
+            "m.obj, line 4: a face with 0 corners",
         ),
         (
             obj_error("v 0 0 zero\nf 1 1 1\n"),
-            "m.obj: not readable as OBJ: position",
+            "m.obj, line 1: coordinate `zero`",
         ),
         (
             obj_error("v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
-            "m.obj: vertex 1",
+            "m.obj, line 1: coordinate `nan`; a finite number",
         ),
         (
             obj_error("v 0 0 0\nv 2 0 0\nv 0.1 0.1 0\nv 0 2 0\nf 4 1 2 3\n"),
@@ -204,6 +201,131 @@ fn cut_or_garbled_files_never_panic() {
                 };
             }
         }
+    }
+}
+
+/// What a reader returns for a file that it can read.
+fn read(format: MeshFormat, bytes: &[u8]) -> TriangleMesh {
+    let file = format.read("m", LengthUnit::Metre, bytes);
+    file.unwrap().into_mesh("m").unwrap()
+}
+
+#[test]
+fn byte_order_marks_line_ends_and_comments_change_nothing() {
+    let mark = b"\xEF\xBB\xBF".to_vec();
+    let cube = cuboid(DVec3::new(0.1, 0.2, 0.3));
+    let header = "ply\nformat ascii 1.0\ncomment by hand\nelement vertex 8\nproperty double x\nproperty double y\nproperty double z\n\
+                  element face 12\nproperty list uchar int vertex_indices\nend_header\n";
+    let mut ply = header.to_owned();
+    for v in cube.vertices() {
+        writeln!(ply, "{} {} {}", v.x, v.y, v.z).unwrap();
+    }
+    for [a, b, c] in cube.triangles() {
+        writeln!(ply, "3 {a} {b} {c}").unwrap();
+    }
+    // The last vertex is unused, so that a lost first one would leave valid indices.
+    let first_vertex_first = obj(&cube)
+        .lines()
+        .skip(3)
+        .map(|line| format!("{line} # x\n"))
+        .collect::<String>();
+    let obj_text = first_vertex_first.replacen("vt 0 0", "v 9 9 9\nvt 0 0", 1);
+    for (format, text) in [
+        (MeshFormat::Obj, obj_text),
+        (MeshFormat::Stl, ascii_stl(&cube)),
+        (MeshFormat::Ply, ply),
+    ] {
+        assert_eq!(
+            corners(&read(format, text.as_bytes())),
+            corners(&cube),
+            "{format:?}"
+        );
+        let marked = [&mark, text.as_bytes()].concat();
+        assert_eq!(
+            corners(&read(format, &marked)),
+            corners(&cube),
+            "{format:?}, marked"
+        );
+        let windows = [&mark, text.replace('\n', "\r\n").as_bytes()].concat();
+        assert_eq!(
+            corners(&read(format, &windows)),
+            corners(&cube),
+            "{format:?}, CR LF"
+        );
+    }
+    let classic = obj(&cube).replace('\n', "\r");
+    assert_eq!(
+        corners(&read(MeshFormat::Obj, classic.as_bytes())),
+        corners(&cube),
+        "CR"
+    );
+    let continued = obj(&cube).replace("/1/1 ", "/1/1 \\\n  ");
+    assert_eq!(
+        corners(&read(MeshFormat::Obj, continued.as_bytes())),
+        corners(&cube)
+    );
+    let latin = [b"# Pr\xFCfk\xF6rper\n", obj(&cube).as_bytes()].concat();
+    assert_eq!(corners(&read(MeshFormat::Obj, &latin)), corners(&cube));
+}
+
+#[test]
+fn all_objects_of_a_file_are_read() {
+    let near = cuboid(DVec3::splat(0.01));
+    let moved = near.vertices().iter().map(|&v| v + DVec3::X);
+    let far = TriangleMesh::new("far", moved.collect(), near.triangles().to_vec()).unwrap();
+    let both = [corners(&near), corners(&far)].concat();
+    let stl = ascii_stl(&near) + &ascii_stl(&far);
+    assert_eq!(corners(&read(MeshFormat::Stl, stl.as_bytes())), both);
+    let upper = stl.to_uppercase().replace("SOLID THING OF MINE", "SOLID");
+    assert_eq!(corners(&read(MeshFormat::Stl, upper.as_bytes())), both);
+    let with_blank_lines = stl.replace("endsolid thing of mine\n", "endsolid\n\n");
+    assert_eq!(
+        corners(&read(MeshFormat::Stl, with_blank_lines.as_bytes())),
+        both
+    );
+    // Indices count on over objects, from the start or from the last vertex so far.
+    let square = "v 0 0 Z\nv 1 0 Z\nv 1 1 Z\nv 0 1 Z\n";
+    let object = |number: usize, face: &str| {
+        format!(
+            "o part{number}\ng a b\n{}f {face}\n",
+            square.replace('Z', &number.to_string())
+        )
+    };
+    for second in ["5 6 7 8", "-4 -3 -2 -1", "5/1 6/1 7/1 8/1"] {
+        let text = object(0, "1 2 3 4") + &object(1, second);
+        let mesh = read(MeshFormat::Obj, text.as_bytes());
+        assert_eq!((mesh.n_triangles(), mesh.area()), (4, 2.0), "{second}");
+        assert_eq!(mesh.bounds().max, DVec3::ONE);
+    }
+    // A face may come before its vertices.
+    let mesh = read(
+        MeshFormat::Obj,
+        format!("f 1 2 3 4\n{}", square.replace('Z', "0")).as_bytes(),
+    );
+    assert_eq!(mesh.area(), 1.0);
+}
+
+#[test]
+fn ascii_coordinates_keep_all_their_digits() {
+    let x = 1.234_567_890_123_45;
+    assert_ne!(f64::from(x as f32), x);
+    let obj = format!("v {x} 0 0\nv 2 0 0\nv 0 1 0\nf 1 2 3\n");
+    let facet = format!(
+        "facet normal 0 0 1\nouter loop\nvertex {x} 0 0\nvertex 2 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
+    );
+    let stl = format!("solid\n{facet}endsolid\n");
+    assert_eq!(read(MeshFormat::Obj, obj.as_bytes()).vertices()[0].x, x);
+    assert_eq!(read(MeshFormat::Stl, stl.as_bytes()).vertices()[0].x, x);
+    for wrong in [
+        stl.replacen("vertex 0 1 0\n", "", 1),
+        stl.replacen("vertex 0 1 0\n", "vertex 0 1 0\nvertex 1 1 1\n", 1),
+        stl.replacen("vertex 0 1 0", "vertex 0 1", 1),
+        stl.replacen("endfacet\n", "", 1),
+        stl.replacen("solid\n", "solid\nfacets\n", 1),
+        stl.clone() + &facet,
+    ] {
+        let error = read_stl("m.stl", wrong.as_bytes()).unwrap_err().to_string();
+        assert!(error.starts_with("m.stl, line "), "{error}");
     }
 }
 

@@ -1,0 +1,355 @@
+//! Turns the closed parts of a mesh outwards, and decides whether the faces of open ones face outwards.
+//!
+//! Let w be the winding number of the space around a closed part, and s = ±1 the sign of the part's signed volume. A part with
+//! w + s < 0 has its outside where the mesh encloses nothing, so its triangles are turned. An inwards part inside an outwards
+//! one (w = 1, s = −1) is a cavity and stays. If a part is turned, the parts inside it turn with it: a mirrored housing keeps
+//! its cavity.
+
+use super::crossings::winding;
+use super::welded::Joined;
+use super::{Bvh, Side, Triangle, TriangleMesh, Welded};
+use crate::error::{Error, Result};
+use crate::geometry::Aabb;
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// Triangles from which rays are sent to decide which side of an open part is outside. Larger: slower; smaller: parts with
+/// narrow openings are judged by few rays.
+const MAX_RAYS: usize = 2000;
+
+/// Points of a part that are looked for inside another part; the majority decides. Odd.
+const N_POINTS: usize = 9;
+
+/// Parts whose volume is a smaller share of their area to the power 3/2 enclose nothing: both sides of a sheet.
+const MIN_VOLUME: f64 = 1e-9;
+
+/// If faces of an open part disagree, the part is unsettled from this share of inwards area on. Smaller: scans with a few
+/// flipped triangles are refused; larger: skin on the part points both ways.
+const MAX_DISAGREEING: f64 = 0.05;
+
+/// Which way the triangles of a mesh face, after [`TriangleMesh::turned_outwards`].
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Orientation {
+    /// Outwards as given. Flat sheets and open parts without an outside count as outwards.
+    Outwards,
+    /// Outwards, because triangles of closed parts were turned.
+    Turned {
+        /// Number of triangles that were turned.
+        n_triangles: usize,
+        /// Number of triangles of the mesh.
+        n_all: usize,
+    },
+    /// Inwards, or faces disagree, and the mesh is not closed there; nothing of it was turned.
+    Unsettled(&'static str),
+}
+
+impl Orientation {
+    /// Returns an error if the outside is not known.
+    ///
+    /// # Errors
+    /// If the mesh is [`Unsettled`](Self::Unsettled); the error begins with `place`.
+    pub fn require(&self, place: &str) -> Result<()> {
+        match self {
+            Self::Unsettled(given) => {
+                let allowed = "faces counter-clockwise seen from outside, or a closed mesh, which is turned outwards";
+                Err(Error::input(place, given, allowed))
+            }
+            Self::Outwards | Self::Turned { .. } => Ok(()),
+        }
+    }
+
+    /// Whether triangles were turned.
+    pub fn is_turned(&self) -> bool {
+        matches!(self, Self::Turned { .. })
+    }
+}
+
+impl fmt::Display for Orientation {
+    /// `12 of 12 triangles faced inwards and were turned outwards`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Outwards => write!(f, "faces outwards"),
+            Self::Turned { n_triangles, n_all } => write!(
+                f,
+                "{n_triangles} of {n_all} triangles faced inwards and were turned outwards"
+            ),
+            Self::Unsettled(given) => write!(f, "{given}"),
+        }
+    }
+}
+
+impl TriangleMesh {
+    /// Turns the triangles of closed parts so that the mesh faces outwards: neighbours agree, and no place has a negative
+    /// winding number. Cavities stay cavities. Open parts stay as they are; rays from their faces decide whether they face
+    /// outwards.
+    pub fn turned_outwards(self) -> (Self, Orientation) {
+        let welded = Welded::new(&self);
+        let mut parts = Parts::new(&self, &welded);
+        parts.make_neighbours_agree();
+        parts.turn_closed_parts();
+        if let Some(given) = parts.unsettled() {
+            // What is turned beside an unsettled part is of no use to anybody who needs an outside.
+            return (self, Orientation::Unsettled(given));
+        }
+        let n_triangles = parts.is_turned.iter().filter(|&&turned| turned).count();
+        if n_triangles == 0 {
+            return (self, Orientation::Outwards);
+        }
+        let turned = parts.is_turned;
+        let n_all = self.n_triangles();
+        let orientation = Orientation::Turned { n_triangles, n_all };
+        (self.with_turned(&turned), orientation)
+    }
+}
+
+/// The parts of a mesh: triangles that are connected by edges.
+struct Parts<'a> {
+    mesh: &'a TriangleMesh,
+    welded: &'a Welded,
+    /// For each part its triangles, ascending.
+    triangles: Vec<Vec<u32>>,
+    /// For each triangle its part.
+    part_of: Vec<u32>,
+    /// For each triangle whether it is to be turned.
+    is_turned: Vec<bool>,
+    /// For each part whether every edge is passed as often in one direction as in the other.
+    is_closed: Vec<bool>,
+}
+
+impl<'a> Parts<'a> {
+    fn new(mesh: &'a TriangleMesh, welded: &'a Welded) -> Self {
+        let n = mesh.n_triangles();
+        let mut joined = Joined::of(n);
+        for sides in welded.edges() {
+            for pair in sides.windows(2) {
+                joined.join(pair[0].triangle, pair[1].triangle);
+            }
+        }
+        let mut numbers = BTreeMap::new();
+        let mut part_of = Vec::with_capacity(n);
+        let mut triangles: Vec<Vec<u32>> = Vec::new();
+        for triangle in 0..n as u32 {
+            let part = *numbers.entry(joined.root(triangle)).or_insert_with(|| {
+                triangles.push(Vec::new());
+                triangles.len() - 1
+            });
+            part_of.push(part as u32);
+            triangles[part].push(triangle);
+        }
+        let mut parts = Self {
+            mesh,
+            welded,
+            triangles,
+            part_of,
+            is_turned: vec![false; n],
+            is_closed: Vec::new(),
+        };
+        parts.is_closed = parts.closed();
+        parts
+    }
+
+    /// The direction in which a side's triangle passes the edge, after turning.
+    fn is_forward(&self, side: &Side) -> bool {
+        side.is_forward != self.is_turned[side.triangle as usize]
+    }
+
+    /// For each part whether its edges are balanced.
+    fn closed(&self) -> Vec<bool> {
+        // Triangles without an edge of their own (a corner twice) are parts that enclose nothing.
+        let mut is_closed = vec![true; self.triangles.len()];
+        for sides in self.welded.edges() {
+            let sign = |side: &Side| if self.is_forward(side) { 1 } else { -1 };
+            if sides.iter().map(sign).sum::<i32>() != 0 {
+                is_closed[self.part_of[sides[0].triangle as usize] as usize] = false;
+            }
+        }
+        is_closed
+    }
+
+    /// In each part that is not closed, turns triangles until neighbours across edges of two triangles agree, as few as
+    /// possible. Parts that are not closed by that stay as they were.
+    fn make_neighbours_agree(&mut self) {
+        if self.is_closed.iter().all(|&closed| closed) {
+            return;
+        }
+        let mut neighbours: Vec<Vec<(u32, bool)>> = vec![Vec::new(); self.part_of.len()];
+        for sides in self.welded.edges() {
+            if let [a, b] = sides
+                && !self.is_closed[self.part_of[a.triangle as usize] as usize]
+            {
+                let disagree = a.is_forward == b.is_forward;
+                neighbours[a.triangle as usize].push((b.triangle, disagree));
+                neighbours[b.triangle as usize].push((a.triangle, disagree));
+            }
+        }
+        let mut is_seen = vec![false; self.part_of.len()];
+        for start in 0..self.part_of.len() {
+            if is_seen[start] || neighbours[start].is_empty() {
+                continue;
+            }
+            is_seen[start] = true;
+            let mut reached = vec![start];
+            let mut next = 0;
+            while next < reached.len() {
+                let triangle = reached[next];
+                next += 1;
+                for &(neighbour, disagree) in &neighbours[triangle] {
+                    let neighbour = neighbour as usize;
+                    if !std::mem::replace(&mut is_seen[neighbour], true) {
+                        self.is_turned[neighbour] = self.is_turned[triangle] != disagree;
+                        reached.push(neighbour);
+                    }
+                }
+            }
+            let n_turned = reached.iter().filter(|&&t| self.is_turned[t]).count();
+            if 2 * n_turned > reached.len() {
+                for triangle in reached {
+                    self.is_turned[triangle] ^= true;
+                }
+            }
+        }
+        self.is_closed = self.closed();
+        for (part, triangles) in self.triangles.iter().enumerate() {
+            if !self.is_closed[part] {
+                for &triangle in triangles {
+                    self.is_turned[triangle as usize] = false;
+                }
+            }
+        }
+    }
+
+    /// The corners of a triangle after turning.
+    fn triangle(&self, triangle: u32) -> Triangle {
+        let [a, b, c] = self.mesh.triangle(triangle as usize).0;
+        match self.is_turned[triangle as usize] {
+            true => Triangle([a, c, b]),
+            false => Triangle([a, b, c]),
+        }
+    }
+
+    /// The signed volume of a closed part, m³; 0 if it encloses nothing.
+    fn volume(&self, part: usize) -> f64 {
+        let triangles = self.triangles[part].iter().map(|&t| self.triangle(t));
+        let apex = self.triangle(self.triangles[part][0]).0[0];
+        let (mut volume, mut area) = (0.0, 0.0);
+        for triangle in triangles {
+            let [a, b, c] = triangle.0.map(|corner| corner - apex);
+            volume += a.dot(b.cross(c)) / 6.0;
+            area += triangle.area();
+        }
+        let is_solid = volume.abs() > MIN_VOLUME * area.powf(1.5);
+        if is_solid { volume } else { 0.0 }
+    }
+
+    /// Turns closed parts outwards where their outside is not enclosed by other parts.
+    fn turn_closed_parts(&mut self) {
+        let closed = (0..self.triangles.len()).filter(|&part| self.is_closed[part]);
+        let volumes = closed.map(|part| (part, self.volume(part)));
+        let mut solids: Vec<(usize, f64)> = volumes.filter(|(_, volume)| *volume != 0.0).collect();
+        if solids.iter().all(|(_, volume)| *volume > 0.0) {
+            return;
+        }
+        // A part is larger than what it encloses.
+        solids.sort_by(|(_, a), (_, b)| b.abs().total_cmp(&a.abs()));
+        let mut placed: Vec<Enclosure> = Vec::new();
+        for (part, volume) in solids {
+            let triangles: Vec<Triangle> = self.triangles[part]
+                .iter()
+                .map(|&t| self.triangle(t))
+                .collect();
+            let around = Aabb::around(triangles.iter().map(Triangle::bounds));
+            let bounds = around.expect("a part has triangles");
+            let mut outside = 0;
+            // The smallest part around this one comes last.
+            let mut is_turned = false;
+            for other in placed.iter_mut().filter(|other| other.may_hold(&bounds)) {
+                let winding = other.winding_around(&triangles);
+                if winding != 0 {
+                    outside += if other.is_turned { -winding } else { winding };
+                    is_turned = other.is_turned;
+                }
+            }
+            let sign = if (volume > 0.0) == is_turned { -1 } else { 1 };
+            is_turned ^= outside + sign < 0;
+            if is_turned {
+                for &triangle in &self.triangles[part] {
+                    self.is_turned[triangle as usize] ^= true;
+                }
+            }
+            placed.push(Enclosure {
+                bounds,
+                triangles,
+                bvh: None,
+                is_turned,
+            });
+        }
+    }
+
+    /// What is wrong with an open part, if rays from its faces tell that it faces inwards, or faces disagree.
+    fn unsettled(&self) -> Option<&'static str> {
+        if self.is_closed.iter().all(|&closed| closed) {
+            return None;
+        }
+        let bvh = Bvh::new(self.mesh);
+        let size = bvh.bounds().size().length();
+        let disagrees =
+            |sides: &[Side]| sides.len() == 2 && sides[0].is_forward == sides[1].is_forward;
+        let mut has_flipped = vec![false; self.triangles.len()];
+        for sides in self.welded.edges().filter(|sides| disagrees(sides)) {
+            has_flipped[self.part_of[sides[0].triangle as usize] as usize] = true;
+        }
+        let open = (0..self.triangles.len()).filter(|&part| !self.is_closed[part]);
+        let total: usize = open.clone().map(|part| self.triangles[part].len()).sum();
+        let stride = total.div_ceil(MAX_RAYS);
+        let (mut outwards, mut inwards, mut is_flipped) = (0.0, 0.0, false);
+        let all = open.flat_map(|part| self.triangles[part].iter().map(move |&t| (part, t)));
+        for (part, number) in all.step_by(stride) {
+            is_flipped |= has_flipped[part];
+            let triangle = self.mesh.triangle(number as usize);
+            let Some(normal) = triangle.normal() else {
+                continue;
+            };
+            let is_free = |direction| {
+                let range = 1e-7 * size..f64::INFINITY;
+                bvh.first_hit(triangle.middle(), direction, range).is_none()
+            };
+            match (is_free(normal), is_free(-normal)) {
+                (true, false) => outwards += triangle.area(),
+                (false, true) => inwards += triangle.area(),
+                _ => {}
+            }
+        }
+        if inwards > outwards {
+            return Some("an open mesh whose faces face inwards");
+        }
+        let disagree = is_flipped && inwards > MAX_DISAGREEING * (inwards + outwards);
+        disagree.then_some("an open mesh whose faces disagree about the outside")
+    }
+}
+
+/// A closed part that may hold others.
+struct Enclosure {
+    bounds: Aabb,
+    /// As they were before the part was turned.
+    triangles: Vec<Triangle>,
+    bvh: Option<Bvh>,
+    is_turned: bool,
+}
+
+impl Enclosure {
+    fn may_hold(&self, bounds: &Aabb) -> bool {
+        self.bounds.min.cmple(bounds.min).all() && self.bounds.max.cmpge(bounds.max).all()
+    }
+
+    /// The winding number, before turning, of most of some points of another part; 0 outside.
+    fn winding_around(&mut self, triangles: &[Triangle]) -> i32 {
+        let bvh = self
+            .bvh
+            .get_or_insert_with(|| Bvh::of(self.triangles.clone()).expect("a part has triangles"));
+        let stride = triangles.len().div_ceil(N_POINTS);
+        let points = triangles.iter().step_by(stride).map(Triangle::middle);
+        let mut windings: Vec<i32> = points.map(|point| winding(bvh, point)).collect();
+        windings.sort_unstable();
+        windings[windings.len() / 2]
+    }
+}

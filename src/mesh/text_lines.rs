@@ -1,0 +1,77 @@
+//! Lines of text formats: numbered, without byte order mark, whatever their encoding and their line ends are.
+
+use crate::error::{Error, Result};
+use std::io::BufRead;
+
+/// The UTF-8 byte order mark.
+pub(super) const BYTE_ORDER_MARK: [u8; 3] = [0xEF, 0xBB, 0xBF];
+
+/// Calls `visit` with the number (from 1) and the text of each line that has text.
+///
+/// A backslash at the end of a line continues it on the next one. Bytes that are no UTF-8 (names and comments in other
+/// encodings) are replaced by U+FFFD. Line ends are LF, CR LF or CR.
+///
+/// # Errors
+/// If `source` cannot be read, or `visit` returns an error.
+pub(super) fn each_line(
+    place: &str,
+    mut source: impl BufRead,
+    mut visit: impl FnMut(usize, &str) -> Result<()>,
+) -> Result<()> {
+    let mut bytes = Vec::new();
+    source
+        .read_to_end(&mut bytes)
+        .map_err(|e| Error::io(place, "read", e))?;
+    let text = bytes.strip_prefix(&BYTE_ORDER_MARK).unwrap_or(&bytes);
+    let (mut number, mut first, mut line) = (0, 1, String::new());
+    let mut is_after_return = false;
+    for end in text.split_inclusive(|&byte| byte == b'\n' || byte == b'\r') {
+        // The LF of a CR LF ends a line that has ended.
+        if end == b"\n" && is_after_return {
+            is_after_return = false;
+            continue;
+        }
+        is_after_return = end.ends_with(b"\r");
+        number += 1;
+        let content = String::from_utf8_lossy(end);
+        let content = content.trim();
+        match content.strip_suffix('\\') {
+            Some(content) => {
+                line.push_str(content);
+                line.push(' ');
+            }
+            None => {
+                line.push_str(content);
+                visit(first, &line)?;
+                line.clear();
+                first = number + 1;
+            }
+        }
+    }
+    visit(first, &line)
+}
+
+/// Reads three finite coordinates from the words of a line; further words are ignored.
+///
+/// # Errors
+/// If there are fewer words, or one is not a finite number; the error begins with `place`.
+pub(super) fn coordinates<'a>(
+    place: impl std::fmt::Display,
+    mut words: impl Iterator<Item = &'a str>,
+) -> Result<glam::DVec3> {
+    let mut point = [0.0; 3];
+    for (n_read, coordinate) in point.iter_mut().enumerate() {
+        let Some(word) = words.next() else {
+            let given = format!("{n_read} coordinates");
+            return Err(Error::input(place, given, "x, y and z"));
+        };
+        *coordinate = match word.parse::<f64>() {
+            Ok(number) if number.is_finite() => number,
+            _ => {
+                let given = format!("coordinate `{word}`");
+                return Err(Error::input(place, given, "a finite number"));
+            }
+        };
+    }
+    Ok(glam::DVec3::from_array(point))
+}

@@ -1,0 +1,148 @@
+//! Which way meshes face: closed parts are turned outwards, cavities stay, open parts are judged by rays.
+
+use crate::mesh_shapes::cuboid;
+use bubbletouch::mesh::{Orientation, Surface, TriangleMesh};
+use bubbletouch::packing::{Body, pack_mesh};
+use glam::DVec3;
+
+/// Turns all triangles of a mesh.
+fn inside_out(mesh: &TriangleMesh) -> TriangleMesh {
+    let turned = mesh.triangles().iter().map(|&[a, b, c]| [a, c, b]);
+    TriangleMesh::new("turned", mesh.vertices().to_vec(), turned.collect()).unwrap()
+}
+
+/// One mesh of several, each moved.
+fn joined(parts: &[(TriangleMesh, DVec3)]) -> TriangleMesh {
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    for (part, shift) in parts {
+        let first = vertices.len() as u32;
+        vertices.extend(part.vertices().iter().map(|&v| v + *shift));
+        triangles.extend(part.triangles().iter().map(|t| t.map(|v| v + first)));
+    }
+    TriangleMesh::new("joined", vertices, triangles).unwrap()
+}
+
+fn cube(half: f64) -> TriangleMesh {
+    cuboid(DVec3::splat(half))
+}
+
+fn volume(mesh: &TriangleMesh) -> f64 {
+    mesh.volume_and_centroid().0
+}
+
+/// Turns a mesh outwards and checks how many of its triangles that takes, and that a second time takes none.
+fn turned(mesh: &TriangleMesh, expected: usize) -> TriangleMesh {
+    let (outward, orientation) = mesh.clone().turned_outwards();
+    match orientation {
+        Orientation::Turned { n_triangles, n_all } => {
+            assert_eq!((n_triangles, n_all), (expected, mesh.n_triangles()));
+        }
+        other => assert_eq!((other, expected), (Orientation::Outwards, 0)),
+    }
+    let (again, orientation) = outward.clone().turned_outwards();
+    assert_eq!((&again, orientation), (&outward, Orientation::Outwards));
+    outward
+}
+
+#[test]
+fn a_closed_mesh_faces_outwards_whichever_of_its_triangles_were_turned() {
+    let whole = cube(1.0);
+    assert_eq!(turned(&whole, 0), whole);
+    assert_eq!(turned(&inside_out(&whole), 12), whole);
+    let mirrored = whole.vertices().iter().map(|v| DVec3::new(-v.x, v.y, v.z));
+    let mirrored = TriangleMesh::new("m", mirrored.collect(), whole.triangles().to_vec()).unwrap();
+    assert_eq!(volume(&mirrored), -8.0);
+    assert_eq!(volume(&turned(&mirrored, 12)), 8.0);
+    for flips in [1_u32, 0b1010_0110_0001, 0b1111_1111_1110] {
+        let flipped = whole.triangles().iter().enumerate();
+        let flipped = flipped.map(|(k, &[a, b, c])| {
+            if flips >> k & 1 == 1 {
+                [a, c, b]
+            } else {
+                [a, b, c]
+            }
+        });
+        let flipped = TriangleMesh::new("f", whole.vertices().to_vec(), flipped.collect()).unwrap();
+        assert_eq!(
+            turned(&flipped, flips.count_ones() as usize),
+            whole,
+            "{flips:b}"
+        );
+    }
+}
+
+#[test]
+fn cavities_stay_and_parts_are_turned_one_by_one() {
+    let at = |x: f64| DVec3::new(x, 0.0, 0.0);
+    let housing = |flip: bool| {
+        let parts = joined(&[(cube(1.0), at(0.0)), (inside_out(&cube(0.5)), at(0.1))]);
+        if flip { inside_out(&parts) } else { parts }
+    };
+    assert_eq!(volume(&turned(&housing(false), 0)), 7.0);
+    assert_eq!(volume(&turned(&housing(true), 24)), 7.0);
+    // The order of the parts does not matter.
+    let first_inner = joined(&[(cube(0.5), at(0.1)), (inside_out(&cube(1.0)), at(0.0))]);
+    assert_eq!(volume(&turned(&first_inner, 24)), 7.0);
+    let beside = joined(&[
+        (housing(false), at(0.0)),
+        (housing(true), at(5.0)),
+        (cube(0.1), at(10.0)),
+    ]);
+    let outward = turned(&beside, 24);
+    assert!((volume(&outward) - 14.008).abs() < 1e-12);
+    // A solid in a cavity, and a hollow solid in a cavity.
+    let nested = |inner: TriangleMesh| joined(&[(housing(false), at(0.0)), (inner, at(0.1))]);
+    assert!((volume(&turned(&nested(cube(0.1)), 0)) - 7.008).abs() < 1e-12);
+    assert!((volume(&turned(&nested(inside_out(&cube(0.1))), 12)) - 7.008).abs() < 1e-12);
+    // Parts that overlap and both face inwards.
+    let crossing = joined(&[(cube(1.0), at(0.0)), (cube(1.0), at(0.5))]);
+    assert_eq!(turned(&inside_out(&crossing), 24), crossing);
+}
+
+#[test]
+fn open_meshes_are_judged_by_rays_and_never_turned() {
+    let without_top = |mesh: &TriangleMesh| {
+        let low = |t: &&[u32; 3]| t.iter().any(|&v| mesh.vertices()[v as usize].z < 0.0);
+        let kept = mesh.triangles().iter().filter(low).copied().collect();
+        TriangleMesh::new("open", mesh.vertices().to_vec(), kept).unwrap()
+    };
+    let open = without_top(&cube(1.0));
+    let (same, orientation) = open.clone().turned_outwards();
+    assert_eq!((&same, &orientation), (&open, &Orientation::Outwards));
+    orientation.require("open.obj").unwrap();
+    let inwards = without_top(&inside_out(&cube(1.0)));
+    let (same, orientation) = inwards.clone().turned_outwards();
+    assert_eq!(same, inwards);
+    let error = orientation.require("open.obj").unwrap_err().to_string();
+    assert!(
+        error.starts_with("open.obj: an open mesh whose faces face inwards; "),
+        "{error}"
+    );
+    // Two of its ten triangles turned.
+    let mixed = open.triangles().iter().enumerate();
+    let mixed = mixed.map(|(k, &[a, b, c])| if k % 5 == 0 { [a, c, b] } else { [a, b, c] });
+    let mixed = TriangleMesh::new("mixed", open.vertices().to_vec(), mixed.collect()).unwrap();
+    let error = mixed
+        .turned_outwards()
+        .1
+        .require("mixed.obj")
+        .unwrap_err()
+        .to_string();
+    assert!(error.contains("disagree"), "{error}");
+    let corners = vec![DVec3::ZERO, DVec3::X, DVec3::X + DVec3::Y, DVec3::Y];
+    let flat = TriangleMesh::new("flat", corners, vec![[0, 1, 2], [0, 2, 3]]).unwrap();
+    assert_eq!(
+        flat.turned_outwards().1,
+        Orientation::Outwards,
+        "a sheet has two sides"
+    );
+}
+
+#[test]
+fn what_was_turned_can_be_packed() {
+    let spheres = |mesh: TriangleMesh| pack_mesh(&Surface::new(mesh), Body::Solid, 0.2).unwrap();
+    let whole = cube(1.0);
+    assert!(pack_mesh(&Surface::new(inside_out(&whole)), Body::Solid, 0.2).is_err());
+    let outward = inside_out(&whole).turned_outwards().0;
+    assert_eq!(spheres(outward), spheres(whole));
+}
