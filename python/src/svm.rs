@@ -360,6 +360,14 @@ pub fn choose_svm<'py>(
             })
         };
         let folds: Vec<Split> = folds.iter().map(fold).collect::<PyResult<_>>()?;
+        // Multiples of "scale", whatever γ the estimator has.
+        let params = match gamma_scales.is_empty() {
+            true => params,
+            false => SvmParams {
+                kernel: params.kernel.with_gamma(Gamma::Scale),
+                ..params
+            },
+        };
         let candidates = Candidates { c, gamma_scales };
         let chosen = aside(py, move |_| choose(&params, &data, &folds, &candidates))?;
         let chosen = chosen.map_err(exception)?;

@@ -186,7 +186,7 @@ fn value_words(one: &ColumnDifferences) -> Vec<String> {
             "No p-values: {trials} a setting are too few to tell a difference from chance; {needed} are needed."
         )
     } else if rows().any(|row| row.p_status.is_some()) {
-        "No p-values: more rows are tested than trained on, or trials are missing.".to_owned()
+        "No p-values: trials repeat too few splits, more rows are tested than trained on, or trials are missing.".to_owned()
     } else if has_intervals {
         format!("{surely} (intervals that are apart).")
     } else {

@@ -175,15 +175,23 @@ impl<'a> Settings<'a> {
 
     /// The numbers of a column in some rows.
     fn repeats(&self, column: &str, rows: &[usize]) -> Vec<Repeat> {
-        let repeats = rows.iter().map(|&row| Repeat {
-            trial: self.count("trial", row).unwrap_or(0),
-            place: self.count("split", row).zip(self.count("projection", row)),
-            score: self.table.number(column, row),
+        let repeats = rows.iter().map(|&row| {
+            let trial = self.count("trial", row).unwrap_or(0);
+            let projection = self.count("projection", row);
+            let split = self.count("split", row).filter(|_| projection.is_some());
+            let split = self.count("distinct_split", row).or(split);
+            Repeat {
+                trial,
+                split: split.unwrap_or(trial),
+                projection,
+                score: self.table.number(column, row),
+                size: self.trial_size(row),
+            }
         });
         repeats.filter(|repeat| !repeat.score.is_nan()).collect()
     }
 
-    /// How trials split the touches; none where nothing says so.
+    /// How a trial splits the touches; none where nothing says so.
     fn trial_size(&self, row: usize) -> Option<TrialSize> {
         self.is_repeated.then_some(())?;
         Some(TrialSize {
@@ -247,9 +255,10 @@ fn of_setting(
         let allowed = "runs that share their trials";
         return Err(Error::input("two runs", given, allowed));
     }
-    let size = second.trial_size(ours[0]);
-    let size = size.filter(|_| column.role != Role::Cost);
-    let tested = size.map(|size| paired.tested(size)).transpose()?;
+    let tested = match column.role {
+        Role::Cost => None,
+        _ => paired.tested()?,
+    };
     let tested = tested.as_ref();
     let (ours_mean, theirs_mean) = paired.means();
     let intervals = first.table.interval(column, theirs[0]);

@@ -76,6 +76,7 @@ fn frequency(mode: usize) -> f64 {
 
 pub(super) const ABOUT: ErrorAbout = ErrorAbout {
     is_of_skin: true,
+    is_random_by_reading: true,
     taxel_s: |n_frames| 1.7e-8 / n_frames as f64,
     ..ErrorAbout::new(
         "drift",

@@ -20,6 +20,7 @@ use rand_distr::StandardNormal;
 const N_SOURCES: usize = 20;
 
 pub(super) const ABOUT: ErrorAbout = ErrorAbout {
+    is_random_by_reading: true,
     taxel_s: |_| 4e-8,
     ..ErrorAbout::new(
         "pink_noise",

@@ -37,6 +37,8 @@ pub struct ErrorAbout {
     pub strengths: &'static [Strength],
     /// Whether it belongs to a skin: another skin of the same make has another of it.
     pub is_of_skin: bool,
+    /// Whether two readings of one touch on one skin differ.
+    pub is_random_by_reading: bool,
     /// Whether what a touch reads depends on the touches before it.
     pub remembers: bool,
     /// Whether it shows only in frames that the press moves through.
@@ -97,7 +99,7 @@ impl PartialEq for Strength {
 }
 
 impl ErrorAbout {
-    /// One of a light cost that belongs to no skin and remembers nothing.
+    /// Describes an error of a light cost that belongs to no skin, reads a touch the same way each time, and remembers nothing.
     pub(super) const fn new(
         step: &'static str,
         strengths: &'static [Strength],
@@ -107,6 +109,7 @@ impl ErrorAbout {
             step,
             strengths,
             is_of_skin: false,
+            is_random_by_reading: false,
             remembers: false,
             needs_motion: false,
             taxel_s: |_| 3e-10,

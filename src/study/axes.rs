@@ -320,9 +320,15 @@ const UNITS: [(&str, &str); 15] = [
 ];
 
 /// Roles by the beginnings of keys; all others are choices. How deep, how far along, how often and how fast one presses is chosen; where the
-/// object lies, how it is turned and how slippery it is is not.
-const ROLES: [(&str, Role); 13] = [
+/// object lies, how it is turned and how slippery it is is not. How touches are split, in which groups, and what was recorded is a condition of the
+/// experiment: a designer who could choose the split would choose the easiest.
+const ROLES: [(&str, Role); 18] = [
     ("seed", Role::Subject),
+    ("recorded.", Role::Condition),
+    ("recognition.split", Role::Condition),
+    ("recognition.keep_together", Role::Condition),
+    ("recognition.test_fraction", Role::Condition),
+    ("recognition.folds", Role::Condition),
     ("skin.friction", Role::Condition),
     ("touches.depth", Role::Choice),
     ("touches.slide", Role::Choice),
@@ -624,6 +630,18 @@ mod tests {
             "human_touch_frames"
         );
         assert_eq!(column("seed", "[1]").role, Role::Subject);
+        // How touches are split and what was recorded is no choice of a designer.
+        for key in [
+            "recognition.split",
+            "recognition.keep_together",
+            "recognition.keep_together_mm",
+            "recognition.keep_together_deg",
+            "recognition.test_fraction",
+            "recognition.folds",
+            "recorded.groups",
+        ] {
+            assert_eq!(column(key, "[\"a\"]").role, Role::Condition, "{key}");
+        }
         assert_eq!(column("touches.rest", "[\"stable\"]").role, Role::Condition);
         assert_eq!(
             column("recognition.solver", "[\"smo\"]").scale,

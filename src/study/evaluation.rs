@@ -164,6 +164,7 @@ impl Trial<'_> {
                 trial: self.number,
                 split: is_crossed.then(|| spec.split_of(self.number)),
                 projection: is_crossed.then(|| spec.projection_of(self.number)),
+                distinct_split: self.sweep.repeated_split(self.plan, self.number),
                 n_train: answered.n_train,
                 n_test: n_rows,
                 n_left_out: rows.n_left_out,

@@ -11,7 +11,7 @@
 //! | `cell.toml` | the settings of the cell and the trial |
 
 use super::evaluation::learned_rows;
-use super::frames::FramePlace;
+use super::frames::{FramePlace, Frames};
 use super::measurement::{Measurements, measure_group};
 use super::npy::{write_integers, write_npy};
 use super::npy_numbers::{read_labels, read_matrix, read_rows, read_whole_numbers};
@@ -76,7 +76,7 @@ impl StudyPart {
             false => cell.measurements,
         };
         let of = (group, n_projected);
-        let measured = self.measured(of, (trial, &split), ("touch", progress))?;
+        let measured = self.measured(of, trial, ("touch", progress))?;
         let labels = sweep.learned_labels(plan, (cell, trial), &split)?;
         let (trained, trained_labels) = learned_rows(&measured, cell, &split.train, &labels);
         // All readings of all touches, then copies of those that train.
@@ -108,7 +108,7 @@ impl StudyPart {
     pub(super) fn measured(
         &self,
         (group, n_measurements): (&Group, usize),
-        trial: (usize, &Split),
+        trial: usize,
         (stage, progress): (&str, &dyn Progress),
     ) -> Result<Measurements> {
         let array = &self.plan.arrays[group.array];
@@ -117,8 +117,20 @@ impl StudyPart {
         let on = (array, group.frames);
         let touched = self.touched.as_ref();
         let frames = touched.simulate(on, &FramePlace::Memory, progress)?;
-        let touches = (touched as _, &frames);
-        measure_group(&self.plan, group, touches, trial, (n_measurements, None))
+        self.measure(group, &frames, (trial, n_measurements))
+    }
+
+    /// Reads and measures the frames of a group in a trial. Runs and exports share this path: what is learned for measurements is learned from the
+    /// training touches of the whole split, however few of them a cell learns from.
+    pub(crate) fn measure(
+        &self,
+        group: &Group,
+        frames: &Frames,
+        (trial, n_measurements): (usize, usize),
+    ) -> Result<Measurements> {
+        let inputs = group.inputs(&self.plan, &self.sweep);
+        let touches = (self.touched.as_ref() as _, frames);
+        measure_group(&inputs, touches, trial, (n_measurements, None))
     }
 
     /// Writes the measurements of one cell in one trial into a folder that exists.

@@ -126,7 +126,7 @@ impl TouchSet for HumanTouches {
         Ok(frames)
     }
 
-    fn to_read(&self, _plan: &Plan, _n_frames: usize, seed: &Seed) -> Vec<TouchToRead> {
+    fn to_read(&self, _speed: f64, _n_frames: usize, seed: &Seed) -> Vec<TouchToRead> {
         let mut touches = touches_to_read(self.classes(), seed);
         for touch in &mut touches {
             touch.interval = Some(self.spec.interval());

@@ -2,19 +2,17 @@
 
 use super::frames::Frames;
 use super::images::{FeaturesOfImages, Images};
-use super::plan::Plan;
+use super::measurement_inputs::MeasurementInputs;
+use super::repeats::projection_of;
 use super::sensed::of_channel;
 use super::sensor_errors::{TestedOn, skin};
-use super::spec::StepSpec;
-use super::sweep::Group;
 use super::table::Cell;
 use super::tilted_copies::TiltedCopies;
 use super::touch_set::TouchSet;
 use crate::error::Result;
 use crate::random::Seed;
-use crate::recognition::data::split::Split;
 use crate::sensing::{Ensemble, Projection, Readings};
-use crate::signal::{Chain, Noise, Recording, Scratch, SignalStep};
+use crate::signal::{Chain, Recording, Scratch};
 use crate::world::Taxel;
 use ndarray::{Array1, Array2, ArrayView2, ArrayViewMut2, Axis, s};
 use rayon::prelude::*;
@@ -166,31 +164,32 @@ pub fn touches_to_read<'a>(
     touches
 }
 
-/// Reads and projects all frames of a group in one trial, to a number of measurements among
-/// [`Group::projected`](super::Group::projected). Φ and all that is learned for features is the trial's own, or `sensed` by another.
+/// Reads and projects all frames of a group in one trial, to a number of measurements among those of the inputs. Φ and all that is learned for
+/// features is the trial's own, or `sensed` by another.
 ///
 /// # Errors
 /// What a signal step or the projection refuses.
 pub fn measure_group(
-    plan: &Plan,
-    group: &Group,
+    inputs: &MeasurementInputs,
     (touched, frames): (&dyn TouchSet, &Frames),
-    (trial, split): (usize, &Split),
+    trial: usize,
     (n_measurements, sensed): (usize, Option<&Arc<SensedBy>>),
 ) -> Result<Measurements> {
-    let array = &plan.arrays[group.array];
-    let seed = Seed::new(plan.spec.seed);
-    let skins = skins(plan, group, trial as u64);
-    let chains = |skin| array.chains(skin, |skin| signal_steps(plan, group, skin));
+    let array = inputs.array;
+    let seed = Seed::new(inputs.seed);
+    let skins = skins(inputs, trial as u64);
+    let chains = |skin| array.chains(skin, |skin| inputs.signal.steps(skin));
     let chains = skins.iter().map(chains).collect::<Result<Vec<_>>>()?;
     let signal = seed.named("signal").numbered(trial as u64);
     let n_frames = frames.facts.n_frames;
-    let mut touches = touched.to_read(plan, n_frames, &signal);
-    for &touch in &split.test {
-        touches[touch].skin = skins.len() - 1;
+    let mut touches = touched.to_read(inputs.speed, n_frames, &signal);
+    if skins.len() > 1 {
+        for &touch in &inputs.split(trial).test {
+            touches[touch].skin = skins.len() - 1;
+        }
     }
     let n_touches = touches.len();
-    for reading in 1..group.n_readings(plan) {
+    for reading in 1..inputs.n_readings {
         touches.extend_from_within(..n_touches);
         for touch in &mut touches[reading * n_touches..] {
             touch.seed = touch.seed.named("reading").numbered(reading as u64);
@@ -206,19 +205,13 @@ pub fn measure_group(
         chains: &chains,
         projection: &whole,
         taxel: *array.taxel(),
-        speed: plan.speed,
+        speed: inputs.speed,
     };
     let sensed = match sensed {
         Some(sensed) => Arc::clone(sensed),
         None => {
             let read = (reading, frames, &touches[..]);
-            Arc::new(sensed_by(
-                plan,
-                group,
-                read,
-                (trial, split),
-                n_measurements,
-            )?)
+            Arc::new(sensed_by(inputs, read, trial, n_measurements)?)
         }
     };
     let reading = Reading {
@@ -230,9 +223,9 @@ pub fn measure_group(
     let of_images = match &sensed.images {
         None => Vec::new(),
         Some(images) => {
-            let train = (&split.train[..], touched.classes().len());
-            copies = tilted_copies(plan, group, train, chains[0][0].full_scale(), trial);
-            let mut wanted = group.features_of_images();
+            let train = (&inputs.split(trial).train[..], touched.classes().len());
+            copies = tilted_copies(inputs, train, chains[0][0].full_scale(), trial);
+            let mut wanted = inputs.of_images.clone();
             wanted.retain(|one| images.is_of(one.measurements));
             let made = images.features((values.view(), n_frames), &wanted, copies.as_ref());
             wanted.into_iter().zip(made).collect()
@@ -251,37 +244,35 @@ pub fn measure_group(
     })
 }
 
-/// Copies of training touches, of n classes, for cells that want some: full scale is what a taxel reads at its stroke.
+/// Copies of training touches, of n classes, for cells that learn from some: full scale is what a taxel reads at its stroke.
 fn tilted_copies(
-    plan: &Plan,
-    group: &Group,
+    inputs: &MeasurementInputs,
     train: (&[usize], usize),
     full_scale: f64,
     trial: usize,
 ) -> Option<TiltedCopies> {
-    let array = &plan.arrays[group.array];
-    let steepest = plan.spec.recognition.copies_tilt().tan();
+    let copies = inputs.copies?;
+    let array = inputs.array;
+    let steepest = copies.tilt.tan();
     let a_pixel = steepest * array.image().1 / array.taxel().stroke * full_scale;
-    let seed = Seed::new(plan.spec.seed).named("tilted copies");
-    TiltedCopies::of(plan, group, train, a_pixel, &seed.numbered(trial as u64))
+    let seed = Seed::new(inputs.seed).named("tilted copies");
+    let seed = seed.numbered(trial as u64);
+    Some(TiltedCopies::of(copies, train, a_pixel, &seed))
 }
 
 /// Draws Φ in a trial, or learns it, and what makes images of measurements, from training touches.
 fn sensed_by(
-    plan: &Plan,
-    group: &Group,
+    inputs: &MeasurementInputs,
     (whole, frames, touches): (Reading, &Frames, &[TouchToRead]),
-    (trial, split): (usize, &Split),
+    trial: usize,
     n_measurements: usize,
 ) -> Result<SensedBy> {
-    let array = &plan.arrays[group.array];
+    let array = inputs.array;
     let shape = array.frame_shape();
-    let drawn = plan.spec.projection_of(trial) as u64;
-    let drawn = Seed::new(plan.spec.seed)
-        .named("projection")
-        .numbered(drawn);
-    if !group.learns() {
-        let projection = Projection::new(group.ensemble, shape, n_measurements, &drawn)?;
+    let drawn = projection_of(inputs.projections_per_split, trial) as u64;
+    let drawn = Seed::new(inputs.seed).named("projection").numbered(drawn);
+    if !inputs.learns() {
+        let projection = Projection::new(inputs.ensemble, shape, n_measurements, &drawn)?;
         return Ok(SensedBy {
             projection,
             images: None,
@@ -289,21 +280,21 @@ fn sensed_by(
     }
     // Of whole touches, so many that their frames are enough; the split has one of each object in turn.
     let n_touches = LEARNED_FRAMES.div_ceil(frames.facts.n_frames.max(1));
-    let learned = split.train.iter().take(n_touches);
+    let learned = inputs.split(trial).train.iter().take(n_touches);
     let learned: Vec<TouchToRead> = learned.map(|&touch| touches[touch]).collect();
     let (training, _) = measure(whole, frames, &learned)?;
-    let learn = |m| Projection::learned(group.ensemble, shape, m, (training.view(), &drawn));
+    let learn = |m| Projection::learned(inputs.ensemble, shape, m, (training.view(), &drawn));
     let projection = learn(n_measurements)?;
     let mut images = None;
-    if group.needs_images() {
-        let untouched = untouched(whole, trial, plan.spec.seed);
+    if !inputs.of_images.is_empty() {
+        let untouched = untouched(whole, trial, inputs.seed);
         let readings = Readings {
             training: training.view(),
             untouched: untouched.view(),
         };
         let is_served =
             |m: &usize| projection.ensemble().is_prefix_nested() || *m == n_measurements;
-        let counts = group.counts_of_images().into_iter().filter(is_served);
+        let counts = inputs.counts_of_images().into_iter().filter(is_served);
         let projections = counts.map(|m| match m == n_measurements {
             true => Ok(projection.clone()),
             false => learn(m),
@@ -341,27 +332,10 @@ fn untouched(whole: Reading, trial: usize, seed: u64) -> Array2<f64> {
     readings
 }
 
-/// The study's steps in this group's condition, on a skin.
-pub fn signal_steps(plan: &Plan, group: &Group, skin: &Seed) -> Vec<SignalStep> {
-    let condition = &group.condition;
-    let step = |&step: &StepSpec| match step {
-        StepSpec::Force => SignalStep::Force,
-        StepSpec::Noise => SignalStep::Noise(Noise {
-            std: condition.noise,
-            unit: plan.noise_unit,
-        }),
-        StepSpec::Smoothing => SignalStep::Smoothing {
-            width: condition.smoothing,
-        },
-        StepSpec::Error(error) => condition.strengths.step(error, skin),
-    };
-    plan.spec.signal.steps.iter().map(step).collect()
-}
-
 /// The skin of training touches, and that of test touches if it is another.
-fn skins(plan: &Plan, group: &Group, trial: u64) -> Vec<Seed> {
-    let first = skin(&Seed::new(plan.spec.seed), &plan.arrays[group.array]);
-    match group.tested_on {
+fn skins(inputs: &MeasurementInputs, trial: u64) -> Vec<Seed> {
+    let first = skin(&Seed::new(inputs.seed), inputs.array);
+    match inputs.tested_on {
         TestedOn::SameSkin => vec![first],
         TestedOn::AnotherSkin => vec![first, first.named("another").numbered(trial)],
     }

@@ -24,6 +24,7 @@ mod human_touches;
 mod images;
 pub mod journal;
 pub(crate) mod measurement;
+pub(crate) mod measurement_inputs;
 pub mod memory;
 mod next_touch;
 pub(crate) mod npy;

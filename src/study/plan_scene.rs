@@ -9,7 +9,7 @@ use super::spec::{
 use super::taxel_array::TaxelArray;
 use crate::error::Result;
 use crate::mesh::SizeLimits;
-use crate::world::{Grid, Placement, Spread, Taxel};
+use crate::world::{Grid, Placement, Spread, Taxel, TouchAxis};
 
 /// Taxels along a side of an array, at most.
 pub(super) const MOST_SIDE: usize = 4096;
@@ -209,21 +209,30 @@ impl Check<'_> {
     pub fn placed(&self, touches: &TouchesSpec) -> Result<Placement> {
         self.table("touches", touches)?;
         let degree = std::f64::consts::PI / 180.0;
-        let spread = |key: &str, spread, unit| self.spread(&format!("touches.{key}"), spread, unit);
+        let spread = |axis: TouchAxis, spread, (ending, unit)| {
+            let key = format!("touches.{}_{ending}", axis.name());
+            self.spread((axis, &key), spread, unit)
+        };
+        let (mm, degree) = (("mm", MM), ("deg", degree));
         Ok(Placement {
             rest: touches.rest,
-            offset_x: spread("offset_x_mm", &touches.offset_x_mm, MM)?,
-            offset_y: spread("offset_y_mm", &touches.offset_y_mm, MM)?,
-            yaw: spread("yaw_deg", &touches.yaw_deg, degree)?,
-            tilt_x: spread("tilt_x_deg", &touches.tilt_x_deg, degree)?,
-            tilt_y: spread("tilt_y_deg", &touches.tilt_y_deg, degree)?,
-            depth: spread("depth_mm", &touches.depth_mm, MM)?,
+            offset_x: spread(TouchAxis::OffsetX, &touches.offset_x_mm, mm)?,
+            offset_y: spread(TouchAxis::OffsetY, &touches.offset_y_mm, mm)?,
+            yaw: spread(TouchAxis::Yaw, &touches.yaw_deg, degree)?,
+            tilt_x: spread(TouchAxis::TiltX, &touches.tilt_x_deg, degree)?,
+            tilt_y: spread(TouchAxis::TiltY, &touches.tilt_y_deg, degree)?,
+            depth: spread(TouchAxis::Depth, &touches.depth_mm, mm)?,
             per_object: touches.per_object,
         })
     }
 
-    /// Depths are positive, all others finite.
-    fn spread(&self, key: &str, spread: &SpreadSpec, unit: f64) -> Result<Spread> {
+    /// Converts the values of an axis to SI units. Depths are positive, all others finite. Values that are the same pose are one value.
+    fn spread(
+        &self,
+        (axis, key): (TouchAxis, &str),
+        spread: &SpreadSpec,
+        unit: f64,
+    ) -> Result<Spread> {
         let (is_allowed, allowed): (fn(f64) -> bool, _) = match key {
             "touches.depth_mm" => (positive, "positive numbers of millimetres"),
             _ => (f64::is_finite, "finite numbers"),
@@ -250,6 +259,6 @@ impl Check<'_> {
             return Ok(Spread::Uniform { low, high });
         }
         let values = self.list(key, values)?;
-        Ok(Spread::Values(values.iter().map(|v| v * unit).collect()))
+        Ok(axis.listed(values.iter().map(|v| v * unit).collect()))
     }
 }

@@ -7,7 +7,7 @@ use super::sensor_errors::{Strengths, all_strengths};
 use super::spec::{CombineSpec, SensedSpec, SignalSpec, StepSpec, TouchesSpec};
 use super::spec_signal::{NOISES, SignalAxis};
 use crate::error::Result;
-use crate::signal::{NoiseUnit, SENSOR_ERRORS, SensorError, Strength};
+use crate::signal::{NoiseUnit, SENSOR_ERRORS, Strength};
 
 /// One value for each axis of the signal.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -181,11 +181,10 @@ impl Plan {
 }
 
 impl Condition {
-    /// Whether two readings of one touch may differ.
-    pub fn is_random(&self) -> bool {
-        let mut given = self.strengths.given();
-        self.noise > 0.0
-            || given.any(|(error, _, value)| error == SensorError::Drift && value > 0.0)
+    /// Whether two readings of one touch differ.
+    pub fn is_random_by_reading(&self) -> bool {
+        let mut present = self.strengths.present();
+        self.noise > 0.0 || present.any(|(error, ..)| error.about().is_random_by_reading)
     }
 
     /// The same with another value on an axis.

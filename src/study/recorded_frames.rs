@@ -198,7 +198,7 @@ impl TouchSet for RecordedFrames {
         Ok(frames)
     }
 
-    fn to_read(&self, _plan: &Plan, _n_frames: usize, seed: &Seed) -> Vec<TouchToRead> {
+    fn to_read(&self, _speed: f64, _n_frames: usize, seed: &Seed) -> Vec<TouchToRead> {
         touches_to_read(self.classes(), seed)
     }
 

@@ -10,7 +10,7 @@ use crate::recognition::statistics::comparison::{
 };
 use crate::recognition::statistics::interval::Interval;
 use ndarray::Array2;
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 
 /// Trial t has split t and projection t; with P `projections_per_split`, split t / P and projection t mod P, so that each split meets each of
 /// P projections. Noise and what else is drawn is drawn anew in each.
@@ -22,8 +22,13 @@ impl StudySpec {
 
     /// The number of a trial's projection.
     pub fn projection_of(&self, trial: usize) -> usize {
-        self.projections_per_split.map_or(trial, |n| trial % n)
+        projection_of(self.projections_per_split, trial)
     }
+}
+
+/// Returns the number of a trial's projection: the trial's own, or one of so many that every split meets.
+pub(super) fn projection_of(projections_per_split: Option<usize>, trial: usize) -> usize {
+    projections_per_split.map_or(trial, |n| trial % n)
 }
 
 impl Check<'_> {
@@ -58,37 +63,74 @@ impl Check<'_> {
 pub struct Repeat {
     /// The trial, from 0.
     pub trial: usize,
-    /// The numbers of its split and its projection, where trials are crossed.
-    pub place: Option<(usize, usize)>,
+    /// The number of its split: equal for trials with the same training and test touches.
+    pub split: usize,
+    /// The number of its projection, where trials combine every split with every projection.
+    pub projection: Option<usize>,
     /// What it scored.
     pub score: f64,
+    /// Its touches, where a table says how many.
+    pub size: Option<TrialSize>,
 }
 
 impl Repeat {
-    /// The accuracy of a trial.
-    pub fn of(trial: &TrialScore) -> Self {
+    /// The accuracy of a trial whose decisions are on so many touches each.
+    pub fn of(trial: &TrialScore, n_fused: usize) -> Self {
+        let split = trial.distinct_split.or(trial.split);
         Self {
             trial: trial.trial,
-            place: trial.split.zip(trial.projection),
+            split: split.unwrap_or(trial.trial),
+            projection: trial.projection,
             score: trial.accuracy,
+            // How much trials overlap is a matter of touches, however many of them one decision takes.
+            size: Some(TrialSize {
+                n_train: trial.n_train,
+                n_test: trial.n_test * n_fused,
+            }),
         }
+    }
+
+    /// What makes it another than other trials.
+    fn place(&self) -> (usize, Option<usize>) {
+        (self.split, self.projection)
     }
 }
 
-/// Scores of a configuration: one row a trial; or splits × projections where they are crossed, `None` if some of those are missing.
+/// Returns the scores of trials in which those of one split and projection are one: their mean. A trial that repeats a split says nothing about other
+/// splits.
+fn merged(trials: &[Repeat], place: impl Fn(usize) -> (usize, Option<usize>)) -> Vec<Repeat> {
+    let mut known: HashMap<_, usize> = HashMap::new();
+    let mut groups: Vec<Vec<Repeat>> = Vec::new();
+    for (number, trial) in trials.iter().enumerate() {
+        let group = *known.entry(place(number)).or_insert(groups.len());
+        match groups.get_mut(group) {
+            Some(group) => group.push(*trial),
+            None => groups.push(vec![*trial]),
+        }
+    }
+    let groups = groups.into_iter().map(|group| {
+        let first = group[0];
+        // Of equal scores their value, without rounding.
+        let above: f64 = group.iter().map(|trial| trial.score - first.score).sum();
+        Repeat {
+            score: first.score + above / group.len() as f64,
+            ..first
+        }
+    });
+    groups.collect()
+}
+
+/// Returns the scores of a configuration: one row a split, of which repeated ones are one; or splits × projections where they are crossed, `None` if some
+/// of those are missing.
 pub fn scores(trials: &[Repeat]) -> Option<Array2<f64>> {
-    if trials.iter().any(|trial| trial.place.is_none()) {
-        let column = trials.iter().map(|trial| trial.score).collect();
-        return Array2::from_shape_vec((trials.len(), 1), column).ok();
+    let mut ordered = merged(trials, |number| trials[number].place());
+    if ordered.iter().any(|trial| trial.projection.is_none()) {
+        let column = ordered.iter().map(|trial| trial.score).collect();
+        return Array2::from_shape_vec((ordered.len(), 1), column).ok();
     }
-    let mut ordered = trials.to_vec();
-    ordered.sort_by_key(|trial| trial.place);
-    let places: BTreeSet<_> = trials.iter().filter_map(|trial| trial.place).collect();
-    if places.len() != trials.len() {
-        return None;
-    }
-    let splits: BTreeSet<usize> = places.iter().map(|place| place.0).collect();
-    let projections: BTreeSet<usize> = places.iter().map(|place| place.1).collect();
+    ordered.sort_by_key(Repeat::place);
+    let splits: BTreeSet<usize> = ordered.iter().map(|trial| trial.split).collect();
+    let projections: BTreeSet<_> = ordered.iter().map(|trial| trial.projection).collect();
     let values = ordered.iter().map(|trial| trial.score).collect();
     Array2::from_shape_vec((splits.len(), projections.len()), values).ok()
 }
@@ -105,10 +147,12 @@ pub struct Tested {
     pub n_needed: Option<usize>,
 }
 
-/// Scores of two configurations, in the trials that both have.
+/// Scores of two configurations, in the trials that both have; trials of one split (and one projection) are one.
 pub struct Paired {
     ours: Vec<Repeat>,
     theirs: Vec<Repeat>,
+    /// Whether several trials had one split.
+    has_repeats: bool,
 }
 
 impl Paired {
@@ -118,11 +162,26 @@ impl Paired {
             let theirs = theirs.iter().find(|theirs| theirs.trial == ours.trial);
             Some((*ours, *theirs?))
         });
-        let (ours, theirs) = pairs.unzip();
-        Self { ours, theirs }
+        let (ours, theirs): (Vec<Repeat>, Vec<Repeat>) = pairs.unzip();
+        let n_places = |trials: &[Repeat]| {
+            trials
+                .iter()
+                .map(Repeat::place)
+                .collect::<BTreeSet<_>>()
+                .len()
+        };
+        // A table of an earlier version does not say which splits are the same.
+        let (n_ours, n_theirs) = (n_places(&ours), n_places(&theirs));
+        let places = if n_ours <= n_theirs { &ours } else { &theirs };
+        let merge = |trials: &[Repeat]| merged(trials, |number| places[number].place());
+        Self {
+            has_repeats: n_ours.min(n_theirs) < ours.len(),
+            ours: merge(&ours),
+            theirs: merge(&theirs),
+        }
     }
 
-    /// How many trials both have.
+    /// How many trials both have, of which those of one split are one.
     pub fn n_trials(&self) -> usize {
         self.ours.len()
     }
@@ -134,15 +193,23 @@ impl Paired {
         (mean(&self.ours), mean(&self.theirs))
     }
 
-    /// The test of no difference, if there are trials enough for one, by how they split the touches.
-    pub fn tested(&self, size: TrialSize) -> Result<Tested> {
-        let n_needed = trials_needed(size, CONFIDENCE)?;
-        let split = |trial: &Repeat| trial.place.map_or(trial.trial, |(split, _)| split);
-        let splits: BTreeSet<usize> = self.ours.iter().map(split).collect();
+    /// Returns the test of no difference, by how the trials split the touches; `None` where nothing says how.
+    ///
+    /// # Errors
+    /// A trial without training or test rows.
+    pub fn tested(&self) -> Result<Option<Tested>> {
+        let sizes: Option<Vec<TrialSize>> = self.ours.iter().map(|trial| trial.size).collect();
+        let Some(sizes) = sizes else {
+            return Ok(None);
+        };
+        let n_needed = trials_needed(&sizes, CONFIDENCE)?;
+        let splits: BTreeSet<usize> = self.ours.iter().map(|trial| trial.split).collect();
         let is_enough = n_needed.is_some_and(|needed| splits.len() >= needed);
         let n_projections = (self.ours.len() / splits.len().max(1)).max(1);
-        let test = self.test(size)?;
-        Ok(Tested {
+        let test = self.test(&sizes)?;
+        // More trials would repeat the same splits.
+        let is_final = self.has_repeats && !is_enough;
+        Ok(Some(Tested {
             p_status: match (&test, is_enough) {
                 (_, false) => PStatus::TooFewTrials,
                 (None, true) => PStatus::TrialsMissing,
@@ -150,21 +217,23 @@ impl Paired {
             },
             p_value: test.filter(|_| is_enough).map(|test| test.p_value),
             interval: test.map(|test| test.interval),
-            n_needed: n_needed.map(|n_splits| n_splits * n_projections),
-        })
+            n_needed: n_needed
+                .filter(|_| !is_final)
+                .map(|n_splits| n_splits * n_projections),
+        }))
     }
 
     /// Ours less theirs; `None` for a single trial, and for crossed trials of which some are missing.
-    fn test(&self, size: TrialSize) -> Result<Option<Comparison>> {
+    fn test(&self, sizes: &[TrialSize]) -> Result<Option<Comparison>> {
         let (Some(ours), Some(theirs)) = (scores(&self.ours), scores(&self.theirs)) else {
             return Ok(None);
         };
         match (ours.ncols(), theirs.ncols()) {
             (1, 1) => {
                 let (ours, theirs) = (ours.column(0).to_vec(), theirs.column(0).to_vec());
-                compare(&ours, &theirs, size, CONFIDENCE)
+                compare(&ours, &theirs, sizes, CONFIDENCE)
             }
-            _ => compare_crossed(ours.view(), theirs.view(), size, CONFIDENCE),
+            _ => compare_crossed(ours.view(), theirs.view(), sizes, CONFIDENCE),
         }
     }
 }
@@ -198,19 +267,55 @@ mod tests {
 
     #[test]
     fn scores_stand_in_the_place_of_their_split_and_projection_whatever_their_order() {
-        let trial = |trial: usize, place| Repeat {
+        let trial = |trial: usize, (split, projection)| Repeat {
             trial,
-            place,
+            split,
+            projection,
             score: trial as f64 / 10.0,
+            size: None,
         };
-        let all = [5, 0, 3, 1, 4, 2].map(|t| trial(t, Some((t / 2, t % 2))));
+        let all = [5, 0, 3, 1, 4, 2].map(|t| trial(t, (t / 2, Some(t % 2))));
         let expected = ndarray::array![[0.0, 0.1], [0.2, 0.3], [0.4, 0.5]];
         assert_eq!(scores(&all), Some(expected));
         assert_eq!(scores(&all[1..]), None, "one is missing");
-        let twice = [all[0], all[1], all[1], all[3]];
-        assert_eq!(scores(&twice), None);
-        let own = [0, 1, 2].map(|t| trial(t, None));
+        let own = [0, 1, 2].map(|t| trial(t, (t, None)));
         let expected = ndarray::array![[0.0], [0.1], [0.2]];
         assert_eq!(scores(&own), Some(expected));
+        // Splits 0, 1, 2 come twice.
+        let repeated = [0, 1, 2, 3, 4, 5].map(|t| trial(t, (t % 3, None)));
+        let expected = ndarray::array![[0.15], [0.25], [0.35]];
+        assert!(
+            (scores(&repeated).unwrap() - expected)
+                .iter()
+                .all(|d| d.abs() < 1e-15)
+        );
+    }
+
+    /// Duplicating trials never makes a claim stronger.
+    #[test]
+    fn trials_that_repeat_splits_are_no_further_trials() {
+        let trial = |trial: usize, score: f64| Repeat {
+            trial,
+            split: trial % 2,
+            projection: None,
+            score,
+            size: Some(TrialSize {
+                n_train: 300,
+                n_test: 100,
+            }),
+        };
+        let of = |n: usize, scores: [f64; 2]| -> Vec<Repeat> {
+            (0..n).map(|t| trial(t, scores[t % 2])).collect()
+        };
+        let pair = |n| Paired::of(&of(n, [0.9, 0.8]), &of(n, [0.7, 0.6]));
+        let (twice, often) = (pair(2), pair(40));
+        assert_eq!(often.n_trials(), 2);
+        assert_eq!(often.means(), twice.means());
+        let [twice, often] = [twice, often].map(|pair| pair.tested().unwrap().unwrap());
+        assert_eq!(often.p_status, PStatus::TooFewTrials);
+        assert_eq!((often.p_value, often.n_needed), (None, None));
+        assert_eq!(often.interval, twice.interval);
+        // Without repetition further trials help.
+        assert_eq!(twice.n_needed, Some(4));
     }
 }

@@ -1,6 +1,6 @@
 //! Sample touches for the eye: what the array feels of a few objects, noise included.
 
-use super::measurement::{Reading, measure, signal_steps, touches_to_read};
+use super::measurement::{Reading, measure, touches_to_read};
 use super::plan::Plan;
 use super::progress::Silent;
 use super::sensor_errors::{skin, strength_columns};
@@ -140,7 +140,7 @@ fn chains(plan: &Plan, group: &Group) -> Result<Vec<Chain>> {
     let array = &plan.arrays[group.array];
     let skin = skin(&Seed::new(plan.spec.seed), array);
     array.chains(&skin, |skin| {
-        let mut steps = signal_steps(plan, group, skin);
+        let mut steps = group.signal(plan).steps(skin);
         steps.retain(|step| !matches!(step, SignalStep::Smoothing { .. }));
         steps
     })

@@ -11,6 +11,7 @@ pub use super::spec_human::*;
 pub use super::spec_recorded::*;
 pub use super::spec_scene::*;
 pub use super::spec_signal::*;
+use super::table::TrialScore;
 use crate::error::Result;
 use crate::recognition::ClassifierKind;
 use crate::recognition::data::over_time::OverTime;
@@ -167,10 +168,10 @@ pub struct RecognitionSpec {
     /// Folds of the cross-validation that chooses C and γ, or that says how touches which are not learned are answered (`most_informative`); 5 when left
     /// out. What the split keeps together, they do.
     pub choose_folds: Option<usize>,
-    /// Training touches an object that take part in that choice, at most; all when left out.
+    /// Training touches an object that take part in that choice, at most; all when left out. γ is that of all training touches.
     pub choose_touches: Option<usize>,
-    /// How many times each training touch is read and learned, each time with its own noise; 1 when left out. Without noise or drift all readings of
-    /// a touch are the same, and it is learned once. C and γ are chosen on first readings.
+    /// How many times each training touch is read and learned, each time with its own noise; 1 when left out. Without noise,
+    /// drift or pink noise all readings of a touch are the same, and it is learned once. C and γ are chosen on first readings.
     pub training_readings: Option<usize>,
     /// d of the polynomial kernel.
     #[serde(default = "default_degree")]
@@ -298,9 +299,16 @@ impl StudySpec {
 
     /// The columns of its own axes in tables of results.
     pub fn axis_columns(&self) -> Vec<Column> {
-        let known = Cell::columns();
-        let is_taken = |name: &str| known.iter().any(|column| column.name == name);
-        self.axes.columns(is_taken)
+        let of_cells = Cell::columns();
+        let of_trials = TrialScore::columns();
+        // Columns of trials that only some studies have.
+        let has = |column: &&Column| match &column.name[..] {
+            "split" | "projection" => self.projections_per_split.is_some(),
+            _ => true,
+        };
+        let known = of_cells.iter().chain(of_trials.iter().filter(has));
+        let known: Vec<&str> = known.map(|column| &column.name[..]).collect();
+        self.axes.columns(|name| known.contains(&name))
     }
 
     /// Writes the study with every default spelt out.

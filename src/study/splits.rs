@@ -10,6 +10,7 @@ use crate::recognition::data::split::{
 };
 use crate::world::Touch;
 use ndarray::Array1;
+use std::collections::{HashMap, HashSet};
 
 /// The split of all touches in a trial: of those that are placed, by their poses, or by groups (`keys`), or of each alone.
 ///
@@ -39,6 +40,25 @@ pub fn draw_split(
         (Some(k), Some(keys)) => group_k_fold(labels, keys.view(), k, &seed)?,
     };
     Ok(folds.swap_remove(trial % n_folds))
+}
+
+/// Returns for each split the place of the first one with the same training and test touches, whatever the order of the training touches.
+pub fn first_equal(splits: &[Split]) -> Vec<usize> {
+    let mut known: HashMap<&[usize], Vec<usize>> = HashMap::new();
+    let trained = |place: usize| splits[place].train.iter().collect::<HashSet<_>>();
+    let mut first = Vec::with_capacity(splits.len());
+    for (place, split) in splits.iter().enumerate() {
+        let alike = known.entry(&split.test[..]).or_default();
+        let same = alike
+            .iter()
+            .find(|&&other| trained(other) == trained(place));
+        let same = same.copied();
+        if same.is_none() {
+            alike.push(place);
+        }
+        first.push(same.unwrap_or(place));
+    }
+    first
 }
 
 /// The training-touches axis: what is asked for, or all that the smallest training split has for every object. Every object has test touches

@@ -8,7 +8,6 @@ use super::table::{
 };
 use crate::error::Result;
 use crate::recognition::statistics::bootstrap::Bootstrap;
-use crate::recognition::statistics::comparison::TrialSize;
 use crate::recognition::statistics::grouped::{GroupCount, GroupedTest, interval_of_groups};
 use crate::recognition::statistics::interval::{Interval, RowTest};
 use crate::recognition::statistics::many_tests::holm_of_some;
@@ -26,14 +25,31 @@ pub fn summarise<C: Clone + PartialEq>(
     n_folds: impl Fn(&C) -> usize,
 ) -> Result<Vec<(C, CellScore)>> {
     let mut bootstrap = Bootstrap::default();
+    let is_grouped = rows.iter().any(|(_, score)| score.n_groups.is_some());
     rows.chunk_by(|a, b| a.0 == b.0)
         .map(|trials| {
             let scores: Vec<&TrialScore> = trials.iter().map(|(_, score)| score).collect();
             let here = groups.split_off(..trials.len()).unwrap_or_default();
-            let score = score(&scores, (here, n_folds(&trials[0].0)), &mut bootstrap)?;
+            let of_cell = (here, n_folds(&trials[0].0));
+            let mut score = score(&scores, of_cell, &mut bootstrap)?;
+            // Columns are those of all rows: where a cell holds out no groups, each row is one.
+            score.n_groups = score.n_groups.or(is_grouped.then_some(score.n_test));
             Ok((trials[0].0.clone(), score))
         })
         .collect()
+}
+
+/// Returns the tests of trials that hold out groups.
+pub fn grouped_tests<'a>(
+    trials: impl Iterator<Item = (&'a TrialScore, &'a Vec<GroupCount>)>,
+) -> Vec<GroupedTest<'a>> {
+    let tested = trials.filter(|(_, groups)| !groups.is_empty());
+    let tested = tested.map(|(trial, groups)| GroupedTest {
+        n_rows: trial.n_test,
+        n_correct: trial.n_correct,
+        groups,
+    });
+    tested.collect()
 }
 
 /// What the trials of a cell say together.
@@ -48,14 +64,7 @@ fn score(
     let accuracy = mean(|t| t.accuracy);
     let squares: f64 = trials.iter().map(|t| (t.accuracy - accuracy).powi(2)).sum();
     let n_test = trials.iter().map(|t| t.n_test).min().unwrap_or(0);
-    let tested = trials.iter().zip(groups);
-    let tested = tested.filter(|(_, groups)| !groups.is_empty());
-    let tested = tested.map(|(trial, groups)| GroupedTest {
-        n_rows: trial.n_test,
-        n_correct: trial.n_correct,
-        groups,
-    });
-    let tested: Vec<GroupedTest> = tested.collect();
+    let tested = grouped_tests(trials.iter().copied().zip(groups));
     let (interval, n_groups) = match tested.is_empty() {
         true => {
             let tests = trials.iter().map(|trial| RowTest {
@@ -71,7 +80,7 @@ fn score(
             (interval, Some(n_groups))
         }
     };
-    let repeats: Vec<Repeat> = trials.iter().map(|trial| Repeat::of(trial)).collect();
+    let repeats: Vec<Repeat> = trials.iter().map(|trial| Repeat::of(trial, 1)).collect();
     let of_mean = match scores(&repeats) {
         Some(scores) => bootstrap.mean(scores.view(), CONFIDENCE)?,
         None => None,
@@ -126,21 +135,17 @@ pub fn compare_with_best(rows: &[Row]) -> Result<Vec<Comparison>> {
 fn against(trials: &[Row], best: &[Row]) -> Result<Comparison> {
     // A cell may have failed in some trials.
     let [ours, theirs] = [trials, best].map(|trials| {
-        let scores = trials.iter().map(|(_, score)| Repeat::of(score));
+        let scores = trials.iter();
+        let scores = scores.map(|(cell, score)| Repeat::of(score, cell.fused_touches));
         scores.collect::<Vec<_>>()
     });
-    let (cell, first) = &trials[0];
-    // How much the trials overlap is a matter of touches, however many of them one decision takes.
-    let size = TrialSize {
-        n_train: first.n_train,
-        n_test: first.n_test * cell.fused_touches,
-    };
     let paired = Paired::of(&ours, &theirs);
     let (ours, theirs) = match paired.n_trials() {
         0 => (mean(trials, |t| t.accuracy), mean(best, |t| t.accuracy)),
         _ => paired.means(),
     };
-    let tested = paired.tested(size)?;
+    let tested = paired.tested()?;
+    let tested = tested.expect("every trial of a table has a size");
     Ok(Comparison {
         cell: trials[0].0.cell,
         best_cell: best[0].0.cell,

@@ -10,14 +10,15 @@
 
 use super::axes::AxisValues;
 use super::axis::Axis;
+use super::content_hash::sha256;
 use super::images::FeaturesOfImages;
-use super::measurement::signal_steps;
+use super::measurement_inputs::Splits;
 use super::next_touch::scaled_poses;
 use super::plan::{Plan, millimetres};
 use super::plan_signal::Condition;
 use super::samples::named_samples;
 use super::sensor_errors::{TestedOn, skin};
-use super::splits::{draw_split, train_touches};
+use super::splits::{draw_split, first_equal, train_touches};
 use super::table::Cell;
 use super::touch_set::TouchSet;
 use crate::error::{Error, Result};
@@ -28,7 +29,7 @@ use crate::recognition::data::spoiled::mislabelled;
 use crate::recognition::evaluation::next_touch::Poses;
 use crate::sensing::Ensemble;
 use ndarray::Array1;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Loops within loops: the first changes slowest.
 macro_rules! nested {
@@ -51,6 +52,10 @@ pub struct Sweep {
     pub groups: Vec<Group>,
     /// One split a trial, of all touches.
     pub splits: Vec<Split>,
+    /// For each trial the first trial with the same split, itself if there is none before.
+    pub first_equal: Vec<usize>,
+    /// Hash of all splits, once something depends on it.
+    splits_hash: OnceLock<String>,
     /// The object of every touch, by its number.
     pub labels: Array1<usize>,
     /// The group of every touch, when the study keeps groups together.
@@ -110,17 +115,11 @@ impl Group {
     /// How many times each touch is read.
     pub fn n_readings(&self, plan: &Plan) -> usize {
         let asked = plan.spec.recognition.training_readings.unwrap_or(1);
-        if self.condition.is_random() { asked } else { 1 }
-    }
-
-    /// Whether any cell's features are of images.
-    pub fn needs_images(&self) -> bool {
-        self.cells.iter().any(|cell| cell.of_images().is_some())
-    }
-
-    /// Whether anything is learned from training touches before they are measured.
-    pub fn learns(&self) -> bool {
-        self.ensemble.is_learned() || self.needs_images()
+        if self.condition.is_random_by_reading() {
+            asked
+        } else {
+            1
+        }
     }
 
     /// What its cells learn from that is made of images, each once.
@@ -134,15 +133,6 @@ impl Group {
             is_new
         });
         all
-    }
-
-    /// The measurements that images are made of, each once, rising.
-    pub fn counts_of_images(&self) -> Vec<usize> {
-        let all = self.features_of_images().into_iter();
-        let mut counts: Vec<usize> = all.map(|one| one.measurements).collect();
-        counts.sort_unstable();
-        counts.dedup();
-        counts
     }
 
     /// The measurements that serve every cell: of the largest m if smaller ones are its prefixes, else one set per m.
@@ -190,6 +180,8 @@ impl Sweep {
         let is_chosen = plan.spec.recognition.chosen_next().next().is_some();
         let mut sweep = Self {
             groups: Vec::new(),
+            first_equal: first_equal(&splits),
+            splits_hash: OnceLock::new(),
             splits,
             labels,
             group_keys: keys,
@@ -245,6 +237,26 @@ impl Sweep {
         }
     }
 
+    /// Returns the splits of all trials with their hash.
+    pub fn drawn_splits(&self) -> Splits<'_> {
+        let bytes = |rows: &[usize]| -> Vec<u8> {
+            let numbers = [rows.len()].into_iter().chain(rows.iter().copied());
+            numbers.flat_map(|row| (row as u64).to_le_bytes()).collect()
+        };
+        let of_split = |split: &Split| sha256([bytes(&split.train), bytes(&split.test)].concat());
+        let hash = || sha256(self.splits.iter().map(of_split).collect::<String>());
+        Splits {
+            all: &self.splits,
+            hash: self.splits_hash.get_or_init(hash),
+        }
+    }
+
+    /// Returns the number of the first split that has the same touches as a trial's, or `None` if the trial's split is the first.
+    pub fn repeated_split(&self, plan: &Plan, trial: usize) -> Option<usize> {
+        let first = plan.spec.split_of(self.first_equal[trial]);
+        (first != plan.spec.split_of(trial)).then_some(first)
+    }
+
     /// The group of each of a trial's test touches, where whole groups are held out.
     pub fn test_groups(&self, plan: &Plan, trial: usize, test: &[usize]) -> Option<Vec<usize>> {
         let split = plan.spec.recognition.split;
@@ -296,7 +308,7 @@ impl Sweep {
         if !array.is_plain() {
             // A step that its layout cannot have is known before anything runs.
             let skin = skin(&Seed::new(plan.spec.seed), array);
-            array.chains(&skin, |skin| signal_steps(plan, &group, skin))?;
+            array.chains(&skin, |skin| group.signal(plan).steps(skin))?;
         }
         let learned = &plan.spec.recognition;
         let penalties = |classifier: ClassifierKind| match classifier.has_c() {

@@ -20,6 +20,10 @@ pub struct TrialScore {
     /// Number of its projection.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     projection: Option<usize> => Note: Linear, optional;
+    /// Number of the first trial (with `projections_per_split`: the first split) that has the same training and test touches. Only if trials repeat
+    /// splits, as those of splits by pose do when there are more trials than parts: for tests, trials of one split are one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    distinct_split: Option<usize> => Note "same split as": Linear, optional;
     /// Training rows.
     n_train: usize => Note "training rows": Linear;
     /// Test rows: groups of `fused_touches` test touches.
@@ -152,7 +156,7 @@ pub struct Comparison {
     cell: usize => Subject: Linear;
     /// Number of the cell it is compared with: the one with the highest mean accuracy in the same condition.
     best_cell: usize => Note "best cell": Linear;
-    /// Trials both have.
+    /// Trials both have; trials of one split count once.
     n_trials: usize => Note "trials of both": Linear;
     /// Mean over trials of (accuracy − best cell's accuracy).
     difference: f64 => Value(More) "difference to the best": Linear between [difference_low, difference_high];
@@ -169,7 +173,7 @@ pub struct Comparison {
     #[serde(default)]
     p_status: PStatus => Outcome "test";
     /// [Trials from which on](crate::recognition::statistics::comparison::trials_needed) there is one (with `projections_per_split`: all of so many splits);
-    /// empty where no number of them is enough, because too many rows are tested.
+    /// empty where no number of them is enough, because too many rows are tested, or further trials repeat the same splits.
     #[serde(default)]
     n_trials_needed: Option<usize> => Note "trials needed": Linear;
 } }

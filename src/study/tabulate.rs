@@ -3,7 +3,7 @@
 use super::conditions::most_accurate;
 use super::evaluation::Evaluation;
 use super::summary::{compare_with_best, most_confused, pareto, summarise};
-use super::table::{Cell, Confusion, Tables};
+use super::table::{Cell, Confusion, Tables, TrialScore};
 use super::variance_table::variances;
 use crate::error::Result;
 use std::collections::BTreeMap;
@@ -17,12 +17,15 @@ pub fn tabulate(
     n_folds: impl Fn(&Cell) -> usize,
 ) -> Result<()> {
     scored.sort_by_key(|(cell, evaluation)| (cell.cell, evaluation.score.trial));
-    let is_grouped = scored.iter().any(|(_, found)| !found.groups.is_empty());
-    // Columns are those of all rows: where a combination of axes holds out no groups, each row is one.
-    let or_rows = |n_groups: Option<usize>, n_test| n_groups.or(is_grouped.then_some(n_test));
+    share_columns(
+        scored
+            .iter_mut()
+            .map(|(_, found)| &mut found.score)
+            .collect(),
+    );
     let mut groups = Vec::new();
     let mut confusions = BTreeMap::new();
-    for (cell, mut evaluation) in scored {
+    for (cell, evaluation) in scored {
         for &(object, predicted, count) in &evaluation.confusion {
             let known = confusions.entry((cell.cell, object, predicted));
             let row = known.or_insert_with(|| Confusion {
@@ -33,17 +36,12 @@ pub fn tabulate(
             });
             row.count += count;
         }
-        let score = &mut evaluation.score;
-        score.n_groups = or_rows(score.n_groups, score.n_test);
         groups.push(evaluation.groups);
         tables.accuracy.push((cell.clone(), evaluation.score));
         tables.timing.push((cell, evaluation.time));
     }
     tables.confusion = confusions.into_values().collect();
     tables.summary = summarise(&tables.accuracy, &groups, n_folds)?;
-    for (_, score) in &mut tables.summary {
-        score.n_groups = or_rows(score.n_groups, score.n_test);
-    }
     tables.variance = variances(&tables.accuracy)?;
     tables.comparison = compare_with_best(&tables.accuracy)?;
     // What one touch confuses says more than what is left of it once many are fused.
@@ -58,6 +56,22 @@ pub fn tabulate(
     }
     tables.pareto = pareto(&tables.accuracy, &tables.timing)?;
     Ok(())
+}
+
+/// Gives all rows the columns that any row has. Where a combination of axes holds out no groups, each test row is a group; a split that no earlier trial
+/// has is the same as itself.
+pub fn share_columns(mut scores: Vec<&mut TrialScore>) {
+    let has_groups = scores.iter().any(|score| score.n_groups.is_some());
+    let has_repeats = scores.iter().any(|score| score.distinct_split.is_some());
+    for score in &mut scores {
+        if has_groups {
+            score.n_groups.get_or_insert(score.n_test);
+        }
+        if has_repeats {
+            let split = score.split.unwrap_or(score.trial);
+            score.distinct_split.get_or_insert(split);
+        }
+    }
 }
 
 /// The cell that differs from one in no more than in fusing the most touches, and how many; none where none fuses more.

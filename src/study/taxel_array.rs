@@ -7,13 +7,14 @@ use crate::recognition::features::Chart;
 use crate::world::{ArrayLayout, Grid, Patch, Taxel, Taxels};
 use glam::{DVec2, DVec3};
 use ndarray::Array2;
+use std::fmt;
 use std::sync::Arc;
 
 /// Cells of a picture in a pitch: staggered rows are seen as such.
 const PICTURE_CELLS: f64 = 3.0;
 
 /// A square grid of taxels, or a layout that is made as dense and as large; what they read; and how they are drawn along what they touch.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct TaxelArray {
     grid: Grid,
     taxel: Taxel,
@@ -219,9 +220,11 @@ impl TaxelArray {
             false => 1e3 * self.pitch() / PICTURE_CELLS,
         }
     }
+}
 
-    /// All that its frames depend on.
-    pub fn content(&self) -> String {
+/// All that its frames depend on: the patch is made of the other fields.
+impl fmt::Debug for TaxelArray {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let Self {
             grid,
             taxel,
@@ -231,6 +234,9 @@ impl TaxelArray {
             slide,
             patch: _,
         } = self;
-        format!("{grid:?} {taxel:?} {layout:?} {radius} {sensed:?} {slide}")
+        write!(
+            f,
+            "{grid:?} {taxel:?} {layout:?} {radius} {sensed:?} {slide}"
+        )
     }
 }

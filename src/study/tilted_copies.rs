@@ -1,7 +1,6 @@
 //! Training touches once more, with their objects tilted: what an object looks like in tilts that were never learned.
 
-use super::plan::Plan;
-use super::sweep::Group;
+use super::measurement_inputs::CopyInputs;
 use crate::random::Seed;
 use rand::Rng;
 use std::collections::HashMap;
@@ -24,23 +23,20 @@ pub struct TiltedCopies {
 }
 
 impl TiltedCopies {
-    /// Of the training touches (in drawing order) that cells of a group learn from, if any of them wants copies: as many as the one that wants
-    /// most. `steepest` is the largest rise from a taxel to the next; each touch has a stream of its own.
+    /// Copies training touches (in drawing order, one of each of n classes in turn). `steepest` is the largest rise from a taxel to the next; each touch
+    /// has a stream of its own.
     pub fn of(
-        plan: &Plan,
-        group: &Group,
+        CopyInputs {
+            n_copies,
+            n_touches,
+            tilt: _,
+        }: CopyInputs,
         (train, n_classes): (&[usize], usize),
         steepest: f64,
         seed: &Seed,
-    ) -> Option<Self> {
-        let copied = group.cells.iter();
-        let copied = copied.filter(|cell| cell.tilted_copies.is_some_and(|n| n > 0));
-        let n_copies = copied.clone().filter_map(|cell| cell.tilted_copies).max()?;
-        let n_touches = match plan.spec.recognition.train_touches {
-            None => train.len(),
-            // One of each object in turn: the first ones are what a cell with fewer learns from.
-            Some(_) => copied.map(|cell| cell.train_touches).max()? * n_classes,
-        };
+    ) -> Self {
+        // One of each object in turn: the first ones are what a cell with fewer learns from.
+        let n_touches = n_touches.map_or(train.len(), |n| n * n_classes);
         let touches = train[..n_touches.min(train.len())].to_vec();
         let mut slopes = Vec::with_capacity(touches.len() * n_copies);
         for &touch in &touches {
@@ -49,12 +45,12 @@ impl TiltedCopies {
             slopes.extend((0..n_copies).map(|_| (slope(), slope())));
         }
         let places = touches.iter().copied().zip(0..).collect();
-        Some(Self {
+        Self {
             touches,
             n_copies,
             slopes,
             places,
-        })
+        }
     }
 
     /// Where in all copies the first `n_copies` of some touches are: the first copy of each, then the second of each.

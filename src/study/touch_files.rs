@@ -88,14 +88,14 @@ impl ReadFrames {
         progress: &dyn Progress,
     ) -> Result<Self> {
         let (group, cell) = find(&part.sweep, cell)?;
-        let split = part.sweep.split(&part.plan, cell, trial)?;
+        part.sweep.split(&part.plan, cell, trial)?;
         // What the identity measures are the frames themselves.
         let identity = Group {
             ensemble: Ensemble::Identity,
             ..group.clone()
         };
         let of = (&identity, part.plan.arrays[group.array].n_values());
-        let read = part.measured(of, (trial, &split), ("read", progress))?;
+        let read = part.measured(of, trial, ("read", progress))?;
         Ok(Self {
             array: group.array,
             values: read.values,

@@ -65,9 +65,9 @@ pub trait TouchSet: Sync {
         progress: &dyn Progress,
     ) -> Result<Frames>;
 
-    /// How each touch is read in a trial, F frames each, whose randomness is drawn from `seed`: pressed objects at the study's speed, each after
+    /// How each touch is read in a trial, F frames each, whose randomness is drawn from `seed`: pressed objects at a speed (m/s, 0 at rest), each after
     /// another touch that is drawn at random.
-    fn to_read(&self, plan: &Plan, n_frames: usize, seed: &Seed) -> Vec<TouchToRead>;
+    fn to_read(&self, speed: f64, n_frames: usize, seed: &Seed) -> Vec<TouchToRead>;
 
     /// A few touches for the eye.
     ///
@@ -115,12 +115,12 @@ impl TouchSet for Vec<TouchedObject> {
         press_objects(self, on, place, progress)
     }
 
-    fn to_read(&self, plan: &Plan, n_frames: usize, seed: &Seed) -> Vec<TouchToRead> {
+    fn to_read(&self, speed: f64, n_frames: usize, seed: &Seed) -> Vec<TouchToRead> {
         let mut touches = touches_to_read(self.classes(), seed);
         let n_touches = touches.len();
         let depths = self.iter().flat_map(|t| &t.touches).map(|t| t.depth);
         for (touch, depth) in touches.iter_mut().zip(depths) {
-            touch.interval = (plan.speed > 0.0).then(|| depth / (n_frames as f64 * plan.speed));
+            touch.interval = (speed > 0.0).then(|| depth / (n_frames as f64 * speed));
             let mut rng = touch.seed.named("before").rng();
             touch.before = Some(rng.gen_range(0..n_touches));
         }

@@ -10,7 +10,8 @@ use crate::recognition::data::dataset::{Dataset, rows};
 use crate::recognition::data::split::{Split, group_k_fold, stratified_k_fold};
 use crate::recognition::svm::cross_validation::choice::Candidates;
 use crate::recognition::svm::kernel::Gamma;
-use ndarray::{Array1, Axis, s};
+use ndarray::{Array1, Axis};
+use std::collections::HashMap;
 use std::time::Instant;
 
 /// The training rows of a family in one trial, and what they are trained with.
@@ -79,17 +80,14 @@ impl Training<'_> {
         let start = Instant::now();
         let classifier = self.classifier();
         let (classifier, gamma) = if self.kind.has_c() {
-            let data = self.choosing_rows();
             let given = c.map(|c| vec![c]).or(self.recognition.choose_c.clone());
             let candidates = Candidates {
                 c: given.unwrap_or_default(),
                 gamma_scales: self.recognition.choose_gamma.clone().unwrap_or_default(),
             };
-            let folds = self.folds(&data)?;
-            let chosen = classifier.choose(&data, &folds, &candidates, &self.seed)?;
-            let (best, classifier) = (chosen.best, classifier.with_choice(&chosen));
-            let mut trained = classifier.train_path(&self.data, &[best.c], &self.seed)?;
-            (trained.swap_remove(0), best.gamma)
+            let (c, classifier) = self.choose(classifier, &candidates)?;
+            let mut trained = classifier.train_path(&self.data, &[c], &self.seed)?;
+            (trained.swap_remove(0), number(classifier.gamma))
         } else {
             (classifier.train(&self.data, &self.seed)?, None)
         };
@@ -99,6 +97,32 @@ impl Training<'_> {
             gamma,
             fit_s: start.elapsed().as_secs_f64(),
         })
+    }
+
+    /// Returns the best C, and the classifier with the best γ, of some candidates. Every γ is a multiple of that of the training rows, of which the rows that
+    /// take part in the choice may be few. One candidate is no choice: the result is the same as if it was given.
+    fn choose(&self, classifier: Classifier, candidates: &Candidates) -> Result<(f64, Classifier)> {
+        let unit = self.gamma()?;
+        let classifier = Classifier {
+            gamma: unit.map_or(classifier.gamma, Gamma::Value),
+            ..classifier
+        };
+        if let ([c], [] | [_]) = (&candidates.c[..], &candidates.gamma_scales[..]) {
+            let scale = candidates.gamma_scales.first().copied().unwrap_or(1.0);
+            let gamma = unit.map_or(classifier.gamma, |unit| Gamma::Value(scale * unit));
+            return Ok((
+                *c,
+                Classifier {
+                    gamma,
+                    ..classifier
+                },
+            ));
+        }
+        let chosen_on = self.choosing_rows();
+        let folds = self.folds(&chosen_on)?;
+        let data = rows(&self.data, &chosen_on)?;
+        let chosen = classifier.choose(&data, &folds, candidates, &self.seed)?;
+        Ok((chosen.best.c, classifier.with_choice(&chosen)))
     }
 
     /// What classifiers trained as a fitted one answer to each touch (its first reading): of each fold those that have learned none of it.
@@ -114,7 +138,8 @@ impl Training<'_> {
             ..usual
         };
         let mut answers = vec![0; n_first];
-        for fold in self.folds(&self.leading(n_first))? {
+        let first: Vec<usize> = (0..n_first).collect();
+        for fold in self.folds(&first)? {
             // Further readings and copies are of all touches in turn.
             let starts = (0..self.data.targets.len()).step_by(n_first);
             let learned = starts.flat_map(|start| fold.train.iter().map(move |row| start + row));
@@ -140,31 +165,29 @@ impl Training<'_> {
         Ok(Some(self.recognition.gamma.unwrap_or_else(scale)))
     }
 
-    /// The leading training rows, as many of each object as take part in a choice, all of them first readings: another reading of a touch that a fold holds
-    /// out would be learned.
-    fn choosing_rows(&self) -> Dataset {
-        let labels = &self.data.targets;
-        let n_objects = labels.iter().max().map_or(0, |last| last + 1);
-        // Rows come one of each object in turn, so these hold as many of each.
-        let touches = self.recognition.choose_touches.unwrap_or(usize::MAX);
-        self.leading(touches.saturating_mul(n_objects).min(self.n_first))
+    /// Returns the training rows that take part in a choice: of each object at most so many, the first ones, all of them first readings. A fold that holds
+    /// out a touch would else learn another reading of the touch.
+    fn choosing_rows(&self) -> Vec<usize> {
+        let most = self.recognition.choose_touches.unwrap_or(usize::MAX);
+        let mut n_chosen: HashMap<usize, usize> = HashMap::new();
+        let takes_part = |row: &usize| {
+            let n_chosen = n_chosen.entry(self.data.targets[*row]).or_default();
+            *n_chosen += 1;
+            *n_chosen <= most
+        };
+        (0..self.n_first).filter(takes_part).collect()
     }
 
-    /// The first of the training rows.
-    fn leading(&self, n_rows: usize) -> Dataset {
-        Dataset::new(
-            self.data.records.slice(s![..n_rows, ..]).to_owned(),
-            self.data.targets.slice(s![..n_rows]).to_owned(),
-        )
-    }
-
-    /// What stays together in the study's split stays together here.
-    fn folds(&self, data: &Dataset) -> Result<Vec<Split>> {
-        let labels = data.targets.view();
+    /// Splits some training rows once more, in positions within `rows`. What stays together in the study's split stays together here.
+    fn folds(&self, rows: &[usize]) -> Result<Vec<Split>> {
+        let labels = self.data.targets.select(Axis(0), rows);
         let k = self.recognition.n_choice_folds();
         match &self.group_keys {
-            None => stratified_k_fold(labels, k, &self.seed),
-            Some(keys) => group_k_fold(labels, keys.slice(s![..labels.len()]), k, &self.seed),
+            None => stratified_k_fold(labels.view(), k, &self.seed),
+            Some(keys) => {
+                let keys = keys.select(Axis(0), rows);
+                group_k_fold(labels.view(), keys.view(), k, &self.seed)
+            }
         }
     }
 
@@ -184,5 +207,13 @@ impl Training<'_> {
             memory_bytes: solver_memory(recognition.solver_memory_gib),
             ..usual
         }
+    }
+}
+
+/// Returns γ as a number, or `None` where the kernel computes γ itself or has none.
+fn number(gamma: Gamma) -> Option<f64> {
+    match gamma {
+        Gamma::Value(gamma) => Some(gamma),
+        Gamma::Scale => None,
     }
 }

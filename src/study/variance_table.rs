@@ -51,7 +51,7 @@ pub struct Variance {
 pub fn variances(rows: &[(Cell, TrialScore)]) -> Result<Vec<Variance>> {
     let mut table = Vec::new();
     for trials in rows.chunk_by(|a, b| a.0.cell == b.0.cell) {
-        let trials_of = trials.iter().map(|(_, score)| Repeat::of(score));
+        let trials_of = trials.iter().map(|(_, score)| Repeat::of(score, 1));
         let scores = scores(&trials_of.collect::<Vec<_>>());
         let Some(scores) = scores.filter(|scores| scores.ncols() > 1 && scores.nrows() > 1) else {
             continue;

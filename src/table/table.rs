@@ -211,9 +211,13 @@ impl Table {
         };
         let broken = |e: csv::Error| bad(e.position(), e.to_string(), "a row of the table");
         let header = reader.headers().map_err(broken)?.clone();
-        let mut columns = Vec::with_capacity(header.len());
+        let mut columns: Vec<Column> = Vec::with_capacity(header.len());
         let mut all = known.into_iter();
         for name in &header {
+            if columns.iter().any(|column| column.name == name) {
+                let given = format!("column {name:?} twice");
+                return Err(bad(header.position(), given, "each column once"));
+            }
             // A column before it that every study has must not be passed over.
             match all.find(|column| column.name == name || !column.is_optional) {
                 Some(column) if column.name == name => columns.push(column),

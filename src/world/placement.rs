@@ -14,9 +14,14 @@ use crate::geometry::Pose;
 use crate::objects::Model;
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
 
 /// Half a turn about x: the patch's z points down. Written out, so that it is exact.
 const FACING_DOWN: DQuat = DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0);
+
+/// Values that differ by less than this many metres or radians are the same pose. It is far below what any skin feels and far above rounding; if it
+/// were larger, fine steps would be merged, and if it were smaller, 0.1 + 0.2 and 0.3 would be two poses.
+const SAME_POSE: f64 = 1e-9;
 
 /// Which values a coordinate of a touch takes. SI units: metres, radians.
 #[derive(Clone, Debug, PartialEq)]
@@ -84,6 +89,41 @@ impl TouchAxis {
             Self::TiltY => "tilt_y",
             Self::Depth => "depth",
         }
+    }
+
+    /// Returns the spread of listed values, in which values that are the same pose are one value, the first. So yaws of 0 and a full turn are one yaw.
+    pub fn listed(self, values: Vec<f64>) -> Spread {
+        let mut first: Vec<usize> = (0..values.len()).collect();
+        let pairs = self.same_poses(&values);
+        // Pairs are a chain of neighbours: two passes bring the first of a chain to all of its members.
+        for &(one, other) in pairs.iter().chain(pairs.iter().rev()) {
+            let earlier = first[one].min(first[other]);
+            (first[one], first[other]) = (earlier, earlier);
+        }
+        let values = values.into_iter().zip(first).enumerate();
+        let kept = values.filter(|(place, (_, first))| place == first);
+        Spread::Values(kept.map(|(_, (value, _))| value).collect())
+    }
+
+    /// Returns pairs of places of values that are the same pose: those closer than [`SAME_POSE`], of yaws modulo a turn.
+    pub(super) fn same_poses(self, values: &[f64]) -> Vec<(usize, usize)> {
+        let is_turn = self == Self::Yaw;
+        let place = |value: f64| {
+            if is_turn {
+                value.rem_euclid(TAU)
+            } else {
+                value
+            }
+        };
+        let values = values.iter().enumerate();
+        let mut sorted: Vec<(f64, usize)> = values.map(|(n, &value)| (place(value), n)).collect();
+        sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        if let (true, Some(&(least, number))) = (is_turn, sorted.first()) {
+            sorted.push((least + TAU, number));
+        }
+        let pairs = sorted.windows(2).map(|pair| (pair[0], pair[1]));
+        let same = pairs.filter(|((a, n), (b, m))| n != m && b - a < SAME_POSE);
+        same.map(|((_, n), (_, m))| (n, m)).collect()
     }
 }
 
@@ -278,6 +318,25 @@ mod tests {
             table_from_patch.transform_point(DVec3::ZERO),
             DVec3::new(0.03, -0.01, 0.12),
         );
+    }
+
+    #[test]
+    fn listed_values_that_are_the_same_pose_are_one_value_the_first() {
+        let listed = |axis: TouchAxis, values: &[f64]| match axis.listed(values.to_vec()) {
+            Spread::Values(values) => values,
+            Spread::Uniform { .. } => unreachable!(),
+        };
+        let half = std::f64::consts::PI;
+        let yaws = [-half, 1.0, half, 0.0, TAU, 1.0 - TAU, 3.0 * half, -1e-12];
+        assert_eq!(listed(TouchAxis::Yaw, &yaws), [-half, 1.0, 0.0]);
+        // Neighbours of neighbours, out of order.
+        let close = [2e-10, 1e-3, -2e-10, 0.0];
+        assert_eq!(listed(TouchAxis::Depth, &close), [2e-10, 1e-3]);
+        let sums = [0.1 + 0.2, 0.3];
+        assert_eq!(listed(TouchAxis::OffsetX, &sums), [0.1 + 0.2]);
+        // A turn is none for lengths.
+        assert_eq!(listed(TouchAxis::OffsetX, &[0.0, TAU]), [0.0, TAU]);
+        assert_eq!(listed(TouchAxis::Yaw, &[0.0, 1e-6]), [0.0, 1e-6]);
     }
 
     #[test]

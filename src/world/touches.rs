@@ -215,12 +215,14 @@ fn check_spread(axis: TouchAxis, spread: &Spread) -> Result<()> {
             if values.is_empty() {
                 return refuse("no values".into(), "at least one value");
             }
-            let mut sorted = values.clone();
-            sorted.sort_by(f64::total_cmp);
-            if let Some(pair) = sorted.windows(2).find(|pair| pair[0] == pair[1]) {
-                return refuse(format!("{} twice", pair[0]), "different values");
+            if let Some(&(one, other)) = axis.same_poses(values).first() {
+                let given = match (values[one], values[other]) {
+                    (one, other) if one == other => format!("{one} twice"),
+                    (one, other) => format!("{one} and {other}, which are the same pose"),
+                };
+                return refuse(given, "different values");
             }
-            sorted
+            values.clone()
         }
         Spread::Uniform { low, high } => {
             if low > high {

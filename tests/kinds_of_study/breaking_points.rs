@@ -275,3 +275,34 @@ fn keys_that_are_out_of_range_are_named_with_their_way() {
         assert!(error.contains(said), "{error}");
     }
 }
+
+/// The interval of an accuracy is that of the groups that are held out, as the recognition study of the same value says.
+#[test]
+fn intervals_come_from_groups_where_groups_are_held_out() {
+    let (study, ways) = QUICK.split_at(QUICK.find("[[breaking_points]]").unwrap());
+    let study = study.replace(
+        "offset_x_mm = { uniform = [-5.0, 5.0] }",
+        "offset_x_mm = [-4.0, -2.0, 0.0, 2.0, 4.0, 6.0]",
+    );
+    let study = format!("{study}keep_together = \"offset\"\nkeep_together_mm = 1.0\n");
+    let study = study.replace(
+        "offset_y_mm = { uniform = [-5.0, 5.0] }",
+        "yaw_deg = { uniform = [0.0, 90.0] }",
+    );
+    let way = ways.split("[[breaking_points]]").nth(1).unwrap();
+    let case = Case::new();
+    case.file("study.toml", format!("{study}\n[[breaking_points]]{way}"));
+    case.file("alone.toml", &study);
+    case.succeeds(&["run", "study.toml", "--out", "ways"]);
+    case.succeeds(&["run", "alone.toml", "--out", "alone"]);
+    let alone: Vec<CellScore> = read_rows(&case.path("alone/summary.csv")).unwrap();
+    let cells: Vec<WayCell> = read_rows(&case.path("ways/summary.csv")).unwrap();
+    let scores: Vec<CellScore> = read_rows(&case.path("ways/summary.csv")).unwrap();
+    let here = cells
+        .iter()
+        .zip(scores)
+        .filter(|(cell, _)| cell.value == 0.005);
+    let here: Vec<CellScore> = here.map(|(_, score)| score).collect();
+    assert_eq!(here, alone);
+    assert!(here.iter().all(|score| score.n_groups.is_some()));
+}

@@ -16,6 +16,7 @@ mod frames;
 mod hardware;
 mod images;
 mod intervals;
+mod laws;
 mod layouts;
 mod memory;
 mod next_touch;

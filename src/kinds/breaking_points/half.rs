@@ -1,6 +1,6 @@
 //! Where an accuracy falls to half of its best.
 //!
-//! The interval is by simulation: each mean accuracy a of n test rows is drawn from its posterior Beta(a n + ½, (1 − a) n + ½) under
+//! The interval is by simulation: each mean accuracy a of n independent test rows (where groups are held out, fewer than there are) is drawn from its posterior Beta(a n + ½, (1 − a) n + ½) under
 //! Jeffreys' prior, and the place is found again, with the best at the same value; the middle 95 % of the places are the interval. In a
 //! draw that does not fall so far the place is beyond the last value.
 
@@ -19,8 +19,8 @@ struct Curve {
     values: Vec<f64>,
     /// Mean accuracies, one a value.
     accuracy: Vec<f64>,
-    /// Test rows that each counts for.
-    n_test: Vec<usize>,
+    /// Independent test rows that each counts for.
+    n_test: Vec<f64>,
 }
 
 impl Curve {
@@ -61,8 +61,7 @@ impl Curve {
             });
             crossing.unwrap_or(beyond)
         };
-        let beta = |(accuracy, &n): (&f64, &usize)| {
-            let n = n as f64;
+        let beta = |(accuracy, &n): (&f64, &f64)| {
             let right = accuracy * n;
             Beta::new(right + 0.5, n - right + 0.5).expect("both are positive")
         };
@@ -87,20 +86,26 @@ impl Curve {
     }
 }
 
+/// A row of the summary with the number of independent test rows that it counts for.
+pub(super) type ScoredCell<'a> = (&'a (WayCell, CellScore), f64);
+
 /// Where a classifier breaks along a way, on each side of its best: a row each. Its scores are by ascending values.
 pub(super) fn breaking_points(
-    scores: &[&(WayCell, CellScore)],
+    scores: &[&ScoredCell],
     scale: WayScale,
     n_objects: usize,
     seed: &Seed,
 ) -> Vec<BreakingPoint> {
     let curve = Curve {
         scale,
-        values: scores.iter().map(|(cell, _)| cell.value).collect(),
-        accuracy: scores.iter().map(|(_, score)| score.accuracy).collect(),
-        n_test: scores.iter().map(|(_, score)| score.n_test).collect(),
+        values: scores.iter().map(|((cell, _), _)| cell.value).collect(),
+        accuracy: scores
+            .iter()
+            .map(|((_, score), _)| score.accuracy)
+            .collect(),
+        n_test: scores.iter().map(|(_, n_rows)| *n_rows).collect(),
     };
-    let (cell, best) = scores[curve.best()];
+    let ((cell, best), _) = scores[curve.best()];
     let row = |side| {
         let outwards = curve.outwards(side);
         let end = outwards[1..].last()?;
@@ -134,7 +139,7 @@ pub(super) fn breaking_points(
 mod tests {
     use super::*;
 
-    fn curve(values: &[f64], accuracy: &[f64], n_test: &[usize]) -> Curve {
+    fn curve(values: &[f64], accuracy: &[f64], n_test: &[f64]) -> Curve {
         Curve {
             values: values.to_vec(),
             accuracy: accuracy.to_vec(),
@@ -147,7 +152,7 @@ mod tests {
     fn it_breaks_where_a_line_between_the_points_meets_half_of_the_best() {
         let values = [0.01, 0.1, 1.0, 10.0, 100.0];
         let accuracy = [0.2, 0.6, 0.8, 0.4, 0.1];
-        let curve = curve(&values, &accuracy, &[1_000_000; 5]);
+        let curve = curve(&values, &accuracy, &[1e6; 5]);
         let halves = [Side::Larger, Side::Smaller].map(|side| {
             let half = curve.half(side, &Seed::new(1));
             half.map(|place| place.unwrap())
@@ -163,13 +168,13 @@ mod tests {
     #[test]
     fn a_curve_that_does_not_fall_so_far_has_no_breaking_point() {
         let values = [0.0, 1.0, 2.0];
-        let flat = curve(&values, &[0.9, 0.8, 0.6], &[100_000; 3]);
+        let flat = curve(&values, &[0.9, 0.8, 0.6], &[1e5; 3]);
         assert_eq!(flat.outwards(Side::Smaller), [0]);
         assert_eq!(flat.outwards(Side::Larger), [0, 1, 2]);
         let [at, low, _] = flat.half(Side::Larger, &Seed::new(1));
         assert_eq!((at, low), (None, None));
         // With few test rows it may have one all the same.
-        let unsure = curve(&values, &[0.9, 0.8, 0.5], &[12; 3]);
+        let unsure = curve(&values, &[0.9, 0.8, 0.5], &[12.0; 3]);
         let [at, low, high] = unsure.half(Side::Larger, &Seed::new(1));
         assert!(at.is_none() && low.unwrap() < 2.0);
         assert_eq!(high, None);
@@ -186,7 +191,8 @@ mod tests {
             .collect();
         let n = 400;
         let half = |accuracy: &[f64], seed| {
-            let half = curve(&values, accuracy, &[n; 9]).half(Side::Larger, &Seed::new(seed));
+            let half =
+                curve(&values, accuracy, &[n as f64; 9]).half(Side::Larger, &Seed::new(seed));
             half.map(|place| place.unwrap_or(f64::INFINITY))
         };
         let [exact, ..] = half(&truth, 0);

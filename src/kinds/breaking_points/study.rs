@@ -1,6 +1,6 @@
 //! A study of breaking points: every value of every way, on all threads.
 
-use super::half::breaking_points;
+use super::half::{ScoredCell, breaking_points};
 use super::plan::{BreakingPointsPlan, PlannedValue, PlannedWay};
 use super::rows::{BreakingPoint, CellScore, TrialScore, TrialTime, WayCell};
 use super::spec::BreakingPointsSpec;
@@ -8,11 +8,14 @@ use super::value::{ObjectSets, evaluate};
 use crate::error::Result;
 use crate::kinds::{About, Facts, Files, Kind, Source, found_and_cost, grouped};
 use crate::random::Seed;
+use crate::recognition::statistics::grouped::{GroupCount, independent_rows};
 use crate::study::Plan;
+use crate::study::evaluation::CONFIDENCE;
 use crate::study::object_files::{load_objects, objects_content};
 use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft, Scale};
 use crate::study::spec::ObjectsSpec;
-use crate::study::summary::summarise;
+use crate::study::summary::{grouped_tests, summarise};
+use crate::study::tabulate::share_columns;
 use crate::study::time_left::Piece;
 use crate::table::{File, Table};
 use rayon::prelude::*;
@@ -27,8 +30,12 @@ pub struct BreakingPointsStudy {
     pub packings: Option<PathBuf>,
 }
 
-/// What was found at values of ways, trial by trial; and how many objects a way tells apart.
-pub type DrivenRows = (Vec<(WayCell, TrialScore, TrialTime)>, Vec<(String, usize)>);
+/// What was found at values of ways, trial by trial, with the groups that each trial tested, if any; and how many objects a way tells apart.
+pub type DrivenRows = (
+    Vec<(WayCell, TrialScore, TrialTime)>,
+    Vec<Vec<GroupCount>>,
+    Vec<(String, usize)>,
+);
 
 /// Tables.
 const ACCURACY: File<(WayCell, TrialScore)> =
@@ -116,20 +123,24 @@ impl PieceStudy for BreakingPointsStudy {
             })
     }
 
-    fn tables(&self, (rows, n_objects): DrivenRows) -> Result<Vec<Table>> {
+    fn tables(&self, (mut rows, groups, n_objects): DrivenRows) -> Result<Vec<Table>> {
+        share_columns(rows.iter_mut().map(|(_, score, _)| score).collect());
         let n_objects: BTreeMap<String, usize> = n_objects.into_iter().collect();
         let n_folds = self.plan.spec.recognition.folds.unwrap_or(1);
         let scores = rows.iter();
         let scores = scores.map(|(cell, score, _)| (cell.clone(), score.clone()));
-        let summary = summarise(&scores.collect::<Vec<_>>(), &[], |_| n_folds)?;
+        let scores: Vec<(WayCell, TrialScore)> = scores.collect();
+        let summary = summarise(&scores, &groups, |_| n_folds)?;
+        let n_rows = independent_rows_of_cells(&scores, &groups)?;
+        let cells: Vec<ScoredCell> = summary.iter().zip(n_rows).collect();
         let mut breaks = Vec::new();
         for way in &self.plan.ways {
             let name = &way.spec.name;
             let n_objects = n_objects.get(name).copied().unwrap_or(0);
             let seed = Seed::new(self.plan.spec.seed).named("breaking points");
             let seed = seed.named(name);
-            let of_way = summary.iter().filter(|(cell, _)| cell.way == *name);
-            let curves = grouped(of_way, |(cell, _)| cell.classifier).into_iter();
+            let of_way = cells.iter().filter(|((cell, _), _)| cell.way == *name);
+            let curves = grouped(of_way, |((cell, _), _)| cell.classifier).into_iter();
             for (number, (_, curve)) in curves.enumerate() {
                 let seed = seed.numbered(number as u64);
                 breaks.extend(breaking_points(&curve, way.spec.scale, n_objects, &seed));
@@ -139,6 +150,25 @@ impl PieceStudy for BreakingPointsStudy {
         let (summary, breaks) = (SUMMARY.of(&summary)?, BREAKS.of(&breaks)?);
         Ok(vec![accuracy, summary, breaks, timing])
     }
+}
+
+/// Returns for each cell the number of independent test rows that its trials are worth: those of a trial, or what the groups of all trials say.
+fn independent_rows_of_cells(
+    scores: &[(WayCell, TrialScore)],
+    mut groups: &[Vec<GroupCount>],
+) -> Result<Vec<f64>> {
+    let cells = scores.chunk_by(|a, b| a.0 == b.0).map(|trials| {
+        let here = groups.split_off(..trials.len()).unwrap_or_default();
+        let tested = grouped_tests(trials.iter().map(|(_, score)| score).zip(here));
+        match tested.is_empty() {
+            true => {
+                let n_test = trials.iter().map(|(_, score)| score.n_test).min();
+                Ok(n_test.unwrap_or(0) as f64)
+            }
+            false => independent_rows(&tested, CONFIDENCE),
+        }
+    });
+    cells.collect()
 }
 
 impl Kind for BreakingPointsStudy {

@@ -49,14 +49,9 @@ impl<'a> World<'a> {
     fn measure(&self, trial: usize, sensed: Option<&Arc<SensedBy>>) -> Result<Measurements> {
         let group = &self.sweep.groups[0];
         let touches = (&self.touched as &dyn crate::study::TouchSet, &self.frames);
-        let split = (trial, &self.sweep.splits[trial]);
-        measure_group(
-            self.plan,
-            group,
-            touches,
-            split,
-            (group.projected()[0], sensed),
-        )
+        let n_measurements = group.projected()[0];
+        let inputs = group.inputs(self.plan, &self.sweep);
+        measure_group(&inputs, touches, trial, (n_measurements, sensed))
     }
 
     /// An error unless what is learned here can be tested there: the same touches, split alike, measured by the same projection.
@@ -113,7 +108,7 @@ pub(super) fn evaluate(
             Ok(())
         })?;
     }
-    let mut rows = Vec::new();
+    let (mut rows, mut groups) = (Vec::new(), Vec::new());
     for (family, found) in families.iter().zip(found) {
         let cell = WayCell {
             way: way.name.clone(),
@@ -121,9 +116,11 @@ pub(super) fn evaluate(
             value: value.value,
             classifier: family[0].classifier,
         };
-        for Evaluation { score, time, .. } in found {
-            rows.push((cell.clone(), score, time));
+        for evaluation in found {
+            rows.push((cell.clone(), evaluation.score, evaluation.time));
+            groups.push(evaluation.groups);
         }
     }
-    Ok((rows, vec![(way.name.clone(), learned.touched.len())]))
+    let n_objects = vec![(way.name.clone(), learned.touched.len())];
+    Ok((rows, groups, n_objects))
 }

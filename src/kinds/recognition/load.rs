@@ -10,9 +10,10 @@ use crate::study::memory::check_touches;
 use crate::study::object_files::load_objects;
 use crate::study::plan::Plan;
 use crate::study::simulation::draw_touches;
-use crate::study::spec::StudySpec;
+use crate::study::spec::{HumanTouchSpec, ObjectsSpec, RecordedSpec, StudySpec};
 use crate::study::touch_set::TouchSet;
 use crate::study::{HumanTouches, RecordedFrames};
+use crate::world::Placement;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::path::Path;
@@ -78,22 +79,23 @@ impl RecognitionStudy {
         let mut drawn: HashMap<String, Arc<dyn TouchSet + Send>> = HashMap::new();
         let mut variants = Vec::with_capacity(plans.len());
         for (variant, plan) in plans {
-            let (content, seed) = (touch_content(&plan), Seed::new(plan.spec.seed));
+            let inputs = TouchInputs::of(&plan);
+            let (content, seed) = (inputs.key(), Seed::new(inputs.seed));
             let touched: Arc<dyn TouchSet + Send> = if let Some(known) = drawn.get(&content) {
                 known.clone()
-            } else if let Some(human) = &plan.spec.human_touch {
+            } else if let Some(human) = inputs.human_touch {
                 check_touches(&plan, human.kinds.len(), ceiling)?;
                 Arc::new(HumanTouches::draw(human, &seed)?)
-            } else if let Some(recorded) = &plan.spec.recorded {
+            } else if let Some(recorded) = inputs.recorded {
                 Arc::new(RecordedFrames::read(recorded, ceiling)?)
             } else {
-                let known = objects.entry(format!("{:?}", plan.spec.objects));
+                let known = objects.entry(format!("{:?}", inputs.objects));
                 let objects = match known {
                     Entry::Occupied(known) => known.into_mut(),
-                    Entry::Vacant(new) => new.insert(load_objects(&plan.spec.objects, packings)?),
+                    Entry::Vacant(new) => new.insert(load_objects(inputs.objects, packings)?),
                 };
                 check_touches(&plan, objects.len(), ceiling)?;
-                Arc::new(draw_touches(objects.clone(), &plan.placement, &seed)?)
+                Arc::new(draw_touches(objects.clone(), inputs.placement, &seed)?)
             };
             drawn.insert(content, touched.clone());
             variants.push((variant, plan, touched));
@@ -102,13 +104,31 @@ impl RecognitionStudy {
     }
 }
 
-/// All that the touches of a plan depend on, beside the array and the files of its objects.
-pub(super) fn touch_content(plan: &Plan) -> String {
-    let Plan {
-        spec, placement, ..
-    } = plan;
-    format!(
-        "{:?} {placement:?} {:?} {:?} {}",
-        spec.objects, spec.human_touch, spec.recorded, spec.seed
-    )
+/// Everything of a plan that its touches are drawn from, beside the array and the files of its objects. Plans with equal inputs share their touches.
+#[derive(Debug)]
+pub(super) struct TouchInputs<'a> {
+    objects: &'a ObjectsSpec,
+    placement: &'a Placement,
+    human_touch: Option<&'a HumanTouchSpec>,
+    recorded: Option<&'a RecordedSpec>,
+    seed: u64,
+}
+
+impl<'a> TouchInputs<'a> {
+    /// Returns the inputs of a plan's touches.
+    pub fn of(plan: &'a Plan) -> Self {
+        let spec = &plan.spec;
+        Self {
+            objects: &spec.objects,
+            placement: &plan.placement,
+            human_touch: spec.human_touch.as_ref(),
+            recorded: spec.recorded.as_ref(),
+            seed: spec.seed,
+        }
+    }
+
+    /// Returns a text that is equal for equal inputs only.
+    pub fn key(&self) -> String {
+        format!("{self:?}")
+    }
 }

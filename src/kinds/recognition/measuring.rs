@@ -6,7 +6,7 @@ use super::study::{MEASURE, RecognitionStudy, in_frames};
 use crate::error::Result;
 use crate::study::evaluation::Trial;
 use crate::study::frames::Frames;
-use crate::study::measurement::{Measurements, measure_group};
+use crate::study::measurement::Measurements;
 use crate::study::pieces::PiecesLeft;
 use crate::study::progress::{Progress, Silent};
 use crate::study::time_left::Piece;
@@ -190,15 +190,7 @@ impl Job<'_> {
 
     fn measure(&self, frames: &Frames) -> Result<Measurements> {
         let (part, group) = self.study.group(self.group);
-        let touches = (part.touched.as_ref() as _, frames);
-        let trial = (self.trial, &part.sweep.splits[self.trial]);
-        measure_group(
-            &part.plan,
-            group,
-            touches,
-            trial,
-            (self.n_measurements, None),
-        )
+        part.measure(group, frames, (self.trial, self.n_measurements))
     }
 
     fn evaluate(&self, family: usize, measurements: &Measurements) -> Result<Vec<CellRow>> {

@@ -1,18 +1,15 @@
 //! A study that recognises objects: its work items, and the tables of what they found.
 
 use super::cost::{fit_s, touch_s};
-use super::load::touch_content;
+use super::load::TouchInputs;
 use super::measuring::Job;
 use super::rows::{RecognitionRows, TouchRow};
 use crate::error::Result;
-use crate::random::Seed;
 use crate::report::recognition::tables_of;
 use crate::study::Samples;
-use crate::study::TestedOn;
 use crate::study::axes::AxisValues;
 use crate::study::cell_content::family_name;
 use crate::study::frames::FramePlace;
-use crate::study::measurement::signal_steps;
 use crate::study::object_files::objects_content;
 use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft, Scale, Shared, run_whole};
 use crate::study::plan::{Plan, millimetres};
@@ -27,7 +24,7 @@ use crate::study::taxel_array::TaxelArray;
 use crate::study::time_left::Piece;
 use crate::study::touch_set::TouchSet;
 use crate::table::Table;
-use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -127,17 +124,17 @@ impl RecognitionStudy {
         let mut known_touches: HashMap<String, usize> = HashMap::new();
         let mut known_groups: HashMap<String, usize> = HashMap::new();
         for (part, StudyPart { plan, sweep, .. }) in self.parts.iter().enumerate() {
-            let touched = touch_content(plan);
+            let touched = TouchInputs::of(plan).key();
             for (place, group) in sweep.groups.iter().enumerate() {
                 let (array, number) = (&plan.arrays[group.array], self.groups.len());
-                let content = format!("{touched} {} {}", array.content(), group.frames);
+                let content = format!("{touched} {array:?} {}", group.frames);
                 let name = touches_name(array, group.frames, &content);
                 let touches = *known_touches.entry(content).or_insert_with(|| {
                     let group = number;
                     self.touch_sets.push(Touches { group, name });
                     self.touch_sets.len() - 1
                 });
-                let content = format!("{touches} {}", measured_content(plan, group));
+                let content = format!("{touches} {}", group.inputs(plan, sweep).key());
                 self.groups.push(PlacedGroup {
                     part,
                     place,
@@ -309,34 +306,6 @@ fn touches_name(array: &TaxelArray, n_frames: usize, content: &str) -> String {
     let ((ny, nx), content) = (array.shape(), short_hash(content, 12));
     let pitch = array.pitch();
     format!("touches of {n_frames} frames on {nx}x{ny} taxels at {pitch} m, {content}")
-}
-
-/// All that the measurements of a group depend on, beside its touches.
-fn measured_content(plan: &Plan, group: &Group) -> String {
-    let array = plan.arrays[group.array].content();
-    let steps = signal_steps(plan, group, &Seed::new(plan.spec.seed));
-    let recognition = &plan.spec.recognition;
-    // Test touches are read by another skin only where there is one, and training touches learned from where anything is learned.
-    let has_split = group.learns() || group.tested_on != TestedOn::SameSkin;
-    let split = has_split.then_some((
-        recognition.split,
-        plan.keep_together,
-        recognition.folds,
-        recognition.test_fraction,
-    ));
-    let drawn = (plan.spec.seed, plan.spec.projections_per_split, plan.speed);
-    let (ensemble, m) = (group.ensemble, group.projected());
-    let images = group.features_of_images();
-    let n_readings = group.n_readings(plan);
-    let copied = group
-        .cells
-        .iter()
-        .map(|cell| (cell.tilted_copies, cell.train_touches));
-    let copied = copied.filter(|(n_copies, _)| n_copies.is_some_and(|n| n > 0));
-    let copied: BTreeSet<_> = copied.collect();
-    let copies = (copied, recognition.tilted_copies_deg);
-    let drawn = format!("{drawn:?} {n_readings} {copies:?}");
-    format!("{array} {steps:?} {split:?} {drawn} {ensemble:?} {m:?} {images:?}")
 }
 
 impl RecognitionStudy {

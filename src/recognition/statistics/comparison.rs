@@ -20,7 +20,7 @@ pub struct Comparison {
     pub n_trials: usize,
 }
 
-/// How the trials split the touches, the same in each.
+/// How a trial splits the touches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TrialSize {
     /// Training rows of a trial.
@@ -36,6 +36,9 @@ pub struct TrialSize {
 ///
 /// `t = mean(d) / sqrt((1/J + n_test/n_train) s²)` with J − 1 degrees of freedom.
 ///
+/// If trials differ in their numbers of rows, as splits by unequal groups do, n_test/n_train is the mean over trials. `sizes` holds one size a trial,
+/// or one for all.
+///
 /// Trials split the same touches again and again, so their scores are not independent: the plain paired t-test (1/J
 /// alone) finds differences that are not there. Scores are multiples of about 1/n_test, so s² is taken no smaller than
 /// the variance of such rounding, `1/(12 n_test²)`: equal differences in a few trials do not make certainty.
@@ -46,10 +49,10 @@ pub struct TrialSize {
 pub fn compare(
     a: &[f64],
     b: &[f64],
-    size: TrialSize,
+    sizes: &[TrialSize],
     confidence: f64,
 ) -> Result<Option<Comparison>> {
-    check(a, b, size)?;
+    check(a, b, sizes)?;
     check_confidence(confidence)?;
     let n_trials = a.len();
     if n_trials < 2 {
@@ -59,10 +62,10 @@ pub fn compare(
     let differences: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
     let mean = differences.iter().sum::<f64>() / n;
     let squares: f64 = differences.iter().map(|d| (d - mean) * (d - mean)).sum();
-    let variance = (squares / (n - 1.0)).max(size.rounding());
+    let variance = (squares / (n - 1.0)).max(rounding(sizes));
     let estimate = Estimate {
         mean,
-        variance: (1.0 / n + size.overlap()) * variance,
+        variance: (1.0 / n + overlap(sizes)) * variance,
         freedom: n - 1.0,
     };
     estimate.test(n_trials, confidence).map(Some)
@@ -83,11 +86,11 @@ pub fn compare(
 pub fn compare_crossed(
     a: ArrayView2<f64>,
     b: ArrayView2<f64>,
-    size: TrialSize,
+    sizes: &[TrialSize],
     confidence: f64,
 ) -> Result<Option<Comparison>> {
     let in_a_row = |scores: ArrayView2<f64>| scores.iter().copied().collect::<Vec<_>>();
-    check(&in_a_row(a), &in_a_row(b), size)?;
+    check(&in_a_row(a), &in_a_row(b), sizes)?;
     check_confidence(confidence)?;
     if a.dim() != b.dim() || a.nrows() < 2 || a.ncols() < 2 {
         return Ok(None);
@@ -97,7 +100,7 @@ pub fn compare_crossed(
     let (n_splits, n_projections) = (a.nrows() as f64, a.ncols() as f64);
     let n_trials = n_splits * n_projections;
     let of_splits =
-        (1.0 / n_splits + size.overlap()) * (squares.rows / n_projections).max(size.rounding());
+        (1.0 / n_splits + overlap(sizes)) * (squares.rows / n_projections).max(rounding(sizes));
     let of_projections = (squares.columns - squares.rest) / n_trials;
     let mut estimate = Estimate {
         mean: squares.mean,
@@ -132,13 +135,13 @@ const MOST_TRIALS: usize = 1000;
 ///
 /// # Errors
 /// No training or no test rows, or a confidence outside 0..1.
-pub fn trials_needed(size: TrialSize, confidence: f64) -> Result<Option<usize>> {
-    check(&[], &[], size)?;
+pub fn trials_needed(sizes: &[TrialSize], confidence: f64) -> Result<Option<usize>> {
+    check(&[], &[], sizes)?;
     check_confidence(confidence)?;
     let is_enough = |n_trials: usize| -> Result<bool> {
         let n = n_trials as f64;
         let quantile = student(n - 1.0)?.inverse_cdf(0.5 + 0.5 * confidence);
-        Ok(quantile * (1.0 / n + size.overlap()).sqrt() <= AGREED)
+        Ok(quantile * (1.0 / n + overlap(sizes)).sqrt() <= AGREED)
     };
     // What the most are too few for, fewer are too.
     if !is_enough(MOST_TRIALS)? {
@@ -152,17 +155,24 @@ pub fn trials_needed(size: TrialSize, confidence: f64) -> Result<Option<usize>> 
     Ok(Some(MOST_TRIALS))
 }
 
-impl TrialSize {
-    /// n_test / n_train: what trials that share their touches add to the variance of their mean.
-    fn overlap(&self) -> f64 {
-        self.n_test as f64 / self.n_train as f64
-    }
+/// Returns the mean of n_test / n_train: what trials that share their touches add to the variance of their mean.
+fn overlap(sizes: &[TrialSize]) -> f64 {
+    mean_of(sizes, |size| size.n_test as f64 / size.n_train as f64)
+}
 
-    /// The variance of rounding to multiples of 1 / n_test.
-    fn rounding(&self) -> f64 {
-        let n_test = self.n_test as f64;
+/// Returns the mean variance of rounding to multiples of 1 / n_test.
+fn rounding(sizes: &[TrialSize]) -> f64 {
+    mean_of(sizes, |size| {
+        let n_test = size.n_test as f64;
         1.0 / (12.0 * n_test * n_test)
-    }
+    })
+}
+
+/// Returns the mean of a value over trials; of equal values that value, without rounding.
+fn mean_of(sizes: &[TrialSize], value: impl Fn(&TrialSize) -> f64) -> f64 {
+    let first = value(&sizes[0]);
+    let above: f64 = sizes.iter().map(|size| value(size) - first).sum();
+    first + above / sizes.len() as f64
 }
 
 /// A mean difference, its variance, and the degrees of freedom of that.
@@ -194,7 +204,7 @@ fn student(freedom: f64) -> Result<StudentsT> {
         .map_err(|error| Error::input("comparison", error, "at least two trials are needed"))
 }
 
-fn check(a: &[f64], b: &[f64], size: TrialSize) -> Result<()> {
+fn check(a: &[f64], b: &[f64], sizes: &[TrialSize]) -> Result<()> {
     if a.len() != b.len() {
         return Err(Error::input(
             "comparison",
@@ -209,14 +219,14 @@ fn check(a: &[f64], b: &[f64], size: TrialSize) -> Result<()> {
             "finite scores are needed",
         ));
     }
-    if size.n_train == 0 || size.n_test == 0 {
-        return Err(Error::input(
-            "comparison",
-            format!("{} training and {} test rows", size.n_train, size.n_test),
-            "at least one of each is needed",
-        ));
-    }
-    Ok(())
+    let is_empty = |size: &&TrialSize| size.n_train == 0 || size.n_test == 0;
+    let given = match sizes.iter().find(is_empty) {
+        Some(size) => format!("{} training and {} test rows", size.n_train, size.n_test),
+        None if sizes.is_empty() => "no sizes of trials".to_owned(),
+        None => return Ok(()),
+    };
+    let allowed = "at least one of each is needed";
+    Err(Error::input("comparison", given, allowed))
 }
 
 #[cfg(test)]
@@ -236,7 +246,7 @@ mod tests {
         // SciPy 1.17.1's Student t in the formula above. The plain paired t-test (ttest_rel) says p = 0.034.
         let a = [0.91, 0.93, 0.90, 0.94, 0.92];
         let b = [0.88, 0.92, 0.89, 0.90, 0.91];
-        let comparison = compare(&a, &b, SIZE, 0.95).unwrap().unwrap();
+        let comparison = compare(&a, &b, &[SIZE], 0.95).unwrap().unwrap();
         assert!((comparison.mean_difference - 0.02).abs() < 1e-15);
         assert!((comparison.interval.low + 0.008675001744240358).abs() < 1e-9);
         assert!((comparison.interval.high - 0.04867500174424035).abs() < 1e-9);
@@ -258,7 +268,7 @@ mod tests {
                 a = (0..n).map(|k| 0.3 + wider * [1.0, -1.0][k % 2]).collect();
                 a[n - 1] = 0.3;
             }
-            let test = compare(&a, &vec![0.0; n], size, 0.95).unwrap().unwrap();
+            let test = compare(&a, &vec![0.0; n], &[size], 0.95).unwrap().unwrap();
             test.p_value < 0.05
         };
         for (n_train, needed) in [(100, 6), (300, 4), (1000, 3)] {
@@ -266,7 +276,7 @@ mod tests {
                 n_train,
                 n_test: 100,
             };
-            assert_eq!(trials_needed(size, 0.95).unwrap(), Some(needed));
+            assert_eq!(trials_needed(&[size], 0.95).unwrap(), Some(needed));
             assert!(of_trials(needed, size), "{needed} of {n_train}");
             assert!(!of_trials(needed - 1, size), "one less of {n_train}");
         }
@@ -274,14 +284,14 @@ mod tests {
             n_train: 100,
             n_test: 300,
         };
-        assert_eq!(trials_needed(size, 0.95).unwrap(), None);
+        assert_eq!(trials_needed(&[size], 0.95).unwrap(), None);
     }
 
     #[test]
     fn swapping_the_cells_swaps_the_sign_alone() {
         let (a, b) = ([0.5, 0.7, 0.6], [0.4, 0.7, 0.3]);
-        let forth = compare(&a, &b, SIZE, 0.9).unwrap().unwrap();
-        let back = compare(&b, &a, SIZE, 0.9).unwrap().unwrap();
+        let forth = compare(&a, &b, &[SIZE], 0.9).unwrap().unwrap();
+        let back = compare(&b, &a, &[SIZE], 0.9).unwrap().unwrap();
         assert_eq!(forth.mean_difference, -back.mean_difference);
         assert_eq!(forth.interval.low, -back.interval.high);
         assert_eq!(forth.p_value, back.p_value);
@@ -302,7 +312,7 @@ mod tests {
             [0.72, 0.77, 0.71],
             [0.80, 0.79, 0.74]
         ];
-        let crossed = compare_crossed(a.view(), b.view(), SIZE, 0.95)
+        let crossed = compare_crossed(a.view(), b.view(), &[SIZE], 0.95)
             .unwrap()
             .unwrap();
         for (found, expected) in [
@@ -338,7 +348,7 @@ mod tests {
                     splits[s] + projections[p] + normal(rest)
                 });
                 let none = Array2::zeros((6, 5));
-                let test = compare_crossed(differences.view(), none.view(), size, 0.95);
+                let test = compare_crossed(differences.view(), none.view(), &[size], 0.95);
                 test.unwrap().unwrap().p_value < 0.05
             });
             let share = alarms.count() as f64 / n as f64;
@@ -351,28 +361,65 @@ mod tests {
 
     #[test]
     fn equal_scores_are_no_difference_and_equal_differences_no_certainty() {
-        let same = compare(&[0.9; 3], &[0.9; 3], SIZE, 0.95).unwrap().unwrap();
+        let same = compare(&[0.9; 3], &[0.9; 3], &[SIZE], 0.95)
+            .unwrap()
+            .unwrap();
         assert_eq!((same.mean_difference, same.p_value), (0.0, 1.0));
         assert!(same.interval.low < 0.0 && same.interval.high > 0.0);
-        let constant = compare(&[0.9; 3], &[0.8; 3], SIZE, 0.95).unwrap().unwrap();
+        let constant = compare(&[0.9; 3], &[0.8; 3], &[SIZE], 0.95)
+            .unwrap()
+            .unwrap();
         assert!(constant.p_value > 0.0 && constant.p_value < 0.01);
     }
 
     #[test]
+    fn trials_of_unequal_sizes_overlap_by_the_mean_of_their_ratios() {
+        let size = |n_train, n_test| TrialSize { n_train, n_test };
+        let (a, b) = ([0.9, 0.8, 0.85, 0.95], [0.8, 0.75, 0.85, 0.85]);
+        let test = |sizes: &[TrialSize]| compare(&a, &b, sizes, 0.95).unwrap().unwrap();
+        // Ratios of 1/9, 1, 1/4 and 1/4.
+        let unequal = [
+            size(900, 100),
+            size(500, 500),
+            size(800, 200),
+            size(800, 200),
+        ];
+        let ratio = (1.0 / 9.0 + 1.0 + 0.25 + 0.25) / 4.0;
+        // Student's t of SciPy 1.17.1: t = mean / sqrt((1/4 + ratio) s²), far above rounding.
+        let differences = [0.1, 0.05, 0.0, 0.1];
+        let mean = differences.iter().sum::<f64>() / 4.0;
+        let squares: f64 = differences.iter().map(|d| (d - mean) * (d - mean)).sum();
+        let error = ((0.25 + ratio) * squares / 3.0).sqrt();
+        let found = test(&unequal);
+        let half = 3.182_446_305_284_263 * error; // t.ppf(0.975, 3)
+        assert!(
+            (found.interval.high - mean - half).abs() < 1e-9,
+            "{found:?}"
+        );
+        // Whichever trial is the first.
+        let mut turned = unequal;
+        turned.reverse();
+        assert!((test(&turned).p_value - found.p_value).abs() < 1e-12);
+        // Equal sizes are one size.
+        assert_eq!(test(&[SIZE; 4]), test(&[SIZE]));
+        assert!(compare(&a, &b, &[], 0.95).is_err());
+    }
+
+    #[test]
     fn one_trial_tells_nothing() {
-        assert_eq!(compare(&[0.9], &[0.8], SIZE, 0.95).unwrap(), None);
-        assert_eq!(compare(&[], &[], SIZE, 0.95).unwrap(), None);
+        assert_eq!(compare(&[0.9], &[0.8], &[SIZE], 0.95).unwrap(), None);
+        assert_eq!(compare(&[], &[], &[SIZE], 0.95).unwrap(), None);
     }
 
     #[test]
     fn unpaired_or_broken_scores_are_refused() {
-        assert!(compare(&[0.9, 0.8], &[0.8], SIZE, 0.95).is_err());
-        assert!(compare(&[0.9, f64::NAN], &[0.8, 0.8], SIZE, 0.95).is_err());
-        assert!(compare(&[0.9, 0.8], &[0.8, 0.8], SIZE, 95.0).is_err());
+        assert!(compare(&[0.9, 0.8], &[0.8], &[SIZE], 0.95).is_err());
+        assert!(compare(&[0.9, f64::NAN], &[0.8, 0.8], &[SIZE], 0.95).is_err());
+        assert!(compare(&[0.9, 0.8], &[0.8, 0.8], &[SIZE], 95.0).is_err());
         let none = TrialSize {
             n_train: 0,
             n_test: 1,
         };
-        assert!(compare(&[0.9, 0.8], &[0.8, 0.8], none, 0.95).is_err());
+        assert!(compare(&[0.9, 0.8], &[0.8, 0.8], &[none], 0.95).is_err());
     }
 }

@@ -23,7 +23,7 @@
 use crate::recognition::statistics::interval::{Interval, check_confidence};
 use crate::{Error, Result};
 use serde::{Deserialize, Serialize};
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 use std::collections::BTreeMap;
 
 /// Groups below which an interval says little: Student's t of three degrees of freedom is 3.2 in the place of 2.
@@ -92,6 +92,56 @@ pub fn count_groups(rows: impl IntoIterator<Item = (usize, bool)>) -> Vec<GroupC
 /// No tests, a test without rows or groups, more correct than rows, or a confidence outside 0..1.
 pub fn interval_of_groups(tests: &[GroupedTest], confidence: f64) -> Result<(Interval, usize)> {
     check_confidence(confidence)?;
+    let Clustered {
+        share,
+        n_rows,
+        n_groups,
+    } = clustered(tests)?;
+    let interval = match student(n_groups) {
+        Some(student) => {
+            Interval::score(share, n_rows, student.inverse_cdf(0.5 + 0.5 * confidence))
+        }
+        None => Interval {
+            low: 0.0,
+            high: 1.0,
+        },
+    };
+    Ok((interval, n_groups))
+}
+
+/// Returns the number of independent rows that say as much as the rows of all groups: n/D*, less what Student's t is wider than a normal distribution at
+/// this confidence. Of one group none.
+///
+/// # Errors
+/// Those of [`interval_of_groups`].
+pub fn independent_rows(tests: &[GroupedTest], confidence: f64) -> Result<f64> {
+    check_confidence(confidence)?;
+    let Clustered {
+        n_rows, n_groups, ..
+    } = clustered(tests)?;
+    let (Some(student), Ok(normal)) = (student(n_groups), Normal::new(0.0, 1.0)) else {
+        return Ok(0.0);
+    };
+    let tail = 0.5 + 0.5 * confidence;
+    Ok(n_rows * (normal.inverse_cdf(tail) / student.inverse_cdf(tail)).powi(2))
+}
+
+/// What tests of groups say together.
+struct Clustered {
+    /// θ.
+    share: f64,
+    /// n/D*.
+    n_rows: f64,
+    /// G.
+    n_groups: usize,
+}
+
+/// Student's t of G − 1 degrees of freedom; `None` of a single group.
+fn student(n_groups: usize) -> Option<StudentsT> {
+    StudentsT::new(0.0, 1.0, n_groups as f64 - 1.0).ok()
+}
+
+fn clustered(tests: &[GroupedTest]) -> Result<Clustered> {
     if tests.is_empty() {
         return Err(Error::input(
             "interval of groups",
@@ -116,13 +166,13 @@ pub fn interval_of_groups(tests: &[GroupedTest], confidence: f64) -> Result<(Int
         }
     }
     let n_groups = groups.len();
-    let Ok(student) = StudentsT::new(0.0, 1.0, n_groups as f64 - 1.0) else {
-        let all = Interval {
-            low: 0.0,
-            high: 1.0,
-        };
-        return Ok((all, n_groups));
-    };
+    if n_groups < 2 {
+        return Ok(Clustered {
+            share,
+            n_rows: 0.0,
+            n_groups,
+        });
+    }
     let sum = |value: fn(&(f64, f64, usize)) -> f64| groups.values().map(value).sum::<f64>();
     let in_groups =
         mean(&|test| test.groups.iter().map(|count| count.n_rows).sum::<usize>() as f64);
@@ -135,8 +185,11 @@ pub fn interval_of_groups(tests: &[GroupedTest], confidence: f64) -> Result<(Int
         true => (rarer * (n * variance / spread).max(1.0) + most) / (rarer + 1.0),
         false => most,
     };
-    let t = student.inverse_cdf(0.5 + 0.5 * confidence);
-    Ok((Interval::score(share, n / effect, t), n_groups))
+    Ok(Clustered {
+        share,
+        n_rows: n / effect,
+        n_groups,
+    })
 }
 
 /// The interval of an accuracy: Wilson's of so many right of some rows where there are no tests of groups, else [that of the groups](interval_of_groups)

@@ -68,6 +68,16 @@ impl Kernel {
         }
     }
 
+    /// Returns γ as it was given, or `None` for a linear kernel.
+    pub fn gamma(&self) -> Option<Gamma> {
+        match *self {
+            Self::Linear => None,
+            Self::Rbf { gamma } | Self::Laplacian { gamma } | Self::Polynomial { gamma, .. } => {
+                Some(gamma)
+            }
+        }
+    }
+
     /// What γ is if nobody says, of the training features (n_rows × m).
     pub(crate) fn gamma_scale(&self, features: ArrayView2<f64>) -> f64 {
         let variance = variance(features);

@@ -3,10 +3,10 @@
 //! Every setting that varies has a place, so no chart mixes cells that differ in something it does not show: x takes the number of most
 //! values, lines and panels the others of most values, of equals words before numbers; each combination of the rest gets a chart of its own.
 
-use super::tables::{OVER_FOLDS, OVER_TRIAL, note_of_groups};
+use super::tables::{CHANCE, OVER_FOLDS, OVER_TRIAL, note_of_groups};
 use super::{CELLS, filled};
 use crate::report::swept::{Setting, Swept, without};
-use crate::table::{Along, ChartSpec, Mark, Role, Rule, Table, Value};
+use crate::table::{Along, At, ChartSpec, Mark, Role, Rule, Table, Value};
 use std::cmp::Reverse;
 
 /// Classifiers from which on a study is about choosing one.
@@ -28,7 +28,7 @@ pub fn charts(tables: &[Table], pareto: Option<bool>) -> Vec<ChartSpec> {
         note: format!("Points are means over trials. {over}"),
         table: CELLS,
         y: "accuracy".to_owned(),
-        rules: confusion.map(chance).into_iter().collect(),
+        rules: chance(cells, confusion).into_iter().collect(),
         ..ChartSpec::default()
     };
     let mut charts = accuracy_charts(cells, &chart);
@@ -44,11 +44,22 @@ pub fn charts(tables: &[Table], pareto: Option<bool>) -> Vec<ChartSpec> {
     charts
 }
 
-/// A line at the share that guessing recognises.
-fn chance(confusion: &Table) -> Rule {
-    let n_objects = confusion.groups(&["object"], 0..confusion.n_rows).len();
+/// Returns the line at the share that guessing recognises: that of each cell where cells differ in their number of objects.
+fn chance(cells: &Table, confusion: Option<&Table>) -> Option<Rule> {
+    if cells.numbers(CHANCE).is_some() {
+        return Some(Rule {
+            along: Along::Y,
+            at: At::Column(CHANCE.to_owned()),
+            words: "chance (1 in the objects of each configuration)".to_owned(),
+        });
+    }
+    let confusion = confusion?;
+    let first = confusion
+        .groups(&["cell"], 0..confusion.n_rows)
+        .swap_remove(0);
+    let n_objects = confusion.groups(&["object"], first).len();
     let words = format!("chance (1 in {n_objects})");
-    Rule::at(Along::Y, 1.0 / n_objects as f64, words)
+    Some(Rule::at(Along::Y, 1.0 / n_objects as f64, words))
 }
 
 /// The charts of accuracy that show every cell. Settings of the signal that leave their first values one at a time get charts of their own,

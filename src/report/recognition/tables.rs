@@ -12,6 +12,7 @@ use crate::study::table::{
 use crate::study::{CONFIDENCE, StudySpec};
 use crate::table::{Better, Column, Columns, Data, File, Role, Scale, Table};
 use serde::Serialize;
+use std::collections::HashMap;
 use std::path::Path;
 
 /// The table of all that is known of each cell; it has no file.
@@ -202,6 +203,26 @@ fn note_of_few_trials(table: &Table) -> Option<String> {
     ))
 }
 
+/// The share that guessing recognises, a column of [`CELLS`] where cells differ in it.
+pub(super) const CHANCE: &str = "chance";
+
+/// Returns 1 / the number of objects that each cell tells apart, if cells differ in it.
+fn chance_of_cells(summary: &Table, confusion: &Table) -> Option<(Column, Data)> {
+    let mut n_objects: HashMap<u64, usize> = HashMap::new();
+    for rows in confusion.groups(&["cell", "object"], 0..confusion.n_rows) {
+        let cell = confusion.number("cell", rows[0]);
+        *n_objects.entry(cell.to_bits()).or_default() += 1;
+    }
+    let chance = (0..summary.n_rows).map(|row| {
+        let n_objects = n_objects.get(&summary.number("cell", row).to_bits());
+        n_objects.map_or(f64::NAN, |&n| 1.0 / n as f64)
+    });
+    let chance = Data::Numbers(chance.collect());
+    let role = Role::Value(Better::Neither);
+    let column = Column::new(CHANCE, role, "chance", "", Scale::Share);
+    chance.varies(0..summary.n_rows).then_some((column, chance))
+}
+
 /// Each cell with its distance to the best of its condition and with what it costs.
 fn cells_of(tables: &[Table]) -> Option<Table> {
     let of = |file: &str| tables.iter().find(|table| table.file == file);
@@ -233,6 +254,7 @@ fn cells_of(tables: &[Table]) -> Option<Table> {
             &["measurements", "frames", "fused_touches"],
         ),
         product("taxels", "taxels", &["nx", "ny"]),
+        chance_of_cells(summary, of(CONFUSION.name())?),
     ];
     let note = "All that is known of each cell, from summary.csv, comparison.csv and pareto.csv. Costs of time are of this machine.";
     Some(

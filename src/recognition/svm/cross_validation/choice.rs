@@ -19,7 +19,8 @@ use crate::{Error, Result};
 pub struct Candidates {
     /// Values of C; at least one.
     pub c: Vec<f64>,
-    /// Values of γ, as multiples of [`Gamma::Scale`]'s; empty: γ as it is. A linear kernel has none.
+    /// Values of γ as multiples of the kernel's own γ, which is [`Gamma::Scale`]'s of the training rows unless it is a number; empty: the kernel's own γ.
+    /// A linear kernel has none.
     pub gamma_scales: Vec<f64>,
 }
 
@@ -162,7 +163,10 @@ fn kernels(
             params.kernel.resolve(training.records.view(), extent)?,
         ]);
     }
-    let unit = params.kernel.gamma_scale(training.records.view());
+    let unit = match params.kernel.gamma() {
+        Some(Gamma::Value(gamma)) => gamma,
+        _ => params.kernel.gamma_scale(training.records.view()),
+    };
     ascending(scales)
         .into_iter()
         .map(|scale| {

@@ -1,0 +1,380 @@
+//! Laws of studies that recognise: each configuration stands alone, exports are the run's, repetition makes no claim stronger.
+
+use crate::study::{Study, laid_out};
+use bubbletouch::random::Seed;
+use bubbletouch::recognition::ClassifierKind;
+use bubbletouch::recognition::classifiers::classifier::Classifier;
+use bubbletouch::report::recognition::{charts, tables_of};
+use bubbletouch::signal::{Chain, Recording, SENSOR_ERRORS, Scratch, SensorError, Strength};
+use bubbletouch::study::progress::Silent;
+use bubbletouch::study::table::{PStatus, Tables, TrialScore};
+use bubbletouch::study::{FeatureSet, StudySpec};
+use bubbletouch::table::At;
+use bubbletouch::world::{Grid, Patch, Taxel};
+use std::collections::BTreeSet;
+
+const STUDY: &str = r#"
+question = "What holds of every study?"
+trials = 2
+
+[objects]
+sets = ["household"]
+names = ["mug", "bowl", "apple", "pear"]
+surface_error_mm = 2.0
+
+[skin]
+pitch_mm = 4.0
+taxels = 12
+stroke_mm = 5.0
+
+[touches]
+per_object = 24
+depth_mm = 3.0
+yaw_deg = { uniform = [0.0, 360.0] }
+offset_x_mm = { uniform = [-10.0, 10.0] }
+
+[signal]
+SIGNAL
+
+[sensing]
+SENSING
+
+[recognition]
+classifier = "linear_svm"
+"#;
+
+fn study(signal: &str, sensing: &str, recognition: &str) -> String {
+    let text = STUDY.replace("SIGNAL", signal).replace("SENSING", sensing);
+    text + recognition + "\n"
+}
+
+fn run(text: &str) -> Tables {
+    laid_out(text).unwrap().run(&Silent).unwrap()
+}
+
+fn scores(tables: &Tables) -> Vec<TrialScore> {
+    tables
+        .accuracy
+        .iter()
+        .map(|(_, score)| score.clone())
+        .collect()
+}
+
+/// Test sensors shared the measurements of the first where something was learned for measurements.
+#[test]
+fn every_configuration_alone_scores_what_it_scores_in_its_sweep() {
+    const SKINS: [&str; 2] = ["\"same_skin\"", "\"another_skin\""];
+    const ENSEMBLES: [&str; 2] = ["\"gaussian\"", "\"principal_components\""];
+    const FEATURES: [&str; 2] = ["\"raw\"", "\"descriptors\""];
+    let all = |values: [&str; 2]| format!("[{}]", values.join(", "));
+    let text = |skin: &str, ensemble: &str, features: &str| {
+        let signal = format!(
+            "steps = [\"gain\", \"noise\"]\ngain_std = 0.6\nnoise_std_full_scale = 0.02\ntested_on = {skin}"
+        );
+        let sensing = format!("ensemble = {ensemble}\nratio = 4");
+        study(&signal, &sensing, &format!("features = {features}"))
+    };
+    let mut swept = scores(&run(&text(&all(SKINS), &all(ENSEMBLES), &all(FEATURES))));
+    let mut skins_differ = false;
+    let mut of_skins = Vec::new();
+    for skin in SKINS {
+        let mut of_skin = Vec::new();
+        for ensemble in ENSEMBLES {
+            for features in FEATURES {
+                let alone = scores(&run(&text(skin, ensemble, features)));
+                let rest = swept.split_off(alone.len());
+                assert_eq!(swept, alone, "{skin} {ensemble} {features}");
+                swept = rest;
+                of_skin.extend(alone);
+            }
+        }
+        of_skins.push(of_skin);
+    }
+    for (same, another) in of_skins[0].iter().zip(&of_skins[1]) {
+        skins_differ |= same.n_correct != another.n_correct;
+    }
+    assert!(skins_differ);
+}
+
+fn n_correct(set: &FeatureSet) -> usize {
+    let classifier = Classifier::new(ClassifierKind::LinearSvm);
+    let trained = classifier.train(&set.training(None).unwrap(), &Seed::new(0));
+    let test = set.test().unwrap();
+    let found = trained.unwrap().labels(test.records.view()).unwrap();
+    found
+        .iter()
+        .zip(&test.targets)
+        .filter(|(a, b)| a == b)
+        .count()
+}
+
+/// What is learned for measurements is learned from the whole split, however few touches a cell learns from.
+#[test]
+fn exported_rows_classified_elsewhere_give_the_answers_of_the_run() {
+    let signal = "noise_std_full_scale = 0.1";
+    for (sensing, recognition) in [
+        (
+            "ensemble = \"principal_components\"\nratio = 16",
+            "train_touches = [3, 18]",
+        ),
+        (
+            "ensemble = \"principal_components\"\nratio = 16",
+            "class_imbalance = [1.0, 6.0]",
+        ),
+        (
+            "ratio = 4",
+            "features = \"descriptors\"\ntilted_copies = 2\ntrain_touches = [3, 18]",
+        ),
+        (
+            "ratio = 4",
+            "training_readings = 2\ntrain_touches = [3, 18]",
+        ),
+    ] {
+        let study = laid_out(&study(signal, sensing, recognition)).unwrap();
+        for (cell, score) in study.run(&Silent).unwrap().accuracy {
+            let set = study.first().features((cell.cell, score.trial), &Silent);
+            let what = format!("{recognition}, cell {}, trial {}", cell.cell, score.trial);
+            assert_eq!(n_correct(&set.unwrap()), score.n_correct, "{what}");
+        }
+    }
+}
+
+/// Splits by pose come again and again; without noise their trials are the same.
+#[test]
+fn trials_that_repeat_splits_make_no_claim_stronger() {
+    let text = |trials: usize, split: &str| {
+        let recognition = format!("split = \"{split}\"");
+        let text = study("steps = []", "ensemble = \"identity\"", &recognition);
+        let text = text.replace("trials = 2", &format!("trials = {trials}"));
+        let text = text.replace("\"linear_svm\"", "[\"linear_svm\", \"nearest_centroid\"]");
+        let text = text.replace("{ uniform = [0.0, 360.0] }", "[0.0, 90.0, 180.0, 270.0]");
+        text.replace("per_object = 24\n", "")
+            .replace("{ uniform = [-10.0, 10.0] }", "{ grid = [-10.0, 10.0, 6] }")
+    };
+    let [twice, often] = [2, 12].map(|trials| run(&text(trials, "half_of_yaws")));
+    for (twice, often) in twice.comparison.iter().zip(&often.comparison) {
+        assert_eq!((often.n_trials, twice.n_trials), (2, 2));
+        assert_eq!(often.p_status, PStatus::TooFewTrials);
+        assert_eq!((often.p_value, often.n_trials_needed), (None, None));
+        assert_eq!(often.difference_low, twice.difference_low);
+    }
+    for (trial, score) in scores(&often).iter().take(12).enumerate() {
+        assert_eq!(score.distinct_split, Some(trial % 2));
+    }
+    for (_, score) in &often.summary {
+        assert_eq!(score.bootstrap_low, None);
+    }
+    // Splits that are drawn are each another one, and the table has no such column.
+    let drawn = run(&text(6, "random"));
+    assert!(
+        scores(&drawn)
+            .iter()
+            .all(|score| score.distinct_split.is_none())
+    );
+    assert!(
+        drawn
+            .comparison
+            .iter()
+            .all(|row| row.n_trials == 6 && row.p_value.is_some())
+    );
+}
+
+#[test]
+fn yaws_a_turn_apart_and_values_that_round_alike_are_one_pose() {
+    let text = |yaws: &str, offsets: &str| {
+        let text = study(
+            "steps = []",
+            "ensemble = \"identity\"",
+            "split = \"leave_one_yaw_out\"",
+        );
+        let text = text
+            .replace("{ uniform = [0.0, 360.0] }", yaws)
+            .replace("per_object = 24\n", "");
+        text.replace("{ uniform = [-10.0, 10.0] }", offsets)
+    };
+    let plain = text("[0.0, 90.0, 180.0, 270.0]", "[-0.3, 0.0, 0.3]");
+    for (yaws, offsets) in [
+        ("{ grid = [0.0, 360.0, 5] }", "[-0.3, 0.0, 0.3]"),
+        (
+            "[0.0, 90.0, 180.0, 270.0, -90.0, -180.0, 450.0]",
+            "[-0.3, 0.0, 0.3]",
+        ),
+        (
+            "[0.0, 90.0, 180.0, 270.0]",
+            "[-0.3, 0.0, 0.3, 0.30000000000000004]",
+        ),
+    ] {
+        let one = Study::new(&text(yaws, offsets));
+        assert_eq!(one.sweep.labels.len(), 4 * 4 * 3, "{yaws} {offsets}");
+        assert_eq!(scores(&one.run()), scores(&run(&plain)), "{yaws} {offsets}");
+    }
+}
+
+#[test]
+fn a_choice_among_one_value_is_that_value() {
+    let signal = "noise_std_full_scale = 0.1";
+    let fits = |keys: &str| {
+        let text = study(signal, "ratio = 4", keys);
+        let text = text.replace("\"linear_svm\"", "[\"linear_svm\", \"rbf_svm\"]");
+        scores(&run(&text))
+    };
+    for scaling in ["none", "standard"] {
+        let scaled = |keys: &str| fits(&format!("scaling = \"{scaling}\"\n{keys}"));
+        let given = scaled("c = 10.0");
+        for keys in [
+            "choose_c = [10.0]\nchoose_touches = 5",
+            "choose_c = [10.0]\nchoose_touches = 5\nchoose_folds = 2",
+            "choose_c = [10.0]\nchoose_gamma = [1.0]\nchoose_touches = 5",
+            "choose_c = [10.0]",
+        ] {
+            assert_eq!(scaled(keys), given, "{scaling}: {keys}");
+        }
+    }
+    // γ of a choice among several is a multiple of that of all training rows, too.
+    let rows = |keys: &str| fits(&format!("scaling = \"none\"\n{keys}"));
+    let gammas = |scores: &[TrialScore]| -> Vec<f64> {
+        scores.iter().filter_map(|score| score.gamma_used).collect()
+    };
+    let chosen = rows("choose_c = [1.0, 10.0]\nchoose_gamma = [1.0, 2.0]\nchoose_touches = 5");
+    let scale = gammas(&rows("c = 10.0"));
+    for (chosen, scale) in gammas(&chosen).iter().zip(&scale) {
+        assert!([*scale, 2.0 * scale].contains(chosen), "{chosen} {scale}");
+    }
+}
+
+#[test]
+fn a_name_is_the_name_of_one_column() {
+    let names = |keys: &str| -> Vec<String> {
+        let axes = "\n[axes]\n\"recognition.split\" = [\"random\", \"half_of_yaws\"]\n";
+        let text = study("steps = []", "ratio = 4", axes);
+        let text = text.replace("trials = 2", &format!("trials = 4\n{keys}"));
+        let spec = StudySpec::parse("study.toml", &text).unwrap();
+        spec.axis_columns()
+            .iter()
+            .map(|column| column.name.to_string())
+            .collect()
+    };
+    assert_eq!(names(""), ["split"]);
+    assert_eq!(names("projections_per_split = 2"), ["recognition_split"]);
+}
+
+#[test]
+fn chance_is_that_of_each_configuration() {
+    let axes = |sets: &str| {
+        let axes = format!("\n[axes]\n\"objects.names\" = {sets}\n");
+        let text = study("noise_std_full_scale = 0.1", "ratio = [4, 8]", &axes);
+        let names = "names = [\"mug\", \"bowl\", \"apple\", \"pear\"]\n";
+        let tables = tables_of(&run(&text.replace(names, ""))).unwrap();
+        let rules = charts(&tables, None)
+            .into_iter()
+            .flat_map(|chart| chart.rules);
+        let rules: Vec<(At, String)> = rules.map(|rule| (rule.at, rule.words)).collect();
+        let cells = tables
+            .iter()
+            .find(|table| table.file == "cells.csv")
+            .unwrap();
+        (rules, cells.numbers("chance").map(<[f64]>::to_vec))
+    };
+    let (rules, column) = axes(r#"[["mug", "bowl"], ["apple", "pear"]]"#);
+    let expected = (At::Value(0.5), "chance (1 in 2)".to_owned());
+    assert!(
+        !rules.is_empty() && rules.iter().all(|rule| *rule == expected),
+        "{rules:?}"
+    );
+    assert_eq!(column, None);
+    let (rules, column) = axes(r#"[["mug", "bowl"], ["apple", "pear", "mug", "bowl"]]"#);
+    let is_column = |(at, _): &(At, String)| *at == At::Column("chance".to_owned());
+    assert!(
+        !rules.is_empty() && rules.iter().all(is_column),
+        "{rules:?}"
+    );
+    assert_eq!(column, Some(vec![0.5, 0.5, 0.25, 0.25]));
+}
+
+/// A strength at which an error shows.
+fn strong(strength: &Strength) -> f64 {
+    match (strength.is_whole, strength.unit) {
+        (true, _) => 5.0,
+        (_, "ms") => 20.0,
+        _ => 0.2,
+    }
+}
+
+fn strengths(error: SensorError) -> Vec<f64> {
+    error.about().strengths.iter().map(strong).collect()
+}
+
+#[test]
+fn readings_of_a_touch_differ_if_and_only_if_the_error_is_random_by_reading() {
+    let grid = Grid {
+        nx: 6,
+        ny: 6,
+        pitch: 2e-3,
+    };
+    let taxel = Taxel {
+        radius: 1e-3,
+        stiffness: 200.0,
+        damping: 0.0,
+        stroke: 5e-3,
+    };
+    let patch = Patch::grid(grid, taxel).unwrap();
+    for &error in SENSOR_ERRORS {
+        let step = error.step(&strengths(error), Seed::new(1));
+        let chain = Chain::new(&[step], &patch).unwrap();
+        let read = |touch: u64| {
+            let mut frames: Vec<f64> = (0..3 * 36).map(|i| 1e-5 * (i * i % 397) as f64).collect();
+            let recording = Recording {
+                frames: &mut frames,
+                rates: None,
+                n_before: 0,
+                interval: Some(0.04),
+                time: None,
+            };
+            let touch = Seed::new(2018).numbered(touch);
+            chain.apply_recording(recording, &touch, &mut Scratch::default());
+            frames
+        };
+        let differ = read(1) != read(2);
+        assert_eq!(differ, error.about().is_random_by_reading, "{error:?}");
+    }
+}
+
+#[test]
+fn more_readings_change_the_training_rows_if_and_only_if_the_error_is_random_by_reading() {
+    for &error in SENSOR_ERRORS {
+        let about = error.about();
+        let keys = about
+            .strengths
+            .iter()
+            .map(|strength| match strength.is_whole {
+                true => format!("{} = 5\n", strength.key),
+                false => format!("{} = {:?}\n", strength.key, strong(strength)),
+            });
+        let signal = format!("steps = [\"{}\"]\n{}", about.step, keys.collect::<String>());
+        let features = |readings: usize| {
+            let keys = format!("training_readings = {readings}");
+            let text = study(&signal, "ensemble = \"identity\"", &keys);
+            let motion = "frames = 2\nspeed_mm_per_s = 20.0\n";
+            let text = text.replace("depth_mm", &format!("{motion}depth_mm"));
+            let study = laid_out(&text).unwrap();
+            study.first().features((0, 0), &Silent).unwrap()
+        };
+        let (once, thrice) = (features(1), features(3));
+        let rows = thrice.training(None).unwrap().records;
+        let distinct: BTreeSet<Vec<u64>> = rows
+            .outer_iter()
+            .map(|row| row.iter().map(|value| value.to_bits()).collect())
+            .collect();
+        match about.is_random_by_reading {
+            true => {
+                assert_eq!(
+                    thrice.split.train.len(),
+                    3 * once.split.train.len(),
+                    "{error:?}"
+                );
+                assert_eq!(distinct.len(), thrice.split.train.len(), "{error:?}");
+            }
+            false => assert_eq!(thrice.data, once.data, "{error:?}"),
+        }
+    }
+}
