@@ -21,12 +21,13 @@ pub fn step_of(bits: f64) -> f64 {
     }
 }
 
-/// Bits; 0 where readings have no step.
-pub fn estimate(skin: &RecordedSkin) -> Estimate {
+/// Bits; 0 where readings have no step. Readings from `saturation` on are left out: what clips may be no step of the converter.
+pub fn estimate(skin: &RecordedSkin, saturation: f64) -> Estimate {
     let mut readings: Vec<f64> = Vec::new();
     for frames in [&skin.touched, &skin.untouched] {
         let stride = (2 * frames.len() / N_READINGS).max(1);
-        readings.extend(frames.iter().step_by(stride));
+        let frames = frames.iter().step_by(stride);
+        readings.extend(frames.filter(|&&reading| reading < saturation));
     }
     readings.sort_by(f64::total_cmp);
     readings.dedup_by(|a, b| *a - *b < ROUNDING);

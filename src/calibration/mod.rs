@@ -25,12 +25,14 @@ mod frames;
 pub mod gain;
 pub mod noise;
 mod robust;
+mod saturation;
 mod signal_table;
 pub mod smoothing;
 pub mod stiffness;
 mod untouched;
 
 pub use frames::RecordedSkin;
+pub use saturation::plateau;
 
 use crate::error::Result;
 use crate::table::short_number;
@@ -140,9 +142,10 @@ impl Estimate {
 /// Frames, times or forces that do not fit each other; readings that are not finite.
 pub fn calibrate(skin: &RecordedSkin) -> Result<Calibration> {
     skin.check()?;
-    let converter = converter::estimate(skin);
-    let step = converter.value().map_or(0.0, converter::step_of);
     let faults = faults::find(skin);
+    let saturation = frames::saturation(skin, &faults);
+    let converter = converter::estimate(skin, saturation);
+    let step = converter.value().map_or(0.0, converter::step_of);
     let untouched = untouched::Untouched::new(skin, &faults, step);
     let untouched = untouched.as_ref();
     let smoothing = smoothing::estimate(skin, untouched);
@@ -150,7 +153,8 @@ pub fn calibrate(skin: &RecordedSkin) -> Result<Calibration> {
     let read_noise = noise::of_readings(untouched);
     let std = read_noise.value().unwrap_or(0.0);
     let drift = drift::estimate(skin, untouched, (std, width));
-    let touched = frames::touched(skin, &faults, untouched, drift.value().unwrap_or(1.0));
+    let drifts = drift.value().unwrap_or(1.0);
+    let touched = frames::touched(skin, &faults, (untouched, drifts), saturation);
     let is_clipped = untouched.is_some_and(|untouched| untouched.is_clipped);
     let hides_zeros = is_clipped && drift.value() != Some(0.0);
     let told = |estimate: Estimate| match hides_zeros {

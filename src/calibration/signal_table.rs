@@ -1,5 +1,6 @@
 //! The `[signal]` table of what was found, as studies read it.
 
+use super::smoothing::narrow;
 use super::{Calibration, Estimate};
 use crate::table::short_number;
 
@@ -7,18 +8,22 @@ use crate::table::short_number;
 const NONE: f64 = 5e-5;
 
 impl Calibration {
-    /// TOML, on a skin whose taxels are so many millimetres apart: each key with its interval; as comments what is not identifiable, and why.
+    /// TOML, on a skin whose taxels are so many millimetres apart: each key with its interval; as comments what is not identifiable, and why. An
+    /// estimate with a wide interval is not identifiable.
     pub fn signal_table(&self, pitch_mm: f64) -> String {
-        let smoothing = self.smoothing.clone().map(|pitches| pitches * pitch_mm);
+        let smoothing = narrow(self.smoothing.clone());
+        let smoothing = smoothing.map(|pitches| pitches * pitch_mm);
+        let [dead, stuck, converter] =
+            [&self.dead, &self.stuck, &self.converter].map(|estimate| estimate.clone().resolved());
         let parameters: [(&str, &str, &Estimate); 8] = [
             ("crosstalk", "crosstalk", &self.crosstalk),
             ("gain", "gain_std", &self.gain),
             ("drift", "drift_std_full_scale", &self.drift),
             ("noise", "noise_std_full_scale", &self.noise),
             ("smoothing", "smoothing_mm", &smoothing),
-            ("faults", "dead_fraction", &self.dead),
-            ("faults", "stuck_fraction", &self.stuck),
-            ("quantisation", "adc_bits", &self.converter),
+            ("faults", "dead_fraction", &dead),
+            ("faults", "stuck_fraction", &stuck),
+            ("quantisation", "adc_bits", &converter),
         ];
         let mut steps = Vec::new();
         let mut keys = String::new();

@@ -5,7 +5,7 @@
 
 use super::robust::jackknife;
 use super::untouched::{Untouched, Zero};
-use super::{Estimate, RecordedSkin};
+use super::{Estimate, NONE, RecordedSkin};
 use crate::signal::Smoothing;
 use crate::world::Grid;
 use std::f64::consts::FRAC_PI_2;
@@ -118,6 +118,19 @@ pub(super) fn estimate(skin: &RecordedSkin, untouched: Option<&Untouched>) -> Es
             interval: [0.0, width(high)],
         },
         found => found.map(width),
+    }
+}
+
+/// The same width where its interval is narrow; 0 where the upper end has no more than [`NONE`] of correlation.
+pub(super) fn narrow(width: Estimate) -> Estimate {
+    // Of a Gaussian of width σ the correlation of neighbours is exp(−1 / 4σ²).
+    let as_good_as_none = (-0.25 / NONE.ln()).sqrt();
+    match width {
+        Estimate::Found {
+            value: 0.0,
+            interval: [_, high],
+        } if high <= as_good_as_none => width,
+        other => other.resolved(),
     }
 }
 

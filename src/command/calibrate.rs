@@ -2,7 +2,7 @@
 
 use super::output::check_ending;
 use super::streams::{note, write_out};
-use bubbletouch::calibration::calibrate as estimated;
+use bubbletouch::calibration::{Estimate, calibrate as estimated};
 use bubbletouch::files::write_bytes;
 use bubbletouch::study::{RecordedSkinFiles, UntouchedFrames};
 use bubbletouch::{Error, Result};
@@ -11,8 +11,14 @@ use std::path::PathBuf;
 
 #[derive(clap::Args)]
 pub struct Args {
-    /// What a skin has read, in the order of time: n × rows × columns or n × F × rows × columns, floats or integers
+    /// Readings in the order of time (.npy, .npz, .csv): n × rows × columns or n × F × rows × columns
     frames: PathBuf,
+    /// A letter for each axis: n touches, t frames, y rows, x columns, c taxels [default: "n y x" or "n t y x"]
+    #[arg(long, value_name = "ORDER")]
+    order: Option<String>,
+    /// Rows and columns of frames that are rows of numbers
+    #[arg(long, value_name = "ROWS,COLUMNS", value_parser = grid)]
+    grid: Option<[usize; 2]>,
     /// The same of the untouched skin, over the same session
     #[arg(long, value_name = "FILE.npy", conflicts_with = "untouched_frames")]
     untouched: Option<PathBuf>,
@@ -57,6 +63,8 @@ pub fn calibrate(args: &Args) -> Result<()> {
     }
     let files = RecordedSkinFiles {
         frames: args.frames.clone(),
+        order: args.order.clone(),
+        grid: args.grid,
         untouched: match &args.untouched {
             Some(path) => UntouchedFrames::File(path.clone()),
             None if args.untouched_frames.is_empty() => UntouchedFrames::None,
@@ -68,8 +76,12 @@ pub fn calibrate(args: &Args) -> Result<()> {
         stroke_mm: args.stroke_mm,
     };
     let skin = files.read()?;
-    let found =
+    let mut found =
         estimated(&skin).map_err(|error| error.under(format!("{}: ", args.frames.display())))?;
+    if args.full_scale.is_none() && found.converter.value().is_some_and(|bits| bits > 0.0) {
+        let why = "the full scale of the converter is not given (--full-scale)";
+        found.converter = Estimate::NotIdentifiable(why.to_owned());
+    }
     let (rows, columns) = skin.shape;
     let mut text = format!(
         "# {}: {} frames of {rows} × {columns} taxels, {} of the untouched skin. Taxels are taken to be {} mm apart.\n",
@@ -92,6 +104,16 @@ pub fn calibrate(args: &Args) -> Result<()> {
             ));
             Ok(())
         }
+    }
+}
+
+/// `ROWS,COLUMNS`.
+fn grid(text: &str) -> std::result::Result<[usize; 2], String> {
+    let sides = text.split_once([',', 'x', '×']);
+    let sides = sides.map(|(rows, columns)| (rows.trim().parse(), columns.trim().parse()));
+    match sides {
+        Some((Ok(rows), Ok(columns))) => Ok([rows, columns]),
+        _ => Err("ROWS,COLUMNS in whole numbers".to_owned()),
     }
 }
 

@@ -15,23 +15,23 @@ use bubbletouch::recognition::statistics::grouped::{
 use bubbletouch::recognition::svm::cross_validation::choice::{Candidates, Chosen};
 use bubbletouch::recognition::svm::kernel::Gamma;
 use bubbletouch::recognition::svm::{Multiclass, Solver};
-use bubbletouch::study::{CONFIDENCE, FeatureSet, read_features, write_integers};
+use bubbletouch::study::{CONFIDENCE, FeatureSet, KeyValue, read_features, write_npy, write_texts};
 use bubbletouch::{Error, Result};
 use ndarray::{Array1, Axis};
 use serde::de::IntoDeserializer;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 #[derive(clap::Args)]
 pub struct Args {
-    /// A folder with features.npy, labels.npy, train.npy and test.npy, as bubbletouch features writes it
+    /// A folder with features, labels, train and test as .npy, .npz or .csv files, as bubbletouch features writes it
     folder: PathBuf,
     /// Which classifier, by its name in studies: linear_svm, rbf_svm, polynomial_svm …
     #[arg(long, value_name = "NAME", value_parser = word::<ClassifierKind>)]
     classifier: ClassifierKind,
-    /// A .npy file of integers, the group of every row of features (poses, grasps, days …): refuses a group that both trains and
+    /// A file of integers or texts, the group of every row of features (poses, grasps, days …): refuses a group that both trains and
     /// tests, keeps groups whole in the folds of --choose-c, and takes the interval of the accuracy from groups, not rows
     #[arg(long, value_name = "FILE")]
     groups: Option<PathBuf>,
@@ -99,6 +99,25 @@ pub struct Args {
     threads: Option<usize>,
 }
 
+/// Writes the values that stand for the predicted classes in the file of labels: integers, or texts.
+fn write_predictions(path: &Path, classes: &[KeyValue], predicted: &Array1<usize>) -> Result<()> {
+    let values = predicted.iter().map(|&class| &classes[class]);
+    let integers = values.clone().map(|value| match value {
+        KeyValue::Integer(number) => Some(*number),
+        KeyValue::Text(_) => None,
+    });
+    match integers.collect::<Option<Vec<i64>>>() {
+        Some(integers) => write_npy(path, &Array1::from(integers)),
+        None => {
+            let texts = values.map(|value| match value {
+                KeyValue::Integer(number) => number.to_string(),
+                KeyValue::Text(text) => text.clone(),
+            });
+            write_texts(path, &texts.collect::<Vec<_>>())
+        }
+    }
+}
+
 /// What is printed: in JSON, one key a field.
 #[derive(Serialize)]
 struct Findings {
@@ -157,7 +176,7 @@ pub fn classify(args: &Args) -> Result<()> {
     };
     let (findings, predicted) = args.train_and_test(&set)?;
     if let Some(path) = &args.predictions {
-        write_integers(path, predicted)?;
+        write_predictions(path, &set.classes, &predicted)?;
     }
     match args.json {
         true => {

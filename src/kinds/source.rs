@@ -72,8 +72,7 @@ impl Source {
         let Some(folder) = &self.objects else {
             return;
         };
-        let files = [&mut recorded.frames, &mut recorded.labels];
-        for file in files.into_iter().chain(&mut recorded.groups) {
+        for file in recorded.files_mut() {
             *file = folder.join(&*file);
         }
     }

@@ -10,11 +10,11 @@
 //! | `objects.csv` | one row an object: number, name |
 //! | `cell.toml` | the settings of the cell and the trial |
 
+use super::arrays::{KeyValue, read_class_labels, read_group_keys, read_matrix, read_rows};
 use super::evaluation::learned_rows;
 use super::frames::{FramePlace, Frames};
 use super::measurement::{Measurements, measure_group};
 use super::npy::{write_integers, write_npy};
-use super::npy_numbers::{read_labels, read_matrix, read_rows, read_whole_numbers};
 use super::progress::Progress;
 use super::spec::RecognitionSpec;
 use super::sweep::{Group, StudyPart, Sweep};
@@ -26,7 +26,7 @@ use crate::recognition::data::split::Split;
 use ndarray::{Array1, Axis};
 use serde::Serialize;
 use std::collections::HashMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Labelled measurements and the rows that one trial trains on and tests.
 #[derive(Clone, Debug)]
@@ -37,6 +37,8 @@ pub struct FeatureSet {
     pub split: Split,
     /// The group of every row, if no group is on both sides of the split.
     pub groups: Option<Array1<usize>>,
+    /// The value in the file of labels that stands for each class.
+    pub classes: Vec<KeyValue>,
 }
 
 #[derive(Serialize)]
@@ -91,7 +93,9 @@ impl StudyPart {
         let touched = read.iter().map(|row| row % labels.len()).chain(copied);
         let touched: Vec<usize> = touched.collect();
         let groups = sweep.group_keys.as_ref();
+        let n_classes = self.touched.classes().len() as i64;
         Ok(FeatureSet {
+            classes: (0..n_classes).map(KeyValue::Integer).collect(),
             groups: groups.map(|groups| groups.select(Axis(0), &touched)),
             data: dataset(
                 measured.features(cell, &rows),
@@ -173,43 +177,58 @@ impl StudyPart {
     }
 }
 
-/// Reads a folder that [`StudyPart::write_features`] or another program wrote; only the four arrays are needed. Features may be of any type of
-/// float, integer or bool; labels and rows of any type of integer, labels of two classes also bool, and rows also a mask: a
-/// bool for each row of features.
+/// Reads a folder that [`StudyPart::write_features`] or another program wrote; only the four arrays are needed, each as `.npy`, `.npz` or `.csv`, or all
+/// in `features.npz`. Features may be of any type of number or bool; labels whole numbers, texts or n × classes of 0 and 1; rows of any type of
+/// integer, or a mask: a bool for each row of features.
 ///
 /// # Errors
 /// A file that is missing, has another number of dimensions or another type of elements than the table above says; a NaN
-/// or infinite feature (named by row and column); labels that are not one a row, or outside `0..n`; training or test rows
+/// or infinite feature (named by row and column); labels that are not one a row, or below 0; training or test rows
 /// that are none, beyond the features, or named twice (in one list or in both).
 pub fn read_features(folder: &Path) -> Result<FeatureSet> {
-    let file = |name: &str| folder.join(name);
-    let path = file("features.npy");
-    let features = read_matrix(&path)?;
+    let file = |name: &str| array_file(folder, name);
+    let features = read_matrix(&file("features"), "features")?;
     let n_rows = features.nrows();
-    let labels = read_labels(&file("labels.npy"), n_rows)?;
+    let labels = read_class_labels(&file("labels"), "labels", n_rows)?;
     let split = Split {
-        train: read_rows(&file("train.npy"), n_rows)?,
-        test: read_rows(&file("test.npy"), n_rows)?,
+        train: read_rows(&file("train"), "train", n_rows)?,
+        test: read_rows(&file("test"), "test", n_rows)?,
     };
     check_split(folder, &split, n_rows)?;
     let features = features.as_standard_layout().into_owned();
-    let data = dataset(features, Array1::from(labels));
+    let data = dataset(features, Array1::from(labels.labels));
     let data = data.map_err(|error| error.under(format!("{}: ", folder.display())))?;
     Ok(FeatureSet {
         data,
         split,
         groups: None,
+        classes: labels.classes,
     })
 }
 
+/// The file of an array in a folder: `.npy`, or else `.npz`, `.csv` or the archive `features.npz`.
+fn array_file(folder: &Path, name: &str) -> PathBuf {
+    let usual = folder.join(format!("{name}.npy"));
+    let others = [
+        format!("{name}.npz"),
+        format!("{name}.csv"),
+        "features.npz".to_owned(),
+    ];
+    let mut others = others.into_iter().map(|other| folder.join(other));
+    match usual.exists() {
+        true => usual,
+        false => others.find(|other| other.exists()).unwrap_or(usual),
+    }
+}
+
 impl FeatureSet {
-    /// The same with the group of every row out of a file: whole numbers from 0 on, of any type of integer.
+    /// The same with the group of every row out of a file: whole numbers from 0 on, of any type of integer, or texts.
     ///
     /// # Errors
     /// No such file, or one of another type; another number of groups than rows; a group with rows on both sides of the split.
     pub fn with_groups(self, path: &Path) -> Result<Self> {
-        let groups = Array1::from(read_whole_numbers(path)?);
         let n_rows = self.data.records.nrows();
+        let groups = Array1::from(read_group_keys(path, "groups", n_rows)?);
         let refused = |given: String, allowed: String| {
             let place = path.display();
             Err(Error::input(place, given, allowed))

@@ -7,6 +7,7 @@
 //! projection is drawn from its own named stream, and sums are taken in a fixed order.
 
 mod array_press;
+mod arrays;
 mod attempt;
 pub mod axes;
 pub(crate) mod axis;
@@ -28,7 +29,6 @@ pub(crate) mod measurement_inputs;
 pub mod memory;
 mod next_touch;
 pub(crate) mod npy;
-mod npy_numbers;
 pub(crate) mod object_files;
 pub(crate) mod packings;
 pub mod pieces;
@@ -71,6 +71,7 @@ mod training;
 mod variance_table;
 
 pub use array_press::{ArrayPress, ArrayWorkspace};
+pub use arrays::KeyValue;
 pub use axis::Axis;
 pub(crate) use check::{Check, not_negative, positive};
 pub(crate) use conditions::column_name;
@@ -79,7 +80,7 @@ pub use evaluation::CONFIDENCE;
 pub use feature_files::{FeatureSet, read_features};
 pub use frames::{FrameFacts, FramePlace, Frames};
 pub use human_touches::{HumanTouches, RecordedTouch, record_touch};
-pub use npy::{write_integers, write_npy};
+pub use npy::{write_integers, write_npy, write_texts};
 pub use object_files::{
     NamedMesh, file_content, load_catalogue, load_mesh, load_named_meshes, load_objects,
     load_spheres, objects_content, read_mesh, read_mesh_file,
@@ -101,5 +102,5 @@ pub(crate) use spec::default_seed;
 pub use spec::*;
 pub(crate) use spec_signal::NOISES;
 pub use sweep::{Group, StudyPart, Sweep};
-pub use touch_files::{ReadFrames, write_touches};
+pub use touch_files::{ReadFrames, write_human_touches, write_touches};
 pub use touch_set::TouchSet;

@@ -1,12 +1,11 @@
 //! NumPy's `.npy` files row by row, for arrays that memory cannot hold: a header, then the elements, the last index fastest.
 //!
-//! Arrays in memory are written and read by ndarray-npy ([`write_npy`], [`npy_numbers`](super::npy_numbers)); it has no header without its array.
+//! Arrays in memory are written by ndarray-npy ([`write_npy`]), which writes no header without its array; [`arrays`](super::arrays) reads files of others.
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::files::{WholeFile, write_whole};
 use ndarray::Array1;
 use ndarray_npy::WriteNpyExt;
-use std::fs::File;
 use std::io::{self, Read, Write};
 use std::path::Path;
 
@@ -43,24 +42,6 @@ pub(crate) fn read_npy_header(reader: &mut impl Read) -> io::Result<(String, usi
     reader.read_exact(&mut text)?;
     let n_bytes = start.len() + text.len();
     Ok((String::from_utf8_lossy(&text).trim().to_owned(), n_bytes))
-}
-
-/// The lengths of an array in a file, of any elements.
-///
-/// # Errors
-/// No such file; no `.npy` file of version 1, which NumPy writes for all arrays of numbers.
-pub(crate) fn npy_shape(path: &Path) -> Result<Vec<usize>> {
-    let refuse = |given: String| Error::input(path.display(), given, "a .npy file of numbers");
-    let file = File::open(path).map_err(|error| refuse(format!("cannot be read ({error})")))?;
-    let header = read_npy_header(&mut io::BufReader::new(file));
-    let (text, _) = header.map_err(|error| refuse(error.to_string()))?;
-    let lengths = text.split_once("'shape':").and_then(|(_, rest)| {
-        let (lengths, _) = rest.trim_start().strip_prefix('(')?.split_once(')')?;
-        let lengths = lengths.split(',').map(str::trim);
-        let lengths = lengths.filter(|length| !length.is_empty());
-        lengths.map(|length| length.parse().ok()).collect()
-    });
-    lengths.ok_or_else(|| refuse(format!("the header {text}")))
 }
 
 /// The error is a header whose text says something else than these elements and this shape; writers differ in commas and spaces.
@@ -127,6 +108,21 @@ pub fn write_npy(path: &Path, array: &impl WriteNpyExt) -> Result<()> {
 pub fn write_integers(path: &Path, numbers: impl IntoIterator<Item = usize>) -> Result<()> {
     let numbers = numbers.into_iter().map(|number| number as i64);
     write_npy(path, &Array1::from_iter(numbers))
+}
+
+/// Writes texts as a whole `.npy` file of NumPy's type U.
+///
+/// # Errors
+/// A file that cannot be written.
+pub fn write_texts(path: &Path, texts: &[String]) -> Result<()> {
+    let lengths = texts.iter().map(|text| text.chars().count());
+    let n = lengths.max().unwrap_or(0).max(1);
+    let mut file = NpyFile::create(path, &format!("<U{n}"), &[texts.len()])?;
+    for text in texts {
+        let letters = text.chars().chain(std::iter::repeat('\0')).take(n);
+        file.push(letters.map(|letter| u32::from(letter).to_le_bytes()))?;
+    }
+    file.commit()
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@
 use super::axes::AxisValues;
 use super::check::Check;
 use super::pose_groups::KeepTogether;
-use super::spec::{SpreadSpec, StudySpec, TouchesSpec};
+use super::spec::{RecordedSpec, SpreadSpec, StudySpec, TouchesSpec};
 use super::taxel_array::TaxelArray;
 use crate::error::Result;
 use crate::sensing::Ensemble;
@@ -55,6 +55,9 @@ impl Plan {
         check.count("trials", spec.trials, MOST_TRIALS)?;
         check.layout(&spec)?;
         check.shear(&spec)?;
+        if let Some(recorded) = &mut spec.recorded {
+            recorded.settle_values(&spec.skin);
+        }
         let arrays = match &spec.recorded {
             Some(recorded) => check.recorded(recorded, &spec)?,
             None => check.touching_arrays(&spec.skin, &spec.touches)?,
@@ -72,13 +75,20 @@ impl Plan {
             }
         };
         let (noise_unit, _) = check.noise(&spec.signal, spec.skin.sensed)?;
-        check.sensor_errors(&spec.signal, &spec.touches)?;
+        let of_recorded = spec.recorded.as_ref().map(RecordedSpec::as_touches);
+        let touches = of_recorded.transpose()?;
+        let touches = touches.as_ref().unwrap_or(&spec.touches);
+        check.sensor_errors(&spec.signal, touches)?;
+        let speed = match &spec.recorded {
+            Some(recorded) => recorded.speed_mm_per_s * MM,
+            None => spec.touches.speed_mm_per_s * MM,
+        };
         check.steps(&spec.signal)?;
         check.tested_on(&spec.signal)?;
         check.sensing(&spec.sensing, &arrays)?;
         let frames = match (&spec.human_touch, &spec.recorded) {
             (Some(human), _) => vec![human.n_frames()],
-            (_, Some(recorded)) => vec![recorded.shape()?[1]],
+            (_, Some(_)) => touches.frames.values(),
             _ => spec.touches.frames.values(),
         };
         check.recognition(&spec.recognition)?;
@@ -89,7 +99,7 @@ impl Plan {
         check.folds(&spec)?;
         check.repeats(&spec)?;
         let plan = Self {
-            speed: spec.touches.speed_mm_per_s * MM,
+            speed,
             keep_together: spec.recognition.kept_together(),
             arrays,
             placement,

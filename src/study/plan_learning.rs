@@ -77,7 +77,11 @@ impl Check<'_> {
         let of_rows = ensembles.find(|ensemble| ensemble.about().needs_rows);
         let no_rows = arrays.iter().find(|array| array.sides().is_none());
         if let (Some(ensemble), Some(array)) = (of_rows, no_rows) {
-            let given = format!("{} of a {}", ensemble.about().words, array.layout().words());
+            let layout = match array.is_placed() {
+                true => format!("a {}", array.layout().words()),
+                false => "taxels without a layout".to_owned(),
+            };
+            let given = format!("{} of {layout}", ensemble.about().words);
             let allowed = "ensembles that need no rows and columns";
             return Err(self.error("sensing.ensemble", given, allowed));
         }
@@ -159,6 +163,12 @@ impl Check<'_> {
                 }
             };
         };
+        if arrays.iter().any(|array| !array.is_placed()) {
+            let given = format!("{} of taxels without a layout", String::from(features));
+            let allowed = "features of measurements (raw, centred, unit_norm, centred_unit_norm): \
+                           those of images need rows and columns (recorded.grid or recorded.order names them)";
+            return Err(self.error("recognition.features", given, allowed));
+        }
         match arrays.iter().find(|array| array.sensed().n_channels() > 1) {
             None => Ok(()),
             Some(_) => {

@@ -1,36 +1,41 @@
 //! Recorded frames: the checks of `[recorded]`, and the array that read them.
 
-use super::check::Check;
-use super::npy::npy_shape;
-use super::plan::{MM, MOST_FRAMES};
-use super::plan_scene::MOST_SIDE;
-use super::spec::{ObjectsSpec, RecordedSpec, SkinSpec, StudySpec, TouchesSpec};
+use super::axis::Axis;
+use super::check::{Check, not_negative, positive};
+use super::plan::MM;
+use super::spec::{
+    ObjectsSpec, RecordedSpec, SensedSpec, SkinSpec, StepSpec, StudySpec, TouchesSpec,
+};
 use super::taxel_array::TaxelArray;
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::signal::SensorError;
 use crate::world::{ArrayLayout, Grid};
+use glam::DVec2;
+
+/// Sensor errors of taxels beside each other, or of rows and columns.
+const NEED_PLACES: [SensorError; 2] = [SensorError::Crosstalk, SensorError::MatrixReadout];
 
 impl RecordedSpec {
-    /// n, F, rows and columns of the frames.
+    /// Notes how many values a taxel of the skin reads.
+    pub(super) fn settle_values(&mut self, skin: &SkinSpec) {
+        self.n_values = match skin.sensed.unwrap_or_default() {
+            SensedSpec::Shear => 3,
+            SensedSpec::Deflection | SensedSpec::Force => 1,
+        };
+    }
+
+    /// How touches are read that are recorded, as a study of pressed objects says it: their frames, and whether time goes on between them.
     ///
     /// # Errors
-    /// No such file; one of another number of dimensions, or without frames.
-    pub fn shape(&self) -> Result<[usize; 4]> {
-        let given = npy_shape(&self.frames)?;
-        let shape = match given[..] {
-            [n, rows, columns] => [n, 1, rows, columns],
-            [n, frames, rows, columns] => [n, frames, rows, columns],
-            _ => [0; 4],
-        };
-        let [n, frames, rows, columns] = shape;
-        let is_array = |side| (1..=MOST_SIDE).contains(&side);
-        if n > 0 && (1..=MOST_FRAMES).contains(&frames) && is_array(rows) && is_array(columns) {
-            return Ok(shape);
-        }
-        let allowed = format!(
-            "n × rows × columns or n × F × rows × columns, 1 to {MOST_FRAMES} frames of 1 to {MOST_SIDE} rows and columns"
-        );
-        let given = format!("an array of shape {given:?}");
-        Err(crate::Error::input(self.frames.display(), given, allowed))
+    /// Those of [`shape_of`](Self::shape_of).
+    pub(super) fn as_touches(&self) -> Result<TouchesSpec> {
+        let moves =
+            self.frame_interval_s.is_some() || self.speed_mm_per_s > 0.0 && self.depths.is_some();
+        Ok(TouchesSpec {
+            frames: Axis::One(self.shape_of("frames")?.n_frames),
+            speed_mm_per_s: if moves { 1.0 } else { 0.0 },
+            ..TouchesSpec::default()
+        })
     }
 }
 
@@ -64,20 +69,102 @@ impl Check<'_> {
             let allowed = format!("a number above recorded.zero, {}", recorded.zero);
             return Err(self.error("recorded.full_scale", full_scale, allowed));
         }
-        Ok(vec![self.array_of(recorded, &spec.skin)?])
+        self.of_time(recorded, spec)?;
+        let place = |error: Error| error.under(format!("{}, ", self.place));
+        recorded.check_files().map_err(place)?;
+        if recorded.has_test_set() {
+            let recognition = &spec.recognition;
+            let given = [
+                ("recognition.folds", recognition.folds.is_some()),
+                (
+                    "recognition.test_fraction",
+                    recognition.test_fraction.is_some(),
+                ),
+            ];
+            if let Some((key, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
+                let allowed = "no such key: recorded.frames_test is the test set";
+                return Err(self.error(key, "given", allowed));
+            }
+        }
+        let array = self.array_of(recorded, &spec.skin)?;
+        if !array.is_placed() {
+            let needs_places = |step: &&StepSpec| match step {
+                StepSpec::Smoothing => true,
+                StepSpec::Error(error) => NEED_PLACES.contains(error),
+                StepSpec::Force | StepSpec::Noise => false,
+            };
+            if let Some(step) = spec.signal.steps.iter().find(needs_places) {
+                let given = format!("\"{}\" of taxels without a layout", step.word());
+                let allowed = "steps of each taxel by itself (recorded.grid or recorded.order names rows and columns)";
+                return Err(self.error("signal.steps", given, allowed));
+            }
+        }
+        Ok(vec![array])
+    }
+
+    /// Speeds and times between frames.
+    fn of_time(&self, recorded: &RecordedSpec, spec: &StudySpec) -> Result<()> {
+        self.value(
+            "recorded.speed_mm_per_s",
+            recorded.speed_mm_per_s,
+            not_negative,
+            "a number of mm/s, zero or more",
+        )?;
+        if spec.skin.damping_n_s_per_m == 0.0
+            && recorded.speed_mm_per_s > 0.0
+            && recorded.depths.is_none()
+        {
+            let allowed = "recorded.depths beside it (its time between frames), or a damper (skin.damping_n_s_per_m)";
+            return Err(self.error("recorded.speed_mm_per_s", recorded.speed_mm_per_s, allowed));
+        }
+        if recorded.speed_mm_per_s > 0.0 && recorded.n_values > 1 {
+            let allowed = "0 where skin.sensed is shear";
+            return Err(self.error("recorded.speed_mm_per_s", recorded.speed_mm_per_s, allowed));
+        }
+        let Some(interval) = recorded.frame_interval_s else {
+            return Ok(());
+        };
+        self.value(
+            "recorded.frame_interval_s",
+            interval,
+            positive,
+            "a positive number of seconds",
+        )?;
+        match recorded.speed_mm_per_s > 0.0 && recorded.depths.is_some() {
+            true => {
+                let allowed = "no such key: recorded.depths and recorded.speed_mm_per_s say how much time goes on between frames";
+                Err(self.error("recorded.frame_interval_s", interval, allowed))
+            }
+            false => Ok(()),
+        }
     }
 
     fn array_of(&self, recorded: &RecordedSpec, skin: &SkinSpec) -> Result<TaxelArray> {
         self.table("skin", skin)?;
+        let shape = recorded.shape_of("frames")?;
+        if skin.layout.unwrap_or_default() != ArrayLayout::Grid {
+            let mut arrays = self.touching_arrays(skin, &TouchesSpec::default())?;
+            let n_taxels = shape.rows * shape.columns;
+            let (Some(array), 0) = (arrays.pop(), arrays.len()) else {
+                return Err(self.error(
+                    "skin",
+                    "several arrays",
+                    "one, of the skin that read the frames",
+                ));
+            };
+            if array.n_taxels() != n_taxels {
+                let given = format!("{} taxels", array.n_taxels());
+                let allowed = format!("{n_taxels}, as {} has", recorded.frames.display());
+                return Err(self.error("skin.layout", given, allowed));
+            }
+            return Ok(array);
+        }
         let given = [
             ("skin.taxels", skin.taxels.is_some()),
             ("skin.size_mm", skin.size_mm.is_some()),
-            ("skin.layout", skin.layout.is_some()),
-            ("skin.sensed", skin.sensed.is_some()),
-            ("skin.friction", skin.friction.is_some()),
         ];
         if let Some((key, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
-            let allowed = "no such key: recorded frames are grids that read one number a taxel";
+            let allowed = "no such key: rows and columns are those of the recorded frames";
             return Err(self.error(key, "given", allowed));
         }
         let pitches = skin.pitch_mm.values();
@@ -85,15 +172,19 @@ impl Check<'_> {
             let given = format!("{} pitches", pitches.len());
             return Err(self.error("skin.pitch_mm", given, "one, of the skin that read them"));
         };
-        let [_, _, rows, columns] = recorded.shape()?;
         let grid = Grid {
-            nx: columns,
-            ny: rows,
+            nx: shape.columns,
+            ny: shape.rows,
             pitch: pitch_mm * MM,
         };
         let taxel = skin.taxel(pitch_mm);
         grid.check()?;
         taxel.check()?;
-        TaxelArray::new(ArrayLayout::Grid, (grid, taxel), 0.0)
+        let array = TaxelArray::new(ArrayLayout::Grid, (grid, taxel), 0.0)?;
+        let array = array.reading(skin.sensed(), DVec2::ZERO)?;
+        Ok(match shape.has_grid {
+            true => array,
+            false => array.without_places(),
+        })
     }
 }

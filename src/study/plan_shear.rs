@@ -59,20 +59,27 @@ impl Check<'_> {
         skin: &SkinSpec,
         touches: &TouchesSpec,
     ) -> Result<Vec<TaxelArray>> {
-        let sensed = match skin.sensed.unwrap_or_default() {
-            SensedSpec::Deflection => Sensed::Deflection,
-            SensedSpec::Force => Sensed::Force,
-            SensedSpec::Shear => Sensed::Shear(Shear {
-                stiffness: skin
-                    .shear_stiffness_n_per_m
-                    .unwrap_or(skin.stiffness_n_per_m),
-                friction: skin.friction.unwrap_or(0.0),
-            }),
-        };
+        let sensed = skin.sensed();
         let length = touches.slide_mm.unwrap_or(0.0) * MM;
         let direction = touches.slide_deg.unwrap_or(0.0).to_radians();
         let slide = length * DVec2::from_angle(direction);
         let arrays = self.arrays(skin)?.into_iter();
         arrays.map(|array| array.reading(sensed, slide)).collect()
+    }
+}
+
+impl SkinSpec {
+    /// What its taxels read.
+    pub(super) fn sensed(&self) -> Sensed {
+        match self.sensed.unwrap_or_default() {
+            SensedSpec::Deflection => Sensed::Deflection,
+            SensedSpec::Force => Sensed::Force,
+            SensedSpec::Shear => Sensed::Shear(Shear {
+                stiffness: self
+                    .shear_stiffness_n_per_m
+                    .unwrap_or(self.stiffness_n_per_m),
+                friction: self.friction.unwrap_or(0.0),
+            }),
+        }
     }
 }

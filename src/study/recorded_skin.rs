@@ -1,6 +1,6 @@
 //! Recorded frames of a skin and what is known of them, for calibration.
 
-use super::npy_numbers::read_frames;
+use super::arrays::{ElementKind, FileArray};
 use super::spec::RecordedSpec;
 use crate::calibration::RecordedSkin;
 use crate::error::{Error, Result};
@@ -24,6 +24,10 @@ pub enum UntouchedFrames {
 pub struct RecordedSkinFiles {
     /// n × rows × columns, or n × F × rows × columns, in the order of time.
     pub frames: PathBuf,
+    /// A letter for each axis of the frames, as in `[recorded]`.
+    pub order: Option<String>,
+    /// Rows and columns of the axis `c`.
+    pub grid: Option<[usize; 2]>,
     /// Those of the untouched skin.
     pub untouched: UntouchedFrames,
     /// n: newtons that press the skin as a whole in each frame.
@@ -42,7 +46,7 @@ impl RecordedSkinFiles {
     /// # Errors
     /// A file that cannot be read or does not fit the others; ranges that are not among the frames; a full scale that is not above the zero.
     pub fn read(&self) -> Result<RecordedSkin> {
-        let (frames, shape) = frames_of(&self.frames)?;
+        let (frames, shape) = self.frames_of(&self.frames)?;
         let n = frames.nrows();
         let times = Array1::linspace(0.0, 1.0, n);
         let forces = self
@@ -54,7 +58,7 @@ impl RecordedSkinFiles {
         let (untouched, untouched_times, touched) = match &self.untouched {
             UntouchedFrames::None => (Array2::zeros((0, frames.ncols())), Array1::zeros(0), all),
             UntouchedFrames::File(path) => {
-                let (untouched, other) = frames_of(path)?;
+                let (untouched, other) = self.frames_of(path)?;
                 if other != shape {
                     let given = format!("frames of {} × {} taxels", other.0, other.1);
                     let allowed =
@@ -96,26 +100,38 @@ impl RecordedSkinFiles {
     }
 }
 
-/// Frames one a row, and rows and columns of each.
-fn frames_of(path: &Path) -> Result<(Array2<f64>, (usize, usize))> {
-    let spec = RecordedSpec {
-        frames: path.to_owned(),
-        labels: PathBuf::new(),
-        groups: None,
-        names: None,
-        zero: 0.0,
-        full_scale: None,
-    };
-    let [n, n_frames, rows, columns] = spec.shape()?;
-    let frames = read_frames(path, (n * n_frames, rows * columns))?;
-    Ok((frames, (rows, columns)))
+impl RecordedSkinFiles {
+    /// Frames one a row, and rows and columns of each.
+    fn frames_of(&self, path: &Path) -> Result<(Array2<f64>, (usize, usize))> {
+        let spec = RecordedSpec::of_frames(path, self.order.as_deref(), self.grid);
+        let shape = spec.shape_of("frames")?;
+        if !shape.has_grid {
+            let given = format!("{} taxels without rows and columns", shape.columns);
+            let allowed = "frames of a grid of taxels (--grid ROWS,COLUMNS or --order names them)";
+            return Err(Error::input(path.display(), given, allowed));
+        }
+        let readings = FileArray::read(path, "frames")?.into_numbers()?;
+        Ok((shape.arrange(readings), (shape.rows, shape.columns)))
+    }
 }
 
 /// One number a frame.
 fn numbers_of(path: &Path, n: usize) -> Result<Array1<f64>> {
-    let numbers = read_frames(path, (n, 1))?.index_axis_move(Axis(1), 0);
+    let array = FileArray::read(path, "forces")?;
+    if array.kind == ElementKind::Text {
+        return Err(Error::input(path.display(), "texts", "finite numbers"));
+    }
+    let numbers = array.into_numbers()?;
+    if numbers.len() != n {
+        let given = format!("{} numbers", numbers.len());
+        return Err(Error::input(
+            path.display(),
+            given,
+            format!("{n}, one for each frame"),
+        ));
+    }
     match numbers.iter().find(|number| !number.is_finite()) {
         Some(number) => Err(Error::input(path.display(), number, "finite numbers")),
-        None => Ok(numbers),
+        None => Ok(numbers.into_iter().collect()),
     }
 }

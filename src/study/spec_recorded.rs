@@ -1,19 +1,39 @@
 //! Recorded frames as they are written: `[recorded]`, in place of `[objects]` and `[touches]`.
 
+use super::arrays::{FileArray, FrameAxes, FrameShape, frame_shape, is_member};
+use crate::error::{Error, Result};
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-/// `[recorded]`: what a skin has read, in NumPy's files. `[skin]` says how far apart its taxels are and what their full scale is.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// `[recorded]`: what a skin has read, in files of NumPy (`.npy`, `.npz`) or tables (`.csv`). `[skin]` says how far apart its taxels are and what their
+/// full scale is.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RecordedSpec {
-    /// n × rows × columns, or n × F × rows × columns of touches of F frames; any type of float or integer of up to 32 bits. Rows and columns are
-    /// those of the array.
+    /// n × rows × columns, n × F × rows × columns of touches of F frames, or n × taxels of a skin without rows and columns; any type of number of up to
+    /// 64 bits. The other files may be left out where this is an archive that contains their arrays.
     pub frames: PathBuf,
-    /// n: the class of every touch, 0, 1 … .
+    /// n: the class of every touch: whole numbers, texts, or n × classes of 0 and 1.
+    #[serde(default, skip_serializing_if = "is_empty")]
     pub labels: PathBuf,
-    /// n: touches that share a number are never on both sides of a split, those of a grasp or of a day, say.
+    /// n: touches that share a number or a text are never on both sides of a split, those of a grasp or of a day, say.
     pub groups: Option<PathBuf>,
+    /// A letter for each axis of the frames: n touches, t frames of a touch, y rows, x columns, c values of a taxel, or taxels without rows and
+    /// columns; `n y x`, `n t y x` or `n c` when left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub order: Option<String>,
+    /// Rows and columns of the axis `c`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub grid: Option<[usize; 2]>,
+    /// Frames of the given test set, with the axes of `frames`; all touches of `frames` then train.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub frames_test: Option<PathBuf>,
+    /// Their classes, as in `labels`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub labels_test: Option<PathBuf>,
+    /// Their groups, from which the interval of an accuracy comes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub groups_test: Option<PathBuf>,
     /// What the classes are called, by their labels.
     pub names: Option<Vec<String>>,
     /// The reading of a taxel that nothing touches; 0 when left out.
@@ -21,4 +41,153 @@ pub struct RecordedSpec {
     pub zero: f64,
     /// The reading of a taxel at its full scale, which is its stroke; the largest of the frames when left out.
     pub full_scale: Option<f64>,
+    /// n: how far each touch was pressed, metres; with `speed_mm_per_s` this is the time between its frames.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub depths: Option<PathBuf>,
+    /// Approach speed at the moment of reading, mm/s: what the damper feels.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub speed_mm_per_s: f64,
+    /// Seconds between the frames of a touch, for sensor errors that take time; instead of `speed_mm_per_s`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub frame_interval_s: Option<f64>,
+    /// Which touch came before each, for sensor errors that remember it.
+    #[serde(default, skip_serializing_if = "is_usual")]
+    pub previous_touch: PreviousTouch,
+    /// Values of a taxel: a plan knows what its skin reads. 0: one.
+    #[serde(skip)]
+    pub n_values: usize,
+}
+
+/// What a skin that remembers was touched by before each touch.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PreviousTouch {
+    /// Another touch of the study that is drawn at random in each trial, as in studies of pressed objects.
+    #[default]
+    Random,
+    /// None.
+    None,
+}
+
+#[expect(clippy::ptr_arg, reason = "serde hands over the field")]
+fn is_empty(path: &PathBuf) -> bool {
+    path.as_os_str().is_empty()
+}
+
+#[expect(
+    clippy::trivially_copy_pass_by_ref,
+    reason = "serde hands over the field"
+)]
+fn is_zero(number: &f64) -> bool {
+    *number == 0.0
+}
+
+#[expect(
+    clippy::trivially_copy_pass_by_ref,
+    reason = "serde hands over the field"
+)]
+fn is_usual(touch: &PreviousTouch) -> bool {
+    *touch == PreviousTouch::default()
+}
+
+impl RecordedSpec {
+    /// Returns frames without labels, for what reads frames alone.
+    pub fn of_frames(frames: &Path, order: Option<&str>, grid: Option<[usize; 2]>) -> Self {
+        Self {
+            frames: frames.to_owned(),
+            order: order.map(str::to_owned),
+            grid,
+            ..Self::default()
+        }
+    }
+
+    /// All files that are named, to be found in another folder.
+    pub fn files_mut(&mut self) -> impl Iterator<Item = &mut PathBuf> {
+        let labels = Some(&mut self.labels).filter(|path| !is_empty(path));
+        let files = [Some(&mut self.frames), labels].into_iter().flatten();
+        let others = [
+            &mut self.groups,
+            &mut self.frames_test,
+            &mut self.labels_test,
+            &mut self.groups_test,
+            &mut self.depths,
+        ];
+        files.chain(others.into_iter().flatten())
+    }
+
+    /// All files that are read.
+    pub fn files(&self) -> Vec<&Path> {
+        let labels = Some(self.labels.as_path()).filter(|path| !path.as_os_str().is_empty());
+        let others = [
+            &self.groups,
+            &self.frames_test,
+            &self.labels_test,
+            &self.groups_test,
+            &self.depths,
+        ];
+        let others = others.into_iter().flatten().map(PathBuf::as_path);
+        let files = [Some(self.frames.as_path()), labels].into_iter().flatten();
+        files.chain(others).collect()
+    }
+
+    /// The file of the array `name`: the one that is given, or the archive of the frames if it contains the array.
+    pub fn file_of(&self, name: &str) -> Option<&Path> {
+        let given = match name {
+            "frames" => Some(self.frames.as_path()),
+            "labels" => Some(self.labels.as_path()).filter(|path| !path.as_os_str().is_empty()),
+            "groups" => self.groups.as_deref(),
+            "frames_test" => self.frames_test.as_deref(),
+            "labels_test" => self.labels_test.as_deref(),
+            "groups_test" => self.groups_test.as_deref(),
+            _ => self.depths.as_deref(),
+        };
+        given.or_else(|| Some(self.frames.as_path()).filter(|path| is_member(path, name)))
+    }
+
+    /// Whether some touches are the test set.
+    pub fn has_test_set(&self) -> bool {
+        self.file_of("frames_test").is_some()
+    }
+
+    /// The axes of `frames` or `frames_test`.
+    ///
+    /// # Errors
+    /// If there is no such file, or its axes are not those of frames.
+    pub fn shape_of(&self, name: &str) -> Result<FrameShape> {
+        let path = self.file_of(name).unwrap_or(&self.frames);
+        let shape = FileArray::shape_of(path, name)?;
+        let axes = FrameAxes {
+            order: self.order.as_deref(),
+            grid: self.grid,
+            n_values: self.n_values.max(1),
+            key: "recorded.order",
+        };
+        frame_shape(&path.display().to_string(), &shape, axes)
+    }
+
+    /// Refuses what is missing or stands alone.
+    ///
+    /// # Errors
+    /// No labels; a test set without labels or frames.
+    pub fn check_files(&self) -> Result<()> {
+        if self.file_of("labels").is_none() {
+            let allowed = "labels = \"FILE\", the class of every touch (or an array `labels` in the archive of the frames)";
+            return Err(Error::input("key recorded.labels", "no such key", allowed));
+        }
+        let has = |name| self.file_of(name).is_some();
+        let (frames, labels) = (has("frames_test"), has("labels_test"));
+        match (frames, labels, has("groups_test")) {
+            (true, false, _) => Err(Error::input(
+                "key recorded.labels_test",
+                "no such key beside frames_test",
+                "the class of every touch of the test set",
+            )),
+            (false, true, _) | (false, _, true) => Err(Error::input(
+                "key recorded.frames_test",
+                "no such key beside labels_test or groups_test",
+                "the frames of the test set",
+            )),
+            _ => Ok(()),
+        }
+    }
 }

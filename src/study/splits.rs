@@ -6,20 +6,21 @@ use super::pose_splits::PoseSplit;
 use crate::error::{Error, Result};
 use crate::random::Seed;
 use crate::recognition::data::split::{
-    Split, given_hold_out, group_hold_out, group_k_fold, stratified_hold_out, stratified_k_fold,
+    Side, Split, given_hold_out, group_hold_out, group_k_fold, stratified_hold_out,
+    stratified_k_fold,
 };
 use crate::world::Touch;
 use ndarray::Array1;
 use std::collections::{HashMap, HashSet};
 
-/// The split of all touches in a trial: of those that are placed, by their poses, or by groups (`keys`), or of each alone.
+/// The split of all touches in a trial: the one that is given, or of those that are placed, by their poses, or by groups (`keys`), or of each alone.
 ///
 /// # Errors
 /// A pose that is drawn where the split goes by values, or a class that is left without training or test rows.
 pub fn draw_split(
     plan: &Plan,
     labels: &Array1<usize>,
-    (poses, keys): (&[&Touch], Option<&Array1<usize>>),
+    (poses, keys, given_sides): (&[&Touch], Option<&Array1<usize>>, Option<&[Side]>),
     trial: usize,
 ) -> Result<Split> {
     let trial = plan.spec.split_of(trial);
@@ -28,6 +29,11 @@ pub fn draw_split(
     let fraction = recognition.test_share();
     let n_folds = recognition.folds.unwrap_or(1);
     let seed = Seed::new(plan.spec.seed).named("split");
+    if let Some(sides) = given_sides {
+        // All trials have the one split that is given; fewer training touches are drawn anew in each.
+        let drawn = recognition.train_touches.as_ref().map_or(0, |_| trial);
+        return given_hold_out(labels, sides, &seed.numbered(drawn as u64));
+    }
     if recognition.split != PoseSplit::Random {
         let sides = recognition.split.sides(poses, trial)?;
         return given_hold_out(labels, &sides, &seed.numbered(trial as u64));

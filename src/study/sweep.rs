@@ -173,7 +173,10 @@ impl Sweep {
         let together = plan.keep_together.as_ref();
         let keys = together.map(|together| touched.group_keys(together));
         let keys = keys.transpose()?.or_else(|| touched.own_groups());
-        let split = |trial| draw_split(plan, &labels, (&poses, keys.as_ref()), trial);
+        let split = |trial| {
+            let of = (&poses[..], keys.as_ref(), touched.given_sides());
+            draw_split(plan, &labels, of, trial)
+        };
         let splits = (0..plan.spec.trials).map(split);
         let splits = splits.collect::<Result<Vec<_>>>()?;
         let train_touches = train_touches(plan, &splits, &labels)?;

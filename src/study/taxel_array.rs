@@ -23,6 +23,8 @@ pub struct TaxelArray {
     radius: f64,
     sensed: Sensed,
     slide: DVec2,
+    /// Whether it is known where its taxels are; otherwise the grid is a row of them.
+    is_placed: bool,
     patch: Arc<Patch>,
 }
 
@@ -46,6 +48,7 @@ impl TaxelArray {
             radius: if layout.is_curved() { radius } else { 0.0 },
             sensed: Sensed::Deflection,
             slide: DVec2::ZERO,
+            is_placed: true,
             patch: Arc::new(patch),
         })
     }
@@ -60,6 +63,17 @@ impl TaxelArray {
         }
         (self.sensed, self.slide) = (sensed, slide);
         Ok(self)
+    }
+
+    /// The same of taxels of which nothing says where they are.
+    pub fn without_places(mut self) -> Self {
+        self.is_placed = false;
+        self
+    }
+
+    /// Whether it is known where its taxels are.
+    pub fn is_placed(&self) -> bool {
+        self.is_placed
     }
 
     /// Its taxels.
@@ -149,7 +163,7 @@ impl TaxelArray {
 
     /// Rows and columns; `None` where a layout has none.
     pub fn sides(&self) -> Option<(usize, usize)> {
-        self.layout.sides(&self.grid)
+        self.layout.sides(&self.grid).filter(|_| self.is_placed)
     }
 
     /// Rows and columns; one row of all taxels where a layout has none.
@@ -185,6 +199,7 @@ impl TaxelArray {
         };
         let count = format!("{count}{taxels} at {} mm", millimetres(self.pitch()));
         match self.layout {
+            _ if !self.is_placed => format!("{}{taxels} without a layout", self.n_taxels()),
             ArrayLayout::Grid => count,
             other => format!("{count}, {}", other.words()),
         }
@@ -232,11 +247,13 @@ impl fmt::Debug for TaxelArray {
             radius,
             sensed,
             slide,
+            is_placed,
             patch: _,
         } = self;
+        let places = if *is_placed { "" } else { " without places" };
         write!(
             f,
-            "{grid:?} {taxel:?} {layout:?} {radius} {sensed:?} {slide}"
+            "{grid:?} {taxel:?} {layout:?} {radius} {sensed:?} {slide}{places}"
         )
     }
 }

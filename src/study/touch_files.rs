@@ -2,30 +2,37 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `frames.npy` | n × ny × nx (1 × n_taxels of layouts without rows), f32, metres of deflection, without noise; or as a cell reads them; with `skin.sensed = "shear"` n × 3 × ny × nx, the second and third in newtons |
+//! | `frames.npy` | n × ny × nx (1 × n_taxels of layouts without rows), f32, metres of deflection, without noise; or as a cell reads them; of touches of F frames n × F × ny × nx; with `skin.sensed = "shear"` 3 × ny × nx a frame, the second and third in newtons |
 //! | `labels.npy` | n, i64: the object's number |
 //! | `poses.npy` | n × 7, f64: the object in the patch frame when it is read: x, y, z in metres, quaternion x, y, z, w |
 //! | `depths.npy` | n, f64: metres past first contact |
 //! | `taxels.npy` | n_taxels × 6, f64, of layouts that are no grid: rest centres (metres) and axes in the patch frame |
 //! | `touches.csv` | one row a touch: object, resting pose, offset, yaw, tilts, depth, taxels touched and saturated |
+//! | `recorded.toml` | `[recorded]` and `[skin]` of a study that learns from these files what the study of the touches learns; not of frames as a cell reads them |
 //! | `objects.csv` | one row an object: number, name, spheres (0 of a mesh), touches |
 //!
 //! Deflections are what the press gives: no noise, no smoothing, none of the sensor errors of `[signal]`. Frames as a cell reads them
 //! ([`ReadFrames`]) have all of these, in metres or, with the step `force`, in newtons; only `frames.npy` differs.
 
 use super::array_press::{ArrayPress, ArrayWorkspace};
+use super::axis::Axis;
 use super::feature_files::find;
-use super::npy::NpyFile;
+use super::frames::FramePlace;
+use super::human_touches::HumanTouches;
+use super::npy::{NpyFile, write_integers};
+use super::plan::{Plan, millimetres};
 use super::progress::Progress;
 use super::simulation::touch_stream;
+use super::spec::{HumanTouchSpec, PreviousTouch, RecordedSpec, SkinSpec};
 use super::sweep::{Group, StudyPart};
 use super::taxel_array::TaxelArray;
+use super::touch_set::TouchSet;
 use crate::error::Result;
-use crate::files::CsvFile;
+use crate::files::{CsvFile, write_bytes};
 use crate::objects::Object;
 use crate::random::Seed;
 use crate::sensing::Ensemble;
-use crate::world::{ArrayLayout, Placement, RestPose, Touch, TouchSource};
+use crate::world::{ArrayLayout, RestPose, Touch, TouchSource};
 use ndarray::Array2;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -61,7 +68,8 @@ struct ObjectRow<'a> {
 /// One touch as it goes into the files.
 struct Reading<'a> {
     row: TouchRow<'a>,
-    frame: Vec<f32>,
+    /// Its F frames, one after the other.
+    frames: Vec<f32>,
     /// Translation and quaternion.
     pose: [f64; 7],
     /// Metres past first contact.
@@ -109,19 +117,21 @@ impl ReadFrames {
     }
 }
 
-/// Simulates all touches of an array, drawn a block at a time, and writes them into a folder that exists, with frames as they were `read`
-/// if these are given; returns how many.
+/// Simulates all touches of an array, F frames each, drawn a block at a time, and writes them into a folder that exists, with the deepest frames as
+/// they were `read` if these are given; returns how many.
 ///
 /// # Errors
 /// What [`TouchSource::new`] refuses; a file that cannot be written.
 pub fn write_touches(
     folder: &Path,
     objects: &[Object],
-    (placement, seed): (&Placement, &Seed),
-    array: &TaxelArray,
+    plan: &Plan,
+    (array, n_frames): (&TaxelArray, usize),
     read: Option<&ReadFrames>,
     progress: &dyn Progress,
 ) -> Result<usize> {
+    let (placement, seed) = (&plan.placement, &Seed::new(plan.spec.seed));
+    let n_frames = if read.is_some() { 1 } else { n_frames };
     let rests = objects.par_iter();
     let rests: Vec<_> = rests.map(|o| placement.rest.of(&o.model)).collect();
     let sources = objects.iter().zip(&rests);
@@ -134,15 +144,7 @@ pub fn write_touches(
         let shape = [&[n_touches], shape].concat();
         NpyFile::create(&folder.join(name), descr, &shape)
     };
-    let (ny, nx) = array.shape();
-    let n_channels = array.sensed().n_channels();
-    let shape = [n_channels, ny, nx];
-    let shape = if n_channels > 1 {
-        &shape[..]
-    } else {
-        &shape[1..]
-    };
-    let mut frames = file("frames.npy", "<f4", shape)?;
+    let mut frames = file("frames.npy", "<f4", &frames_shape(array, n_frames).1)?;
     let mut labels = file("labels.npy", "<i8", &[])?;
     let mut poses = file("poses.npy", "<f8", &[7])?;
     let mut depths = file("depths.npy", "<f8", &[])?;
@@ -161,7 +163,8 @@ pub fn write_touches(
             let block = first..source.n_touches().min(first + BLOCK);
             let read_one = |workspace: &mut ArrayWorkspace, number| {
                 let named = (n_before + number, label, object.name.as_str());
-                pressed((&press, rests), named, &source.touch(number), workspace)
+                let touch = (&source.touch(number), n_frames);
+                pressed((&press, rests), named, touch, workspace)
             };
             let readings = block.clone().into_par_iter();
             let readings = readings.map_init(ArrayWorkspace::default, read_one);
@@ -170,8 +173,8 @@ pub fn write_touches(
                 labels.push([(label as i64).to_le_bytes()])?;
                 poses.push(reading.pose.map(f64::to_le_bytes))?;
                 depths.push([reading.depth.to_le_bytes()])?;
-                let frame = read.map_or(reading.frame, |read| read.frame(reading.row.touch));
-                frames.push(frame.into_iter().map(f32::to_le_bytes))?;
+                let of_touch = read.map_or(reading.frames, |read| read.frame(reading.row.touch));
+                frames.push(of_touch.into_iter().map(f32::to_le_bytes))?;
                 table.row(reading.row)?;
             }
             progress.advance(block.len() as u64);
@@ -184,7 +187,118 @@ pub fn write_touches(
     write_taxels(folder, array)?;
     table.commit()?;
     rows.commit()?;
+    if read.is_none() {
+        let recorded = RecordedSpec {
+            depths: Some("depths.npy".into()),
+            speed_mm_per_s: plan.spec.touches.speed_mm_per_s,
+            ..recorded(
+                array,
+                n_frames,
+                objects.iter().map(|object| object.name.clone()),
+            )
+        };
+        write_recorded(folder, recorded, (&plan.spec.skin, array))?;
+    }
     Ok(n_touches)
+}
+
+/// Simulates all human touches on an array, and writes their frames (n × F × ny × nx) and labels into a folder that exists; returns how many.
+///
+/// # Errors
+/// What [`HumanTouches::draw`] refuses; a file that cannot be written.
+pub fn write_human_touches(
+    folder: &Path,
+    human: &HumanTouchSpec,
+    plan: &Plan,
+    array: &TaxelArray,
+    progress: &dyn Progress,
+) -> Result<usize> {
+    let touches = HumanTouches::draw(human, &Seed::new(plan.spec.seed))?;
+    let labels = touches.labels();
+    let n_frames = human.n_frames();
+    progress.stage(&format!("touch {}", array.describe()), labels.len() as u64);
+    let made = touches.simulate((array, n_frames), &FramePlace::Memory, progress)?;
+    let (_, shape) = frames_shape(array, n_frames);
+    let shape = [&[labels.len()][..], &shape].concat();
+    let mut frames = NpyFile::create(&folder.join("frames.npy"), "<f4", &shape)?;
+    let mut row = vec![0.0; array.n_values()];
+    for number in 0..labels.len() * n_frames {
+        made.read(number, &mut row)?;
+        frames.push(row.iter().map(|&value| (value as f32).to_le_bytes()))?;
+    }
+    frames.commit()?;
+    write_integers(&folder.join("labels.npy"), labels.to_vec())?;
+    let mut rows = CsvFile::create(&folder.join("objects.csv"))?;
+    for (label, (object, n_touches)) in touches.classes().into_iter().enumerate() {
+        rows.row(ObjectRow {
+            label,
+            object,
+            n_spheres: 0,
+            n_touches,
+        })?;
+    }
+    rows.commit()?;
+    let names = touches.class_names().into_iter().map(str::to_owned);
+    let recorded = RecordedSpec {
+        frame_interval_s: Some(human.interval()),
+        previous_touch: PreviousTouch::None,
+        ..recorded(array, n_frames, names)
+    };
+    write_recorded(folder, recorded, (&plan.spec.skin, array))?;
+    Ok(labels.len())
+}
+
+/// The letters of the axes of frames, and the lengths of those of a touch.
+fn frames_shape(array: &TaxelArray, n_frames: usize) -> (String, Vec<usize>) {
+    let ((ny, nx), n_channels) = (array.shape(), array.sensed().n_channels());
+    let axes = [("t", n_frames), ("c", n_channels), ("y", ny), ("x", nx)];
+    let is_written = |(letter, length): &(&str, usize)| "yx".contains(letter) || *length > 1;
+    let (letters, shape): (Vec<&str>, Vec<usize>) = axes.into_iter().filter(is_written).unzip();
+    (format!("n {}", letters.join(" ")), shape)
+}
+
+/// `[recorded]` of the frames of an array in the folder of the file.
+fn recorded(
+    array: &TaxelArray,
+    n_frames: usize,
+    names: impl Iterator<Item = String>,
+) -> RecordedSpec {
+    RecordedSpec {
+        frames: "frames.npy".into(),
+        labels: "labels.npy".into(),
+        order: Some(frames_shape(array, n_frames).0),
+        names: Some(names.collect()),
+        full_scale: Some(array.taxel().stroke),
+        ..RecordedSpec::default()
+    }
+}
+
+/// Writes `recorded.toml`: the tables of a study that learns from these files.
+fn write_recorded(
+    folder: &Path,
+    recorded: RecordedSpec,
+    (skin, array): (&SkinSpec, &TaxelArray),
+) -> Result<()> {
+    #[derive(Serialize)]
+    struct Tables {
+        recorded: RecordedSpec,
+        skin: SkinSpec,
+    }
+    let is_grid = array.layout() == ArrayLayout::Grid;
+    let tables = Tables {
+        recorded,
+        skin: SkinSpec {
+            pitch_mm: Axis::One(millimetres(array.pitch())),
+            size_mm: None,
+            taxels: (!is_grid).then_some(Axis::One(array.grid().nx)),
+            ..skin.clone()
+        },
+    };
+    let tables = toml::to_string(&tables).expect("every key has a TOML form");
+    let text = format!(
+        "# In place of [objects], [touches], [human_touch] and [skin] of the study that made these touches; --objects is this folder.\n\n{tables}"
+    );
+    write_bytes(&folder.join("recorded.toml"), text.as_bytes())
 }
 
 /// Where the taxels of a layout are that is no grid, and their axes.
@@ -206,11 +320,17 @@ fn write_taxels(folder: &Path, array: &TaxelArray) -> Result<()> {
 fn pressed<'a>(
     (press, rests): (&ArrayPress, &[RestPose]),
     (number, label, object): (usize, usize, &'a str),
-    touch: &Touch,
+    (touch, n_frames): (&Touch, usize),
     workspace: &mut ArrayWorkspace,
 ) -> Reading<'a> {
     let pose = touch.patch_from_object(&rests[touch.rest]);
-    let contact = press.touch(pose, (touch.depth, 1.0), workspace);
+    let mut frames = Vec::new();
+    let mut contact = None;
+    for frame in 1..=n_frames {
+        let part = frame as f64 / n_frames as f64;
+        contact = press.touch(pose, (touch.depth, part), workspace);
+        frames.extend(press.values(workspace).map(|value| value as f32));
+    }
     let pose = press.end(pose, contact);
     let (t, q) = (pose.translation, pose.rotation);
     Reading {
@@ -228,7 +348,7 @@ fn pressed<'a>(
             n_touched: contact.map_or(0, |c| c.n_touched),
             n_saturated: contact.map_or(0, |c| c.n_saturated),
         },
-        frame: press.values(workspace).map(|value| value as f32).collect(),
+        frames,
         pose: [t.x, t.y, t.z, q.x, q.y, q.z, q.w],
         depth: touch.depth,
     }

@@ -13,6 +13,7 @@ use crate::contact::saturation_limit;
 use crate::error::Result;
 use crate::objects::Model;
 use crate::random::Seed;
+use crate::recognition::data::split::Side;
 use crate::world::Touch;
 use ndarray::Array1;
 use rand::Rng;
@@ -49,6 +50,16 @@ pub trait TouchSet: Sync {
     /// Group of every touch, where they are what they are and no key says what stays together.
     fn own_groups(&self) -> Option<Array1<usize>> {
         None
+    }
+
+    /// On which side of every split each touch is, where a test set is given.
+    fn given_sides(&self) -> Option<&[Side]> {
+        None
+    }
+
+    /// Taxels without readings, and all taxels.
+    fn n_masked(&self) -> (usize, usize) {
+        (0, 0)
     }
 
     /// Makes what all touches need on all threads now; the first touches would make it one after the other.

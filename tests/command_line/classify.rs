@@ -213,6 +213,47 @@ fn arrays_of_any_type_that_numpy_writes_are_read_as_the_same_numbers() {
     assert_eq!(asked("bool"), expected);
 }
 
+/// One mechanism reads the labels of all commands: texts, numbers from any start, a column for each class, and archives.
+#[test]
+fn labels_of_every_form_are_answered_in_their_own_values() {
+    let case = folder();
+    let predictions = ["--classifier", "linear_svm", "--predictions", "out.npy"];
+    let answered = || json(&case, &predictions)["n_correct"].as_u64().unwrap();
+    let n_correct = answered();
+    let usual: Array1<i64> = read_npy(case.path("out.npy")).unwrap();
+    write_npy(
+        case.path("labels.npy"),
+        &labels().mapv(|n| 100.0 * n as f64 + 1.0),
+    )
+    .unwrap();
+    assert_eq!(answered(), n_correct);
+    let found: Array1<i64> = read_npy(case.path("out.npy")).unwrap();
+    assert_eq!(found, usual.mapv(|label| 100 * label + 1));
+    let n_classes = labels().iter().max().unwrap() + 1;
+    let one_hot = Array2::from_shape_fn((N_ROWS, n_classes as usize), |(row, class)| {
+        f64::from(u8::from(labels()[row] == class as i64))
+    });
+    write_npy(case.path("labels.npy"), &one_hot).unwrap();
+    assert_eq!(answered(), n_correct);
+    let found: Array1<i64> = read_npy(case.path("out.npy")).unwrap();
+    assert_eq!(found, usual);
+    std::fs::remove_file(case.path("labels.npy")).unwrap();
+    let words: Vec<String> = labels()
+        .iter()
+        .map(|label| format!("kind {label}"))
+        .collect();
+    case.file("labels.csv", format!("kind\n{}\n", words.join("\n")));
+    assert_eq!(answered(), n_correct);
+    let bytes = std::fs::read(case.path("out.npy")).unwrap();
+    assert!(String::from_utf8_lossy(&bytes[..80]).contains("'<U6'"));
+    let last = usual.last().unwrap();
+    let text: Vec<u8> = format!("kind {last}")
+        .chars()
+        .flat_map(|c| u32::from(c).to_le_bytes())
+        .collect();
+    assert!(bytes.ends_with(&text));
+}
+
 #[test]
 fn arrays_of_another_type_or_shape_are_refused_by_name() {
     let case = folder();
@@ -225,8 +266,8 @@ fn arrays_of_another_type_or_shape_are_refused_by_name() {
     .unwrap();
     refused(&case, &LINEAR, &["features.npy", "n × m"]);
     write_npy(case.path("features.npy"), &features()).unwrap();
-    write_npy(case.path("labels.npy"), &labels().mapv(|n| n as f64)).unwrap();
-    refused(&case, &LINEAR, &["labels.npy", "int64"]);
+    write_npy(case.path("labels.npy"), &labels().mapv(|n| n as f64 + 0.5)).unwrap();
+    refused(&case, &LINEAR, &["labels.npy, position 0", "int64"]);
     write_npy(case.path("labels.npy"), &labels()).unwrap();
     write_npy(case.path("test.npy"), &array![true, false]).unwrap();
     refused(

@@ -24,6 +24,8 @@ mod pose_splits;
 mod quickstart;
 mod readings;
 mod recorded;
+mod recorded_arrays;
+mod recorded_law;
 mod repeatability;
 mod shear;
 mod variance;

@@ -129,7 +129,10 @@ impl Findings for RecognitionStudy {
 fn split_words(spec: &StudySpec) -> String {
     let held_out = match spec.recognition.keep_together {
         _ if let Some(recorded) = &spec.recorded => {
-            return match recorded.groups {
+            if recorded.has_test_set() {
+                return "given test set".to_owned();
+            }
+            return match recorded.file_of("groups") {
                 Some(_) => "recorded groups that are never learned".to_owned(),
                 None => "random touches, whatever was recorded together".to_owned(),
             };

@@ -44,7 +44,14 @@ impl RecognitionStudy {
             limit(
                 "touches with a saturated taxel",
                 (sum(|row| row.n_saturated), n_touches),
-                "a taxel was at its stroke, where it cannot tell how much further the object pushes",
+                match &spec.recorded {
+                    None => {
+                        "a taxel was at its stroke, where it cannot tell how much further the object pushes"
+                    }
+                    Some(_) => {
+                        "a taxel read its full scale, or a largest reading that many frames share: it cannot tell how much further the object pushes"
+                    }
+                },
             ),
             limit(
                 "fits stopped at the solver's iteration cap",
@@ -59,6 +66,11 @@ impl RecognitionStudy {
         ];
         if n_deeper == 0 {
             limits.pop();
+        }
+        let n_masked = self.first().touched.n_masked();
+        if n_masked.0 > 0 {
+            let meaning = "they are missing (NaN) in at least 10 % of the frames and read recorded.zero in all";
+            limits.push(limit("taxels that are masked", n_masked, meaning));
         }
         limits
     }

@@ -1,0 +1,694 @@
+//! Recorded frames in every form that NumPy and spreadsheets write: the same study of the same touches, or one sentence that says what is wrong.
+
+use crate::command::Case;
+use crate::study::laid_out;
+use bubbletouch::kinds::recognition::RecognitionStudy;
+use bubbletouch::study::progress::Silent;
+use bubbletouch::study::table::TrialScore;
+use bubbletouch::study::{write_integers, write_npy};
+use ndarray::{Array, Array3, Array4, ArrayD, Axis, Dimension};
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::Path;
+
+const N: usize = 60;
+const NAMES: [&str; 3] = ["cup", "ball", "pen"];
+
+/// Frames of three classes, 8 × 8, of which a linear SVM gets some wrong.
+fn frames() -> Array3<f64> {
+    Array3::from_shape_fn((N, 8, 8), |(touch, row, column)| {
+        let (class, k) = (label(touch), touch * 64 + row * 8 + column);
+        let noise = ((k * k * 31 + k * 17) % 997) as f64 / 997.0;
+        let away = (row as f64 - 3.5).powi(2) + (column as f64 - 2.0 - 0.5 * class as f64).powi(2);
+        // Halves of 1/64, which float16 holds, too.
+        (64.0 * ((-away / 4.0).exp() + 1.2 * noise)).round() / 128.0
+    })
+}
+
+fn label(touch: usize) -> usize {
+    touch / 20
+}
+
+fn labels() -> Vec<usize> {
+    (0..N).map(label).collect()
+}
+
+const REST: &str = "[skin]\npitch_mm = 4.0\nstroke_mm = 5.0\n[signal]\nsteps = [\"noise\"]\nnoise_std_full_scale = 0.05\n[sensing]\nmeasurements = 8\n[recognition]\nclassifier = \"linear_svm\"\n";
+
+fn study(keys: &str) -> bubbletouch::Result<RecognitionStudy> {
+    laid_out(&format!(
+        "question = \"?\"\ntrials = 2\n[recorded]\n{keys}\n{REST}"
+    ))
+}
+
+fn scores(keys: &str) -> Vec<TrialScore> {
+    let study = study(keys).unwrap_or_else(|error| panic!("{keys}\n{error}"));
+    let rows = study.run(&Silent).unwrap().accuracy.into_iter();
+    rows.map(|(_, score)| score).collect()
+}
+
+fn error(keys: &str) -> String {
+    study(keys).err().expect(keys).to_string()
+}
+
+/// `key = "file"` in a folder.
+fn key(folder: &Path, key: &str, name: &str) -> String {
+    format!("{key} = {:?}\n", folder.join(name).display().to_string())
+}
+
+fn keys(folder: &Path, frames: &str, labels: &str) -> String {
+    key(folder, "frames", frames) + &key(folder, "labels", labels)
+}
+
+/// A `.npy` file of elements that are given as bytes.
+fn npy(descr: &str, is_fortran: bool, shape: &[usize], bytes: &[u8]) -> Vec<u8> {
+    let order = if is_fortran { "True" } else { "False" };
+    let shape: String = shape.iter().fold(String::new(), |mut text, n| {
+        write!(text, "{n}, ").unwrap();
+        text
+    });
+    let header =
+        format!("{{'descr': '{descr}', 'fortran_order': {order}, 'shape': ({shape}), }}\n");
+    let length = (header.len() as u16).to_le_bytes();
+    [b"\x93NUMPY\x01\x00", &length[..], header.as_bytes(), bytes].concat()
+}
+
+fn texts(texts: &[&str]) -> Vec<u8> {
+    let n = texts.iter().map(|text| text.len()).max().unwrap();
+    let letters = texts.iter().flat_map(|text| {
+        let letters = text.chars().chain(std::iter::repeat('\0')).take(n);
+        letters.flat_map(|letter| u32::from(letter).to_be_bytes())
+    });
+    npy(
+        &format!(">U{n}"),
+        false,
+        &[texts.len()],
+        &letters.collect::<Vec<u8>>(),
+    )
+}
+
+fn half(number: f64) -> u16 {
+    // Positive multiples of 1/128 below 2: a fraction of ten bits after the leading one.
+    if number == 0.0 {
+        return 0;
+    }
+    let exponent = number.log2().floor();
+    let fraction = (number / exponent.exp2() - 1.0) * 1024.0;
+    ((exponent + 15.0) as u16) << 10 | fraction as u16
+}
+
+fn written() -> Case {
+    let case = Case::new();
+    write_npy(&case.path("frames.npy"), &frames()).unwrap();
+    write_integers(&case.path("labels.npy"), labels()).unwrap();
+    case
+}
+
+#[test]
+fn frames_of_every_type_and_file_are_the_same_touches() {
+    let case = written();
+    let folder = case.folder();
+    let usual = scores(&keys(folder, "frames.npy", "labels.npy"));
+    assert!(usual.iter().any(|score| score.n_correct < score.n_test));
+    let frames = frames();
+    let numbers: Vec<f64> = frames.iter().copied().collect();
+    let bytes =
+        |of: &dyn Fn(f64) -> Vec<u8>| numbers.iter().flat_map(|&n| of(n)).collect::<Vec<u8>>();
+    let counts = frames.mapv(|number| 128.0 * number);
+    let shape = [N, 8, 8];
+    case.file(
+        "half.npy",
+        npy(
+            "<f2",
+            false,
+            &shape,
+            &bytes(&|n| half(n).to_le_bytes().to_vec()),
+        ),
+    );
+    case.file(
+        "big.npy",
+        npy(">f8", false, &shape, &bytes(&|n| n.to_be_bytes().to_vec())),
+    );
+    case.file(
+        "big_u2.npy",
+        npy(
+            ">u2",
+            false,
+            &shape,
+            &bytes(&|n| ((128.0 * n) as u16).to_be_bytes().to_vec()),
+        ),
+    );
+    case.file(
+        "u8.npy",
+        npy(
+            "<u8",
+            false,
+            &shape,
+            &bytes(&|n| ((128.0 * n) as u64).to_le_bytes().to_vec()),
+        ),
+    );
+    case.file(
+        "i1.npy",
+        npy("|i1", false, &shape, &bytes(&|n| vec![(128.0 * n) as u8])),
+    );
+    assert!(counts.iter().all(|&count| count < 128.0));
+    // The first index changes fastest.
+    let fortran: Vec<u8> = frames.t().iter().flat_map(|n| n.to_le_bytes()).collect();
+    case.file("fortran.npy", npy("<f8", true, &shape, &fortran));
+    let mut table = String::from("# a comment\n");
+    for frame in frames.outer_iter() {
+        let cells: Vec<String> = frame.iter().map(f64::to_string).collect();
+        table += &(cells.join(",") + "\n");
+    }
+    case.file("frames.csv", &table);
+    let names: Vec<String> = (0..64).map(|taxel| format!("taxel {taxel}")).collect();
+    case.file("named.csv", names.join(",") + "\n" + &table);
+    let last = frames.clone().insert_axis(Axis(3));
+    write_npy(&case.path("last.npy"), &last).unwrap();
+    let moved = frames
+        .view()
+        .permuted_axes([1, 2, 0])
+        .as_standard_layout()
+        .into_owned();
+    write_npy(&case.path("moved.npy"), &moved).unwrap();
+    for (name, more) in [
+        ("half.npy", ""),
+        ("big.npy", ""),
+        ("big_u2.npy", ""),
+        ("u8.npy", ""),
+        ("i1.npy", ""),
+        ("fortran.npy", ""),
+        ("frames.csv", "grid = [8, 8]"),
+        ("named.csv", "grid = [8, 8]"),
+        ("frames.csv", ""),
+        ("last.npy", "order = \"n y x c\""),
+        ("last.npy", "order = \"n t y x\"\ngrid = [2, 2]"),
+        ("moved.npy", "order = \"y x n\""),
+    ] {
+        let keys = keys(folder, name, "labels.npy") + more;
+        if more.contains("[2, 2]") {
+            assert!(error(&keys).contains("no such key"), "{}", error(&keys));
+            continue;
+        }
+        let found = scores(&keys);
+        let counts = |scores: &[TrialScore]| scores.iter().map(|s| s.n_correct).collect::<Vec<_>>();
+        assert_eq!(counts(&found), counts(&usual), "{name} {more}");
+    }
+}
+
+#[test]
+fn labels_of_every_form_are_the_same_classes() {
+    let case = written();
+    let folder = case.folder();
+    let usual = scores(&keys(folder, "frames.npy", "labels.npy"));
+    let labels = labels();
+    let write = |name: &str, array: &ArrayD<f64>| write_npy(&case.path(name), array).unwrap();
+    let of = |number: &dyn Fn(usize) -> f64| {
+        Array::from_iter(labels.iter().map(|&label| number(label))).into_dyn()
+    };
+    write("float.npy", &of(&|label| label as f64));
+    write("from_1.npy", &of(&|label| label as f64 + 1.0));
+    write("any.npy", &of(&|label| 100.0 * label as f64 - 70.0));
+    write(
+        "column.npy",
+        &of(&|label| label as f64).insert_axis(Axis(1)),
+    );
+    let one_hot = Array::from_shape_fn((N, 3), |(touch, class)| {
+        f64::from(u8::from(labels[touch] == class))
+    });
+    write("one_hot.npy", &one_hot.into_dyn());
+    let words: Vec<&str> = labels.iter().map(|&label| NAMES[label]).collect();
+    case.file("texts.npy", texts(&words));
+    let padded: Vec<u8> = words
+        .iter()
+        .flat_map(|word| format!("{word:\0<6}").into_bytes())
+        .collect();
+    case.file("bytes.npy", npy("|S6", false, &[N], &padded));
+    case.file("texts.csv", format!("object\n{}\n", words.join("\n")));
+    let named = "names = [\"class 0\", \"class 1\", \"class 2\"]";
+    for name in [
+        "float.npy",
+        "from_1.npy",
+        "any.npy",
+        "column.npy",
+        "one_hot.npy",
+    ] {
+        assert_eq!(scores(&keys(folder, "frames.npy", name)), usual, "{name}");
+    }
+    for name in ["texts.npy", "bytes.npy", "texts.csv"] {
+        let keys = keys(folder, "frames.npy", name);
+        assert_eq!(scores(&(keys.clone() + named)), usual, "{name}");
+        let found = study(&keys).unwrap();
+        assert_eq!(found.first().touched.class_names(), NAMES, "{name}");
+    }
+    let found = study(&keys(folder, "frames.npy", "any.npy")).unwrap();
+    assert_eq!(
+        found.first().touched.class_names(),
+        ["class -70", "class 30", "class 130"]
+    );
+}
+
+/// A `.npz` archive of `.npy` files, stored or compressed.
+fn archive(case: &Case, name: &str, members: &[(&str, &str)], is_compressed: bool) {
+    let mut archive = zip::ZipWriter::new(std::fs::File::create(case.path(name)).unwrap());
+    let method = match is_compressed {
+        true => zip::CompressionMethod::Deflated,
+        false => zip::CompressionMethod::Stored,
+    };
+    let options = zip::write::SimpleFileOptions::default().compression_method(method);
+    for (member, file) in members {
+        archive
+            .start_file(format!("{member}.npy"), options)
+            .unwrap();
+        archive
+            .write_all(&std::fs::read(case.path(file)).unwrap())
+            .unwrap();
+    }
+    archive.finish().unwrap();
+}
+
+#[test]
+fn archives_and_groups_of_texts_are_read_by_the_names_of_their_arrays() {
+    let case = written();
+    let folder = case.folder();
+    let groups: Vec<String> = (0..N).map(|touch| format!("day {}", touch % 5)).collect();
+    let words: Vec<&str> = groups.iter().map(String::as_str).collect();
+    case.file("groups.npy", texts(&words));
+    write_integers(&case.path("numbers.npy"), (0..N).map(|touch| touch % 5)).unwrap();
+    let both = keys(folder, "frames.npy", "labels.npy");
+    let usual = scores(&both);
+    let grouped = scores(&(both.clone() + &key(folder, "groups", "numbers.npy")));
+    assert_eq!(
+        scores(&(both + &key(folder, "groups", "groups.npy"))),
+        grouped
+    );
+    assert_ne!(usual, grouped);
+    let two = [("frames", "frames.npy"), ("labels", "labels.npy")];
+    archive(&case, "stored.npz", &two, false);
+    archive(&case, "compressed.npz", &two, true);
+    archive(
+        &case,
+        "all.npz",
+        &[&two[..], &[("groups", "groups.npy")]].concat(),
+        true,
+    );
+    archive(&case, "one.npz", &[("arr_0", "frames.npy")], false);
+    for name in ["stored.npz", "compressed.npz"] {
+        assert_eq!(scores(&key(folder, "frames", name)), usual, "{name}");
+        assert_eq!(scores(&keys(folder, name, name)), usual, "{name}");
+    }
+    assert_eq!(scores(&key(folder, "frames", "all.npz")), grouped);
+    assert_eq!(scores(&keys(folder, "one.npz", "labels.npy")), usual);
+    archive(
+        &case,
+        "other.npz",
+        &[("x", "frames.npy"), ("y", "labels.npy")],
+        false,
+    );
+    let said = error(&keys(folder, "other.npz", "labels.npy"));
+    assert!(said.contains("arrays x, y; an array `frames`"), "{said}");
+}
+
+#[test]
+fn an_offset_is_subtracted_before_it_costs_digits() {
+    let case = written();
+    let folder = case.folder();
+    let usual = scores(&(keys(folder, "frames.npy", "labels.npy") + "full_scale = 1.5"));
+    write_npy(
+        &case.path("offset.npy"),
+        &frames().mapv(|reading| reading + 1e8),
+    )
+    .unwrap();
+    let keys = keys(folder, "offset.npy", "labels.npy") + "zero = 1e8\nfull_scale = 100000001.5";
+    assert_eq!(scores(&keys), usual);
+}
+
+#[test]
+fn clipped_readings_are_saturated_and_others_are_not() {
+    let case = written();
+    let folder = case.folder();
+    let saturated = |name: &str, more: &str| {
+        let study = study(&(keys(folder, name, "labels.npy") + more)).unwrap();
+        let limits = study.run(&Silent).unwrap().limits;
+        assert_eq!(limits[1].what, "touches with a saturated taxel");
+        (limits[1].count, limits[1].of)
+    };
+    let reaches = |level: f64| {
+        let frames = frames();
+        let touches = frames.outer_iter();
+        let all = touches.filter(|frame| frame.iter().any(|&reading| reading >= level));
+        all.count() as u64
+    };
+    assert_eq!(saturated("frames.npy", ""), (0, N as u64));
+    assert_eq!(saturated("frames.npy", "full_scale = 9.0"), (0, N as u64));
+    assert!(reaches(0.75) > 5 && reaches(0.75) < N as u64);
+    assert_eq!(
+        saturated("frames.npy", "full_scale = 0.75").0,
+        reaches(0.75)
+    );
+    write_npy(
+        &case.path("clipped.npy"),
+        &frames().mapv(|reading| reading.min(0.75)),
+    )
+    .unwrap();
+    assert_eq!(saturated("clipped.npy", "").0, reaches(0.75));
+    assert_eq!(
+        saturated("clipped.npy", "full_scale = 0.75").0,
+        reaches(0.75)
+    );
+    assert_eq!(
+        saturated("clipped.npy", "full_scale = 1.0").0,
+        reaches(0.75)
+    );
+    // Single precision rounds the full scale.
+    let single = frames().mapv(|reading| reading.min(0.7) as f32);
+    write_npy(&case.path("single.npy"), &single).unwrap();
+    assert_eq!(saturated("single.npy", "full_scale = 0.7").0, reaches(0.7));
+    // A single taxel at one level is stuck, and no plateau of the skin.
+    let mut stuck = frames();
+    stuck.slice_mut(ndarray::s![.., 2, 5]).fill(3.0);
+    write_npy(&case.path("stuck.npy"), &stuck).unwrap();
+    assert_eq!(saturated("stuck.npy", "").0, 0);
+}
+
+#[test]
+fn a_taxel_that_is_often_nan_is_masked_and_another_is_refused_with_the_rule() {
+    let case = written();
+    let folder = case.folder();
+    for n_missing in [N, N / 10] {
+        let mut frames = frames();
+        frames
+            .slice_mut(ndarray::s![..n_missing, 3, 4])
+            .fill(f64::NAN);
+        write_npy(&case.path("nan.npy"), &frames).unwrap();
+        let found = study(&keys(folder, "nan.npy", "labels.npy")).unwrap();
+        let touched = &found.first().touched;
+        assert_eq!(touched.n_masked(), (1, 64));
+        let settings = touched.settings();
+        let row = settings.iter().find(|(name, _)| name.starts_with("Masked"));
+        assert_eq!(row.unwrap().1, "1 of 64: 28");
+        let limits = found.run(&Silent).unwrap().limits;
+        let last = limits.last().unwrap();
+        assert_eq!(
+            (&last.what[..], last.count, last.of),
+            ("taxels that are masked", 1, 64)
+        );
+        // Zeros there give the same touches.
+        frames.slice_mut(ndarray::s![.., 3, 4]).fill(0.0);
+        write_npy(&case.path("zero.npy"), &frames).unwrap();
+        assert_eq!(
+            scores(&keys(folder, "nan.npy", "labels.npy")),
+            scores(&keys(folder, "zero.npy", "labels.npy"))
+        );
+    }
+    let mut frames = frames();
+    frames[[7, 3, 4]] = f64::NAN;
+    write_npy(&case.path("nan.npy"), &frames).unwrap();
+    let said = error(&keys(folder, "nan.npy", "labels.npy"));
+    assert!(
+        said.contains("nan.npy, frame 7, taxel 28: NaN; a finite number"),
+        "{said}"
+    );
+    assert!(
+        said.contains("at least 10 % of the frames is masked; this one is in 1 of 60"),
+        "{said}"
+    );
+}
+
+#[test]
+fn arrays_that_are_wrong_are_refused_in_words_of_the_user() {
+    let case = written();
+    let folder = case.folder();
+    let write = |name: &str, descr: &str, shape: &[usize], n_bytes: usize| {
+        case.file(name, npy(descr, false, shape, &vec![0; n_bytes]));
+    };
+    write("object.npy", "|O", &[N], 8 * N);
+    write("complex.npy", "<c16", &[N, 8, 8], 16 * N * 64);
+    write("times.npy", "<M8[s]", &[N], 8 * N);
+    write("long.npy", "<f16", &[N, 8, 8], 16 * N * 64);
+    write("empty.npy", "<f8", &[0, 8, 8], 0);
+    write("short.npy", "<f8", &[N, 8, 8], 8 * 100);
+    write("huge.npy", "<f8", &[1 << 40, 1 << 20, 8], 8);
+    write("half.npy", "<f8", &[N], 8 * N - 4);
+    case.file("text.npy", "0,1,2\n");
+    case.file("damaged.npz", b"PK\x03\x04 and then nothing");
+    case.file("ragged.csv", "1,2,3\n4,5\n");
+    case.file("blank.csv", "\n\n");
+    write_npy(&case.path("half_labels.npy"), &Array::from_elem(N, 0.5)).unwrap();
+    write_npy(&case.path("two_hot.npy"), &Array::from_elem((N, 3), 1.0)).unwrap();
+    let mut broken = frames();
+    broken[[3, 1, 2]] = f64::INFINITY;
+    write_npy(&case.path("infinite.npy"), &broken).unwrap();
+    for (frames, labels, words) in [
+        (
+            "object.npy",
+            "labels.npy",
+            "object.npy: Python objects, as NumPy stores rows of unlike lengths",
+        ),
+        ("frames.npy", "object.npy", "object.npy: Python objects"),
+        (
+            "complex.npy",
+            "labels.npy",
+            "complex.npy: complex numbers; numbers",
+        ),
+        ("frames.npy", "times.npy", "times.npy: dates or times"),
+        ("long.npy", "labels.npy", "floats of more than 64 bits"),
+        (
+            "empty.npy",
+            "labels.npy",
+            "empty.npy: an array of shape [0, 8, 8]",
+        ),
+        (
+            "short.npy",
+            "labels.npy",
+            "short.npy: 60 × 8 × 8 elements of 8 bytes in 800 bytes",
+        ),
+        ("huge.npy", "labels.npy", "huge.npy"),
+        ("frames.npy", "half.npy", "half.npy: 60 elements"),
+        (
+            "text.npy",
+            "labels.npy",
+            "begins neither as a .npy nor as a .npz file",
+        ),
+        (
+            "damaged.npz",
+            "labels.npy",
+            "damaged.npz: a damaged archive",
+        ),
+        (
+            "ragged.csv",
+            "labels.npy",
+            "ragged.csv, line 2: 2 values; 3, as line 1 has",
+        ),
+        ("blank.csv", "labels.npy", "blank.csv: an empty file"),
+        (
+            "frames.npy",
+            "half_labels.npy",
+            "half_labels.npy, position 0: 0.5; one class for each touch",
+        ),
+        (
+            "frames.npy",
+            "two_hot.npy",
+            "two_hot.npy, row 0: 3 columns that are not one 1 among 0",
+        ),
+        (
+            "infinite.npy",
+            "labels.npy",
+            "infinite.npy, frame 3, taxel 10: inf; a finite number",
+        ),
+        ("frames.npy", "frames.npy", "frames.npy: an array of shape"),
+        ("frames.npy", "nowhere.npy", "nowhere.npy: cannot be read"),
+    ] {
+        let said = error(&keys(folder, frames, labels));
+        assert!(said.contains(words), "{said}\ndoes not say {words}");
+        for word in ["ndarray", "parse", "MalformedFile", "descr", "pickle"] {
+            assert!(!said.contains(word), "{said}");
+        }
+    }
+    let said = error(&key(folder, "frames", "frames.npy"));
+    assert!(said.contains("key recorded.labels: no such key"), "{said}");
+}
+
+#[test]
+fn taxels_without_a_layout_have_no_images_and_no_neighbours() {
+    let case = Case::new();
+    let frames = frames().slice(ndarray::s![.., .., ..3]).to_owned();
+    let flat = frames
+        .as_standard_layout()
+        .into_owned()
+        .into_shape_with_order((N, 24))
+        .unwrap();
+    write_npy(&case.path("frames.npy"), &flat).unwrap();
+    write_integers(&case.path("labels.npy"), labels()).unwrap();
+    let keys = keys(case.folder(), "frames.npy", "labels.npy");
+    let found = study(&keys).unwrap();
+    let array = &found.first().plan.arrays[0];
+    assert_eq!((array.n_taxels(), array.sides()), (24, None));
+    assert_eq!(array.describe_taxels(), "24 taxels without a layout");
+    found.run(&Silent).unwrap();
+    let said = |rest: &str| {
+        let text = format!("question = \"?\"\n[recorded]\n{keys}\n{rest}");
+        laid_out(&text).err().expect(rest).to_string()
+    };
+    let rest = |signal: &str, sensing: &str, recognition: &str| {
+        format!(
+            "[skin]\npitch_mm = 4.0\nstroke_mm = 5.0\n[signal]\n{signal}\n[sensing]\n{sensing}\n[recognition]\nclassifier = \"linear_svm\"\n{recognition}\n"
+        )
+    };
+    for (text, words) in [
+        (
+            rest("", "measurements = 8", "features = \"fourier_magnitude\""),
+            "fourier_magnitude of taxels without a layout",
+        ),
+        (
+            rest("", "measurements = 6\nensemble = \"block_average\"", ""),
+            "of taxels without a layout",
+        ),
+        (
+            rest(
+                "steps = [\"smoothing\"]\nsmoothing_mm = 4.0",
+                "measurements = 8",
+                "",
+            ),
+            "\"smoothing\" of taxels without a layout",
+        ),
+        (
+            rest(
+                "steps = [\"crosstalk\"]\ncrosstalk = 0.1",
+                "measurements = 8",
+                "",
+            ),
+            "\"crosstalk\" of taxels without a layout",
+        ),
+    ] {
+        let said = said(&text);
+        assert!(said.contains(words), "{said}\ndoes not say {words}");
+    }
+}
+
+#[test]
+fn a_given_test_set_is_the_split_of_every_trial() {
+    let case = written();
+    let folder = case.folder();
+    let all = frames();
+    let is_test = |touch: usize| touch % 20 >= 14;
+    let part = |of: bool| {
+        (0..N)
+            .filter(|&touch| is_test(touch) == of)
+            .collect::<Vec<_>>()
+    };
+    let write = |name: &str, touches: &[usize]| {
+        let own: Array3<f64> = all.select(Axis(0), touches);
+        write_npy(&case.path(&format!("frames_{name}.npy")), &own).unwrap();
+        write_integers(
+            &case.path(&format!("labels_{name}.npy")),
+            touches.iter().map(|&touch| label(touch)),
+        )
+        .unwrap();
+        let groups = touches
+            .iter()
+            .map(|&touch| 10 * usize::from(is_test(touch)) + touch % 3);
+        write_integers(&case.path(&format!("groups_{name}.npy")), groups).unwrap();
+    };
+    write("a", &part(false));
+    write("b", &part(true));
+    let both = keys(folder, "frames_a.npy", "labels_a.npy")
+        + &key(folder, "frames_test", "frames_b.npy")
+        + &key(folder, "labels_test", "labels_b.npy");
+    let found = study(&both).unwrap();
+    let sweep = &found.first().sweep;
+    assert_eq!(sweep.splits[0], sweep.splits[1]);
+    // Class by class, those that train first.
+    let expected: Vec<usize> = (0..N).filter(|touch| touch % 20 >= 14).collect();
+    assert_eq!(sweep.splits[0].test, expected);
+    let rows = scores(&both);
+    assert!(
+        rows.iter()
+            .all(|row| row.n_test == 18 && row.n_train == 42 && row.n_groups.is_none())
+    );
+    let grouped = both.clone() + &key(folder, "groups_test", "groups_b.npy");
+    assert!(scores(&grouped).iter().all(|row| row.n_groups == Some(3)));
+    let grouped = grouped + &key(folder, "groups", "groups_a.npy");
+    assert!(scores(&grouped).iter().all(|row| row.n_groups == Some(3)));
+    for (text, words) in [
+        (
+            both.clone() + &key(folder, "groups", "groups_a.npy"),
+            "key recorded.groups_test: no such key",
+        ),
+        (
+            both.clone()
+                + &key(folder, "groups", "groups_a.npy")
+                + &key(folder, "groups_test", "labels_b.npy"),
+            "in both sets",
+        ),
+        (
+            keys(folder, "frames_a.npy", "labels_a.npy")
+                + &key(folder, "frames_test", "frames_b.npy"),
+            "key recorded.labels_test: no such key",
+        ),
+        (
+            keys(folder, "frames_a.npy", "labels_a.npy")
+                + &key(folder, "labels_test", "labels_b.npy"),
+            "key recorded.frames_test: no such key",
+        ),
+        (
+            keys(folder, "frames_a.npy", "labels_a.npy")
+                + &key(folder, "frames_test", "frames_b.npy")
+                + &key(folder, "labels_test", "labels_a.npy"),
+            "labels_a.npy: 42 numbers; 18, one a touch",
+        ),
+    ] {
+        let said = error(&text);
+        assert!(said.contains(words), "{said}\ndoes not say {words}");
+    }
+    let text = format!("question = \"?\"\n[recorded]\n{both}\n{REST}folds = 5\n");
+    let said = laid_out(&text).err().unwrap().to_string();
+    assert!(
+        said.contains("key recognition.folds: given; no such key"),
+        "{said}"
+    );
+    // The page names the split.
+    case.file(
+        "study.toml",
+        format!("question = \"?\"\n[recorded]\n{both}\n{REST}"),
+    );
+    case.succeeds(&["run", "study.toml", "--out", "out"]);
+    let page = std::fs::read_to_string(case.path("out/report.html")).unwrap();
+    assert!(page.contains("given test set"));
+}
+
+#[test]
+fn recordings_over_time_stay_as_they_were() {
+    let case = Case::new();
+    let frames = Array4::from_shape_fn((N, 3, 8, 8), |(touch, frame, row, column)| {
+        frames()[[touch, row, column]] * (frame + 1) as f64
+    });
+    write_npy(&case.path("frames.npy"), &frames).unwrap();
+    write_integers(&case.path("labels.npy"), labels()).unwrap();
+    let usual = scores(&keys(case.folder(), "frames.npy", "labels.npy"));
+    let last = frames
+        .permuted_axes([0, 2, 3, 1])
+        .as_standard_layout()
+        .into_owned();
+    write_npy(&case.path("last.npy"), &last).unwrap();
+    let keys = keys(case.folder(), "last.npy", "labels.npy");
+    assert_eq!(scores(&(keys.clone() + "order = \"n y x t\"")), usual);
+    let said = error(&keys);
+    for words in [
+        "60 touches of 8 frames of 8 × 3 taxels",
+        "60 touches of 8 × 8 taxels of 3 values",
+        "recorded.order",
+    ] {
+        assert!(said.contains(words), "{said}\ndoes not say {words}");
+    }
+    let one: Array<f64, _> = crate::recorded_arrays::frames();
+    shape_is(&one.insert_axis(Axis(1)));
+}
+
+fn shape_is<D: Dimension>(frames: &Array<f64, D>) {
+    let case = Case::new();
+    write_npy(&case.path("frames.npy"), frames).unwrap();
+    write_integers(&case.path("labels.npy"), labels()).unwrap();
+    let found = study(&keys(case.folder(), "frames.npy", "labels.npy")).unwrap();
+    assert_eq!(found.first().plan.arrays[0].shape(), (8, 8));
+}

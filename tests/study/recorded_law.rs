@@ -1,0 +1,183 @@
+//! A law: a study of recorded frames of simulated touches gives the results of the simulated study, whatever its signal.
+
+use crate::command::Case;
+use bubbletouch::signal::SENSOR_ERRORS;
+
+const PRESSED: &str = r#"
+[objects]
+sets = ["balls"]
+names = ["golf", "tennis", "baseball"]
+
+[touches]
+per_object = 10
+offset_x_mm = { uniform = [-6.0, 6.0] }
+offset_y_mm = { uniform = [-6.0, 6.0] }
+depth_mm = { uniform = [1.0, 7.0] }
+"#;
+
+const HUMAN: &str = r#"
+[human_touch]
+kinds = ["tap", "stroke", "grab"]
+per_kind = 8
+frames_hz = 10.0
+duration_s = 2.5
+"#;
+
+const LEARNED: &str = "[sensing]\nmeasurements = 12\n[recognition]\nclassifier = \"linear_svm\"\n";
+
+const TABLES: [&str; 5] = [
+    "accuracy.csv",
+    "summary.csv",
+    "confusion.csv",
+    "comparison.csv",
+    "pareto.csv",
+];
+
+/// Runs a study, exports its touches, and runs the study of these.
+fn is_the_same(touched: &str, skin: &str, rest: &str) {
+    let case = Case::new();
+    let head = "question = \"?\"\ntrials = 2\n";
+    case.file("study.toml", format!("{head}{touched}\n{skin}\n{rest}"));
+    case.succeeds(&["run", "study.toml", "--out", "simulated"]);
+    case.succeeds(&["touches", "study.toml", "--out", "touches"]);
+    let tables = std::fs::read_to_string(case.path("touches/recorded.toml")).unwrap();
+    case.file("recorded.toml", format!("{head}{tables}\n{rest}"));
+    case.succeeds(&[
+        "run",
+        "recorded.toml",
+        "--objects",
+        "touches",
+        "--out",
+        "recorded",
+    ]);
+    for name in TABLES {
+        let read = |folder: &str| std::fs::read_to_string(case.path(folder).join(name)).ok();
+        assert_eq!(
+            read("recorded"),
+            read("simulated"),
+            "{name}\n{touched}{skin}{rest}"
+        );
+    }
+    let counts = |folder: &str| {
+        let limits = std::fs::read_to_string(case.path(folder).join("limits.csv")).unwrap();
+        let rows = limits
+            .lines()
+            .map(|row| row.split(',').take(3).collect::<Vec<_>>().join(","));
+        rows.collect::<Vec<_>>()
+    };
+    assert_eq!(
+        counts("recorded"),
+        counts("simulated"),
+        "{touched}{skin}{rest}"
+    );
+}
+
+const SKIN: &str = "[skin]\npitch_mm = 4.0\ntaxels = 8\nstroke_mm = 5.0\n";
+
+/// Every sensor error, alone and after noise, of one frame and of several.
+#[test]
+fn recorded_touches_give_the_results_of_the_simulated_ones_for_every_sensor_error() {
+    let mut steps = Vec::new();
+    let mut keys = String::new();
+    for error in SENSOR_ERRORS {
+        let about = error.about();
+        let value = match about.step {
+            "quantisation" => "8",
+            "scan" => "20.0",
+            "matrix_readout" => continue,
+            _ => "0.1",
+        };
+        let moves = "frames = 3\nspeed_mm_per_s = 20.0\n";
+        let touched = match about.needs_motion || about.remembers {
+            true => format!("{PRESSED}{moves}"),
+            false => PRESSED.to_owned(),
+        };
+        let step = about.step;
+        let own: String = about
+            .strengths
+            .iter()
+            .map(|s| format!("{} = {value}\n", s.key))
+            .collect();
+        let signal = format!(
+            "[signal]\nsteps = [\"{step}\", \"noise\"]\nnoise_std_full_scale = 0.02\n{own}"
+        );
+        is_the_same(&touched, SKIN, &(signal + LEARNED));
+        steps.push(format!("{step:?}"));
+        keys += &own;
+    }
+    // All of them together on touches that go on while they are read, with a damper.
+    let signal = format!("[signal]\nsteps = [{}]\n{keys}", steps.join(", "));
+    let touched = format!("{PRESSED}frames = 2\nspeed_mm_per_s = 20.0\n");
+    is_the_same(
+        &touched,
+        &format!("{SKIN}damping_n_s_per_m = 0.3\n"),
+        &(signal + LEARNED),
+    );
+}
+
+#[test]
+fn recorded_human_touches_give_the_results_of_the_simulated_ones() {
+    let skin = "[skin]\npitch_mm = 12.0\ntaxels = 8\nstroke_mm = 6.0\n";
+    let signal = "[signal]\nsteps = [\"hysteresis\", \"gain\", \"noise\"]\nhysteresis_full_scale = [0.0, 0.2]\ngain_std = 0.1\nnoise_std_full_scale = 0.02\n";
+    is_the_same(
+        HUMAN,
+        skin,
+        &format!("{signal}{LEARNED}over_time = [\"deepest\", \"course\"]\n"),
+    );
+}
+
+#[test]
+fn recorded_touches_of_skins_that_read_shear_and_of_other_layouts_give_the_results_of_the_simulated_ones()
+ {
+    let signal = "[signal]\nsteps = [\"hysteresis\", \"noise\"]\nhysteresis_full_scale = 0.2\nnoise_std_full_scale = 0.02\n";
+    let rest = format!("{signal}{LEARNED}");
+    let shear = format!("{SKIN}sensed = \"shear\"\nfriction = 0.5\n");
+    is_the_same(PRESSED, &shear, &rest);
+    is_the_same(
+        &format!("{PRESSED}frames = 3\nslide_mm = 3.0\n"),
+        &shear,
+        &rest,
+    );
+    is_the_same(PRESSED, &format!("{SKIN}layout = \"hexagonal\"\n"), &rest);
+}
+
+/// The simplest recording of the same touches, written by hand, has the history of the simulated ones.
+#[test]
+fn recorded_touches_come_after_others_as_simulated_ones_do() {
+    let case = Case::new();
+    let head = "question = \"?\"\ntrials = 2\n";
+    let rest = format!(
+        "[signal]\nsteps = [\"hysteresis\", \"noise\"]\nhysteresis_full_scale = [0.0, 0.2]\nnoise_std_full_scale = 0.02\n{LEARNED}"
+    );
+    case.file("study.toml", format!("{head}{PRESSED}{SKIN}{rest}"));
+    case.succeeds(&["run", "study.toml", "--out", "simulated"]);
+    case.succeeds(&["touches", "study.toml", "--out", "touches"]);
+    let recorded = "[recorded]\nframes = \"frames.npy\"\nlabels = \"labels.npy\"\nnames = [\"golf\", \"tennis\", \"baseball\"]\nfull_scale = 5e-3\n";
+    let skin = "[skin]\npitch_mm = 4.0\nstroke_mm = 5.0\n";
+    case.file("recorded.toml", format!("{head}{recorded}{skin}{rest}"));
+    case.succeeds(&[
+        "run",
+        "recorded.toml",
+        "--objects",
+        "touches",
+        "--out",
+        "recorded",
+    ]);
+    let read =
+        |folder: &str| std::fs::read_to_string(case.path(folder).join("accuracy.csv")).unwrap();
+    assert_eq!(read("recorded"), read("simulated"));
+    // The history counts.
+    case.file(
+        "fresh.toml",
+        format!("{head}{recorded}previous_touch = \"none\"\n{skin}{rest}"),
+    );
+    case.succeeds(&[
+        "run",
+        "fresh.toml",
+        "--objects",
+        "touches",
+        "--out",
+        "fresh",
+    ]);
+    assert_ne!(read("fresh"), read("simulated"));
+}
