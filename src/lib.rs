@@ -154,6 +154,7 @@ pub mod calibration;
 pub mod contact;
 pub mod dynamics;
 pub mod error;
+pub mod file_path;
 pub mod files;
 pub mod geometry;
 pub mod guide;

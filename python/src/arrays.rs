@@ -99,6 +99,15 @@ pub fn each(place: &str, given: &Bound<PyAny>, n: usize) -> PyResult<Vec<f64>> {
     })
 }
 
+/// A whole number of the library's type; a negative one, or one that is too large, is refused by name.
+///
+/// # Errors
+/// If the number is out of the range of the type.
+pub fn whole_number<T: TryFrom<i128>>(place: &str, given: i128) -> PyResult<T> {
+    let allowed = "zero or a positive whole number below 2⁶⁴";
+    T::try_from(given).map_err(|_| bad_input(place, given, allowed))
+}
+
 /// Frames of n taxels as n_frames × n: shapes (n_frames, …) whose sides after the first make n, or one frame alone.
 ///
 /// # Errors

@@ -1,6 +1,6 @@
 //! `Patch`: taxels on a rigid substrate.
 
-use crate::arrays::{each, points, to_column, to_rows};
+use crate::arrays::{each, points, to_column, to_rows, whole_number};
 use crate::batch::Spare;
 use crate::errors::{bad_input, exception, guarded};
 use crate::mesh::Mesh;
@@ -204,12 +204,13 @@ impl Patch {
         mesh: &Bound<Mesh>,
         pitch: f64,
         stroke: f64,
-        seed: u64,
+        seed: i128,
         taxel_radius: Option<f64>,
         stiffness: f64,
         damping: f64,
     ) -> PyResult<Self> {
         guarded(|| {
+            let seed = whole_number("seed", seed)?;
             let mesh = mesh.get().triangle_mesh();
             let layout = py.detach(|| Layout::draped(mesh, pitch, &Seed::new(seed)));
             let taxel = taxel(pitch, stroke, (taxel_radius, stiffness, damping));
@@ -217,7 +218,7 @@ impl Patch {
         })
     }
 
-    /// Any taxels: centers (n, 3), axes (n, 3) of length one, away from the substrate; the others (n,) or one number for all.
+    /// Any taxels: centers (n, 3), axes (n, 3) of length one within 1 % (they are normalised), away from the substrate; the others (n,) or one number for all.
     #[staticmethod]
     #[pyo3(signature = (centers, axes, *, stroke, taxel_radius, stiffness=None, damping=None))]
     fn from_arrays(

@@ -1,6 +1,6 @@
 //! `Projection`: compressed measurements of frames.
 
-use crate::arrays::frames;
+use crate::arrays::{frames, whole_number};
 use crate::errors::{bad_input, exception, guarded};
 use crate::threads::pool;
 use bubbletouch::random::Seed;
@@ -48,8 +48,9 @@ fn ensemble_of(name: &str) -> PyResult<Ensemble> {
 impl Projection {
     #[new]
     #[pyo3(signature = (ensemble, shape, n_measurements, seed=0))]
-    fn new(ensemble: &str, shape: (i64, i64), n_measurements: i64, seed: u64) -> PyResult<Self> {
+    fn new(ensemble: &str, shape: (i64, i64), n_measurements: i64, seed: i128) -> PyResult<Self> {
         guarded(|| {
+            let seed = whole_number("seed", seed)?;
             let side = |side: i64| usize::try_from(side).unwrap_or(0);
             let (grid, m) = ((side(shape.0), side(shape.1)), side(n_measurements));
             let drawn = ensemble_of(ensemble)?;

@@ -1,6 +1,6 @@
 //! `Reconstructor`: whole frames back from measurements.
 
-use crate::arrays::{frames, to_column, view};
+use crate::arrays::{frames, to_column, view, whole_number};
 use crate::errors::{bad_input, exception, guarded};
 use crate::projection::Projection;
 use crate::threads::pool;
@@ -55,11 +55,13 @@ impl Reconstructor {
         training: &Bound<PyAny>,
         basis: &str,
         solver: &str,
-        n_atoms: Option<usize>,
+        n_atoms: Option<i128>,
         noise: f64,
-        seed: u64,
+        seed: i128,
     ) -> PyResult<Self> {
         guarded(|| {
+            let n_atoms = n_atoms.map(|n| whole_number("n_atoms", n)).transpose()?;
+            let seed = whole_number("seed", seed)?;
             let (projection, shape) = (projection.get().inner(), projection.get().shape());
             let named = |name: &str| format!("`{name}`");
             let basis = match basis {

@@ -1,6 +1,6 @@
 //! `Step` and `Chain`: what electronics make of deflections.
 
-use crate::arrays::{frames, view};
+use crate::arrays::{frames, view, whole_number};
 use crate::batch::{Spare, for_each, n_threads};
 use crate::errors::{bad_input, exception, guarded};
 use crate::patch::Patch;
@@ -154,10 +154,11 @@ impl Chain {
     fn new(
         steps: Vec<Bound<Step>>,
         patch: &Bound<Patch>,
-        skin_seed: u64,
+        skin_seed: i128,
         of_force: bool,
     ) -> PyResult<Self> {
         guarded(|| {
+            let skin_seed = whole_number("skin_seed", skin_seed)?;
             let steps: Vec<Step> = steps.iter().map(|step| step.get().clone()).collect();
             let skin = Seed::new(skin_seed);
             let prepared: Vec<SignalStep> = steps.iter().map(|step| step.of_skin(skin)).collect();
@@ -184,12 +185,16 @@ impl Chain {
         &self,
         py: Python<'py>,
         frames: &Bound<'py, PyAny>,
-        seed: u64,
-        first: u64,
+        seed: i128,
+        first: i128,
         rates: Option<&Bound<'py, PyAny>>,
         threads: Option<i64>,
     ) -> PyResult<Bound<'py, PyAny>> {
         guarded(|| {
+            let (seed, first) = (
+                whole_number("seed", seed)?,
+                whole_number::<u64>("first", first)?,
+            );
             let n_taxels = self.chain.n_taxels();
             let shape = frames.getattr("shape").ok();
             let mut values = self::frames("frames", frames, n_taxels)?;
@@ -221,13 +226,15 @@ impl Chain {
         &self,
         py: Python<'py>,
         frames: &Bound<'py, PyAny>,
-        seed: u64,
-        n_before: usize,
+        seed: i128,
+        n_before: i128,
         interval: Option<f64>,
         time: Option<f64>,
         rates: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         guarded(|| {
+            let seed = whole_number("seed", seed)?;
+            let n_before: usize = whole_number("n_before", n_before)?;
             let mut values = self::frames("frames", frames, self.chain.n_taxels())?;
             let n_frames = values.nrows();
             if n_before >= n_frames {

@@ -1,6 +1,6 @@
 //! `Simulation`: a scene, frame by frame, or step by step by hand.
 
-use crate::arrays::{to_column, to_rows, view};
+use crate::arrays::{to_column, to_rows, view, whole_number};
 use crate::errors::{bad_input, exception, guarded};
 use crate::model::model_of;
 use crate::patch::Patch;
@@ -11,10 +11,12 @@ use bubbletouch::scene::{
 };
 use glam::DVec3;
 use numpy::{IntoPyArray, PyArrayMethods};
+use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use self_cell::self_cell;
 use std::collections::BTreeMap;
+use std::ffi::CString;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -74,6 +76,10 @@ impl Simulation {
                 ScenePlan::with_models(place, &folder, spec, &in_memory)
             });
             let plan = Arc::new(plan.map_err(exception)?);
+            for note in plan.notes() {
+                let note = CString::new(note).unwrap_or_default();
+                PyErr::warn(py, &py.get_type::<PyUserWarning>(), &note, 2)?;
+            }
             Ok(Self {
                 going: begin(&plan),
                 plan,
@@ -84,11 +90,10 @@ impl Simulation {
     /// Back to before the first frame, and nothing is set by hand any more. The skin stays as it is; the noise of its readings is that of
     /// `seed` (None: the scene's own). Raises ValueError.
     #[pyo3(signature = (seed=None))]
-    fn reset(&mut self, seed: Option<i64>) -> PyResult<()> {
+    fn reset(&mut self, seed: Option<i128>) -> PyResult<()> {
         let seed = match seed {
             None => self.plan.spec.seed,
-            Some(given) => u64::try_from(given)
-                .map_err(|_| bad_input("seed", given, "zero or a positive whole number"))?,
+            Some(given) => whole_number("seed", given)?,
         };
         self.change(|simulation| {
             simulation.reset(seed);

@@ -1,5 +1,6 @@
 //! Studies: what `bubbletouch run` does, with the tables in memory.
 
+use crate::arrays::whole_number;
 use crate::errors::{bad_input, exception, guarded};
 use crate::threads::{Stop, aside};
 use bubbletouch::Error;
@@ -140,10 +141,11 @@ pub fn run_study<'py>(
     name: String,
     folder: PathBuf,
     out: PathBuf,
-    seed: Option<u64>,
+    seed: Option<i128>,
     callback: Option<Py<PyAny>>,
 ) -> PyResult<Vec<Said<'py>>> {
     guarded(|| {
+        let seed = seed.map(|seed| whole_number("seed", seed)).transpose()?;
         let packings = out.parent().unwrap_or(Path::new("")).join("packings");
         let asked = Asked {
             source: Source {

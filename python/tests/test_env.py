@@ -88,6 +88,55 @@ def test_what_cannot_be_told_apart_is_refused() -> None:
         FindObject(objects=["mug", "mugg"])
 
 
+@pytest.mark.parametrize(
+    ("arguments", "error", "said"),
+    [
+        ({"reach": 0}, ValueError, "reach: 0; a finite number above 0"),
+        ({"reach": float("nan")}, ValueError, "reach: NaN"),
+        ({"confidence": float("nan")}, ValueError, "confidence: NaN; a finite number, at least 0"),
+        ({"confidence": -1.0}, ValueError, "confidence: -1.0"),
+        ({"max_steps": 0}, ValueError, "max_steps: 0; at least 1"),
+        ({"max_steps": 2.5}, ValueError, "max_steps: 2.5; a whole number"),
+        ({"n_taxels": 16.5}, ValueError, "n_taxels: 16.5; a whole number"),
+        ({"training_seed": -1}, ValueError, "training_seed: -1; at least 0"),
+        ({"training_seed": "1"}, TypeError, "training_seed: '1'; a whole number"),
+    ],
+)
+def test_numbers_out_of_their_range_are_refused(arguments, error, said) -> None:  # type: ignore[no-untyped-def]
+    with pytest.raises(error, match=said):
+        FindObject(**arguments)
+    with pytest.raises(ValueError, match="num_envs: 0; at least 1"):
+        FindObjectVector(0)
+
+
+def test_each_environment_has_the_episodes_of_its_own_seed() -> None:
+    several, single = FindObjectVector(3), FindObjectVector(1)
+    actions = np.random.default_rng(1).uniform(-1, 1, (40, 3, 2)).astype(np.float32)
+    first, _ = several.reset(seed=[3, 4, 5])
+    steps = [several.step(action) for action in actions]
+    assert any(step[2].any() or step[3].any() for step in steps), "an episode begins anew"
+    for number, seed in enumerate([3, 4, 5]):
+        alone, _ = single.reset(seed=seed)
+        np.testing.assert_array_equal(first[number], alone[0])
+        for action, step in zip(actions, steps, strict=True):
+            one = single.step(action[[number]])
+            np.testing.assert_array_equal(step[0][number], one[0][0])
+            assert step[1][number] == one[1][0]
+    again, _ = several.reset(seed=np.array([3, 4, 5]))
+    np.testing.assert_array_equal(again, first)
+    other, _ = several.reset(seed=(3, None, 6))
+    np.testing.assert_array_equal(other[0], first[0])
+    assert (other[1:] != first[1:]).any(axis=1).all()
+    with pytest.raises(ValueError, match="seed: 2 seeds; one for each of 3 environments"):
+        several.reset(seed=[3, 4])
+    with pytest.raises(ValueError, match=r"seed\[1\]: 1.5; a whole number"):
+        several.reset(seed=[3, 1.5, 4])
+    with pytest.raises(TypeError, match="seed: 1.5; a whole number, one for each of 3"):
+        several.reset(seed=1.5)
+    with pytest.raises(ValueError, match="seed: -1; at least 0"):
+        several.reset(seed=-1)
+
+
 def test_vectors_are_made_by_name() -> None:
     vector = gymnasium.make_vec(
         "BubbleTouch/FindObject-v0", num_envs=3, vectorization_mode="vector_entry_point"

@@ -133,7 +133,21 @@ def test_a_laplacian_kernel_is_scikit_learns(data) -> None:  # type: ignore[no-u
         (SVC(gamma="wide"), "gamma: `wide`; scale, auto or a number above 0"),
         (SVC(kernel="sigmoid"), "kernel: `sigmoid`; laplacian, linear, poly or rbf"),
         (SVC(multi_class="all"), "multi_class: `all`; ovo or ovr"),
-        (SVC(tol=0), "tolerance: 0"),
+        (SVC(tol=0), "tol: 0; a finite number above 0"),
+        (SVC(gamma=float("nan")), "gamma: NaN; a finite number above 0"),
+        (SVC(coef0=float("inf")), "coef0: inf; a finite number"),
+        (SVC(kernel="poly", degree=2.7), "degree: 2.7; a whole number"),
+        (SVC(kernel="poly", degree=0), "degree: 0; a whole number from 1 to 20"),
+        (SVC(max_memory=1.5), "max_memory: 1.5; a whole number"),
+        (LinearSVC(max_iter=1.5), "max_iter: 1.5; a whole number, at least 1"),
+        (LinearSVC(max_iter=float("nan")), "max_iter: NaN; a whole number"),
+        (LinearSVC(random_state=1.5), "random_state: 1.5; a whole number, at least 0"),
+        (LinearSVC(random_state=-1), "random_state: -1; at least 0"),
+        (LinearSVC(tol=float("inf")), "tol: inf; a finite number above 0"),
+        (GridSearch(gamma_scales=[1.0, 0.0]), "gamma_scales: 0"),
+        (GridSearch(C=[1.0, float("nan")]), "C: NaN; a finite number above 0"),
+        (GridSearch(cv=[([0.5, 1.0], [2, 3])]), "cv, fold 1, train: .*; numbers below 600, or a mask of 600 rows"),
+        (GridSearch(cv=[([0, 1], np.ones(599, bool))]), "cv, fold 1, test: .*; numbers below 600, or a mask of 600 rows"),
         (LinearSVC(C=0), "C: 0"),
         (LinearSVC(max_iter=-3), "max_iter: -3; at least 1"),
         (GridSearch(C=[]), "C"),
@@ -143,6 +157,55 @@ def test_a_laplacian_kernel_is_scikit_learns(data) -> None:  # type: ignore[no-u
 def test_what_cannot_be_trained_is_refused(data, estimator, said: str) -> None:  # type: ignore[no-untyped-def]
     with pytest.raises(ValueError, match=said):
         estimator.fit(*data)
+
+
+@pytest.mark.parametrize(
+    ("estimator", "said"),
+    [
+        (SVC(C="1"), "C: '1'; a finite number above 0"),
+        (SVC(degree="3"), "degree: '3'; a whole number"),
+        (SVC(tol=True), "tol: True; a finite number above 0"),
+        (LinearSVC(max_iter=None), "max_iter: None; a whole number, at least 1"),
+    ],
+)
+def test_what_is_no_number_is_a_type_error(data, estimator, said: str) -> None:  # type: ignore[no-untyped-def]
+    with pytest.raises(TypeError, match=said):
+        estimator.fit(*data)
+
+
+def test_masks_and_negative_numbers_of_rows_are_folds_as_numbers_are(data) -> None:  # type: ignore[no-untyped-def]
+    features, labels = data
+    mask = np.random.default_rng(5).random(600) < 0.7
+    train, test = np.flatnonzero(mask), np.flatnonzero(~mask)
+    expected = GridSearch(cv=[(train, test)]).fit(features, labels)
+    for folds in ([(mask, ~mask)], [(mask.tolist(), (~mask).tolist())], [(train - 600, test)]):
+        found = GridSearch(cv=folds).fit(features, labels)
+        assert found.results_ == expected.results_
+    assert len({one["accuracy"] for one in expected.results_}) > 1
+
+
+def test_what_is_fitted_does_not_follow_later_parameters(data) -> None:  # type: ignore[no-untyped-def]
+    features, labels = data
+    fitted = SVC().fit(features, labels)
+    before = fitted.decision_function(features), fitted.predict(features)
+    fitted.set_params(multi_class="ovr", C=1e-3, kernel="linear", gamma=9.0, degree=9, coef0=9.0, tol=0.5, max_memory=1)
+    np.testing.assert_array_equal(fitted.decision_function(features), before[0])
+    np.testing.assert_array_equal(fitted.predict(features), before[1])
+    linear = LinearSVC().fit(features, labels)
+    scores = linear.decision_function(features)
+    linear.set_params(C=1e-3, tol=0.5, max_iter=1, random_state=9)
+    np.testing.assert_array_equal(linear.decision_function(features), scores)
+    search = GridSearch(SVC(), cv=3, C=[1.0, 10.0]).fit(features, labels)
+    chosen = search.decision_function(features)
+    search.set_params(cv=2, C=[1e-3], estimator__multi_class="ovr", gamma_scales=[9.0])
+    np.testing.assert_array_equal(search.decision_function(features), chosen)
+
+
+def test_a_float_without_a_fraction_is_a_whole_number(data) -> None:  # type: ignore[no-untyped-def]
+    features, labels = data
+    one = LinearSVC(max_iter=np.float64(200), random_state=3.0).fit(features, labels)
+    other = LinearSVC(max_iter=200, random_state=np.int64(3)).fit(features, labels)
+    np.testing.assert_array_equal(one.coef_, other.coef_)
 
 
 def test_the_core_refuses_what_the_estimators_would(data) -> None:  # type: ignore[no-untyped-def]

@@ -1,7 +1,7 @@
 //! `bubbletouch simulate`: a scene from its file to its folder of results.
 
 use super::output::output_folder;
-use super::streams::{say, write_out};
+use super::streams::{note, say, write_out};
 use bubbletouch::Result;
 use bubbletouch::report::progress::to_stderr;
 use bubbletouch::report::scene_files::SceneFiles;
@@ -22,7 +22,7 @@ pub struct Args {
     /// Where to write
     #[arg(long, value_name = "FOLDER")]
     out: PathBuf,
-    /// End it early
+    /// End it early: its first frames, as in the whole scene
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     until_s: Option<f64>,
     /// Say nothing but errors
@@ -37,6 +37,9 @@ pub fn simulate(args: &Args) -> Result<()> {
     }
     output_folder(&args.out)?;
     let mut files = SceneFiles::create(&args.out, &plan)?;
+    if !args.quiet {
+        note_all(plan.notes());
+    }
     let mut summary = Summary::default();
     let progress: Box<dyn Progress> = if args.quiet {
         Box::new(Silent)
@@ -67,4 +70,17 @@ pub fn simulate(args: &Args) -> Result<()> {
         say(format_args!("\nResults in {}", args.out.display()))?;
     }
     Ok(())
+}
+
+/// Notes of one scene that are printed, at most: a file of a robot may have the same fault in each of its joints.
+const MAX_NOTES: usize = 12;
+
+fn note_all(mut notes: impl Iterator<Item = String>) {
+    for text in notes.by_ref().take(MAX_NOTES) {
+        note(format_args!("note: {text}"));
+    }
+    let n_more = notes.count();
+    if n_more > 0 {
+        note(format_args!("note: {n_more} more notes of this kind"));
+    }
 }

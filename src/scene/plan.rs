@@ -8,6 +8,7 @@ use super::reader::{MM, Reader};
 use super::spec::SceneSpec;
 use crate::contact::balance::HalfSpace;
 use crate::error::{Error, Result};
+use crate::file_path::with_absolute_paths;
 use crate::objects::Model;
 use crate::random::Seed;
 use crate::study::{Check, not_negative, positive};
@@ -29,6 +30,8 @@ pub struct ScenePlan {
     pub output_rate: f64,
     /// Frame k is at k / output_rate seconds; at least one.
     pub n_frames: usize,
+    /// Frames of the whole scene, before it was [cut](Self::cut): sensors drift over their time.
+    pub n_frames_uncut: usize,
     /// Equal steps from one frame to the next, where steps are needed.
     pub n_substeps: usize,
     /// m/s², in the world.
@@ -116,15 +119,13 @@ impl ScenePlan {
             .duration_s
             .get_or_insert_with(|| end(&robots, &objects));
         let clock = Clock::checked(&reader.check, &spec, duration)?;
-        for path in spec.paths_mut() {
-            *path = std::path::absolute(folder.join(&path))
-                .map_err(|e| Error::io(folder.join(&path), "read", e))?;
-        }
+        let spec = with_absolute_paths(place, &spec, folder)?;
         Ok(Self {
             place: place.to_owned(),
             output_rate: spec.output_hz,
             spec,
             n_frames: clock.n_frames,
+            n_frames_uncut: clock.n_frames,
             n_substeps: clock.n_substeps,
             gravity,
             robots,
@@ -135,7 +136,7 @@ impl ScenePlan {
         })
     }
 
-    /// Ends it early, seconds; a scene that is shorter stays as it is.
+    /// Ends it early, seconds; a scene that is shorter stays as it is. The frames that are left are the first ones of the whole scene.
     ///
     /// # Errors
     /// A time that is negative or not finite.
@@ -144,17 +145,24 @@ impl ScenePlan {
             let allowed = "zero or a positive number of seconds";
             return Err(Error::input(place, until, allowed));
         }
-        let frames = Clock::frames(until, self.output_rate);
-        if frames < self.n_frames {
-            self.n_frames = frames;
-            self.spec.duration_s = Some(until);
-        }
+        self.n_frames = self.n_frames.min(Clock::frames(until, self.output_rate));
         Ok(())
     }
 
     /// The time of a frame, seconds.
     pub fn time(&self, frame: usize) -> f64 {
         frame as f64 / self.output_rate
+    }
+
+    /// Sentences on what is read of its robots' files and what is not, each with the key.
+    pub fn notes(&self) -> impl Iterator<Item = String> {
+        let of_robot = |robot: &PlannedRobot| {
+            let trajectory = robot.joints.iter().flat_map(|joints| joints.notes());
+            let notes = robot.robot.notes().iter().chain(trajectory);
+            let of = |note: &String| format!("robots.{}: {note}", robot.name);
+            notes.map(of).collect::<Vec<_>>()
+        };
+        self.robots.iter().flat_map(of_robot)
     }
 
     /// Whether what is between frames decides what they are: dampers, friction, free and pushed objects remember.

@@ -11,7 +11,7 @@ use crate::geometry::Pose;
 use crate::mesh::SizeLimits;
 use crate::objects::{Catalogue, Model};
 use crate::spelling::nearest_names;
-use crate::study::{ObjectsSpec, load_catalogue, load_mesh, load_spheres, positive};
+use crate::study::{ModelSpec, ObjectsSpec, load_catalogue, load_mesh, load_spheres, positive};
 use crate::world::Motion;
 use glam::DVec3;
 
@@ -129,6 +129,15 @@ impl Reader<'_> {
                 .unwrap_or_default()
                 .default_surface_error_mm(finest_mm)
         };
+        let is_made_of_spheres =
+            spec.object.is_some() || (spec.mesh.is_some() && spec.model == Some(ModelSpec::Packed));
+        if spec.surface_error_mm.is_some() && has_file && !is_made_of_spheres {
+            let given = "given beside spheres, or a mesh that is not packed";
+            let allowed = "it only beside object = \"NAME\" or model = \"packed\"";
+            return Err(self
+                .check
+                .error(&format!("{key}.surface_error_mm"), given, allowed));
+        }
         let error_mm = spec.surface_error_mm.unwrap_or_else(default);
         let error_key = format!("{key}.surface_error_mm");
         let allowed = "a positive number of millimetres";

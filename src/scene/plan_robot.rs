@@ -4,7 +4,7 @@ use super::reader::Reader;
 use super::spec::{JointsSpec, RobotSpec};
 use crate::error::Result;
 use crate::spelling::nearest_names;
-use crate::world::{JointTrajectory, Motion, Robot};
+use crate::world::{Joint, JointTrajectory, Motion, Robot};
 use ndarray::Array2;
 
 /// A robot whose motion is known.
@@ -16,7 +16,7 @@ pub struct PlannedRobot {
     pub robot: Robot,
     /// Where its base is.
     pub base: Motion,
-    /// Where its joints are; `None` if none of them moves.
+    /// Where its joints are; `None` if they stay at their [rest positions](Robot::rest_positions).
     pub joints: Option<JointTrajectory>,
 }
 
@@ -59,12 +59,7 @@ impl Reader<'_> {
     ) -> Result<Option<JointTrajectory>> {
         let coordinates = robot.coordinates();
         let joints = match (joints, coordinates.first()) {
-            (None, None) => return Ok(None),
-            (None, Some(first)) => {
-                let given = format!("nothing, and joint `{}` moves", first.name);
-                let allowed = "a trajectory of every joint that moves";
-                return Err(self.check.error(key, given, allowed));
-            }
+            (None, _) => return Ok(None),
             (Some(_), None) => {
                 let given = "a trajectory of a robot whose joints do not move";
                 return Err(self.check.error(key, given, "no such key"));
@@ -90,11 +85,13 @@ impl Reader<'_> {
         self.under(key, trajectory).map(Some)
     }
 
-    /// A row a way-point, a column a position of the robot; rad and m.
+    /// A row a way-point, a column a position of the robot; rad and m. Those that are not listed rest.
     fn positions(&self, key: &str, joints: &JointsSpec, robot: &Robot) -> Result<Array2<f64>> {
         let key = &format!("{key}.positions");
         let n_times = joints.time_s.len();
-        let mut positions = Array2::zeros((n_times, robot.n_positions()));
+        let rest = robot.rest_positions();
+        let mut positions =
+            Array2::from_shape_fn((n_times, rest.len()), |(_, column)| rest[column]);
         let mut found = vec![false; robot.n_positions()];
         for (given, values) in &joints.positions {
             let names = robot.coordinates().iter().map(|c| c.name.as_str());
@@ -114,6 +111,12 @@ impl Reader<'_> {
                 let bare = given
                     .rsplit_once('_')
                     .map_or(given.as_str(), |(bare, _)| bare);
+                if let Some(joint) = robot.joints().iter().find(|joint| joint.name == bare) {
+                    let given = format!("`{given}`, and joint `{bare}` {}", stays(joint, robot));
+                    return Err(self
+                        .check
+                        .error(key, given, "joints that move and mimic none"));
+                }
                 let unit = "with _deg, _rad, _mm or _m";
                 let allowed = format!("{} {unit}", nearest_names(bare, names));
                 return Err(self.check.error(key, format!("`{given}`"), allowed));
@@ -131,13 +134,25 @@ impl Reader<'_> {
                 positions[(row, column)] = scale * value;
             }
         }
-        match found.iter().position(|found| !found) {
-            Some(missing) => {
-                let given = format!("nothing for `{}`", robot.coordinates()[missing].name);
-                let allowed = "every joint that moves and mimics none";
-                Err(self.check.error(key, given, allowed))
+        Ok(positions)
+    }
+}
+
+/// Why no position of a scene moves a joint.
+fn stays(joint: &Joint, robot: &Robot) -> String {
+    match joint.mimic {
+        Some(mimic) => format!("mimics `{}`", robot.joints()[mimic.joint].name),
+        None => match joint.kind.coordinates() {
+            [] => "is fixed".to_owned(),
+            coordinates => {
+                let names = coordinates
+                    .iter()
+                    .map(|(suffix, _)| format!("`{}{suffix}`", joint.name));
+                format!(
+                    "has the coordinates {}",
+                    names.collect::<Vec<_>>().join(", ")
+                )
             }
-            None => Ok(positions),
-        }
+        },
     }
 }

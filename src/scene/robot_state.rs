@@ -19,7 +19,7 @@ pub(super) struct RobotState {
 impl RobotState {
     pub fn of(robot: &PlannedRobot) -> Self {
         Self {
-            positions: vec![0.0; robot.robot.n_positions()],
+            positions: robot.robot.rest_positions(),
             are_set: false,
             base: None,
             world_from_link: vec![Pose::IDENTITY; robot.robot.links().len()],

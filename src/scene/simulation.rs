@@ -239,7 +239,7 @@ impl<'p> Simulation<'p> {
             true => self.time * self.plan.output_rate,
             false => self.n_read as f64,
         };
-        (n_frames / (self.plan.n_frames - 1).max(1) as f64).min(1.0)
+        (n_frames / (self.plan.n_frames_uncut - 1).max(1) as f64).min(1.0)
     }
 
     /// Patches feel a step, and the frame is made.

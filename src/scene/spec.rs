@@ -6,11 +6,11 @@ pub use super::numbers::Numbers;
 pub use super::spec_object::*;
 pub use super::spec_patch::*;
 use crate::error::Result;
+use crate::file_path::FilePath;
 use crate::toml_text;
 use crate::world::Interpolation;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 
 /// The file. Paths in it are relative to its folder.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -68,7 +68,7 @@ pub struct RobotSpec {
     pub name: String,
     /// Its URDF file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub urdf: Option<PathBuf>,
+    pub urdf: Option<FilePath>,
     /// Instead of `urdf`: one link without joints.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub floating: bool,
@@ -78,7 +78,7 @@ pub struct RobotSpec {
     /// How its base moves; not at all when left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<MotionSpec>,
-    /// Where its joints are; needed if it has any that move.
+    /// Where its joints are. A joint that is not listed stands at 0, or at the nearest limit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub joints: Option<JointsSpec>,
 }
@@ -107,7 +107,7 @@ pub struct MotionSpec {
     pub way_points: Vec<WayPointSpec>,
     /// A file of way-points: see [`PoseTrajectory::read_csv`](crate::world::PoseTrajectory::read_csv).
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub csv: Option<PathBuf>,
+    pub csv: Option<FilePath>,
     /// Between way-points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub interpolation: Option<Interpolation>,
@@ -147,14 +147,14 @@ pub struct WayPointSpec {
 pub struct JointsSpec {
     /// A file of way-points: see [`JointTrajectory::read_csv`](crate::world::JointTrajectory::read_csv).
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub csv: Option<PathBuf>,
+    pub csv: Option<FilePath>,
     /// Between way-points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub interpolation: Option<Interpolation>,
     /// Times of the way-points.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub time_s: Vec<f64>,
-    /// One number a time for each joint that moves and mimics none, under its name and its unit: `elbow_deg`, `elbow_rad`,
+    /// One number a time for each joint that is moved, under its name and its unit: `elbow_deg`, `elbow_rad`,
     /// `slide_mm` or `slide_m`.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub positions: BTreeMap<String, Vec<f64>>,
@@ -172,27 +172,6 @@ impl SceneSpec {
     /// Writes the scene with its defaults spelt out.
     pub fn to_toml(&self) -> String {
         toml::to_string(self).expect("every field of a scene has a TOML form")
-    }
-
-    /// Every path in it, to be rewritten.
-    pub(super) fn paths_mut(&mut self) -> impl Iterator<Item = &mut PathBuf> {
-        let robots = self.robots.iter_mut().flat_map(|robot| {
-            let motion = robot.motion.as_mut().and_then(|m| m.csv.as_mut());
-            let joints = robot.joints.as_mut().and_then(|j| j.csv.as_mut());
-            [robot.urdf.as_mut(), motion, joints]
-        });
-        let patches = self.patches.iter_mut().flat_map(|patch| {
-            let mesh = match &mut patch.layout {
-                LayoutSpec::Draped { mesh, .. } => Some(mesh),
-                _ => None,
-            };
-            [mesh, patch.taxels_csv.as_mut()]
-        });
-        let objects = self.objects.iter_mut().flat_map(|object| {
-            let motion = object.motion.as_mut().and_then(|m| m.csv.as_mut());
-            [object.spheres.as_mut(), object.mesh.as_mut(), motion]
-        });
-        robots.chain(patches).chain(objects).flatten()
     }
 }
 

@@ -2,10 +2,10 @@
 
 use super::numbers::Numbers;
 use super::spec::{MotionSpec, PoseSpec};
+use crate::file_path::FilePath;
 use crate::mesh::LengthUnit;
 use crate::study::ModelSpec;
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
 
 /// `[[objects]]`: what is touched.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -18,13 +18,13 @@ pub struct ObjectSpec {
     pub object: Option<String>,
     /// A TOML file of objects, of which `object` is one; the built-in ones when left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub objects: Option<PathBuf>,
+    pub objects: Option<FilePath>,
     /// Instead: a CSV file of spheres, columns x, y, z, r.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub spheres: Option<PathBuf>,
+    pub spheres: Option<FilePath>,
     /// Instead: a PLY, OBJ or STL file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub mesh: Option<PathBuf>,
+    pub mesh: Option<FilePath>,
     /// What a mesh becomes; spheres around its vertices when left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model: Option<ModelSpec>,

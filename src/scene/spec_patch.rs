@@ -2,10 +2,10 @@
 
 use super::numbers::Numbers;
 use super::spec::PoseSpec;
+use crate::file_path::FilePath;
 use crate::mesh::LengthUnit;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 
 /// `[[patches]]`: skin.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -48,7 +48,7 @@ pub struct PatchSpec {
     pub shear_stiffness_n_per_m: Option<Numbers>,
     /// A file with a row a taxel: columns under the names of the keys above, those that differ.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub taxels_csv: Option<PathBuf>,
+    pub taxels_csv: Option<FilePath>,
     /// What its electronics make of what it feels, step by step.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub signal: Vec<SignalStepSpec>,
@@ -125,7 +125,7 @@ pub enum LayoutSpec {
     /// Over a triangle mesh.
     Draped {
         /// Its file.
-        mesh: PathBuf,
+        mesh: FilePath,
         /// Unit of the file's numbers. When left out, metres, and 0.1 mm to 10 m large.
         #[serde(default, alias = "mesh_unit", skip_serializing_if = "Option::is_none")]
         unit: Option<LengthUnit>,

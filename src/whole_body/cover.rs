@@ -5,7 +5,7 @@ use super::flat_ends::flat_ends;
 use super::half_balls::{End, half_balls};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
-use crate::world::{Dome, Extrusion, Grid, Layout, LinkGeometry, Patch, Robot, ShapeRole, Taxel};
+use crate::world::{Dome, Extrusion, Grid, Layout, LinkGeometry, Patch, Robot, Taxel};
 use glam::{DMat3, DQuat, DVec3};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -87,8 +87,7 @@ impl CoveredRobot {
         let half_balls = half_balls(robot)?;
         for (number, link) in robot.links().iter().enumerate() {
             let mut name = link.name.clone();
-            let touching = link.shapes.iter();
-            for shape in touching.filter(|shape| shape.role == ShapeRole::Collision) {
+            for shape in link.solids() {
                 let on = On {
                     name: &name,
                     link: number,

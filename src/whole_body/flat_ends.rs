@@ -3,7 +3,7 @@
 use super::half_balls::{End, SAME, ends};
 use crate::error::Result;
 use crate::geometry::Pose;
-use crate::world::{LinkGeometry, LinkShape, Robot, ShapeRole};
+use crate::world::{LinkGeometry, LinkShape, Robot};
 use glam::DVec3;
 
 /// Link by link, each link's in the order of the file, the lower end first. An end whose middle is in or on another shape that touches, all
@@ -13,9 +13,8 @@ pub(super) fn flat_ends(robot: &Robot) -> Result<Vec<End>> {
     let links = robot.links().iter().zip(&world_from_links).enumerate();
     let shapes: Vec<(usize, Pose, &LinkShape)> = links
         .flat_map(|(number, (link, world_from_link))| {
-            let touching = link.shapes.iter();
-            let touching = touching.filter(|shape| shape.role == ShapeRole::Collision);
-            touching.map(move |shape| (number, world_from_link.compose(&shape.origin), shape))
+            let solids = link.solids();
+            solids.map(move |shape| (number, world_from_link.compose(&shape.origin), shape))
         })
         .collect();
     let mut found = Vec::new();

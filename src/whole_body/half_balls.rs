@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::geometry::Pose;
-use crate::world::{LinkGeometry, LinkShape, Robot, ShapeRole};
+use crate::world::{Link, LinkGeometry, Robot};
 use glam::{DQuat, DVec3};
 
 /// Distances and radii that differ by less are meant to be the same, metres.
@@ -35,7 +35,7 @@ pub(super) fn half_balls(robot: &Robot) -> Result<Vec<End>> {
         .links()
         .iter()
         .enumerate()
-        .flat_map(|(link, of)| of_link(link, &of.shapes))
+        .flat_map(|(number, link)| of_link(number, link))
         .collect();
     let links = robot.forward(&Pose::IDENTITY, &vec![0.0; robot.n_positions()])?;
     let center = |half: &End| links[half.link].transform_point(half.link_from_end.translation);
@@ -53,34 +53,30 @@ pub(super) fn half_balls(robot: &Robot) -> Result<Vec<End>> {
         .collect())
 }
 
-fn of_link(link: usize, shapes: &[LinkShape]) -> Vec<End> {
-    let touching = || {
-        let collision = |shape: &&LinkShape| shape.role == ShapeRole::Collision;
-        shapes.iter().filter(collision)
-    };
+fn of_link(number: usize, link: &Link) -> Vec<End> {
     let mut halves = Vec::new();
-    for shape in touching() {
+    for shape in link.solids() {
         match shape.geometry {
             LinkGeometry::Capsule { radius, length } => {
                 for end in ends(&shape.origin, length) {
-                    halves.push(End::new(link, end, radius));
+                    halves.push(End::new(number, end, radius));
                 }
             }
             LinkGeometry::Sphere { radius } => {
                 let center = shape.origin.translation;
                 let is_end = |(place, _): &(DVec3, DVec3)| place.distance(center) < SAME;
-                let cylinders = touching().filter_map(|other| match other.geometry {
+                let cylinders = link.solids().filter_map(|other| match other.geometry {
                     LinkGeometry::Cylinder { radius: of, length } if (of - radius).abs() < SAME => {
                         Some(ends(&other.origin, length))
                     }
                     _ => None,
                 });
                 match cylinders.flatten().find(is_end) {
-                    Some(end) => halves.push(End::new(link, end, radius)),
+                    Some(end) => halves.push(End::new(number, end, radius)),
                     None => {
                         let up = shape.origin.transform_vector(DVec3::Z);
-                        halves.push(End::new(link, (center, up), radius));
-                        halves.push(End::new(link, (center, -up), radius));
+                        halves.push(End::new(number, (center, up), radius));
+                        halves.push(End::new(number, (center, -up), radius));
                     }
                 }
             }

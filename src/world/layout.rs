@@ -9,6 +9,13 @@ use std::sync::OnceLock;
 /// Taxels of one layout, at most: more is a pitch in the wrong unit, and a hundred bytes each.
 pub const MOST_TAXELS: usize = 1 << 22;
 
+/// Deviation of an axis's length from one, at most. Two written digits round to less. A larger bound would accept vectors that are no
+/// unit vectors, a smaller one would refuse what files contain.
+const MAX_LENGTH_ERROR: f64 = 0.01;
+
+/// Deviation of a unit vector's length from one by rounding of its coordinates, at most.
+const UNIT_ROUNDING: f64 = 1e-9;
+
 /// Rest centres and axes of taxels, in the patch frame.
 ///
 /// Invariant: as many axes as centres; all finite; axes of length one. A layout that is a rule (a grid, an [`Extrusion`], a [`Dome`])
@@ -56,11 +63,12 @@ impl PartialEq for Layout {
 }
 
 impl Layout {
-    /// Any places (metres) with any axes (unit, away from the substrate).
+    /// Any places (metres) with any axes (unit, away from the substrate). Axes are normalised: files write them with few digits.
     ///
     /// # Errors
-    /// The error names the first taxel (from 1) whose place or axis cannot be used, or the lengths if they differ.
-    pub fn new(centers: Vec<DVec3>, axes: Vec<DVec3>) -> Result<Self> {
+    /// The error names the first taxel (from 1) whose place or axis cannot be used, such as an axis whose length differs from one by
+    /// more than 1 %, or the lengths if they differ.
+    pub fn new(centers: Vec<DVec3>, mut axes: Vec<DVec3>) -> Result<Self> {
         if centers.len() != axes.len() {
             return Err(Error::input(
                 "layout",
@@ -69,7 +77,7 @@ impl Layout {
             ));
         }
         check_count("layout", centers.len() as f64)?;
-        for (index, (center, axis)) in centers.iter().zip(&axes).enumerate() {
+        for (index, (center, axis)) in centers.iter().zip(&mut axes).enumerate() {
             let place = || format!("layout, taxel {}", index + 1);
             if !center.is_finite() {
                 return Err(Error::input(
@@ -78,13 +86,17 @@ impl Layout {
                     "finite coordinates in metres",
                 ));
             }
-            // A nearby length is rounding; of another one nobody knows what was meant.
-            if !(axis.is_finite() && (axis.length() - 1.0).abs() < 1e-9) {
+            let length = axis.length();
+            if !(axis.is_finite() && (length - 1.0).abs() <= MAX_LENGTH_ERROR) {
                 return Err(Error::input(
                     place(),
-                    format!("axis {axis}"),
-                    "a vector of length one",
+                    format!("axis {axis} of length {length}"),
+                    "a vector of length one, within 1 %",
                 ));
+            }
+            // An axis that is a unit vector to rounding keeps its bits.
+            if (length - 1.0).abs() > UNIT_ROUNDING {
+                *axis = axis.normalize();
             }
         }
         Ok(Self::of_places(Places { centers, axes }))
@@ -260,6 +272,29 @@ mod tests {
     }
 
     #[test]
+    fn axes_of_few_digits_are_normalised_and_others_keep_their_bits() {
+        let third = DVec3::splat(1.0).normalize();
+        let written = [
+            DVec3::splat(0.5774),
+            third,
+            0.991 * DVec3::Y,
+            1.009 * DVec3::Y,
+        ];
+        let layout = Layout::new(vec![DVec3::ZERO; 4], written.to_vec()).unwrap();
+        let axes = layout.axes();
+        assert!((axes[0] - third).length() < 1e-15 && axes[1] == third);
+        assert_eq!(axes[2..], [DVec3::Y, DVec3::Y]);
+        for length in [0.989, 1.011, 0.0, f64::INFINITY] {
+            let given = vec![DVec3::Z, length * DVec3::X];
+            let error = Layout::new(vec![DVec3::ZERO; 2], given).unwrap_err();
+            assert!(
+                error.to_string().starts_with("layout, taxel 2: axis "),
+                "{error}"
+            );
+        }
+    }
+
+    #[test]
     fn what_cannot_be_a_layout_is_refused_with_its_taxel() {
         let message = |centers: &[DVec3], axes: &[DVec3]| {
             let layout = Layout::new(centers.to_vec(), axes.to_vec());
@@ -272,7 +307,7 @@ mod tests {
         assert_eq!(message(&[], &[]), "layout: 0 taxels; 1 to 4194304");
         assert_eq!(
             message(&[DVec3::ZERO; 2], &[DVec3::Z, DVec3::new(0.0, 0.0, 2.0)]),
-            "layout, taxel 2: axis [0, 0, 2]; a vector of length one"
+            "layout, taxel 2: axis [0, 0, 2] of length 2; a vector of length one, within 1 %"
         );
         let nowhere = DVec3::new(f64::NAN, 0.0, 0.0);
         assert_eq!(

@@ -93,6 +93,40 @@ fn the_files_hold_what_the_library_computes() {
 }
 
 #[test]
+fn what_is_not_read_of_a_robots_file_is_noted_on_standard_error() {
+    let case = Case::new();
+    case.file(
+        "r.urdf",
+        "<!-- by a plug-in -->\n<?xml version=\"1.0\"?><robot name=\"r\"><link name=\"base\"/>\n\
+         <sensor name=\"pad_tactile\"><parent link=\"base\"/><tactile/></sensor></robot>",
+    );
+    let scene = "title = \"A robot\"\nrobots = [{ name = \"robot\", urdf = \"r.urdf\" }]\npatches = [{ name = \"pad\", robot = \"robot\", \
+                 layout = { grid = { nx = 2, ny = 2, pitch_mm = 4.0 } }, stroke_mm = 5.0 }]\n";
+    let scene = case.file("s.toml", scene);
+    let scene = scene.to_str().unwrap();
+    let (_, said) = case.succeeds(&["simulate", scene, "--out", "o"]);
+    let notes: Vec<&str> = said
+        .lines()
+        .filter(|line| line.starts_with("note: "))
+        .collect();
+    let [xml, sensor] = notes.as_slice() else {
+        panic!("{said}");
+    };
+    assert!(
+        xml.contains("r.urdf: a comment or space before the XML declaration"),
+        "{xml}"
+    );
+    assert!(
+        sensor.contains(
+            "r.urdf, line 3: tactile sensor `pad_tactile` on link `base`, which is not read"
+        ),
+        "{sensor}"
+    );
+    let (_, quiet) = case.succeeds(&["simulate", scene, "--out", "p", "--quiet"]);
+    assert_eq!(quiet, "");
+}
+
+#[test]
 fn a_scene_that_cannot_be_leaves_no_file_and_exits_with_2() {
     let case = Case::new();
     let bad = case.file("bad.toml", "title = \"\"\npatches = []\n");

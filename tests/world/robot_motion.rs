@@ -131,14 +131,31 @@ fn a_velocity_passed_between_slow_way_points_is_found() {
 }
 
 #[test]
-fn a_joint_that_mimics_keeps_its_own_limits() {
-    let error = hinge(&free(), &[0.0, 4.5], Interpolation::Linear).expect("-8.5 rad");
-    assert_eq!(error.positions_at(1.0)[0], 4.5);
-    let error = hinge(&free(), &[0.0, 4.8], Interpolation::Linear).unwrap_err();
+fn a_joint_that_mimics_goes_beyond_its_own_limits_with_a_note() {
+    let within = hinge(&free(), &[0.0, 4.5], Interpolation::Linear).expect("-8.5 rad");
+    assert!(within.notes().is_empty());
+    let beyond = hinge(&free(), &[0.0, 4.8], Interpolation::Linear).expect("-9.1 rad");
+    assert_eq!(beyond.positions_at(1.0)[0], 4.8);
     assert_eq!(
-        error.to_string(),
-        "joint trajectory: joint `follower`: -9.100000 rad (-521.39°) at 1.0000 s (way-point 2); \
-         at least -9.000000 rad (-515.66°)"
+        beyond.notes(),
+        [
+            "joint trajectory: joint `follower`: -9.100000 rad (-521.39°) at 1.0000 s (way-point 2); \
+          at least -9.000000 rad (-515.66°): it mimics `hinge`, whatever its own limits"
+        ]
+    );
+}
+
+#[test]
+fn a_joint_that_no_column_moves_rests() {
+    let robot = robot(r#"lower="0.2" upper="9" velocity="90""#);
+    let csv = "time_s,slide_mm\n0,10\n1,20\n";
+    let read = JointTrajectory::read_csv(&robot, "t.csv", csv.as_bytes(), Interpolation::Linear);
+    assert_eq!(read.unwrap().positions_at(0.5), [0.2, 0.015]);
+    let none =
+        JointTrajectory::read_csv(&robot, "t.csv", &b"time_s\n0\n"[..], Interpolation::Linear);
+    assert_eq!(
+        none.unwrap_err().to_string(),
+        "t.csv, line 1: no column of a joint; `hinge`, `slide`"
     );
 }
 
@@ -244,12 +261,12 @@ fn a_bad_csv_is_refused_with_its_line() {
         (
             "hinge_deg",
             "hing_deg",
-            "t.csv, line 1: no column for `hinge`; every joint that moves and mimics none",
+            "t.csv, line 1: column `hing_deg`; one of `hinge`, `slide`",
         ),
         (
             "hinge_deg",
             "hinge_mm",
-            "t.csv, line 1: no column for `hinge`; every joint that moves and mimics none",
+            "t.csv, line 1: column `hinge_mm`; one of `hinge`, `slide`",
         ),
         (
             "hinge_deg\n0,10,0\n1.5, 20,90\n2,0,-45",

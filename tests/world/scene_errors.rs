@@ -95,24 +95,6 @@ fn names_that_are_slips_are_answered_with_what_was_perhaps_meant() {
 
 #[test]
 fn what_moves_needs_a_motion_that_it_can_make() {
-    let said = refused("elbow_bend_deg = [0.0, 0.0], ", "");
-    says(
-        &said,
-        &[
-            "key robots.arm.joints.positions: nothing for `elbow_bend`",
-            "every joint",
-        ],
-    );
-    let without = good()
-        .lines()
-        .filter(|l| !l.starts_with("joints"))
-        .collect::<Vec<_>>()
-        .join("\n");
-    let said = plan(&without).unwrap_err().to_string();
-    says(
-        &said,
-        &["key robots.arm.joints: nothing, and joint `shoulder_turn` moves"],
-    );
     let said = refused(
         "shoulder_turn_deg = [0.0, 10.0]",
         "shoulder_turn_deg = [0.0, 170.0]",

@@ -332,7 +332,7 @@ class Patch:
         stiffness: ArrayLike | None = None,
         damping: ArrayLike | None = None,
     ) -> Patch:
-        """Any taxels: centers (n, 3), axes (n, 3) of length one, away from the substrate; the others (n,) or one number for all."""
+        """Any taxels: centers (n, 3), axes (n, 3) of length one within 1 % (they are normalised), away from the substrate; the others (n,) or one number for all."""
 
     def moved(self, pose: ArrayLike) -> Patch:
         """The same taxels elsewhere in the frame of the patch, and no grid any more. pose: (7,) or (4, 4)."""

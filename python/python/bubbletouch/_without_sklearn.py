@@ -89,6 +89,8 @@ class _Folds:
         if not isinstance(self.cv, int):
             yield from self.cv
             return
+        if self.cv < 2:
+            raise ValueError(f"cv: {self.cv}; at least 2 folds")
         if groups is not None:
             raise ValueError("groups: given to a number of folds; folds as pairs of arrays")
         order = np.argsort(labels, kind="stable")
@@ -100,4 +102,6 @@ class _Folds:
 
 def check_cv(cv: int | Iterable[Any], labels: NDArray[Any], *, classifier: bool) -> _Folds:
     """Folds of a number, or as they are given."""
+    if not isinstance(cv, int | Iterable):
+        raise ValueError(f"cv: {cv!r}; a number of folds, or pairs of arrays of training and test rows")
     return _Folds(cv if isinstance(cv, int) else list(cv))

@@ -12,6 +12,7 @@ A step costs 0.02; after `max_steps` the episode is cut off.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from numbers import Integral
 from typing import Any
 
 import gymnasium
@@ -21,6 +22,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from numpy.typing import NDArray
 
 from bubbletouch._core import Catalogue, Patch, SphereUnion, touch_poses
+from bubbletouch._numbers import real, whole
 from bubbletouch.learning import SVC
 
 __all__ = ["FindObject", "FindObjectVector"]
@@ -39,17 +41,18 @@ class _World:
     """Objects, skin and classifier, for any number of episodes at once."""
 
     def __init__(self, objects: Sequence[str], n_taxels: int, reach: float, training_seed: int) -> None:
-        if n_taxels < 2 or n_taxels % 2:
+        n_taxels = whole("n_taxels", n_taxels, least=2, most=2048)
+        if n_taxels % 2:
             raise ValueError(f"n_taxels: {n_taxels}; an even number of rows and columns")
         if len(objects) < 2:
             raise ValueError(f"objects: {len(objects)}; at least two to tell apart")
         catalogue = Catalogue.builtin()
         self.objects: list[SphereUnion] = [catalogue.object(name).pack(1e-3) for name in objects]
         self.patch = Patch.grid(n_taxels, n_taxels, 64e-3 / n_taxels, 5e-3)
-        self.reach = reach
+        self.reach = real("reach", reach, above=0)
         # Where each object stands if the patch's axis goes through its middle.
         self.upright = np.stack([touch_poses(thing) for thing in self.objects])
-        random = np.random.default_rng(training_seed)
+        random = np.random.default_rng(whole("training_seed", training_seed, least=0))
         n = N_TRAINING
         which = np.repeat(np.arange(len(objects)), n)
         offset = random.uniform(-0.06, 0.06, (len(which), 2))
@@ -100,9 +103,9 @@ class _World:
 class FindObjectVector(VectorEnv[NDArray[np.float32], NDArray[np.float32], Any]):
     """Many episodes, stepped in one call; an episode that has ended begins anew at its next step.
 
-    num_envs: how many. objects: two or more names of the catalogue. n_taxels: rows and columns of the patch, 64 mm wide; an even number. reach: how far from the table's
-    middle patch and object may be, metres. confidence: by how much one score must lead. max_steps: of an episode. training_seed: of the
-    touches that the classifier learns from.
+    num_envs: how many, at least 1. objects: two or more names of the catalogue. n_taxels: rows and columns of the patch, 64 mm wide; an even number. reach: how far from the table's
+    middle patch and object may be, metres, above 0. confidence: by how much one score must lead, at least 0. max_steps: of an episode, at least 1.
+    training_seed: of the touches that the classifier learns from. Raises TypeError and ValueError.
 
     Observations: float32 (num_envs, n_taxels² + 2), deflections as shares of the stroke and the patch's place as a share of the reach. Actions: float32
     (num_envs, 2), −1 to 1: moves along x and y by up to 20 mm.
@@ -121,11 +124,11 @@ class FindObjectVector(VectorEnv[NDArray[np.float32], NDArray[np.float32], Any])
         max_steps: int = 20,
         training_seed: int = 0,
     ) -> None:
-        self.num_envs = num_envs
-        self.confidence: float = confidence
-        self.max_steps: int = max_steps
+        self.num_envs = num_envs = whole("num_envs", num_envs, least=1)
+        self.confidence: float = real("confidence", confidence, least=0)
+        self.max_steps: int = whole("max_steps", max_steps, least=1)
         self._world = _World(objects, n_taxels, reach, training_seed)
-        low = np.r_[np.zeros(n_taxels**2), -np.ones(2)].astype(np.float32)
+        low = np.r_[np.zeros(self._world.patch.n_taxels), -np.ones(2)].astype(np.float32)
         self.single_observation_space = spaces.Box(low, np.ones(len(low), np.float32))
         self.single_action_space = spaces.Box(-1, 1, (2,), np.float32)
         batch = gymnasium.vector.utils.batch_space
@@ -138,15 +141,24 @@ class FindObjectVector(VectorEnv[NDArray[np.float32], NDArray[np.float32], Any])
         self._scores = np.zeros((n, len(objects)))
         self._n_steps = np.zeros(n, np.int64)
         self._is_over = np.zeros(n, bool)
+        # A generator of each environment, if a list of seeds was given; otherwise one for all.
+        self._own_random: list[np.random.Generator] | None = None
 
     def _begin(self, rows: NDArray[Any]) -> None:
-        n, reach = len(rows), self._world.reach
-        self._which[rows] = self.np_random.integers(len(self._world.objects), size=n)
-        self._middle[rows] = self.np_random.uniform(-reach / 2, reach / 2, (n, 2))
-        self._yaw[rows] = self.np_random.uniform(0, 2 * np.pi, n)
-        self._patch[rows] = self.np_random.uniform(-reach, reach, (n, 2))
+        if self._own_random is None:
+            self._draw(rows, self.np_random)
+        else:
+            for row in rows:
+                self._draw(np.array([row]), self._own_random[row])
         self._scores[rows] = 0
         self._n_steps[rows] = 0
+
+    def _draw(self, rows: NDArray[Any], random: np.random.Generator) -> None:
+        n, reach = len(rows), self._world.reach
+        self._which[rows] = random.integers(len(self._world.objects), size=n)
+        self._middle[rows] = random.uniform(-reach / 2, reach / 2, (n, 2))
+        self._yaw[rows] = random.uniform(0, 2 * np.pi, n)
+        self._patch[rows] = random.uniform(-reach, reach, (n, 2))
 
     def _observe(self) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
         frames = self._world.touch(self._which, self._patch - self._middle, self._yaw)
@@ -155,13 +167,31 @@ class FindObjectVector(VectorEnv[NDArray[np.float32], NDArray[np.float32], Any])
         return np.concatenate([shares, place], 1), frames
 
     def reset(
-        self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
+        self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
-        """New episodes in all environments; a seed makes them, and all after them, the same again."""
-        super().reset(seed=seed if not isinstance(seed, list) else seed[0], options=options)
+        """New episodes in all environments; a seed makes them, and all after them, the same again.
+
+        A sequence has a seed of each environment: its episodes are those of that environment alone with that seed. None in it: new ones.
+        Raises TypeError and ValueError.
+        """
+        if seed is None or isinstance(seed, Integral):
+            super().reset(seed=None if seed is None else whole("seed", seed, least=0), options=options)
+            # As in Gymnasium, a reset without a seed goes on with the generators that there are.
+            self._own_random = self._own_random if seed is None else None
+        else:
+            self._own_random = self._generators(seed)
         self._begin(np.arange(self.num_envs))
         self._is_over[:] = False
         return self._observe()[0], {"object": self._which.copy()}
+
+    def _generators(self, seeds: Sequence[int | None]) -> list[np.random.Generator]:
+        given = list(seeds) if isinstance(seeds, Sequence | np.ndarray) else None
+        if given is None:
+            raise TypeError(f"seed: {seeds!r}; a whole number, one for each of {self.num_envs} environments, or None")
+        if len(given) != self.num_envs:
+            raise ValueError(f"seed: {len(given)} seeds; one for each of {self.num_envs} environments")
+        checked = [None if one is None else whole(f"seed[{number}]", one, least=0) for number, one in enumerate(given)]
+        return [gymnasium.utils.seeding.np_random(one)[0] for one in checked]
 
     def step(
         self, actions: NDArray[np.float32]

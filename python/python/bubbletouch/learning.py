@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bubbletouch import _core
+from bubbletouch._numbers import real, whole
 
 try:
     from sklearn.base import BaseEstimator, ClassifierMixin
@@ -111,22 +112,24 @@ class SVC(_Classifier):
             case str():
                 raise ValueError(f"gamma: `{self.gamma}`; scale, auto or a number above 0")
             case number:
-                gamma = float(number)
+                gamma = real("gamma", number, above=0)
         return {
             "kernel": self.kernel,
             "gamma": gamma,
-            "coef0": float(self.coef0),
-            "degree": int(self.degree),
-            "c": float(self.C),
-            "tolerance": float(self.tol),
+            "coef0": real("coef0", self.coef0),
+            "degree": whole("degree", self.degree, least=1, most=20),
+            "c": real("C", self.C, above=0),
+            "tolerance": real("tol", self.tol, above=0),
             "multiclass": self.multi_class,
-            "memory_bytes": int(self.max_memory),
+            "memory_bytes": whole("max_memory", self.max_memory, least=0),
         }
 
     def fit(self, X: ArrayLike, y: ArrayLike) -> SVC:
         """Trains on features (n, m) and labels (n,). Ctrl-C returns at once; what runs is ended by its end."""
         features, numbers = self._numbered(X, y)
         self._model = _core.KernelSvm.train(features, numbers, self._params(features.shape[1]))
+        # What is fitted does not follow a later set_params.
+        self._fitted_multi_class = self.multi_class
         self.problems_ = self._model.problems
         support = [p["rows"][p["coefficients"] != 0] for p in self.problems_]
         self.support_ = np.unique(np.concatenate(support))
@@ -154,7 +157,7 @@ class SVC(_Classifier):
         n_classes = len(self.classes_)
         if n_classes == 2:
             return -values[:, 0] if values.shape[1] == 1 else (values[:, 1] - values[:, 0]) / 2
-        if self.multi_class == "ovr":
+        if self._fitted_multi_class == "ovr":
             return values
         votes, sums = np.zeros((2, len(values), n_classes))
         for problem, value in zip(self.problems_, values.T, strict=True):
@@ -197,13 +200,13 @@ class LinearSVC(_Classifier):
     def fit(self, X: ArrayLike, y: ArrayLike) -> LinearSVC:
         """Trains on features (n, m) and labels (n,). Ctrl-C returns at once; what runs is ended by its end."""
         features, numbers = self._numbered(X, y)
-        seed = 0 if self.random_state is None else int(self.random_state)
+        seed = 0 if self.random_state is None else whole("random_state", self.random_state, least=0)
         self._model = _core.LinearModel.train(
             features,
             numbers,
-            float(self.C),
-            float(self.tol),
-            int(self.max_iter),
+            real("C", self.C, above=0),
+            real("tol", self.tol, above=0),
+            whole("max_iter", self.max_iter, least=1),
             seed,
         )
         self.coef_, self.intercept_ = self._model.weights, self._model.bias
@@ -231,8 +234,8 @@ class GridSearch(_Classifier):
     """The C and γ of an SVC that recognise most held-out rows, over folds, on one matrix of products for the whole grid.
 
     estimator: an SVC. C: candidates, each above 0. gamma_scales: candidates of γ as multiples of that of "scale"; None: as the
-    estimator has it. cv: a number of folds, an object of scikit-learn that splits, or pairs of arrays of training and test rows; rows that share
-    a group (fit's `groups`) are kept together by those that take groups. Of equals the smaller γ, then the smaller C.
+    estimator has it. cv: a number of folds, an object of scikit-learn that splits, or pairs of arrays of training and test rows (numbers of rows, or
+    masks of all rows); rows that share a group (fit's `groups`) are kept together by those that take groups. Of equals the smaller γ, then the smaller C.
 
     After fit: best_params_ (C and gamma), best_score_, results_ (C, gamma, accuracy of each), best_estimator_ (of all rows).
     """
@@ -263,10 +266,15 @@ class GridSearch(_Classifier):
             "Callable[..., Iterable[tuple[NDArray[Any], NDArray[Any]]]]",
             check_cv(self.cv, numbers, classifier=True).split,
         )
-        folds = list(split(features, numbers, groups))
+        n_rows = len(features)
+        folds = [
+            (_row_numbers(f"cv, fold {fold}, train", train, n_rows), _row_numbers(f"cv, fold {fold}, test", test, n_rows))
+            for fold, (train, test) in enumerate(split(features, numbers, groups), start=1)
+        ]
         params = estimator._params(features.shape[1])
-        scales = [] if self.gamma_scales is None else [float(scale) for scale in self.gamma_scales]
-        chosen = _core.choose_svm(features, numbers, params, folds, list(self.C), scales)
+        scales = [real("gamma_scales", scale, above=0) for scale in self.gamma_scales or ()]
+        candidates = [real("C", c, above=0) for c in self.C]
+        chosen = _core.choose_svm(features, numbers, params, folds, candidates, scales)
         self.results_ = [dict(zip(("C", "gamma", "accuracy"), one, strict=True)) for one in chosen["tried"]]
         self.best_score_ = chosen["accuracy"]
         self.best_params_ = {"C": chosen["C"]}
@@ -285,6 +293,17 @@ class GridSearch(_Classifier):
         """As SVC's."""
         features = self._features(X)
         return self.best_estimator_.decision_function(features)
+
+
+def _row_numbers(name: str, rows: ArrayLike, n_rows: int) -> NDArray[np.int64]:
+    """Numbers of rows, of numbers (negative ones count from the end) or a mask, as NumPy indexes."""
+    given = np.asarray(rows)
+    if given.ndim != 1:
+        raise ValueError(f"{name}: shape {given.shape}; (n,) numbers of rows, or a mask of {n_rows} rows")
+    try:
+        return np.arange(n_rows)[given.astype(np.int64) if given.size == 0 else given]
+    except IndexError as error:
+        raise ValueError(f"{name}: {error}; numbers below {n_rows}, or a mask of {n_rows} rows") from None
 
 
 _SVC_NAMES = ("C", "kernel", "degree", "gamma", "coef0", "tol", "multi_class", "max_memory")

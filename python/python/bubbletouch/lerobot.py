@@ -20,6 +20,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from bubbletouch._numbers import whole
 from bubbletouch.recording import Floats, Recording
 
 __all__ = ["write_lerobot"]
@@ -52,8 +53,7 @@ def write_lerobot(
 
     if not episodes:
         raise ValueError("episodes: none; at least one")
-    if fps < 1 or window < 1:
-        raise ValueError(f"fps, window: {fps}, {window}; at least 1 each")
+    fps, window = whole("fps", fps, least=1), whole("window", window, least=1)
     shapes = {name: felt.patch.n_taxels for name, felt in episodes[0].patches.items()}
     tasks = list(dict.fromkeys(episode.title for episode in episodes))
     parts: list[dict[str, NDArray[Any]]] = []

@@ -173,7 +173,7 @@ impl Check<'_> {
     }
 
     fn positions(&self, key: &str, scene: &BodySceneSpec, robot: &Robot) -> Result<Vec<f64>> {
-        let mut positions = vec![0.0; robot.n_positions()];
+        let mut positions = robot.rest_positions();
         for (joint, &degrees) in &scene.posture_deg {
             let number = robot.joint(joint);
             let number = number.map_err(|_| self.error(key, joint, "joints of the robot"))?;

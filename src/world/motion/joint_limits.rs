@@ -10,10 +10,17 @@ use crate::world::robot::{Dimension, Limits};
 /// beyond 1.570796; more slack would hide what can be seen in a message.
 const SLACK: f64 = 1e-6;
 
-/// Checks every joint of one coordinate that has limits. `curves` are those of the robot's positions.
+/// Checks every joint of one coordinate that has limits. `curves` are those of the robot's positions. Returns a note for each joint
+/// that mimics another one and is taken beyond its own limits: it goes where its `<mimic>` says.
 ///
-/// The error is the first joint, in the robot's order, and the point where it is farthest beyond its limit.
-pub(super) fn check_limits(robot: &Robot, curves: &[Curve], way_points: &WayPoints) -> Result<()> {
+/// # Errors
+/// The first joint that mimics none and leaves its limits, and the point where it is farthest beyond.
+pub(super) fn check_limits(
+    robot: &Robot,
+    curves: &[Curve],
+    way_points: &WayPoints,
+) -> Result<Vec<String>> {
+    let mut notes = Vec::new();
     for (index, joint) in robot.joints().iter().enumerate() {
         let (Some(limits), Some(drive)) = (joint.limits, robot.drive_of(index)) else {
             continue;
@@ -23,14 +30,21 @@ pub(super) fn check_limits(robot: &Robot, curves: &[Curve], way_points: &WayPoin
         let moved = extremes.driven(multiplier, offset);
         let unit = joint.kind.coordinates()[0].1;
         if let Some((taken, given, allowed)) = first_beyond(&moved, &limits, unit) {
-            return Err(Error::input(
+            let beyond = Error::input(
                 format!("{}: joint `{}`", way_points.origin.place(), joint.name),
                 format!("{given} at {}", when(&taken, way_points)),
                 allowed,
+            );
+            let Some(mimic) = joint.mimic else {
+                return Err(beyond);
+            };
+            let followed = &robot.joints()[mimic.joint].name;
+            notes.push(format!(
+                "{beyond}: it mimics `{followed}`, whatever its own limits"
             ));
         }
     }
-    Ok(())
+    Ok(notes)
 }
 
 /// Where a joint is farthest beyond the first limit that it passes, what it does there, and what is allowed.

@@ -12,13 +12,14 @@ use std::io::Read;
 
 /// The positions of a robot through way-points in time; outside their range the ends hold.
 ///
-/// Invariant: at no time does a joint leave its limits of position and velocity by more than 1e-6 rad, m or those a second,
-/// joints that mimic included.
+/// Invariant: at no time does a joint that mimics none leave its limits of position and velocity by more than 1e-6 rad, m or those a
+/// second. A joint that mimics goes where its `<mimic>` says; beyond its own limits it has a [note](Self::notes).
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointTrajectory {
     times: Vec<f64>,
     /// One a position.
     curves: Vec<Curve>,
+    notes: Vec<String>,
 }
 
 impl JointTrajectory {
@@ -50,7 +51,8 @@ impl JointTrajectory {
         Self::through(robot, &way_points.checked()?, interpolation)
     }
 
-    /// From CSV: a column `time_s` and one for each of the robot's [coordinates](Robot::coordinates), in any order. Angles are in radians under
+    /// From CSV: a column `time_s` and one for each of the robot's [coordinates](Robot::coordinates) that moves, in any order; a coordinate
+    /// without a column stays at its [rest position](Robot::rest_positions). Angles are in radians under
     /// the coordinate's name (or with `_rad` behind it) and in degrees with `_deg`; lengths in metres (`_m`) and in millimetres with `_mm`.
     ///
     /// # Errors
@@ -64,14 +66,13 @@ impl JointTrajectory {
         let mut table = Table::read(place, source)?;
         let names = || robot.coordinates().iter().map(|c| c.name.as_str());
         let is_name = |column: &str| names().any(|name| name == column);
-        let mut columns = Vec::new();
-        for coordinate in robot.coordinates() {
-            let name = &coordinate.name;
-            let column = table.claim(name, coordinate.dimension.units(), is_name)?;
-            columns.push(column.ok_or_else(|| {
-                let given = format!("no column for `{name}`");
-                table.refuse_header(given, "every joint that moves and mimics none")
-            })?);
+        let (mut columns, mut moved) = (Vec::new(), Vec::new());
+        for (index, coordinate) in robot.coordinates().iter().enumerate() {
+            let units = coordinate.dimension.units();
+            if let Some(column) = table.claim(&coordinate.name, units, is_name)? {
+                columns.push(column);
+                moved.push(index);
+            }
         }
         for joint in robot.joints().iter().filter(|joint| joint.mimic.is_some()) {
             let (_, dimension) = joint.kind.coordinates()[0];
@@ -83,7 +84,19 @@ impl JointTrajectory {
                 return Err(table.refuse_header(given, "only the joint that it follows"));
             }
         }
-        let way_points = table.way_points(&columns, names())?;
+        if columns.is_empty() && table.n_columns() < 2 {
+            let names: Vec<String> = names().map(|name| format!("`{name}`")).collect();
+            return Err(table.refuse_header("no column of a joint", names.join(", ")));
+        }
+        let mut way_points = table.way_points(&columns, names())?;
+        let rest = robot.rest_positions();
+        way_points.values =
+            Array2::from_shape_fn((way_points.times.len(), rest.len()), |(row, position)| {
+                match moved.iter().position(|&index| index == position) {
+                    Some(column) => way_points.values[(row, column)],
+                    None => rest[position],
+                }
+            });
         Self::through(robot, &way_points, interpolation)
     }
 
@@ -110,11 +123,17 @@ impl JointTrajectory {
                 })?;
             curves.push(curve);
         }
-        check_limits(robot, &curves, way_points)?;
+        let notes = check_limits(robot, &curves, way_points)?;
         Ok(Self {
             times: times.clone(),
             curves,
+            notes,
         })
+    }
+
+    /// Sentences on joints that mimic others beyond their own limits.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
     }
 
     /// Seconds, one a way-point.

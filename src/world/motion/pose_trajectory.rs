@@ -20,7 +20,8 @@ const RPY: [&str; 3] = ["roll", "pitch", "yaw"];
 ///
 /// The position's three numbers are interpolated as a [`JointTrajectory`](super::JointTrajectory)'s. Rotations go the shorter
 /// way between neighbours: by slerp if linear, else by Hermite curves of quaternions \[KKS\], whose angular velocity is
-/// continuous and zero at both ends (squad's is so only for even times).
+/// continuous and zero at both ends (squad's is so only for even times). If monotone, a turn about one axis never leaves the range of its
+/// two way-points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoseTrajectory {
     times: Vec<f64>,

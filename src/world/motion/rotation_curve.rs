@@ -1,6 +1,7 @@
 //! A rotation over time, through way-points.
 
 use super::curve::{Interpolation, Moment};
+use super::slopes::monotone_slope;
 use glam::{DQuat, DVec3};
 
 /// A rotation over time. Between two way-points, with s from 0 to 1,
@@ -33,7 +34,10 @@ impl RotationCurve {
             .windows(2)
             .map(|q| rotation_vector(q[0].conjugate() * q[1]));
         let turns: Vec<DVec3> = turns.collect();
-        let velocities = body_velocities(&steps, &turns);
+        let velocities = match interpolation {
+            Interpolation::Monotone => monotone_velocities(&steps, &turns),
+            Interpolation::Linear | Interpolation::Cubic => body_velocities(&steps, &turns),
+        };
         let piece = |i: usize| {
             let h = steps[i];
             let turns = match interpolation {
@@ -95,6 +99,22 @@ fn body_velocities(steps: &[f64], turns: &[DVec3]) -> Vec<DVec3> {
     velocities
 }
 
+/// Angular velocity at each way-point in the body's frame, rad/s, with which a turn about one axis stays between its way-points: zero at
+/// the ends and where the turn goes back, else along the direction that halves the turns on both sides, as fast as
+/// [`monotone_slope`] of their components along it. With ω₁ = v h / 3 the end of the first control turn is then no farther from
+/// either way-point than these are from each other, and so for ω₃.
+fn monotone_velocities(steps: &[f64], turns: &[DVec3]) -> Vec<DVec3> {
+    let mut velocities = vec![DVec3::ZERO; steps.len() + 1];
+    for i in 1..steps.len() {
+        let (before, after) = (turns[i - 1] / steps[i - 1], turns[i] / steps[i]);
+        let middle = before.normalize_or_zero() + after.normalize_or_zero();
+        let along = middle.normalize_or_zero();
+        let secants = [before.dot(along), after.dot(along)];
+        velocities[i] = monotone_slope([steps[i - 1], steps[i]], secants) * along;
+    }
+    velocities
+}
+
 /// The shorter turn of a unit quaternion, radians along its axis.
 fn rotation_vector(q: DQuat) -> DVec3 {
     let q = if q.w < 0.0 { -q } else { q };
@@ -108,6 +128,9 @@ fn rotation_vector(q: DQuat) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random::Seed;
+    use rand::Rng;
+    use std::f64::consts::FRAC_PI_2;
 
     const TIMES: [f64; 4] = [0.0, 0.7, 1.0, 2.5];
 
@@ -140,25 +163,70 @@ mod tests {
     }
 
     #[test]
-    fn the_angular_velocity_of_a_cubic_is_continuous_and_zero_at_the_ends() {
-        let curve = RotationCurve::through(&TIMES, &way_points(), Interpolation::Cubic).unwrap();
-        let dt = 1e-6;
-        for time in [0.7, 1.0] {
-            let before = angular_velocity(&curve, time - dt, dt);
-            let after = angular_velocity(&curve, time, dt);
-            assert!(before.length() > 0.3, "it passes, it does not stop");
-            assert!(
-                (before - after).length() < 1e-4,
-                "{time}: {before}, {after}"
-            );
+    fn the_angular_velocity_is_continuous_and_zero_at_the_ends() {
+        for kind in [Interpolation::Cubic, Interpolation::Monotone] {
+            let curve = RotationCurve::through(&TIMES, &way_points(), kind).unwrap();
+            let dt = 1e-6;
+            for time in [0.7, 1.0] {
+                let before = angular_velocity(&curve, time - dt, dt);
+                let after = angular_velocity(&curve, time, dt);
+                assert!(before.length() > 0.3, "it passes, it does not stop");
+                assert!(
+                    (before - after).length() < 1e-4,
+                    "{time}: {before}, {after}"
+                );
+            }
+            assert!(angular_velocity(&curve, 0.0, dt).length() < 1e-4);
+            assert!(angular_velocity(&curve, 2.5 - dt, dt).length() < 1e-4);
         }
-        assert!(angular_velocity(&curve, 0.0, dt).length() < 1e-4);
-        assert!(angular_velocity(&curve, 2.5 - dt, dt).length() < 1e-4);
+    }
+
+    #[test]
+    fn a_monotone_turn_stays_between_its_way_points() {
+        let yaw = |degrees: f64| DQuat::from_rotation_z(degrees.to_radians());
+        let at = [yaw(0.0), yaw(0.0), yaw(90.0), yaw(90.0)];
+        let curve = RotationCurve::through(&TIMES, &at, Interpolation::Monotone).unwrap();
+        let mut last = 0.0;
+        for k in 0..=2500 {
+            let turn = rotation_vector(curve.rotation(Moment::of(1e-3 * f64::from(k), &TIMES)));
+            assert!(turn.truncate().length() < 1e-15, "about z: {turn}");
+            assert!(
+                turn.z >= last - 1e-15 && turn.z <= FRAC_PI_2 + 1e-15,
+                "{turn}"
+            );
+            last = turn.z;
+        }
+        assert_eq!(curve.rotation(Moment::After), yaw(90.0));
+    }
+
+    #[test]
+    fn a_monotone_turn_in_space_is_never_farther_from_a_way_point_than_the_next_one() {
+        let mut rng = Seed::new(2018).named("monotone turns").rng();
+        let apart = |a: DQuat, b: DQuat| rotation_vector(a.conjugate() * b).length();
+        for case in 0..200 {
+            let turn = |_| DVec3::from_array([(); 3].map(|()| rng.gen_range(-1.5..1.5)));
+            let at = [0; 4].map(turn).map(DQuat::from_scaled_axis);
+            let curve = RotationCurve::through(&TIMES, &at, Interpolation::Monotone).unwrap();
+            for piece in 0..3 {
+                let whole = apart(at[piece], at[piece + 1]);
+                for step in 0..=50 {
+                    let share = f64::from(step) / 50.0;
+                    let time = TIMES[piece] + share * (TIMES[piece + 1] - TIMES[piece]);
+                    let here = curve.rotation(Moment::of(time, &TIMES));
+                    let farthest = apart(at[piece], here).max(apart(here, at[piece + 1]));
+                    assert!(
+                        farthest <= whole + 1e-7,
+                        "{case} {piece} {share}: {farthest} {whole}"
+                    );
+                }
+            }
+        }
     }
 
     #[test]
     fn every_way_point_is_passed() {
-        for kind in [Interpolation::Linear, Interpolation::Cubic] {
+        use Interpolation::{Cubic, Linear, Monotone};
+        for kind in [Linear, Cubic, Monotone] {
             let curve = RotationCurve::through(&TIMES, &way_points(), kind).unwrap();
             for (&time, q) in TIMES.iter().zip(way_points()) {
                 for time in [time, time - 1e-13] {

@@ -24,16 +24,23 @@ pub(super) fn clamped_spline(steps: &[f64], secants: &[f64]) -> Vec<f64> {
     slopes
 }
 
-/// Velocities with which no cubic leaves the range of its two values \[FC\]: zero at the ends and wherever the direction
-/// turns, else the weighted harmonic mean of the secants on both sides (Fritsch and Butland's choice).
+/// Velocities with which no cubic leaves the range of its two values \[FC\]: zero at the ends, else [`monotone_slope`].
 pub(super) fn monotone(steps: &[f64], secants: &[f64]) -> Vec<f64> {
     let mut slopes = vec![0.0; steps.len() + 1];
     for i in 1..steps.len() {
-        let (d0, d1) = (secants[i - 1], secants[i]);
-        if d0 * d1 > 0.0 {
-            let (w0, w1) = (2.0 * steps[i] + steps[i - 1], steps[i] + 2.0 * steps[i - 1]);
-            slopes[i] = (w0 + w1) / (w0 / d0 + w1 / d1);
-        }
+        slopes[i] = monotone_slope([steps[i - 1], steps[i]], [secants[i - 1], secants[i]]);
     }
     slopes
+}
+
+/// Returns the velocity between two pieces: zero where the direction turns, else the weighted harmonic mean of the secants on both
+/// sides (Fritsch and Butland's choice), which is at most three times the smaller one.
+pub(super) fn monotone_slope([h0, h1]: [f64; 2], [d0, d1]: [f64; 2]) -> f64 {
+    match d0 * d1 > 0.0 {
+        true => {
+            let (w0, w1) = (2.0 * h1 + h0, h1 + 2.0 * h0);
+            (w0 + w1) / (w0 / d0 + w1 / d1)
+        }
+        false => 0.0,
+    }
 }

@@ -67,6 +67,11 @@ impl Table {
         Ok(found)
     }
 
+    /// Columns of the file, the one of times included.
+    pub fn n_columns(&self) -> usize {
+        self.claimed.len()
+    }
+
     /// An error in the header.
     pub fn refuse_header(&self, given: impl ToString, allowed: impl ToString) -> Error {
         self.numbers.refuse_header(given, allowed)

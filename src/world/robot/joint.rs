@@ -19,7 +19,7 @@ pub struct Joint {
     pub origin: Pose,
     /// Unit vector in the joint's frame; it means nothing to fixed and floating joints.
     pub axis: DVec3,
-    /// What it can do; `None` for joints of no coordinate or several, and continuous ones without a `<limit>`.
+    /// Range of its position and velocity; `None` for joints of no coordinate or several, and joints without a `<limit>`.
     pub limits: Option<Limits>,
     /// The joint that it follows, if it does.
     pub mimic: Option<Mimic>,
@@ -42,16 +42,16 @@ pub enum JointKind {
     Planar,
 }
 
-/// Limits of a hinge or slide: radians or metres, and seconds.
+/// Limits of a hinge or slide: radians or metres, and seconds. A limit that the file lacks, or that contradicts itself, is infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Lowest position, rad or m; −∞ on a continuous joint.
+    /// Lowest position, rad or m; −∞ if there is none, as on a continuous joint.
     pub lower: f64,
-    /// Highest position, rad or m, not below `lower`; +∞ on a continuous joint.
+    /// Highest position, rad or m, not below `lower`; +∞ if there is none, as on a continuous joint.
     pub upper: f64,
-    /// Highest speed, rad/s or m/s, zero or positive.
+    /// Highest speed, rad/s or m/s, zero or positive; +∞ if there is none.
     pub velocity: f64,
-    /// Highest torque or force, N·m or N, zero or positive; nothing here uses it.
+    /// Highest torque or force, N·m or N, zero or positive; +∞ if there is none. Nothing here uses it.
     pub effort: f64,
 }
 

@@ -10,7 +10,7 @@ use glam::DVec3;
 pub struct Link {
     /// Unique among the robot's links.
     pub name: String,
-    /// Its visual and collision shapes, in the order of the file.
+    /// Its visual and collision shapes, in the order of the file, without those that could not be read.
     pub shapes: Vec<LinkShape>,
 }
 
@@ -34,31 +34,32 @@ pub enum ShapeRole {
     Collision,
 }
 
-/// The form of a shape, centred on its own origin; axes along z; metres.
+/// The form of a shape, centred on its own origin; axes along z; lengths in metres, zero or positive. A shape with a length of zero
+/// has no volume, and no skin can lie on it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LinkGeometry {
     /// A box.
     Box {
-        /// Edge lengths, positive.
+        /// Edge lengths.
         size: DVec3,
     },
     /// A cylinder with flat ends.
     Cylinder {
-        /// Positive.
+        /// Of the cylinder.
         radius: f64,
-        /// From end to end, positive.
+        /// From end to end.
         length: f64,
     },
     /// A cylinder with half balls on its ends (URDF 1.2).
     Capsule {
-        /// Positive.
+        /// Of the cylinder and of the half balls.
         radius: f64,
-        /// Of the cylinder, without the half balls; positive.
+        /// Of the cylinder, without the half balls.
         length: f64,
     },
     /// A ball.
     Sphere {
-        /// Positive.
+        /// Of the ball.
         radius: f64,
     },
     /// Triangles in a file of their own.
@@ -70,18 +71,45 @@ pub enum LinkGeometry {
     },
 }
 
-/// The link of a `<link>` element.
+impl LinkGeometry {
+    /// Whether the form encloses a volume; a mesh is taken to.
+    pub fn has_volume(&self) -> bool {
+        match self {
+            Self::Box { size } => size.min_element() > 0.0,
+            Self::Cylinder { radius, length } => *radius > 0.0 && *length > 0.0,
+            // A capsule of length zero is a ball.
+            Self::Capsule { radius, .. } | Self::Sphere { radius } => *radius > 0.0,
+            Self::Mesh { .. } => true,
+        }
+    }
+}
+
+impl Link {
+    /// Collision shapes that have a volume: what touches, and what skin can lie on.
+    pub(crate) fn solids(&self) -> impl Iterator<Item = &LinkShape> {
+        let is_solid =
+            |shape: &&LinkShape| shape.role == ShapeRole::Collision && shape.geometry.has_volume();
+        self.shapes.iter().filter(is_solid)
+    }
+}
+
+/// Reads a `<link>` element.
 pub(super) fn read_link(element: &Element) -> Result<Link> {
     let name = element.name()?.to_owned();
-    element.check_tags(&["visual", "collision", "inertial"])?;
+    let slips = element.check_tags(&["visual", "collision", "inertial"]);
+    element.or_note(slips, (), "the element is passed over");
     let visual = element.children("visual").map(|it| (it, ShapeRole::Visual));
     let collision = element
         .children("collision")
         .map(|it| (it, ShapeRole::Collision));
     let mut written: Vec<_> = visual.chain(collision).collect();
     written.sort_by_key(|(shape, _)| shape.node.range().start);
-    let shapes = written.iter().map(|(shape, role)| read_shape(shape, *role));
-    let shapes = shapes.collect::<Result<_>>()?;
+    // A shape does not decide where links are: one that cannot be read is left out.
+    let shapes = written.iter().filter_map(|(shape, role)| {
+        let read = read_shape(shape, *role).map(Some);
+        shape.or_note(read, None, "this shape is left out")
+    });
+    let shapes = shapes.collect();
     Ok(Link { name, shapes })
 }
 
@@ -106,12 +134,12 @@ fn read_geometry(element: &Element) -> Result<LinkGeometry> {
             "exactly one of box, cylinder, capsule, sphere, mesh",
         ));
     };
-    let length = |attribute| positive(form, attribute);
+    let length = |attribute| length_of(form, attribute);
     Ok(match *tag {
         "box" => {
             let size = DVec3::from(form.needed_numbers::<3>("size")?);
-            if size.min_element() <= 0.0 {
-                return Err(not_positive(form, "size", size));
+            if size.min_element() < 0.0 {
+                return Err(negative(form, "size", size));
             }
             LinkGeometry::Box { size }
         }
@@ -143,17 +171,17 @@ fn read_mesh(form: &Element) -> Result<LinkGeometry> {
     Ok(LinkGeometry::Mesh { file, scale })
 }
 
-fn positive(form: &Element, attribute: &str) -> Result<f64> {
+fn length_of(form: &Element, attribute: &str) -> Result<f64> {
     let [value] = form.needed_numbers(attribute)?;
-    if value > 0.0 {
+    if value >= 0.0 {
         return Ok(value);
     }
-    Err(not_positive(form, attribute, value))
+    Err(negative(form, attribute, value))
 }
 
-fn not_positive(form: &Element, attribute: &str, value: impl std::fmt::Display) -> Error {
+fn negative(form: &Element, attribute: &str, value: impl std::fmt::Display) -> Error {
     form.refuse(
         format!("`{attribute}` {value}"),
-        "positive lengths in metres",
+        "lengths in metres, zero or positive",
     )
 }

@@ -7,27 +7,33 @@ use crate::error::{Error, Result};
 /// Where a joint's coordinates come from: its own, or `multiplier · position + offset` of the one at the end of the chain that it follows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Drive {
-    /// Index of the first position of the joint at the end of the chain.
+    /// Index of the first position of the joint at the end of the chain; it means nothing if the multiplier is 0.
     pub position: usize,
-    /// Of the whole chain; 1 of its end.
+    /// Of the whole chain; 1 of its end, 0 if the end is a fixed joint.
     pub multiplier: f64,
     /// Of the whole chain; 0 of its end.
     pub offset: f64,
 }
 
-/// The drive of each joint. The error, at a joint's element, is a chain that ends in itself, in a joint of no coordinate or
-/// several, or in numbers that are too large.
+/// Returns the drive of each joint. A joint that mimics a fixed one stands at its offset.
+///
+/// # Errors
+/// If a chain ends in itself or its numbers are too large. The error names the line of a joint of the chain.
+///
+/// # Panics
+/// If a joint mimics a joint of several coordinates.
 pub(super) fn drives(joints: &[Joint], elements: &[Element]) -> Result<Vec<Drive>> {
     let mut known: Vec<Option<Drive>> = vec![None; joints.len()];
     let mut first = 0;
     for (joint, drive) in joints.iter().zip(&mut known) {
         if joint.mimic.is_none() {
+            let n_coordinates = joint.kind.coordinates().len();
             *drive = Some(Drive {
                 position: first,
-                multiplier: 1.0,
+                multiplier: if n_coordinates == 0 { 0.0 } else { 1.0 },
                 offset: 0.0,
             });
-            first += joint.kind.coordinates().len();
+            first += n_coordinates;
         }
     }
     let mut on_chain = vec![false; joints.len()];
@@ -48,13 +54,8 @@ pub(super) fn drives(joints: &[Joint], elements: &[Element]) -> Result<Vec<Drive
         };
         for (joint, mimic) in chain.into_iter().rev() {
             let element = &elements[joint];
-            if !joints[mimic.joint].kind.has_one_coordinate() {
-                let (name, followed) = (&joints[joint].name, &joints[mimic.joint].name);
-                return Err(element.refuse(
-                    format!("joint `{name}` mimics `{followed}`, which has not one coordinate"),
-                    "a revolute, continuous or prismatic joint to follow",
-                ));
-            }
+            let followed = &joints[mimic.joint].kind;
+            assert!(followed.coordinates().len() < 2, "one position to follow");
             drive.offset = mimic.multiplier * drive.offset + mimic.offset;
             drive.multiplier *= mimic.multiplier;
             if !(drive.multiplier.is_finite() && drive.offset.is_finite()) {

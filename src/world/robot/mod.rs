@@ -12,6 +12,9 @@
 //! | planar | x, y, m; theta, rad | shift in the plane across the axis, then turn about it |
 //! | floating | x, y, z, m; roll, pitch, yaw, rad | shift, then turn: `Rz(yaw) Ry(pitch) Rx(roll)` |
 //!
+//! What decides where links are must be right: links, joints, their origins. A joint whose axis or type cannot be read is fixed; limits,
+//! shapes and `<mimic>` that cannot be read are left out. Each is a [note](Robot::notes).
+//!
 //! The **positions** of a robot are the coordinates of its joints in the order of its file, without fixed joints and without
 //! those that mimic another.
 
@@ -20,6 +23,8 @@ mod joint;
 mod link;
 mod mimic;
 mod model;
+mod tactile;
+mod text;
 mod tree;
 mod urdf;
 mod xml;

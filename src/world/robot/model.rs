@@ -1,6 +1,7 @@
 //! A robot as links and joints, and where its links are.
 
 use super::mimic::Drive;
+use super::text::decoded;
 use super::tree::Tree;
 use super::urdf::read_urdf;
 use super::{Coordinate, Joint, Link};
@@ -41,10 +42,12 @@ pub struct Robot {
     /// One a joint.
     drives: Vec<Drive>,
     coordinates: Vec<Coordinate>,
+    notes: Vec<String>,
 }
 
 impl Robot {
-    /// A robot from the text of a URDF file.
+    /// Reads a robot from the text of a URDF file. What decides where links are must be right; the rest may be missing or wrong, and is
+    /// then left out with a [note](Self::notes).
     ///
     /// # Errors
     /// Errors begin with `place`, the file's name, and give the line.
@@ -52,15 +55,26 @@ impl Robot {
         read_urdf(place, text)
     }
 
-    /// A robot from a URDF file. Mesh files that it names are not opened.
+    /// Reads a robot from a URDF file in UTF-8, UTF-16 with a byte order mark, or Latin-1. Mesh files that it names are not opened.
     ///
     /// # Errors
     /// A file that cannot be read; those of [`from_urdf`](Self::from_urdf).
     pub fn read_urdf(path: &Path) -> Result<Self> {
         let place = path.display().to_string();
-        let text = std::fs::read_to_string(path)
+        let bytes = std::fs::read(path)
             .map_err(|e| Error::input(&place, format!("cannot be read ({e})"), "a URDF file"))?;
-        read_urdf(&place, &text)
+        Self::from_urdf_bytes(&place, &bytes)
+    }
+
+    /// The same from the bytes of a file.
+    ///
+    /// # Errors
+    /// Those of [`from_urdf`](Self::from_urdf).
+    pub fn from_urdf_bytes(place: &str, bytes: &[u8]) -> Result<Self> {
+        let (text, note) = decoded(place, bytes);
+        let mut robot = read_urdf(place, &text)?;
+        robot.notes.splice(0..0, note);
+        Ok(robot)
     }
 
     /// A robot of one link without joints: its base is moved, and nothing else.
@@ -79,17 +93,18 @@ impl Robot {
             },
             drives: Vec::new(),
             coordinates: Vec::new(),
+            notes: Vec::new(),
         }
     }
 
     /// From parts that were checked. The error is two coordinates of one name.
     pub(super) fn assembled(
-        name: String,
-        place: &str,
+        (name, place): (String, &str),
         links: Vec<Link>,
         joints: Vec<Joint>,
         tree: Tree,
         drives: Vec<Drive>,
+        notes: Vec<String>,
     ) -> Result<Self> {
         let mut coordinates = Vec::new();
         for (index, joint) in joints.iter().enumerate() {
@@ -115,12 +130,18 @@ impl Robot {
             tree,
             drives,
             coordinates,
+            notes,
         })
     }
 
     /// Its name.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// Sentences on what the file has and the robot has not, each with the file's name and the line; empty if nothing was left out.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
     }
 
     /// In the order of the file.
@@ -146,6 +167,15 @@ impl Robot {
     /// How many positions it has.
     pub fn n_positions(&self) -> usize {
         self.coordinates.len()
+    }
+
+    /// Positions at which the robot stands if nothing moves it: 0, or the nearest limit of a joint whose range excludes 0; rad and m.
+    pub fn rest_positions(&self) -> Vec<f64> {
+        let rest = |coordinate: &Coordinate| {
+            let limits = self.joints[coordinate.joint].limits;
+            limits.map_or(0.0, |limits| 0f64.clamp(limits.lower, limits.upper))
+        };
+        self.coordinates.iter().map(rest).collect()
     }
 
     /// Index of a link by its name.
@@ -197,9 +227,10 @@ impl Robot {
         for &index in &self.tree.outward {
             let joint = &self.joints[index];
             let drive = &self.drives[index];
-            let own = &positions[drive.position..];
+            let own = positions.get(drive.position..).unwrap_or_default();
             let parent_from_child = match joint.mimic {
                 None => joint.pose(&own[..joint.kind.coordinates().len()]),
+                Some(_) if drive.multiplier == 0.0 => joint.pose(&[drive.offset]),
                 Some(_) => joint.pose(&[drive.multiplier * own[0] + drive.offset]),
             };
             world_from_link[joint.child] =
@@ -208,11 +239,11 @@ impl Robot {
         Ok(())
     }
 
-    /// Which position moves a joint of one coordinate, and how: `(position, multiplier, offset)`; `None` for the others.
-    /// A joint that mimics none has multiplier 1 and offset 0.
+    /// Which position moves a joint of one coordinate, and how: `(position, multiplier, offset)`; `None` for the others and for joints
+    /// that no position moves, because they mimic a fixed joint. A joint that mimics none has multiplier 1 and offset 0.
     pub fn drive_of(&self, joint: usize) -> Option<(usize, f64, f64)> {
         let drive = self.drives[joint];
-        let is_one = self.joints[joint].kind.has_one_coordinate();
+        let is_one = self.joints[joint].kind.has_one_coordinate() && drive.multiplier != 0.0;
         is_one.then_some((drive.position, drive.multiplier, drive.offset))
     }
 

@@ -1,46 +1,97 @@
 //! URDF \[URDF\]: the text of a robot → its links and joints, each error with its line.
 //!
 //! Read is what moves links and what skin can lie on; inertia, colours, transmissions and other tools' elements are passed
-//! over.
+//! over. What does not decide where links are may be wrong: it is left out with a note.
 
 use super::link::read_link;
-use super::mimic::drives;
+use super::mimic::{Drive, drives};
+use super::tactile::note_tactile_sensors;
+use super::text::{parsed, repaired};
 use super::tree::Tree;
 use super::xml::{Element, Lines};
 use super::{Joint, JointKind, Limits, Link, Mimic, Robot};
 use crate::error::{Error, Result};
 use crate::spelling::nearest_names;
 use glam::DVec3;
-use roxmltree::{Document, Node};
+use roxmltree::Node;
 use std::collections::HashMap;
 
 /// Part of the address of the namespace of xacro's elements, in all its versions.
 const XACRO: &str = "xacro";
 
-/// A robot from the text of a URDF file; errors begin with `place`, the file's name.
+/// What becomes of a part that cannot be read.
+const UNLIMITED: &str = "it does not limit the joint";
+const FIXED: &str = "the joint is fixed";
+const ALONE: &str = "the joint mimics none";
+
+/// Reads a robot from the text of a URDF file; errors begin with `place`, the file's name.
 pub(super) fn read_urdf(place: &str, text: &str) -> Result<Robot> {
     let lines = Lines::new(place, text);
-    let document = Document::parse(text).map_err(|e| unreadable(place, text, &e))?;
-    check_expanded(&document, &lines)?;
+    let text = repaired(place, text, &lines);
+    let document = parsed(&text).map_err(|e| unreadable(place, &text, &e))?;
     let root = Element {
         node: document.root_element(),
         lines: &lines,
     };
+    // What xacro would have made may be what is missing.
+    let not_expanded = not_expanded(root);
+    let (name, links, joints, tree, drives) =
+        read_parts(root).map_err(|error| match &not_expanded {
+            Some(element) => xacro_error(*element),
+            None => error,
+        })?;
+    if let Some(element) = not_expanded {
+        lines.note(format!("{}: it is passed over", xacro_error(element)));
+    }
+    note_tactile_sensors(root);
+    let notes = lines.into_notes();
+    Robot::assembled((name, place), links, joints, tree, drives, notes)
+}
+
+type Parts = (String, Vec<Link>, Vec<Joint>, Tree, Vec<Drive>);
+
+fn read_parts(root: Element) -> Result<Parts> {
     if root.node.tag_name().name() != "robot" {
         return Err(root.refuse(format!("{} as the root", root.called()), "URDF: a <robot>"));
     }
     root.check_tags(&["link", "joint", "material", "transmission", "gazebo"])?;
     let elements: Vec<Element> = root.children("link").collect();
-    let links = elements.iter().map(read_link).collect::<Result<Vec<_>>>()?;
+    let mut links = elements.iter().map(read_link).collect::<Result<Vec<_>>>()?;
     if links.is_empty() {
         return Err(root.refuse("a robot without a <link>", "at least one"));
     }
-    let names = links.iter().map(|link| link.name.as_str());
-    let link_of = index_of_each("link", names, &elements)?;
-    let (joints, elements) = read_joints(root, &links, &link_of)?;
+    let names = elements.iter().map(Element::name);
+    let names = names.collect::<Result<Vec<_>>>()?;
+    let mut link_of = index_of_each("link", names.into_iter(), &elements)?;
+    add_world(root, &mut links, &mut link_of);
+    let (mut joints, elements) = read_joints(root, &links, &link_of)?;
+    drop_mimics_of_several(&mut joints, &elements);
     let tree = Tree::of(&links, &joints, root, &elements)?;
     let drives = drives(&joints, &elements)?;
-    Robot::assembled(root.name()?.to_owned(), place, links, joints, tree, drives)
+    let name = root.or_note(root.name(), "robot", "the robot is called `robot`");
+    Ok((name.to_owned(), links, joints, tree, drives))
+}
+
+/// Adds the link `world` if a joint has it as its parent and the file has no such link: some tools know it without.
+fn add_world<'a>(root: Element<'a>, links: &mut Vec<Link>, link_of: &mut HashMap<&'a str, usize>) {
+    const WORLD: &str = "world";
+    let mut parents = root
+        .children("joint")
+        .flat_map(|joint| joint.children("parent"));
+    let is_world = |parent: &Element| parent.node.attribute("link") == Some(WORLD);
+    let Some(parent) = parents.find(is_world) else {
+        return;
+    };
+    if link_of.contains_key(WORLD) {
+        return;
+    }
+    let missing = Err(parent.refuse("parent `world`, which is no link", "a <link> of that name"));
+    parent.or_note(missing, (), "it is the base of the robot");
+    link_of.insert(WORLD, links.len());
+    links.push(Link {
+        name: WORLD.to_owned(),
+        shapes: Vec::new(),
+    });
 }
 
 /// The joints with their elements, in the order of the file.
@@ -76,17 +127,47 @@ fn read_joint(
         "calibration",
         "safety_controller",
     ])?;
-    let kind = read_kind(&element, name)?;
+    let (kind, axis) = match element.or_note(read_kind(&element, name), JointKind::Fixed, FIXED) {
+        // The axis of these means nothing, whatever is written.
+        kind @ (JointKind::Fixed | JointKind::Floating) => (kind, DVec3::X),
+        kind => {
+            let read = read_axis(element, name).map(|axis| (kind, axis));
+            element.or_note(read, (JointKind::Fixed, DVec3::X), FIXED)
+        }
+    };
+    let mimic = read_mimic(element, name, kind, joint_of);
     Ok(Joint {
         name: name.to_owned(),
         kind,
         parent: ends.read(element, name, "parent")?,
         child: ends.read(element, name, "child")?,
         origin: element.origin()?,
-        axis: read_axis(element, name)?,
-        limits: read_limits(element, name, kind)?,
-        mimic: read_mimic(element, name, kind, joint_of)?,
+        axis,
+        limits: read_limits(element, name, kind),
+        mimic: element.or_note(mimic, None, ALONE),
     })
+}
+
+/// Removes `<mimic>` from joints that follow a joint of several coordinates.
+fn drop_mimics_of_several(joints: &mut [Joint], elements: &[Element]) {
+    for index in 0..joints.len() {
+        let Some(mimic) = joints[index].mimic else {
+            continue;
+        };
+        let (name, followed) = (&joints[index].name, &joints[mimic.joint]);
+        if followed.kind.coordinates().len() < 2 {
+            continue;
+        }
+        let wrong: Result<()> = Err(elements[index].refuse(
+            format!(
+                "joint `{name}` mimics `{}`, which has several coordinates",
+                followed.name
+            ),
+            "a revolute, continuous or prismatic joint to follow",
+        ));
+        elements[index].or_note(wrong, (), ALONE);
+        joints[index].mimic = None;
+    }
 }
 
 /// The links that a joint can join.
@@ -136,19 +217,22 @@ fn read_axis(element: Element, joint: &str) -> Result<DVec3> {
     })
 }
 
-fn read_limits(element: Element, joint: &str, kind: JointKind) -> Result<Option<Limits>> {
+/// Reads the limits of a joint of one coordinate. A limit that is missing or wrong does not limit it.
+fn read_limits(element: Element, joint: &str, kind: JointKind) -> Option<Limits> {
     if !kind.has_one_coordinate() {
-        return Ok(None);
+        return None;
     }
     let has_ends = kind != JointKind::Continuous;
-    let Some(limit) = element.child("limit")? else {
+    let limit = element.or_note(element.child("limit"), None, UNLIMITED);
+    let Some(limit) = limit else {
         if has_ends {
             let given = format!("joint `{joint}` without <limit>");
-            return Err(element.refuse(given, "lower, upper, velocity and effort"));
+            let missing = Err(element.refuse(given, "lower and upper"));
+            element.or_note(missing, (), "its position is not limited");
         }
-        return Ok(None);
+        return None;
     };
-    limit.check_attributes(&[
+    let slips = limit.check_attributes(&[
         "lower",
         "upper",
         "velocity",
@@ -156,9 +240,32 @@ fn read_limits(element: Element, joint: &str, kind: JointKind) -> Result<Option<
         "acceleration",
         "deceleration",
         "jerk",
-    ])?;
+    ]);
+    limit.or_note(slips, (), UNLIMITED);
+    let endless = (f64::NEG_INFINITY, f64::INFINITY);
+    let (lower, upper) = match has_ends {
+        true => limit.or_note(read_ends(limit, joint), endless, UNLIMITED),
+        false => endless,
+    };
+    let not_negative = |attribute: &str| {
+        let value = limit.number(attribute)?.unwrap_or(f64::INFINITY);
+        if value >= 0.0 {
+            return Ok(value);
+        }
+        let given = format!("joint `{joint}` with `{attribute}` {value}");
+        Err(limit.refuse(given, "zero or a positive number"))
+    };
+    let most = |attribute| limit.or_note(not_negative(attribute), f64::INFINITY, UNLIMITED);
+    Some(Limits {
+        lower,
+        upper,
+        velocity: most("velocity"),
+        effort: most("effort"),
+    })
+}
+
+fn read_ends(limit: Element, joint: &str) -> Result<(f64, f64)> {
     let (lower, upper) = match (limit.number("lower")?, limit.number("upper")?) {
-        _ if !has_ends => (f64::NEG_INFINITY, f64::INFINITY),
         (None, None) => {
             let given = format!("joint `{joint}` with a <limit> without `lower` and `upper`");
             return Err(limit.refuse(given, "at least one of them; the other is 0"));
@@ -169,20 +276,7 @@ fn read_limits(element: Element, joint: &str, kind: JointKind) -> Result<Option<
         let given = format!("joint `{joint}` with lower limit {lower} above upper limit {upper}");
         return Err(limit.refuse(given, "lower ≤ upper"));
     }
-    let not_negative = |attribute: &str| {
-        let [value] = limit.needed_numbers(attribute)?;
-        if value >= 0.0 {
-            return Ok(value);
-        }
-        let given = format!("joint `{joint}` with `{attribute}` {value}");
-        Err(limit.refuse(given, "zero or a positive number"))
-    };
-    Ok(Some(Limits {
-        lower,
-        upper,
-        velocity: not_negative("velocity")?,
-        effort: not_negative("effort")?,
-    }))
+    Ok((lower, upper))
 }
 
 fn read_mimic(
@@ -242,49 +336,40 @@ fn index_of_each<'n>(
     Ok(index_of)
 }
 
-/// Refuses a xacro file: its macros and `${…}` make the numbers.
-fn check_expanded(document: &Document, lines: &Lines) -> Result<()> {
+/// Returns the first element of xacro, or with an expression of xacro in an attribute: what they stand for is not there.
+fn not_expanded(root: Element) -> Option<Element> {
     let is_xacro = |node: &Node| {
         let space = node.tag_name().namespace();
         space.is_some_and(|space| space.contains(XACRO))
-            || node
-                .attributes()
-                .any(|attribute| attribute.value().contains("${"))
+            || node.attributes().any(|attribute| {
+                let value = attribute.value();
+                value.contains("${") || value.contains("$(")
+            })
     };
-    match document.descendants().find(is_xacro) {
-        Some(node) => {
-            let element = Element { node, lines };
-            let (given, allowed) = NOT_EXPANDED;
-            Err(element.refuse(format!("{} {given}", element.called()), allowed))
-        }
-        None => Ok(()),
-    }
+    let found = root.node.descendants().find(is_xacro)?;
+    Some(Element {
+        node: found,
+        ..root
+    })
 }
 
-const NOT_EXPANDED: (&str, &str) = (
-    "of xacro",
-    "plain URDF: expand it first (xacro robot.urdf.xacro > robot.urdf)",
-);
+fn xacro_error(element: Element) -> Error {
+    element.refuse(
+        format!("{} of xacro", element.called()),
+        "plain URDF: expand it first (xacro robot.urdf.xacro > robot.urdf)",
+    )
+}
 
 /// What the XML reader says, with its line.
 fn unreadable(place: &str, text: &str, error: &roxmltree::Error) -> Error {
-    let (given, allowed) = NOT_EXPANDED;
-    match error {
-        // An `xmlns:xacro` that is missing or commented out.
-        roxmltree::Error::UnknownNamespace(prefix, at) if prefix == XACRO => Error::input(
-            format!("{place}, line {}", at.row),
-            format!("an element {given}"),
-            allowed,
-        ),
-        _ if text.trim().is_empty() => Error::input(place, "an empty file", "URDF: a <robot>"),
-        _ => {
-            let said = error.to_string();
-            // The reader appends its own place; ours stands in front.
-            let given = said
-                .rsplit_once(" at ")
-                .map_or(said.as_str(), |(given, _)| given);
-            let place = format!("{place}, line {}", error.pos().row);
-            Error::input(place, given, "URDF: well-formed XML")
-        }
+    if text.trim().is_empty() {
+        return Error::input(place, "an empty file", "URDF: a <robot>");
     }
+    let said = error.to_string();
+    // The reader appends its own place; ours stands in front.
+    let given = said
+        .rsplit_once(" at ")
+        .map_or(said.as_str(), |(given, _)| given);
+    let place = format!("{place}, line {}", error.pos().row);
+    Error::input(place, given, "URDF: well-formed XML")
 }

@@ -5,12 +5,14 @@ use crate::geometry::{Pose, rotation_from_rpy, written_rotation};
 use crate::spelling::slip_of;
 use glam::{DQuat, DVec3};
 use roxmltree::Node;
+use std::cell::RefCell;
 use std::str::FromStr;
 
-/// Where the lines of a file begin.
+/// Where the lines of a file begin, and the notes on what was read.
 pub(super) struct Lines<'a> {
     place: &'a str,
     starts: Vec<usize>,
+    notes: RefCell<Vec<String>>,
 }
 
 impl<'a> Lines<'a> {
@@ -20,7 +22,18 @@ impl<'a> Lines<'a> {
         Self {
             place,
             starts: std::iter::once(0).chain(ends).collect(),
+            notes: RefCell::default(),
         }
+    }
+
+    /// Adds a note, a sentence that begins with the file's name.
+    pub fn note(&self, note: String) {
+        self.notes.borrow_mut().push(note);
+    }
+
+    /// Returns the notes so far, in the order in which they were added.
+    pub fn into_notes(self) -> Vec<String> {
+        self.notes.into_inner()
     }
 
     fn line(&self, offset: usize) -> usize {
@@ -45,6 +58,15 @@ impl<'a> Element<'a> {
     pub fn refuse(&self, given: impl ToString, allowed: impl ToString) -> Error {
         let place = format!("{}, line {}", self.lines.place, self.line());
         Error::input(place, given, allowed)
+    }
+
+    /// Returns the value of a part that the robot can do without. If the part is wrong, the error becomes a note that ends with
+    /// `consequence`, and `instead` is returned.
+    pub fn or_note<T>(&self, part: Result<T>, instead: T, consequence: &str) -> T {
+        part.unwrap_or_else(|error| {
+            self.lines.note(format!("{error}: {consequence}"));
+            instead
+        })
     }
 
     /// The elements below of this tag.
@@ -92,7 +114,10 @@ impl<'a> Element<'a> {
         let Some(text) = self.node.attribute(attribute) else {
             return Ok(None);
         };
-        let numbers: Option<Vec<f64>> = text.split_whitespace().map(finite).collect();
+        // Some exporters write "1, 2, 3".
+        let words = text.split(|c: char| c == ',' || c.is_whitespace());
+        let words = words.filter(|word| !word.is_empty());
+        let numbers: Option<Vec<f64>> = words.map(finite).collect();
         let numbers = numbers.and_then(|numbers| <[f64; N]>::try_from(numbers).ok());
         let allowed = || match N {
             1 => "a finite number".to_owned(),

@@ -1,0 +1,43 @@
+"""Checks of numbers that are given as arguments: each error has the name, what was given and what is allowed."""
+
+from __future__ import annotations
+
+import math
+from numbers import Integral, Real
+from typing import Any
+
+
+# The largest seed of the library; a range that ends here is written without its end.
+_MOST = 2**64 - 1
+
+
+def real(name: str, value: Any, *, above: float = -math.inf, least: float = -math.inf) -> float:
+    """A finite number above `above` and at least `least`. Raises TypeError for what is no number, ValueError for one out of range."""
+    allowed = _range("a finite number", above, least)
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise TypeError(f"{name}: {value!r}; {allowed}")
+    number = float(value)
+    if not (math.isfinite(number) and number > above and number >= least):
+        given = "NaN" if math.isnan(number) else value
+        raise ValueError(f"{name}: {given}; {allowed}")
+    return number
+
+
+def whole(name: str, value: Any, *, least: int, most: int = _MOST) -> int:
+    """A whole number from `least` to `most`; a float without a fraction is one. Raises TypeError and ValueError as real() does."""
+    allowed = f"at least {least}" if most == _MOST else f"a whole number from {least} to {most}"
+    if isinstance(value, bool) or not isinstance(value, Integral | Real):
+        raise TypeError(f"{name}: {value!r}; a whole number, {allowed}")
+    if not isinstance(value, Integral) and not float(value).is_integer():
+        given = "NaN" if math.isnan(value) else value
+        raise ValueError(f"{name}: {given}; a whole number, {allowed}")
+    number = int(value)
+    if not least <= number <= most:
+        raise ValueError(f"{name}: {value}; {allowed}")
+    return number
+
+
+def _range(kind: str, above: float, least: float) -> str:
+    if above > -math.inf:
+        return f"{kind} above {above:g}"
+    return f"{kind}, at least {least:g}" if least > -math.inf else kind

@@ -1,0 +1,114 @@
+//! The text of a URDF file: its bytes → text → XML that a strict reader accepts, with the same lines.
+//!
+//! Many public files are not well-formed XML, and the readers of other tools accept them: comments or spaces before `<?xml`, `--` inside
+//! a comment, prefixes of namespaces that are not declared, NUL bytes at the end.
+
+use super::xml::Lines;
+use roxmltree::{Document, Error, ParsingOptions};
+
+/// Namespace prefixes without a declaration in one file, at most; more is no robot.
+const MAX_PREFIXES: usize = 100;
+
+/// Decodes the bytes of a file: UTF-8, UTF-16 with a byte order mark, otherwise Latin-1 with a note.
+pub(super) fn decoded(place: &str, bytes: &[u8]) -> (String, Option<String>) {
+    let units = |from: fn([u8; 2]) -> u16| {
+        let pairs = bytes[2..].chunks_exact(2);
+        let units: Vec<u16> = pairs.map(|pair| from([pair[0], pair[1]])).collect();
+        String::from_utf16_lossy(&units)
+    };
+    match bytes {
+        [0xFF, 0xFE, ..] => return (units(u16::from_le_bytes), None),
+        [0xFE, 0xFF, ..] => return (units(u16::from_be_bytes), None),
+        _ => {}
+    }
+    match std::str::from_utf8(bytes) {
+        Ok(text) => (text.to_owned(), None),
+        Err(_) => {
+            let note = format!("{place}: not UTF-8; it is read as Latin-1 (ISO 8859-1)");
+            (
+                bytes.iter().map(|&byte| char::from(byte)).collect(),
+                Some(note),
+            )
+        }
+    }
+}
+
+/// Returns the text with blanks in place of comments and of an XML declaration that is not at its beginning, and with a declaration
+/// of each namespace prefix that lacks one. Lines keep their numbers.
+pub(super) fn repaired(place: &str, text: &str, lines: &Lines) -> String {
+    let text = text.trim_start_matches('\u{feff}').trim_end_matches('\0');
+    let mut repaired = without(text, "<!--", "-->");
+    let begins_late = |text: &str| text.match_indices("<?xml").any(is_late_declaration(text));
+    if begins_late(&repaired) {
+        lines.note(format!(
+            "{place}: a comment or space before the XML declaration: not well-formed XML, read all the same"
+        ));
+        let starts = repaired.match_indices("<?xml");
+        let late: Vec<usize> = starts
+            .filter(|found| is_late_declaration(&repaired)(*found))
+            .map(|(start, _)| start)
+            .collect();
+        for start in late.into_iter().rev() {
+            let rest = without(&repaired[start..], "<?xml", "?>");
+            repaired.replace_range(start.., &rest);
+        }
+    }
+    for _ in 0..MAX_PREFIXES {
+        let Err(Error::UnknownNamespace(prefix, _)) = parsed(&repaired) else {
+            break;
+        };
+        let Some(end) = root_name_end(&repaired) else {
+            break;
+        };
+        repaired.insert_str(end, &format!(" xmlns:{prefix}=\"{prefix}\""));
+    }
+    repaired
+}
+
+/// Parses XML; document type declarations are passed over.
+pub(super) fn parsed(text: &str) -> Result<Document<'_>, Error> {
+    let options = ParsingOptions {
+        allow_dtd: true,
+        ..ParsingOptions::default()
+    };
+    Document::parse_with_options(text, options)
+}
+
+/// Whether a `<?xml` is a declaration (and not another instruction, such as `<?xml-model`) that does not begin the text.
+fn is_late_declaration(text: &str) -> impl Fn((usize, &str)) -> bool + '_ {
+    move |(start, found)| {
+        let after = text[start + found.len()..].chars().next();
+        start > 0 && after.is_some_and(char::is_whitespace)
+    }
+}
+
+/// Returns the text with blanks in place of everything from `open` to the next `close`.
+fn without(text: &str, open: &str, close: &str) -> String {
+    let mut kept = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(start) = rest.find(open) {
+        let Some(length) = rest[start..].find(close) else {
+            break;
+        };
+        let end = start + length + close.len();
+        kept += &rest[..start];
+        kept.extend(
+            rest[start..end]
+                .chars()
+                .map(|c| if c == '\n' { c } else { ' ' }),
+        );
+        rest = &rest[end..];
+    }
+    kept + rest
+}
+
+/// Returns the place after the name of the first element.
+fn root_name_end(text: &str) -> Option<usize> {
+    let is_name = |start: usize| {
+        let after = text[start + 1..].chars().next();
+        after.is_some_and(|c| c.is_alphabetic() || c == '_')
+    };
+    let (start, _) = text.match_indices('<').find(|(start, _)| is_name(*start))?;
+    let ends = |c: char| c.is_whitespace() || c == '>' || c == '/';
+    text[start..].find(ends).map(|length| start + length)
+}

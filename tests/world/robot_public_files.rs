@@ -1,0 +1,386 @@
+//! Kinds of URDF files that are public and that a strict reader refuses: each is read, what is left out has a note, and links are where the
+//! file says.
+
+use bubbletouch::geometry::Pose;
+use bubbletouch::world::{JointKind, LinkGeometry, Robot};
+use glam::DVec3;
+
+fn read(text: &str) -> Robot {
+    Robot::from_urdf("r.urdf", text).expect(text)
+}
+
+/// A robot of two links: `<joint name="j" TYPE>` with `inside`, its child 0.1 m above its parent.
+fn jointed(kind: &str, inside: &str) -> Robot {
+    read(&format!(
+        r#"<robot name="r"><link name="a"/><link name="b"/>
+<joint name="j" type="{kind}"><parent link="a"/><child link="b"/><origin xyz="0 0 0.1"/>
+{inside}
+</joint></robot>"#
+    ))
+}
+
+/// A robot of one link with this shape.
+fn shaped(form: &str) -> Robot {
+    read(&format!(
+        r#"<robot name="r"><link name="a"><collision>{form}</collision></link></robot>"#
+    ))
+}
+
+#[track_caller]
+fn has_note(robot: &Robot, part: &str) {
+    let notes = robot.notes();
+    assert!(
+        notes.iter().any(|note| note.contains(part)),
+        "{notes:?} has no {part:?}"
+    );
+    assert!(
+        notes.iter().all(|note| note.starts_with("r.urdf")),
+        "{notes:?}"
+    );
+}
+
+/// Where the second link is at rest.
+fn second(robot: &Robot) -> Pose {
+    robot
+        .forward(&Pose::IDENTITY, &robot.rest_positions())
+        .unwrap()[1]
+}
+
+#[test]
+fn the_axis_of_a_fixed_or_floating_joint_means_nothing() {
+    for axis in [
+        r#"<axis xyz="0 0 0"/>"#,
+        r#"<axis xzy="1 0"/>"#,
+        r#"<axis xyz="nan"/>"#,
+    ] {
+        for kind in ["fixed", "floating"] {
+            let robot = jointed(kind, axis);
+            assert!(robot.notes().is_empty(), "{:?}", robot.notes());
+            assert_eq!(second(&robot).translation, DVec3::new(0.0, 0.0, 0.1));
+        }
+    }
+}
+
+#[test]
+fn a_joint_whose_axis_or_type_cannot_be_read_is_fixed_with_a_note() {
+    for (kind, axis, note) in [
+        (
+            "revolute",
+            r#"<axis xyz="0 0 0"/>"#,
+            "r.urdf, line 3: joint `j` with an axis of length zero; a direction: the joint is fixed",
+        ),
+        ("planar", r#"<axis xyz="0 0 0"/>"#, "axis of length zero"),
+        (
+            "continuous",
+            r#"<axis xzy="0 0 1"/>"#,
+            "`xzy` in <axis>; perhaps `xyz`: the joint is fixed",
+        ),
+        ("spherical", "", "joint `j` of type `spherical`"),
+        (
+            "continous",
+            "",
+            "joint `j` of type `continous`; perhaps `continuous`: the joint is fixed",
+        ),
+    ] {
+        let robot = jointed(kind, axis);
+        assert_eq!(
+            (robot.joints()[0].kind, robot.n_positions()),
+            (JointKind::Fixed, 0)
+        );
+        has_note(&robot, note);
+        assert_eq!(second(&robot).translation, DVec3::new(0.0, 0.0, 0.1));
+    }
+}
+
+#[test]
+fn limits_that_are_missing_or_contradict_themselves_do_not_limit() {
+    let endless = (f64::NEG_INFINITY, f64::INFINITY);
+    for (limit, ends, velocity, note) in [
+        (
+            r#"<limit lower="0.2" upper="1.5"/>"#,
+            (0.2, 1.5),
+            f64::INFINITY,
+            None,
+        ),
+        (
+            r#"<limit lower="-1" upper="1" velocity="-1" effort="2"/>"#,
+            (-1.0, 1.0),
+            f64::INFINITY,
+            Some("`velocity` -1; zero or a positive number"),
+        ),
+        (
+            r#"<limit lower="-1" upper="1" velocity="1e999"/>"#,
+            (-1.0, 1.0),
+            f64::INFINITY,
+            Some("`velocity` \"1e999\"; a finite number"),
+        ),
+        (
+            r#"<limit effort="1" velocity="3"/>"#,
+            endless,
+            3.0,
+            Some("without `lower` and `upper`"),
+        ),
+        (
+            r#"<limit lower="1" upper="0" velocity="3"/>"#,
+            endless,
+            3.0,
+            Some("lower limit 1 above upper limit 0; lower ≤ upper"),
+        ),
+        (r#"<limit upper="2" velocity="3"/>"#, (0.0, 2.0), 3.0, None),
+    ] {
+        let robot = jointed("revolute", limit);
+        let found = robot.joints()[0].limits.expect("a limit");
+        assert_eq!(
+            ((found.lower, found.upper), found.velocity),
+            (ends, velocity),
+            "{limit}"
+        );
+        match note {
+            Some(note) => has_note(&robot, note),
+            None => assert!(robot.notes().is_empty(), "{:?}", robot.notes()),
+        }
+    }
+    let without = jointed("prismatic", "");
+    assert_eq!(without.joints()[0].limits, None);
+    has_note(
+        &without,
+        "joint `j` without <limit>; lower and upper: its position is not limited",
+    );
+}
+
+#[test]
+fn a_joint_rests_at_zero_or_at_the_nearest_limit() {
+    for (limit, rest) in [
+        ("0.2\" upper=\"1.5", 0.2),
+        ("-3\" upper=\"-0.5", -0.5),
+        ("-3\" upper=\"3", 0.0),
+    ] {
+        let robot = jointed(
+            "revolute",
+            &format!("<axis xyz=\"0 0 1\"/><limit lower=\"{limit}\"/>"),
+        );
+        assert_eq!(robot.rest_positions(), [rest]);
+        let (axis, angle) = second(&robot).rotation.to_axis_angle();
+        assert!((angle * axis.z - rest).abs() < 1e-15);
+    }
+}
+
+/// Three links in a row: joint `first` with `of_first`, joint `second` with `of_second`, both 0.1 m along x, axes along z.
+fn in_a_row(first: &str, second: &str) -> Robot {
+    let joint = |name: &str, [a, b]: [&str; 2], inside: &str| {
+        let (kind, inside) = inside.split_once(' ').unwrap_or((inside, ""));
+        format!(
+            r#"<joint name="{name}" type="{kind}"><parent link="{a}"/><child link="{b}"/>
+            <origin xyz="0.1 0 0"/><axis xyz="0 0 1"/>{inside}</joint>"#
+        )
+    };
+    let joints = joint("first", ["a", "b"], first) + &joint("second", ["b", "c"], second);
+    read(&format!(
+        r#"<robot name="r"><link name="a"/><link name="b"/><link name="c"/>{joints}</robot>"#
+    ))
+}
+
+#[test]
+fn a_joint_that_mimics_a_fixed_one_stands_at_its_offset() {
+    let mimic = r#"continuous <mimic joint="first" multiplier="3" offset="0.4"/>"#;
+    let robot = in_a_row("fixed", mimic);
+    assert_eq!((robot.n_positions(), robot.drive_of(1)), (0, None));
+    let tip = robot.forward(&Pose::IDENTITY, &[]).unwrap()[2];
+    let (axis, angle) = tip.rotation.to_axis_angle();
+    assert!((angle * axis.z - 0.4).abs() < 1e-15, "{angle}");
+    assert!((tip.translation - DVec3::new(0.2, 0.0, 0.0)).length() < 1e-15);
+}
+
+#[test]
+fn a_mimic_that_cannot_be_followed_leaves_a_joint_of_its_own() {
+    for (first, mimic, note) in [
+        (
+            "floating",
+            r#"<mimic joint="first"/>"#,
+            "joint `second` mimics `first`, which has several coordinates",
+        ),
+        (
+            "continuous",
+            r#"<mimic joint="fisrt"/>"#,
+            "joint `second` mimics `fisrt`, which is no joint; perhaps `first`",
+        ),
+        (
+            "continuous",
+            r#"<mimic joint="first" multiplier="much"/>"#,
+            "`multiplier` \"much\"; a finite number: the joint mimics none",
+        ),
+    ] {
+        let robot = in_a_row(first, &format!("continuous {mimic}"));
+        assert_eq!(robot.joints()[1].mimic, None);
+        assert!(robot.coordinates().iter().any(|c| c.name == "second"));
+        has_note(&robot, note);
+    }
+    let fixed = in_a_row("continuous", r#"fixed <mimic joint="first"/>"#);
+    assert_eq!(fixed.n_positions(), 1);
+    has_note(&fixed, "<mimic> in the fixed joint `second`");
+}
+
+#[test]
+fn a_shape_that_cannot_be_read_is_left_out_and_one_of_size_zero_is_kept() {
+    for form in [
+        "",
+        "<geometry/>",
+        "<geometry><plane/></geometry>",
+        "<geometry><box size='1 1'/></geometry>",
+        "<geometry><sphere radius='-1'/></geometry>",
+        "<geometry><mesh filename='' scale='1 1 1'/></geometry>",
+        "<geometry><mesh filename='a.stl' scale='1 1 1 1'/></geometry>",
+    ] {
+        let robot = shaped(form);
+        assert!(robot.links()[0].shapes.is_empty());
+        has_note(&robot, "this shape is left out");
+    }
+    for form in [
+        "<box size='0 0 0'/>",
+        "<sphere radius='0'/>",
+        "<cylinder radius='0' length='0'/>",
+    ] {
+        let robot = shaped(&format!("<geometry>{form}</geometry>"));
+        assert!(robot.notes().is_empty());
+        assert!(!robot.links()[0].shapes[0].geometry.has_volume());
+    }
+    let nowhere = "package://nowhere/at_all.dae";
+    let robot = shaped(&format!(
+        "<geometry><mesh filename='{nowhere}'/></geometry>"
+    ));
+    assert!(
+        matches!(&robot.links()[0].shapes[0].geometry, LinkGeometry::Mesh { file, .. } if file == nowhere)
+    );
+}
+
+#[test]
+fn text_that_is_not_quite_xml_is_read_and_lines_keep_their_numbers() {
+    let robot = r#"<robot name="r"><link name="a"/></robot>"#;
+    let declaration = r#"<?xml version="1.0" encoding="UTF-8"?>"#;
+    for before in [
+        "<!-- by a plug-in -->\n",
+        "\n",
+        "  ",
+        "<!-- a -- b --->",
+        "\u{feff}\n<!-- x -->",
+    ] {
+        let found = read(&format!("{before}{declaration}{robot}"));
+        has_note(&found, "a comment or space before the XML declaration");
+        assert_eq!(found.links()[0].name, "a");
+    }
+    for text in [
+        format!("\u{feff}{declaration}{robot}"),
+        format!("{declaration}<?xml-model href=\"x\"?>{robot}\0\0"),
+        format!("{declaration}<!DOCTYPE robot>{robot}"),
+        format!(
+            "{declaration}<!-- -- -->{}",
+            robot.replace("<link", "<gazebo:x y:z=\"1\"/><link")
+        ),
+    ] {
+        assert!(read(&text).notes().is_empty(), "{text}");
+    }
+    let error = Robot::from_urdf(
+        "r.urdf",
+        &format!("<!--\n\n-->\n{declaration}\n<robot name='r'/>"),
+    );
+    assert_eq!(
+        error.unwrap_err().to_string(),
+        "r.urdf, line 5: a robot without a <link>; at least one"
+    );
+}
+
+#[test]
+fn bytes_of_other_encodings_are_text() {
+    let text = "<robot name=\"bras\"><!-- \u{e9} --><link name=\"\u{e9}paule\"/></robot>";
+    let latin: Vec<u8> = text
+        .chars()
+        .map(|c| u8::try_from(u32::from(c)).unwrap())
+        .collect();
+    let declared = [
+        b"<?xml version='1.0' encoding='ISO-8859-1'?>".as_slice(),
+        &latin,
+    ]
+    .concat();
+    let little = || text.encode_utf16().flat_map(u16::to_le_bytes);
+    let big = || text.encode_utf16().flat_map(u16::to_be_bytes);
+    for (bytes, has_note) in [
+        (latin, true),
+        (declared, true),
+        ([b"\xef\xbb\xbf", text.as_bytes()].concat(), false),
+        ([0xFF, 0xFE].into_iter().chain(little()).collect(), false),
+        ([0xFE, 0xFF].into_iter().chain(big()).collect(), false),
+    ] {
+        let robot = Robot::from_urdf_bytes("r.urdf", &bytes).unwrap();
+        assert_eq!(robot.links()[0].name, "\u{e9}paule");
+        let notes = robot.notes();
+        assert_eq!(
+            notes.iter().any(|note| note.contains("Latin-1")),
+            has_note,
+            "{notes:?}"
+        );
+    }
+    for bytes in [&b"\x89PNG\r\n\x1a\n\0\0"[..], b"", b"\xFF", b"\xFF\xFE\0"] {
+        assert_eq!(
+            Robot::from_urdf_bytes("r.urdf", bytes)
+                .unwrap_err()
+                .exit_code(),
+            2
+        );
+    }
+}
+
+#[test]
+fn what_xacro_left_is_passed_over_with_a_note() {
+    for leftover in [
+        r#"<xacro:macro name="m"/>"#,
+        r#"<xacro:include filename="m.xacro"/>"#,
+        r#"<gazebo><plugin file="$(find r)/x"/></gazebo>"#,
+    ] {
+        let robot = read(&format!(
+            "<robot name='r'>\n{leftover}<link name='a'/></robot>"
+        ));
+        has_note(&robot, "of xacro; plain URDF: expand it first");
+    }
+    // What is missing is what xacro would have made.
+    let error = Robot::from_urdf("r.urdf", "<robot name='r'>\n<xacro:make_links/></robot>");
+    let said = error.unwrap_err().to_string();
+    assert!(
+        said.starts_with("r.urdf, line 2: <make_links> of xacro; plain URDF"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_robot_without_a_name_and_a_world_without_a_link_are_read() {
+    let robot = read("<robot><link name='a'/></robot>");
+    assert_eq!(robot.name(), "robot");
+    has_note(&robot, "<robot> without `name`");
+    let robot = read(
+        "<robot name='r'><link name='a'/><joint name='j' type='fixed'><parent link='world'/>
+        <child link='a'/><origin xyz='1, 2, 3'/></joint></robot>",
+    );
+    assert_eq!(robot.links()[robot.base()].name, "world");
+    has_note(&robot, "parent `world`, which is no link");
+    let links = robot.forward(&Pose::IDENTITY, &[]).unwrap();
+    assert_eq!(links[0].translation, DVec3::new(1.0, 2.0, 3.0));
+}
+
+#[test]
+fn a_tactile_sensor_is_named_in_a_note() {
+    let tactile = r#"<tactile channel="pad"><array rows="4" cols="6"/></tactile>"#;
+    for sensor in [
+        format!("<sensor name='pad_tactile'><parent link='a'/>{tactile}</sensor>"),
+        format!("<gazebo reference='a'><sensor name='pad_tactile'>{tactile}</sensor></gazebo>"),
+    ] {
+        let robot = read(&format!("<robot name='r'><link name='a'/>{sensor}</robot>"));
+        has_note(
+            &robot,
+            "tactile sensor `pad_tactile` on link `a`, which is not read",
+        );
+    }
+    let robot =
+        read("<robot name='r'><link name='a'><sensor name='s'><tactile/></sensor></link></robot>");
+    has_note(&robot, "tactile sensor `s` on link `a`");
+    let camera = "<robot name='r'><link name='a'/><sensor name='s'><camera/></sensor></robot>";
+    assert!(read(camera).notes().is_empty());
+}
