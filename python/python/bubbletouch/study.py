@@ -180,7 +180,8 @@ def simulate(scene: str | PathLike[str] | Mapping[str, Any]) -> Simulation:
 
     The "object" of one of a dict's objects may be a Mesh or a SphereUnion in place of a name; it is touched as it is.
 
-    Raises ValueError for what cannot be simulated, by key; OSError for a file that cannot be read.
+    Raises ValueError for what cannot be simulated, by key; OSError for a file that cannot be read. Warns (UserWarning) of what is not read of a
+    robot's file.
     """
     if isinstance(scene, Mapping):
         tables, models = _in_memory(scene)
