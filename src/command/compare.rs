@@ -3,8 +3,11 @@
 use super::output::{check_ending, terminal_width};
 use super::streams::{say, write_out};
 use bubbletouch::files::{CsvFile, write_bytes};
-use bubbletouch::report::compared::{differences_page, differences_text, sentences_text};
+use bubbletouch::report::compared::{
+    differences_page, differences_text, entries_words, sentences_text,
+};
 use bubbletouch::report::differences::differences;
+use bubbletouch::report::entries::{entries, files_of_one};
 use bubbletouch::report::rank_agreement::rank_agreement;
 use bubbletouch::{Error, Result, kinds};
 use std::path::PathBuf;
@@ -15,7 +18,7 @@ pub struct Args {
     first: PathBuf,
     /// Another one, of a study of the same kind
     second: PathBuf,
-    /// Write every value and every cost that both have to a CSV file
+    /// Write every value and every cost that both have to a CSV file; other entries that differ are in the text
     #[arg(long, value_name = "FILE.csv")]
     out: Option<PathBuf>,
     /// Write sentences, charts and tables to a page
@@ -41,6 +44,15 @@ pub fn compare(args: &Args) -> Result<()> {
         (Err(_), Some(_)) if args.out.is_none() => Vec::new(),
         (found, _) => found.map_err(|error| error.under(place))?,
     };
+    let mut changed = entries_words(&found, &entries(&first, &second));
+    for (which, files) in [
+        ("first", files_of_one(&first, &second)),
+        ("second", files_of_one(&second, &first)),
+    ] {
+        if !files.is_empty() {
+            changed.push(format!("Only the {which} run has {}.", files.join(", ")));
+        }
+    }
     if let Some(out) = &args.out {
         let mut file = CsvFile::create(out)?;
         for row in found.iter().flat_map(|column| &column.rows) {
@@ -49,7 +61,10 @@ pub fn compare(args: &Args) -> Result<()> {
         file.commit()?;
     }
     if let Some(html) = &args.html {
-        let page = differences_page((&found, ranks.as_ref()), (&first_name, &second_name))?;
+        let page = differences_page(
+            (&found, ranks.as_ref(), &changed),
+            (&first_name, &second_name),
+        )?;
         write_bytes(html, page.as_bytes())?;
     }
     say(format_args!("First: {first_name}; second: {second_name}."))?;
@@ -57,6 +72,7 @@ pub fn compare(args: &Args) -> Result<()> {
     if let Some(ranks) = &ranks {
         write_out(sentences_text(&ranks.words(), width).as_bytes())?;
     }
+    write_out(sentences_text(&changed, width).as_bytes())?;
     match found.is_empty() {
         true => say("No row of the one has all settings of a row of the other."),
         false => write_out(differences_text(&found, width)?.as_bytes()),

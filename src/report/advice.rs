@@ -404,16 +404,48 @@ fn given_rows(table: &Table, rows: Vec<usize>, text: &str) -> Result<Vec<usize>>
             return Err(Error::input(place, given, allowed));
         }
     }
-    let wanted = match value.parse() {
-        Ok(number) => Value::Number(number),
-        Err(_) => Value::Word(value.to_owned()),
+    let data = table.column(key).map(|(_, data)| data);
+    let value_of = |row: usize| data.and_then(|data| data.value(row));
+    let mut known = table.one_of(key, rows.iter().copied());
+    if rows.iter().any(|&row| value_of(row).is_none()) {
+        known += ", none";
+    }
+    let with = |is_wanted: &dyn Fn(Option<Value>) -> bool| -> Vec<usize> {
+        let rows = rows.iter().copied();
+        rows.filter(|&row| is_wanted(value_of(row))).collect()
     };
-    let known = table.one_of(key, rows.iter().copied());
-    let has_it = |row: &usize| table.has_setting(key, *row, &wanted);
-    let found: Vec<usize> = rows.into_iter().filter(has_it).collect();
+    let unit = table.column(key).map_or("", |(column, _)| &column.unit);
+    let wanted = given_value(value, unit).ok_or_else(|| {
+        let allowed = format!("a number, in the unit of the column: {unit}");
+        Error::input(&place, value, allowed)
+    })?;
+    // A value that is exactly the same comes before one that is nearly the same.
+    let mut found = with(&|known| known.as_ref() == Some(&wanted));
+    if found.is_empty() {
+        found = with(&|known| known.is_some_and(|known| known.agrees(&wanted)));
+    }
+    if found.is_empty() && value == "none" {
+        found = with(&|known| known.is_none());
+    }
     match found.is_empty() {
         true => Err(Error::input(place, value, known)),
         false => Ok(found),
+    }
+}
+
+/// A value as people give it: a number, also with its unit (`0.5 mm`, `5 %`), or a word. `None` of a number with another unit.
+fn given_value(text: &str, unit: &str) -> Option<Value> {
+    if let Ok(number) = text.parse() {
+        return Some(Value::Number(number));
+    }
+    let ends = |letter: char| letter.is_alphabetic() || matches!(letter, '%' | '°');
+    let start = text.trim_end_matches(ends).trim_end();
+    let Ok(number) = start.parse::<f64>() else {
+        return Some(Value::Word(text.to_owned()));
+    };
+    match (text[start.len()..].trim(), unit) {
+        ("%", "%") => Some(Value::Number(0.01 * number)),
+        (given, unit) => (given == unit).then_some(Value::Number(number)),
     }
 }
 

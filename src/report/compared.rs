@@ -3,6 +3,7 @@
 use crate::error::Result;
 use crate::quantile::quantile;
 use crate::report::differences::{ColumnDifferences, Difference, Moved};
+use crate::report::entries::{ColumnEntries, TableEntries};
 use crate::report::page::StudyAbout;
 use crate::report::rank_agreement::RankAgreement;
 use crate::report::study_folder::{Found, MOST_CHARTS, page_of};
@@ -40,7 +41,7 @@ pub fn sentences_text(sentences: &[String], width: usize) -> String {
 /// # Errors
 /// As [`differences_text`]; a chart that cannot be drawn.
 pub fn differences_page(
-    (found, ranks): (&[ColumnDifferences], Option<&RankAgreement>),
+    (found, ranks, entries): (&[ColumnDifferences], Option<&RankAgreement>, &[String]),
     (first, second): (&str, &str),
 ) -> Result<String> {
     let note = format!("First: {first}; second: {second}. What moved most surely comes first.");
@@ -63,6 +64,7 @@ pub fn differences_page(
             charts: &charts,
             answers: &[
                 ranks.map_or_else(Vec::new, RankAgreement::words),
+                entries.to_vec(),
                 sentences(found),
             ]
             .concat(),
@@ -133,7 +135,7 @@ fn sentences(found: &[ColumnDifferences]) -> Vec<String> {
         if std::mem::replace(&mut last, table) != table {
             said.push(format!(
                 "{table}: {} settings are in both runs, {} in the first alone, {} in the second alone.",
-                one.rows.len(),
+                one.n_both,
                 one.n_first_only,
                 one.n_second_only
             ));
@@ -144,6 +146,98 @@ fn sentences(found: &[ColumnDifferences]) -> Vec<String> {
         }
     }
     said
+}
+
+/// Says which rows and entries differ that the means of [`sentences`] do not cover: outcomes, numbers that one run lacks, and all other columns.
+pub fn entries_words(found: &[ColumnDifferences], tables: &[TableEntries]) -> Vec<String> {
+    let has_moved = |file: &str, column: &str| {
+        let mut of_column = found.iter().filter(|one| one.column.name == column);
+        of_column.any(|one| {
+            let mut rows = one.rows.iter();
+            rows.any(|row| row.table == file && row.difference != 0.0)
+        })
+    };
+    // A table without trials has a setting a row, which its own sentence counts.
+    let counts_rows = |table: &TableEntries| {
+        found.iter().any(|one| {
+            let is_of_table = one.rows.first().is_some_and(|row| row.table == table.file);
+            let alone = [one.n_first_only, one.n_second_only];
+            is_of_table && alone == [table.n_first_only, table.n_second_only]
+        })
+    };
+    let said = tables.iter();
+    let said = said.map(|table| table_words(table, counts_rows(table), &has_moved));
+    said.flatten().collect()
+}
+
+/// The same of one table; `counts_rows` is whether its rows are counted elsewhere, `has_moved` whether means of a column are said to differ.
+fn table_words(
+    table: &TableEntries,
+    counts_rows: bool,
+    has_moved: impl Fn(&str, &str) -> bool,
+) -> Vec<String> {
+    let file = table.file;
+    let mut said = Vec::new();
+    if table.n_first_only + table.n_second_only > 0 && !counts_rows {
+        said.push(format!(
+            "{file}: {} are in both runs, {} in the first alone, {} in the second alone.",
+            counted(table.n_both, "row"),
+            table.n_first_only,
+            table.n_second_only
+        ));
+    }
+    if !table.one_sided.is_empty() {
+        let columns = table.one_sided.join(", ");
+        said.push(format!("{file}: only one of the runs has {columns}."));
+    }
+    let mut others = Vec::new();
+    for entries in &table.columns {
+        let (name, words) = (&entries.column.name, &entries.column.words);
+        if entries.column.role == Role::Outcome {
+            said.push(outcome_words(file, entries));
+            continue;
+        }
+        let [first, second] = [entries.n_first_only, entries.n_second_only];
+        if first + second > 0 {
+            said.push(format!(
+                "{file}: {words}: {} a number in the first run alone, {second} in the second alone.",
+                match first {
+                    1 => "1 row has".to_owned(),
+                    n => format!("{n} rows have"),
+                }
+            ));
+        }
+        if entries.n_changed() > first + second && !has_moved(file, name) {
+            others.push(format!("{name} in {}", counted(entries.n_changed(), "row")));
+        }
+    }
+    if !others.is_empty() {
+        said.push(format!(
+            "{file}: other columns that differ: {}.",
+            others.join(", ")
+        ));
+    }
+    said
+}
+
+/// Changes of an outcome that a sentence lists, at most.
+const MOST_CHANGES: usize = 8;
+
+/// `stability.csv: outcome: 1279 the same, 226 changed (226 from right to not finite).`
+fn outcome_words(file: &str, entries: &ColumnEntries) -> String {
+    let listed = entries.changes.iter().take(MOST_CHANGES);
+    let listed = listed.map(|(from, to, n)| format!("{n} from {from} to {to}"));
+    let mut listed: Vec<String> = listed.collect();
+    if entries.changes.len() > MOST_CHANGES {
+        listed.push("and others".to_owned());
+    }
+    format!(
+        "{file}: {}: {} the same, {} changed ({}).",
+        entries.column.words,
+        entries.n_same,
+        entries.n_changed(),
+        listed.join(", ")
+    )
 }
 
 /// `time to train: median 1.02 times that of the first run, 0.9 to 1.1 times.`

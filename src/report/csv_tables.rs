@@ -14,6 +14,8 @@ pub const FAILURES_FILE: &str = "failures.csv";
 
 /// How often limits of the model were reached, beside the tables.
 pub const LIMITS_FILE: &str = "limits.csv";
+/// The row of limits that counts touches without contact.
+pub const MISSED_TOUCHES: &str = "touches that met nothing";
 
 /// What is asked for where a table is missing.
 const A_TABLE: &str = "a table of results as bubbletouch run writes it";

@@ -76,8 +76,10 @@ pub struct Difference {
 pub struct ColumnDifferences {
     /// What it is.
     pub column: Column,
-    /// Settings of both folders.
+    /// Settings of both folders with a number in both.
     pub rows: Vec<Difference>,
+    /// How many settings both have, with and without numbers.
+    pub n_both: usize,
     /// How many settings only the first has.
     pub n_first_only: usize,
     /// How many only the second has.
@@ -223,6 +225,7 @@ fn of_column(column: &Column, first: &Settings, second: &Settings) -> Result<Col
     Ok(ColumnDifferences {
         column: column.clone(),
         rows,
+        n_both,
         n_first_only: first.groups.len() - n_both,
         n_second_only: second.groups.len() - n_both,
     })

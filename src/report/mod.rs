@@ -17,6 +17,7 @@ pub mod compared;
 pub mod csv_tables;
 pub mod differences;
 pub mod drawing;
+pub mod entries;
 pub mod fit_picture;
 pub mod folder;
 pub mod frame_files;

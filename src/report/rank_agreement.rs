@@ -1,8 +1,9 @@
 //! Whether two studies rank their designs alike: a simulated skin and a real one, say, which share no setting to the letter.
 //!
-//! Designs are told apart by the choices of which both tables have the same two values or more, or three. Rows with values of one table alone
-//! are left out, and of what else differs the mean is taken. Ratios are the same to the nearest whole number, as on arrays that
-//! do not divide by them.
+//! Designs are told apart by the choices and conditions of which both tables have a value in common. Rows with values of one table alone are left out,
+//! and of what else differs the mean is taken. Values are the same if their numbers and units are exactly the same; that a setting does not apply (a
+//! k-NN has no C) is a value, too. Compression ratios of two tables are the same if one nominal ratio r gives both numbers of measurements,
+//! m = n / r rounded, as on arrays that do not divide by r.
 
 use crate::recognition::statistics::interval::Interval;
 use crate::recognition::statistics::rank_correlation::{
@@ -11,7 +12,7 @@ use crate::recognition::statistics::rank_correlation::{
 use crate::report::swept::Setting;
 use crate::study::CONFIDENCE;
 use crate::table::{Column, Role, Table, Value, short_number};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// What is ranked.
 const RANKED: &str = "accuracy";
@@ -39,6 +40,7 @@ pub fn rank_agreement(first: &[Table], second: &[Table]) -> Option<RankAgreement
         places.find(|&place| tables[place].numbers(RANKED).is_some())
     };
     let (first, second) = (&first[ranked(first)?], &second[ranked(second)?]);
+    let (first, second) = (&Ranked::new(first), &Ranked::like(second, first));
     let shared = shared_choices(first, second);
     let (ours, theirs) = (designs(second, &shared), designs(first, &shared));
     let both: Vec<(&Design, [f64; 2])> = theirs
@@ -100,16 +102,94 @@ struct Choice<'a> {
 /// The values of all choices of a design.
 type Design = Vec<String>;
 
-fn shared_choices<'a>(first: &'a Table, second: &Table) -> Vec<Choice<'a>> {
-    let has_ratio = first.place("ratio").is_some();
-    let choices = Setting::of_roles(first, &[Role::Choice, Role::Condition]);
+/// A table, and what its ratios are called in another table.
+struct Ranked<'a> {
+    table: &'a Table,
+    /// The other table's ratio for each ratio that is the same, by its bits.
+    ratios: HashMap<u64, f64>,
+}
+
+impl<'a> Ranked<'a> {
+    fn new(table: &'a Table) -> Self {
+        let ratios = HashMap::new();
+        Self { table, ratios }
+    }
+
+    /// With the ratios of another table where the same nominal ratio gives both; each ratio is matched with the nearest one.
+    fn like(table: &'a Table, other: &Table) -> Self {
+        let (ours, theirs) = (nominal_ratios(table), nominal_ratios(other));
+        let nearest = |of: &NominalRatio, among: &[NominalRatio]| {
+            let same = among.iter().copied().filter(|one| one.overlaps(of));
+            same.min_by(|a, b| a.distance(of).total_cmp(&b.distance(of)))
+        };
+        let pairs = ours.iter().filter_map(|own| {
+            let other = nearest(own, &theirs)?;
+            let back = nearest(&other, &ours)?;
+            (back == *own).then_some((own.ratio.to_bits(), other.ratio))
+        });
+        let ratios = pairs.collect();
+        Self { table, ratios }
+    }
+
+    /// A value with its unit; empty where the setting does not apply; `None` of a column that the table lacks.
+    fn value(&self, column: &str, row: usize) -> Option<String> {
+        let (column, data) = self.table.column(column)?;
+        Some(match data.value(row) {
+            None => String::new(),
+            Some(Value::Number(number)) => {
+                let is_ratio = column.name == "ratio";
+                let other = self.ratios.get(&number.to_bits()).filter(|_| is_ratio);
+                format!("{} {}", other.unwrap_or(&number), column.unit)
+            }
+            Some(Value::Word(word)) => word,
+        })
+    }
+}
+
+/// A compression ratio, and the nominal ratios from which rounding gives its number of measurements.
+#[derive(Clone, Copy, PartialEq)]
+struct NominalRatio {
+    ratio: f64,
+    least: f64,
+    most: f64,
+}
+
+impl NominalRatio {
+    fn overlaps(&self, other: &Self) -> bool {
+        self.ratio == other.ratio || (self.least <= other.most && other.least <= self.most)
+    }
+
+    fn distance(&self, other: &Self) -> f64 {
+        (self.ratio / other.ratio).ln().abs()
+    }
+}
+
+/// The ratios of a table, each once; without numbers of measurements each is nominal itself.
+fn nominal_ratios(table: &Table) -> Vec<NominalRatio> {
+    let rows = table.groups(&["ratio"], 0..table.n_rows);
+    let ratios = rows.iter().map(|rows| {
+        let ratio = table.number("ratio", rows[0]);
+        let m = table.number("measurements", rows[0]);
+        let n = ratio * m;
+        let (least, most) = match m >= 1.0 {
+            true => (n / (m + 0.5), n / (m - 0.5)),
+            false => (ratio, ratio),
+        };
+        NominalRatio { ratio, least, most }
+    });
+    ratios.filter(|one| one.ratio.is_finite()).collect()
+}
+
+fn shared_choices<'a>(first: &Ranked<'a>, second: &Ranked) -> Vec<Choice<'a>> {
+    let has_ratio = first.table.place("ratio").is_some();
+    let choices = Setting::of_roles(first.table, &[Role::Choice, Role::Condition]);
     // On arrays of two sizes a ratio is the same choice, a number of measurements is not.
     let choices = choices.filter(|one| !(has_ratio && one.column.name == "measurements"));
     let choices = choices.filter_map(|one| {
-        let values = |table: &Table| -> BTreeSet<String> {
-            let rows = 0..table.n_rows;
-            rows.filter_map(|row| value(table, &one.column.name, row))
-                .collect()
+        let values = |ranked: &Ranked| -> BTreeSet<String> {
+            let rows = 0..ranked.table.n_rows;
+            let values = rows.filter_map(|row| ranked.value(&one.column.name, row));
+            values.collect()
         };
         let (ours, theirs) = (values(second), values(first));
         let values: BTreeSet<String> = ours.intersection(&theirs).cloned().collect();
@@ -121,24 +201,15 @@ fn shared_choices<'a>(first: &'a Table, second: &Table) -> Vec<Choice<'a>> {
     choices.collect()
 }
 
-fn value(table: &Table, column: &str, row: usize) -> Option<String> {
-    let (_, data) = table.column(column)?;
-    Some(match data.value(row)? {
-        Value::Number(ratio) if column == "ratio" => ratio.round().to_string(),
-        Value::Number(number) => number.to_string(),
-        Value::Word(word) => word,
-    })
-}
-
 /// Mean accuracy of each design that has none but shared values.
-fn designs(table: &Table, shared: &[Choice]) -> BTreeMap<Design, f64> {
+fn designs(ranked: &Ranked, shared: &[Choice]) -> BTreeMap<Design, f64> {
     let mut sums: BTreeMap<Design, (f64, f64)> = BTreeMap::new();
-    for row in 0..table.n_rows {
+    for row in 0..ranked.table.n_rows {
         let values = shared.iter().map(|choice| {
-            let value = value(table, &choice.column.name, row)?;
+            let value = ranked.value(&choice.column.name, row)?;
             choice.values.contains(&value).then_some(value)
         });
-        let accuracy = table.number(RANKED, row);
+        let accuracy = ranked.table.number(RANKED, row);
         if let Some(design) = values.collect::<Option<Design>>()
             && accuracy.is_finite()
         {
@@ -178,7 +249,7 @@ mod tests {
 
     crate::row! {
     /// A design of a study.
-    pub struct Ranked {
+    pub struct DesignRow {
         /// An array's.
         taxels: usize => Choice: Linear;
         /// Which.
@@ -193,7 +264,7 @@ mod tests {
         accuracy: f64 => Value(More): Share;
     } }
 
-    const FILE: File<Ranked> = File::new("accuracy.csv", "Accuracy", "");
+    const FILE: File<DesignRow> = File::new("accuracy.csv", "Accuracy", "");
 
     /// Block averages, Gaussian and subsampling at two ratios, twice each, on an array of so many taxels.
     fn table(n_taxels: usize, accuracies: [f64; 6], noises: &[f64]) -> Vec<Table> {
@@ -201,7 +272,7 @@ mod tests {
         for (design, accuracy) in accuracies.into_iter().enumerate() {
             for (twice, noise_std) in noises.iter().enumerate() {
                 let measurements = n_taxels / [4, 16][design % 2];
-                rows.push(Ranked {
+                rows.push(DesignRow {
                     taxels: n_taxels,
                     ensemble: ["block_average", "gaussian", "subsample"][design / 2].to_owned(),
                     ratio: n_taxels as f64 / measurements as f64,

@@ -72,6 +72,12 @@ impl<'a> Setting<'a> {
         self.data.varies(rows.iter().copied())
     }
 
+    /// Whether it has a value in all rows: a number, a word, or an absent one that has a name.
+    pub fn applies(&self, rows: &[usize]) -> bool {
+        let has_name = !self.column.word("").is_empty();
+        has_name || rows.iter().all(|&row| self.data.value(row).is_some())
+    }
+
     /// Whether its values are numbers.
     pub fn is_number(&self) -> bool {
         matches!(self.data, Data::Numbers(_))
@@ -130,9 +136,14 @@ impl<'a> Swept<'a> {
         let mut following = Vec::new();
         for one in order {
             let others = without(&free, &one);
-            // The others say what its value is.
-            let alike = Setting::groups(&others, table, rows);
-            if !others.is_empty() && alike.iter().all(|rows| !one.varies(rows)) {
+            // A setting that does not apply in some rows does not tell what another one is there.
+            let telling: Vec<Setting> = others
+                .iter()
+                .filter(|other| other.applies(rows))
+                .copied()
+                .collect();
+            let alike = Setting::groups(&telling, table, rows);
+            if !telling.is_empty() && alike.iter().all(|rows| !one.varies(rows)) {
                 following.push(one);
                 free = others;
             }
@@ -163,11 +174,14 @@ impl<'a> Swept<'a> {
     }
 
     /// What a chart and a table show first: of those that vary by themselves the number of most values, of equals the last, since what is done
-    /// with measurements stands behind how they are made; the first where none is a number.
+    /// with measurements stands behind how they are made. Numbers that do not apply in all rows come after words, since their axis has no place for such
+    /// a row.
     pub fn main(&self, rows: &[usize]) -> Option<Setting<'a>> {
         let numbers = self.free.iter().filter(|setting| setting.is_number());
+        let numbers = numbers.filter(|setting| numbers_are_there(setting, rows));
         let main = numbers.max_by_key(|setting| setting.levels(rows).len());
-        main.or(self.free.first()).copied()
+        let words = self.free.iter().find(|setting| !setting.is_number());
+        main.or(words).or(self.free.first()).copied()
     }
 
     /// The conditions of the world in a row, in words; where one thing at a time happens, that one. Empty if there is one condition.
@@ -200,6 +214,11 @@ impl<'a> Swept<'a> {
     pub fn by_condition(&self, rows: &[usize]) -> Vec<Vec<usize>> {
         self.groups(&self.of_role(Role::Condition), rows)
     }
+}
+
+/// Whether a setting of numbers has one in every row.
+fn numbers_are_there(setting: &Setting, rows: &[usize]) -> bool {
+    rows.iter().all(|&row| setting.data.value(row).is_some())
 }
 
 /// All settings but one.

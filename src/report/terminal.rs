@@ -5,7 +5,7 @@ use crate::report::swept::{Setting, Swept, without};
 use crate::report::text_width::break_lines;
 use crate::table::{Column, Role, Table, Value};
 use comfy_table::{
-    CellAlignment, ColumnConstraint, ContentArrangement, Table as TextTable, TableComponent,
+    CellAlignment, ColumnConstraint, ContentArrangement, Table as TextTable, TableComponent, Width,
     presets,
 };
 use std::io::IsTerminal;
@@ -131,6 +131,8 @@ fn is_telling(table: &Table, setting: &Setting) -> bool {
         Role::Note => false,
         // Of one row, the subject says what it is about.
         Role::Subject if table.n_rows == 1 => true,
+        // A pair of objects is not said by the second alone, even if the first is the same in all rows.
+        Role::Subject => !setting.is_number() || setting.data.varies(rows),
         // What is the same for all, or for none, says nothing.
         Role::Value(_) | Role::Cost if setting.is_number() => {
             rows.any(|row| setting.data.value(row).is_some())
@@ -151,7 +153,8 @@ fn columns_text(mut columns: Vec<TextColumn>, n_lines: usize, width: usize) -> (
         } else {
             widest.min(24)
         };
-        used += wide.max(letters(&column.head).min(widest.max(10))) + COLUMN_GAP;
+        let head = letters(&column.head).min(widest.max(longest_word(&column.head)));
+        used += wide.max(head) + COLUMN_GAP;
         used <= width + COLUMN_GAP
     };
     let n = columns.iter().map(fits).take_while(|fits| *fits).count();
@@ -166,10 +169,15 @@ fn columns_text(mut columns: Vec<TextColumn>, n_lines: usize, width: usize) -> (
         if text.is_number {
             column.set_cell_alignment(CellAlignment::Right);
         }
-        if text.said.iter().any(|text| text.contains('[')) {
+        let is_interval = |text: &String| text.contains('[');
+        column.set_constraint(match text.said.iter().any(is_interval) {
             // An interval broken over two lines cannot be read down the column.
-            column.set_constraint(ColumnConstraint::ContentWidth);
-        }
+            true => ColumnConstraint::ContentWidth,
+            // A heading breaks between words; the width includes the padding.
+            false => {
+                ColumnConstraint::LowerBoundary(Width::Fixed(longest_word(&text.head) as u16 + 2))
+            }
+        });
     }
     let lines = shown.lines();
     let lines: String = lines
@@ -277,6 +285,10 @@ fn ruled_table(width: usize) -> TextTable {
     table.set_style(TableComponent::HeaderLines, '-');
     table.set_style(TableComponent::MiddleHeaderIntersections, '-');
     table
+}
+
+fn longest_word(text: &str) -> usize {
+    text.split_whitespace().map(letters).max().unwrap_or(0)
 }
 
 fn letters(text: &str) -> usize {

@@ -2,6 +2,7 @@
 
 use crate::command::Case;
 use std::fs;
+use std::path::Path;
 
 /// A second of work.
 const STUDY: &str = r#"
@@ -230,4 +231,59 @@ fn two_folders_stand_side_by_side_in_a_page() {
     let apart = case.run(&["compare", "asked", "noisy", "--html", "apart.html"]);
     assert_eq!(apart.status.code(), Some(2), "no cell has the same noise");
     assert!(!case.path("apart.html").exists());
+}
+
+/// Edits of outcomes and of numbers are said, and no row is dropped because it has no number.
+#[test]
+fn results_of_stability_that_are_edited_differ_from_what_they_were() {
+    let case = Case::new();
+    let results = Path::new(env!("CARGO_MANIFEST_DIR")).join("results/stability");
+    if !results.exists() {
+        return;
+    }
+    for folder in ["kept", "edited"] {
+        fs::create_dir(case.path(folder)).unwrap();
+        for name in [
+            "study.toml",
+            "stability.csv",
+            "stability_summary.csv",
+            "timing.csv",
+            "joints.csv",
+            "peers.csv",
+        ] {
+            fs::copy(results.join(name), case.path(folder).join(name)).unwrap();
+        }
+    }
+    let path = case.path("edited").join("stability.csv");
+    let text = fs::read_to_string(&path).unwrap();
+    let mut n_edited = 0;
+    let lines = text
+        .lines()
+        .map(|line| match line.contains(",right,") && n_edited < 226 {
+            true => {
+                n_edited += 1;
+                line.replace(",right,", ",not_finite,")
+            }
+            false => line.to_owned(),
+        });
+    fs::write(&path, lines.collect::<Vec<_>>().join("\n") + "\n").unwrap();
+    let compared = |second: &str| {
+        let (said, _) = case.succeeds(&["compare", "kept", second]);
+        said.split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    let said = compared("kept");
+    assert!(said.contains("stability.csv: 1505 settings are in both runs, 0 in the first alone"));
+    assert!(!said.contains("changed"), "{said}");
+    let said = compared("edited");
+    let changed =
+        "stability.csv: outcome: 1279 the same, 226 changed (226 from right to not finite).";
+    assert!(said.contains(changed), "{said}");
+    // A row loses a number.
+    let text = fs::read_to_string(&path).unwrap();
+    let number = "9.725768772680234e-15";
+    assert!(text.contains(number));
+    fs::write(&path, text.replacen(number, "", 1)).unwrap();
+    let said = compared("edited");
+    let lost = "force imbalance: 1 row has a number in the first run alone, 0 in the second alone.";
+    assert!(said.contains(lost), "{said}");
 }

@@ -40,6 +40,27 @@ fn a_phone_needs_no_sideways_scrolling_and_the_dark_is_dark() {
 }
 
 #[test]
+fn a_confusion_matrix_of_forty_objects_fits_on_a_page_of_1280_pixels() {
+    let mut made = tables(quickstart_cells(), 10, 40);
+    for row in &mut made.confusion {
+        for object in [&mut row.object, &mut row.predicted] {
+            *object = format!("{object} with a long name");
+        }
+        row.count += 1000;
+    }
+    let Some(Shown { browser, page, .. }) = show(&made, &about()) else {
+        return;
+    };
+    browser.resize(1280, 800);
+    browser.open(&page);
+    let wide = "return [...document.querySelectorAll('.panels.tiles')].filter((one) => one.scrollWidth > one.clientWidth).length";
+    assert_eq!(browser.count(wide), 0);
+    let signs = "return [...document.querySelectorAll('.panels.tiles .tile')].filter((tile) => tile.nextSibling.getBBox().width > tile.getBBox().width + 1).length";
+    assert_eq!(browser.count(signs), 0, "no sign is wider than its tile");
+    browser.check_quiet();
+}
+
+#[test]
 fn the_page_prints_and_is_named_for_those_who_listen() {
     let Some(Shown { browser, .. }) = show(&tables(quickstart_cells(), 3, 24), &about()) else {
         return;

@@ -24,5 +24,7 @@ mod pareto;
 mod pictures;
 mod recording_files;
 mod recording_pictures;
+mod rows;
 mod study_page;
 mod tables;
+mod two_folders;

@@ -2,6 +2,7 @@
 
 use super::rows::TouchRow;
 use super::study::RecognitionStudy;
+use crate::report::csv_tables::MISSED_TOUCHES;
 use crate::study::table::{Cell, Limit, TrialScore};
 
 impl RecognitionStudy {
@@ -36,11 +37,7 @@ impl RecognitionStudy {
             meaning: meaning.to_owned(),
         };
         let mut limits = vec![
-            limit(
-                "touches that met nothing",
-                (sum(|row| row.n_missed), n_touches),
-                missed,
-            ),
+            limit(MISSED_TOUCHES, (sum(|row| row.n_missed), n_touches), missed),
             limit(
                 "touches with a saturated taxel",
                 (sum(|row| row.n_saturated), n_touches),

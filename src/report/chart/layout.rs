@@ -64,7 +64,9 @@ impl Layout {
             true => (10.0 + titled, 0.0),
             false => (10.0 + TITLE_LINE, titled),
         };
-        let settings = [&view.spec.note[..], &view.constants()].join(" ");
+        let settings = [view.spec.note.clone(), view.constants(), view.omitted()];
+        let settings = settings.iter().filter(|words| !words.is_empty());
+        let settings = settings.map(String::as_str).collect::<Vec<_>>().join(" ");
         let panels_width = columns as f64 * (size.0 + GAP) - GAP;
         let width = f64::max(panels_width + left + RIGHT, NARROWEST);
         Self {

@@ -50,6 +50,14 @@ pub fn places(spec: &ChartSpec, tables: &[Table]) -> Result<Vec<Place>> {
     Ok(view.places)
 }
 
+/// How many rows of its table a chart does not draw, and why, as it stands on the chart; empty if it draws all.
+///
+/// # Errors
+/// A table or a column that the spec names and that is not there.
+pub fn omitted(spec: &ChartSpec, tables: &[Table]) -> Result<String> {
+    Ok(View::of(spec, tables)?.omitted())
+}
+
 /// What the cheapest and the best point of a chart's first front are, in words; none without a front.
 pub fn front_ends(spec: &ChartSpec, tables: &[Table]) -> Option<[String; 2]> {
     let view = View::of(spec, tables).ok()?;

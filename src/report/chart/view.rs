@@ -4,7 +4,7 @@ use super::scale::Scale;
 use crate::error::{Error, Result};
 use crate::report::swept::Setting;
 use crate::table::{Along, At, ChartSpec, Data, Mark, Role, Scale as Spacing, Table};
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 /// Lines up to which bands do not hide each other; more lines get a whisker at each point.
 const MOST_BANDS: usize = 4;
@@ -210,19 +210,78 @@ impl<'a> View<'a> {
         })
     }
 
+    /// How many rows of the table are not drawn, and why; empty if all are.
+    pub fn omitted(&self) -> String {
+        let (n, n_shown) = (self.table.n_rows, self.rows.len());
+        let drawn = self.drawn();
+        let n_drawn = drawn.len();
+        if n_drawn == n {
+            return String::new();
+        }
+        let fill = match &self.spec.mark {
+            Mark::Tiles { fill, .. } => Some(fill),
+            Mark::Line | Mark::Points => None,
+        };
+        let axes = [&self.spec.x, &self.spec.y].into_iter().chain(fill);
+        let axes: Vec<Setting> = axes.filter_map(|name| self.column(name).ok()).collect();
+        let lacks = |one: &&Setting| self.rows.iter().any(|&row| one.data.value(row).is_none());
+        let lacking = axes.iter().filter(lacks);
+        let lacking = lacking.map(|one| format!("no {}", one.column.words));
+        let mut reasons: Vec<String> = lacking.collect();
+        if reasons.is_empty() {
+            reasons.push("no place of their own".to_owned());
+        }
+        let mut said = Vec::new();
+        let have = |n: usize| if n == 1 { "has" } else { "have" };
+        let n_lost = n_shown - n_drawn;
+        if n_lost > 0 {
+            said.push(format!(
+                "{n_lost} {} {}",
+                have(n_lost),
+                reasons.join(" or ")
+            ));
+        }
+        let n_others = n - n_shown;
+        if n_others > 0 {
+            said.push(format!("{n_others} {} other settings", have(n_others)));
+        }
+        format!("{n_drawn} of {n} rows are drawn; {}.", said.join(", "))
+    }
+
+    /// The rows that can be seen: a tile hides those before it in the same place.
+    pub fn drawn(&self) -> Vec<usize> {
+        let Mark::Tiles { fill, .. } = &self.spec.mark else {
+            return self.places.iter().map(|place| place.row).collect();
+        };
+        let is_filled = |place: &&Place| {
+            let fill = self.column(fill);
+            fill.is_ok_and(|fill| fill.data.value(place.row).is_some())
+        };
+        let seen = self.places.iter().filter(is_filled).map(|place| {
+            let at = (self.panel_of(place), place.x.to_bits(), place.y.to_bits());
+            (at, place.row)
+        });
+        let seen: HashMap<_, usize> = seen.collect();
+        let mut rows: Vec<usize> = seen.into_values().collect();
+        rows.sort_unstable();
+        rows
+    }
+
     /// Choices and conditions that have one value in the chart and stand nowhere in it, in words.
     pub fn constants(&self) -> String {
         let spec = self.spec;
+        let mut rows: Vec<usize> = self.places.iter().map(|place| place.row).collect();
+        rows.sort_unstable();
         let axes = [&spec.x, &spec.y].into_iter();
         let used: Vec<&String> = axes.chain(&spec.lines).chain(&spec.panels).collect();
         let is_constant = |one: &Setting| {
             let is_used = used.iter().any(|name| *name == one.column.name.as_ref());
-            let value = self.rows.first().and_then(|&row| one.data.value(row));
-            !is_used && value.is_some() && !one.varies(&self.rows)
+            let value = rows.first().and_then(|&row| one.data.value(row));
+            !is_used && value.is_some() && !one.varies(&rows)
         };
         let constant =
             Setting::of_roles(self.table, &[Role::Choice, Role::Condition]).filter(is_constant);
-        let phrases = constant.map(|one| one.phrase(self.rows[0]).replace(' ', "\u{a0}"));
+        let phrases = constant.map(|one| one.phrase(rows[0]).replace(' ', "\u{a0}"));
         let phrases: Vec<String> = phrases.collect();
         match phrases.is_empty() {
             true => String::new(),

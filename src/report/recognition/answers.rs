@@ -2,9 +2,11 @@
 
 use super::{CELLS, filled};
 use crate::report::advice::{Offer, Offers, Wish};
+use crate::report::csv_tables::{LIMITS_FILE, MISSED_TOUCHES};
 use crate::report::study_folder::words_of;
 use crate::report::swept::{Setting, Swept, without};
-use crate::table::{Table, Value};
+use crate::report::terminal::paragraph;
+use crate::table::{Table, Value, short_number};
 
 /// Values that a sentence lists, and conditions that have sentences, at most.
 const MOST_LISTED: usize = 8;
@@ -15,6 +17,7 @@ pub fn answers(tables: &[Table]) -> Vec<String> {
         return vec!["No cell has been computed.".to_owned()];
     };
     let mut sentences = bests(cells).unwrap_or_default();
+    sentences.extend(missed(tables));
     sentences.extend(effects(cells).unwrap_or_default());
     sentences.extend(remarks(tables));
     sentences
@@ -24,7 +27,25 @@ pub fn answers(tables: &[Table]) -> Vec<String> {
 pub fn words(tables: &[Table], width: usize) -> String {
     let shown = [CELLS, "published.csv", "confused.csv", "variance.csv"];
     let shown = shown.into_iter().filter_map(|file| filled(tables, file));
-    words_of(&shown.collect::<Vec<_>>(), &answers(tables), width)
+    let missed = missed(tables);
+    let mut answers = answers(tables);
+    answers.retain(|answer| Some(answer) != missed.as_ref());
+    let words = words_of(&shown.collect::<Vec<_>>(), &answers, width);
+    // The last lines are those that are read.
+    words
+        + &missed.map_or_else(String::new, |missed| {
+            format!("\n{}", paragraph(&missed, width))
+        })
+}
+
+/// How many touches met nothing; `None` if all met something.
+fn missed(tables: &[Table]) -> Option<String> {
+    let limits = filled(tables, LIMITS_FILE)?;
+    let row = (0..limits.n_rows).find(|&row| limits.word("what", row) == MISSED_TOUCHES)?;
+    let (count, of) = (limits.number("count", row), limits.number("of", row));
+    let share = short_number(100.0 * count / of);
+    let meaning = limits.word("meaning", row);
+    (count > 0.0).then(|| format!("{count} of {of} {MISSED_TOUCHES} ({share} %): {meaning}."))
 }
 
 /// The best of each condition, of the first ones if these are very many.

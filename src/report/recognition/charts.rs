@@ -5,6 +5,7 @@
 
 use super::tables::{CHANCE, OVER_FOLDS, OVER_TRIAL, note_of_groups};
 use super::{CELLS, filled};
+use crate::report::study_folder::MOST_CHARTS;
 use crate::report::swept::{Setting, Swept, without};
 use crate::table::{Along, At, ChartSpec, Mark, Role, Rule, Table, Value};
 use std::cmp::Reverse;
@@ -32,14 +33,14 @@ pub fn charts(tables: &[Table], pareto: Option<bool>) -> Vec<ChartSpec> {
         ..ChartSpec::default()
     };
     let mut charts = accuracy_charts(cells, &chart);
-    // Before the many that a large study has.
-    let place = charts.len().min(2);
     let n_classifiers = cells.groups(&["classifier"], 0..cells.n_rows).len();
     let mut others = Vec::new();
     if pareto.unwrap_or(n_classifiers >= MANY_CLASSIFIERS) {
         others.extend(time_charts(cells, &chart));
     }
     others.extend(confusion.and_then(|table| confusion_chart(cells, table)));
+    // Charts of accuracies stand together; those that are drawn leave room for the others.
+    let place = charts.len().min(MOST_CHARTS - others.len());
     charts.splice(place..place, others);
     charts
 }
@@ -68,7 +69,16 @@ fn accuracy_charts(cells: &Table, chart: &ChartSpec) -> Vec<ChartSpec> {
     let all: Vec<usize> = (0..cells.n_rows).collect();
     let signal = Swept::of(cells, &all).one_at_a_time;
     if signal.is_empty() {
-        return charts_along(cells, chart, None, &all);
+        let mut charts = charts_along(cells, chart, None, &all);
+        // A setting of some classifiers alone also runs along an axis of its own, over the rows that have it.
+        for setting in &Swept::of(cells, &all).free {
+            let has_it = |row: &usize| setting.data.value(*row).is_some();
+            let rows: Vec<usize> = all.iter().copied().filter(has_it).collect();
+            if setting.is_number() && rows.len() < all.len() && setting.levels(&rows).len() > 2 {
+                charts.extend(charts_along(cells, chart, Some(*setting), &rows));
+            }
+        }
+        return charts;
     }
     let charts_of = |setting: &Setting| {
         let others = without(&signal, setting);

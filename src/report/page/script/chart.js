@@ -94,8 +94,12 @@ function drawView(view, legend, host, width) {
   const n = view.panels.names.length;
   const labels = Math.min(220, 7 * Math.max(...view.y.ticks.map((tick) => tick.label.length)));
   const most = Math.max(1, Math.min(n, 3, Math.floor(width / 300)));
-  const tile = look ? Math.max(22, 7.2 * Math.max(...view.places.map((place) => look.sign(place.row).length))) : 0;
-  const size = look ? 34 + labels + Math.max(tile, Math.min(64, (width - 60) / view.x.n / Math.max(n, 1) - 60 / view.x.n)) * view.x.n + 12 : Math.floor(width / most);
+  const longest = look ? Math.max(1, ...view.places.map((place) => look.sign(place.row).length)) : 0;
+  // Tiles shrink with their signs before a panel is wider than the page.
+  const fitting = (room) => (room - 48 - labels) / view.x.n;
+  const tile = Math.max(12, 4.2 * longest + 2, Math.min(64, fitting(width / n)), Math.min(22, fitting(width)), Math.min(7.2 * longest, fitting(width)));
+  if (look) look.fontSize = Math.min(11, (tile - 2) / (0.6 * longest));
+  const size = look ? 34 + labels + tile * view.x.n + 12 : Math.floor(width / most);
   host.style.setProperty("--width", `${Math.min(size, look ? Infinity : width)}px`);
   const panels = [];
   for (const row of rowsOfPanels) {
@@ -204,6 +208,6 @@ function tilesOf(view, places, look, { px, py, box }) {
   return places.filter((place) => !look.column.isAbsent(place.row)).flatMap((place) => {
     const [x, y] = [px(place.x), py(place.y)];
     const tile = draw("rect", { x: x - width / 2, y: y - height / 2, width, height, fill: look.fill(place.row), class: "tile", ...pointAttributes(place, "tile") });
-    return [tile, draw("text", { x, y: y + 4, class: look.isDark(place.row) ? "sign light" : "sign" }, look.sign(place.row))];
+    return [tile, draw("text", { x, y: y + 4, style: `font-size: ${at1(look.fontSize)}px`, class: look.isDark(place.row) ? "sign light" : "sign" }, look.sign(place.row))];
   });
 }

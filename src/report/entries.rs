@@ -1,0 +1,191 @@
+//! Two versions of a table entry by entry: which rows both have, and in which columns the entries of such rows differ, exactly.
+//!
+//! [`differences`](super::differences) compares means over trials. This comparison has no such tolerance: it covers outcomes, notes, numbers that one
+//! version lacks, and tables that name configurations by number.
+
+use crate::report::swept::Setting;
+use crate::table::{Column, Role, Table, Value};
+use std::collections::{BTreeMap, HashMap};
+
+/// Columns whose numbers name configurations, which other runs number otherwise.
+const CONFIGURATION_NUMBERS: [&str; 2] = ["cell", "best_cell"];
+
+/// A row of one version and the same row of the other.
+type Pair = (usize, usize);
+
+/// The rows of two versions of a table.
+pub struct TableEntries {
+    /// The file of the table.
+    pub file: &'static str,
+    /// Rows that both versions have.
+    pub n_both: usize,
+    /// Rows that only the first version has.
+    pub n_first_only: usize,
+    /// Rows that only the second version has.
+    pub n_second_only: usize,
+    /// Columns that only one version has.
+    pub one_sided: Vec<String>,
+    /// Columns in which rows of both versions differ.
+    pub columns: Vec<ColumnEntries>,
+}
+
+/// A column in which rows differ.
+pub struct ColumnEntries {
+    /// The column.
+    pub column: Column,
+    /// Rows of both versions that have the same entry.
+    pub n_same: usize,
+    /// The changed entries, first and second in words, and how many rows have this change; in the order of their first rows.
+    pub changes: Vec<(String, String, usize)>,
+    /// Rows with a value in the first version alone.
+    pub n_first_only: usize,
+    /// Rows with a value in the second version alone.
+    pub n_second_only: usize,
+}
+
+impl ColumnEntries {
+    /// Rows whose entries differ.
+    pub fn n_changed(&self) -> usize {
+        self.changes.iter().map(|(.., n)| n).sum()
+    }
+}
+
+/// Compares the files of tables that both folders have, in the order of the second.
+pub fn entries(first: &[Table], second: &[Table]) -> Vec<TableEntries> {
+    let numbers = [first, second].map(configurations);
+    let with_files = second.iter().filter(|table| !table.csv.is_empty());
+    let found = with_files.filter_map(|second| {
+        let first = first.iter().find(|first| first.file == second.file)?;
+        Some(of_table([first, second], &numbers))
+    });
+    found.collect()
+}
+
+/// The files of tables that only one of two folders has.
+pub fn files_of_one<'a>(one: &'a [Table], other: &[Table]) -> Vec<&'a str> {
+    let files = one.iter().filter(|table| !table.csv.is_empty());
+    let alone = files.filter(|table| other.iter().all(|known| known.file != table.file));
+    alone.map(|table| table.file).collect()
+}
+
+/// The settings of each configuration by its number.
+type Configurations = HashMap<u64, String>;
+
+fn configurations(tables: &[Table]) -> Configurations {
+    let mut known = Configurations::new();
+    for table in tables {
+        let Some((column, numbers)) = table.column("cell") else {
+            continue;
+        };
+        // In a table of configurations the number is a note beside their settings.
+        if column.role == Role::Note {
+            for row in 0..table.n_rows {
+                let roles = [Role::Choice, Role::Condition];
+                let settings = settings(table, row, &roles, &Configurations::new());
+                known.entry(numbers.key(row)).or_insert(settings);
+            }
+        }
+    }
+    known
+}
+
+/// The settings of a row with their units. An entry that is absent is the same as a column that is absent: both do not apply.
+fn settings(table: &Table, row: usize, roles: &[Role], configurations: &Configurations) -> String {
+    let columns = Setting::of_roles(table, roles);
+    let said = columns.filter_map(|one| entry(one, row, configurations));
+    said.collect()
+}
+
+/// An entry of a row with the name and the unit of its column; a configuration by its settings.
+fn entry(one: Setting, row: usize, configurations: &Configurations) -> Option<String> {
+    let value = one.data.value(row)?;
+    let name = &one.column.name;
+    let is_number = CONFIGURATION_NUMBERS.contains(&&name[..]);
+    Some(match configurations.get(&one.data.key(row)) {
+        Some(settings) if is_number => format!("{name} = {settings};"),
+        _ => format!("{name} = {value} {};", one.column.unit),
+    })
+}
+
+fn of_table(tables: [&Table; 2], configurations: &[Configurations; 2]) -> TableEntries {
+    let roles = [Role::Choice, Role::Condition, Role::Subject];
+    let mut places: HashMap<String, Vec<usize>> = HashMap::new();
+    let [first, second] = tables;
+    let key = |side: usize, row| settings(tables[side], row, &roles, &configurations[side]);
+    for row in (0..first.n_rows).rev() {
+        places.entry(key(0, row)).or_default().push(row);
+    }
+    let pairs = (0..second.n_rows).filter_map(|row| {
+        // Rows that no setting tells apart are taken in their order.
+        let same = places.get_mut(&key(1, row))?;
+        Some((same.pop()?, row))
+    });
+    let pairs: Vec<Pair> = pairs.collect();
+    let has = |table: &Table, column: &Column| table.place(&column.name).is_some();
+    let one_sided = |of: &Table, other: &Table| -> Vec<String> {
+        let columns = of.columns.iter().filter(|column| !has(other, column));
+        columns.map(|column| column.name.to_string()).collect()
+    };
+    let compared = Setting::all(second).filter(|one| {
+        let is_key = roles.contains(&one.column.role);
+        let is_number = one.column.name == "cell";
+        !is_key && !is_number && has(first, one.column)
+    });
+    let columns = compared.filter_map(|one| of_column(one, tables, configurations, &pairs));
+    TableEntries {
+        file: second.file,
+        n_both: pairs.len(),
+        n_first_only: first.n_rows - pairs.len(),
+        n_second_only: second.n_rows - pairs.len(),
+        one_sided: [one_sided(first, second), one_sided(second, first)].concat(),
+        columns: columns.collect(),
+    }
+}
+
+/// A column of the second table against that of the first; `None` if all entries are the same.
+fn of_column(
+    one: Setting,
+    [first, _]: [&Table; 2],
+    configurations: &[Configurations; 2],
+    pairs: &[Pair],
+) -> Option<ColumnEntries> {
+    let (column, data) = first.column(&one.column.name)?;
+    let other = Setting { column, data };
+    let mut changes: BTreeMap<(String, String), (usize, usize)> = BTreeMap::new();
+    let (mut n_same, mut n_first_only, mut n_second_only) = (0, 0, 0);
+    for (place, &(theirs, ours)) in pairs.iter().enumerate() {
+        let before = entry(other, theirs, &configurations[0]);
+        let after = entry(one, ours, &configurations[1]);
+        if before == after {
+            n_same += 1;
+            continue;
+        }
+        n_first_only += usize::from(after.is_none());
+        n_second_only += usize::from(before.is_none());
+        let words = (words(other, theirs), words(one, ours));
+        let (_, n) = changes.entry(words).or_insert((place, 0));
+        *n += 1;
+    }
+    let mut changes: Vec<_> = changes.into_iter().collect();
+    changes.sort_by_key(|(_, (place, _))| *place);
+    let changes = changes
+        .into_iter()
+        .map(|((from, to), (_, n))| (from, to, n))
+        .collect::<Vec<_>>();
+    (!changes.is_empty()).then(|| ColumnEntries {
+        column: one.column.clone(),
+        n_same,
+        changes,
+        n_first_only,
+        n_second_only,
+    })
+}
+
+/// An entry in words; numbers in full.
+fn words(one: Setting, row: usize) -> String {
+    match one.data.value(row) {
+        None => "nothing".to_owned(),
+        Some(Value::Number(number)) => number.to_string(),
+        Some(Value::Word(word)) => one.column.word(&word),
+    }
+}

@@ -1,0 +1,249 @@
+//! Every row of a table is a point of its charts, or it is counted on them.
+
+use crate::chart_tables;
+use crate::report_synthetic::{
+    about, add_headlines, cell, noise_cells, quickstart_cells, tables, write_all,
+};
+use bubbletouch::recognition::ClassifierKind;
+use bubbletouch::report::chart::{draw, omitted, places};
+use bubbletouch::report::entries::entries;
+use bubbletouch::report::recognition::{answers, charts, read_tables, tables_of, words};
+use bubbletouch::study::table::{Cell, Limit};
+use bubbletouch::table::{ChartSpec, Mark, Table};
+
+/// A linear SVM at three C, and a k-NN, which has none.
+fn with_k_nearest() -> Vec<Cell> {
+    let of_svm = [0.1, 1.0, 10.0].map(|c| Cell {
+        c: Some(c),
+        ..cell()
+    });
+    let of_k_nearest = Cell {
+        classifier: ClassifierKind::KNearest,
+        c: None,
+        ..cell()
+    };
+    of_svm.into_iter().chain([of_k_nearest]).collect()
+}
+
+#[test]
+fn a_classifier_without_c_has_its_point_beside_an_svm_over_c() {
+    let made = tables_of(&tables(with_k_nearest(), 3, 24)).unwrap();
+    let specs = charts(&made, None);
+    let accuracy = specs.iter().filter(|spec| spec.y == "accuracy");
+    let accuracy: Vec<&ChartSpec> = accuracy.collect();
+    let svg = |spec| draw(spec, &made).unwrap().svg("");
+    let all = svg(accuracy[0]);
+    assert_eq!(places(accuracy[0], &made).unwrap().len(), 4);
+    for name in ["linear SVM", "k nearest", "0.1", "10"] {
+        assert!(all.contains(name), "{name}");
+    }
+    assert_eq!(omitted(accuracy[0], &made).unwrap(), "");
+    let over_c = accuracy.iter().find(|spec| spec.x == "c").unwrap();
+    let said = svg(over_c);
+    assert!(
+        said.contains("3 of 4 rows are drawn; 1 has no C."),
+        "{said}"
+    );
+    assert!(
+        said.contains("linear") && !said.contains("nearest"),
+        "{said}"
+    );
+}
+
+/// Points, or tiles that are not hidden.
+fn n_seen(spec: &ChartSpec, tables: &[Table]) -> usize {
+    let mut places = places(spec, tables).unwrap();
+    if let Mark::Tiles { fill, .. } = &spec.mark {
+        let table = tables
+            .iter()
+            .find(|table| table.file == spec.table)
+            .unwrap();
+        let (_, data) = table.column(fill).unwrap();
+        places.retain(|place| data.value(place.row).is_some());
+        let at = |place: &bubbletouch::report::chart::Place| {
+            (
+                place.panel,
+                place.line,
+                place.x.to_bits(),
+                place.y.to_bits(),
+            )
+        };
+        places.sort_by_key(at);
+        places.dedup_by_key(|place| at(place));
+    }
+    places.len()
+}
+
+#[test]
+fn every_row_is_a_point_or_is_counted_on_the_chart() {
+    let of = |cells| {
+        let made = tables_of(&tables(cells, 3, 24)).unwrap();
+        let specs = charts(&made, Some(true));
+        (made, specs)
+    };
+    let synthetic = (chart_tables::tables(), chart_tables::charts());
+    for (made, specs) in [
+        synthetic,
+        of(with_k_nearest()),
+        of(noise_cells()),
+        of(quickstart_cells()),
+    ] {
+        for spec in specs {
+            let table = made.iter().find(|table| table.file == spec.table).unwrap();
+            let (n, n_seen) = (table.n_rows, n_seen(&spec, &made));
+            let said = omitted(&spec, &made).unwrap();
+            let counted = format!("{n_seen} of {n} rows are drawn");
+            assert_eq!(
+                n_seen < n,
+                said.starts_with(&counted),
+                "{}: {said}",
+                spec.name
+            );
+            let svg = draw(&spec, &made).unwrap().svg("");
+            // Lines break.
+            let first = counted.split(' ').next().unwrap_or_default();
+            assert!(said.is_empty() || svg.contains(first), "{}", spec.name);
+        }
+    }
+}
+
+#[test]
+fn charts_of_accuracies_stand_together() {
+    let mut cells = Vec::new();
+    for cell in noise_cells() {
+        for tested in [16, 64, 256] {
+            let cell = cell.clone();
+            cells.push(Cell {
+                measurements: tested,
+                ratio: 4096.0 / tested as f64,
+                ..cell
+            });
+        }
+    }
+    let made = tables_of(&tables(cells, 3, 24)).unwrap();
+    let is_accuracy = |spec: &ChartSpec| spec.name.starts_with("accuracy_by");
+    let specs = charts(&made, Some(true));
+    let drawn: Vec<bool> = specs.iter().take(24).map(is_accuracy).collect();
+    let n_changes = drawn.windows(2).filter(|pair| pair[0] != pair[1]).count();
+    assert!(drawn[0] && n_changes == 1, "{drawn:?}");
+}
+
+#[test]
+fn touches_that_met_nothing_are_in_the_last_lines_and_among_the_first_answers() {
+    let mut typed = tables(quickstart_cells(), 3, 24);
+    let limit = |count| Limit {
+        what: "touches that met nothing".to_owned(),
+        count,
+        of: 9120,
+        meaning: "their frames hold no contact".to_owned(),
+    };
+    typed.limits = vec![limit(0)];
+    let none = tables_of(&typed).unwrap();
+    assert!(!words(&none, 90).contains("met nothing"));
+    typed.limits = vec![limit(456)];
+    let some = tables_of(&typed).unwrap();
+    let said = words(&some, 90);
+    let last = said.trim_end().rsplit("\n\n").next().unwrap();
+    assert_eq!(said.matches("met nothing").count(), 1);
+    assert!(
+        last.starts_with("456 of 9120 touches that met nothing (5 %)"),
+        "{last}"
+    );
+    let answers = answers(&some);
+    let place = answers.iter().position(|said| said.contains("met nothing"));
+    assert!(place.is_some_and(|place| place <= 2), "{answers:?}");
+}
+
+#[test]
+fn the_object_of_a_confused_pair_is_said_though_all_pairs_have_the_same() {
+    let mut typed = tables(quickstart_cells(), 3, 24);
+    typed.confused.retain(|pair| pair.object == "mug");
+    let mut other = typed.confused[0].clone();
+    other.predicted = "hammer".to_owned();
+    typed.confused.push(other);
+    let said = words(&tables_of(&typed).unwrap(), 90);
+    let (_, pairs) = said.split_once("Most often confused").unwrap();
+    assert_eq!(
+        pairs.matches("mug").count(),
+        typed.confused.len(),
+        "{pairs}"
+    );
+}
+
+#[test]
+fn headings_of_the_terminal_break_between_words_alone() {
+    for width in [60, 70, 80, 90, 100, 120] {
+        let said = words(
+            &tables_of(&tables(quickstart_cells(), 3, 24)).unwrap(),
+            width,
+        );
+        let (table, _) = said.split_once("----").unwrap();
+        for word in ["compression", "accuracy"] {
+            let part = &word[..word.len() - 1];
+            assert_eq!(
+                table.matches(part).count(),
+                table.matches(word).count(),
+                "{said}"
+            );
+        }
+    }
+}
+
+#[test]
+fn an_edit_of_any_entry_of_any_table_is_found_by_comparing() {
+    let dir = tempfile::tempdir().unwrap();
+    let (kept, edited) = (dir.path().join("kept"), dir.path().join("edited"));
+    let mut typed = tables(with_k_nearest(), 2, 3);
+    add_headlines(&mut typed);
+    for folder in [&kept, &edited] {
+        write_all(folder, &typed, &about()).unwrap();
+    }
+    let first = read_tables(&kept).unwrap();
+    let is_same = |second: &[Table]| {
+        let found = entries(&first, second);
+        let mut found = found.iter();
+        found.all(|table| table.columns.is_empty() && table.n_first_only + table.n_second_only == 0)
+    };
+    assert!(is_same(&read_tables(&edited).unwrap()));
+    let mut n_edits = 0;
+    for table in first
+        .iter()
+        .filter(|table| table.n_rows > 0 && !table.csv.is_empty())
+    {
+        let path = edited.join(table.file);
+        let text = std::fs::read_to_string(&path).unwrap();
+        let mut reader = csv::Reader::from_reader(text.as_bytes());
+        let head = reader.headers().unwrap().clone();
+        let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+        for (place, column) in table.columns.iter().enumerate() {
+            // The numbers of configurations are names: other numbers of all rows are no difference.
+            if column.name == "cell" {
+                continue;
+            }
+            let mut writer = csv::Writer::from_path(&path).unwrap();
+            writer.write_record(&head).unwrap();
+            for (number, row) in rows.iter().enumerate() {
+                let entries = row.iter().enumerate().map(|(at, entry)| {
+                    let is_edited = number + 1 == rows.len() && at == place;
+                    match (is_edited, entry.parse::<f64>()) {
+                        (false, _) => entry.to_owned(),
+                        (true, Ok(value)) => (value + 1.0).to_string(),
+                        (true, Err(_))
+                            if entry.is_empty() && table.numbers(&column.name).is_some() =>
+                        {
+                            "7".to_owned()
+                        }
+                        (true, Err(_)) => "edited".to_owned(),
+                    }
+                });
+                writer.write_record(entries).unwrap();
+            }
+            drop(writer);
+            let second = read_tables(&edited).unwrap();
+            assert!(!is_same(&second), "{}: {}", table.file, column.name);
+            n_edits += 1;
+        }
+        std::fs::write(&path, text).unwrap();
+    }
+    assert!(n_edits > 100, "{n_edits}");
+}

@@ -1,0 +1,183 @@
+//! Two folders of results: entries that differ, and how alike both rank their designs.
+
+use bubbletouch::report::entries::entries;
+use bubbletouch::report::rank_agreement::rank_agreement;
+use bubbletouch::row;
+use bubbletouch::table::{File, Table};
+
+row! {
+/// A configuration.
+pub struct Scored {
+    /// Its number.
+    cell: usize => Note: Linear;
+    /// A choice that not every design has.
+    c: Option<f64> => Choice "C": Log;
+    /// A trial.
+    trial: usize => Subject: Linear;
+    /// How it ended.
+    outcome: String => Outcome;
+    /// What was found.
+    error: Option<f64> => Value(Less): Log;
+    /// A note.
+    n_capped: usize => Note: Linear;
+} }
+row! {
+/// A pair of objects.
+pub struct Counted {
+    /// The number of its configuration.
+    cell: usize => Subject: Linear;
+    /// What was touched.
+    object: String => Subject;
+    /// How often.
+    count: usize => Value(Neither): Linear;
+} }
+
+fn tables(numbers: [usize; 2], edit: impl Fn(usize, &mut Scored), count: usize) -> Vec<Table> {
+    let row = |row: usize| {
+        let mut scored = Scored {
+            cell: numbers[row / 3],
+            c: (row < 3).then_some(1.0),
+            trial: row % 3,
+            outcome: "right".to_owned(),
+            error: Some(0.25),
+            n_capped: 0,
+        };
+        edit(row, &mut scored);
+        scored
+    };
+    let rows: Vec<Scored> = (0..6).map(row).collect();
+    let counted = |cell| Counted {
+        cell: numbers[cell],
+        object: "mug".to_owned(),
+        count: [7, count][cell],
+    };
+    let scores: File<Scored> = File::new("scores.csv", "Scores", "");
+    let counts: File<Counted> = File::new("counts.csv", "Counts", "");
+    vec![
+        scores.of(&rows).unwrap(),
+        counts.of(&[0, 1].map(counted)).unwrap(),
+    ]
+}
+
+#[test]
+fn an_edit_of_any_entry_is_found_whatever_configurations_are_numbered() {
+    let first = tables([0, 1], |_, _| {}, 9);
+    // Other numbers alone are no difference.
+    for table in entries(&first, &tables([5, 3], |_, _| {}, 9)) {
+        assert!(table.columns.is_empty() && table.one_sided.is_empty());
+        assert_eq!((table.n_first_only, table.n_second_only), (0, 0));
+    }
+    let of_scores = |edit: &dyn Fn(usize, &mut Scored)| {
+        let mut found = entries(&first, &tables([0, 1], edit, 9));
+        found.remove(0)
+    };
+    let found = of_scores(&|row, scored| {
+        if row > 3 {
+            scored.outcome = "not_finite".to_owned();
+            scored.error = None;
+        }
+    });
+    assert_eq!((found.n_both, found.columns.len()), (6, 2));
+    let change = ("right".to_owned(), "not finite".to_owned(), 2);
+    assert_eq!(found.columns[0].changes, [change]);
+    assert_eq!(
+        (found.columns[1].n_same, found.columns[1].n_first_only),
+        (4, 2)
+    );
+    let found = of_scores(&|row, scored| scored.n_capped = usize::from(row == 2));
+    assert_eq!(found.columns[0].n_changed(), 1);
+    // A setting that does not apply is another setting.
+    let found = of_scores(&|row, scored| scored.c = (row < 2).then_some(1.0));
+    assert_eq!(
+        (found.n_both, found.n_first_only, found.n_second_only),
+        (5, 1, 1)
+    );
+    // A configuration of a table that has its number alone.
+    let counts = &entries(&first, &tables([1, 0], |_, _| {}, 8))[1];
+    assert_eq!(
+        counts.columns[0].changes,
+        [("9".to_owned(), "8".to_owned(), 1)]
+    );
+}
+
+row! {
+/// A configuration of a classifier.
+pub struct Classified {
+    /// Which.
+    classifier: String => Choice;
+    /// What only an SVM has.
+    c: Option<f64> => Choice "C": Log;
+    /// About.
+    ratio: f64 => Choice in ":1": Log;
+    /// What is ranked.
+    accuracy: f64 => Value(More): Share;
+} }
+
+/// An SVM at two C and a k-NN, at three ratios.
+fn classified(invert: &str) -> Vec<Table> {
+    let mut rows = Vec::new();
+    let designs = [
+        ("svm", Some(1.0), 0.9),
+        ("svm", Some(10.0), 0.8),
+        ("k_nearest", None, 0.7),
+    ];
+    for (classifier, c, best) in designs {
+        for (place, ratio) in [1.6, 2.0, 2.37].into_iter().enumerate() {
+            let accuracy = best - 0.02 * place as f64;
+            let accuracy = if classifier == invert {
+                1.0 - accuracy
+            } else {
+                accuracy
+            };
+            let classifier = classifier.to_owned();
+            rows.push(Classified {
+                classifier,
+                c,
+                ratio,
+                accuracy,
+            });
+        }
+    }
+    let file: File<Classified> = File::new("accuracy.csv", "Accuracy", "");
+    vec![file.of(&rows).unwrap()]
+}
+
+#[test]
+fn settings_that_do_not_apply_are_values_and_numbers_are_the_same_if_they_are_equal() {
+    let same = rank_agreement(&classified(""), &classified("")).unwrap();
+    assert_eq!((same.n_designs, same.tau), (9, 1.0));
+    let inverted = rank_agreement(&classified(""), &classified("k_nearest")).unwrap();
+    assert_eq!(inverted.n_designs, 9);
+    assert!(inverted.tau < 0.9, "{inverted:?}");
+}
+
+row! {
+/// A configuration in a world.
+pub struct InNoise {
+    /// About.
+    ratio: f64 => Choice in ":1": Log;
+    /// In.
+    noise_std: f64 => Condition: Linear;
+    /// What is ranked.
+    accuracy: f64 => Value(More): Share;
+} }
+
+#[test]
+fn noise_in_millimetres_is_no_noise_of_full_scale() {
+    let noises = [0.5, 1.0];
+    let rows = [4.0, 16.0, 64.0, 128.0, 256.0].map(|ratio| {
+        noises.map(|noise_std| InNoise {
+            ratio,
+            noise_std,
+            accuracy: 1.0 - 0.001 * ratio - 0.1 * noise_std,
+        })
+    });
+    let file: File<InNoise> = File::new("accuracy.csv", "Accuracy", "");
+    let first = vec![file.of(&rows.concat()).unwrap()];
+    let mut second = first.clone();
+    let column = second[0].place("noise_std").unwrap();
+    second[0].columns[column].unit = "mm".into();
+    // The mean over the noises of both is what is left to rank.
+    assert_eq!(rank_agreement(&first, &second).unwrap().n_designs, 5);
+    assert_eq!(rank_agreement(&first, &first).unwrap().n_designs, 10);
+}
