@@ -157,6 +157,7 @@ fn touches_that_met_nothing_are_in_the_last_lines_and_among_the_first_answers() 
 #[test]
 fn the_object_of_a_confused_pair_is_said_though_all_pairs_have_the_same() {
     let mut typed = tables(quickstart_cells(), 3, 24);
+    add_headlines(&mut typed);
     typed.confused.retain(|pair| pair.object == "mug");
     let mut other = typed.confused[0].clone();
     other.predicted = "hammer".to_owned();
@@ -193,7 +194,7 @@ fn headings_of_the_terminal_break_between_words_alone() {
 fn an_edit_of_any_entry_of_any_table_is_found_by_comparing() {
     let dir = tempfile::tempdir().unwrap();
     let (kept, edited) = (dir.path().join("kept"), dir.path().join("edited"));
-    let mut typed = tables(with_k_nearest(), 2, 3);
+    let mut typed = tables(quickstart_cells(), 2, 3);
     add_headlines(&mut typed);
     for folder in [&kept, &edited] {
         write_all(folder, &typed, &about()).unwrap();
