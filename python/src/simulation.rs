@@ -6,10 +6,7 @@ use crate::model::model_of;
 use crate::patch::Patch;
 use crate::poses::{Poses, seven};
 use bubbletouch::geometry::Pose;
-use bubbletouch::scene::{
-    self, Frame, Held, PatchReading, PlannedPatch, ScenePlan, SceneSpec, Stepping,
-};
-use glam::DVec3;
+use bubbletouch::scene::{self, Frame, Held, PatchReading, ScenePlan, SceneSpec, Stepping};
 use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
@@ -44,7 +41,7 @@ fn begin(plan: &Arc<ScenePlan>) -> OnItsWay {
 ///
 /// - time: seconds;
 /// - patches: of each by name pose (7,) in the world, deflection (ny, nx) or (n_taxels,) in metres, force likewise in newtons, force3
-///   (n_taxels, 3) on each taxel along its axis, and sideways too with friction, in newtons in the frame of the patch, signal (or None),
+///   (n_taxels, 3) of the objects on each taxel in newtons in the frame of the patch, whose sum is the wrench's force, signal (or None),
 ///   wrench (6,) of force and torque on the patch in its frame, n_touched, n_saturated;
 /// - objects: of each by name pose (7,) in the world, and held: imposed, pressed, at rest, unsettled or escaped.
 #[pyclass(module = "bubbletouch")]
@@ -256,9 +253,7 @@ fn frame_of<'py>(py: Python<'py>, plan: &ScenePlan, frame: Frame) -> PyResult<Bo
     for (patch, reading) in plan.patches.iter().zip(frame.patches) {
         let shape = patch.skin.layout().as_grid();
         let shape = shape.map_or(vec![patch.skin.n_taxels()], |grid| vec![grid.ny, grid.nx]);
-        let force3 = force3(patch, &reading);
         let said = patch_of(py, &shape, reading)?;
-        said.set_item("force3", to_rows(py, force3.into_iter()))?;
         patches.set_item(patch.skin.name(), said)?;
     }
     for (object, reading) in plan.objects.iter().zip(&frame.objects) {
@@ -280,20 +275,6 @@ fn frame_of<'py>(py: Python<'py>, plan: &ScenePlan, frame: Frame) -> PyResult<Bo
     Ok(said)
 }
 
-/// What objects put on each taxel along its axis, and with friction sideways.
-fn force3(patch: &PlannedPatch, reading: &PatchReading) -> Vec<DVec3> {
-    match &reading.friction {
-        Some(friction) => friction.force3.clone(),
-        None => {
-            let layout = patch.skin.layout();
-            let forces = reading.force.iter().enumerate();
-            forces
-                .map(|(taxel, force)| -*force * layout.axes()[taxel])
-                .collect()
-        }
-    }
-}
-
 fn patch_of<'py>(
     py: Python<'py>,
     shape: &[usize],
@@ -308,6 +289,7 @@ fn patch_of<'py>(
     said.set_item("pose", to_column(py, seven(&reading.pose)))?;
     said.set_item("deflection", shaped(reading.deflection)?)?;
     said.set_item("force", shaped(reading.force)?)?;
+    said.set_item("force3", to_rows(py, reading.force3.into_iter()))?;
     said.set_item("signal", reading.signal.map(shaped).transpose()?)?;
     said.set_item("wrench", to_column(py, wrench.concat()))?;
     said.set_item("n_touched", reading.n_touched)?;

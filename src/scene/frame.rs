@@ -29,6 +29,9 @@ pub struct PatchReading {
     /// n_taxels, newtons along the axes, never negative; zero on a taxel that only relaxes. Of a taxel at its stroke that carries a free
     /// object, with the reaction of its stop; of an imposed object, what stops carry is not known and not counted.
     pub force: Vec<f64>,
+    /// Forces of the objects on the taxels, newtons, patch frame, shape (n_taxels,): along the axes, across them from inclined contacts, and
+    /// friction. Their sum is the force of the wrench.
+    pub force3: Vec<DVec3>,
     /// n_taxels, what the patch's signal reads: metres or newtons. Of a patch with a signal.
     pub signal: Option<Vec<f64>>,
     /// Taxels with a force.
@@ -50,9 +53,6 @@ pub struct PatchReading {
 /// What friction does to a patch.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrictionReading {
-    /// n_taxels forces of the objects on the tips, newtons, patch frame: friction across the axes, what inclined contacts push
-    /// aside, and what presses the taxels in. Together they are the force of the wrench.
-    pub force3: Vec<DVec3>,
     /// The part of the wrench's force that is friction.
     pub shear: DVec3,
     /// Taxels whose tips go with the object.

@@ -272,6 +272,7 @@ fn untouched(patch: &PlannedPatch) -> PatchReading {
     PatchReading {
         deflection: vec![0.0; n_taxels],
         force: vec![0.0; n_taxels],
+        force3: vec![glam::DVec3::ZERO; n_taxels],
         friction: patch.shears.as_ref().map(|_| FrictionReading::default()),
         ..PatchReading::default()
     }

@@ -155,19 +155,18 @@ impl SkinState {
         reading.n_touched = forces.iter().filter(|&&force| force > 0.0).count();
         let load = axial_load(&patch.skin, contacts, |contact| forces[contact.taxel]);
         reading.center_of_pressure = load.center_of_pressure;
-        reading.wrench = on_patch(on_objects(patch, contacts, loads, forces));
+        let without_friction = on_objects(contacts, loads, forces, &mut reading.force3);
+        reading.wrench = on_patch(without_friction);
         if let (Some(state), Some(friction)) = (&self.friction, &mut reading.friction) {
             let load = state.load(&patch.skin, contacts);
             reading.wrench = reading.wrench + on_patch(load.friction);
             friction.shear = on_patch(load.friction).force;
             friction.n_sticking = self.grips.n_sticking;
             friction.n_slipping = self.grips.n_slipping;
-            friction.force3.clear();
-            friction.force3.resize(forces.len(), DVec3::ZERO);
             for contact in contacts {
-                let DVec3 { x, y, z } = state.force3()[contact.taxel];
                 let frame = patch.skin.layout().frame(contact.taxel);
-                friction.force3[contact.taxel] = frame * DVec3::new(x, y, -z);
+                let force = state.friction(contact.taxel).extend(0.0);
+                reading.force3[contact.taxel] += frame * force;
             }
         }
     }
@@ -232,13 +231,13 @@ fn add_stops(
     }
 }
 
-/// What taxels with these forces put on objects. Spheres that share one push it along several ways, of which a contact is one: of free objects the
-/// loads say what each has of its force.
+/// Returns the frictionless wrench of taxels with these forces on the objects, and writes each taxel's part to `force3`: the force of the objects
+/// on the taxel. A contact has one direction, but several spheres of free objects may share a taxel: the loads contain the force of each sphere.
 fn on_objects(
-    patch: &PlannedPatch,
     contacts: &[TaxelContact],
     loads: &[&TaxelLoad],
     forces: &[f64],
+    force3: &mut Vec<DVec3>,
 ) -> Wrench {
     let of_others = |contact: &TaxelContact| {
         let first = loads.partition_point(|load| load.taxel < contact.taxel);
@@ -246,10 +245,16 @@ fn on_objects(
         let own = own.take_while(|load| load.taxel == contact.taxel);
         forces[contact.taxel] - own.map(|load| load.force).sum::<f64>()
     };
-    let on_others = axial_load(&patch.skin, contacts, of_others).on_object;
-    loads
-        .iter()
-        .fold(on_others, |sum, load| sum + load.on_object)
+    force3.clear();
+    force3.resize(forces.len(), DVec3::ZERO);
+    let mut sum = Wrench::default();
+    let of_contacts = contacts.iter().map(|c| (c.taxel, c.push(of_others(c))));
+    let of_loads = loads.iter().map(|load| (load.taxel, load.on_object));
+    for (taxel, on_object) in of_contacts.chain(of_loads) {
+        sum = sum + on_object;
+        force3[taxel] -= on_object.force;
+    }
+    sum
 }
 
 /// What is asked of a step.

@@ -128,10 +128,10 @@ fn forces_of_the_tips_are_the_wrench_and_stay_in_their_cones() {
     for frame in &frames {
         let reading = &frame.patches[0];
         let friction = reading.friction.as_ref().unwrap();
-        let sum: DVec3 = friction.force3.iter().sum();
+        let sum: DVec3 = reading.force3.iter().sum();
         let off = (sum - reading.wrench.force).length();
         assert!(off < 1e-12 * (1.0 + sum.length()), "{off}");
-        for (force3, force) in friction.force3.iter().zip(&reading.force) {
+        for (force3, force) in reading.force3.iter().zip(&reading.force) {
             assert_eq!(-force3.z, *force, "what presses a flat taxel in");
         }
         let pressed: f64 = reading.force.iter().sum();
@@ -207,8 +207,7 @@ fn a_recording_of_a_patch_with_friction_has_forces_in_three_dimensions() {
     let stored = &recording.patches[0].force;
     assert_eq!(stored.dim(), (all.len(), 280, 3));
     for (number, frame) in all.iter().enumerate() {
-        let friction = frame.patches[0].friction.as_ref().unwrap();
-        for (taxel, force) in friction.force3.iter().enumerate() {
+        for (taxel, force) in frame.patches[0].force3.iter().enumerate() {
             for (axis, number_n) in force.to_array().into_iter().enumerate() {
                 assert_eq!(stored[[number, taxel, axis]] as f32, number_n as f32);
             }
@@ -636,4 +635,118 @@ fn what_cannot_be_pushed_is_refused_with_its_key() {
             "{key}: an object that is pushed beside the free object `free`; no free objects in the scene"
         )
     );
+}
+
+/// Layouts of a patch below an object.
+const LAYOUTS: [&str; 5] = [
+    "grid = { nx = 16, ny = 16, pitch_mm = 4.0 }",
+    "hexagonal = { nx = 16, ny = 16, pitch_mm = 4.0 }",
+    "disc = { radius_mm = 32.0, pitch_mm = 4.0 }",
+    "cylinder = { radius_mm = 40.0, length_mm = 60.0, arc_deg = 200.0, pitch_mm = 4.0 }",
+    "sphere_cap = { radius_mm = 30.0, half_angle_deg = 80.0, pitch_mm = 4.0 }",
+];
+
+#[test]
+fn forces_of_a_frame_sum_to_the_wrench_on_every_layout_for_every_kind_of_object() {
+    let folder = tempfile::tempdir().unwrap();
+    // Two spheres side by side: where they meet, both push the same taxels.
+    let two = "x,y,z,r\n-0.011,0.0,0.0,0.02\n0.011,0.0005,0.0,0.02\n";
+    fs::write(folder.path().join("two.csv"), two).unwrap();
+    let cube = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n\
+        f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+    fs::write(folder.path().join("cube.obj"), cube).unwrap();
+    let shapes = [
+        ("object = \"tennis\"", 32.7),
+        ("object = \"mug\"\nsurface_error_mm = 3.0", 5.0),
+        ("spheres = \"two.csv\"\nunit = \"m\"", 20.0),
+        (
+            "mesh = \"cube.obj\"\nunit = \"cm\"\nmodel = \"packed\"\nsurface_error_mm = 0.5",
+            10.0,
+        ),
+        ("mesh = \"cube.obj\"\nunit = \"cm\"\nmodel = \"mesh\"", 10.0),
+    ];
+    let kinds = [
+        "motion = { phases = [{ duration_s = 0.1, linear_mm_per_s = [20.0, 5.0, -20.0] }] }",
+        // Within the stroke, and with most of the weight on the stops.
+        "free = { mass_kg = 0.2 }",
+        "free = { mass_kg = 50.0 }",
+    ];
+    let combinations = LAYOUTS.iter().zip([0.0, 0.0, 0.0, 40.0, 30.0]);
+    let combinations =
+        combinations.flat_map(|layout| shapes.iter().map(move |shape| (layout, shape)));
+    let combinations = combinations.flat_map(|both| kinds.iter().map(move |kind| (both, kind)));
+    let (mut n_checked, mut n_stopped, mut n_shared) = (0, 0, 0);
+    for (number, (((layout, bottom), (shape, height)), kind)) in combinations.enumerate() {
+        let is_free = kind.starts_with("free");
+        if is_free && shape.contains("\"mesh\"") {
+            continue;
+        }
+        let friction = ["", "friction = 0.5\ndamping_n_s_per_m = 1.0\n"][number % 2];
+        let turn = match bottom == 40.0 {
+            true => "rpy_deg = [0.0, -90.0, 0.0]",
+            false => "",
+        };
+        let text = format!(
+            "title = \"t\"\nduration_s = 0.05\noutput_hz = 20.0\ndt_ms = 10.0\n\
+             [[patches]]\nname = \"palm\"\nlayout = {{ {layout} }}\nstroke_mm = 2.0\n{friction}at = {{ {turn} }}\n\
+             [[objects]]\nname = \"thing\"\n{shape}\nat = {{ position_mm = [1.0, 2.0, {}] }}\n{kind}\n",
+            bottom + height
+        );
+        let plan = try_plan(&text, folder.path()).unwrap();
+        for frame in frames(&plan) {
+            let reading = &frame.patches[0];
+            let sum: DVec3 = reading.force3.iter().sum();
+            let off = (sum - reading.wrench.force).length();
+            assert!(off <= 1e-9 * (1.0 + sum.length()), "{off} N\n{text}");
+            // Along its axis a taxel feels its axial force, but for flanks as good as parallel to the axis.
+            let axes = plan.patches[0].skin.layout().axes();
+            for ((force3, force), &axis) in reading.force3.iter().zip(&reading.force).zip(axes) {
+                let axial = -force3.dot(axis);
+                let is_close = (axial - force).abs() <= 1e-9 * (1.0 + force);
+                assert!(is_close || reading.n_grazing > 0, "{axial} {force}\n{text}");
+            }
+            n_checked += usize::from(reading.n_touched > 0);
+            n_stopped += usize::from(reading.stop_force > 100.0);
+            let is_shared = is_free && shape.starts_with("spheres") && reading.n_touched > 0;
+            n_shared += usize::from(is_shared);
+        }
+    }
+    assert!(
+        n_checked > 80 && n_stopped > 10 && n_shared > 8,
+        "{n_checked} {n_stopped} {n_shared}"
+    );
+}
+
+#[test]
+fn the_stop_that_carries_a_heavy_ball_is_in_the_recorded_forces() {
+    let text = r#"
+        title = "A ball of 50 kg on a rough palm"
+        output_hz = 10.0
+        duration_s = 0.1
+        [[patches]]
+        name = "palm"
+        layout = { grid = { nx = 16, ny = 16, pitch_mm = 4.0 } }
+        stroke_mm = 2.0
+        friction = 0.5
+        [[objects]]
+        name = "ball"
+        object = "team_handball"
+        at = { position_mm = [1.0, 2.0, 5.0] }
+        free = { mass_kg = 50.0 }
+        "#;
+    let plan = plan(text);
+    let folder = tempfile::tempdir().unwrap();
+    let mut files = SceneFiles::create(folder.path(), &plan).unwrap();
+    for frame in frames(&plan) {
+        files.frame(&frame).unwrap();
+    }
+    files.finish().unwrap();
+    let recording = crate::stored::read_recording(&folder.path().join("recording.npz")).unwrap();
+    for frame in recording.patches[0].force.outer_iter() {
+        let along_z: f64 = frame
+            .outer_iter()
+            .map(|force| f64::from(force[2] as f32))
+            .sum();
+        assert!((along_z + 490.5).abs() < 0.01, "{along_z} N");
+    }
 }

@@ -240,6 +240,8 @@ fn what_is_out_of_reach_is_left_out_and_nothing_else() {
                 assert!(
                     (reading.wrench.torque - torque).length() < 1e-12 * (1.0 + torque.length())
                 );
+                let sum: DVec3 = reading.force3.iter().sum();
+                assert!((sum - reading.wrench.force).length() < 1e-12 * (1.0 + sum.length()));
                 let centers = (reading.center_of_pressure, load.center_of_pressure);
                 match centers {
                     (Some(a), Some(b)) => assert!((a - b).length() < 1e-12),

@@ -182,7 +182,7 @@ fn numbers(frame: &Frame) -> Vec<Vec<f64>> {
     for patch in &frame.patches {
         numbers.push(patch.deflection.clone());
         numbers.push(match &patch.friction {
-            Some(friction) => friction.force3.iter().flat_map(|f| f.to_array()).collect(),
+            Some(_) => patch.force3.iter().flat_map(|f| f.to_array()).collect(),
             None => patch.force.clone(),
         });
         numbers.extend(patch.signal.clone());
