@@ -2,7 +2,8 @@
 //!
 //! Two taxels are neighbours if no third one lies in the ball of which they are the ends of a diameter (a Gabriel graph): four of an inner
 //! taxel of a grid, six of a hexagonal one, whatever the pitch, and on any curved layout those around a taxel. Taxels whose axes oppose
-//! each other are the two sides of a sheet, and do not see each other.
+//! each other are the two sides of a sheet, and do not see each other. Taxels at one place are neighbours, and have the same others. Places farther
+//! apart than three times the local spacing are no neighbours: a gap in the skin.
 //!
 //! Along the surface the way from one taxel to another is the arc that turns as far as their axes do: chord · (θ/2) / sin(θ/2), θ the angle
 //! between the axes. It is exact on planes, on spheres, and across and along cylinders.
@@ -10,9 +11,15 @@
 use super::Patch;
 use glam::DVec3;
 
-/// Neighbours are looked for within so many times the distance of the nearest one. Smaller: sparse places of draped layouts lose some; larger:
-/// more pairs are looked at.
+/// The longest way between neighbours, as a multiple of the local spacing (see `around`). Smaller: sparse places of draped layouts lose some
+/// neighbours; larger: taxels at both edges of a gap in the skin become neighbours.
 const REACH: f64 = 3.0;
+/// Two taxels nearer than this share of a taxel's radius are at the same place: their distance tells nothing of the spacing.
+const COINCIDENT: f64 = 0.01;
+/// Taxels in one line after which no taxel across it is looked for. Larger: rows farther apart are neighbours, and long lines take longer.
+const MAX_IN_LINE: usize = 256;
+/// Cosine between the directions to two taxels, above which they lie along one line.
+const ALONG: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// Below this cosine between their axes two taxels are the two sides of a sheet.
 const OPPOSED: f64 = -0.5;
 /// What rounding may add to a square of a distance: the corners of a square are on the ball around its diagonal.
@@ -70,11 +77,16 @@ impl Neighbours {
         counts.max().unwrap_or(0)
     }
 
-    /// The taxels that are no farther from one than `reach` metres along the surface, itself too, and how far: those that steps from
-    /// neighbour to neighbour lead to without leaving that reach.
+    /// Returns the taxels that are no farther from `taxel` than `reach` metres along the surface, itself included, with their distances: those
+    /// of the same side, and those that steps from neighbour to neighbour lead to within that reach, such as around a thin finger.
     pub fn within(&self, skin: &Patch, taxel: usize, reach: f64) -> Vec<(usize, f64)> {
+        let near = others_within(skin, taxel, reach.min(size(skin)));
+        let near = near
+            .into_iter()
+            .map(|other| (other, along_surface(skin, [taxel, other])));
         let mut found = vec![(taxel, 0.0)];
-        let mut is_seen = std::collections::HashSet::from([taxel]);
+        found.extend(near.filter(|&(_, distance)| distance <= reach));
+        let mut is_seen: std::collections::HashSet<usize> = found.iter().map(|it| it.0).collect();
         let mut next = 0;
         while let Some(&(at, _)) = found.get(next) {
             next += 1;
@@ -97,25 +109,47 @@ fn along_surface(skin: &Patch, [a, b]: [usize; 2]) -> f64 {
     centers[a].distance(centers[b]) * bent
 }
 
-/// Others of the same side, as far as neighbours may be.
+/// Returns the others of the same side within [`REACH`] times the local spacing, nearest first. The spacing is the distance to the nearest
+/// taxel across the line to the nearest one: rows far apart are neighbours, however dense each row is.
 fn around(skin: &Patch, taxel: usize) -> Vec<usize> {
-    let center = skin.layout().centers()[taxel];
-    let size = skin
-        .tree()
-        .bounds()
-        .map_or(0.0, |bounds| bounds.size().length());
-    let distance = |other: &usize| skin.layout().centers()[*other].distance(center);
-    let mut radius = skin.taxels().at(taxel).radius;
-    let mut others = Vec::new();
-    while others.is_empty() && radius <= size {
-        radius *= 2.0;
-        others = others_within(skin, taxel, radius);
+    let centers = skin.layout().centers();
+    let away = |other: usize| centers[other] - centers[taxel];
+    let size = size(skin);
+    let own_radius = skin.taxels().at(taxel).radius;
+    let mut radius = own_radius;
+    loop {
+        let mut others = others_within(skin, taxel, radius);
+        others.sort_by(|&a, &b| away(a).length().total_cmp(&away(b).length()));
+        let is_apart = |other: &&usize| away(**other).length() > COINCIDENT * own_radius;
+        let mut apart = others.iter().filter(is_apart);
+        let nearest = apart.next().map(|&other| away(other).normalize());
+        let is_across = |other: &&usize| {
+            nearest.is_some_and(|way| away(**other).normalize().dot(way).abs() < ALONG)
+        };
+        let spacing = apart.find(is_across).map(|&other| away(other).length());
+        match spacing {
+            Some(spacing) if REACH * spacing <= radius => {
+                others.retain(|&other| away(other).length() <= REACH * spacing * ROUNDING);
+                return others;
+            }
+            Some(spacing) => radius = REACH * spacing,
+            // All lie in one line: the spacing is that of the line.
+            None if radius > size || others.len() > MAX_IN_LINE => {
+                let nearest = others.iter().find(is_apart);
+                let reach = nearest.map_or(0.0, |&other| REACH * away(other).length());
+                let reach = reach.max(COINCIDENT * own_radius);
+                others.retain(|&other| away(other).length() <= reach * ROUNDING);
+                return others;
+            }
+            None => radius *= 2.0,
+        }
     }
-    let nearest = others.iter().map(distance).fold(f64::INFINITY, f64::min);
-    match nearest.is_finite() {
-        true => others_within(skin, taxel, REACH * nearest),
-        false => others,
-    }
+}
+
+/// The diagonal of the box around all taxels, metres.
+fn size(skin: &Patch) -> f64 {
+    let bounds = skin.tree().bounds();
+    bounds.map_or(0.0, |bounds| bounds.size().length())
 }
 
 fn others_within(skin: &Patch, taxel: usize, radius: f64) -> Vec<usize> {
@@ -132,15 +166,18 @@ fn others_within(skin: &Patch, taxel: usize, radius: f64) -> Vec<usize> {
     others
 }
 
-/// Whether none of some taxels is between two.
+/// Whether none of some taxels is between two. A taxel at the place of one of the two is not between them.
 fn is_free(skin: &Patch, [a, b]: [usize; 2], around: &[usize]) -> bool {
     let centers = skin.layout().centers();
     let middle: DVec3 = 0.5 * (centers[a] + centers[b]);
     let square = 0.25 * centers[a].distance_squared(centers[b]) * ROUNDING;
+    let same_place = (COINCIDENT * skin.taxels().at(a).radius).powi(2);
+    let is_at =
+        |other: usize, end: usize| centers[other].distance_squared(centers[end]) <= same_place;
     let is_between = |&&other: &&usize| {
-        other != a && other != b && centers[other].distance_squared(middle) <= square
+        centers[other].distance_squared(middle) <= square && !is_at(other, a) && !is_at(other, b)
     };
-    !around.iter().any(|other| is_between(&other))
+    is_at(a, b) || !around.iter().any(|other| is_between(&other))
 }
 
 #[cfg(test)]
@@ -253,6 +290,35 @@ mod tests {
         };
         assert!((0..10).all(is_apart));
         assert_eq!(counts(&neighbours), [1, 2, 2, 2, 1, 1, 2, 2, 2, 1]);
+    }
+
+    #[test]
+    fn rows_far_apart_are_neighbours_and_both_edges_of_a_wide_gap_are_not() {
+        for across in [2.9e-3, 3.1e-3, 12e-3] {
+            let place =
+                |k: u32| DVec3::new(1e-3 * f64::from(k % 9), across * f64::from(k / 9), 0.0);
+            let rows = Layout::new((0..27).map(place).collect(), vec![DVec3::Z; 27]);
+            let neighbours = Neighbours::of(&skin(rows.unwrap()));
+            let found: Vec<usize> = neighbours.of_taxel(13).collect();
+            assert_eq!(found, [4, 12, 14, 22], "{across} m");
+        }
+        // The edges of a cuff that is open by 90 degrees.
+        let cuff = skin(Layout::cylinder(0.02, 0.01, 1.5 * PI, PITCH).unwrap());
+        let neighbours = Neighbours::of(&cuff);
+        let centers = cuff.layout().centers();
+        for taxel in 0..cuff.n_taxels() {
+            let mut found = neighbours.of_taxel(taxel);
+            assert!(found.all(|other| centers[other].distance(centers[taxel]) < 2.0 * PITCH));
+        }
+    }
+
+    #[test]
+    fn taxels_at_one_place_have_the_neighbours_of_the_place_and_one_another() {
+        let place = |k: u32| PITCH * DVec3::new(f64::from(k / 3 % 4), f64::from(k / 12), 0.0);
+        let tripled = Layout::new((0..36).map(place).collect(), vec![DVec3::Z; 36]);
+        let neighbours = Neighbours::of(&skin(tripled.unwrap()));
+        let found: Vec<usize> = neighbours.of_taxel(16).collect();
+        assert_eq!(found, [3, 4, 5, 12, 13, 14, 15, 17, 18, 19, 20, 27, 28, 29]);
     }
 
     #[test]

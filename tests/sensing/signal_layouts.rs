@@ -194,3 +194,92 @@ fn what_a_layout_or_unlike_taxels_cannot_read_is_refused() {
         "signal of skin patch palm: taxels of unlike stroke, stiffness or damping; taxels that read alike"
     );
 }
+
+/// Every taxel over every other: weights of the distance along a plane, within four widths.
+fn smoothed_by_definition(skin: &Patch, frame: &[f64], width: f64) -> Vec<f64> {
+    let centers = skin.layout().centers();
+    let of_taxel = |center: &DVec3| {
+        let weights = centers.iter().map(|other| match other.distance(*center) {
+            far if far > 4.0 * width => 0.0,
+            near => (-0.5 * (near / width).powi(2)).exp(),
+        });
+        let (mut sum, mut total) = (0.0, 0.0);
+        for (weight, value) in weights.zip(frame) {
+            sum += weight * value;
+            total += weight;
+        }
+        sum / total
+    };
+    centers.iter().map(of_taxel).collect()
+}
+
+#[test]
+fn smoothing_reaches_as_far_as_its_width_whatever_the_spacing() {
+    let flat = |places: Vec<DVec3>| {
+        let axes = vec![DVec3::Z; places.len()];
+        skin(Layout::new(places, axes).unwrap())
+    };
+    let rows = |across: f64| {
+        let place = |k: usize| DVec3::new(1e-3 * (k % 21) as f64, across * (k / 21) as f64, 0.0);
+        flat((0..63).map(place).collect())
+    };
+    let twice: Vec<DVec3> = (0..50)
+        .map(|k| PITCH * DVec3::new((k / 2 % 5) as f64, (k / 10) as f64, 0.0))
+        .collect();
+    let pads = (0..32).map(|k| {
+        let gap = if k < 16 { 0.0 } else { 9e-3 };
+        DVec3::new(1e-3 * (k % 4) as f64 + gap, 1e-3 * (k / 4 % 4) as f64, 0.0)
+    });
+    let skins = [
+        rows(2.9e-3),
+        rows(3.1e-3),
+        rows(15e-3),
+        flat(twice),
+        flat(pads.collect()),
+    ];
+    for (number, skin) in skins.iter().enumerate() {
+        for width in [1e-3, 4e-3, 22e-3] {
+            let frame = frame(skin.n_taxels());
+            let found = read(&[SignalStep::Smoothing { width }], skin, &frame);
+            let expected = smoothed_by_definition(skin, &frame, width);
+            for (found, expected) in found.iter().zip(&expected) {
+                assert!(
+                    (found - expected).abs() < 1e-15,
+                    "skin {number}, {width} m: {found} {expected}"
+                );
+            }
+        }
+    }
+    // An impulse along the middle of three rows, by rows.
+    let skin = rows(3.1e-3);
+    let mut impulse = vec![0.0; 63];
+    impulse[21..42].fill(1.0);
+    let read = read(&[SignalStep::Smoothing { width: 22e-3 }], &skin, &impulse);
+    let sums: Vec<f64> = read
+        .chunks(21)
+        .map(|row| row.iter().sum::<f64>() / 21.0)
+        .collect();
+    assert!(
+        sums.iter().all(|sum| (sum - 1.0 / 3.0).abs() < 0.01),
+        "{sums:?}"
+    );
+}
+
+#[test]
+fn crosstalk_reaches_other_rows_and_taxels_beside_coincident_ones() {
+    let rows = |k: usize| DVec3::new(1e-3 * (k % 5) as f64, 3.1e-3 * (k / 5) as f64, 0.0);
+    let twice = |k: usize| PITCH * DVec3::new((k / 2) as f64, 0.0, 0.0);
+    let skins = [
+        ((0..15).map(rows).collect(), 7, 2),
+        ((0..10).map(twice).collect::<Vec<_>>(), 4, 2),
+    ];
+    for (places, pressed, beside) in skins {
+        let n = places.len();
+        let skin = skin(Layout::new(places, vec![DVec3::Z; n]).unwrap());
+        let mut frame = vec![0.0; n];
+        frame[pressed] = 1e-3;
+        let read = read(&[crosstalk(0.4)], &skin, &frame);
+        assert!(read[beside] > 0.0, "{read:?}");
+        assert!((read.iter().sum::<f64>() - 1e-3).abs() < 1e-15);
+    }
+}
