@@ -61,6 +61,7 @@ mod frame;
 mod free_objects;
 mod mount;
 mod numbers;
+mod overlap;
 mod plan;
 mod plan_object;
 mod plan_patch;

@@ -1,5 +1,6 @@
 //! A scene that can run: every key of its [`SceneSpec`] checked, every unit SI, every file read.
 
+use super::overlap::check_starts;
 use super::plan_object::{Movement, PlannedObject};
 use super::plan_patch::PlannedPatch;
 use super::plan_press::PlannedPress;
@@ -113,6 +114,7 @@ impl ScenePlan {
             return Err(reader.check.error("gravity_m_per_s2", gravity, allowed));
         }
         check_rigid(&reader.check, &spec, free, &models)?;
+        check_starts(&reader.check, &objects, &models, &robots)?;
         let planes = spec.planes.iter().map(|plane| reader.plane(plane));
         let planes = planes.collect::<Result<Vec<_>>>()?;
         let duration = *spec

@@ -26,6 +26,17 @@ pub struct PlannedObject {
     pub press: Option<PlannedPress>,
     /// A ball around it, in its own frame, metres.
     pub(super) ball: (DVec3, f64),
+    /// How far its spheres may be from its surface, metres.
+    pub(super) surface_error: f64,
+}
+
+impl ObjectSpec {
+    /// `surface_error_mm`, or its default beside patches of which the finest has this pitch.
+    fn surface_error_or_default_mm(&self, finest_mm: f64) -> f64 {
+        let model = self.model.unwrap_or_default();
+        let default = || model.default_surface_error_mm(finest_mm);
+        self.surface_error_mm.unwrap_or_else(default)
+    }
 }
 
 /// What decides where an object is.
@@ -83,6 +94,7 @@ impl Reader<'_> {
             movement,
             press: press.transpose()?,
             ball: ball(&model),
+            surface_error: MM * spec.surface_error_or_default_mm(finest_mm),
         };
         Ok((object, model))
     }
@@ -124,11 +136,6 @@ impl Reader<'_> {
                 .check
                 .error(key, given, format!("it only beside {beside}")));
         }
-        let default = || {
-            spec.model
-                .unwrap_or_default()
-                .default_surface_error_mm(finest_mm)
-        };
         let is_made_of_spheres =
             spec.object.is_some() || (spec.mesh.is_some() && spec.model == Some(ModelSpec::Packed));
         if spec.surface_error_mm.is_some() && has_file && !is_made_of_spheres {
@@ -138,7 +145,7 @@ impl Reader<'_> {
                 .check
                 .error(&format!("{key}.surface_error_mm"), given, allowed));
         }
-        let error_mm = spec.surface_error_mm.unwrap_or_else(default);
+        let error_mm = spec.surface_error_or_default_mm(finest_mm);
         let error_key = format!("{key}.surface_error_mm");
         let allowed = "a positive number of millimetres";
         let surface_error = MM * self.check.value(&error_key, error_mm, positive, allowed)?;

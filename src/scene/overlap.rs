@@ -1,0 +1,139 @@
+//! Objects that overlap a free object when a scene starts.
+
+use super::plan_object::{Movement, PlannedObject};
+use super::plan_robot::PlannedRobot;
+use super::reader::MM;
+use super::robot_state::RobotState;
+use crate::error::Result;
+use crate::geometry::Pose;
+use crate::objects::{Model, Sphere};
+use crate::study::Check;
+
+/// Objects overlap at most by this share of the smaller one's radius, however coarse their spheres are.
+const MAX_SHARE: f64 = 0.5;
+
+/// An object where it starts.
+struct Start<'a> {
+    object: &'a PlannedObject,
+    spheres: &'a [Sphere],
+    pose: Pose,
+}
+
+/// Checks that no free object starts inside another object.
+///
+/// Spheres may overlap by as much as both objects' spheres may stand out of their surfaces.
+///
+/// # Errors
+/// The error names both objects and the overlap of their deepest spheres.
+pub(super) fn check_starts(
+    check: &Check,
+    objects: &[PlannedObject],
+    models: &[Model],
+    robots: &[PlannedRobot],
+) -> Result<()> {
+    let is_free = |object: &PlannedObject| matches!(object.movement, Movement::Free { .. });
+    if !objects.iter().any(is_free) {
+        return Ok(());
+    }
+    let mut states: Vec<RobotState> = robots.iter().map(RobotState::of).collect();
+    for (state, robot) in states.iter_mut().zip(robots) {
+        state.place(robot, 0.0)?;
+    }
+    let starts = objects.iter().zip(models).filter_map(|(object, model)| {
+        let pose = match &object.movement {
+            Movement::Imposed(motion) => motion.pose_at(0.0),
+            Movement::Carried(mount) => mount.place(&states, &[]),
+            Movement::Free { start, .. } => *start,
+        };
+        let spheres = model.spheres()?.spheres();
+        Some(Start {
+            object,
+            spheres,
+            pose,
+        })
+    });
+    let starts: Vec<Start> = starts.collect();
+    for (number, other) in starts.iter().enumerate() {
+        for first in &starts[..number] {
+            // The key is that of a free object: of two, the later one.
+            let (free, other) = match is_free(other.object) {
+                true => (other, first),
+                false => (first, other),
+            };
+            if !is_free(free.object) {
+                continue;
+            }
+            let smaller = free.object.ball.1.min(other.object.ball.1);
+            let tolerance = free.object.surface_error + other.object.surface_error;
+            let overlap = free.overlap(other);
+            if overlap > tolerance.min(MAX_SHARE * smaller) {
+                let names = (&free.object.name, &other.object.name);
+                let given = format!(
+                    "free object `{}` starts {:.1} mm inside `{}`",
+                    names.0,
+                    overlap / MM,
+                    names.1
+                );
+                let allowed = "free objects that overlap no other object at the start";
+                return Err(check.error(&format!("objects.{}.at", names.0), given, allowed));
+            }
+        }
+    }
+    Ok(())
+}
+
+impl Start<'_> {
+    /// The ball around it in the world: centre and radius, metres.
+    fn ball(&self) -> Sphere {
+        let (center, radius) = self.object.ball;
+        Sphere {
+            center: self.pose.transform_point(center),
+            radius,
+        }
+    }
+
+    /// Its spheres in the world that reach a ball, sorted by where they begin along x.
+    fn spheres_near(&self, ball: &Sphere) -> Vec<Sphere> {
+        let placed = self.spheres.iter().map(|sphere| Sphere {
+            center: self.pose.transform_point(sphere.center),
+            ..*sphere
+        });
+        let mut near: Vec<Sphere> = placed
+            .filter(|sphere| overlap(sphere, ball) > 0.0)
+            .collect();
+        near.sort_by(|a, b| begin(a).total_cmp(&begin(b)));
+        near
+    }
+
+    /// How deep the deepest two spheres of both are inside one another, metres; not positive if none are.
+    fn overlap(&self, other: &Self) -> f64 {
+        let (own, others) = (
+            self.spheres_near(&other.ball()),
+            other.spheres_near(&self.ball()),
+        );
+        let widest = others
+            .iter()
+            .map(|sphere| sphere.radius)
+            .fold(0.0, f64::max);
+        let mut deepest = 0.0_f64;
+        for sphere in &own {
+            let first = others.partition_point(|other| begin(other) < begin(sphere) - 2.0 * widest);
+            let end = sphere.center.x + sphere.radius;
+            let reached = others[first..]
+                .iter()
+                .take_while(|other| begin(other) < end);
+            deepest = reached
+                .map(|other| overlap(sphere, other))
+                .fold(deepest, f64::max);
+        }
+        deepest
+    }
+}
+
+fn begin(sphere: &Sphere) -> f64 {
+    sphere.center.x - sphere.radius
+}
+
+fn overlap(a: &Sphere, b: &Sphere) -> f64 {
+    a.radius + b.radius - a.center.distance(b.center)
+}
