@@ -6,8 +6,9 @@ use crate::errors::{bad_input, exception, guarded};
 use crate::mesh::Mesh;
 use crate::poses::Poses;
 use bubbletouch::contact::Workspace;
+use bubbletouch::geometry::Aabb;
 use bubbletouch::random::Seed;
-use bubbletouch::world::{self, Grid, Layout, Taxel, Taxels};
+use bubbletouch::world::{self, DrapeRegion, Grid, Layout, Taxel, Taxels};
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -195,9 +196,11 @@ impl Patch {
         })
     }
 
-    /// Taxels spread over a whole mesh, as many as on a grid of this pitch, at least 0.83 pitches apart; 0.2 ms a taxel.
+    /// Taxels spread over a mesh's outer surface, as many as on a grid of this pitch, at least 0.83 pitches apart; 0.3 ms a taxel. A taxel
+    /// whose axis would meet the mesh again is left out: see n_left_out. The region is where all that is given holds: bounds (2, 3), its least
+    /// and greatest corner; plane (2, 3), a point and the direction to the side that counts; triangles, their numbers.
     #[staticmethod]
-    #[pyo3(signature = (mesh, pitch, stroke, *, seed=0, taxel_radius=None, stiffness=100.0, damping=0.0))]
+    #[pyo3(signature = (mesh, pitch, stroke, *, seed=0, bounds=None, plane=None, triangles=None, taxel_radius=None, stiffness=100.0, damping=0.0))]
     #[expect(clippy::too_many_arguments, reason = "named in Python")]
     fn draped(
         py: Python,
@@ -205,6 +208,9 @@ impl Patch {
         pitch: f64,
         stroke: f64,
         seed: i128,
+        bounds: Option<&Bound<PyAny>>,
+        plane: Option<&Bound<PyAny>>,
+        triangles: Option<Vec<i128>>,
         taxel_radius: Option<f64>,
         stiffness: f64,
         damping: f64,
@@ -212,7 +218,23 @@ impl Patch {
         guarded(|| {
             let seed = whole_number("seed", seed)?;
             let mesh = mesh.get().triangle_mesh();
-            let layout = py.detach(|| Layout::draped(mesh, pitch, &Seed::new(seed)));
+            let two = |place: &str, given: &Bound<PyAny>| match points(place, given)?[..] {
+                [first, second] => Ok((first, second)),
+                ref several => {
+                    let given = format!("shape ({}, 3)", several.len());
+                    Err(bad_input(place, given, "(2, 3)"))
+                }
+            };
+            let number = |n| whole_number("triangles", n);
+            let numbers = |all: Vec<i128>| all.into_iter().map(number).collect();
+            let triangles: Option<Vec<usize>> = triangles.map(numbers).transpose()?;
+            let corners = bounds.map(|given| two("bounds", given)).transpose()?;
+            let region = DrapeRegion {
+                bounds: corners.map(|(min, max)| Aabb { min, max }),
+                beyond: plane.map(|given| two("plane", given)).transpose()?,
+                triangles,
+            };
+            let layout = py.detach(|| Layout::draped_on(mesh, pitch, &region, &Seed::new(seed)));
             let taxel = taxel(pitch, stroke, (taxel_radius, stiffness, damping));
             Self::with(layout.map_err(exception)?, taxel)
         })
@@ -279,6 +301,12 @@ impl Patch {
     #[getter]
     fn n_taxels(&self) -> usize {
         self.patch.n_taxels()
+    }
+
+    /// Taxels that a draped patch leaves out because their axes would meet the mesh again; 0 for other patches.
+    #[getter]
+    fn n_left_out(&self) -> usize {
+        self.patch.layout().n_left_out()
     }
 
     /// (n_taxels, 3): where they rest, metres; a copy.

@@ -106,3 +106,24 @@ def test_patches_are_pickled(mug: bt.SphereUnion) -> None:
 def test_what_cannot_be_a_patch_is_refused_in_the_librarys_words(make, said) -> None:  # type: ignore[no-untyped-def]
     with pytest.raises(ValueError, match=said):
         make()
+
+
+def test_a_draped_patch_covers_a_region_of_the_outer_surface() -> None:
+    corners = np.array([[x, y, z] for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)], dtype=float)
+    faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
+    triangles = np.array([[a, b, c] for a, b, c, _ in faces] + [[a, c, d] for a, _, c, d in faces])
+    inner = triangles[:, ::-1] + 8
+    housing = bt.Mesh(np.concatenate([0.021 * corners, 0.017 * corners]), np.concatenate([triangles, inner]))
+    patch = bt.Patch.draped(housing, 4e-3, 2e-3)
+    assert (np.abs(patch.centers).max(axis=1) > 0.0209).all() and patch.n_left_out > 100
+    top = bt.Patch.draped(housing, 4e-3, 2e-3, triangles=[1, 7])
+    assert (top.centers[:, 2] > 0.0209).all() and top.n_left_out == 0
+    plane = bt.Patch.draped(housing, 4e-3, 2e-3, plane=[[0, 0, 0], [2.0, 0, 0]])
+    assert (plane.centers[:, 0] >= 0).all()
+    box = bt.Patch.draped(housing, 4e-3, 2e-3, bounds=[[0, 0, 0], [1, 1, 1]])
+    assert (box.centers >= 0).all() and box.n_taxels < plane.n_taxels < patch.n_taxels
+    assert bt.Patch.disc(8e-3, 2e-3, 5e-3).n_left_out == 0
+    with pytest.raises(ValueError, match="region: triangle 24; 0 to 23"):
+        bt.Patch.draped(housing, 4e-3, 2e-3, triangles=[24])
+    with pytest.raises(ValueError, match=r"bounds: shape \(3, 3\); \(2, 3\)"):
+        bt.Patch.draped(housing, 4e-3, 2e-3, bounds=np.zeros((3, 3)))

@@ -30,7 +30,7 @@ const MAX_DISAGREEING: f64 = 0.05;
 /// Which way the triangles of a mesh face, after [`TriangleMesh::turned_outwards`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Orientation {
-    /// Outwards as given. Flat sheets and open parts without an outside count as outwards.
+    /// Outwards as given. Flat sheets and open parts without an outside count as outwards, if their faces agree.
     Outwards,
     /// Outwards, because triangles of closed parts were turned.
     Turned {
@@ -322,7 +322,7 @@ impl<'a> Parts<'a> {
         if inwards > outwards {
             return Some("an open mesh whose faces face inwards");
         }
-        let disagree = is_flipped && inwards > MAX_DISAGREEING * (inwards + outwards);
+        let disagree = is_flipped && inwards >= MAX_DISAGREEING * (inwards + outwards);
         disagree.then_some("an open mesh whose faces disagree about the outside")
     }
 }

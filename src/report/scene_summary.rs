@@ -8,6 +8,15 @@ use crate::world::Motion;
 /// One table of patches with their peaks over all frames, one of objects with what holds them at the end.
 pub fn scene_table(plan: &ScenePlan, summary: &Summary) -> String {
     let mut text = format!("{}\n", patches(plan, summary));
+    for patch in &plan.patches {
+        let n_left_out = patch.skin.layout().n_left_out();
+        if n_left_out > 0 {
+            let name = patch.skin.name();
+            text += &format!(
+                "Patch {name}: {n_left_out} taxels left out, whose axes would meet the mesh again.\n"
+            );
+        }
+    }
     if !plan.objects.is_empty() {
         text += &format!("\n{}\n", objects(plan, summary));
     }

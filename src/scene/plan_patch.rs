@@ -4,12 +4,14 @@ use super::mount::Mount;
 use super::plan_robot::PlannedRobot;
 use super::plan_signal::PlannedSignal;
 use super::reader::{MM, Reader};
-use super::spec::{LayoutSpec, ObjectSpec, PatchSpec};
+use super::spec::{LayoutSpec, ObjectSpec, PatchSpec, RegionSpec};
 use crate::error::Result;
-use crate::mesh::SizeLimits;
+use crate::geometry::Aabb;
+use crate::mesh::{MeshFormat, SizeLimits, obj_group};
 use crate::random::Seed;
 use crate::study::{positive, read_mesh};
-use crate::world::{Grid, Layout, Patch, Shears};
+use crate::world::{DrapeRegion, Grid, Layout, Patch, Shears};
+use std::path::Path;
 
 /// A patch and where it is mounted.
 #[derive(Clone, Debug)]
@@ -100,16 +102,70 @@ impl Reader<'_> {
                 half_angle_deg,
                 ..
             } => Layout::sphere_cap(radius_mm * MM, half_angle_deg.to_radians(), pitch),
-            LayoutSpec::Draped { ref mesh, unit, .. } => {
-                let (place, _) = self.open(&format!("{key}.mesh"), mesh)?;
-                let read = read_mesh(&self.path(mesh), unit, &SizeLimits::ANY, None);
+            LayoutSpec::Draped {
+                mesh: ref path,
+                unit,
+                ref region,
+                ..
+            } => {
+                let (place, _) = self.open(&format!("{key}.mesh"), path)?;
+                let read = read_mesh(&self.path(path), unit, &SizeLimits::ANY, None);
                 let outward = read.and_then(|(mesh, orientation)| {
                     orientation.require(&place)?;
                     Ok(mesh)
                 });
-                Layout::draped(&self.under(key, outward)?, pitch, seed)
+                let mesh = self.under(key, outward)?;
+                let region = match region {
+                    Some(region) => self.region(&format!("{key}.region"), region, path)?,
+                    None => DrapeRegion::default(),
+                };
+                Layout::draped_on(&mesh, pitch, &region, seed)
             }
         };
         self.under(key, layout)
+    }
+
+    /// The part of a mesh file that carries taxels.
+    fn region(&self, key: &str, spec: &RegionSpec, mesh: &Path) -> Result<DrapeRegion> {
+        let refuse = |given: &str, allowed: &str| Err(self.check.error(key, given, allowed));
+        let vector = |name: &str, numbers| self.vector(&format!("{key}.{name}"), numbers, MM);
+        let bounds = match (spec.box_min_mm, spec.box_max_mm) {
+            (Some(min), Some(max)) => Some(Aabb {
+                min: vector("box_min_mm", min)?,
+                max: vector("box_max_mm", max)?,
+            }),
+            (None, None) => None,
+            _ => return refuse("one corner of a box", "box_min_mm and box_max_mm"),
+        };
+        let beyond = match (spec.plane_normal, spec.plane_point_mm) {
+            (Some(normal), point) => Some((
+                vector("plane_point_mm", point.unwrap_or_default())?,
+                self.vector(&format!("{key}.plane_normal"), normal, 1.0)?,
+            )),
+            (None, None) => None,
+            (None, Some(_)) => return refuse("plane_point_mm alone", "plane_normal beside it"),
+        };
+        let triangles = match (&spec.group, spec.triangles) {
+            (Some(_), Some(_)) => return refuse("group and triangles", "one of them"),
+            (Some(group), None) => {
+                let key = &format!("{key}.group");
+                if MeshFormat::of(mesh)? != MeshFormat::Obj {
+                    let given = format!("`{group}` of {}", mesh.display());
+                    return Err(self.check.error(key, given, "a group of an OBJ file"));
+                }
+                let (place, file) = self.open(key, mesh)?;
+                Some(self.under(key, obj_group(&place, file, group))?)
+            }
+            (None, Some([first, last])) if first <= last => Some((first..=last).collect()),
+            (None, Some(_)) => {
+                return refuse("triangles that end before they begin", "first and last");
+            }
+            (None, None) => None,
+        };
+        Ok(DrapeRegion {
+            bounds,
+            beyond,
+            triangles,
+        })
     }
 }

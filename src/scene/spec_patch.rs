@@ -83,14 +83,14 @@ pub enum LayoutSpec {
         nx: usize,
         /// Rows, along patch y.
         ny: usize,
-        /// Between neighbours.
+        /// Between all six neighbours; rows are 0.866 times as far apart.
         pitch_mm: f64,
     },
-    /// Round.
+    /// Round, a hexagonal lattice.
     Disc {
         /// Of the disc.
         radius_mm: f64,
-        /// Between neighbours.
+        /// Between all six neighbours.
         pitch_mm: f64,
     },
     /// A ring.
@@ -122,7 +122,7 @@ pub enum LayoutSpec {
         /// Between neighbours.
         pitch_mm: f64,
     },
-    /// Over a triangle mesh.
+    /// Over the outer surface of a triangle mesh.
     Draped {
         /// Its file.
         mesh: FilePath,
@@ -131,5 +131,33 @@ pub enum LayoutSpec {
         unit: Option<LengthUnit>,
         /// Between neighbours.
         pitch_mm: f64,
+        /// The part that carries taxels; the whole outer surface when left out.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        region: Option<RegionSpec>,
     },
+}
+
+/// `region = { group = "fingertip", box_min_mm = [0.0, 0.0, 0.0], box_max_mm = [20.0, 20.0, 10.0] }`: the places for which all that is
+/// given holds.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RegionSpec {
+    /// In a box of the mesh's frame: its least corner, beside `box_max_mm`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub box_min_mm: Option<[f64; 3]>,
+    /// Its greatest corner.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub box_max_mm: Option<[f64; 3]>,
+    /// On one side of a plane: the direction to that side, of any length.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plane_normal: Option<[f64; 3]>,
+    /// A point of the plane, beside `plane_normal`; the mesh's origin when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plane_point_mm: Option<[f64; 3]>,
+    /// On the faces of an OBJ file's group (`g`) or object (`o`).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub group: Option<String>,
+    /// On triangles with these numbers, first and last, from 0 in the order of the file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub triangles: Option<[usize; 2]>,
 }

@@ -29,11 +29,12 @@ const UNIT_ROUNDING: f64 = 1e-9;
 /// | [`annulus`](Self::annulus) | ring | about its area / pitch² |
 /// | [`cylinder`](Self::cylinder) | forearm, finger | about arc · radius · length / pitch² |
 /// | [`sphere_cap`](Self::sphere_cap) | fingertip, elbow | about its area / pitch² |
-/// | [`draped`](Self::draped) | any triangle mesh | about its area / pitch² |
+/// | [`draped`](Self::draped) | outer surface of a triangle mesh | about its area / pitch² |
 #[derive(Clone, Debug)]
 pub struct Layout {
     rule: Rule,
     places: OnceLock<Places>,
+    n_left_out: usize,
 }
 
 /// How taxels lie.
@@ -122,6 +123,15 @@ impl Layout {
         }
     }
 
+    /// Taxels that a [draped](Self::draped_on) layout leaves out, because their axes would meet the mesh again; 0 for other layouts.
+    pub fn n_left_out(&self) -> usize {
+        self.n_left_out
+    }
+
+    pub(super) fn with_left_out(self, n_left_out: usize) -> Self {
+        Self { n_left_out, ..self }
+    }
+
     /// n_taxels rest centres, metres.
     pub fn centers(&self) -> &[DVec3] {
         &self.places().centers
@@ -173,10 +183,11 @@ impl Layout {
     #[must_use]
     pub fn moved(&self, pose: &Pose) -> Self {
         let taxels = self.centers().iter().zip(self.axes());
-        Self::of_taxels(taxels.map(|(&center, &axis)| {
+        let moved = Self::of_taxels(taxels.map(|(&center, &axis)| {
             let axis = (pose.rotation * axis).normalize();
             (pose.transform_point(center), axis)
-        }))
+        }));
+        moved.with_left_out(self.n_left_out)
     }
 
     /// What a family has made: taxels whose axes are all of length one.
@@ -188,6 +199,7 @@ impl Layout {
         Self {
             rule: Rule::None,
             places: places.into(),
+            n_left_out: 0,
         }
     }
 
@@ -195,6 +207,7 @@ impl Layout {
         Self {
             rule,
             places: OnceLock::new(),
+            n_left_out: 0,
         }
     }
 }

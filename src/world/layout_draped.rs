@@ -1,6 +1,7 @@
 //! A layout draped over a triangle mesh: taxels at least so far apart, and no place without one nearby.
 
 use super::Layout;
+use super::drape_region::{DrapeRegion, Rays};
 use crate::error::{Error, Result};
 use crate::in_range::positive;
 use crate::mesh::{Triangle, TriangleMesh};
@@ -21,20 +22,40 @@ const MOST_PIECES: usize = 1 << 24;
 const OPPOSED: f64 = -0.5;
 
 impl Layout {
-    /// Taxels spread over a whole mesh, as many as on a grid of this pitch (metres), in the order of its triangles.
-    ///
-    /// Each is at least 0.83 pitches from the others (but those on the back of a thin sheet), and every place of the surface
-    /// is within a pitch of one. Places are taken in random order and kept if they are far enough from all before them (dart
-    /// throwing): the same seed gives the same taxels. It takes about 0.2 ms a taxel.
-    ///
-    /// Axes are the mean normals of the surface within half a pitch, so that the facets of a scan do not show and the sides
-    /// of a box stay flat; outwards, if the mesh's triangles turn counter-clockwise seen from outside.
+    /// Taxels spread over the outer surface of a whole mesh: [`draped_on`](Self::draped_on) without a region.
     ///
     /// # Errors
-    /// The error names a pitch that is not positive, a surface without area, or a pitch too fine for its surface: there is
-    /// memory for some 100,000 taxels.
+    /// Those of [`draped_on`](Self::draped_on).
     pub fn draped(mesh: &TriangleMesh, pitch: f64, seed: &Seed) -> Result<Self> {
+        Self::draped_on(mesh, pitch, &DrapeRegion::default(), seed)
+    }
+
+    /// Taxels spread over a region of a mesh's outer surface, as many as on a grid of this pitch (metres), in the order of its triangles.
+    ///
+    /// The outer surface consists of the places whose axis leaves the mesh freely: a ray along the axis does not meet the mesh again. Other
+    /// places, such as the walls of a cavity, carry no taxel; [`n_left_out`](Self::n_left_out) counts the taxels that they would carry.
+    ///
+    /// Each taxel is at least 0.83 pitches from the others (but those on the back of a thin sheet), and every place of the outer surface
+    /// is within a pitch of one. Places are taken in random order and kept if they are far enough from all before them (dart
+    /// throwing): the same seed gives the same taxels. It takes about 0.3 ms a taxel.
+    ///
+    /// Axes are the mean normals of the surface within half a pitch, so that the facets of a scan do not show and the sides
+    /// of a box stay flat; where a mean normal meets the mesh again, the axis is the normal of the taxel's own triangle.
+    ///
+    /// # Errors
+    /// If the pitch is not positive, the surface has no area, an open mesh has no [known outside](TriangleMesh::turned_outwards), the
+    /// region contains no place of the outer surface, or the pitch is too fine for the surface: there is memory for some 100,000 taxels.
+    pub fn draped_on(
+        mesh: &TriangleMesh,
+        pitch: f64,
+        region: &DrapeRegion,
+        seed: &Seed,
+    ) -> Result<Self> {
         positive("taxel pitch", pitch, "m")?;
+        region.check(mesh)?;
+        let (mesh, orientation) = mesh.clone().turned_outwards();
+        orientation.require("draped layout")?;
+        let mesh = &mesh;
         let too_fine = || {
             Error::input(
                 "draped layout",
@@ -50,27 +71,53 @@ impl Layout {
                 "at least one triangle with a normal",
             ));
         }
-        let mut taxels = Taken::new(LEAST * pitch);
         let mut order: Vec<usize> = (0..pieces.len()).collect();
         order.shuffle(&mut seed.named("draped layout").rng());
-        for index in order {
+        let rays = Rays::new(mesh);
+        let mask = region.mask(mesh);
+        order
+            .retain(|&index| mask[pieces[index].triangle] && region.contains(pieces[index].middle));
+        // Taxels, and places inside the mesh that would carry one.
+        let (mut taxels, mut inner) = (Taken::new(LEAST * pitch), Taken::new(LEAST * pitch));
+        let mut n_left_out = 0;
+        for &index in &order {
             let piece = &pieces[index];
-            let is_same_side = |other: usize| pieces[other].normal.dot(piece.normal) > OPPOSED;
-            if !taxels.near(piece.middle, LEAST * pitch).any(is_same_side) {
+            let has_room = |taken: &Taken| {
+                let is_same_side = |other: usize| pieces[other].normal.dot(piece.normal) > OPPOSED;
+                !taken.near(piece.middle, LEAST * pitch).any(is_same_side)
+            };
+            if !has_room(&taxels) {
+                continue;
+            }
+            if rays.is_free(piece.middle, piece.normal) {
                 taxels.take(index, piece.middle);
+            } else if has_room(&inner) {
+                inner.take(index, piece.middle);
+                n_left_out += 1;
             }
         }
-        let normals = mean_normals(&pieces, &taxels, 0.5 * pitch);
-        Ok(Self::of_taxels(
-            normals
-                .into_iter()
-                .map(|(index, normal)| (pieces[index].middle, normal)),
-        ))
+        let mut normals = mean_normals(&pieces, &taxels, 0.5 * pitch);
+        if normals.is_empty() {
+            let given =
+                format!("no place of the region on the outer surface ({n_left_out} taxels inside)");
+            let allowed = "a region with places from which a ray leaves the mesh freely";
+            return Err(Error::input("draped layout", given, allowed));
+        }
+        for (&index, normal) in &mut normals {
+            if !rays.is_free(pieces[index].middle, *normal) {
+                *normal = pieces[index].normal;
+            }
+        }
+        let taxels = normals.into_iter();
+        let taxels = taxels.map(|(index, normal)| (pieces[index].middle, normal));
+        Ok(Self::of_taxels(taxels).with_left_out(n_left_out))
     }
 }
 
 /// A small triangle of the surface.
 struct Piece {
+    /// The number of its triangle in the mesh.
+    triangle: usize,
     middle: DVec3,
     /// Unit.
     normal: DVec3,
@@ -103,6 +150,7 @@ fn pieces(mesh: &TriangleMesh, longest_edge: f64) -> Option<Vec<Piece>> {
                 return None;
             }
             pieces.push(Piece {
+                triangle: number,
                 middle: triangle.middle(),
                 normal,
                 area: triangle.area(),

@@ -8,6 +8,7 @@ mod array_layout;
 mod basins;
 mod body;
 mod dome;
+mod drape_region;
 mod extrusion;
 mod human_touch;
 mod layout;
@@ -34,6 +35,7 @@ mod trajectory;
 
 pub use array_layout::ArrayLayout;
 pub use dome::{Dome, DomeRing};
+pub use drape_region::DrapeRegion;
 pub use extrusion::Extrusion;
 pub use human_touch::{HandState, HumanTouch, TOUCH_KINDS, TouchKind, TouchRanges};
 pub(crate) use layout::Rule;

@@ -27,5 +27,6 @@ mod scene_laws;
 mod scene_mounts;
 mod scene_robots;
 mod scene_signal;
+mod scene_starts;
 mod whole_body_laws;
 mod whole_body_variants;

@@ -218,7 +218,7 @@ class Contacts:
 
     @property
     def travel(self) -> NDArray[np.float64]:
-        """(n,): how far the patch went along its z, metres; NaN where it met nothing."""
+        """(n,): how far the patch went along its z, metres; NaN where no taxel met the object."""
 
     @property
     def n_touched(self) -> NDArray[np.int64]:
@@ -316,11 +316,17 @@ class Patch:
         stroke: float,
         *,
         seed: int = 0,
+        bounds: ArrayLike | None = None,
+        plane: ArrayLike | None = None,
+        triangles: Sequence[int] | None = None,
         taxel_radius: float | None = None,
         stiffness: float = 100.0,
         damping: float = 0.0,
     ) -> Patch:
-        """Taxels spread over a whole mesh, as many as on a grid of this pitch, at least 0.83 pitches apart; 0.2 ms a taxel."""
+        """Taxels spread over a mesh's outer surface, as many as on a grid of this pitch, at least 0.83 pitches apart; 0.3 ms a taxel. A taxel
+        whose axis would meet the mesh again is left out: see n_left_out. The region is where all that is given holds: bounds (2, 3), its least
+        and greatest corner; plane (2, 3), a point and the direction to the side that counts; triangles, their numbers.
+        """
 
     @staticmethod
     def from_arrays(
@@ -343,6 +349,10 @@ class Patch:
 
     @property
     def n_taxels(self) -> int: ...
+    @property
+    def n_left_out(self) -> int:
+        """Taxels that a draped patch leaves out because their axes would meet the mesh again; 0 for other patches."""
+
     @property
     def centers(self) -> NDArray[np.float64]:
         """(n_taxels, 3): where they rest, metres; a copy."""
@@ -551,7 +561,7 @@ class Chain:
     ) -> NDArray[np.float64]:
         """What is read of frames, each that of a touch by itself, at rest.
 
-        frames: deflections (n, …) of n_taxels each, metres, or one frame; they stay as they are. seed: of what changes from touch to
+        frames: deflections (n, …) of n_taxels each, (n, ny, nx) of a grid, metres, or one frame; they stay as they are. seed: of what changes from touch to
         touch; frame i has the random numbers of touch `first` + i, whatever else is read. rates: δ̇, m/s, as frames. Returns an array
         of the same shape, float64, in the unit of `quantity`. Raises ValueError.
         """
@@ -644,7 +654,7 @@ class Simulation:
 
     - time: seconds;
     - patches: of each by name pose (7,) in the world, deflection (ny, nx) or (n_taxels,) in metres, force likewise in newtons, force3
-      (n_taxels, 3) on each taxel along its axis, and sideways too with friction, in newtons in the frame of the patch, signal (or None),
+      (n_taxels, 3) of the objects on each taxel in newtons in the frame of the patch, whose sum is the wrench's force, signal (or None),
       wrench (6,) of force and torque on the patch in its frame, n_touched, n_saturated;
     - objects: of each by name pose (7,) in the world, and held: imposed, pressed, at rest, unsettled or escaped.
     """

@@ -1,0 +1,208 @@
+//! Where objects start: free objects apart from all others; and which part of a mesh carries taxels.
+
+use bubbletouch::report::scene_summary::scene_table;
+use bubbletouch::scene::{Held, ScenePlan, SceneSpec, Simulation, Stepping, Summary};
+use std::fs;
+use std::path::Path;
+
+fn plan_in(folder: &Path, text: &str) -> bubbletouch::Result<ScenePlan> {
+    ScenePlan::new("s.toml", folder, SceneSpec::parse("s.toml", text)?)
+}
+
+/// A bed of taxels with objects, each with a name, a shape, a position (mm) and how it moves.
+fn bed(objects: &[(&str, &str, [f64; 3], &str)]) -> String {
+    let objects = objects.iter().map(|(name, shape, position, movement)| {
+        format!("[[objects]]\nname = \"{name}\"\n{shape}\nat = {{ position_mm = {position:?} }}\n{movement}\n")
+    });
+    let objects: String = objects.collect();
+    format!(
+        "title = \"A bed\"\noutput_hz = 20.0\ndt_ms = 5.0\nduration_s = 0.0\n\
+         [[patches]]\nname = \"bed\"\nlayout = {{ grid = {{ nx = 24, ny = 24, pitch_mm = 4.0 }} }}\nstroke_mm = 15.0\n{objects}"
+    )
+}
+
+const TENNIS: &str = "object = \"tennis\"";
+const FREE: &str = "free = { mass_kg = 0.5 }";
+
+#[test]
+fn a_free_object_that_starts_inside_another_is_refused_with_both_and_the_overlap() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("small.csv"), "x,y,z,r\n0,0,0,0.004\n").unwrap();
+    let said = |objects: &[_]| {
+        let error = plan_in(folder.path(), &bed(objects)).unwrap_err();
+        assert_eq!(error.exit_code(), 2, "{error}");
+        error.to_string()
+    };
+    let place = [1.3, 0.7, 5.0];
+    let first = ("first", TENNIS, place, FREE);
+    let allowed = "free objects that overlap no other object at the start";
+    assert_eq!(
+        said(&[first, ("second", TENNIS, place, FREE)]),
+        format!(
+            "s.toml, key objects.second.at: free object `second` starts 65.4 mm inside `first`; {allowed}"
+        )
+    );
+    // Only the third overlaps, by 30 of 65.4 mm.
+    let apart = ("second", TENNIS, [80.0, 0.7, 5.0], FREE);
+    let third = ("third", TENNIS, [80.0, 36.11, 5.0], FREE);
+    assert_eq!(
+        said(&[first, apart, third]),
+        format!(
+            "s.toml, key objects.third.at: free object `third` starts 30.0 mm inside `second`; {allowed}"
+        )
+    );
+    // In an object that stands, before or after it in the file, or is moved: the free one is named first.
+    let stands = ("stands", TENNIS, place, "");
+    let moves = (
+        "moves",
+        TENNIS,
+        place,
+        "motion = { phases = [{ duration_s = 1.0, linear_mm_per_s = [0.0, 0.0, 1.0] }] }",
+    );
+    let small = ("small", "spheres = \"small.csv\"", place, FREE);
+    for other in [stands, moves] {
+        for objects in [[small, other], [other, small]] {
+            let expected = format!(
+                "s.toml, key objects.small.at: free object `small` starts 36.7 mm inside `{}`",
+                other.0
+            );
+            assert!(said(&objects).starts_with(&expected), "{}", said(&objects));
+        }
+    }
+    // Two that are where they are told may overlap.
+    assert!(plan_in(folder.path(), &bed(&[stands, moves])).is_ok());
+}
+
+#[test]
+fn objects_that_touch_within_what_their_spheres_stand_out_are_read_and_so_are_those_deep_in_a_patch()
+ {
+    let folder = tempfile::tempdir().unwrap();
+    let cube = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n\
+        f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+    fs::write(folder.path().join("cube.obj"), cube).unwrap();
+    let cube = "mesh = \"cube.obj\"\nunit = \"cm\"\nmodel = \"packed\"\nsurface_error_mm = 0.5";
+    // One cube upon the other, and balls in a cup-like ring, apart by rounding.
+    let stack = [
+        ("low", cube, [0.0, 0.0, 9.0], FREE),
+        ("high", cube, [0.0, 0.0, 29.0], FREE),
+    ];
+    assert!(plan_in(folder.path(), &bed(&stack)).is_ok());
+    let balls = [
+        ("a", TENNIS, [0.0, 0.0, 30.0], FREE),
+        ("b", TENNIS, [65.4, 0.0, 30.0], FREE),
+    ];
+    assert!(plan_in(folder.path(), &bed(&balls)).is_ok());
+    // Deeper in the bed than its stroke: the stops carry it.
+    let heavy = [(
+        "heavy",
+        TENNIS,
+        [0.0, 0.0, -10.0],
+        "free = { mass_kg = 20.0 }",
+    )];
+    let plan = plan_in(folder.path(), &bed(&heavy)).unwrap();
+    let mut frames = Vec::new();
+    Simulation::new(&plan, Stepping::AsNeeded)
+        .run(&mut [&mut frames])
+        .unwrap();
+    assert_eq!(frames[0].objects[0].held, Held::AtRest);
+    // A cube in a cube is inside, though only spheres overlap.
+    let inside = [
+        ("low", cube, [0.0, 0.0, 9.0], FREE),
+        ("high", cube, [1.0, 0.0, 12.0], FREE),
+    ];
+    let said = plan_in(folder.path(), &bed(&inside))
+        .unwrap_err()
+        .to_string();
+    assert!(
+        said.contains("`high` starts") && said.contains("inside `low`"),
+        "{said}"
+    );
+}
+
+/// A tube with a square hole along z, outside in one group and inside in another; centimetres.
+const TUBE: &str = "v -2 -2 -2\nv 2 -2 -2\nv 2 2 -2\nv -2 2 -2\nv -2 -2 2\nv 2 -2 2\nv 2 2 2\nv -2 2 2\n\
+    v -1 -1 -2\nv 1 -1 -2\nv 1 1 -2\nv -1 1 -2\nv -1 -1 2\nv 1 -1 2\nv 1 1 2\nv -1 1 2\n\
+    g outside\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n\
+    g inside\nf 10 9 13 14\nf 11 10 14 15\nf 12 11 15 16\nf 9 12 16 13\n\
+    g ends\nf 2 1 9 10\nf 3 2 10 11\nf 4 3 11 12\nf 1 4 12 9\nf 5 6 14 13\nf 6 7 15 14\nf 7 8 16 15\nf 8 5 13 16\n";
+
+#[test]
+fn a_draped_patch_covers_a_region_of_the_outer_surface_and_says_how_many_taxels_it_leaves_out() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("tube.obj"), TUBE).unwrap();
+    let text = |region: &str| {
+        format!(
+            "title = \"A tube\"\n[[patches]]\nname = \"tube\"\nstroke_mm = 2.0\n\
+             layout = {{ draped = {{ mesh = \"tube.obj\", unit = \"cm\", pitch_mm = 4.0{region} }} }}\n"
+        )
+    };
+    let layout = |region: &str| {
+        let plan = plan_in(folder.path(), &text(region)).unwrap();
+        let resolved = SceneSpec::parse("r.toml", &plan.spec.to_toml()).unwrap();
+        let again = ScenePlan::new("r.toml", Path::new("/"), resolved).unwrap();
+        let layout = plan.patches[0].skin.layout().clone();
+        assert_eq!(again.patches[0].skin.layout(), &layout);
+        (layout, scene_table(&plan, &Summary::default()))
+    };
+    let (whole, table) = layout("");
+    // The walls of the hole face one another: four of 20 × 40 mm.
+    let n_left_out = whole.n_left_out();
+    assert!((150..250).contains(&n_left_out), "{n_left_out}");
+    let line =
+        format!("Patch tube: {n_left_out} taxels left out, whose axes would meet the mesh again.");
+    assert!(table.contains(&line), "{table}");
+    let is_in_hole = |c: &glam::DVec3| c.x.abs().max(c.y.abs()) < 0.0101 && c.z.abs() < 0.0199;
+    assert!(!whole.centers().iter().any(is_in_hole));
+    let (outside, table) = layout(", region = { group = \"outside\" }");
+    assert!(outside.n_left_out() == 0 && !table.contains("left out"));
+    let on_outside = |c: &glam::DVec3| (c.x.abs().max(c.y.abs()) - 0.02).abs() < 1e-12;
+    assert!(outside.n_taxels() > 300 && outside.centers().iter().all(on_outside));
+    let (ends, _) = layout(", region = { triangles = [16, 31] }");
+    assert_eq!(ends, layout(", region = { group = \"ends\" }").0);
+    assert!(
+        ends.centers()
+            .iter()
+            .all(|c| (c.z.abs() - 0.02).abs() < 1e-12)
+    );
+    let (upper, _) = layout(", region = { group = \"ends\", plane_normal = [0.0, 0.0, 3.0] }");
+    assert!(upper.centers().iter().all(|c| c.z > 0.0));
+    let corner = ", region = { box_min_mm = [0.0, 0.0, 0.0], box_max_mm = [30.0, 30.0, 30.0] }";
+    assert!(
+        layout(corner)
+            .0
+            .centers()
+            .iter()
+            .all(|c| c.min_element() >= 0.0)
+    );
+    let said = |region: &str| {
+        let error = plan_in(folder.path(), &text(region)).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        error.to_string()
+    };
+    let key = "s.toml, key patches.tube.layout";
+    let file = folder.path().join("tube.obj");
+    let inside = said(", region = { group = \"inside\" }");
+    let none = format!("{key}: draped layout: no place of the region on the outer surface (");
+    assert!(inside.starts_with(&none), "{inside}");
+    assert_eq!(
+        said(", region = { group = \"outsid\" }"),
+        format!(
+            "{key}.region.group: {}: group `outsid`; perhaps `outside`",
+            file.display()
+        )
+    );
+    for (region, given) in [
+        ("box_min_mm = [0.0, 0.0, 0.0]", "one corner of a box"),
+        ("plane_point_mm = [0.0, 0.0, 0.0]", "plane_point_mm alone"),
+        (
+            "group = \"ends\", triangles = [0, 1]",
+            "group and triangles",
+        ),
+        ("triangles = [3, 1]", "triangles that end before they begin"),
+        ("triangles = [3, 99]", "triangle 32"),
+        ("link = \"tip\"", "unknown field `link`"),
+    ] {
+        let region = format!(", region = {{ {region} }}");
+        assert!(said(&region).contains(given), "{}", said(&region));
+    }
+}
