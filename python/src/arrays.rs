@@ -108,16 +108,35 @@ pub fn whole_number<T: TryFrom<i128>>(place: &str, given: i128) -> PyResult<T> {
     T::try_from(given).map_err(|_| bad_input(place, given, allowed))
 }
 
+/// Whether an array has this shape as that of one frame, or of frames along its first axis. A frame of a grid (`sides`: rows, columns) has
+/// that many rows and columns, or its taxels in one row.
+pub fn is_of_frames(shape: &[usize], n_taxels: usize, sides: Option<[usize; 2]>) -> bool {
+    let is_frame = |frame: &[usize]| {
+        let is_whole = frame.iter().product::<usize>() == n_taxels && !frame.is_empty();
+        // Sides of one say nothing of the order.
+        let known = frame.iter().filter(|&&side| side != 1);
+        is_whole
+            && (known.clone().count() < 2
+                || sides.is_none_or(|sides| known.eq(sides.iter().filter(|&&side| side != 1))))
+    };
+    is_frame(shape) || shape.len() > 1 && is_frame(&shape[1..])
+}
+
 /// Frames of n taxels as n_frames × n: shapes (n_frames, …) whose sides after the first make n, or one frame alone.
 ///
 /// # Errors
-/// Another number of taxels; a number that is not finite.
-pub fn frames(place: &str, given: &Bound<PyAny>, n_taxels: usize) -> PyResult<Array2<f64>> {
-    let is_shape = |shape: &[usize]| {
-        let whole = shape.iter().product::<usize>() == n_taxels && !shape.is_empty();
-        whole || shape.len() > 1 && shape[1..].iter().product::<usize>() == n_taxels
+/// Another number of taxels; of a grid (`sides`: rows, columns) frames of other sides; a number that is not finite.
+pub fn frames(
+    place: &str,
+    given: &Bound<PyAny>,
+    n_taxels: usize,
+    sides: Option<[usize; 2]>,
+) -> PyResult<Array2<f64>> {
+    let is_shape = |shape: &[usize]| is_of_frames(shape, n_taxels, sides);
+    let allowed = match sides {
+        Some([ny, nx]) => format!("(n, {ny}, {nx}) or (n, {n_taxels}), or one frame"),
+        None => format!("(n, …) with {n_taxels} taxels a frame"),
     };
-    let allowed = format!("(n, …) with {n_taxels} taxels a frame");
     view(place, given, &allowed, is_shape, |array| {
         let n_frames = array.len() / n_taxels;
         let values: Vec<f64> = array.iter().copied().collect();

@@ -26,7 +26,7 @@ pub struct Contacts {
     force: Py<PyArray2<f64>>,
     /// (m, 3): ∂δ/∂x for a motion x of the part in the frame of the patch, before the taxel's stop; its length is ∂δ/∂R of a sphere's radius.
     gradient: Py<PyArray2<f64>>,
-    /// (n,): how far the patch went along its z, metres; NaN where it met nothing.
+    /// (n,): how far the patch went along its z, metres; NaN where no taxel met the object.
     travel: Py<PyArray1<f64>>,
     /// (n,): taxels with a deflection.
     n_touched: Py<PyArray1<i64>>,

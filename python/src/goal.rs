@@ -100,6 +100,12 @@ impl Goal {
         (self.kind)(0.0)
     }
 
+    /// Returns what a press did, `None` for a miss: also for a press to a pose or a travel that touches no taxel.
+    pub fn unless_missed(&self, pressed: Option<Contact>) -> Option<Contact> {
+        let may_touch_none = matches!(self.kind(), contact::Goal::Pose | contact::Goal::Travel(_));
+        pressed.filter(|contact| !may_touch_none || contact.n_touched > 0)
+    }
+
     fn amount(&self, number: usize) -> f64 {
         match self.amounts[..] {
             [amount] => amount,

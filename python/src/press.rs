@@ -215,6 +215,7 @@ impl<'py> Batch<'_, 'py> {
                 jacobian::fill(changes, goal.kind(), patch, (workspace.contacts(), origin));
             }
             if wanted.contacts {
+                let pressed = goal.unless_missed(pressed);
                 let of_pose = OfPose::new(patch, (pressed, met), workspace);
                 if let Ok(mut found) = found.lock() {
                     found.push((number, of_pose));

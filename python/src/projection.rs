@@ -69,7 +69,9 @@ impl Projection {
         frames: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         guarded(|| {
-            let frames = self::frames("frames", frames, self.projection.n_taxels())?;
+            let (rows, columns) = self.shape();
+            let sides = Some([rows, columns]);
+            let frames = self::frames("frames", frames, self.projection.n_taxels(), sides)?;
             let pool = pool()?;
             let measured = py.detach(|| pool.install(|| self.projection.measure(frames.view())));
             Ok(measured.into_pyarray(py))

@@ -86,7 +86,12 @@ impl Reconstructor {
             if !(noise.is_finite() && noise >= 0.0) {
                 return Err(bad_input("noise", noise, "zero or a positive number"));
             }
-            let training = frames("training", training, projection.n_taxels())?;
+            let training = frames(
+                "training",
+                training,
+                projection.n_taxels(),
+                Some(shape.into()),
+            )?;
             let pool = pool()?;
             let made = py.detach(|| {
                 pool.install(|| {

@@ -1,6 +1,6 @@
 //! `Step` and `Chain`: what electronics make of deflections.
 
-use crate::arrays::{frames, view, whole_number};
+use crate::arrays::{frames, is_of_frames, view, whole_number};
 use crate::batch::{Spare, for_each, n_threads};
 use crate::errors::{bad_input, exception, guarded};
 use crate::patch::Patch;
@@ -143,6 +143,8 @@ impl Step {
 #[pyclass(frozen, module = "bubbletouch")]
 pub struct Chain {
     chain: signal::Chain,
+    /// Rows and columns of a grid.
+    sides: Option<[usize; 2]>,
     steps: Vec<Step>,
     spare: Spare<Scratch>,
 }
@@ -166,8 +168,11 @@ impl Chain {
                 true => Quantity::Force,
                 false => Quantity::Deflection,
             };
-            let chain = signal::Chain::of(&prepared, patch.get().inner(), quantity);
+            let patch = patch.get().inner();
+            let chain = signal::Chain::of(&prepared, patch, quantity);
+            let grid = patch.layout().as_grid();
             Ok(Self {
+                sides: grid.map(|grid| [grid.ny, grid.nx]),
                 chain: chain.map_err(exception)?,
                 steps,
                 spare: Spare::new(),
@@ -177,7 +182,7 @@ impl Chain {
 
     /// What is read of frames, each that of a touch by itself, at rest.
     ///
-    /// frames: deflections (n, …) of n_taxels each, metres, or one frame; they stay as they are. seed: of what changes from touch to
+    /// frames: deflections (n, …) of n_taxels each, (n, ny, nx) of a grid, metres, or one frame; they stay as they are. seed: of what changes from touch to
     /// touch; frame i has the random numbers of touch `first` + i, whatever else is read. rates: δ̇, m/s, as frames. Returns an array
     /// of the same shape, float64, in the unit of `quantity`. Raises ValueError.
     #[pyo3(signature = (frames, *, seed=0, first=0, rates=None, threads=None))]
@@ -197,7 +202,7 @@ impl Chain {
             );
             let n_taxels = self.chain.n_taxels();
             let shape = frames.getattr("shape").ok();
-            let mut values = self::frames("frames", frames, n_taxels)?;
+            let mut values = self::frames("frames", frames, n_taxels, self.sides)?;
             let rates = self.rates(rates, values.nrows())?;
             let seed = Seed::new(seed);
             let work = |number: usize, frame: &mut [f64], scratch: &mut Scratch| {
@@ -235,7 +240,7 @@ impl Chain {
         guarded(|| {
             let seed = whole_number("seed", seed)?;
             let n_before: usize = whole_number("n_before", n_before)?;
-            let mut values = self::frames("frames", frames, self.chain.n_taxels())?;
+            let mut values = self::frames("frames", frames, self.chain.n_taxels(), self.sides)?;
             let n_frames = values.nrows();
             if n_before >= n_frames {
                 let given = format!("{n_before} of {n_frames} frames");
@@ -298,8 +303,11 @@ impl Chain {
 impl Chain {
     /// One rate for each value of the frames.
     fn rates(&self, given: Option<&Bound<PyAny>>, n_frames: usize) -> PyResult<Option<Vec<f64>>> {
-        let n = n_frames * self.chain.n_taxels();
-        let is_shape = |shape: &[usize]| shape.iter().product::<usize>() == n;
+        let n_taxels = self.chain.n_taxels();
+        let n = n_frames * n_taxels;
+        let is_shape = |shape: &[usize]| {
+            shape.iter().product::<usize>() == n && is_of_frames(shape, n_taxels, self.sides)
+        };
         let look = |given| {
             view(
                 "rates",

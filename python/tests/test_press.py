@@ -140,8 +140,17 @@ def test_where_nothing_is_met_frames_are_zero_and_the_travel_is_nan(
     patch: bt.Patch, mug: bt.SphereUnion, poses: Floats
 ) -> None:
     poses = poses[:8] + np.array([10.0, 0, 0, 0, 0, 0, 0]) * (np.arange(8) % 2)[:, None]
-    for goal in ({"depth": 2e-3}, {"force": 1.0}):
-        frames, contacts = patch.press(mug, poses, contacts=True, **goal)  # type: ignore[call-overload]
+    # Two millimetres beyond the first contact of the pose that is met last.
+    travel = 2e-3 + patch.press(mug, poses[::2], depth=1e-9, contacts=True)[1].travel.max()
+    there = poses - np.array([0, 0, travel, 0, 0, 0, 0])
+    goals: list[tuple[Floats, dict[str, float]]] = [
+        (there, {}),
+        (poses, {"travel": travel}),
+        (poses, {"depth": 2e-3}),
+        (poses, {"force": 1.0}),
+    ]
+    for given, goal in goals:
+        frames, contacts = patch.press(mug, given, contacts=True, **goal)  # type: ignore[call-overload]
         assert (frames[1::2] == 0).all() and (frames[::2].max(axis=(1, 2)) > 0).all()
         assert np.isnan(contacts.travel[1::2]).all() and np.isfinite(contacts.travel[::2]).all()
         assert set(contacts.pose) == {0, 2, 4, 6}

@@ -180,3 +180,19 @@ def test_what_cannot_be_rebuilt_is_refused(frames: Floats) -> None:
         rebuild(np.zeros((2, 63)))
     with pytest.raises(ValueError, match="measurements: NaN"):
         rebuild(np.full((2, 64), np.nan))
+
+
+def test_frames_of_a_grid_have_its_rows_and_columns() -> None:
+    patch = bt.Patch.grid(6, 4, 2e-3, 5e-3)
+    chain = bt.Chain([bt.Step.smoothing(4e-3)], patch)
+    projection = bt.Projection("gaussian", patch.shape, 5)
+    frames = np.random.default_rng(1).uniform(0, 1e-3, (3, *patch.shape))
+    flat = chain(frames.reshape(3, 24))
+    np.testing.assert_array_equal(chain(frames).reshape(3, 24), flat)
+    np.testing.assert_array_equal(chain(frames[0]).ravel(), flat[0])
+    for turned in (frames.swapaxes(1, 2), frames[0].T, frames.reshape(3, 2, 12)):
+        for call in (chain, chain.read_touch, projection):
+            with pytest.raises(ValueError, match=r"frames: shape .*\(n, 4, 6\) or \(n, 24\)"):
+                call(turned)
+    with pytest.raises(ValueError, match="rates: shape"):
+        chain(frames, rates=frames.swapaxes(1, 2))
