@@ -39,7 +39,8 @@ pub struct ObjectsSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SkinSpec {
-    /// Axis: distance between taxels, mm.
+    /// Axis: side of the square that each taxel has for itself, mm: the distance between neighbours of a grid. In a hexagonal lattice
+    /// (`hexagonal`, `disc`) neighbours are 1.0746 times as far apart.
     pub pitch_mm: Axis<f64>,
     /// Axis: side length of the square array, mm; a whole number of pitches.
     pub size_mm: Option<Axis<f64>>,

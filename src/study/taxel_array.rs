@@ -198,10 +198,14 @@ impl TaxelArray {
             None => self.n_taxels().to_string(),
         };
         let count = format!("{count}{taxels} at {} mm", millimetres(self.pitch()));
-        match self.layout {
+        let words = self.layout.words();
+        match (self.layout, self.layout.neighbour_distance(self.pitch())) {
             _ if !self.is_placed => format!("{}{taxels} without a layout", self.n_taxels()),
-            ArrayLayout::Grid => count,
-            other => format!("{count}, {}", other.words()),
+            (ArrayLayout::Grid, _) => count,
+            (_, None) => format!("{count}, {words}"),
+            (_, Some(distance)) => {
+                format!("{count}, {words}, neighbours at {:.3} mm", 1e3 * distance)
+            }
         }
     }
 

@@ -14,6 +14,9 @@ const ROWS: f64 = 0.930_604_859_102_1;
 
 /// How the taxels of an array lie, with a taxel on each square of a pitch and together on the area of a square grid, n × n pitches: within a
 /// few of a hundred as many taxels. In the patch frame the middle is at the origin with its axis along +z.
+///
+/// The pitch of an array is the side of a square with the area per taxel, in every layout. In a hexagonal lattice of that density the six
+/// neighbours of a taxel are [farther away](Self::neighbour_distance): 2.149 mm at a pitch of 2 mm.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ArrayLayout {
@@ -34,6 +37,12 @@ impl ArrayLayout {
     /// Whether it has a radius of curvature.
     pub fn is_curved(self) -> bool {
         matches!(self, Self::Cylinder | Self::Cap)
+    }
+
+    /// The distance between neighbours in a lattice whose pitch is another length, metres: √(2/√3) pitches in a hexagonal lattice; `None`
+    /// in other layouts, whose neighbours are about a pitch apart.
+    pub fn neighbour_distance(self, pitch: f64) -> Option<f64> {
+        matches!(self, Self::Hexagonal | Self::Disc).then_some(HEXAGONAL * pitch)
     }
 
     /// What people call it.
@@ -142,6 +151,19 @@ mod tests {
         ArrayLayout::Cylinder,
         ArrayLayout::Cap,
     ];
+
+    #[test]
+    fn neighbours_of_a_hexagonal_lattice_are_as_far_apart_as_it_says() {
+        for layout in [ArrayLayout::Hexagonal, ArrayLayout::Disc] {
+            let taxels = made(layout, 12, 0.0);
+            let centers = taxels.centers();
+            let distances = centers[1..].iter().map(|other| other.distance(centers[0]));
+            let nearest = distances.fold(f64::INFINITY, f64::min);
+            let distance = layout.neighbour_distance(2e-3).unwrap();
+            assert!((nearest - distance).abs() < 1e-12 && (distance - 2.149e-3).abs() < 1e-6);
+        }
+        assert_eq!(ArrayLayout::Grid.neighbour_distance(2e-3), None);
+    }
 
     #[test]
     fn all_have_about_as_many_taxels_with_the_middle_at_the_origin() {
