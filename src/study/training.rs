@@ -87,7 +87,8 @@ impl Training<'_> {
             };
             let (c, classifier) = self.choose(classifier, &candidates)?;
             let mut trained = classifier.train_path(&self.data, &[c], &self.seed)?;
-            (trained.swap_remove(0), number(classifier.gamma))
+            let gamma = number(classifier.gamma).filter(|_| self.kind.has_gamma());
+            (trained.swap_remove(0), gamma)
         } else {
             (classifier.train(&self.data, &self.seed)?, None)
         };
