@@ -177,6 +177,7 @@ mod spelling;
 mod standard_errors;
 pub mod study;
 pub mod table;
+mod toml_numbers;
 mod toml_text;
 pub mod whole_body;
 pub mod world;

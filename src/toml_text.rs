@@ -1,6 +1,7 @@
 //! TOML that a person wrote: read into what it says, or refused with the place.
 
 use crate::error::{Error, Result};
+use crate::toml_numbers::check_bounds;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use toml_parser::Source;
@@ -17,11 +18,11 @@ pub(crate) fn read<T: DeserializeOwned>(place: &str, text: &str) -> Result<T> {
     toml::from_str(text).map_err(|error| Error::toml(place, text, &error))
 }
 
-/// Refuses whole numbers that a type may take and no table has, so that it could not be written.
+/// Refuses whole numbers that a type may take and no table has, so that it could not be written, and numbers [out of bounds](check_bounds).
 pub(crate) fn check_numbers(place: &str, text: &str) -> Result<()> {
     let read = text.parse::<toml::Table>();
-    read.map(drop)
-        .map_err(|error| Error::toml(place, text, &error))
+    read.map_err(|error| Error::toml(place, text, &error))?;
+    check_bounds(place, text)
 }
 
 /// What a file says, as a type that is read from its text.

@@ -19,7 +19,7 @@ SCENE: dict[str, Any] = {
     "patches": [
         {
             "name": "palm",
-            "at": {"position_mm": [5.0, 0.0, 0.0], "rpy_deg": [10.0, 0.0, 30.0]},
+            "at": {"position_mm": [5.0, 0.0, 0.0], "rotation_deg": [10.0, 0.0, 30.0]},
             "layout": {"grid": {"nx": 16, "ny": 12, "pitch_mm": 4.0}},
             "stroke_mm": 5.0,
             "friction": 0.5,

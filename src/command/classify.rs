@@ -2,10 +2,12 @@
 
 use super::streams::say;
 use super::study_args::set_threads;
+use super::unused::check_used;
 use bubbletouch::quantile::quantile;
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::ClassifierKind;
 use bubbletouch::recognition::classifiers::classifier::{Classifier, Cost, TrainedClassifier};
+use bubbletouch::recognition::classifiers::parameters::PARAMETERS;
 use bubbletouch::recognition::data::dataset::Dataset;
 use bubbletouch::recognition::data::scaling::Scaling;
 use bubbletouch::recognition::data::split::{Split, group_k_fold, stratified_k_fold};
@@ -35,9 +37,9 @@ pub struct Args {
     /// tests, keeps groups whole in the folds of --choose-c, and takes the interval of the accuracy from groups, not rows
     #[arg(long, value_name = "FILE")]
     groups: Option<PathBuf>,
-    /// Soft-margin penalty C
-    #[arg(long, value_name = "C", default_value_t = 1.0)]
-    c: f64,
+    /// Soft-margin penalty C [default: 1]
+    #[arg(long, value_name = "C")]
+    c: Option<f64>,
     /// Choose C among these instead, by cross-validation of the training rows
     #[arg(
         long,
@@ -51,34 +53,33 @@ pub struct Args {
         long,
         value_name = "X,X,…",
         value_delimiter = ',',
-        conflicts_with = "gamma",
-        requires = "choose_c"
+        conflicts_with = "gamma"
     )]
     choose_gamma: Vec<f64>,
-    /// Folds of that cross-validation
-    #[arg(long, value_name = "K", default_value_t = 5)]
-    choose_folds: usize,
-    /// What trains an SVM: smo or coordinate_descent
-    #[arg(long, value_name = "NAME", default_value = "smo", value_parser = word::<Solver>)]
-    solver: Solver,
-    /// γ of the RBF and polynomial kernels, for scaled features: a number, or scale for 1 / (m · variance)
-    #[arg(long, value_name = "GAMMA", default_value = "scale", value_parser = gamma)]
-    gamma: Gamma,
-    /// d of the polynomial kernel
-    #[arg(long, value_name = "D", default_value_t = 3)]
-    degree: u32,
-    /// c₀ of the polynomial kernel
-    #[arg(long, value_name = "C0", default_value_t = 1.0)]
-    coef0: f64,
-    /// How two-class SVMs make a many-class one: one_vs_one, one_vs_rest …
-    #[arg(long, value_name = "HOW", default_value = "one_vs_one", value_parser = word::<Multiclass>)]
-    multiclass: Multiclass,
+    /// Folds of that cross-validation [default: 5]
+    #[arg(long, value_name = "K")]
+    choose_folds: Option<usize>,
+    /// What trains an SVM: smo or coordinate_descent [default: smo]
+    #[arg(long, value_name = "NAME", value_parser = word::<Solver>)]
+    solver: Option<Solver>,
+    /// γ of the RBF and polynomial kernels, for scaled features: a number, or scale for 1 / (m · variance) [default: scale]
+    #[arg(long, value_name = "GAMMA", value_parser = gamma)]
+    gamma: Option<Gamma>,
+    /// d of the polynomial kernel [default: 3]
+    #[arg(long, value_name = "D")]
+    degree: Option<u32>,
+    /// c₀ of the polynomial kernel [default: 1]
+    #[arg(long, value_name = "C0")]
+    coef0: Option<f64>,
+    /// How two-class SVMs make a many-class one: one_vs_one, one_vs_rest … [default: one_vs_one]
+    #[arg(long, value_name = "HOW", value_parser = word::<Multiclass>)]
+    multiclass: Option<Multiclass>,
     /// How features are scaled, fitted on training rows: standard, overall or none
     #[arg(long, value_name = "HOW", default_value = "standard", value_parser = word::<Scaling>)]
     scaling: Scaling,
-    /// The solver's stopping tolerance
-    #[arg(long, value_name = "EPS", default_value_t = 1e-3)]
-    tolerance: f64,
+    /// Stopping tolerance of the solver of an SVM or logistic regression [default: 0.001]
+    #[arg(long, value_name = "EPS")]
+    tolerance: Option<f64>,
     /// Root of whatever the classifier draws
     #[arg(long, value_name = "N", default_value_t = 2018)]
     seed: u64,
@@ -123,9 +124,11 @@ fn write_predictions(path: &Path, classes: &[KeyValue], predicted: &Array1<usize
 struct Findings {
     program: &'static str,
     classifier: ClassifierKind,
-    multiclass: Multiclass,
+    /// `None` for what is no SVM.
+    multiclass: Option<Multiclass>,
     scaling: Scaling,
-    solver: Solver,
+    /// `None` for what is no SVM.
+    solver: Option<Solver>,
     /// C that was used; `None` for what has none.
     c: Option<f64>,
     /// What C, and γ, was chosen from.
@@ -169,6 +172,7 @@ pub fn classify(args: &Args) -> Result<()> {
     if args.repeat == 0 {
         return Err(Error::input("--repeat", 0, "at least 1"));
     }
+    args.check_parameters()?;
     let set = read_features(&args.folder)?;
     let set = match &args.groups {
         None => set,
@@ -190,6 +194,7 @@ pub fn classify(args: &Args) -> Result<()> {
 impl Args {
     fn train_and_test(&self, set: &FeatureSet) -> Result<(Findings, Array1<usize>)> {
         let classifier = self.classifier();
+        let is_svm = self.classifier.about().kernel.is_some();
         let (training, test) = (set.training(self.train_rows)?, set.test()?);
         let groups_of = |rows: &[usize]| Some(set.groups.as_ref()?.select(Axis(0), rows));
         let n_train = training.targets.len();
@@ -224,9 +229,9 @@ impl Args {
         let findings = Findings {
             program: concat!("bubbletouch ", env!("CARGO_PKG_VERSION")),
             classifier: self.classifier,
-            multiclass: self.multiclass,
+            multiclass: is_svm.then_some(classifier.multiclass),
             scaling: self.scaling,
-            solver: self.solver,
+            solver: is_svm.then_some(classifier.solver),
             c: trained.c(),
             chosen: trained.chosen().cloned(),
             split_by: match n_test_groups {
@@ -257,30 +262,61 @@ impl Args {
             return Ok(Vec::new());
         }
         let seed = Seed::new(self.seed).named("validation");
-        let (labels, k) = (training.targets.view(), self.choose_folds);
+        let (labels, k) = (training.targets.view(), self.choose_folds.unwrap_or(5));
         match groups {
             None => stratified_k_fold(labels, k, &seed),
             Some(groups) => group_k_fold(labels, groups.view(), k, &seed),
         }
     }
 
+    /// Refuses options of a choice that is not made, and hyper-parameters that the classifier does not use.
+    fn check_parameters(&self) -> Result<()> {
+        let chooses = !self.choose_c.is_empty();
+        let chooses_gamma = !self.choose_gamma.is_empty();
+        check_used("--choose-gamma", chooses_gamma, chooses, "--choose-c")?;
+        let folds = self.choose_folds.is_some();
+        check_used("--choose-folds", folds, chooses, "--choose-c")?;
+        let given = [
+            ("c", self.c.is_some()),
+            ("choose_c", chooses),
+            ("gamma", self.gamma.is_some()),
+            ("choose_gamma", chooses_gamma),
+            ("degree", self.degree.is_some()),
+            ("coef0", self.coef0.is_some()),
+            ("multiclass", self.multiclass.is_some()),
+            ("solver", self.solver.is_some()),
+            ("tolerance", self.tolerance.is_some()),
+        ];
+        for parameter in &PARAMETERS {
+            let can_act = (parameter.is_used)(self.classifier);
+            let user = format!("--classifier {}", parameter.users());
+            for (key, is_given) in given {
+                let is_given = is_given && parameter.keys.contains(&key);
+                let option = format!("--{}", key.replace('_', "-"));
+                check_used(&option, is_given, can_act, &user)?;
+            }
+        }
+        Ok(())
+    }
+
     fn classifier(&self) -> Classifier {
+        let usual = Classifier::new(self.classifier);
         Classifier {
             scaling: self.scaling,
-            multiclass: self.multiclass,
-            solver: self.solver,
+            multiclass: self.multiclass.unwrap_or(usual.multiclass),
+            solver: self.solver.unwrap_or(usual.solver),
             c: match &self.choose_c[..] {
-                [] => Cost::Fixed(self.c),
+                [] => Cost::Fixed(self.c.unwrap_or(1.0)),
                 candidates => Cost::Chosen(Candidates {
                     c: candidates.to_vec(),
                     gamma_scales: self.choose_gamma.clone(),
                 }),
             },
-            gamma: self.gamma,
-            coef0: self.coef0,
-            degree: self.degree,
-            tolerance: self.tolerance,
-            ..Classifier::new(self.classifier)
+            gamma: self.gamma.unwrap_or(usual.gamma),
+            coef0: self.coef0.unwrap_or(usual.coef0),
+            degree: self.degree.unwrap_or(usual.degree),
+            tolerance: self.tolerance.unwrap_or(usual.tolerance),
+            ..usual
         }
     }
 }

@@ -28,6 +28,7 @@ pub mod streams;
 mod study_args;
 mod study_run;
 mod touches;
+mod unused;
 mod verify;
 mod which_object;
 

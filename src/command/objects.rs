@@ -2,6 +2,7 @@
 
 use super::output::check_ending;
 use super::streams::say;
+use super::unused::check_used;
 use super::which_object::catalogue;
 use super::{objects_pack, objects_show};
 use bubbletouch::Result;
@@ -41,11 +42,11 @@ pub struct Args {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["names", "set"])]
     mesh: Option<PathBuf>,
     /// Unit of the mesh file: m, cm, mm or in [default: m, and 0.1 mm to 10 m large]
-    #[arg(long, value_name = "UNIT", requires = "mesh")]
+    #[arg(long, value_name = "UNIT", conflicts_with_all = ["names", "set", "objects"])]
     unit: Option<LengthUnit>,
-    /// How far the spheres may be from the surface
-    #[arg(long, value_name = "MM", default_value_t = 0.25)]
-    surface_error_mm: f64,
+    /// How far the spheres may be from the surface [default: 0.25]
+    #[arg(long, value_name = "MM", conflicts_with = "mesh")]
+    surface_error_mm: Option<f64>,
     /// Draw instead of listing: one picture, or a sheet if there are several objects
     #[arg(long, value_name = "FILE.png")]
     out: Option<PathBuf>,
@@ -80,6 +81,8 @@ pub fn objects(args: &Args) -> Result<()> {
         Some(Action::Show(args)) => return objects_show::show(args),
         None => {}
     }
+    let (unit, is_mesh) = (args.unit, args.mesh.is_some());
+    check_used("--unit", unit.is_some(), is_mesh, "--mesh")?;
     let listed = args.build()?;
     let Some(path) = &args.out else {
         return say(table(&listed));
@@ -114,7 +117,7 @@ impl Args {
             };
             return Ok(vec![("mesh".to_owned(), load_mesh(path, &spec, None)?)]);
         }
-        let surface_error = self.surface_error_mm * 1e-3;
+        let surface_error = self.surface_error_mm.unwrap_or(0.25) * 1e-3;
         let built = |entry: &Entry| Ok((entry.set.clone(), entry.build(surface_error)?));
         let catalogue = catalogue(self.objects.as_deref())?;
         let chosen = self.chosen(&catalogue)?.into_par_iter();

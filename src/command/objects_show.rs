@@ -2,6 +2,7 @@
 
 use super::objects_pack::renamed;
 use super::output::check_ending;
+use super::unused::check_used;
 use super::which_object::WhichObject;
 use bubbletouch::Result;
 use bubbletouch::files::write_bytes;
@@ -28,7 +29,7 @@ pub struct Args {
     #[arg(long, value_name = "FILE.csv", conflicts_with = "surface_error_mm")]
     spheres: Option<PathBuf>,
     /// Unit of the file of spheres: m, cm, mm or in [default: m]
-    #[arg(long, value_name = "UNIT", requires = "spheres")]
+    #[arg(long, value_name = "UNIT")]
     spheres_unit: Option<LengthUnit>,
     /// Where the picture goes
     #[arg(long, value_name = "FILE.png")]
@@ -40,6 +41,8 @@ pub struct Args {
 
 pub fn show(args: &Args) -> Result<()> {
     check_ending(Some(&args.out), "png")?;
+    let (unit, has_spheres) = (args.spheres_unit, args.spheres.is_some());
+    check_used("--spheres-unit", unit.is_some(), has_spheres, "--spheres")?;
     let object = args.object.load()?;
     let spheres = match &args.spheres {
         Some(path) => load_spheres(path, args.spheres_unit, &SizeLimits::ANY)?,

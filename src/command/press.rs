@@ -5,6 +5,7 @@ use super::output::terminal_width;
 use super::press_place::Place;
 use super::press_poses::{self, press_poses};
 use super::streams::{note, write_out};
+use super::unused::check_used;
 use super::which_object::catalogue;
 use bubbletouch::contact::{self, Goal, Workspace};
 use bubbletouch::geometry::Pose;
@@ -31,7 +32,7 @@ pub struct Args {
     #[command(flatten)]
     source: Source,
     /// A TOML file of objects instead of the built-in ones, for --object
-    #[arg(long, value_name = "FILE.toml", requires = "object")]
+    #[arg(long, value_name = "FILE.toml", conflicts_with_all = ["mesh", "spheres"])]
     objects: Option<PathBuf>,
     /// How far past first contact; beyond the stroke taxels stay saturated [default: 3 for objects and meshes; spheres are read where they are]
     #[arg(long, value_name = "MM")]
@@ -70,9 +71,9 @@ pub struct Args {
     /// How far a taxel can be pushed in
     #[arg(long, value_name = "MM", default_value_t = 5.0)]
     stroke_mm: f64,
-    /// How stiff a taxel's spring is
-    #[arg(long, value_name = "N/M", default_value_t = 100.0)]
-    stiffness_n_per_m: f64,
+    /// How stiff a taxel's spring is, for --force-n [default: 100]
+    #[arg(long, value_name = "N/M")]
+    stiffness_n_per_m: Option<f64>,
     /// Write ny × nx deflections in metres to a .csv, .npz or .png file instead of drawing them here
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -106,6 +107,7 @@ fn parse_taxels(text: &str) -> std::result::Result<(usize, usize), String> {
 }
 
 pub fn press(args: &Args) -> Result<()> {
+    args.check_used()?;
     let patch = args.patch()?;
     let (model, pose) = args.placed_object()?;
     let objects = [model];
@@ -151,6 +153,24 @@ pub fn press(args: &Args) -> Result<()> {
 }
 
 impl Args {
+    /// Refuses options that nothing here uses.
+    fn check_used(&self) -> Result<()> {
+        let is_packed = self.model == Some(ModelSpec::Packed);
+        let has_error = self.source.object.is_some() || is_packed;
+        let user = "--object, or --mesh with --model packed";
+        let given = self.surface_error_mm.is_some();
+        check_used("--surface-error-mm", given, has_error, user)?;
+        let (stiffness, force) = (self.stiffness_n_per_m, self.force_n);
+        let user = "--force-n";
+        check_used(
+            "--stiffness-n-per-m",
+            stiffness.is_some(),
+            force.is_some(),
+            user,
+        )?;
+        self.many.check_used()
+    }
+
     fn grid(&self) -> Grid {
         let (nx, ny) = self.taxels;
         let pitch = self.pitch_mm * MM;
@@ -160,7 +180,7 @@ impl Args {
     fn patch(&self) -> Result<Patch> {
         let taxel = Taxel {
             radius: self.taxel_radius(),
-            stiffness: self.stiffness_n_per_m,
+            stiffness: self.stiffness_n_per_m.unwrap_or(100.0),
             damping: 0.0,
             stroke: self.stroke_mm * MM,
         };

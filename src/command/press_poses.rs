@@ -2,6 +2,7 @@
 
 use super::output::check_ending;
 use super::streams::say;
+use super::unused::check_used;
 use bubbletouch::contact::{self, Contact, Goal, Workspace};
 use bubbletouch::files::table_error;
 use bubbletouch::geometry::Pose;
@@ -27,12 +28,21 @@ pub struct Args {
     /// along +z). --out takes a .npy file of n × ny × nx metres
     #[arg(long, value_name = "FILE", conflicts_with_all = ["Place", "force_n"])]
     pub poses: Option<PathBuf>,
-    /// How often each pose is pressed to be timed
-    #[arg(long, value_name = "N", default_value_t = 1, requires = "poses")]
-    repeat: usize,
+    /// How often each pose is pressed to be timed [default: 1]
+    #[arg(long, value_name = "N")]
+    repeat: Option<usize>,
     /// Say travel, taxels and time of each pose as JSON
-    #[arg(long, requires = "poses")]
+    #[arg(long)]
     json: bool,
+}
+
+impl Args {
+    /// Refuses options of poses where there are none.
+    pub fn check_used(&self) -> Result<()> {
+        let has_poses = self.poses.is_some();
+        check_used("--repeat", self.repeat.is_some(), has_poses, "--poses")?;
+        check_used("--json", self.json, has_poses, "--poses")
+    }
 }
 
 /// A row of the file.
@@ -66,9 +76,10 @@ pub fn press_poses(
     goal: Goal,
     out: Option<&Path>,
 ) -> Result<()> {
-    if !(1..=MOST_REPEATS).contains(&args.repeat) {
+    let n_repeats = args.repeat.unwrap_or(1);
+    if !(1..=MOST_REPEATS).contains(&n_repeats) {
         let allowed = format!("1 to {MOST_REPEATS}");
-        return Err(Error::input("--repeat", args.repeat, allowed));
+        return Err(Error::input("--repeat", n_repeats, allowed));
     }
     check_ending(out, "npy")?;
     let poses = read_poses(path)?;
@@ -87,7 +98,7 @@ pub fn press_poses(
     }
     // Round after round: a pose that is pressed again at once is nearer to the processor than a new one.
     let mut times = vec![Vec::new(); poses.len()];
-    for _ in 0..args.repeat {
+    for _ in 0..args.repeat.unwrap_or(1) {
         for (pose, times) in poses.iter().zip(&mut times) {
             let start = Instant::now();
             press(pose, &mut workspace)?;

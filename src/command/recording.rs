@@ -3,6 +3,7 @@
 use super::classify::word;
 use super::output::{check_ending, terminal_width};
 use super::streams::{note, write_out};
+use super::unused::check_used;
 use bubbletouch::files::write_bytes;
 use bubbletouch::report::heat_map::ColourScale;
 use bubbletouch::report::pressure_map::pressure_text;
@@ -25,29 +26,30 @@ pub struct Args {
     /// Which patch to draw; needed if there are several
     #[arg(long, value_name = "NAME")]
     patch: Option<String>,
-    /// What to draw: deflection or force
-    #[arg(long, value_name = "WHAT", default_value = "deflection", value_parser = word::<Quantity>)]
-    quantity: Quantity,
+    /// What to draw: deflection or force [default: deflection]
+    #[arg(long, value_name = "WHAT", value_parser = word::<Quantity>)]
+    quantity: Option<Quantity>,
     /// Draw this frame, counted from 0: to --out, or here if the patch is a grid
     #[arg(long, value_name = "K", conflicts_with = "animate")]
     frame: Option<usize>,
     /// Where to write the picture of --frame
-    #[arg(long, value_name = "FILE.png", requires = "frame")]
+    #[arg(long, value_name = "FILE.png")]
     out: Option<PathBuf>,
     /// Write an animated PNG, which browsers play; at most 600 of its frames, evenly in time
     #[arg(long, value_name = "FILE.png")]
     animate: Option<PathBuf>,
-    /// Pictures in a second of the animation, at most (up to 50)
-    #[arg(long, value_name = "N", default_value_t = Playback::default().fps, requires = "animate")]
-    fps: f64,
-    /// Seconds of the recording in a second of the animation: 0.1 is ten times slower than it was
-    #[arg(long, value_name = "X", default_value_t = Playback::default().speed, requires = "animate")]
-    speed: f64,
+    /// Pictures in a second of the animation, at most (up to 50) [default: 25]
+    #[arg(long, value_name = "N")]
+    fps: Option<f64>,
+    /// Seconds of the recording in a second of the animation: 0.1 is ten times slower than it was [default: 1]
+    #[arg(long, value_name = "X")]
+    speed: Option<f64>,
 }
 
 pub fn recording(args: &Args) -> Result<()> {
     check_ending(args.out.as_deref(), "png")?;
     check_ending(args.animate.as_deref(), "png")?;
+    args.check_used()?;
     let mut file = RecordingFile::open(&args.file)?;
     match (args.frame, &args.animate) {
         (Some(frame), _) => draw_frame(args, &mut file, frame),
@@ -56,6 +58,24 @@ pub fn recording(args: &Args) -> Result<()> {
             let table = recording_table(&mut file)?;
             write_out(table.as_bytes())
         }
+    }
+}
+
+impl Args {
+    fn quantity(&self) -> Quantity {
+        self.quantity.unwrap_or(Quantity::Deflection)
+    }
+
+    /// Refuses options that nothing here uses.
+    fn check_used(&self) -> Result<()> {
+        let is_animated = self.animate.is_some();
+        let draws = is_animated || self.frame.is_some();
+        check_used("--fps", self.fps.is_some(), is_animated, "--animate")?;
+        check_used("--speed", self.speed.is_some(), is_animated, "--animate")?;
+        check_used("--out", self.out.is_some(), self.frame.is_some(), "--frame")?;
+        let user = "--frame or --animate";
+        check_used("--quantity", self.quantity.is_some(), draws, user)?;
+        check_used("--patch", self.patch.is_some(), draws, user)
     }
 }
 
@@ -77,12 +97,12 @@ fn chosen_patch(args: &Args, file: &RecordingFile) -> Result<usize> {
 
 fn draw_frame(args: &Args, file: &mut RecordingFile, frame: usize) -> Result<()> {
     let number = chosen_patch(args, file)?;
-    let values = file.frame(number, args.quantity, frame)?;
+    let values = file.frame(number, args.quantity(), frame)?;
     let patch = &file.header().patches[number];
     let said = frame_note(file.time(), frame);
     match (&args.out, patch.grid) {
         (Some(path), _) => {
-            let scale = ColourScale::over(&values, args.quantity);
+            let scale = ColourScale::over(&values, args.quantity());
             let skin = SkinPicture::new(patch, scale)?;
             write_bytes(path, &skin.frame(&values, &said)?.png()?)?;
         }
@@ -90,7 +110,7 @@ fn draw_frame(args: &Args, file: &mut RecordingFile, frame: usize) -> Result<()>
             let frame = Array2::from_shape_vec((grid.ny, grid.nx), values)
                 .expect("a grid has one value a taxel");
             let (pitch_mm, ink) = (grid.pitch * 1e3, Ink::of_stdout());
-            let text = pressure_text(&frame, pitch_mm, args.quantity, ink, terminal_width())?;
+            let text = pressure_text(&frame, pitch_mm, args.quantity(), ink, terminal_width())?;
             write_out(text.as_bytes())?;
         }
         (None, None) => {
@@ -105,18 +125,19 @@ fn draw_frame(args: &Args, file: &mut RecordingFile, frame: usize) -> Result<()>
 
 fn animate(args: &Args, file: &mut RecordingFile, path: &Path) -> Result<()> {
     let patch = chosen_patch(args, file)?;
+    let usual = Playback::default();
     let playback = Playback {
-        speed: args.speed,
-        fps: args.fps,
+        speed: args.speed.unwrap_or(usual.speed),
+        fps: args.fps.unwrap_or(usual.fps),
     };
-    let shown = write_animation(path, file, patch, args.quantity, &playback)?;
+    let shown = write_animation(path, file, patch, args.quantity(), &playback)?;
     let milliseconds: u64 = shown.iter().map(|frame| frame.milliseconds).sum();
     note(format_args!(
         "{} of {} frames in {:.1} s, at {} × the speed of the recording",
         shown.len(),
         file.time().len(),
         milliseconds as f64 * 1e-3,
-        args.speed
+        playback.speed
     ));
     Ok(())
 }

@@ -1,12 +1,13 @@
 //! Which object a command is about: a mesh file or a built-in one; and its packing, with progress shown.
 
+use super::unused::check_used;
+use bubbletouch::Result;
 use bubbletouch::mesh::{LengthUnit, SizeLimits, Surface};
 use bubbletouch::objects::{Catalogue, SphereUnion};
 use bubbletouch::packing::{Body, error_of_file, pack_mesh_watched};
 use bubbletouch::report::fit_picture::Original;
 use bubbletouch::report::progress::to_stderr;
 use bubbletouch::study::{load_catalogue, read_mesh};
-use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
@@ -31,10 +32,7 @@ impl WhichObject {
     /// A file goes before a built-in object of the same name.
     pub fn load(&self) -> Result<Original> {
         if self.objects.is_some() {
-            if self.unit.is_some() || self.as_sheet {
-                let given = "--unit or --as-sheet beside --objects";
-                return Err(Error::input("objects", given, "them only for a mesh"));
-            }
+            self.check_used()?;
             let catalogue = catalogue(self.objects.as_deref())?;
             return Ok(Original::Solid(
                 catalogue.object(&self.object)?.solid.clone(),
@@ -45,6 +43,7 @@ impl WhichObject {
         if let Ok(entry) = catalogue.object(&self.object)
             && !path.exists()
         {
+            self.check_used()?;
             return Ok(Original::Solid(entry.solid.clone()));
         }
         let body = if self.as_sheet {
@@ -55,6 +54,18 @@ impl WhichObject {
         let widest = self.close_holes_mm.map(|width| width * 1e-3);
         let (mesh, _) = read_mesh(path, self.unit, &SizeLimits::ANY, widest)?;
         Ok(Original::Mesh(Box::new(Surface::new(mesh)), body))
+    }
+
+    /// Refuses options of meshes for an object that is none.
+    fn check_used(&self) -> Result<()> {
+        for (option, is_given) in [
+            ("--unit", self.unit.is_some()),
+            ("--as-sheet", self.as_sheet),
+            ("--close-holes-mm", self.close_holes_mm.is_some()),
+        ] {
+            check_used(option, is_given, false, "the file of a mesh as the object")?;
+        }
+        Ok(())
     }
 
     /// Few spheres within a tolerance (metres) of what spheres shall stand for.

@@ -23,7 +23,8 @@ pub(super) struct GridPress {
     /// Where the meshes stop the taxels; empty if there are none.
     envelope: Envelope,
     sheet: Sheet,
-    /// At which height what is lower does not count, metres: −s − ρ at a pose, else nowhere.
+    /// Height of the substrate, metres. A sphere with a lower centre pushes only taxels whose substrate is inside the sphere. −s − ρ at a pose;
+    /// −∞ if the press comes from the front, where all spheres count.
     behind: f64,
     /// Of the last press to a force: see [`starts`](Self::starts).
     starts: Vec<f64>,
@@ -166,7 +167,7 @@ fn raise_each(
 pub(super) enum Until {
     /// To this travel, metres, from the front: all counts.
     Travel(f64),
-    /// Nowhere: what is behind the substrate does not count.
+    /// Nowhere: a sphere that is wholly behind a taxel's substrate does not push it.
     Pose,
     /// To first contact and this far past it, metres, from the front: all counts.
     Depth(f64),
@@ -179,7 +180,7 @@ pub(super) struct Placed<'a> {
     pub patch_from_objects: &'a [Pose],
     /// ρ, metres.
     pub radius: f64,
-    /// At which height what is lower does not count, metres.
+    /// Height of the substrate, metres: see [`GridPress`].
     pub behind: f64,
     /// Of the grid.
     pub lines: &'a GridLines,

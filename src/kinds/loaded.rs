@@ -16,6 +16,7 @@ use crate::study::progress::{Progress, Silent};
 use crate::study::provenance::{MANIFEST_FILE, Manifest, PROGRAM};
 use crate::study::sha256;
 use crate::table::{File, Table};
+use crate::toml_numbers::with_line;
 use std::path::Path;
 
 /// Work items that failed.
@@ -37,7 +38,8 @@ impl<K: Kind> Loaded<K> {
     /// # Errors
     /// Those of [`Kind::load`].
     pub fn load(source: &Source) -> Result<Self> {
-        let kind = K::load(source)?;
+        let kind = K::load(source);
+        let kind = kind.map_err(|error| with_line(&source.place, &source.text, error))?;
         threads_within(&kind.scale(), source.memory)?;
         let facts = kind.facts()?;
         let (toml, content) = (facts.toml.clone(), facts.content.clone());

@@ -25,6 +25,7 @@ use super::solid_toml::WrittenPart;
 use super::{Hand, Object, Part, Solid, pack};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
+use crate::toml_numbers::check_bounds;
 use crate::toml_text::{self, line_of};
 use glam::DQuat;
 use serde::Deserialize;
@@ -93,6 +94,7 @@ impl Catalogue {
     /// Errors begin with `place`, the file's name.
     pub fn parse(set: &str, place: &str, text: &str) -> Result<Self> {
         toml_text::check_brackets(place, text)?;
+        check_bounds(place, text)?;
         let file: File = toml::from_str(text).map_err(|e| unreadable(place, text, &e))?;
         if file.object.is_empty() {
             return Err(Error::input(place, "no objects", "at least one [[object]]"));

@@ -13,6 +13,7 @@ use crate::file_path::with_absolute_paths;
 use crate::objects::Model;
 use crate::random::Seed;
 use crate::study::{Check, not_negative, positive};
+use crate::toml_numbers::with_line;
 use glam::DVec3;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -60,7 +61,8 @@ impl ScenePlan {
             Error::input(&place, format!("cannot be read ({e})"), "a scene in TOML")
         })?;
         let folder = path.parent().unwrap_or(Path::new(""));
-        Self::new(&place, folder, SceneSpec::parse(&place, &text)?)
+        let plan = Self::new(&place, folder, SceneSpec::parse(&place, &text)?);
+        plan.map_err(|error| with_line(&place, &text, error))
     }
 
     /// Checks a scene; paths in it are relative to `folder`.

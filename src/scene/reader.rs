@@ -74,7 +74,7 @@ impl Reader<'_> {
     pub fn pose(&self, key: &str, pose: &PoseSpec) -> Result<Pose> {
         let position = self.vector(&format!("{key}.position_mm"), pose.position_mm, MM)?;
         let degree = 1f64.to_radians();
-        let rpy = self.vector(&format!("{key}.rpy_deg"), pose.rpy_deg, degree)?;
+        let rpy = self.vector(&format!("{key}.rotation_deg"), pose.rotation_deg, degree)?;
         Ok(Pose::new(rotation_from_rpy(rpy), position))
     }
 
@@ -131,7 +131,7 @@ impl Reader<'_> {
                     times.push(point.time_s);
                     let pose = PoseSpec {
                         position_mm: point.position_mm,
-                        rpy_deg: point.rpy_deg,
+                        rotation_deg: point.rotation_deg,
                     };
                     poses.push(self.pose(&format!("{key}.way_points"), &pose)?);
                 }

@@ -83,7 +83,7 @@ pub struct RobotSpec {
     pub joints: Option<JointsSpec>,
 }
 
-/// `at = { position_mm = [0.0, 0.0, 50.0], rpy_deg = [180.0, 0.0, 0.0] }`
+/// `at = { position_mm = [0.0, 0.0, 50.0], rotation_deg = [180.0, 0.0, 0.0] }`
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PoseSpec {
@@ -91,8 +91,8 @@ pub struct PoseSpec {
     #[serde(default)]
     pub position_mm: [f64; 3],
     /// Turns about the fixed axes x, y, z in turn.
-    #[serde(default)]
-    pub rpy_deg: [f64; 3],
+    #[serde(default, alias = "rpy_deg")]
+    pub rotation_deg: [f64; 3],
 }
 
 /// How a base or an object moves, in one of three ways: phases of constant velocity, way-points, or way-points in a CSV file.
@@ -137,8 +137,8 @@ pub struct WayPointSpec {
     #[serde(default)]
     pub position_mm: [f64; 3],
     /// Turns about the fixed axes x, y, z in turn.
-    #[serde(default)]
-    pub rpy_deg: [f64; 3],
+    #[serde(default, alias = "rpy_deg")]
+    pub rotation_deg: [f64; 3],
 }
 
 /// Way-points of a robot's joints, here or in a CSV file.
@@ -167,6 +167,21 @@ impl SceneSpec {
     /// The error names the file, the line and the key.
     pub fn parse(place: &str, text: &str) -> Result<Self> {
         toml_text::read(place, text)
+    }
+
+    /// Whether a text of a scene has a key by the name that `rotation_deg` had, which this version still reads: `rpy_deg`.
+    pub fn has_old_names(text: &str) -> bool {
+        fn is_old(value: &toml::Value) -> bool {
+            match value {
+                toml::Value::Table(table) => {
+                    table.contains_key("rpy_deg") || table.values().any(is_old)
+                }
+                toml::Value::Array(values) => values.iter().any(is_old),
+                _ => false,
+            }
+        }
+        let table = toml_text::table(text);
+        table.is_some_and(|table| is_old(&table.into()))
     }
 
     /// Writes the scene with its defaults spelt out.

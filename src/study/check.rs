@@ -9,12 +9,15 @@ use crate::world::MOST_TOUCHES;
 use serde::Serialize;
 use std::borrow::Cow;
 
+/// The smallest positive number of a key. Squares and reciprocals of smaller ones come close to what f64 can hold; none is measured in any unit.
+pub const MIN_POSITIVE: f64 = 1e-12;
+
 pub fn positive(value: f64) -> bool {
-    value.is_finite() && value > 0.0
+    value.is_finite() && value >= MIN_POSITIVE
 }
 
 pub fn not_negative(value: f64) -> bool {
-    value.is_finite() && value >= 0.0
+    value == 0.0 || positive(value)
 }
 
 /// Values of one axis, at most: more is a slip, and each would be compared with all others.
@@ -56,8 +59,11 @@ impl Range {
     /// Whether a number is allowed, and which are, in words.
     fn allows(self, value: f64) -> (bool, Cow<'static, str>) {
         let (is_allowed, words) = match self {
-            Self::Positive => (positive(value), "a positive number"),
-            Self::NotNegative => (not_negative(value), "zero or a positive number"),
+            Self::Positive => (positive(value), "a positive number, at least 1e-12"),
+            Self::NotNegative => (
+                not_negative(value),
+                "zero or a positive number, at least 1e-12",
+            ),
             Self::Finite => (value.is_finite(), "a finite number"),
             Self::Fraction => ((0.0..=1.0).contains(&value), "a fraction, 0 to 1"),
             Self::Part => (value > 0.0 && value < 1.0, "between 0 and 1"),
@@ -81,12 +87,26 @@ const MOST_COPIES: usize = 1000;
 const TILT: Range = Range::Of(|deg| deg > 0.0 && deg <= 45.0, "above 0, at most 45");
 pub const COUNT: Range = Range::Count(1, MOST_COUNTED);
 
+/// How far spheres may be from a surface, mm. Below a nanometre rounding of coordinates is as large.
+pub const SURFACE_ERROR: Range = Range::Of(|mm| mm >= 1e-6, "at least 1e-6 mm");
+/// Noise, as a share of the full scale: at the bound nothing of the signal is left, and squares of features still fit into f32.
+pub const NOISE: Range = Range::Of(
+    |share| not_negative(share) && share <= 1000.0,
+    "0, or 1e-12 to 1000",
+);
+/// C: at the bounds no margin, or no slack, is left.
+const PENALTY: Range = Range::Of(|c| positive(c) && c <= 1e12, "above 0, 1e-12 to 1e12");
+/// γ: at the upper bound a kernel of degree 20 over 10,000 features stays finite in f64.
+const GAMMA: Range = Range::Of(|c| positive(c) && c <= 1e9, "above 0, 1e-12 to 1e9");
+/// c₀ of the polynomial kernel, which the degree raises to the power of 20 at most.
+const COEF0: Range = Range::Of(|c| (0.0..=1e6).contains(&c), "0 to 1e6");
+
 /// So many touches an object.
 pub const TOUCHES: Range = Range::Count(1, MOST_TOUCHES);
 
 /// The keys of the tables that kinds of study share, and what their numbers may be. A list has values, and none twice.
-const KEYS: [(&str, Range); 58] = [
-    ("objects.surface_error_mm", Range::Positive),
+const KEYS: [(&str, Range); 59] = [
+    ("objects.surface_error_mm", SURFACE_ERROR),
     ("objects.close_holes_mm", Range::Positive),
     ("objects.names", Range::Any),
     ("skin.pitch_mm", Range::Positive),
@@ -109,7 +129,7 @@ const KEYS: [(&str, Range); 58] = [
     ("human_touch.arm_radius_mm", Range::Positive),
     ("human_touch.frames_hz", Range::Positive),
     ("human_touch.duration_s", Range::Positive),
-    ("signal.noise_std_full_scale", Range::NotNegative),
+    ("signal.noise_std_full_scale", NOISE),
     ("signal.noise_std_mm", Range::NotNegative),
     ("signal.noise_std_n", Range::NotNegative),
     ("signal.smoothing_mm", Range::NotNegative),
@@ -123,9 +143,10 @@ const KEYS: [(&str, Range); 58] = [
     ("recognition.tilted_copies_deg", TILT),
     ("recognition.over_time", Range::Any),
     ("recognition.classifier", Range::Any),
-    ("recognition.c", Range::Positive),
-    ("recognition.choose_c", Range::Positive),
-    ("recognition.choose_gamma", Range::Positive),
+    ("recognition.c", PENALTY),
+    ("recognition.choose_c", PENALTY),
+    ("recognition.gamma", GAMMA),
+    ("recognition.choose_gamma", GAMMA),
     ("recognition.choose_folds", Range::Count(2, MOST_COUNTED)),
     ("recognition.choose_touches", COUNT),
     (
@@ -133,7 +154,7 @@ const KEYS: [(&str, Range); 58] = [
         Range::Count(1, MOST_READINGS),
     ),
     ("recognition.degree", Range::Count(1, 20)),
-    ("recognition.coef0", Range::NotNegative),
+    ("recognition.coef0", COEF0),
     ("recognition.n_neighbours", COUNT),
     ("recognition.n_trees", COUNT),
     ("recognition.max_depth", COUNT),

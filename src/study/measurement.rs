@@ -279,7 +279,7 @@ fn sensed_by(
         });
     }
     // Of whole touches, so many that their frames are enough; the split has one of each object in turn.
-    let n_touches = LEARNED_FRAMES.div_ceil(frames.facts.n_frames.max(1));
+    let n_touches = learned_touches(frames.facts.n_frames);
     let learned = inputs.split(trial).train.iter().take(n_touches);
     let learned: Vec<TouchToRead> = learned.map(|&touch| touches[touch]).collect();
     let (training, _) = measure(whole, frames, &learned)?;
@@ -309,6 +309,11 @@ fn sensed_by(
         )?);
     }
     Ok(SensedBy { projection, images })
+}
+
+/// Training touches of F frames that something is learned from before touches are measured, at most.
+pub(super) fn learned_touches(n_frames: usize) -> usize {
+    LEARNED_FRAMES.div_ceil(n_frames.max(1))
 }
 
 /// Frames that images are learned from, at most: with fewer the estimate has less to go by than it has components, and more take longer.

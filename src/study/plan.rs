@@ -1,6 +1,7 @@
 //! A study that can run: every key of its [`StudySpec`] checked, every unit SI.
 //!
-//! This is the only place where millimetres, degrees and fractions become metres, radians and absolute values.
+//! The checks of `plan.rs`, `plan_scene.rs` (arrays, taxels, placement), `plan_shear.rs`, `plan_signal.rs`, `plan_learning.rs`, `plan_human.rs` and
+//! `plan_recorded.rs` convert millimetres, degrees and fractions into metres, radians and absolute values. Other stages get SI units.
 
 use super::axes::AxisValues;
 use super::check::Check;
@@ -24,6 +25,15 @@ pub(super) const MOST_FRAMES: usize = 10_000;
 /// Millimetres as people write them: 2, not 2.0000000000000004.
 pub fn millimetres(metres: f64) -> f64 {
     (metres * 1e9).round() / 1e6
+}
+
+/// A converted number as a person wrote it: 30, not 29.999999999999996. Numbers that are no decimal of nine places stay as they are.
+pub fn as_written(value: f64) -> f64 {
+    let decimal = (value * 1e9).round() / 1e9;
+    match (decimal - value).abs() <= 4.0 * f64::EPSILON * value.abs() {
+        true => decimal,
+        false => value,
+    }
 }
 
 /// A study, ready to run: its axes and settings as they are written, and what these are in SI units.

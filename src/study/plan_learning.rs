@@ -9,37 +9,13 @@ use super::spec::{RecognitionSpec, SensingSpec, StudySpec};
 use super::taxel_array::TaxelArray;
 use super::tilted_copies::DEFAULT_TILT_DEG;
 use crate::error::Result;
-use crate::recognition::ClassifierKind;
+use crate::recognition::classifiers::classifier::Classifier;
+use crate::recognition::classifiers::parameters::PARAMETERS;
 use crate::recognition::data::over_time::OverTime;
 use crate::recognition::evaluation::next_touch::NextTouch;
 use crate::recognition::features::Features;
 use crate::sensing::Ensemble;
 use crate::world::RestPoses;
-
-/// What a classifier may have a use for.
-type Has = fn(ClassifierKind) -> bool;
-
-/// Keys that belong to some classifiers, and what those have: where no classifier of a study has it, the key would be silently ignored.
-const OF_SOME: [(&[&str], Has, &str); 5] = [
-    (&["c", "choose_c"], ClassifierKind::has_c, A_C),
-    (
-        &["gamma", "choose_gamma"],
-        ClassifierKind::has_gamma,
-        A_GAMMA,
-    ),
-    (
-        &["n_neighbours"],
-        |of| of.about().has_neighbours,
-        NEIGHBOURS,
-    ),
-    (&["n_trees"], |of| of.about().has_trees, TREES),
-    (&["max_depth"], |of| of.about().has_depth, A_DEPTH),
-];
-const A_C: &str = "a C (an SVM or logistic regression)";
-const A_GAMMA: &str = "a γ (an RBF or polynomial SVM)";
-const NEIGHBOURS: &str = "neighbours (k_nearest)";
-const TREES: &str = "trees (random_forest)";
-const A_DEPTH: &str = "a depth (decision_tree or random_forest)";
 
 /// Keys of which a study has one at most.
 const ONE_OF: [[&str; 2]; 3] = [
@@ -110,16 +86,7 @@ impl Check<'_> {
                 return Err(self.error("recognition", both, "one of them"));
             }
         }
-        for (keys, has_it, what) in OF_SOME {
-            let mut kinds = recognition.classifier.values().into_iter();
-            let key = keys.iter().find(|key| given.contains_key(**key));
-            if let (Some(key), false) = (key, kinds.any(has_it)) {
-                let key = format!("recognition.{key}");
-                let given = "given, but no classifier of the study has a use for it";
-                let allowed = format!("a classifier with {what}, or no such key");
-                return Err(self.error(&key, given, allowed));
-            }
-        }
+        self.parameters(recognition, &given)?;
         for (key, others) in BESIDE {
             if let Some(value) = given.get(key)
                 && !others.iter().any(|other| given.contains_key(*other))
@@ -139,6 +106,36 @@ impl Check<'_> {
             let allowed = format!("{other}: folds need touches of every object");
             let given = format!("given beside {key}");
             return Err(self.error("recognition.class_imbalance", given, allowed));
+        }
+        Ok(())
+    }
+
+    /// Each hyper-parameter that is not as by default has a classifier that uses it, and the solver can train every SVM.
+    fn parameters(&self, recognition: &RecognitionSpec, given: &toml::Table) -> Result<()> {
+        let usual: toml::Table = RecognitionSpec::usual();
+        let kinds = recognition.classifier.values();
+        for parameter in &PARAMETERS {
+            let is_set =
+                |key: &&&str| given.contains_key(**key) && given.get(**key) != usual.get(**key);
+            let key = parameter.keys.iter().find(is_set);
+            let is_used = kinds.iter().any(|&kind| (parameter.is_used)(kind));
+            if let (Some(key), false) = (key, is_used) {
+                let given = format!("{}, but no classifier of the study uses it", given[*key]);
+                let users = parameter.users();
+                let allowed = format!("{users} among recognition.classifier, or no such key");
+                return Err(self.error(&format!("recognition.{key}"), given, allowed));
+            }
+        }
+        for kind in kinds {
+            let classifier = Classifier {
+                solver: recognition.solver,
+                multiclass: recognition.multiclass,
+                ..Classifier::new(kind)
+            };
+            let place = format!("{}, key recognition.", self.place);
+            classifier
+                .check_solver()
+                .map_err(|error| error.under(place))?;
         }
         Ok(())
     }
@@ -183,6 +180,12 @@ impl Check<'_> {
     /// What is made of a touch's frames: no more of them than there are.
     pub fn over_time(&self, recognition: &RecognitionSpec, frames: &[usize]) -> Result<()> {
         let fewest = frames.iter().copied().min().unwrap_or(0);
+        let values = Axis::of(&recognition.over_time);
+        if let ([Some(OverTime::Deepest)], true) = (&values[..], frames.iter().all(|&f| f == 1)) {
+            let given = "\"deepest\", but every touch is one frame";
+            let allowed = "touches.frames of 2 or more beside it, or no such key";
+            return Err(self.error("recognition.over_time", given, allowed));
+        }
         for value in recognition.over_time.iter().flat_map(Axis::values) {
             if let OverTime::Stacked(k) = value
                 && k > fewest
@@ -275,6 +278,12 @@ impl SensingSpec {
 }
 
 impl RecognitionSpec {
+    /// A table `[recognition]` in which every key has its default.
+    fn usual() -> toml::Table {
+        let usual: Self = toml::from_str("classifier = []").expect("all other keys have defaults");
+        toml::Table::try_from(usual).expect("every field of a study has a TOML form")
+    }
+
     /// The fraction of touches held out for testing, where there are no folds.
     pub fn test_share(&self) -> f64 {
         self.test_fraction.unwrap_or(0.25)

@@ -166,7 +166,10 @@ impl Check<'_> {
         if skin.layout.is_some() || skin.curvature_radius_mm.is_some() {
             return only("skin.layout", "other layouts than grids");
         }
-        if skin.sensed.is_some() || skin.friction.is_some() {
+        if skin.sensed.is_some()
+            || skin.friction.is_some()
+            || skin.shear_stiffness_n_per_m.is_some()
+        {
             return only("skin.sensed", "skins that read shear");
         }
         self.arrays(skin)
@@ -196,11 +199,16 @@ impl Check<'_> {
         }
     }
 
-    /// Where touches are of a study in which none slides.
+    /// Where touches are of a study whose touches are one frame each, and do not slide.
     pub fn placement(&self, touches: &TouchesSpec) -> Result<Placement> {
-        if touches.slide_mm.is_some() {
-            let allowed = "no such key: only touches of recognition studies slide";
-            return Err(self.error("touches.slide_mm", "given", allowed));
+        let of_recognition = [
+            ("slide_mm", touches.slide_mm.is_some()),
+            ("slide_deg", touches.slide_deg.is_some()),
+            ("frames", touches.frames.values() != [1]),
+        ];
+        if let Some((key, _)) = of_recognition.into_iter().find(|(_, is_given)| *is_given) {
+            let allowed = "no such key: only studies of recognition and of breaking points use it";
+            return Err(self.error(&format!("touches.{key}"), "given", allowed));
         }
         self.placed(touches)
     }

@@ -43,7 +43,10 @@ pub fn draw_split(
         (None, None) => return stratified_hold_out(labels, fraction, &seed),
         (None, Some(keys)) => return group_hold_out(labels, keys.view(), fraction, &seed),
         (Some(k), None) => stratified_k_fold(labels, k, &seed)?,
-        (Some(k), Some(keys)) => group_k_fold(labels, keys.view(), k, &seed)?,
+        (Some(k), Some(keys)) => {
+            let folds = group_k_fold(labels, keys.view(), k, &seed);
+            folds.map_err(|error| error.under("key recognition.folds: "))?
+        }
     };
     Ok(folds.swap_remove(trial % n_folds))
 }

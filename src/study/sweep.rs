@@ -12,6 +12,7 @@ use super::axes::AxisValues;
 use super::axis::Axis;
 use super::content_hash::sha256;
 use super::images::FeaturesOfImages;
+use super::measurement::learned_touches;
 use super::measurement_inputs::Splits;
 use super::next_touch::scaled_poses;
 use super::plan::{Plan, millimetres};
@@ -224,10 +225,12 @@ impl Sweep {
     /// # Errors
     /// A trial that the study does not have.
     pub fn split(&self, plan: &Plan, cell: &Cell, trial: usize) -> Result<Split> {
-        let split = self.splits.get(trial).ok_or_else(|| {
+        if trial >= self.splits.len() {
             let last = self.splits.len() - 1;
-            Error::input("trial", trial, format!("0 to {last}, the study's trials"))
-        })?;
+            let allowed = format!("0 to {last}, the study's trials");
+            return Err(Error::input("trial", trial, allowed));
+        }
+        let split = &self.splits[trial];
         let split = match plan.spec.recognition.train_touches {
             None => split.clone(),
             Some(_) => split.at_most(self.labels.view(), cell.train_touches)?,
@@ -305,8 +308,38 @@ impl Sweep {
         self.groups.iter().map(|group| group.cells.len()).sum()
     }
 
+    /// A learned ensemble needs more frames of training touches than it makes measurements: so many directions in which they differ about
+    /// their mean.
+    fn check_learned(&self, plan: &Plan, group: &Group) -> Result<()> {
+        if !group.ensemble.is_learned() {
+            return Ok(());
+        }
+        let n_train = self.splits.iter().map(|split| split.train.len());
+        let n_touches = n_train
+            .min()
+            .unwrap_or(0)
+            .min(learned_touches(group.frames));
+        let n_frames = n_touches * group.frames;
+        let counts = plan.measurement_counts(&plan.arrays[group.array], group.ensemble);
+        match counts.into_iter().max() {
+            Some(m) if m >= n_frames => {
+                let key = match plan.spec.sensing.measurements {
+                    Some(_) => "key sensing.measurements",
+                    None => "key sensing.ratio",
+                };
+                let given = format!("{m} {}", group.ensemble.about().words);
+                let most = n_frames.saturating_sub(1);
+                let allowed =
+                    format!("at most {most}, one fewer than the frames of the training touches");
+                Err(Error::input(key, given, allowed))
+            }
+            _ => Ok(()),
+        }
+    }
+
     fn add_group(&mut self, plan: &Plan, mut group: Group, train_touches: &[usize]) -> Result<()> {
         let array = &plan.arrays[group.array];
+        self.check_learned(plan, &group)?;
         let (ny, nx) = array.shape();
         if !array.is_plain() {
             // A step that its layout cannot have is known before anything runs.

@@ -20,7 +20,7 @@ use super::feature_files::find;
 use super::frames::FramePlace;
 use super::human_touches::HumanTouches;
 use super::npy::{NpyFile, write_integers};
-use super::plan::{Plan, millimetres};
+use super::plan::{Plan, as_written, millimetres};
 use super::progress::Progress;
 use super::simulation::touch_stream;
 use super::spec::{HumanTouchSpec, PreviousTouch, RecordedSpec, SkinSpec};
@@ -339,12 +339,12 @@ fn pressed<'a>(
             label,
             object,
             rest: touch.rest,
-            offset_x_mm: 1e3 * touch.offset[0],
-            offset_y_mm: 1e3 * touch.offset[1],
-            yaw_deg: touch.yaw.to_degrees(),
-            tilt_x_deg: touch.tilt[0].to_degrees(),
-            tilt_y_deg: touch.tilt[1].to_degrees(),
-            depth_mm: 1e3 * touch.depth,
+            offset_x_mm: as_written(1e3 * touch.offset[0]),
+            offset_y_mm: as_written(1e3 * touch.offset[1]),
+            yaw_deg: as_written(touch.yaw.to_degrees()),
+            tilt_x_deg: as_written(touch.tilt[0].to_degrees()),
+            tilt_y_deg: as_written(touch.tilt[1].to_degrees()),
+            depth_mm: as_written(1e3 * touch.depth),
             n_touched: contact.map_or(0, |c| c.n_touched),
             n_saturated: contact.map_or(0, |c| c.n_saturated),
         },

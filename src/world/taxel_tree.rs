@@ -1,8 +1,8 @@
 //! A tree of boxes over the taxels of a patch, so that a sphere looks only at those that it can reach.
 //!
-//! A sphere (c, R) pushes a taxel (rest centre p, axis n, radius ρ, stroke s) only from in front of its substrate,
-//! `(c − p)·n ≥ −s − ρ`, and from less than S = ρ + R beside its axis. So c is less than S away from the taxel's stretch, from
-//! p back to p − (s + ρ) n. The boxes are around stretches.
+//! With h = (c − p)·n and b the distance beside the axis, a sphere (c, R) pushes a taxel (rest centre p, axis n, radius ρ, stroke s) only if
+//! b < S = ρ + R and if the sphere is not wholly behind the substrate, `h + √(S² − b²) ≥ −s − ρ` (title page of [`contact`](crate::contact)).
+//! So c is less than S away from the taxel's stretch, from p back to p − (s + ρ) n. The boxes are around stretches.
 
 use super::{Layout, Taxel, Taxels};
 use crate::geometry::Aabb;

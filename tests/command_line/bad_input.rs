@@ -53,7 +53,7 @@ impl Case {
     }
 }
 
-fn refused(output: &Output, code: i32, words: &[&str]) {
+pub fn refused(output: &Output, code: i32, words: &[&str]) {
     let error = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(code), "{error}");
     let sentences: Vec<&str> = error.lines().filter(|l| l.starts_with("error:")).collect();

@@ -24,3 +24,4 @@ mod shell;
 mod simulate;
 mod surface;
 mod touches;
+mod unused;

@@ -7,6 +7,7 @@ mod faults;
 #[path = "../fixtures/kinds/mod.rs"]
 mod kinds;
 
+mod hostile;
 mod pieces;
 mod resume;
 mod slurm;

@@ -309,7 +309,7 @@ fn a_wrong_catalogue_names_file_line_and_object() {
         ),
         (
             good.replace("80", "nan"),
-            "own.toml, line 6, object `mug`, part 1 (cylinder): diameter_mm = NaN; a finite positive",
+            "own.toml:6, key object.mug.part[1].diameter_mm: NaN; a finite number",
         ),
         (
             good.replace("height_mm = 90", "height_mm = -2"),

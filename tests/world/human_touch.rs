@@ -504,7 +504,7 @@ fn a_study_that_cannot_be_is_refused_by_its_key() {
         (
             "frames_hz = 15.0",
             "frames_hz = nan",
-            "study.toml, key human_touch.frames_hz: NaN; ",
+            "study.toml:7, key human_touch.frames_hz: NaN; a finite number",
         ),
         (
             "duration_s = 3.2",

@@ -111,9 +111,9 @@ fn what_moves_needs_a_motion_that_it_can_make() {
         &said,
         &[
             "key robots.arm.joints",
-            "way-point 2",
+            "shoulder_turn_deg",
             "NaN",
-            "finite numbers",
+            "a finite number",
         ],
     );
     let said = refused(

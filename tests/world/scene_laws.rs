@@ -48,7 +48,7 @@ fn sliding(dt_ms: f64, damping: f64) -> ScenePlan {
 
         [[patches]]
         name = "bent"
-        at = {{ position_mm = [70.0, 0.0, -40.0], rpy_deg = [0.0, -90.0, 0.0] }}
+        at = {{ position_mm = [70.0, 0.0, -40.0], rotation_deg = [0.0, -90.0, 0.0] }}
         layout = {{ cylinder = {{ radius_mm = 40.0, length_mm = 50.0, arc_deg = 120.0, pitch_mm = 3.0 }} }}
         stroke_mm = 6.0
         damping_n_s_per_m = {damping}
@@ -633,7 +633,7 @@ fn the_original_slides_a_drill_over_64_x_64_taxels() {
     let way_points = json["frames"].as_array().unwrap().iter().map(|frame| {
         let mm = |k: usize| 1e3 * frame["position"][k].as_f64().unwrap();
         format!(
-            "{{ time_s = {:?}, position_mm = [{:?}, {:?}, {:?}], rpy_deg = [180.0, 0.0, 0.0] }},\n",
+            "{{ time_s = {:?}, position_mm = [{:?}, {:?}, {:?}], rotation_deg = [180.0, 0.0, 0.0] }},\n",
             frame["time"].as_f64().unwrap(),
             mm(0),
             mm(1),

@@ -14,6 +14,8 @@ use toml::{Table, Value};
 pub struct BreakingPointsPlan {
     /// As it was written.
     pub spec: BreakingPointsSpec,
+    /// The recognition study that the ways drive, as it is before any does.
+    pub base: Plan,
     /// The ways, as they were written.
     pub ways: Vec<PlannedWay>,
 }
@@ -57,7 +59,7 @@ impl BreakingPointsPlan {
         base.remove("breaking_points");
         base.remove("expected");
         base.insert("question".to_owned(), String::new().into());
-        plan_at(place, base.clone())?;
+        let undriven = plan_at(place, base.clone())?;
         let names = spec.breaking_points.iter().map(|way| &way.name[..]);
         check.list("breaking_points.name", names.collect())?;
         let ways = spec.breaking_points.iter().enumerate();
@@ -66,7 +68,11 @@ impl BreakingPointsPlan {
             plan_way(&place, way, &base)
         });
         let ways = ways.collect::<Result<_>>()?;
-        Ok(Self { spec, ways })
+        Ok(Self {
+            spec,
+            base: undriven,
+            ways,
+        })
     }
 }
 

@@ -13,8 +13,10 @@ use crate::study::Plan;
 use crate::study::evaluation::CONFIDENCE;
 use crate::study::object_files::{load_objects, objects_content};
 use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft, Scale};
+use crate::study::simulation::draw_touches;
 use crate::study::spec::ObjectsSpec;
 use crate::study::summary::{grouped_tests, summarise};
+use crate::study::sweep::Sweep;
 use crate::study::tabulate::share_columns;
 use crate::study::time_left::Piece;
 use crate::table::{File, Table};
@@ -183,10 +185,16 @@ impl Kind for BreakingPointsStudy {
         let mut spec = BreakingPointsSpec::parse(&source.place, &source.text)?;
         spec.seed = source.seed(spec.seed);
         source.replace_objects(&mut spec.objects);
-        Ok(Self {
-            plan: BreakingPointsPlan::new(&source.place, spec)?,
-            packings: source.packings.clone(),
-        })
+        let plan = BreakingPointsPlan::new(&source.place, spec)?;
+        let packings = source.packings.clone();
+        // Touches that cannot be split before anything is driven are known before anything runs.
+        let base = &plan.base;
+        let objects = load_objects(&base.spec.objects, packings.as_deref())?;
+        let seed = Seed::new(base.spec.seed);
+        let touched = draw_touches(objects, &base.placement, &seed)?;
+        let sweep = Sweep::new(base, &touched);
+        sweep.map_err(|error| error.under(format!("{}, ", source.place)))?;
+        Ok(Self { plan, packings })
     }
 
     fn facts(&self) -> Result<Facts> {

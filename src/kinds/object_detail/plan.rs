@@ -2,7 +2,7 @@
 
 use super::spec::{DetailMethod, DetailRecognitionSpec, ObjectDetailStudySpec};
 use crate::error::Result;
-use crate::study::check::{Check, Range, TOUCHES};
+use crate::study::check::{Check, Range, SURFACE_ERROR, TOUCHES};
 use crate::study::taxel_array::TaxelArray;
 use crate::world::Placement;
 use std::path::PathBuf;
@@ -25,7 +25,7 @@ const MOST_POINTS: usize = 10_000_000;
 
 /// What the numbers of `[object_detail]` may be.
 const KEYS: [(&str, Range); 7] = [
-    ("tolerances_mm", Range::Positive),
+    ("tolerances_mm", SURFACE_ERROR),
     ("methods", Range::Any),
     ("surface_points", Range::Count(1, MOST_POINTS)),
     ("recognition.measurements", TOUCHES),

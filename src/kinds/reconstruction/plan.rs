@@ -4,14 +4,14 @@ use super::rows::ReconstructionCell;
 use super::spec::{ReconstructionSpec, ReconstructionStudySpec};
 use crate::error::Result;
 use crate::random::Seed;
-use crate::sensing::{Basis, Dictionary, Ensemble, Projection};
+use crate::sensing::{Basis, Dictionary, Effort, Ensemble, Projection, Solver};
 use crate::signal::{Noise, NoiseUnit, Quantity, SignalStep};
 use crate::study::check::{COUNT, Check, Range};
 use crate::study::pieces::Shared;
 use crate::study::plan::MM;
 use crate::study::sweep::nested;
 use crate::study::taxel_array::TaxelArray;
-use crate::study::{SignalSpec, StepSpec};
+use crate::study::{CombineSpec, SignalSpec, StepSpec};
 use crate::world::{Grid, Placement};
 
 /// Axes and settings of a reconstruction study, ready to run.
@@ -36,10 +36,13 @@ pub struct ReconstructionPlan {
 /// Supports that are drawn of each size, at most: all are in memory at once.
 const MOST_SUBSETS: usize = 1_000_000;
 
+/// Atoms of a dictionary, at most: more than any array has taxels. One atom has no threshold: λ is √(2 ln k) of k atoms.
+const MOST_ATOMS: usize = 100_000_000;
+
 /// What the numbers of `[reconstruction]` may be.
 const KEYS: [(&str, Range); 10] = [
     ("dictionary", Range::Any),
-    ("atoms", COUNT),
+    ("atoms", Range::Count(2, MOST_ATOMS)),
     ("solver", Range::Any),
     ("most_atoms", COUNT),
     ("most_steps", COUNT),
@@ -70,6 +73,7 @@ impl ReconstructionPlan {
         check.drawn("sensing.ensemble", spec.sensing.ensemble.values())?;
         let wanted = &spec.reconstruction;
         check.keys("reconstruction", wanted, KEYS)?;
+        check.efforts(wanted)?;
         let dictionaries = check.dictionaries(wanted, array.grid())?;
         let axes = [
             spec.sensing.ensemble.values().len(),
@@ -176,6 +180,14 @@ impl Check<'_> {
     /// Solvers assume independent noise on every taxel, and a clean frame to compare with: nothing may follow the noise.
     fn noise_is_last(&self, signal: &SignalSpec) -> Result<()> {
         let refuse = |key, given: &str, allowed| Err(self.error(key, given, allowed));
+        if signal.tested_on.is_some() {
+            let allowed = "no such key: only studies of recognition test on another skin";
+            return refuse("signal.tested_on", "given", allowed);
+        }
+        if signal.combine != CombineSpec::All {
+            let allowed = "no such key: noise is the only axis of the signal, so that there is nothing to combine";
+            return refuse("signal.combine", "given", allowed);
+        }
         if signal.axes.of("smoothing_mm").is_some() {
             return refuse(
                 "signal.smoothing_mm",
@@ -200,6 +212,26 @@ impl Check<'_> {
             ),
             _ => Ok(()),
         }
+    }
+
+    /// Each bound of a solver's work that is not as by default has a solver that it bounds.
+    fn efforts(&self, wanted: &ReconstructionSpec) -> Result<()> {
+        let (given, usual) = (wanted.effort(), Effort::default());
+        let pursuit = (Solver::Omp, "omp");
+        let l1 = (Solver::L1, "l1");
+        for (key, is_set, (solver, name)) in [
+            ("most_atoms", given.most_atoms != usual.most_atoms, pursuit),
+            ("lambda_scale", given.lambda_scale != usual.lambda_scale, l1),
+            ("tolerance", given.tolerance != usual.tolerance, l1),
+            ("most_steps", given.most_steps != usual.most_steps, l1),
+        ] {
+            if is_set && !wanted.solver.values().contains(&solver) {
+                let allowed = format!("{name} among reconstruction.solver, or no such key");
+                let given = "given, but no solver of the study uses it";
+                return Err(self.error(&format!("reconstruction.{key}"), given, allowed));
+            }
+        }
+        Ok(())
     }
 
     fn dictionaries(&self, wanted: &ReconstructionSpec, grid: &Grid) -> Result<Vec<Basis>> {

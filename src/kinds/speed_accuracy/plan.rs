@@ -3,7 +3,7 @@
 use super::spec::{RecognitionSweepSpec, ScansSpec, SpeedAccuracySpec, SpeedAccuracyStudySpec};
 use crate::error::Result;
 use crate::study::axis::Axis;
-use crate::study::check::{Check, Range, TOUCHES};
+use crate::study::check::{Check, NOISE, Range, SURFACE_ERROR, TOUCHES};
 use crate::study::spec::{ObjectsSpec, SkinSpec};
 use crate::study::taxel_array::TaxelArray;
 use crate::world::{MOST_TOUCHES, Placement};
@@ -28,7 +28,7 @@ pub struct SpeedAccuracyPlan {
 
 /// What the numbers of `[speed_accuracy]` may be.
 const KEYS: [(&str, Range); 16] = [
-    ("tolerances_mm", Range::Positive),
+    ("tolerances_mm", SURFACE_ERROR),
     ("contact.objects", TOUCHES),
     ("contact.touches", TOUCHES),
     ("contact.stepped_objects", TOUCHES),
@@ -39,10 +39,10 @@ const KEYS: [(&str, Range); 16] = [
     ("recognition.test_touches", TOUCHES),
     ("recognition.timed_touches", TOUCHES),
     ("recognition.objects", Range::Count(2, MOST_TOUCHES)),
-    ("recognition.tolerances_mm", Range::Positive),
+    ("recognition.tolerances_mm", SURFACE_ERROR),
     ("recognition.ensemble", Range::Any),
     ("recognition.classifier", Range::Any),
-    ("recognition.noise_std_full_scale", Range::NotNegative),
+    ("recognition.noise_std_full_scale", NOISE),
     ("recognition.ratio", Range::AtLeastOne),
 ];
 

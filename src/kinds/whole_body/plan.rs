@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::geometry::{Pose, rotation_from_rpy};
 use crate::sensing::Ensemble;
 use crate::study::MM;
-use crate::study::check::{COUNT, Check, Range, TOUCHES};
+use crate::study::check::{COUNT, Check, Range, SURFACE_ERROR, TOUCHES};
 use crate::world::{Robot, Taxel};
 use glam::DVec3;
 use std::path::{Path, PathBuf};
@@ -74,7 +74,7 @@ const KEYS: [(&str, Range); 23] = [
     ("stroke_mm", Range::Positive),
     ("patch_mm", Range::Positive),
     ("step_ms", Range::Positive),
-    ("surface_error_mm", Range::Positive),
+    ("surface_error_mm", SURFACE_ERROR),
     ("steps", Range::Count(1, MOST_STEPS)),
     ("sensing.measurements", COUNT),
     ("sensing.ensembles", Range::Any),

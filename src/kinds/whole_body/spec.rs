@@ -75,7 +75,7 @@ pub struct BodySceneSpec {
     #[serde(default)]
     pub at_mm: [f64; 3],
     /// How it is turned: roll, pitch, yaw about the link's axes, degrees.
-    #[serde(default)]
+    #[serde(default, alias = "rotation_deg")]
     pub turn_deg: [f64; 3],
     /// With `depth_mm`: from where it comes to `at_mm`, a direction.
     #[serde(default = "default_from")]

@@ -266,15 +266,26 @@ impl Classifier {
         })
     }
 
+    /// Checks that the solver can train this classifier, if it is an SVM.
+    ///
+    /// # Errors
+    /// If coordinate descent is to train another kernel than the linear one, or another scheme than one-vs-rest.
+    pub fn check_solver(&self) -> Result<()> {
+        let is_linear = self.kind == ClassifierKind::LinearSvm;
+        let is_possible = is_linear && self.multiclass == Multiclass::OneVsRest;
+        let is_svm = self.kind.about().kernel.is_some();
+        if self.solver != Solver::CoordinateDescent || !is_svm || is_possible {
+            return Ok(());
+        }
+        let (kind, multiclass) = (self.kind, self.multiclass);
+        let given = format!("coordinate_descent with {kind:?} and {multiclass:?}");
+        let allowed = "it trains linear_svm with one_vs_rest alone";
+        Err(Error::input("solver", given, allowed))
+    }
+
     /// What the linear SVM without a kernel matrix is trained with.
     fn linear_svm(&self, c: f64) -> Result<LinearSvmParams> {
-        let is_linear = self.kind == ClassifierKind::LinearSvm;
-        if !is_linear || self.multiclass != Multiclass::OneVsRest {
-            let (kind, multiclass) = (self.kind, self.multiclass);
-            let given = format!("coordinate_descent with {kind:?} and {multiclass:?}");
-            let allowed = "it trains linear_svm with one_vs_rest alone";
-            return Err(Error::input("solver", given, allowed));
-        }
+        self.check_solver()?;
         Ok(LinearSvmParams {
             c,
             tolerance: self.tolerance,

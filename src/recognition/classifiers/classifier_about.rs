@@ -18,6 +18,8 @@ pub struct ClassifierAbout {
     pub has_c: bool,
     /// Whether it has a kernel with a γ.
     pub has_gamma: bool,
+    /// Whether its kernel has a degree and a constant.
+    pub has_degree: bool,
     /// Whether it has a number of neighbours.
     pub has_neighbours: bool,
     /// Whether it has a number of trees.
@@ -47,6 +49,7 @@ impl ClassifierAbout {
             words,
             has_c: false,
             has_gamma: false,
+            has_degree: false,
             has_neighbours: false,
             has_trees: false,
             has_depth: false,

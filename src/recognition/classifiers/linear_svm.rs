@@ -1,5 +1,6 @@
-//! Linear soft-margin SVMs without a kernel matrix: memory n × m, whatever n.
+//! Linear soft-margin SVMs. By default [`svm`](crate::recognition::svm) trains them, on a kernel matrix, as it does other kernels.
 //!
+//! With `solver = "coordinate_descent"` and `multiclass = "one_vs_rest"` this file trains them without a kernel matrix: memory n × m, whatever n.
 //! The bias is the weight of an added feature of constant 1, and so is regularised with the others, as in LIBLINEAR
 //! (`intercept_scaling = 1`): centre the features, or expect a bias closer to 0 than the kernel SVM's.
 //!

@@ -9,6 +9,7 @@ pub mod classifier;
 pub(crate) mod coordinate_descent;
 pub(crate) mod lbfgs;
 pub mod linear_model;
+pub mod parameters;
 pub(crate) mod ranked;
 pub mod trained_classifier;
 

@@ -3,9 +3,11 @@
 use super::classifier_about::ClassifierAbout;
 use crate::recognition::svm::kernel::Kernel;
 
-pub(crate) const ABOUT: ClassifierAbout =
-    ClassifierAbout::svm("polynomial SVM", |classifier| Kernel::Polynomial {
+pub(crate) const ABOUT: ClassifierAbout = ClassifierAbout {
+    has_degree: true,
+    ..ClassifierAbout::svm("polynomial SVM", |classifier| Kernel::Polynomial {
         gamma: classifier.gamma,
         coef0: classifier.coef0,
         degree: classifier.degree,
-    });
+    })
+};

@@ -3,7 +3,7 @@
 //! Every split puts every class into `train` and `test`, and every row exactly once into one of them ([`given_hold_out`] may leave rows out).
 //! Rows are drawn by named streams (one per class), so one class's split does not depend on the others' rows.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use ndarray::ArrayView1;
 use rand::seq::SliceRandom;
@@ -186,6 +186,8 @@ pub fn group_k_fold(
             format!("at most the number of groups, {}, is allowed", sizes.len()),
         ));
     }
+    let n_groups = sizes.len();
+    check_groups_of_classes(labels, groups, k)?;
     let mut order: Vec<(usize, usize)> = sizes.into_iter().collect();
     order.shuffle(&mut seed.named("groups").rng());
     order.sort_by_key(|&(_, size)| std::cmp::Reverse(size));
@@ -197,7 +199,38 @@ pub fn group_k_fold(
         fold_of_group.insert(group, fold);
     }
     let fold_of: Vec<usize> = groups.iter().map(|group| fold_of_group[group]).collect();
-    folds(labels, &draw_rows(labels, seed), &fold_of, k)
+    folds(labels, &draw_rows(labels, seed), &fold_of, k).map_err(|error| match error {
+        Error::Input { place, given, .. } => {
+            let place = format!("folds, {place}");
+            let given = format!("{given} in a fold of the {k} that {n_groups} groups make");
+            let allowed =
+                "every class needs at least one of each in every fold: fewer folds, or more groups";
+            Error::input(place, given, allowed)
+        }
+        other => other,
+    })
+}
+
+/// Refuses k folds if a class has rows in fewer than k groups: a fold would have no test row of that class.
+fn check_groups_of_classes(
+    labels: ArrayView1<usize>,
+    groups: ArrayView1<usize>,
+    k: usize,
+) -> Result<()> {
+    let mut groups_of = BTreeMap::<usize, BTreeSet<usize>>::new();
+    for (&class, &group) in labels.iter().zip(groups) {
+        groups_of.entry(class).or_default().insert(group);
+    }
+    let fewest = groups_of.iter().min_by_key(|(_, groups)| groups.len());
+    match fewest {
+        Some((class, found)) if found.len() < k => {
+            let n = found.len();
+            let given = format!("{k} folds, but class {class} has rows in only {n} groups");
+            let allowed = format!("at most {n} folds: each needs a test group of every class");
+            Err(Error::input("folds", given, allowed))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Each class's rows, shuffled by the class's own stream.

@@ -1,0 +1,18 @@
+//! One rule for all commands: an option that cannot act is an error.
+//!
+//! clap's `requires` is not enough: it is not checked for an option whose required one conflicts with another that is given.
+
+use bubbletouch::{Error, Result};
+
+/// Refuses an option that was given and cannot act; `user` names what would use it.
+pub fn check_used(option: &str, is_given: bool, can_act: bool, user: &str) -> Result<()> {
+    if !is_given || can_act {
+        return Ok(());
+    }
+    let allowed = format!("{user}, or no such option");
+    Err(Error::input(
+        option,
+        "given, but nothing here uses it",
+        allowed,
+    ))
+}

@@ -1,0 +1,230 @@
+//! An option or a key that cannot act is an error that names what would use it.
+
+use crate::bad_input::refused;
+use crate::command::Case;
+
+/// Four triangles over a right-angled corner of 20 mm.
+const TETRAHEDRON: &str =
+    "v 0 0 0\nv 0.02 0 0\nv 0 0.02 0\nv 0 0 0.02\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+#[test]
+fn an_option_that_cannot_act_is_refused_and_names_what_would_use_it() {
+    let case = Case::new();
+    case.file("solid.obj", TETRAHEDRON);
+    case.file("spheres.csv", "x,y,z,r\n0,0,0,0.01\n");
+    case.file("objects.toml", "[[object]]\nname = \"a\"\nsource = \"b\"\npart = [{ shape = \"ball\", diameter_mm = 20 }]\n");
+    let before = case.names();
+    let knn = "classify . --classifier k_nearest";
+    let linear = "classify . --classifier linear_svm";
+    for (arguments, words) in [
+        (format!("{knn} --c 2"), ["--c:", "linear_svm"]),
+        (format!("{knn} --choose-c 1,10"), ["--choose-c", "linear_svm"]),
+        (format!("{knn} --choose-c 1 --choose-gamma 1"), ["--choose-", "svm"]),
+        (format!("{knn} --solver smo"), ["--solver", "rbf_svm"]),
+        (format!("{knn} --multiclass one_vs_rest"), ["--multiclass", "rbf_svm"]),
+        (format!("{knn} --tolerance 0.1"), ["--tolerance", "logistic_regression"]),
+        (format!("{linear} --gamma 0.1"), ["--gamma", "rbf_svm"]),
+        (format!("{linear} --degree 2"), ["--degree", "polynomial_svm"]),
+        (format!("{linear} --coef0 2"), ["--coef0", "polynomial_svm"]),
+        (format!("{linear} --choose-folds 3"), ["--choose-folds", "--choose-c"]),
+        ("classify . --classifier rbf_svm --c 1 --choose-gamma 1".to_owned(), ["--choose-gamma", "--choose-c"]),
+        ("press --mesh solid.obj --objects objects.toml".to_owned(), ["--objects", "--mesh"]),
+        ("press --spheres spheres.csv --objects objects.toml".to_owned(), ["--objects", "--spheres"]),
+        ("press --mesh solid.obj --model vertex_spheres --surface-error-mm 1".to_owned(), ["--surface-error-mm", "packed"]),
+        ("press --mesh solid.obj --model mesh --surface-error-mm 1".to_owned(), ["--surface-error-mm", "packed"]),
+        ("press --spheres spheres.csv --surface-error-mm 1".to_owned(), ["--surface-error-mm", "--object"]),
+        ("press --object golf --stiffness-n-per-m 50".to_owned(), ["--stiffness-n-per-m", "--force-n"]),
+        ("press --object golf --yaw-deg 5 --json".to_owned(), ["--json", "--poses"]),
+        ("press --object golf --yaw-deg 5 --repeat 3".to_owned(), ["--repeat", "--poses"]),
+        ("objects pack mug --unit mm --surface-error-mm 2 --out o.csv".to_owned(), ["--unit", "mesh"]),
+        ("objects pack mug --as-sheet --surface-error-mm 2 --out o.csv".to_owned(), ["--as-sheet", "mesh"]),
+        ("objects pack mug --close-holes-mm 2 --surface-error-mm 2 --out o.csv".to_owned(), ["--close-holes-mm", "mesh"]),
+        ("objects pack a --objects objects.toml --close-holes-mm 2 --surface-error-mm 2 --out o.csv".to_owned(), ["--close-holes-mm", "mesh"]),
+        ("objects show mug --spheres-unit mm --surface-error-mm 2 --out o.png".to_owned(), ["--spheres-unit", "--spheres"]),
+        ("objects mug --unit mm".to_owned(), ["--unit", "NAMES"]),
+        ("objects --unit mm".to_owned(), ["--unit", "--mesh"]),
+        ("objects --mesh solid.obj --surface-error-mm 1".to_owned(), ["--surface-error-mm", "--mesh"]),
+        ("recording a.npz --fps 3".to_owned(), ["--fps", "--animate"]),
+        ("recording a.npz --speed 3".to_owned(), ["--speed", "--animate"]),
+        ("recording a.npz --quantity force".to_owned(), ["--quantity", "--frame"]),
+        ("recording a.npz --patch palm".to_owned(), ["--patch", "--frame"]),
+        ("recording a.npz --animate a.png --out b.png".to_owned(), ["--out", "--frame"]),
+    ] {
+        let arguments: Vec<&str> = arguments.split(' ').collect();
+        refused(&case.run(&arguments), 2, &words);
+    }
+    assert_eq!(case.names(), before, "nothing is written");
+}
+
+/// A study of reconstruction; the tests add keys to its tables.
+const RECONSTRUCTION: &str = r#"
+question = "What comes back?"
+[objects]
+sets = ["cans"]
+[skin]
+pitch_mm = 8.0
+taxels = 8
+stroke_mm = 5.0
+[touches]
+per_object = 4
+depth_mm = 3.0
+[signal]
+noise_std_full_scale = 0.1
+[sensing]
+ratio = 4
+[reconstruction]
+solver = "lmmse"
+dictionary = "dct"
+"#;
+
+/// A study of recognition, with each classifier that a test asks for.
+fn recognition(classifier: &str, more: &str) -> String {
+    format!(
+        "question = \"q\"\n[objects]\nsets = [\"cans\"]\n[skin]\npitch_mm = 8.0\ntaxels = 8\nstroke_mm = 5.0\n\
+         [touches]\nper_object = 8\ndepth_mm = 3.0\n[sensing]\nratio = 4\n[recognition]\nclassifier = {classifier}\n{more}\n"
+    )
+}
+
+#[test]
+fn a_key_that_cannot_act_is_refused_with_its_line_by_plan_and_by_run() {
+    let case = Case::new();
+    let with = |table: &str, key: &str| RECONSTRUCTION.replace(table, &format!("{table}\n{key}"));
+    let unused = "no classifier of the study uses it";
+    for (study, words) in [
+        (
+            with("[touches]", "frames = 3"),
+            ["x.toml:10, key touches.frames", "recognition"],
+        ),
+        (
+            with("[touches]", "slide_deg = 3.0"),
+            ["key touches.slide_deg", "recognition"],
+        ),
+        (
+            with("[signal]", "tested_on = \"another_skin\""),
+            ["key signal.tested_on", "recognition"],
+        ),
+        (
+            with("[signal]", "combine = \"one_at_a_time\""),
+            ["key signal.combine", "noise"],
+        ),
+        (
+            recognition("\"linear_svm\"", "degree = 2"),
+            ["x.toml:15, key recognition.degree", "polynomial_svm"],
+        ),
+        (
+            recognition("\"linear_svm\"", "coef0 = 2.0"),
+            [unused, "polynomial_svm"],
+        ),
+        (
+            recognition("\"linear_svm\"", "gamma = 0.5"),
+            [unused, "rbf_svm"],
+        ),
+        (
+            recognition("\"linear_svm\"", "n_trees = 5"),
+            [unused, "random_forest"],
+        ),
+        (
+            recognition("\"k_nearest\"", "multiclass = \"one_vs_rest\""),
+            [unused, "linear_svm"],
+        ),
+        (
+            recognition("\"k_nearest\"", "solver = \"coordinate_descent\""),
+            [unused, "linear_svm"],
+        ),
+        (
+            recognition("\"k_nearest\"", "solver_memory_gib = 1.0"),
+            [unused, "linear_svm"],
+        ),
+        (
+            recognition("\"rbf_svm\"", "solver = \"coordinate_descent\""),
+            ["recognition.solver", "linear_svm"],
+        ),
+    ] {
+        case.file("x.toml", study);
+        for command in ["plan", "run"] {
+            refused(&case.run(&[command, "x.toml"]), 2, &words);
+        }
+    }
+    // One of the classifiers uses it.
+    let all = "[\"linear_svm\", \"polynomial_svm\", \"k_nearest\"]";
+    case.file(
+        "x.toml",
+        recognition(all, "degree = 2\nn_neighbours = 1\nc = 2.0"),
+    );
+    case.succeeds(&["plan", "x.toml"]);
+    assert_eq!(case.names(), ["x.toml"], "nothing is written");
+}
+
+#[test]
+fn a_number_out_of_range_is_refused_when_the_file_is_read() {
+    let case = Case::new();
+    let svm = |more: &str| recognition("\"rbf_svm\"", more);
+    let usual = svm("");
+    let components = usual.replace(
+        "[sensing]\n",
+        "[sensing]\nensemble = \"principal_components\"\n",
+    );
+    let signal = |key: &str| usual.replace("[sensing]\n", &format!("[signal]\n{key}\n[sensing]\n"));
+    let mut studies = vec![
+        (
+            svm("gamma = nan"),
+            ["x.toml:15, key recognition.gamma", "finite"],
+        ),
+        (
+            svm("gamma = inf"),
+            ["x.toml:15, key recognition.gamma", "finite"],
+        ),
+        (
+            svm("gamma = 0"),
+            ["x.toml:15, key recognition.gamma: 0", "1e-12 to 1e9"],
+        ),
+        (
+            svm("gamma = -1.0"),
+            ["x.toml:15, key recognition.gamma: -1", "1e-12 to 1e9"],
+        ),
+        (
+            svm("c = 1e300"),
+            ["x.toml:15, key recognition.c: 1e300", "at most"],
+        ),
+        (
+            signal("smoothing_mm = 1e15"),
+            ["x.toml:12, key signal.smoothing_mm: 1e15", "at most 1e7 mm"],
+        ),
+        (
+            signal("noise_std_full_scale = 1e308"),
+            ["x.toml:12, key signal.noise", "at most"],
+        ),
+        (
+            usual.replace("stroke_mm = 5.0", "stroke_mm = 1e308"),
+            ["x.toml:7, key skin.stroke_mm: 1e308", "at most 1e7 mm"],
+        ),
+        (
+            components.replace("per_object = 8", "per_object = 2"),
+            [
+                "x.toml:13, key sensing.ratio: 16 principal components",
+                "at most 8",
+            ],
+        ),
+        (
+            RECONSTRUCTION.replace("solver", "atoms = 1\nsolver"),
+            ["key reconstruction.atoms: 1", "at least 2"],
+        ),
+        (
+            RECONSTRUCTION.replace("[objects]", "[objects]\nsurface_error_mm = 1e-9"),
+            ["key objects.surface_error_mm", "at least 1e-6 mm"],
+        ),
+    ];
+    let grouped = svm("folds = 4\nkeep_together = \"yaw\"");
+    let grouped = grouped.replace("per_object = 8", "yaw_deg = [0, 90, 180]\nper_object = 9");
+    studies.push((
+        grouped.replace("question", "trials = 4\nquestion"),
+        ["key recognition.folds", "3"],
+    ));
+    for (study, words) in studies {
+        case.file("x.toml", study);
+        for command in ["plan", "run"] {
+            refused(&case.run(&[command, "x.toml"]), 2, &words);
+        }
+    }
+    assert_eq!(case.names(), ["x.toml"], "nothing is written");
+}

@@ -1,0 +1,592 @@
+//! Hostile input, generated: every key of every kind of file with values that it cannot have, and every file that a command reads, broken.
+//!
+//! Keys come from the readers themselves: an unknown key makes a reader list those that it knows. `cargo test --test long_runs -- --ignored hostile` tries a
+//! part of the inputs; with BUBBLETOUCH_LONG=1 all are tried, and studies that `plan` accepts are run, too. An input is accepted, or refused within two seconds with
+//! exit code 2 and one sentence, and nothing is written.
+
+use crate::command::Case;
+use crate::kinds::Kind;
+use bubbletouch::kinds::breaking_points::BreakingPointsSpec;
+use bubbletouch::kinds::object_detail::ObjectDetailStudySpec;
+use bubbletouch::kinds::reconstruction::ReconstructionStudySpec;
+use bubbletouch::kinds::speed_accuracy::SpeedAccuracyStudySpec;
+use bubbletouch::kinds::stability::StabilityStudySpec;
+use bubbletouch::kinds::whole_body::WholeBodyStudySpec;
+use bubbletouch::scene::SceneSpec;
+use bubbletouch::study::{StudySpec, write_npy};
+use ndarray::{Array1, Array3};
+use std::fs;
+use std::io::Read;
+use std::path::Path;
+use std::process::Stdio;
+use std::time::{Duration, Instant};
+use toml::{Table, Value};
+
+/// A file of TOML, and the command that reads it.
+struct File {
+    name: &'static str,
+    text: String,
+    /// What the reader of a text says of it.
+    read: fn(&str) -> Result<(), toml::de::Error>,
+    /// The command line, with the file in the place of `FILE`.
+    command: &'static str,
+}
+
+/// Reads a text as a type, and forgets it.
+fn reader<T: serde::de::DeserializeOwned>(text: &str) -> Result<(), toml::de::Error> {
+    toml::from_str::<T>(text).map(drop)
+}
+
+/// Keys that many studies leave out, each in a study where it can act.
+const SVM: &str = "classifier = [\"rbf_svm\", \"polynomial_svm\", \"k_nearest\", \"random_forest\"]\nc = 1.0\ngamma = 0.1\ndegree = 2\ncoef0 = 1.0\n\
+     n_neighbours = 3\nn_trees = 5\nmax_depth = 3\ntest_fraction = 0.25\nfused_touches = 1\nmulticlass = \"one_vs_one\"";
+const CHOSEN: &str = "classifier = \"rbf_svm\"\nchoose_c = [1.0, 10.0]\nchoose_gamma = [1.0]\nchoose_folds = 2\nchoose_touches = 4\n\
+     features = \"fourier_magnitude\"\nforemost_full_scale = 0.5\ntilted_copies = 1\ntilted_copies_deg = 4.0";
+const ERRORS: &str = "steps = [\"noise\", \"smoothing\", \"gain\", \"drift\", \"faults\"]\nnoise_std_full_scale = 0.05\nsmoothing_mm = 2.0\n\
+     gain_std = 0.1\ndrift_std_full_scale = 0.01\ndead_fraction = 0.01\ntested_on = \"another_skin\"";
+
+fn recognition(skin: &str, touches: &str, signal: &str, recognition: &str) -> String {
+    format!(
+        "question = \"q\"\nexpected = \"e\"\nseed = 3\ntrials = 1\n[objects]\nsets = [\"cans\"]\nsurface_error_mm = 2.0\n\
+         [skin]\npitch_mm = 8.0\nstroke_mm = 5.0\nstiffness_n_per_m = 100.0\n{skin}\n[touches]\nper_object = 12\ndepth_mm = 3.0\n{touches}\n\
+         [signal]\n{signal}\n[sensing]\nensemble = \"gaussian\"\nratio = 8.0\n[recognition]\n{recognition}\n"
+    )
+}
+
+const HUMAN: &str = "question = \"q\"\ntrials = 1\n[human_touch]\nper_kind = 4\narm_radius_mm = 43.0\nframes_hz = 15.0\nduration_s = 3.2\n\
+     [skin]\npitch_mm = 8.0\ntaxels = 8\nstroke_mm = 5.0\n[sensing]\nmeasurements = 8\n[recognition]\nclassifier = \"linear_svm\"\nover_time = \"stacked_4\"\n";
+
+const RECORDED: &str = "question = \"q\"\ntrials = 1\n[recorded]\nframes = \"frames.npy\"\nlabels = \"labels.npy\"\ngroups = \"groups.npy\"\nzero = 0.0\n\
+     full_scale = 2.0\n[skin]\npitch_mm = 4.0\nstroke_mm = 2.0\n[sensing]\nratio = 4.0\n[recognition]\nclassifier = \"linear_svm\"\n";
+
+const SCENE: &str = include_str!("scene.toml");
+const PARTS: &str = include_str!("parts.toml");
+
+fn files() -> Vec<File> {
+    let plan = "plan FILE";
+    let kind = |name, kind: Kind, read| File {
+        name,
+        text: kind.study.to_owned(),
+        read,
+        command: plan,
+    };
+    let study = |name, text: &str| File {
+        name,
+        text: text.to_owned(),
+        read: reader::<StudySpec>,
+        command: plan,
+    };
+    let frames = "frames = 2\nspeed_mm_per_s = 10.0\noffset_x_mm = { uniform = [-5.0, 5.0] }\nyaw_deg = [0.0, 30.0]\ntilt_x_deg = { grid = [0.0, 4.0, 3] }";
+    let slides = "slide_mm = 1.0\nslide_deg = 10.0\noffset_x_mm = { uniform = [-5.0, 5.0] }";
+    let shear = "taxels = 8\nsensed = \"shear\"\nfriction = 0.5\nshear_stiffness_n_per_m = 50.0\ntaxel_radius_mm = 4.0";
+    let svm = "classifier = \"linear_svm\"\nkeep_together = \"offset\"\nkeep_together_mm = 0.5";
+    vec![
+        study(
+            "recognition",
+            &recognition(
+                "size_mm = 64.0",
+                frames,
+                "noise_std_full_scale = 0.1\nsmoothing_mm = 2.0",
+                SVM,
+            ),
+        ),
+        study(
+            "chosen",
+            &recognition("taxels = 8\ndamping_n_s_per_m = 0.1", "", ERRORS, CHOSEN),
+        ),
+        study("shear", &recognition(shear, slides, "steps = []", svm)),
+        study("human", HUMAN),
+        study("recorded", RECORDED),
+        kind(
+            "reconstruction",
+            Kind::RECONSTRUCTION,
+            reader::<ReconstructionStudySpec>,
+        ),
+        kind(
+            "object_detail",
+            Kind::OBJECT_DETAIL,
+            reader::<ObjectDetailStudySpec>,
+        ),
+        kind("whole_body", Kind::WHOLE_BODY, reader::<WholeBodyStudySpec>),
+        kind("stability", Kind::STABILITY, reader::<StabilityStudySpec>),
+        kind(
+            "breaking_points",
+            Kind::BREAKING_POINTS,
+            reader::<BreakingPointsSpec>,
+        ),
+        kind(
+            "speed_accuracy",
+            Kind::SPEED_ACCURACY,
+            reader::<SpeedAccuracyStudySpec>,
+        ),
+        File {
+            name: "scene",
+            text: SCENE.to_owned(),
+            read: reader::<SceneSpec>,
+            command: "simulate FILE --out out --quiet",
+        },
+        File {
+            name: "parts",
+            text: PARTS.to_owned(),
+            read: reader::<Table>,
+            command: "press --object one --objects FILE --surface-error-mm 2 --taxels 8x8 --out out.csv",
+        },
+    ]
+}
+
+/// A folder with the file and all that any of them needs.
+fn case() -> Case {
+    let case = Kind::RECOGNITION.case();
+    let touch = |n: usize, row: usize| ((n * 7 + row * 3) % 11) as f32 / 10.0;
+    let frames = Array3::from_shape_fn((40, 8, 8), |(n, row, column)| touch(n, row + column));
+    write_npy(&case.path("frames.npy"), &frames).unwrap();
+    let labels: Array1<i64> = (0..40).map(|n| n % 4).collect();
+    let groups: Array1<i64> = (0..40).map(|n| n / 4).collect();
+    ndarray_npy::write_npy(case.path("labels.npy"), &labels).unwrap();
+    ndarray_npy::write_npy(case.path("groups.npy"), &groups).unwrap();
+    case.file("spheres.csv", "x,y,z,r\n0,0,0.01,0.01\n0.01,0,0.01,0.01\n");
+    case.file("poses.csv", "x,y,z,qw,qx,qy,qz\n0,0,0.02,1,0,0,0\n");
+    case.file("parts.toml", PARTS);
+    case.file("scene.toml", SCENE);
+    case.file("arm.urdf", ARM);
+    case.file("recorded.toml", RECORDED);
+    fs::copy(case.path("meshes/box.obj"), case.path("box.obj")).unwrap();
+    case
+}
+
+const ARM: &str = "<robot name=\"post\"><link name=\"base\"/><joint name=\"turn\" type=\"revolute\"><parent link=\"base\"/><child link=\"upper\"/>\
+     <axis xyz=\"0 0 1\"/><limit lower=\"-1\" upper=\"1\" effort=\"1\" velocity=\"1\"/></joint>\
+     <link name=\"upper\"><collision><geometry><cylinder radius=\"0.05\" length=\"0.1\"/></geometry></collision></link></robot>";
+
+/// Values that most keys cannot have.
+fn values() -> Vec<Value> {
+    let mut values = [f64::NAN, f64::INFINITY, -1.0, 1e308, 1e-308]
+        .map(Value::Float)
+        .to_vec();
+    values.extend([0, -1, 1_000_000_000_000_000_000].map(Value::Integer));
+    values.extend(["wrong", ""].map(|word| Value::String(word.to_owned())));
+    values.extend([
+        Value::Array(Vec::new()),
+        Value::Boolean(true),
+        Value::Table(Table::new()),
+    ]);
+    values
+}
+
+/// Each place in a text with another value: every key that is there, and every key that the reader knows beside it.
+fn mutations(file: &File) -> Vec<(String, String)> {
+    let table: Table = file.text.parse().unwrap();
+    let mut found = Vec::new();
+    visit(file, &Value::Table(table), &mut Vec::new(), &mut found);
+    found
+}
+
+/// A step of a path into a file.
+#[derive(Clone)]
+enum Step {
+    Key(String),
+    Number(usize),
+}
+
+fn visit(file: &File, value: &Value, path: &mut Vec<Step>, found: &mut Vec<(String, String)>) {
+    let whole: Table = file.text.parse().unwrap();
+    let mut steps: Vec<Step> = Vec::new();
+    match value {
+        Value::Table(table) => {
+            let mut keys: Vec<String> = table.keys().cloned().collect();
+            path.push(Step::Key("no_such_key".to_owned()));
+            let probe = replaced(&whole, path, &Value::Integer(1));
+            path.pop();
+            if let Err(error) = (file.read)(&probe) {
+                keys.extend(listed(error.message()));
+            }
+            keys.dedup();
+            steps.extend(keys.into_iter().map(Step::Key));
+        }
+        Value::Array(values) if values.iter().any(|one| one.is_table() || one.is_array()) => {
+            steps.extend((0..values.len()).map(Step::Number));
+        }
+        _ => return,
+    }
+    for step in steps {
+        let inner = match &step {
+            Step::Key(key) => value.get(key),
+            Step::Number(number) => value.get(*number),
+        };
+        path.push(step);
+        for hostile in values() {
+            let text = replaced(&whole, path, &hostile);
+            found.push((format!("{} = {hostile}", shown(path)), text));
+        }
+        if let Some(inner) = inner {
+            visit(file, inner, path, found);
+        }
+        path.pop();
+    }
+}
+
+fn shown(path: &[Step]) -> String {
+    let steps = path.iter().map(|step| match step {
+        Step::Key(key) => key.clone(),
+        Step::Number(number) => number.to_string(),
+    });
+    steps.collect::<Vec<_>>().join(".")
+}
+
+/// A file with a value at a path.
+fn replaced(table: &Table, path: &[Step], value: &Value) -> String {
+    let mut whole = Value::Table(table.clone());
+    let mut place = &mut whole;
+    for (number, step) in path.iter().enumerate() {
+        let is_last = number + 1 == path.len();
+        place = match (step, place) {
+            (Step::Key(key), Value::Table(table)) if is_last => {
+                table.insert(key.clone(), value.clone());
+                break;
+            }
+            (Step::Key(key), Value::Table(table)) => table.get_mut(key).unwrap(),
+            (Step::Number(number), Value::Array(values)) if is_last => {
+                values[*number] = value.clone();
+                break;
+            }
+            (Step::Number(number), Value::Array(values)) => &mut values[*number],
+            _ => unreachable!("a path is of its file"),
+        };
+    }
+    toml::to_string(&whole).unwrap()
+}
+
+/// The keys that an error about an unknown one lists: those in backticks after `expected`.
+fn listed(message: &str) -> Vec<String> {
+    let expected = match message.split_once("unknown field") {
+        Some((_, rest)) => rest.split_once("expected").map_or("", |(_, rest)| rest),
+        None => "",
+    };
+    let words = expected.split('`').skip(1).step_by(2);
+    words.map(str::to_owned).collect()
+}
+
+/// What a command did.
+struct Answer {
+    code: Option<i32>,
+    said: String,
+    took: Duration,
+}
+
+fn is_long() -> bool {
+    std::env::var_os("BUBBLETOUCH_LONG").is_some()
+}
+
+/// Runs a command, for at most a minute.
+fn answer(case: &Case, arguments: &[&str]) -> Answer {
+    let start = Instant::now();
+    let mut command = case.command(arguments);
+    command.stdout(Stdio::null()).stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    let mut stderr = child.stderr.take().unwrap();
+    let reads = std::thread::spawn(move || {
+        let mut said = Vec::new();
+        let _ = stderr.read_to_end(&mut said);
+        String::from_utf8_lossy(&said).into_owned()
+    });
+    let code = loop {
+        if let Some(status) = child.try_wait().unwrap() {
+            break status.code();
+        }
+        if start.elapsed() > Duration::from_secs(60) {
+            child.kill().unwrap();
+            child.wait().unwrap();
+            break None;
+        }
+        std::thread::sleep(Duration::from_millis(2));
+    };
+    let took = start.elapsed();
+    let said = reads.join().unwrap();
+    Answer { code, said, took }
+}
+
+/// What is wrong with an answer; `None` if the input was accepted, or refused as it should be.
+fn wrong(answer: &Answer, is_unchanged: bool) -> Option<String> {
+    let n_sentences = answer
+        .said
+        .lines()
+        .filter(|l| l.starts_with("error:"))
+        .count();
+    // Other tests run at the same time; alone it is two seconds.
+    let most = Duration::from_secs(if is_long() { 2 } else { 10 });
+    let said = answer.said.trim();
+    match answer.code {
+        Some(0) => None,
+        Some(2) if n_sentences != 1 => Some(format!("{n_sentences} sentences: {said}")),
+        Some(2) if answer.took > most => Some(format!("refused after {:?}: {said}", answer.took)),
+        Some(2) if !is_unchanged => Some(format!("refused, but something was written: {said}")),
+        Some(2) => None,
+        None => Some("no answer within a minute".to_owned()),
+        Some(code) => Some(format!("exit code {code}: {said}")),
+    }
+}
+
+/// Every file and folder below a folder.
+fn all_names(folder: &Path) -> Vec<String> {
+    let mut names = Vec::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        names.push(path.display().to_string());
+        if path.is_dir() && !path.is_symlink() {
+            names.extend(all_names(&path));
+        }
+    }
+    names.sort();
+    names
+}
+
+/// Removes what an accepted input made.
+fn clear(case: &Case) {
+    let _ = fs::remove_dir_all(case.path("out"));
+    let _ = fs::remove_file(case.path("out.csv"));
+}
+
+fn tried(case: &Case, command: &str) -> Option<String> {
+    let before = all_names(case.folder());
+    let arguments: Vec<&str> = command.split(' ').collect();
+    let answer = answer(case, &arguments);
+    let found = wrong(&answer, all_names(case.folder()) == before);
+    clear(case);
+    found
+}
+
+#[test]
+#[ignore = "minutes: .ci/long runs it"]
+fn every_key_is_accepted_or_refused_in_one_sentence() {
+    let case = case();
+    let (mut n, mut faults) = (0, Vec::new());
+    for file in files() {
+        let name = format!("{}_x.toml", file.name);
+        let command = file.command.replace("FILE", &name);
+        case.file(&name, &file.text);
+        let usual = answer(&case, &command.split(' ').collect::<Vec<_>>());
+        assert_eq!(usual.code, Some(0), "{}: {}", file.name, usual.said);
+        clear(&case);
+        let all = mutations(&file);
+        assert!(all.len() > 100, "{}: {} inputs", file.name, all.len());
+        // Of each file about ten in a run of the tests, of all keys and values in turn: the step is prime.
+        let step = if is_long() { 1 } else { 97 };
+        for (what, text) in all.iter().step_by(step) {
+            case.file(&name, text);
+            n += 1;
+            let mut found = tried(&case, &command);
+            let is_study = command.starts_with("plan");
+            if is_long() && is_study && found.is_none() {
+                let accepted = answer(&case, &["plan", &name]).code == Some(0);
+                let run = format!("run {name} --out out --quiet");
+                // What `plan` accepts runs; a study may take longer than the test waits.
+                let answer = answer(&case, &run.split(' ').collect::<Vec<_>>());
+                clear(&case);
+                if accepted && !matches!(answer.code, Some(0) | None) {
+                    found = Some(format!("plan accepts it, but run: {}", answer.said.trim()));
+                }
+            }
+            if let Some(found) = found {
+                faults.push(format!("{}: {what}: {found}", file.name));
+            }
+        }
+        fs::remove_file(case.path(&name)).unwrap();
+    }
+    eprintln!("{n} inputs");
+    assert!(
+        faults.is_empty(),
+        "{} of {n} inputs:\n{}",
+        faults.len(),
+        faults.join("\n")
+    );
+}
+
+/// What commands read, and the commands.
+const READ: &[(&str, &[&str])] = &[
+    (
+        "study.toml",
+        &[
+            "plan study.toml",
+            "run study.toml --out out",
+            "slurm study.toml --array 2 --out out",
+        ],
+    ),
+    ("scene.toml", &["simulate scene.toml --out out"]),
+    ("arm.urdf", &["simulate scene.toml --out out"]),
+    (
+        "spheres.csv",
+        &[
+            "press --spheres spheres.csv --out out.csv",
+            "simulate scene.toml --out out",
+        ],
+    ),
+    (
+        "box.obj",
+        &[
+            "press --mesh box.obj --out out.csv",
+            "objects mesh box.obj",
+            "objects pack box.obj --surface-error-mm 1 --out out.csv",
+        ],
+    ),
+    (
+        "box.ply",
+        &["press --mesh box.ply --out out.csv", "objects mesh box.ply"],
+    ),
+    (
+        "box.stl",
+        &["press --mesh box.stl --out out.csv", "objects mesh box.stl"],
+    ),
+    (
+        "poses.csv",
+        &["press --object golf --poses poses.csv --json"],
+    ),
+    (
+        "parts.toml",
+        &[
+            "press --object one --objects parts.toml --surface-error-mm 2 --out out.csv",
+            "objects --objects parts.toml",
+        ],
+    ),
+    (
+        "frames.npy",
+        &[
+            "plan recorded.toml",
+            "run recorded.toml --out out",
+            "calibrate frames.npy",
+        ],
+    ),
+    (
+        "labels.npy",
+        &["plan recorded.toml", "run recorded.toml --out out"],
+    ),
+    (
+        "groups.npy",
+        &["plan recorded.toml", "run recorded.toml --out out"],
+    ),
+    (
+        "results/study.toml",
+        &[
+            "report results",
+            "compare results results",
+            "verify results",
+            "advise results --accuracy 0.5",
+        ],
+    ),
+    (
+        "results/summary.csv",
+        &[
+            "report results",
+            "compare results results",
+            "advise results --accuracy 0.5",
+        ],
+    ),
+    (
+        "results/accuracy.csv",
+        &["report results", "compare results results"],
+    ),
+    (
+        "results/timing.csv",
+        &["report results", "advise results --accuracy 0.5"],
+    ),
+    (
+        "results/manifest.json",
+        &[
+            "report results",
+            "compare results results",
+            "verify results",
+        ],
+    ),
+    (
+        "rows/features.npy",
+        &["classify rows --classifier k_nearest"],
+    ),
+    ("rows/labels.npy", &["classify rows --classifier k_nearest"]),
+    ("rows/train.npy", &["classify rows --classifier k_nearest"]),
+    (
+        "moved/recording.npz",
+        &[
+            "recording moved/recording.npz",
+            "recording moved/recording.npz --patch pad --frame 0",
+        ],
+    ),
+];
+
+#[test]
+#[ignore = "minutes: .ci/long runs it"]
+fn every_file_that_is_broken_is_refused_in_one_sentence_or_read() {
+    let case = case();
+    case.file("box.ply", PLY);
+    case.file("box.stl", STL);
+    case.file(
+        "small.toml",
+        recognition(
+            "taxels = 8",
+            "",
+            "steps = []",
+            "classifier = \"linear_svm\"",
+        ),
+    );
+    case.succeeds(&["run", "small.toml", "--out", "results", "--quiet"]);
+    case.succeeds(&["features", "small.toml", "--out", "rows"]);
+    case.succeeds(&["simulate", "scene.toml", "--out", "moved", "--quiet"]);
+    let (mut n, mut faults) = (0, Vec::new());
+    for (number, (name, commands)) in READ.iter().enumerate() {
+        let path = case.path(name);
+        let whole = fs::read(&path).unwrap();
+        for (way, how) in [
+            "missing",
+            "empty",
+            "truncated",
+            "wrong kind",
+            "a folder",
+            "unreadable",
+        ]
+        .iter()
+        .enumerate()
+        {
+            if !is_long() && (number + way) % 4 != 0 {
+                continue;
+            }
+            fs::remove_file(&path).unwrap();
+            match *how {
+                "missing" => {}
+                "empty" => fs::write(&path, []).unwrap(),
+                "truncated" => fs::write(&path, &whole[..whole.len() / 2]).unwrap(),
+                "wrong kind" => fs::write(&path, b"\x89PNG\r\n\x1a\n\x00\x00\xff\xfe").unwrap(),
+                "a folder" => fs::create_dir(&path).unwrap(),
+                _ => make_unreadable(&path, &whole),
+            }
+            for command in *commands {
+                n += 1;
+                if let Some(found) = tried(&case, command) {
+                    faults.push(format!("{name} {how}: {command}: {found}"));
+                }
+            }
+            let _ = fs::remove_dir(&path);
+            let _ = fs::remove_file(&path);
+            fs::write(&path, &whole).unwrap();
+        }
+    }
+    eprintln!("{n} broken files");
+    assert!(
+        faults.is_empty(),
+        "{} of {n}:\n{}",
+        faults.len(),
+        faults.join("\n")
+    );
+}
+
+/// A file that nobody but root may read.
+fn make_unreadable(path: &Path, whole: &[u8]) {
+    fs::write(path, whole).unwrap();
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        fs::set_permissions(path, fs::Permissions::from_mode(0)).unwrap();
+    }
+}
+
+const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 4\n\
+     property list uchar int vertex_indices\nend_header\n0 0 0\n0.02 0 0\n0 0.02 0\n0 0 0.02\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+const STL: &str = "solid a\nfacet normal 0 0 -1\nouter loop\nvertex 0 0 0\nvertex 0 0.02 0\nvertex 0.02 0 0\nendloop\nendfacet\n\
+     facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 0.02 0 0\nvertex 0 0.02 0.01\nendloop\nendfacet\nendsolid a\n";
