@@ -173,9 +173,12 @@ fn columns_text(mut columns: Vec<TextColumn>, n_lines: usize, width: usize) -> (
         column.set_constraint(match text.said.iter().any(is_interval) {
             // An interval broken over two lines cannot be read down the column.
             true => ColumnConstraint::ContentWidth,
-            // A heading breaks between words; the width includes the padding.
+            // A heading breaks between words, and a number with its unit nowhere; the width includes the padding.
             false => {
-                ColumnConstraint::LowerBoundary(Width::Fixed(longest_word(&text.head) as u16 + 2))
+                let widest = text.said.iter().map(|text| letters(text)).max();
+                let unbroken = widest.filter(|_| text.is_number).unwrap_or(0);
+                let least = unbroken.max(longest_word(&text.head)) + 2;
+                ColumnConstraint::LowerBoundary(Width::Fixed(least as u16))
             }
         });
     }
