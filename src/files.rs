@@ -1,4 +1,13 @@
-//! Files that are whole or not there: written beside their name, then renamed.
+//! Files that are whole or not there: written beside their name, then renamed. None replaces a file that the command reads.
+
+mod file_path;
+mod inputs;
+mod owned;
+
+pub use file_path::{FilePath, SetName, file_path, optional_file_path, with_folder};
+pub(crate) use inputs::input_within;
+pub use inputs::{check_output, open, protect_inputs, read, read_to_string};
+pub use owned::{DataFolder, MANIFEST_FILE, OwnedFiles, RUN, check_single_output};
 
 use crate::error::{Error, Result};
 use serde::Serialize;
@@ -20,11 +29,13 @@ pub struct WholeFile {
 }
 
 impl WholeFile {
-    /// Starts a file that will stand at `path`.
+    /// Starts a file that will stand at `path`. If `path` is a symbolic link, the file replaces the target of the link.
     ///
     /// # Errors
-    /// There can be no file.
+    /// If this process has read the file ([`protect_inputs`]), or no file can be made there.
     pub fn create(path: &Path) -> Result<Self> {
+        check_output(path)?;
+        let path = &link_target(path)?;
         let name = path.file_name().ok_or_else(|| {
             Error::input(path.display(), "no file name", "a path that ends in one")
         })?;
@@ -79,6 +90,7 @@ impl WholeFile {
         let Some(partial) = self.partial.clone() else {
             return self.write(|writer| writer.flush());
         };
+        check_output(&self.path)?;
         self.write(|writer| {
             writer.flush()?;
             writer.get_ref().sync_all()
@@ -87,6 +99,30 @@ impl WholeFile {
         self.partial = None;
         Ok(())
     }
+}
+
+/// Symbolic links that are followed one after the other, at most: as many as Linux follows. More: a loop is found later; fewer: long chains fail.
+const MAX_LINKS: usize = 40;
+
+/// Returns the path that a symbolic link leads to, or `path` itself if it is no link.
+///
+/// # Errors
+/// If links lead to each other.
+fn link_target(path: &Path) -> Result<PathBuf> {
+    let mut target = path.to_owned();
+    for _ in 0..MAX_LINKS {
+        match fs::read_link(&target) {
+            Ok(next) => target = target.parent().unwrap_or(Path::new("")).join(next),
+            // It is no link, or is not there.
+            Err(_) => return Ok(target),
+        }
+    }
+    let allowed = "a link that leads to a file";
+    Err(Error::input(
+        path.display(),
+        "links without an end",
+        allowed,
+    ))
 }
 
 impl Drop for WholeFile {

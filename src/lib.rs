@@ -170,6 +170,7 @@ pub mod recognition;
 pub mod report;
 pub mod scene;
 pub mod sensing;
+pub mod shell_line;
 pub mod signal;
 mod spelling;
 #[cfg(test)]

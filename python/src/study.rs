@@ -5,9 +5,10 @@ use crate::errors::{bad_input, exception, guarded};
 use crate::threads::{Stop, aside};
 use bubbletouch::Error;
 use bubbletouch::Result;
-use bubbletouch::kinds::{Source, load, read_tables};
+use bubbletouch::kinds::{Source, check_folder, load, read_tables};
 use bubbletouch::report::advice::{self, Offers, Wish};
 use bubbletouch::report::advice_answers::{answers, answers_json};
+use bubbletouch::shell_line::shell_line;
 use bubbletouch::study::journal::{JOURNAL_FILE, Journal};
 use bubbletouch::study::pieces::{Part, PieceManner};
 use bubbletouch::study::progress::Progress;
@@ -105,8 +106,9 @@ fn run(asked: &Asked, told: &Told) -> Result<Vec<Table>> {
         folder,
         ..
     } = &asked.source;
-    std::fs::create_dir_all(results).map_err(|e| Error::io(results, "create folder", e))?;
+    check_folder(&asked.source.text, results)?;
     let study = load(&asked.source)?;
+    std::fs::create_dir_all(results).map_err(|e| Error::io(results, "create folder", e))?;
     let journal = Journal::open(&results.join(JOURNAL_FILE), study.identity())?;
     let n_before = study.n_all() - study.n_left(Part::All, &journal);
     let outcome = study.run(&PieceManner {
@@ -119,7 +121,13 @@ fn run(asked: &Asked, told: &Told) -> Result<Vec<Table>> {
     journal.sync()?;
     let manifest = Manifest {
         study: asked.name.clone(),
-        command: format!("bubbletouch run {place}"),
+        command: shell_line(&[
+            "bubbletouch",
+            "run",
+            place,
+            "--out",
+            &results.display().to_string(),
+        ]),
         paths_from: folder.clone(),
         n_finished_before: n_before,
         ..Manifest::ended(study.identity(), started)

@@ -3,6 +3,7 @@
 use super::streams::say;
 use super::study_args::set_threads;
 use super::unused::check_used;
+use bubbletouch::files::check_single_output;
 use bubbletouch::quantile::quantile;
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::ClassifierKind;
@@ -173,6 +174,9 @@ pub fn classify(args: &Args) -> Result<()> {
         return Err(Error::input("--repeat", 0, "at least 1"));
     }
     args.check_parameters()?;
+    args.predictions
+        .as_deref()
+        .map_or(Ok(()), check_single_output)?;
     let set = read_features(&args.folder)?;
     let set = match &args.groups {
         None => set,

@@ -2,7 +2,7 @@
 
 use super::output::{check_ending, terminal_width};
 use super::streams::{say, write_out};
-use bubbletouch::files::{CsvFile, write_bytes};
+use bubbletouch::files::{CsvFile, check_output, write_bytes};
 use bubbletouch::report::compared::{
     differences_page, differences_text, entries_words, sentences_text,
 };
@@ -53,6 +53,8 @@ pub fn compare(args: &Args) -> Result<()> {
             changed.push(format!("Only the {which} run has {}.", files.join(", ")));
         }
     }
+    let mut outputs = args.out.iter().chain(&args.html);
+    outputs.try_for_each(|path| check_output(path))?;
     if let Some(out) = &args.out {
         let mut file = CsvFile::create(out)?;
         for row in found.iter().flat_map(|column| &column.rows) {

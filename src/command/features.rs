@@ -3,8 +3,10 @@
 use super::output::output_folder;
 use super::study_args::StudyArgs;
 use bubbletouch::Result;
+use bubbletouch::files::DataFolder;
 use bubbletouch::kinds::recognition::load_study;
 use bubbletouch::report::progress;
+use bubbletouch::study::FEATURE_FILES;
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -23,11 +25,14 @@ pub struct Args {
 }
 
 pub fn features(args: &Args) -> Result<()> {
+    // Before objects are packed; again below, once it is known which files the study reads.
+    DataFolder::claim(&args.out, "features", FEATURE_FILES)?;
     let loaded = load_study(&args.study.source(&args.out)?)?;
-    output_folder(&args.out)?;
     let (part, which) = (loaded.part_of(args.cell), (args.cell, args.trial));
     let progress = progress::to_stderr();
-    let set = part.write_features(&args.out, which, progress.as_ref())?;
+    let claimed = DataFolder::claim(&args.out, "features", FEATURE_FILES)?;
+    output_folder(&args.out)?;
+    let set = part.write_features((&args.out, &claimed), which, progress.as_ref())?;
     let (n_touches, n_measurements) = set.data.records.dim();
     progress.finish(&format!(
         "{n_touches} touches of {n_measurements} measurements, {} to train on and {} to test, in {}",

@@ -17,7 +17,7 @@ pub struct Args {
 }
 
 pub fn merge(args: &Args) -> Result<()> {
-    let run = StudyRun::begin(&args.run)?;
+    let run = StudyRun::begin(&args.run, false)?;
     let (study, folder) = (run.study.as_ref(), &run.folder);
     let identity = study.identity();
     output_folder(folder)?;
@@ -44,7 +44,8 @@ pub fn merge(args: &Args) -> Result<()> {
     let outcome = study.run(&PieceManner {
         journal: &journal,
         fail_fast: false,
-        retries: false,
+        // Items that failed in every shard run again.
+        retries: true,
         part: Part::All,
         progress: run.progress.as_ref(),
     })?;

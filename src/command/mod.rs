@@ -65,7 +65,7 @@ enum Command {
     Report(report::Args),
     /// Say what moved between two folders of results, whether chance explains it, and whether both rank designs alike
     Compare(compare::Args),
-    /// Run a few work items of a folder of results again, and say whether they are the same bytes
+    /// Check the files of a folder of results, and run a few of its work items again, compared byte by byte
     Verify(verify::Args),
     /// Say what a study of any kind would do: configurations, touches, memory and time, without running it
     Plan(plan::Args),
@@ -101,6 +101,7 @@ enum Command {
 
 /// Parses the command line and does what it says; exits with 2 if it cannot be parsed.
 pub fn dispatch() -> Result<()> {
+    bubbletouch::files::protect_inputs();
     let line = match CommandLine::try_parse() {
         Ok(line) => line,
         // --help and --version.

@@ -1,5 +1,6 @@
 //! Where results go.
 
+use bubbletouch::files::check_single_output;
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
 
@@ -19,8 +20,9 @@ pub fn output_folder(folder: &Path) -> Result<()> {
     })
 }
 
-/// An error unless the name of a file, if one is asked for, has this ending.
+/// An error unless the name of a file to write, if one is asked for, has this ending and stands for no file of a folder of results or of data.
 pub fn check_ending(path: Option<&Path>, ending: &str) -> Result<()> {
+    path.map_or(Ok(()), check_single_output)?;
     let has_another = |path: &&Path| path.extension().is_none_or(|given| given != ending);
     let Some(path) = path.filter(has_another) else {
         return Ok(());

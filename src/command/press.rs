@@ -8,6 +8,7 @@ use super::streams::{note, write_out};
 use super::unused::check_used;
 use super::which_object::catalogue;
 use bubbletouch::contact::{self, Goal, Workspace};
+use bubbletouch::files::check_single_output;
 use bubbletouch::geometry::Pose;
 use bubbletouch::mesh::{LengthUnit, SizeLimits};
 use bubbletouch::objects::Model;
@@ -108,6 +109,7 @@ fn parse_taxels(text: &str) -> std::result::Result<(usize, usize), String> {
 
 pub fn press(args: &Args) -> Result<()> {
     args.check_used()?;
+    args.out.as_deref().map_or(Ok(()), check_single_output)?;
     let patch = args.patch()?;
     let (model, pose) = args.placed_object()?;
     let objects = [model];

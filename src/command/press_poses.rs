@@ -142,7 +142,8 @@ fn read_poses(path: &Path) -> Result<Vec<Pose>> {
     let allowed = "a CSV file with columns x, y, z, qw, qx, qy, qz of finite numbers";
     let failed = table_error(path, allowed);
     let mut poses = Vec::new();
-    let mut reader = csv::Reader::from_path(path).map_err(&failed)?;
+    let mut reader =
+        csv::Reader::from_reader(bubbletouch::files::open(path).map_err(|e| failed(e.into()))?);
     for (number, row) in reader.deserialize().enumerate() {
         let row: Row = row.map_err(&failed)?;
         let turn = DQuat::from_xyzw(row.qx, row.qy, row.qz, row.qw);

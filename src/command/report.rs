@@ -3,6 +3,7 @@
 use super::results_folder::{checked_manifest, load_study};
 use super::streams::{note, say};
 use bubbletouch::report::page::StudyAbout;
+use bubbletouch::shell_line::shell_line;
 use bubbletouch::study::provenance::MANIFEST_FILE;
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
@@ -29,9 +30,13 @@ pub fn report(args: &Args) -> Result<()> {
     let (name, command) = match &manifest {
         Some(of) if !of.study.is_empty() => (of.study.clone(), of.command.clone()),
         _ => {
-            let study = folder.join("study.toml");
-            let command = format!("bubbletouch run {}", study.display());
-            (folder_name(folder)?, command)
+            let study = folder.join("study.toml").display().to_string();
+            let name = folder_name(folder)?;
+            // A run reads the study and cannot write over it.
+            let again = folder.with_file_name(format!("{name}.again"));
+            let again = again.display().to_string();
+            let words = ["bubbletouch", "run", &study, "--out", &again];
+            (name, shell_line(&words))
         }
     };
     let about = StudyAbout {

@@ -7,6 +7,14 @@ use bubbletouch::study::provenance::Manifest;
 use bubbletouch::{Error, Result};
 use std::path::Path;
 
+/// Checks the files of a folder that a run made beside tables: charts, pictures and the page.
+pub fn check_page(folder: &Path, manifest: &Manifest) -> Result<()> {
+    let files = manifest.files_sha256.iter().flatten();
+    files
+        .into_iter()
+        .try_for_each(|(name, hash)| check(&folder.join(name), hash))
+}
+
 /// The manifest of a folder, whose study and tables are as it says; none if there is no manifest.
 pub fn checked_manifest(folder: &Path) -> Result<Option<Manifest>> {
     let Some(manifest) = Manifest::read(folder)? else {

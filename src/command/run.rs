@@ -15,7 +15,7 @@ use std::sync::Arc;
 pub struct Args {
     #[command(flatten)]
     run: RunArgs,
-    /// Start over; what stands in the folder is kept beside it, as FOLDER.1, FOLDER.2 ... Without it, a run goes on from
+    /// Start over; the old folder of results is renamed to FOLDER.1, FOLDER.2 ... Without it, a run goes on from
     /// what an earlier run of the same study has finished
     #[arg(long)]
     fresh: bool,
@@ -34,7 +34,7 @@ pub struct Args {
 }
 
 pub fn run(args: &Args) -> Result<()> {
-    let run = StudyRun::begin(&args.run)?;
+    let run = StudyRun::begin(&args.run, args.fresh)?;
     let (study, progress) = (run.study.as_ref(), run.progress.as_ref());
     if let Some(mixed) = args.run.results.study.mixed_touches()? {
         progress.finish(&mixed);
@@ -60,12 +60,9 @@ pub fn run(args: &Args) -> Result<()> {
     };
     progress.finish(&format!("{:.1} s", run.elapsed_s()));
     let results = &args.run.results;
-    let mut merge = results.study.arguments();
-    let out = results.out.iter();
-    merge.extend(out.map(|out| format!("--out {}", out.display())));
+    let merge = results.study.command("merge", results.out.as_deref());
     progress.finish(&format!(
-        "shard {shard} is done; when all are, put them together: bubbletouch merge {}",
-        merge.join(" ")
+        "shard {shard} is done; when all are, put them together: {merge}"
     ));
     run.failures(&outcome)
 }

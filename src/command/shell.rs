@@ -3,11 +3,12 @@
 use super::CommandLine;
 use super::output::output_folder;
 use super::streams::{say, write_out};
+use bubbletouch::files::write_bytes;
 use bubbletouch::{Error, Result};
 use clap::CommandFactory;
 use clap_complete::Shell;
 use clap_mangen::Man;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 pub struct CompletionArgs {
@@ -32,12 +33,38 @@ pub fn completions(args: &CompletionArgs) -> Result<()> {
     write_out(&script)
 }
 
+/// Writes the pages of all commands into a folder; the error names a page of that name that is of another program.
+fn write_pages(folder: &Path) -> Result<()> {
+    let failed = |error| Error::io(folder, "write", error);
+    let made = tempfile::tempdir().map_err(failed)?;
+    clap_mangen::generate_to(CommandLine::command(), made.path()).map_err(failed)?;
+    let mut pages = Vec::new();
+    for entry in std::fs::read_dir(made.path()).map_err(failed)? {
+        let entry = entry.map_err(failed)?;
+        let (page, path) = (
+            std::fs::read(entry.path()).map_err(failed)?,
+            folder.join(entry.file_name()),
+        );
+        if std::fs::symlink_metadata(&path).is_ok() {
+            let stands = std::fs::read(&path).unwrap_or_default();
+            if !String::from_utf8_lossy(&stands).contains("\n.TH bubbletouch") {
+                let given = "stands there, and is no manual page of bubbletouch";
+                let allowed = "a folder without such a file; nothing was written";
+                return Err(Error::input(path.display(), given, allowed));
+            }
+        }
+        pages.push((path, page));
+    }
+    output_folder(folder)?;
+    pages
+        .iter()
+        .try_for_each(|(path, page)| write_bytes(path, page))
+}
+
 /// Writes manual pages.
 pub fn man(args: &ManArgs) -> Result<()> {
     if let Some(folder) = &args.out {
-        output_folder(folder)?;
-        let written = clap_mangen::generate_to(CommandLine::command(), folder);
-        written.map_err(|error| Error::io(folder, "write", error))?;
+        write_pages(folder)?;
         return say(format_args!("Manual pages in {}", folder.display()));
     }
     let mut command = CommandLine::command().disable_help_subcommand(true);

@@ -14,7 +14,7 @@ use std::time::Instant;
 /// Simulate a scene: robots, skin and objects that move.
 ///
 /// Writes recording.npz (deflections, forces and poses over time; see `bubbletouch recording`), wrenches.csv (what each patch feels
-/// as a whole, in its frame) and scene.toml (the scene with its defaults).
+/// as a whole, in its frame), scene.toml (the scene with its defaults) and manifest.json (the files that it may replace).
 #[derive(clap::Args)]
 pub struct Args {
     /// The scene, a TOML file; experiments/scenes/ has some

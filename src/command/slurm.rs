@@ -4,15 +4,19 @@ use super::output::output_folder;
 use super::slurm_jobs::{queued_shards, submit};
 use super::streams::say;
 use super::study_run::ResultsArgs;
-use bubbletouch::kinds::AnyStudy;
-use bubbletouch::study::Shard;
+use bubbletouch::kinds::{self, AnyStudy};
+use bubbletouch::shell_line::shell_line;
 use bubbletouch::study::journal::{JOURNAL_FILE, Journal};
 use bubbletouch::study::pieces::Part;
+use bubbletouch::study::{Shard, sha256};
 use bubbletouch::{Error, Result};
 use std::path::Path;
 
 /// Jobs of an array, at most: what Slurm can be set to.
 const MOST_JOBS: usize = 4_000_000;
+
+/// Digits of the hash in a job's name. Fewer: two runs may share a name; more: squeue cuts the name.
+const HASH_DIGITS: usize = 12;
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -39,7 +43,9 @@ pub fn slurm(args: &Args) -> Result<()> {
         return Err(Error::input("--array", n, allowed));
     }
     let folder = args.results.folder()?;
-    let study = args.results.study.load(&folder, None)?;
+    let source = args.results.study.source(&folder)?;
+    kinds::check_folder(&source.text, &folder)?;
+    let study = kinds::load(&source)?;
     output_folder(&folder)?;
     let queued = queued_shards(&args.name("shards")?)?;
     let mut missing = Vec::new();
@@ -72,21 +78,35 @@ pub fn slurm(args: &Args) -> Result<()> {
     ))
 }
 
-/// Whether a shard's journal says what came of all its work.
+/// Whether all work items of a shard have succeeded, in the shard's journal or in the merged one.
 fn is_done(study: &dyn AnyStudy, folder: &Path, shard: Shard) -> Result<bool> {
-    let path = folder.join(shard.file_name(JOURNAL_FILE));
-    let Some((begun, journal)) = Journal::read(&path)? else {
-        return Ok(false);
-    };
-    begun.check_same(study.identity(), &path.display().to_string())?;
-    Ok(study.n_left(Part::Shard(shard), &journal) == 0)
+    let mut known = None::<Journal>;
+    for name in [shard.file_name(JOURNAL_FILE), JOURNAL_FILE.to_owned()] {
+        let path = folder.join(name);
+        let Some((begun, journal)) = Journal::read(&path)? else {
+            continue;
+        };
+        begun.check_same(study.identity(), &path.display().to_string())?;
+        match &mut known {
+            Some(known) => known.take_from(journal)?,
+            None => known = Some(journal),
+        }
+    }
+    Ok(known.is_some_and(|known| study.n_without_success(Part::Shard(shard), &known) == 0))
 }
 
 impl Args {
-    /// The name of jobs in the queue.
+    /// Returns the name of jobs in the queue. Jobs have the same name if they write the same results: a hash tells the study's file, the
+    /// options that replace parts of it, and the folder.
     fn name(&self, what: &str) -> Result<String> {
-        let study = self.results.study.name()?;
-        Ok(format!("bubbletouch-{study}-{what}-of-{}", self.array))
+        let study = &self.results.study;
+        let absolute = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        let mut made_of = study.arguments();
+        made_of[0] = absolute(&study.study).display().to_string();
+        made_of.push(absolute(&self.results.folder()?).display().to_string());
+        let hash = sha256(made_of.join("\n"));
+        let (name, hash, n) = (study.name()?, &hash[..HASH_DIGITS], self.array);
+        Ok(format!("bubbletouch-{name}-{hash}-{what}-of-{n}"))
     }
 
     fn submit_shards(&self, missing: &[String], folder: &Path) -> Result<String> {
@@ -116,8 +136,7 @@ impl Args {
         words.extend(self.results.study.arguments());
         words.extend(["--out".to_owned(), folder.display().to_string()]);
         words.push("--quiet".to_owned());
-        let quoted: Vec<String> = words.iter().map(|word| quoted(word)).collect();
-        Ok(quoted.join(" "))
+        Ok(shell_line(&words))
     }
 
     /// Options of sbatch.
@@ -132,20 +151,5 @@ impl Args {
             options.extend(value.iter().map(|value| format!("--{name}={value}")));
         }
         options
-    }
-}
-
-/// A word as the shell takes it, whatever is in it.
-fn quoted(word: &str) -> String {
-    format!("'{}'", word.replace('\'', r"'\''"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::quoted;
-
-    #[test]
-    fn a_quoted_word_is_one_word_to_the_shell() {
-        assert_eq!(quoted("results/it's $HOME"), r"'results/it'\''s $HOME'");
     }
 }

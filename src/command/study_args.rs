@@ -2,6 +2,7 @@
 
 use super::output::packings_beside;
 use bubbletouch::kinds::{self, AnyStudy, Source};
+use bubbletouch::shell_line::shell_line;
 use bubbletouch::study::TouchesSpec;
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
@@ -61,9 +62,14 @@ impl StudyArgs {
         words
     }
 
-    /// The command that makes the study's results again, as it would be typed.
-    pub fn command(&self) -> String {
-        format!("bubbletouch run {}", self.arguments().join(" "))
+    /// Returns the command that makes the study's results again in the folder `out`, or in the default folder, as a shell takes it.
+    pub fn command(&self, subcommand: &str, out: Option<&Path>) -> String {
+        let mut words = vec!["bubbletouch".to_owned(), subcommand.to_owned()];
+        words.extend(self.arguments());
+        if let Some(out) = out {
+            words.extend(["--out".to_owned(), out.display().to_string()]);
+        }
+        shell_line(&words)
     }
 
     /// Reads and checks the study and loads its objects; its results go to a folder, and it is to hold at most so many bytes.
@@ -100,7 +106,7 @@ impl StudyArgs {
         if self.study == Path::new(QUICKSTART_FILE) && !self.study.exists() {
             return Ok(QUICKSTART.to_owned());
         }
-        std::fs::read_to_string(&self.study).map_err(|error| {
+        bubbletouch::files::read_to_string(&self.study).map_err(|error| {
             let given = format!("cannot be read ({error})");
             Error::input(self.study.display(), given, "a study in TOML")
         })

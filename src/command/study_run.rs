@@ -4,9 +4,10 @@ use super::memory_limit::MemoryLimit;
 use super::output::terminal_width;
 use super::streams::{say, write_out};
 use super::study_args::StudyArgs;
-use bubbletouch::kinds::{AnyStudy, Outcome};
+use bubbletouch::kinds::{self, AnyStudy, Outcome, Source};
 use bubbletouch::report::csv_tables::FAILURES_FILE;
 use bubbletouch::report::progress::{json_lines, to_stderr};
+use bubbletouch::study::journal::check_set_aside;
 use bubbletouch::study::progress::{Progress, Silent};
 use bubbletouch::study::provenance::Manifest;
 use bubbletouch::{Error, Result};
@@ -68,12 +69,21 @@ pub struct StudyRun<'a> {
 }
 
 impl<'a> StudyRun<'a> {
-    /// Reads and checks the study and loads its objects; nothing is written yet.
-    pub fn begin(args: &'a RunArgs) -> Result<Self> {
+    /// Reads and checks the study and loads its objects; nothing is written yet. A `fresh` run sets the old folder aside.
+    pub fn begin(args: &'a RunArgs, fresh: bool) -> Result<Self> {
         let started = SystemTime::now();
         let folder = args.results.folder()?;
+        let source = Source {
+            memory: args.memory.bytes()?,
+            ..args.results.study.source(&folder)?
+        };
+        match fresh {
+            true => check_set_aside(&folder)?,
+            false => kinds::check_folder(&source.text, &folder)?,
+        }
+        let study = kinds::load(&source)?;
         Ok(Self {
-            study: args.results.study.load(&folder, args.memory.bytes()?)?,
+            study,
             folder,
             progress: args.progress(),
             args,
@@ -93,7 +103,7 @@ impl<'a> StudyRun<'a> {
         self.progress.stage("report", 1);
         let manifest = Manifest {
             study: of_study.name()?,
-            command: of_study.command(),
+            command: of_study.command("run", Some(folder)),
             paths_from: of_study.folder(),
             n_finished_before: n_before,
             ..Manifest::ended(study.identity(), self.started)

@@ -2,20 +2,25 @@
 
 use super::output::output_folder;
 use super::study_args::StudyArgs;
-use bubbletouch::kinds::recognition::{load_study, read_plan};
+use bubbletouch::files::DataFolder;
+use bubbletouch::kinds::recognition::{load_study, read_plans, touch_content};
 use bubbletouch::report::progress;
+use bubbletouch::study::axes::AxisValues;
+use bubbletouch::study::taxel_array::TaxelArray;
 use bubbletouch::study::{
-    Plan, ReadFrames, load_objects, millimetres, write_human_touches, write_touches,
+    Plan, ReadFrames, TOUCH_FILES, load_objects, millimetres, touch_units, write_human_touches,
+    write_touches,
 };
 use bubbletouch::{Error, Result};
+use std::collections::HashSet;
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
     study: StudyArgs,
-    /// Where to write frames.npy, labels.npy, poses.npy, depths.npy, touches.csv, objects.csv and recorded.toml; one folder an array
-    /// and number of frames if the study has several
+    /// Where to write frames.npy, labels.npy, poses.npy, depths.npy, touches.csv, objects.csv, recorded.toml and manifest.json
+    /// (quantity and unit of frames); one folder for each array, and for each value of an axis that changes touches, if the study has several
     #[arg(long, value_name = "FOLDER")]
     out: PathBuf,
     /// Frames as this cell of the study reads them (its number in the study's tables), with noise and whatever else its signal has;
@@ -27,53 +32,61 @@ pub struct Args {
     trial: usize,
 }
 
+/// Touches on one array, in one combination of the study's own axes.
+struct DataSet<'a> {
+    plan: &'a Plan,
+    array: &'a TaxelArray,
+    n_frames: usize,
+    axes: &'a AxisValues,
+    /// Folder below the output folder; empty if there is one data set.
+    folder: String,
+}
+
 pub fn touches(args: &Args) -> Result<()> {
     let source = args.study.source(&args.out)?;
     let progress = progress::to_stderr();
-    let (plan, read) = match args.cell {
-        None => (read_plan(&source)?, None),
+    let (plans, read) = match args.cell {
+        None => (read_plans(&source)?, None),
         Some(cell) => {
+            // Before objects are packed; again below, once all files are known.
+            DataFolder::claim(&args.out, "touches", TOUCH_FILES)?;
             let study = load_study(&source)?;
             let part = study.part_of(cell);
             args.check(&part.plan)?;
             let which = (cell, args.trial);
             let read = ReadFrames::of_cell(part, which, progress.as_ref())?;
-            (part.plan.clone(), Some(read))
+            (vec![(AxisValues::default(), part.plan.clone())], Some(read))
         }
     };
-    args.check(&plan)?;
-    let objects = match &plan.spec.human_touch {
-        Some(_) => Vec::new(),
-        None => load_objects(&plan.spec.objects, source.packings.as_deref())?,
+    plans.iter().try_for_each(|(_, plan)| args.check(plan))?;
+    let sets = data_sets(&plans, read.as_ref());
+    let below = |set: &DataSet, name: &str| match set.folder.is_empty() {
+        true => name.to_owned(),
+        false => format!("{}/{name}", set.folder),
     };
+    let files = sets
+        .iter()
+        .flat_map(|set| TOUCH_FILES.map(|name| below(set, name)));
+    let files: Vec<String> = files.collect();
+    let mut claimed = DataFolder::claim(&args.out, "touches", files.iter().map(String::as_str))?;
+    let is_force = read.as_ref().is_some_and(|read| read.is_force);
+    for set in &sets {
+        let units = touch_units(set.array, is_force);
+        claimed.describe(&below(set, "frames.npy"), units);
+    }
+    output_folder(&args.out)?;
+    claimed.write_manifest()?;
     let mut n_touches = 0;
-    let arrays: Vec<_> = match &read {
-        None => plan.arrays.iter().collect(),
-        Some(read) => vec![&plan.arrays[read.array]],
-    };
-    let counts = match &read {
-        None => plan.frames.clone(),
-        Some(_) => vec![1],
-    };
-    let sets = arrays.iter();
-    let sets = sets.flat_map(|&array| counts.iter().map(move |&n_frames| (array, n_frames)));
-    for (array, n_frames) in sets {
-        let ((ny, nx), pitch_mm) = (array.shape(), millimetres(array.pitch()));
-        let of_array = format!("{nx}x{ny}_at_{pitch_mm}_mm");
-        let of_frames = format!("{n_frames}_frames");
-        let folder = match (arrays.len(), counts.len()) {
-            (1, 1) => args.out.clone(),
-            (_, 1) => args.out.join(of_array),
-            (1, _) => args.out.join(of_frames),
-            _ => args.out.join(format!("{of_array}_{of_frames}")),
-        };
+    for set in &sets {
+        let folder = args.out.join(&set.folder);
         output_folder(&folder)?;
-        let progress = progress.as_ref();
+        let (plan, array, progress) = (set.plan, set.array, progress.as_ref());
         n_touches += match &plan.spec.human_touch {
-            Some(human) => write_human_touches(&folder, human, &plan, array, progress)?,
+            Some(human) => write_human_touches(&folder, human, plan, array, progress)?,
             None => {
-                let on = (array, n_frames);
-                write_touches(&folder, &objects, &plan, on, read.as_ref(), progress)?
+                let objects = load_objects(&plan.spec.objects, source.packings.as_deref())?;
+                let on = (array, set.n_frames);
+                write_touches(&folder, &objects, plan, on, read.as_ref(), progress)?
             }
         };
     }
@@ -86,6 +99,88 @@ pub fn touches(args: &Args) -> Result<()> {
         args.out.display()
     ));
     Ok(())
+}
+
+/// Lists each set of touches on each array once, and names their folders by what differs between them.
+fn data_sets<'a>(plans: &'a [(AxisValues, Plan)], read: Option<&ReadFrames>) -> Vec<DataSet<'a>> {
+    let mut sets = Vec::new();
+    let mut known = HashSet::new();
+    for (axes, plan) in plans {
+        let arrays = plan.arrays.iter().enumerate();
+        let is_asked = |&(number, _): &(usize, _)| read.is_none_or(|read| read.array == number);
+        for (_, array) in arrays.filter(is_asked) {
+            let counts = match read {
+                None => plan.frames.clone(),
+                Some(_) => vec![1],
+            };
+            for n_frames in counts {
+                if known.insert((touch_content(plan), format!("{array:?}"), n_frames)) {
+                    let folder = String::new();
+                    sets.push(DataSet {
+                        plan,
+                        array,
+                        n_frames,
+                        axes,
+                        folder,
+                    });
+                }
+            }
+        }
+    }
+    let parts: Vec<Vec<String>> = sets.iter().map(folder_parts).collect();
+    let Some(first) = parts.first().filter(|_| parts.len() > 1) else {
+        return sets;
+    };
+    let differs: Vec<bool> = (0..first.len())
+        .map(|part| parts.iter().any(|other| other[part] != first[part]))
+        .collect();
+    for (set, parts) in sets.iter_mut().zip(&parts) {
+        let named = parts.iter().zip(&differs).filter(|(_, differs)| **differs);
+        let named: Vec<&str> = named.map(|(part, _)| part.as_str()).collect();
+        set.folder = named.join("_");
+    }
+    number_equal_names(&mut sets);
+    sets
+}
+
+/// The array, then each axis with its value, as parts of a folder's name.
+fn folder_parts(set: &DataSet) -> Vec<String> {
+    let ((ny, nx), pitch_mm) = (set.array.shape(), millimetres(set.array.pitch()));
+    let array = format!("{nx}x{ny}_at_{pitch_mm}_mm");
+    let axes = set.axes.values.iter().map(|axis| {
+        let value = match &axis.value {
+            toml::Value::Float(number) => number.to_string(),
+            toml::Value::String(text) => text.clone(),
+            value => value.to_string(),
+        };
+        let plain = |c: char| {
+            if c.is_alphanumeric() || "._-".contains(c) {
+                c
+            } else {
+                '_'
+            }
+        };
+        let name = format!("{}_{value}", axis.column.name);
+        name.chars().map(plain).collect()
+    });
+    let frames = format!("{}_frames", set.n_frames);
+    [array, frames].into_iter().chain(axes).collect()
+}
+
+/// Adds a number to names of folders that several sets have: arrays of the same shape and pitch may differ in what a name does not tell.
+fn number_equal_names(sets: &mut [DataSet]) {
+    let names: Vec<String> = sets.iter().map(|set| set.folder.clone()).collect();
+    for (place, set) in sets.iter_mut().enumerate() {
+        let n_before = names[..place]
+            .iter()
+            .filter(|name| **name == names[place])
+            .count();
+        if names.iter().filter(|name| **name == names[place]).count() > 1 {
+            set.folder = format!("{}_{}", names[place], n_before + 1)
+                .trim_start_matches('_')
+                .to_owned();
+        }
+    }
 }
 
 impl Args {

@@ -1,7 +1,7 @@
 //! `bubbletouch verify`: whether a folder of results comes out again.
 
 use super::memory_limit::MemoryLimit;
-use super::results_folder::{checked_manifest, load_study};
+use super::results_folder::{check_page, checked_manifest, load_study};
 use super::streams::say;
 use super::study_args::set_threads;
 use bubbletouch::report::progress::to_stderr;
@@ -32,6 +32,7 @@ pub fn verify(args: &Args) -> Result<()> {
         let path = folder.join(MANIFEST_FILE);
         Error::input(path.display(), "is missing", "the manifest of a run")
     })?;
+    check_page(folder, &manifest)?;
     if manifest.source != SOURCE {
         say(format_args!(
             "note: the results were made by {} (commit {}), not by this version",

@@ -26,6 +26,9 @@ pub trait AnyStudy {
     /// Of a part, those of which a journal does not say what came of them.
     fn n_left(&self, part: Part, journal: &Journal) -> usize;
 
+    /// Returns the number of work items in `part` that have not succeeded according to the journal.
+    fn n_without_success(&self, part: Part, journal: &Journal) -> usize;
+
     /// Does what is left.
     ///
     /// # Errors

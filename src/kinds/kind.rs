@@ -63,7 +63,10 @@ impl Facts {
 }
 
 /// A [`File`] of rows of any type.
-pub trait AnyFile {
+pub trait AnyFile: Sync {
+    /// See [`File::name`].
+    fn name(&self) -> &'static str;
+
     /// See [`File::read`].
     ///
     /// # Errors
@@ -78,6 +81,10 @@ pub trait AnyFile {
 }
 
 impl<R: Columns> AnyFile for File<R> {
+    fn name(&self) -> &'static str {
+        self.name()
+    }
+
     fn read(&self, folder: &Path) -> Result<Table> {
         self.read(folder)
     }
@@ -100,6 +107,12 @@ pub trait Kind: PieceStudy + Findings + Sized + Sync + 'static {
 
     /// Those behind them, of parts that a study may leave out.
     const FILES_OF_PARTS: Files = &[];
+
+    /// Names of all table files that a study of this kind may write.
+    fn table_names() -> Vec<&'static str> {
+        let files = Self::FILES.iter().chain(Self::FILES_OF_PARTS);
+        files.map(|file| file.name()).collect()
+    }
 
     /// Reads and checks a study, and loads its objects.
     ///

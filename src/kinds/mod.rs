@@ -28,6 +28,8 @@ pub use source::Source;
 use groups::{found_and_cost, grouped};
 
 use crate::error::Result;
+use crate::files::{OwnedFiles, RUN, with_folder};
+use crate::report::csv_tables::FAILURES_FILE;
 use crate::table::Table;
 use crate::toml_text;
 use std::path::Path;
@@ -37,6 +39,7 @@ struct Entry {
     about: About,
     load: fn(&Source) -> Result<Box<dyn AnyStudy>>,
     read: fn(&Path) -> Result<Vec<Table>>,
+    table_names: fn() -> Vec<&'static str>,
 }
 
 /// All kinds.
@@ -58,6 +61,7 @@ const fn entry<K: Kind>() -> Entry {
         about: K::ABOUT,
         load: |source| Ok(Box::new(Loaded::<K>::load(source)?)),
         read: K::read,
+        table_names: K::table_names,
     }
 }
 
@@ -72,7 +76,17 @@ pub fn about(text: &str) -> Option<About> {
 /// Those of its [`Kind::load`].
 pub fn load(source: &Source) -> Result<Box<dyn AnyStudy>> {
     let entry = find(&source.text).unwrap_or(&RECOGNITION);
-    (entry.load)(source)
+    with_folder(source.folder.clone(), || (entry.load)(source))
+}
+
+/// Checks before a study is loaded that a folder can take its results: no file that the run writes is of somebody else.
+///
+/// # Errors
+/// If the folder has such a file, or one that this command has read; the error names the file.
+pub fn check_folder(study: &str, folder: &Path) -> Result<()> {
+    let entry = find(study).unwrap_or(&RECOGNITION);
+    let tables = (entry.table_names)().into_iter().chain([FAILURES_FILE]);
+    OwnedFiles::read(folder, RUN)?.check_results(tables)
 }
 
 /// The tables of a folder of results of any kind, and which kind that is. Nothing that the study is about is loaded.

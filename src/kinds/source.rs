@@ -1,6 +1,7 @@
 //! Where a study comes from, and what overrides it.
 
 use crate::error::{Error, Result};
+use crate::files::SetName;
 use crate::study::{ObjectsSpec, RecordedSpec};
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
@@ -60,10 +61,10 @@ impl Source {
         };
         objects.sets.clear();
         if given.extension().is_some_and(|ending| ending == "toml") {
-            objects.sets.push(given.display().to_string());
+            objects.sets.push(SetName::File(given.clone().into()));
             objects.meshes = None;
         } else {
-            objects.meshes = Some(given.clone());
+            objects.meshes = Some(given.clone().into());
         }
     }
 

@@ -26,25 +26,38 @@ impl<K: Kind> Loaded<K> {
     }
 }
 
-/// How many rows without times stand in a folder as they came out again; the error names the first that does not.
-pub fn same_rows(folder: &Path, again: &[Table]) -> Result<usize> {
+/// Returns how many rows without times stand in a folder as they came out again. If `is_whole`, all work items ran again, and whole tables
+/// are compared: a row more or less, or a summary that differs, is noticed.
+///
+/// # Errors
+/// If a row differs; the error names file and line.
+pub fn same_rows(folder: &Path, again: &[Table], is_whole: bool) -> Result<usize> {
     let mut n_rows = 0;
-    let of_items = again.iter();
-    for table in of_items.filter(|table| table.repeats && !table.is_summary) {
+    let of_items = again
+        .iter()
+        .filter(|table| table.repeats && !table.csv.is_empty());
+    for table in of_items.filter(|table| is_whole || !table.is_summary) {
         let path = folder.join(table.file);
-        let stands = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, "read", e))?;
-        let stands: BTreeSet<&str> = stands.lines().collect();
+        let text = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, "read", e))?;
+        let lines = text.lines();
+        let stands: BTreeSet<&str> = lines.clone().collect();
         let content = String::from_utf8_lossy(&table.csv);
         for row in content.lines().skip(1) {
             if !stands.contains(row) {
-                let nearest = stands.iter().max_by_key(|other| n_alike(row, other));
+                let nearest = lines.zip(1..).max_by_key(|(other, _)| n_alike(row, other));
+                let (nearest, line) = nearest.unwrap_or(("(none)", 1));
                 return Err(Error::input(
-                    path.display(),
-                    format!("has the row\n  {}", nearest.unwrap_or(&"(none)")),
+                    format!("{}:{line}", path.display()),
+                    format!("has the row\n  {nearest}"),
                     format!("\n  again it is\n  {row}"),
                 ));
             }
             n_rows += 1;
+        }
+        if is_whole && content != text {
+            let given = "differs from the table that all work items give";
+            let allowed = "the rows of one run, each once, in their order";
+            return Err(Error::input(path.display(), given, allowed));
         }
     }
     Ok(n_rows)

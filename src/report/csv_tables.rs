@@ -6,7 +6,6 @@
 use crate::error::{Error, Result};
 use crate::table::csv_place;
 use serde::de::DeserializeOwned;
-use std::fs::File;
 use std::path::Path;
 
 /// What failed, and why.
@@ -25,7 +24,7 @@ const A_TABLE: &str = "a table of results as bubbletouch run writes it";
 /// # Errors
 /// The error names the file and the line.
 pub fn read_rows<R: DeserializeOwned>(path: &Path) -> Result<Vec<R>> {
-    let file = File::open(path).map_err(|e| Error::unreadable(path, A_TABLE, e))?;
+    let file = crate::files::open(path).map_err(|e| Error::unreadable(path, A_TABLE, e))?;
     csv::Reader::from_reader(file)
         .into_deserialize()
         .map(|row| row.map_err(|e| read_error(path, e)))

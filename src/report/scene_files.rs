@@ -2,7 +2,7 @@
 
 use super::recording::{ForceKind, RecordedPatch, RecordingHeader, RecordingWriter};
 use crate::error::Result;
-use crate::files::{CsvFile, write_bytes};
+use crate::files::{CsvFile, DataFolder, write_bytes};
 use crate::scene::{Frame, FrameSink, PatchReading, PlannedPatch, PlannedSignal, ScenePlan};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -31,10 +31,15 @@ struct WrenchRow<'a> {
     n_slipping: Option<usize>,
 }
 
+const RECORDING: &str = "recording.npz";
+const WRENCHES: &str = "wrenches.csv";
+const SCENE: &str = "scene.toml";
+
 /// The files of a scene in the making: `recording.npz`, `wrenches.csv` (in the frame of each patch, on the patch) and `scene.toml`
 /// in one folder. [`finish`](Self::finish) puts them in place; dropped before, it leaves nothing behind.
 pub struct SceneFiles {
     folder: PathBuf,
+    claimed: DataFolder,
     names: Vec<String>,
     scene: String,
     recording: RecordingWriter,
@@ -45,8 +50,9 @@ impl SceneFiles {
     /// Starts the files in a folder that is there.
     ///
     /// # Errors
-    /// The error is a name that a recording cannot have (such as one with a slash), or why nothing can be written.
+    /// If the folder has such a file that no simulation wrote; the error names it. Otherwise the error is a name that a recording cannot have (such as one with a slash), or why nothing can be written.
     pub fn create(folder: &Path, plan: &ScenePlan) -> Result<Self> {
+        let claimed = DataFolder::claim(folder, "simulate", [RECORDING, WRENCHES, SCENE])?;
         let header = RecordingHeader {
             patches: plan.patches.iter().map(recorded).collect(),
             objects: plan
@@ -67,10 +73,11 @@ impl SceneFiles {
             .map(|patch| patch.skin.name().to_owned());
         Ok(Self {
             folder: folder.to_owned(),
+            claimed,
             names: names.collect(),
             scene: plan.spec.to_toml(),
-            recording: RecordingWriter::create(&folder.join("recording.npz"), header)?,
-            wrenches: CsvFile::create(&folder.join("wrenches.csv"))?,
+            recording: RecordingWriter::create(&folder.join(RECORDING), header)?,
+            wrenches: CsvFile::create(&folder.join(WRENCHES))?,
         })
     }
 
@@ -79,9 +86,10 @@ impl SceneFiles {
     /// # Errors
     /// They cannot be written.
     pub fn finish(self) -> Result<()> {
+        self.claimed.write_manifest()?;
         self.recording.finish()?;
         self.wrenches.commit()?;
-        write_bytes(&self.folder.join("scene.toml"), self.scene.as_bytes())
+        write_bytes(&self.folder.join(SCENE), self.scene.as_bytes())
     }
 }
 

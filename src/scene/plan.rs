@@ -57,7 +57,7 @@ impl ScenePlan {
     /// A file that cannot be read; those of [`new`](Self::new).
     pub fn read(path: &Path) -> Result<Self> {
         let place = path.display().to_string();
-        let text = std::fs::read_to_string(path).map_err(|e| {
+        let text = crate::files::read_to_string(path).map_err(|e| {
             Error::input(&place, format!("cannot be read ({e})"), "a scene in TOML")
         })?;
         let folder = path.parent().unwrap_or(Path::new(""));

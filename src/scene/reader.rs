@@ -51,7 +51,7 @@ impl Reader<'_> {
     pub fn open(&self, key: &str, path: &Path) -> Result<(String, BufReader<File>)> {
         let path = self.path(path);
         let place = path.display().to_string();
-        match File::open(&path) {
+        match crate::files::open(&path) {
             Ok(file) => Ok((place, BufReader::new(file))),
             Err(error) => {
                 let given = format!("{place}, which cannot be opened ({error})");

@@ -9,6 +9,7 @@
 //! | `groups.npy` | n, i64: the group of every row, where the study has groups of touches that are never on both sides of a split |
 //! | `objects.csv` | one row an object: number, name |
 //! | `cell.toml` | the settings of the cell and the trial |
+//! | `manifest.json` | the files of the folder; only files that it lists are ever replaced |
 
 use super::arrays::{KeyValue, read_class_labels, read_group_keys, read_matrix, read_rows};
 use super::evaluation::learned_rows;
@@ -20,13 +21,24 @@ use super::spec::RecognitionSpec;
 use super::sweep::{Group, StudyPart, Sweep};
 use super::table::Cell;
 use crate::error::{Error, Result};
-use crate::files::{CsvFile, write_bytes};
+use crate::files::{CsvFile, DataFolder, write_bytes};
 use crate::recognition::data::dataset::{Dataset, dataset, rows};
 use crate::recognition::data::split::Split;
 use ndarray::{Array1, Axis};
 use serde::Serialize;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
+
+/// Names of the files that [`StudyPart::write_features`] may write.
+pub const FEATURE_FILES: [&str; 7] = [
+    "features.npy",
+    "labels.npy",
+    "train.npy",
+    "test.npy",
+    "groups.npy",
+    "objects.csv",
+    "cell.toml",
+];
 
 /// Labelled measurements and the rows that one trial trains on and tests.
 #[derive(Clone, Debug)]
@@ -137,19 +149,20 @@ impl StudyPart {
         measure_group(&inputs, touches, trial, (n_measurements, None))
     }
 
-    /// Writes the measurements of one cell in one trial into a folder that exists.
+    /// Writes the measurements of one cell in one trial into a folder that exists, claimed for [`FEATURE_FILES`].
     ///
     /// # Errors
     /// As [`features`](Self::features); a file that cannot be written.
     pub fn write_features(
         &self,
-        folder: &Path,
+        (folder, claimed): (&Path, &DataFolder),
         (cell, trial): (usize, usize),
         progress: &dyn Progress,
     ) -> Result<FeatureSet> {
         let spec = &self.plan.spec;
         let set = self.features((cell, trial), progress)?;
         let Split { train, test } = &set.split;
+        claimed.write_manifest()?;
         write_npy(&folder.join("features.npy"), &set.data.records)?;
         write_integers(&folder.join("labels.npy"), set.data.targets.to_vec())?;
         write_integers(&folder.join("train.npy"), train.clone())?;

@@ -4,6 +4,7 @@ use super::content_hash::sha256;
 use super::packings::pack_within;
 use super::spec::{ModelSpec, ObjectsSpec};
 use crate::error::{Error, Result};
+use crate::files::SetName;
 use crate::geometry::Aabb;
 use crate::mesh::{
     LengthUnit, MeshFile, MeshFormat, Orientation, SizeLimits, Surface, TriangleMesh,
@@ -56,7 +57,7 @@ pub fn load_objects(spec: &ObjectsSpec, packings: Option<&Path>) -> Result<Vec<O
 /// A file that cannot be read; those of [`Catalogue::parse`].
 pub fn load_catalogue(path: &Path) -> Result<Catalogue> {
     let place = path.display().to_string();
-    let text = std::fs::read_to_string(path).map_err(|e| {
+    let text = crate::files::read_to_string(path).map_err(|e| {
         let given = format!("cannot be read ({e})");
         Error::input(&place, given, "a TOML file of objects")
     })?;
@@ -87,7 +88,7 @@ pub fn objects_content(spec: &ObjectsSpec) -> Result<BTreeMap<String, String>> {
 /// # Errors
 /// It cannot be read.
 pub fn file_content(path: &Path) -> Result<String> {
-    let bytes = std::fs::read(path).map_err(|e| Error::io(path, "read", e))?;
+    let bytes = crate::files::read(path).map_err(|e| Error::io(path, "read", e))?;
     Ok(sha256(bytes))
 }
 
@@ -141,7 +142,7 @@ pub fn load_spheres(
 }
 
 fn open(path: &Path, allowed: &str) -> Result<BufReader<File>> {
-    let file = File::open(path).map_err(|error| {
+    let file = crate::files::open(path).map_err(|error| {
         let given = format!("cannot be opened ({error})");
         Error::input(path.display(), given, allowed)
     })?;
@@ -242,12 +243,12 @@ pub fn load_named_meshes(folder: &Path, spec: &ObjectsSpec) -> Result<Vec<NamedM
 }
 
 /// The wanted objects of a set, built-in or of a TOML file, as solids.
-pub(crate) fn set_entries(set: &str, names: Option<&[String]>) -> Result<Vec<Entry>> {
-    let mut entries: Vec<Entry> = match set.ends_with(".toml") {
-        true => load_catalogue(Path::new(set))?.entries().to_vec(),
-        false => {
+pub(crate) fn set_entries(set: &SetName, names: Option<&[String]>) -> Result<Vec<Entry>> {
+    let mut entries: Vec<Entry> = match set {
+        SetName::File(path) => load_catalogue(path)?.entries().to_vec(),
+        SetName::BuiltIn(name) => {
             let builtin = Catalogue::builtin()?;
-            builtin.set(set)?.into_iter().cloned().collect()
+            builtin.set(name)?.into_iter().cloned().collect()
         }
     };
     entries.retain(|entry| is_wanted(&entry.name, names));

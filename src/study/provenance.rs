@@ -25,8 +25,10 @@ const RUSTC: &str = env!("BUBBLETOUCH_RUSTC");
 /// What it was built for.
 const TARGET: &str = env!("BUBBLETOUCH_TARGET");
 
-/// The manifest's name in a folder of results.
-pub const MANIFEST_FILE: &str = "manifest.json";
+pub use crate::files::MANIFEST_FILE;
+
+/// The subcommand in the manifest of a folder without a run whose charts and page were made again.
+pub const REPORT: &str = "report";
 
 /// `manifest.json`: where the files of a folder come from.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -85,6 +87,9 @@ pub struct Manifest {
     /// SHA-256 of those that do, which no two runs share; empty in manifests of earlier versions.
     #[serde(default)]
     pub times_sha256: BTreeMap<String, String>,
+    /// SHA-256 of all other files of the folder but this one, by name: charts, pictures and the page. `None` in manifests of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub files_sha256: Option<BTreeMap<String, String>>,
     /// How the intervals and p-values of the tables are made, by table and columns.
     #[serde(default)]
     pub methods: BTreeMap<String, String>,
@@ -112,7 +117,7 @@ impl Manifest {
         }
     }
 
-    /// Reads a folder's; none if it has none.
+    /// Reads the manifest of a folder of results. Returns `None` if there is none, or only that of a page made by `bubbletouch report`.
     ///
     /// # Errors
     /// It cannot be read, or is not of this program.
@@ -122,6 +127,10 @@ impl Manifest {
             return Ok(None);
         }
         let text = fs::read_to_string(&path).map_err(|e| Error::io(&path, "read", e))?;
+        let is_of_page = |json: &serde_json::Value| json["written_by"] == REPORT;
+        if serde_json::from_str(&text).is_ok_and(|json| is_of_page(&json)) {
+            return Ok(None);
+        }
         let read = serde_json::from_str(&text);
         read.map(Some)
             .map_err(|e| Error::input(path.display(), e, "a manifest of this program"))

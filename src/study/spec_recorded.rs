@@ -2,6 +2,7 @@
 
 use super::arrays::{FileArray, FrameAxes, FrameShape, frame_shape, is_member};
 use crate::error::{Error, Result};
+use crate::files::{file_path, optional_file_path};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -12,11 +13,17 @@ use std::path::{Path, PathBuf};
 pub struct RecordedSpec {
     /// n × rows × columns, n × F × rows × columns of touches of F frames, or n × taxels of a skin without rows and columns; any type of number of up to
     /// 64 bits. The other files may be left out where this is an archive that contains their arrays.
+    #[serde(deserialize_with = "file_path")]
     pub frames: PathBuf,
     /// n: the class of every touch: whole numbers, texts, or n × classes of 0 and 1.
-    #[serde(default, skip_serializing_if = "is_empty")]
+    #[serde(
+        default,
+        skip_serializing_if = "is_empty",
+        deserialize_with = "file_path"
+    )]
     pub labels: PathBuf,
     /// n: touches that share a number or a text are never on both sides of a split, those of a grasp or of a day, say.
+    #[serde(default, deserialize_with = "optional_file_path")]
     pub groups: Option<PathBuf>,
     /// A letter for each axis of the frames: n touches, t frames of a touch, y rows, x columns, c values of a taxel, or taxels without rows and
     /// columns; `n y x`, `n t y x` or `n c` when left out.
@@ -26,13 +33,25 @@ pub struct RecordedSpec {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grid: Option<[usize; 2]>,
     /// Frames of the given test set, with the axes of `frames`; all touches of `frames` then train.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "optional_file_path"
+    )]
     pub frames_test: Option<PathBuf>,
     /// Their classes, as in `labels`.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "optional_file_path"
+    )]
     pub labels_test: Option<PathBuf>,
     /// Their groups, from which the interval of an accuracy comes.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "optional_file_path"
+    )]
     pub groups_test: Option<PathBuf>,
     /// What the classes are called, by their labels.
     pub names: Option<Vec<String>>,
@@ -42,7 +61,11 @@ pub struct RecordedSpec {
     /// The reading of a taxel at its full scale, which is its stroke; the largest of the frames when left out.
     pub full_scale: Option<f64>,
     /// n: how far each touch was pressed, metres; with `speed_mm_per_s` this is the time between its frames.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "optional_file_path"
+    )]
     pub depths: Option<PathBuf>,
     /// Approach speed at the moment of reading, mm/s: what the damper feels.
     #[serde(default, skip_serializing_if = "is_zero")]

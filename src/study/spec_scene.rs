@@ -3,22 +3,22 @@
 use super::axis::Axis;
 use super::defaults::number;
 use super::spec::one_value;
+use crate::files::{FilePath, SetName};
 use crate::mesh::{LengthUnit, SizeLimits};
 use crate::world::{ArrayLayout, RestPoses};
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
 
 /// `[objects]`
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ObjectsSpec {
-    /// Sets of solids: built-in names (`household`, `balls`, `boxes`, `cans`, `hands`) or TOML files.
+    /// Sets of solids: built-in names (`household`, `balls`, `boxes`, `cans`, `hands`) or TOML files, their paths relative to the study file.
     #[serde(default)]
-    pub sets: Vec<String>,
+    pub sets: Vec<SetName>,
     /// Only these objects of the sets and meshes; all when left out.
     pub names: Option<Vec<String>>,
-    /// A folder of PLY, OBJ or STL meshes, one object a file.
-    pub meshes: Option<PathBuf>,
+    /// A folder of PLY, OBJ or STL meshes, one object a file; its path is relative to the study file.
+    pub meshes: Option<FilePath>,
     /// What the meshes become; spheres around their vertices when left out.
     pub model: Option<ModelSpec>,
     /// The unit of the meshes' files. When left out, metres, and each must be of a size that the arrays can feel.

@@ -22,8 +22,9 @@ use super::human_touches::HumanTouches;
 use super::npy::{NpyFile, write_integers};
 use super::plan::{Plan, as_written, millimetres};
 use super::progress::Progress;
+use super::sensed::Sensed;
 use super::simulation::touch_stream;
-use super::spec::{HumanTouchSpec, PreviousTouch, RecordedSpec, SkinSpec};
+use super::spec::{HumanTouchSpec, PreviousTouch, RecordedSpec, SkinSpec, StepSpec};
 use super::sweep::{Group, StudyPart};
 use super::taxel_array::TaxelArray;
 use super::touch_set::TouchSet;
@@ -83,6 +84,8 @@ pub struct ReadFrames {
     /// n_touches · F rows of n_taxels; the deepest frame of a touch is the last of its F.
     values: Array2<f64>,
     n_frames: usize,
+    /// Whether the values are newtons; else metres.
+    pub is_force: bool,
 }
 
 impl ReadFrames {
@@ -108,6 +111,8 @@ impl ReadFrames {
             array: group.array,
             values: read.values,
             n_frames: group.frames,
+            is_force: *part.plan.arrays[group.array].sensed() != Sensed::Deflection
+                || part.plan.spec.signal.steps.contains(&StepSpec::Force),
         })
     }
 
@@ -115,6 +120,32 @@ impl ReadFrames {
         let deepest = self.values.row((touch + 1) * self.n_frames - 1);
         deepest.iter().map(|&value| value as f32).collect()
     }
+}
+
+/// Names of the files that touches may be written to, in the folder of an array.
+pub const TOUCH_FILES: [&str; 8] = [
+    "frames.npy",
+    "labels.npy",
+    "poses.npy",
+    "depths.npy",
+    "taxels.npy",
+    "touches.csv",
+    "objects.csv",
+    "recorded.toml",
+];
+
+/// Returns quantity and unit of `frames.npy`, channel by channel, as JSON.
+pub fn touch_units(array: &TaxelArray, is_force: bool) -> serde_json::Value {
+    let first = match is_force {
+        true => ("force", "N"),
+        false => ("deflection", "m"),
+    };
+    let mut channels = vec![first];
+    if array.sensed().n_channels() > 1 {
+        channels.extend([("shear force along x", "N"), ("shear force along y", "N")]);
+    }
+    let (quantities, units): (Vec<&str>, Vec<&str>) = channels.into_iter().unzip();
+    serde_json::json!({"quantity": quantities, "unit": units})
 }
 
 /// Simulates all touches of an array, F frames each, drawn a block at a time, and writes them into a folder that exists, with the deepest frames as

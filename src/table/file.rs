@@ -81,7 +81,7 @@ impl<R: Columns> File<R> {
     /// Those of [`read`](Self::read).
     pub fn read_columns(&self, columns: Vec<Column>, folder: &Path) -> Result<Table> {
         let path = folder.join(self.name);
-        let csv = std::fs::read(&path)
+        let csv = crate::files::read(&path)
             .map_err(|e| Error::unreadable(&path, "a table that bubbletouch run wrote", e))?;
         self.table(columns, &path, csv)
     }

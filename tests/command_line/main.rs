@@ -16,6 +16,8 @@ mod events;
 mod features;
 mod instructions;
 mod mesh;
+mod outputs;
+mod paths;
 mod press;
 mod readme;
 mod recording;

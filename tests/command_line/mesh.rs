@@ -219,7 +219,7 @@ fn a_study_closes_holes_only_where_it_is_told_to() {
     case.file("meshes/cube.obj", cube_with_hole());
     let load = |model, close_holes_mm| {
         let spec = ObjectsSpec {
-            meshes: Some(case.path("meshes")),
+            meshes: Some(case.path("meshes").into()),
             model: Some(model),
             unit: Some(LengthUnit::Millimetre),
             surface_error_mm: Some(1.0),

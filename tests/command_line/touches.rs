@@ -128,7 +128,8 @@ fn the_frames_are_the_librarys_one_folder_an_array() {
             (expected.facts.n_missed, expected.facts.n_saturated)
         );
     }
-    assert_eq!(std::fs::read_dir(case.path("data")).unwrap().count(), 2);
+    // And the manifest.
+    assert_eq!(std::fs::read_dir(case.path("data")).unwrap().count(), 2 + 1);
 }
 
 #[test]
@@ -293,6 +294,7 @@ fn one_array_needs_no_folder_of_its_own_and_threads_change_no_byte() {
             "depths.npy",
             "frames.npy",
             "labels.npy",
+            "manifest.json",
             "objects.csv",
             "poses.npy",
             "touches.csv"
@@ -370,4 +372,102 @@ fn fifty_thousand_touches_need_no_more_memory_than_five_hundred() {
     );
     // Their frames are 50,000 KiB, a list of them would be 8,000; buffers and a peak seen a millisecond late, a few hundred.
     assert!(grown < 4 * 1024, "{grown} KiB more");
+}
+
+/// Small frames for studies with axes of their own.
+const AXES: &str = r#"
+question = "Is every array written?"
+trials = 2
+
+[objects]
+sets = ["household"]
+names = ["mug", "banana"]
+surface_error_mm = 2.0
+
+[skin]
+pitch_mm = 4.0
+taxels = 8
+stroke_mm = 5.0
+
+[touches]
+per_object = 20
+yaw_deg = { uniform = [0.0, 360.0] }
+
+[sensing]
+ratio = 4
+
+[recognition]
+classifier = "linear_svm"
+
+[axes]
+"touches.depth_mm" = [1.0, 4.0]
+"#;
+
+#[test]
+fn a_study_with_axes_of_its_own_writes_one_folder_for_each_touched_array() {
+    let case = Case::new();
+    case.file("study.toml", AXES);
+    case.succeeds(&["touches", "study.toml", "--out", "data"]);
+    let alone = |depth: &str| {
+        let (study, _) = AXES.split_once("[axes]").unwrap();
+        let touches = format!("per_object = 20\ndepth_mm = {depth}");
+        let study = study.replace("per_object = 20", &touches);
+        case.file("alone.toml", study);
+        let out = format!("alone_{depth}");
+        case.succeeds(&["touches", "alone.toml", "--out", &out]);
+        Files::read(&case.path(&out)).frames
+    };
+    for (folder, depth) in [("data/depth_mm_1", "1.0"), ("data/depth_mm_4", "4.0")] {
+        let files = Files::read(&case.path(folder));
+        assert!(files.frames == alone(depth), "{folder}");
+        assert!(
+            files
+                .depths
+                .iter()
+                .all(|&d| (1e3 * d - depth.parse::<f64>().unwrap()).abs() < 1e-9)
+        );
+    }
+    let names = std::fs::read_dir(case.path("data")).unwrap().count();
+    assert_eq!(names, 3, "two arrays and the manifest");
+    // An axis that changes no touch makes no more folders.
+    let same = AXES.replace(
+        "\"touches.depth_mm\" = [1.0, 4.0]",
+        "\"signal.noise_std_full_scale\" = [0.0, 0.1]",
+    );
+    case.file(
+        "same.toml",
+        same.replace("per_object = 20", "per_object = 20\ndepth_mm = 3.0"),
+    );
+    case.succeeds(&["touches", "same.toml", "--out", "same"]);
+    assert_eq!(Files::read(&case.path("same")).frames.dim(), (40, 8, 8));
+    // Arrays and axes.
+    let both = AXES.replace("pitch_mm = 4.0", "pitch_mm = [4.0, 8.0]");
+    case.file("both.toml", both);
+    case.succeeds(&["touches", "both.toml", "--out", "both"]);
+    for folder in ["8x8_at_4_mm_depth_mm_1", "8x8_at_8_mm_depth_mm_4"] {
+        assert_eq!(
+            Files::read(&case.path("both").join(folder)).frames.dim(),
+            (40, 8, 8)
+        );
+    }
+    assert_eq!(std::fs::read_dir(case.path("both")).unwrap().count(), 5);
+}
+
+#[test]
+fn the_manifest_has_the_units_of_all_channels() {
+    let case = Case::new();
+    let (study, _) = AXES.split_once("[axes]").unwrap();
+    let study = study.replace("per_object = 20", "per_object = 20\ndepth_mm = 3.0");
+    let skin =
+        "stroke_mm = 5.0\nsensed = \"shear\"\nfriction = 0.4\nshear_stiffness_n_per_m = 300.0";
+    case.file("shear.toml", study.replace("stroke_mm = 5.0", skin));
+    let units = |folder: &str| {
+        let text = std::fs::read_to_string(case.path(folder).join("manifest.json")).unwrap();
+        let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+        json["files"]["frames.npy"]["unit"].clone()
+    };
+    case.succeeds(&["touches", "shear.toml", "--out", "shear"]);
+    assert_eq!(units("shear"), serde_json::json!(["m", "N", "N"]));
+    case.succeeds(&["touches", "shear.toml", "--out", "cell", "--cell", "0"]);
+    assert_eq!(units("cell"), serde_json::json!(["N", "N", "N"]));
 }

@@ -2,6 +2,7 @@
 #![cfg(target_os = "linux")]
 
 use crate::command::Case;
+use bubbletouch::study::journal::Journal;
 use std::fs;
 use std::io::Write;
 use std::net::TcpListener;
@@ -266,4 +267,174 @@ fn without_slurm_the_command_says_so() {
         error.contains("squeue: there is no such command here"),
         "{error}"
     );
+}
+
+/// Small, and in two shards of two work items or more.
+const SMALL: &str = r#"
+question = "Which work items are done?"
+trials = 2
+
+[objects]
+sets = ["household"]
+names = ["mug", "banana"]
+surface_error_mm = 2.0
+
+[skin]
+pitch_mm = 8.0
+size_mm = 64.0
+stroke_mm = 5.0
+
+[touches]
+per_object = 20
+depth_mm = 3.0
+yaw_deg = { uniform = [0.0, 360.0] }
+
+[signal]
+noise_std_full_scale = [0.0, 0.1]
+
+[sensing]
+ratio = 4
+
+[recognition]
+classifier = "linear_svm"
+"#;
+
+/// A queue in which jobs stay until the test takes them out: `squeue` and `sbatch` that keep names in a file.
+fn fake_slurm(case: &Case) {
+    let bin = case.path("bin");
+    fs::create_dir(&bin).unwrap();
+    let queue = case.path("queue").display().to_string();
+    let squeue = format!(
+        "#!/bin/sh\nwhile [ $# -gt 0 ]; do [ \"$1\" = --name ] && name=$2; shift; done\n\
+         grep -qx -- \"$name\" '{queue}' 2>/dev/null && printf '1\\n2\\n'\nexit 0\n"
+    );
+    let sbatch = format!(
+        "#!/bin/sh\nwhile [ $# -gt 0 ]; do [ \"$1\" = --job-name ] && name=$2; shift; done\n\
+         echo \"$name\" >> '{queue}'\necho 17\n"
+    );
+    for (name, script) in [("squeue", squeue), ("sbatch", sbatch)] {
+        let path = bin.join(name);
+        fs::write(&path, script).unwrap();
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
+    }
+}
+
+/// Submits two shards to the queue of [`fake_slurm`], with further arguments.
+fn submit_two(case: &Case, more: &[&str]) -> String {
+    let arguments = [&["slurm", "study.toml", "--array", "2"], more].concat();
+    let path = format!("{}:/usr/bin:/bin", case.path("bin").display());
+    let output = case.command(&arguments).env("PATH", path).output().unwrap();
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{error}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+fn runs_into_other_folders_or_with_other_seeds_are_other_jobs() {
+    let case = Case::new();
+    fake_slurm(&case);
+    case.file("study.toml", SMALL);
+    fs::create_dir(case.path("sub")).unwrap();
+    case.file("sub/study.toml", SMALL);
+    let runs: [&[&str]; 4] = [
+        &["--out", "a"],
+        &["--out", "b"],
+        &["--out", "c", "--seed", "5"],
+        &["--out", "c"],
+    ];
+    for run in runs {
+        let said = submit_two(&case, run);
+        assert!(said.contains("submitted 2 of 2 shards"), "{run:?}: {said}");
+    }
+    // The same run is in the queue, by whatever path.
+    for run in [&["--out", "a"], &["--out", "./a"], &["--out", "sub/../a"]] {
+        let said = submit_two(&case, run);
+        assert!(
+            said.contains("are in the queue") && !said.contains("submitted"),
+            "{said}"
+        );
+    }
+}
+
+/// Lines of a journal, without the first.
+fn records(journal: &Path) -> Vec<(String, serde_json::Value)> {
+    let text = fs::read_to_string(journal).unwrap();
+    let lines = text.lines().skip(1).map(|line| {
+        let (_, json) = line.split_once(' ').unwrap();
+        let json: serde_json::Value = serde_json::from_str(json).unwrap();
+        (
+            json["key"].as_str().unwrap().to_owned(),
+            json["record"].clone(),
+        )
+    });
+    lines.collect()
+}
+
+/// Writes journals of shards: of each record of a whole run, whether each of two shards has it and whether it failed there.
+fn write_shards(case: &Case, folder: &str, shards: impl Fn(usize) -> [Option<bool>; 2]) {
+    let whole = case.path("whole/journal.jsonl");
+    let (identity, _) = Journal::read(&whole).unwrap().unwrap();
+    fs::create_dir_all(case.path(folder)).unwrap();
+    let open = |shard: usize| {
+        let path = case
+            .path(folder)
+            .join(format!("journal.{shard}-of-2.jsonl"));
+        Journal::open(&path, &identity).unwrap()
+    };
+    let journals = [open(1), open(2)];
+    for (number, (key, record)) in records(&whole).into_iter().enumerate() {
+        for (journal, state) in journals.iter().zip(shards(number)) {
+            let failed = serde_json::json!({"Err": "no room"});
+            match state {
+                Some(true) => journal.keep(&key, &failed).unwrap(),
+                Some(false) => journal.keep(&key, &record).unwrap(),
+                None => {}
+            }
+        }
+    }
+}
+
+#[test]
+fn what_failed_in_one_shard_and_succeeded_in_another_has_succeeded_and_what_failed_in_all_runs_again()
+ {
+    let case = Case::new();
+    case.file("study.toml", SMALL);
+    case.succeeds(&["run", "study.toml", "--out", "whole"]);
+    let n = records(&case.path("whole/journal.jsonl")).len();
+    assert!(n >= 2, "{n} work items");
+    type Shards = fn(usize) -> [Option<bool>; 2];
+    let cases: [(&str, Shards); 4] = [
+        ("first", |number| {
+            [Some(number == 0), (number == 0).then_some(false)]
+        }),
+        ("second", |number| {
+            [Some(false), (number == 0).then_some(true)]
+        }),
+        ("both", |number| {
+            [Some(number == 0), (number == 0).then_some(true)]
+        }),
+        ("all", |_| [Some(true), None]),
+    ];
+    for (folder, shards) in cases {
+        write_shards(&case, folder, shards);
+        let (_, said) = case.succeeds(&["merge", "study.toml", "--out", folder]);
+        for table in ["accuracy.csv", "summary.csv", "failures.csv"] {
+            let read = |folder: &str| fs::read(case.path(folder).join(table)).unwrap();
+            assert!(read("whole") == read(folder), "{folder}, {table}: {said}");
+        }
+    }
+}
+
+#[test]
+fn a_shard_with_a_failed_work_item_is_submitted_again() {
+    let case = Case::new();
+    fake_slurm(&case);
+    case.file("study.toml", SMALL);
+    case.succeeds(&["run", "study.toml", "--out", "whole"]);
+    write_shards(&case, "failed", |_| [Some(true), Some(false)]);
+    let said = submit_two(&case, &["--out", "failed"]);
+    assert!(said.contains("submitted 1 of 2 shards"), "{said}");
+    write_shards(&case, "done", |_| [Some(false), Some(false)]);
+    let said = submit_two(&case, &["--out", "done"]);
+    assert!(said.contains("all 2 shards are done"), "{said}");
 }

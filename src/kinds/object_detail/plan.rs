@@ -43,7 +43,7 @@ impl ObjectDetailPlan {
         let check = Check { place };
         check.objects(&spec.objects)?;
         let meshes = match &spec.objects.meshes {
-            Some(folder) if spec.objects.sets.is_empty() => folder.clone(),
+            Some(folder) if spec.objects.sets.is_empty() => folder.to_path_buf(),
             _ => {
                 let allowed = "meshes alone (or --objects FOLDER): solids have no exact contact";
                 return Err(check.error("objects", "sets of solids", allowed));

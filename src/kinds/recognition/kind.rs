@@ -58,6 +58,10 @@ impl Kind for RecognitionStudy {
         may_change: crate::study::spec::MAY_CHANGE,
     };
 
+    fn table_names() -> Vec<&'static str> {
+        recognition::TABLE_NAMES.to_vec()
+    }
+
     fn load(source: &Source) -> Result<Self> {
         load_study(source)
     }

@@ -3,6 +3,7 @@
 use super::scale::recognition_scale;
 use super::study::RecognitionStudy;
 use crate::error::{Error, Result};
+use crate::files::with_folder;
 use crate::kinds::{self, Kind, Source};
 use crate::random::Seed;
 use crate::study::axes::AxisValues;
@@ -19,16 +20,11 @@ use std::collections::hash_map::Entry;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Reads and checks a study: the plan of the first combination of its own axes.
+/// Reads and checks a study: a plan for each combination of its own axes.
 ///
 /// # Errors
 /// A study of another kind; a key that is not known or out of its range.
-pub fn read_plan(source: &Source) -> Result<Plan> {
-    Ok(read_plans(source)?.swap_remove(0).1)
-}
-
-/// The same: a plan for each combination of its own axes.
-fn read_plans(source: &Source) -> Result<Vec<(AxisValues, Plan)>> {
+pub fn read_plans(source: &Source) -> Result<Vec<(AxisValues, Plan)>> {
     if let Some(about) = kinds::about(&source.text)
         && about.table != RecognitionStudy::ABOUT.table
     {
@@ -36,7 +32,10 @@ fn read_plans(source: &Source) -> Result<Vec<(AxisValues, Plan)>> {
         let allowed = format!("{recognition} (bubbletouch run runs all kinds)");
         return Err(Error::input(&source.place, about.words, allowed));
     }
-    let mut spec = StudySpec::parse(&source.place, &source.text)?;
+    let parse = || StudySpec::parse(&source.place, &source.text);
+    // --objects says where the files of the study are.
+    let folder = source.objects.is_none().then(|| source.folder.clone());
+    let mut spec = with_folder(folder.clone(), parse)?;
     if let Some(seed) = source.seed
         && spec.axes.0.iter().any(|axis| axis.key == "seed")
     {
@@ -48,13 +47,14 @@ fn read_plans(source: &Source) -> Result<Vec<(AxisValues, Plan)>> {
         Some(recorded) => source.replace_recorded(recorded),
         None => source.replace_objects(&mut spec.objects),
     }
-    Plan::variants(&source.place, spec)
+    // Values on axes may be paths, too.
+    with_folder(folder, || Plan::variants(&source.place, spec))
 }
 
 /// Reads and checks a study, builds its objects and draws its touches, unless these take more memory than there is.
 ///
 /// # Errors
-/// Those of [`read_plan`]; an object that cannot be read; touches that memory cannot hold.
+/// Those of [`read_plans`]; an object that cannot be read; touches that memory cannot hold.
 pub fn load_study(source: &Source) -> Result<RecognitionStudy> {
     let plans = read_plans(source)?;
     let (packings, place) = (source.packings.as_deref(), &source.place);
@@ -131,4 +131,9 @@ impl<'a> TouchInputs<'a> {
     pub fn key(&self) -> String {
         format!("{self:?}")
     }
+}
+
+/// Returns a text that is equal for plans with the same touches, beside the array and the files of their objects.
+pub fn touch_content(plan: &Plan) -> String {
+    TouchInputs::of(plan).key()
 }

@@ -9,7 +9,7 @@ mod rows;
 mod scale;
 mod study;
 
-pub use load::{load_study, read_plan};
+pub use load::{load_study, read_plans, touch_content};
 pub use rows::RecognitionRows;
 pub use scale::recognition_scale;
 pub use study::RecognitionStudy;

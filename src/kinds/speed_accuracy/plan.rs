@@ -113,7 +113,7 @@ impl SpeedAccuracyPlan {
         Ok(Self {
             array,
             placement,
-            peers: peers.map(|path| folder.join(path)),
+            peers: peers.map(|path| path.within(folder)),
             arrays,
             levels,
             spec,

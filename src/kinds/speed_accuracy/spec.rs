@@ -1,11 +1,11 @@
 //! A study of speed against accuracy as it is written.
 
+use crate::files::FilePath;
 use crate::recognition::ClassifierKind;
 use crate::sensing::Ensemble;
 use crate::study::spec::{ObjectsSpec, SkinSpec, TouchesSpec};
 use crate::toml_text::study_file;
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
 
 study_file! {
 pub struct SpeedAccuracyStudySpec {
@@ -46,7 +46,7 @@ pub struct ContactSpec {
     /// Time steps of those methods, ms.
     pub dt_ms: Vec<f64>,
     /// A table that other programs wrote (`benches/peers/contact.py`), beside the study's file; left out where it is not.
-    pub peers: Option<PathBuf>,
+    pub peers: Option<FilePath>,
     /// Closed meshes that are touched beside the study's objects.
     pub scans: Option<ScansSpec>,
 }
@@ -56,7 +56,7 @@ pub struct ContactSpec {
 #[serde(deny_unknown_fields)]
 pub struct ScansSpec {
     /// A folder of PLY, OBJ or STL meshes in metres; left out, and said so, where it is not. `--objects` names another.
-    pub meshes: PathBuf,
+    pub meshes: FilePath,
     /// Those of the folder that are touched: file names without ending. (To pack a mesh takes from seconds to a minute.)
     pub names: Vec<String>,
 }

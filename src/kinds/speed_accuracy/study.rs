@@ -126,7 +126,7 @@ impl Kind for SpeedAccuracyStudy {
         let contact = spec.speed_accuracy.contact.as_mut();
         let scans = contact.and_then(|contact| contact.scans.as_mut());
         match (&source.objects, scans) {
-            (Some(folder), Some(scans)) => scans.meshes.clone_from(folder),
+            (Some(folder), Some(scans)) => scans.meshes = folder.clone().into(),
             _ => source.replace_objects(&mut spec.objects),
         }
         let plan = SpeedAccuracyPlan::new(&source.place, &source.folder, spec)?;

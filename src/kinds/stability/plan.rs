@@ -59,7 +59,7 @@ impl StabilityPlan {
         }
         Ok(Self {
             cells,
-            peers: wanted.peers.as_ref().map(|path| folder.join(path)),
+            peers: wanted.peers.as_ref().map(|path| path.within(folder)),
             spec,
         })
     }

@@ -1,10 +1,10 @@
 //! A study of stability as it is written.
 
+use crate::files::FilePath;
 use crate::study::Axis;
 use crate::study::defaults::number;
 use crate::toml_text::toml_file;
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
 
 /// The file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -27,7 +27,7 @@ pub struct StabilitySpec {
     #[serde(default = "number::<4>")]
     pub pitch_mm: f64,
     /// A table that other programs wrote (`benches/peers/stability.py`), beside the study's file; left out where it is not.
-    pub peers: Option<PathBuf>,
+    pub peers: Option<FilePath>,
     /// Products of axes that are tried, one after the other.
     pub parts: Vec<StabilityPartSpec>,
 }

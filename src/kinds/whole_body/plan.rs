@@ -107,7 +107,7 @@ impl WholeBodyPlan {
     pub fn new(place: &str, folder: &Path, spec: WholeBodyStudySpec) -> Result<Self> {
         let check = Check { place };
         let wanted = &spec.whole_body;
-        let robot_file = folder.join(&wanted.robot);
+        let robot_file = wanted.robot.within(folder);
         let robot = Robot::read_urdf(&robot_file)?;
         check.keys("whole_body", wanted, KEYS)?;
         let scenes = wanted.scenes.iter().enumerate();

@@ -1,11 +1,11 @@
 //! A study of a whole body as it is written.
 
+use crate::files::FilePath;
 use crate::sensing::Ensemble;
 use crate::study::defaults::{count, number};
 use crate::toml_text::study_file;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 
 study_file! {
 pub struct WholeBodyStudySpec {
@@ -18,7 +18,7 @@ pub struct WholeBodyStudySpec {
 #[serde(deny_unknown_fields)]
 pub struct WholeBodySpec {
     /// The URDF file of what is covered, beside the study's own.
-    pub robot: PathBuf,
+    pub robot: FilePath,
     /// Distance between taxels, mm.
     #[serde(default = "number::<1>")]
     pub pitch_mm: f64,

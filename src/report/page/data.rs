@@ -1,6 +1,6 @@
 //! Tables and charts as a page holds them: JSON, column by column, each value as short as it reads.
 
-use crate::table::{ChartSpec, Column, Data, Role, Table};
+use crate::table::{ChartSpec, Column, Data, Table};
 use serde::Serialize;
 use std::collections::{HashMap, HashSet};
 
@@ -57,15 +57,12 @@ impl PageData {
         let mut letters = 0;
         let mut texts = Vec::new();
         for table in order {
-            let data = table.columns.iter().zip(&table.data);
             let text = json_of(&TableData {
                 file: table.file,
                 title: table.title,
                 n: table.n_rows,
                 columns: &table.columns,
-                data: data
-                    .map(|(column, data)| ColumnData::of(column, data))
-                    .collect(),
+                data: table.data.iter().map(ColumnData::of).collect(),
             });
             if letters + text.len() <= MOST_LETTERS {
                 letters += text.len();
@@ -96,17 +93,16 @@ fn json_of(value: &impl Serialize) -> String {
 }
 
 impl<'a> ColumnData<'a> {
-    fn of(column: &Column, data: &'a Data) -> Self {
+    fn of(data: &'a Data) -> Self {
         let (levels, codes): (Vec<Short>, Vec<u32>) = match data {
             Data::Words { levels, codes } => {
                 let levels = levels.iter().map(|word| Short::Word(word));
                 (levels.collect(), codes.clone())
             }
             Data::Numbers(numbers) => {
-                let numbers: Vec<f64> = numbers.iter().map(|&n| said(column, n)).collect();
-                let (levels, codes) = coded(&numbers);
+                let (levels, codes) = coded(numbers);
                 if levels.len() > (numbers.len() / 4).clamp(1, MOST_LEVELS) {
-                    return Self::Each(numbers.into_iter().map(short).collect());
+                    return Self::Each(numbers.iter().map(|&n| short(n)).collect());
                 }
                 (levels.into_iter().map(short).collect(), codes)
             }
@@ -136,14 +132,5 @@ fn short<'a>(number: f64) -> Short<'a> {
     match number.fract() == 0.0 && number.abs() < 1e15 {
         true => Short::Whole(number as i64),
         false => Short::Number(number),
-    }
-}
-
-/// Settings as they are, since readers choose them; of all else six digits.
-fn said(column: &Column, number: f64) -> f64 {
-    let is_setting = matches!(column.role, Role::Choice | Role::Condition | Role::Subject);
-    match is_setting || number.fract() == 0.0 || !number.is_finite() {
-        true => number,
-        false => format!("{number:.5e}").parse().unwrap_or(number),
     }
 }

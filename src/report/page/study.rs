@@ -105,9 +105,10 @@ fn advice_html(found: &Found, data: &PageData) -> String {
         return String::new();
     };
     format!(
-        "<p class=\"quiet\">Conditions of the world are given, not chosen: each has its own advice. From {}.</p><div data-advice=\"{0}\"></div>\
+        "<p class=\"quiet\">Conditions of the world are given, not chosen: each has its own advice. From the table “{title}”.</p><div data-advice=\"{file}\"></div>\
          <noscript><p>Advice needs script; <code>bubbletouch advise</code> gives the same.</p></noscript>",
-        escape(table.file)
+        title = escape(table.title),
+        file = escape(table.file)
     )
 }
 
@@ -126,14 +127,27 @@ fn tables_html(tables: &[Table], data: &PageData) -> String {
             letters += whole.len();
             let without = match letters <= MOST_TABLES {
                 true => whole,
+                false if table.csv.is_empty() => {
+                    "<p>It needs script: it has no file of its own.</p>".to_owned()
+                }
                 false => format!("<p>It lies beside this page: {file}.</p>"),
             };
             format!("<div data-table=\"{file}\"></div><noscript>{without}</noscript>")
         } else {
-            format!("<p>Its {n} rows are too many for a page and lie beside it: {file}.</p>")
+            match table.csv.is_empty() {
+                true => format!("<p>Its {n} rows are too many for a page.</p>"),
+                false => format!(
+                    "<p>Its {n} rows are too many for a page and lie beside it: {file}.</p>"
+                ),
+            }
         };
         let note = escape(&table.note);
-        format!("<h3>{title}</h3><p class=\"quiet\">{file}. {note}{times}</p>{body}")
+        // A table that is made of others has no file.
+        let name = match table.csv.is_empty() {
+            true => String::new(),
+            false => format!("{file}. "),
+        };
+        format!("<h3>{title}</h3><p class=\"quiet\">{name}{note}{times}</p>{body}")
     };
     tables.iter().map(place).collect()
 }

@@ -10,7 +10,7 @@ use crate::table::Table;
 pub use answers::{answers, words};
 pub use charts::charts;
 pub use sections::sections;
-pub use tables::{CELLS, read_tables, tables_of};
+pub use tables::{CELLS, TABLE_NAMES, read_tables, tables_of};
 
 /// A table that has rows, by its file.
 fn filled<'a>(tables: &'a [Table], file: &str) -> Option<&'a Table> {

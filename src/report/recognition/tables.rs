@@ -63,6 +63,21 @@ const VARIANCE: File<Variance> =
     File::new("variance.csv", "What makes trials differ", "").summary();
 const LIMITS: File<Limit> = File::new(LIMITS_FILE, "How often limits were reached", "").summary();
 
+/// Names of all table files of a recognition study.
+pub const TABLE_NAMES: [&str; 11] = [
+    ACCURACY.name(),
+    SUMMARY.name(),
+    CONFUSION.name(),
+    COMPARISON.name(),
+    TIMING.name(),
+    PARETO.name(),
+    STAGES.name(),
+    CONFUSED.name(),
+    PUBLISHED.name(),
+    VARIANCE.name(),
+    LIMITS.name(),
+];
+
 /// Every table of a run, in the order of their files; then [`CELLS`].
 ///
 /// # Errors
@@ -80,7 +95,7 @@ pub fn tables_of(tables: &Tables) -> Result<Vec<Table>> {
 /// A table that cannot be read, by its file, line and column.
 pub fn read_tables(folder: &Path) -> Result<Vec<Table>> {
     let study = folder.join("study.toml");
-    let text = std::fs::read_to_string(&study).unwrap_or_default();
+    let text = crate::files::read_to_string(&study).unwrap_or_default();
     let study = StudySpec::parse(&study.display().to_string(), &text);
     let has_folds = study
         .as_ref()

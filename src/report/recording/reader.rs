@@ -29,7 +29,7 @@ impl RecordingFile {
     /// The error says why the file cannot be read, or which member is missing, damaged or not as `meta` says. Members that do
     /// not belong to a recording are let be.
     pub fn open(path: &Path) -> Result<Self> {
-        let file = File::open(path).map_err(|e| Error::unreadable(path, A_RECORDING, e))?;
+        let file = crate::files::open(path).map_err(|e| Error::unreadable(path, A_RECORDING, e))?;
         let archive = ZipArchive::new(BufReader::new(file))
             .map_err(|e| Error::input(path.display(), format!("no .npz: {e}"), A_RECORDING))?;
         let mut open = Self {

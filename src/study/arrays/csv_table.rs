@@ -11,7 +11,7 @@ use std::path::Path;
 /// If the file cannot be read, is empty, or its lines have unlike numbers of cells.
 pub fn read(path: &Path) -> Result<FileArray> {
     let place = path.display().to_string();
-    let text = std::fs::read(path).map_err(|e| Error::io(path, "read", e))?;
+    let text = crate::files::read(path).map_err(|e| Error::io(path, "read", e))?;
     let text = String::from_utf8(text)
         .map_err(|_| Error::input(&place, "a text that is not UTF-8", "a .csv file in UTF-8"))?;
     let text = text.trim_start_matches('\u{feff}');

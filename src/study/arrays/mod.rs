@@ -138,7 +138,7 @@ pub fn read_matrix(path: &Path, name: &str) -> Result<Array2<f64>> {
 pub fn is_member(path: &Path, name: &str) -> bool {
     let is_archive = || matches!(format_of(path), Ok(Format::Npz));
     is_archive()
-        && File::open(path)
+        && crate::files::open(path)
             .ok()
             .and_then(|file| zip::ZipArchive::new(BufReader::new(file)).ok())
             .is_some_and(|archive| {
@@ -153,7 +153,7 @@ fn open(path: &Path) -> Result<File> {
         let given = format!("cannot be read ({why})");
         Error::input(path.display(), given, ALLOWED)
     };
-    let file = File::open(path).map_err(|error| refuse(error.to_string()))?;
+    let file = crate::files::open(path).map_err(|error| refuse(error.to_string()))?;
     match file.metadata().is_ok_and(|about| about.is_dir()) {
         true => Err(refuse("it is a folder".to_owned())),
         false => Ok(file),

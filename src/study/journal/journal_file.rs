@@ -4,7 +4,8 @@ use super::identity::Identity;
 use super::line::{Decoded, NO_STUDY, decode, encode};
 use crate::error::{Error, Result};
 use serde::Serialize;
-use serde::de::DeserializeOwned;
+use serde::de::{DeserializeOwned, IgnoredAny};
+use serde_json::value::RawValue;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -97,6 +98,10 @@ impl Journal {
             Error::input(format!("{}: line {line}", path.display()), given, allowed)
         };
         let mut before = decode(HEADER, bytes).map_err(damaged)?;
+        // What an interrupted write leaves of the first line is its beginning; anything else is not of this program.
+        if before.n_whole == 0 && !begins_header(bytes) {
+            return Err(damaged((1, NO_STUDY)));
+        }
         let header = before.header.take();
         let begun = header.map(|header| serde_json::from_str(header.get()));
         let begun = begun.transpose().map_err(|_| damaged((1, NO_STUDY)))?;
@@ -141,13 +146,15 @@ impl Journal {
         self.aborts_after.store(n_records, Relaxed);
     }
 
-    /// Adds what another journal of the same study holds and this one did not hold when it was opened.
+    /// Adds what another journal of the same study holds and this one did not hold when it was opened. If a work item failed in one journal and
+    /// succeeded in the other, the success is kept.
     ///
     /// # Errors
     /// This journal cannot be written.
     pub fn take_from(&mut self, other: Self) -> Result<()> {
         for (key, record) in other.before.records {
-            if !self.before.records.contains_key(&key) {
+            let known = self.before.records.get(&key);
+            if known.is_none_or(|known| is_failure(known) && !is_failure(&record)) {
                 self.keep(&key, &record)?;
                 self.before.records.insert(key, record);
             }
@@ -202,6 +209,21 @@ impl Writer {
         self.synced = Instant::now();
         Ok(())
     }
+}
+
+/// Whether bytes are the beginning of a first line: a checksum of 8 hexadecimal digits, a space and the key.
+fn begins_header(bytes: &[u8]) -> bool {
+    let expected = format!(" {{\"key\":\"{HEADER}\"");
+    let is_digit = |byte: &u8| byte.is_ascii_hexdigit();
+    let (digits, rest) = bytes.split_at(bytes.len().min(8));
+    let n = rest.len().min(expected.len());
+    digits.iter().all(is_digit) && rest[..n] == expected.as_bytes()[..n]
+}
+
+/// Whether a record is that of a failed work item, `{"Err":…}`.
+fn is_failure(record: &RawValue) -> bool {
+    type Outcome = std::result::Result<IgnoredAny, String>;
+    serde_json::from_str(record.get()).is_ok_and(|outcome: Outcome| outcome.is_err())
 }
 
 /// Keeps a journal from other processes as long as the file is open.

@@ -13,4 +13,4 @@ mod set_aside;
 
 pub use identity::Identity;
 pub use journal_file::{JOURNAL_FILE, Journal};
-pub use set_aside::set_aside;
+pub use set_aside::{check_set_aside, set_aside};

@@ -61,7 +61,7 @@ impl Robot {
     /// A file that cannot be read; those of [`from_urdf`](Self::from_urdf).
     pub fn read_urdf(path: &Path) -> Result<Self> {
         let place = path.display().to_string();
-        let bytes = std::fs::read(path)
+        let bytes = crate::files::read(path)
             .map_err(|e| Error::input(&place, format!("cannot be read ({e})"), "a URDF file"))?;
         Self::from_urdf_bytes(&place, &bytes)
     }

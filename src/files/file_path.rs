@@ -1,0 +1,202 @@
+//! Paths in a study or scene file: relative to that file, absolute where the file is written out.
+
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::cell::RefCell;
+use std::io::Write;
+use std::ops::Deref;
+use std::path::{Path, PathBuf};
+
+thread_local! {
+    /// Folder of the file that this thread parses; `None`: paths stay as they are written.
+    static FOLDER: RefCell<Option<PathBuf>> = const { RefCell::new(None) };
+}
+
+/// Path of a file or a folder that a study file names.
+///
+/// A relative path is relative to the folder of the study file ([`with_folder`]). If it exists only relative to the current folder, that
+/// file is taken, with a note on standard error. It is written out as an absolute path, so that a resolved study runs from any folder.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct FilePath {
+    written: PathBuf,
+    resolved: PathBuf,
+}
+
+/// Parses with paths relative to `folder`; with `None` they stay as they are written.
+pub fn with_folder<T>(folder: impl Into<Option<PathBuf>>, parse: impl FnOnce() -> T) -> T {
+    /// Puts the folder back that was there before, also if parsing panics.
+    struct Before(Option<PathBuf>);
+    impl Drop for Before {
+        fn drop(&mut self) {
+            FOLDER.set(self.0.take());
+        }
+    }
+    let _before = Before(FOLDER.replace(folder.into()));
+    parse()
+}
+
+impl FilePath {
+    /// Returns the path as it stands in the file.
+    pub fn as_written(&self) -> &Path {
+        &self.written
+    }
+
+    /// Returns the path. If the file was parsed without a folder, a relative path is relative to `folder`.
+    pub fn within(&self, folder: &Path) -> PathBuf {
+        match self.resolved == self.written {
+            true => folder.join(&self.written),
+            false => self.resolved.clone(),
+        }
+    }
+
+    fn resolve(written: PathBuf) -> Self {
+        let folder = FOLDER.with_borrow(Option::clone);
+        let resolved = folder.map_or_else(|| written.clone(), |folder| folder.join(&written));
+        if resolved != written && !resolved.exists() && written.exists() {
+            // That nobody reads it changes nothing.
+            let _ = writeln!(
+                std::io::stderr(),
+                "note: {} is relative to the current folder; the next version looks for it as {}, relative to the study file",
+                written.display(),
+                resolved.display()
+            );
+            // Absolute, so that no folder is put before it.
+            let resolved = std::path::absolute(&written).unwrap_or_else(|_| written.clone());
+            return Self { written, resolved };
+        }
+        Self { written, resolved }
+    }
+
+    /// Returns the absolute path, without symbolic links where the file is there.
+    fn absolute(&self) -> PathBuf {
+        let absolute = || std::path::absolute(&self.resolved).ok();
+        let found = self.resolved.canonicalize().ok().or_else(absolute);
+        found.unwrap_or_else(|| self.resolved.clone())
+    }
+}
+
+impl From<PathBuf> for FilePath {
+    fn from(path: PathBuf) -> Self {
+        Self {
+            written: path.clone(),
+            resolved: path,
+        }
+    }
+}
+
+impl Deref for FilePath {
+    type Target = Path;
+
+    fn deref(&self) -> &Path {
+        &self.resolved
+    }
+}
+
+impl AsRef<Path> for FilePath {
+    fn as_ref(&self) -> &Path {
+        self
+    }
+}
+
+impl<'de> Deserialize<'de> for FilePath {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        PathBuf::deserialize(deserializer).map(Self::resolve)
+    }
+}
+
+impl Serialize for FilePath {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.absolute().serialize(serializer)
+    }
+}
+
+/// Deserializes a path; while a file is parsed with a folder, to an absolute path.
+///
+/// # Errors
+/// If the value is no text.
+pub fn file_path<'de, D: Deserializer<'de>>(deserializer: D) -> Result<PathBuf, D::Error> {
+    let path = FilePath::deserialize(deserializer)?;
+    let has_folder =
+        FOLDER.with_borrow(Option::is_some) && !path.as_written().as_os_str().is_empty();
+    Ok(match has_folder {
+        true => path.absolute(),
+        false => path.written,
+    })
+}
+
+/// Deserializes a path that may be absent, as [`file_path`] does.
+///
+/// # Errors
+/// If the value is no text.
+pub fn optional_file_path<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<PathBuf>, D::Error> {
+    file_path(deserializer).map(Some)
+}
+
+/// Name of a built-in set of objects, or path of a TOML file of objects.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum SetName {
+    /// Name of a built-in set.
+    BuiltIn(String),
+    /// TOML file.
+    File(FilePath),
+}
+
+impl From<&str> for SetName {
+    fn from(name: &str) -> Self {
+        match name.ends_with(".toml") {
+            true => Self::File(PathBuf::from(name).into()),
+            false => Self::BuiltIn(name.to_owned()),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for SetName {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let name = String::deserialize(deserializer)?;
+        Ok(match name.ends_with(".toml") {
+            true => Self::File(FilePath::resolve(name.into())),
+            false => Self::BuiltIn(name),
+        })
+    }
+}
+
+impl Serialize for SetName {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::BuiltIn(name) => name.serialize(serializer),
+            Self::File(path) => path.serialize(serializer),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Serialize, Deserialize)]
+    struct Spec {
+        mesh: FilePath,
+        sets: Vec<SetName>,
+    }
+
+    #[test]
+    fn paths_are_relative_to_the_file_and_written_absolute() {
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path().canonicalize().unwrap();
+        let text = "mesh = \"a/b.obj\"\nsets = [\"balls\", \"own.toml\"]";
+        let spec: Spec = with_folder(root.clone(), || toml::from_str(text)).unwrap();
+        assert_eq!(&*spec.mesh, root.join("a/b.obj"));
+        assert_eq!(spec.mesh.as_written(), Path::new("a/b.obj"));
+        let again: toml::Table = toml::to_string(&spec).unwrap().parse().unwrap();
+        let expected = root.join("a/b.obj").display().to_string();
+        assert_eq!(again["mesh"].as_str(), Some(&*expected));
+        let own = root.join("own.toml").display().to_string();
+        let sets = again["sets"].as_array().unwrap();
+        assert_eq!(sets[0].as_str(), Some("balls"));
+        assert_eq!(sets[1].as_str(), Some(&*own));
+        // Outside, nothing is known of a folder.
+        let spec: Spec = toml::from_str(text).unwrap();
+        assert_eq!(&*spec.mesh, Path::new("a/b.obj"));
+    }
+}

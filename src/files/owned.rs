@@ -1,0 +1,244 @@
+//! The files of an output folder that the program wrote: the only ones that it may replace.
+
+use super::{check_output, write_bytes};
+use crate::error::{Error, Result};
+use serde_json::{Map, Value};
+use std::collections::BTreeSet;
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+/// The manifest's name in an output folder.
+pub const MANIFEST_FILE: &str = "manifest.json";
+
+/// Writer of folders of results, in [`OwnedFiles::read`].
+pub const RUN: &str = "run";
+
+/// Lists of files in a manifest: the keys of each are names.
+const LISTS: [&str; 4] = ["tables_sha256", "times_sha256", "files_sha256", "files"];
+
+/// The files that one subcommand wrote into a folder, as the folder's manifest lists them.
+#[derive(Clone, Debug)]
+pub struct OwnedFiles {
+    folder: PathBuf,
+    names: BTreeSet<String>,
+    /// Whether the folder has a manifest.
+    has_manifest: bool,
+    /// Whether the manifest is of a version that listed only tables: charts and the page are then known by their endings.
+    lists_tables_only: bool,
+}
+
+impl OwnedFiles {
+    /// Reads the manifest of a folder to which the subcommand `writer` is to write. A folder without a manifest owns nothing.
+    ///
+    /// # Errors
+    /// If the manifest is not one of this program, or is one of another subcommand.
+    pub fn read(folder: &Path, writer: &str) -> Result<Self> {
+        let path = folder.join(MANIFEST_FILE);
+        let mut owned = Self {
+            folder: folder.to_owned(),
+            names: BTreeSet::new(),
+            has_manifest: false,
+            lists_tables_only: false,
+        };
+        let text = match fs::read(&path) {
+            Err(error)
+                if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) =>
+            {
+                return Ok(owned);
+            }
+            text => text.map_err(|e| Error::unreadable(&path, "a manifest of this program", e))?,
+        };
+        let allowed = "another folder: this one is not of this program";
+        let manifest: Option<Map<String, Value>> = serde_json::from_slice(&text).ok();
+        let is_ours = |manifest: &Map<String, Value>| {
+            let program = manifest.get("program").and_then(Value::as_str);
+            program.is_some_and(|program| program.starts_with("bubbletouch"))
+        };
+        let Some(manifest) = manifest.filter(is_ours) else {
+            let given = "is no manifest of bubbletouch";
+            return Err(Error::input(path.display(), given, allowed));
+        };
+        let written_by = manifest.get("written_by").and_then(Value::as_str);
+        let written_by = written_by.unwrap_or(RUN);
+        if written_by != writer {
+            let given = format!("the folder is one of bubbletouch {written_by}");
+            let allowed = format!("another folder for bubbletouch {writer}");
+            return Err(Error::input(path.display(), given, allowed));
+        }
+        let lists = LISTS
+            .iter()
+            .filter_map(|list| manifest.get(*list)?.as_object());
+        owned
+            .names
+            .extend(lists.flat_map(|list| list.keys().cloned()));
+        owned.names.insert(MANIFEST_FILE.to_owned());
+        if writer == RUN {
+            let of_all = ["study.toml", "report.html"];
+            owned.names.extend(of_all.map(str::to_owned));
+            owned.lists_tables_only = !manifest.contains_key("files_sha256");
+        }
+        owned.has_manifest = true;
+        Ok(owned)
+    }
+
+    /// Checks that files of these names can be written: each is absent, or was written by the program before.
+    ///
+    /// # Errors
+    /// If a file was not written by the program, is a link, or is read by this command; the error names the file.
+    pub fn check<'a>(&self, names: impl IntoIterator<Item = &'a str>) -> Result<()> {
+        for name in names {
+            let path = self.folder.join(name);
+            let Ok(meta) = fs::symlink_metadata(&path) else {
+                continue;
+            };
+            check_output(&path)?;
+            if !self.owns(name) {
+                return Err(foreign(&path));
+            }
+            if !meta.is_file() {
+                let given = "is no file of its own, but a link or a folder";
+                let allowed = "a file that this program wrote; nothing was written";
+                return Err(Error::input(path.display(), given, allowed));
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks before a study runs that its tables, page and charts can be written.
+    ///
+    /// The names of charts depend on the results. In a folder without a manifest, every picture is therefore refused.
+    ///
+    /// # Errors
+    /// Those of [`check`](Self::check).
+    pub fn check_results<'a>(&self, tables: impl IntoIterator<Item = &'a str>) -> Result<()> {
+        self.check(["study.toml", "report.html"])?;
+        self.check(tables)?;
+        let Some(entries) = fs::read_dir(&self.folder)
+            .ok()
+            .filter(|_| !self.has_manifest)
+        else {
+            return Ok(());
+        };
+        let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+        paths.sort();
+        paths.retain(|path| is_picture(path));
+        paths.first().map_or(Ok(()), |path| Err(foreign(path)))
+    }
+
+    /// Whether the program wrote the file of this name.
+    pub fn owns(&self, name: &str) -> bool {
+        self.names.contains(name) || (self.lists_tables_only && is_picture(Path::new(name)))
+    }
+}
+
+/// Checks that a single output file can be written: it is no file that this command reads, and none that another command wrote into a folder
+/// of its own.
+///
+/// # Errors
+/// If it is; the error names the file.
+pub fn check_single_output(path: &Path) -> Result<()> {
+    check_output(path)?;
+    let (folder, name) = (
+        path.parent(),
+        path.file_name().and_then(|name| name.to_str()),
+    );
+    let (Some(folder), Some(name)) = (folder, name) else {
+        return Ok(());
+    };
+    let manifest = fs::read(folder.join(MANIFEST_FILE)).unwrap_or_default();
+    let manifest: Value = serde_json::from_slice(&manifest).unwrap_or_default();
+    let program = manifest["program"].as_str();
+    let is_ours = program.is_some_and(|program| program.starts_with("bubbletouch"));
+    let is_listed = LISTS.iter().any(|list| manifest[*list].get(name).is_some());
+    if is_ours && (is_listed || [MANIFEST_FILE, "study.toml", "report.html"].contains(&name)) {
+        let given = "is part of a folder that another command of bubbletouch wrote";
+        let allowed = "another file; nothing was written";
+        return Err(Error::input(path.display(), given, allowed));
+    }
+    Ok(())
+}
+
+fn foreign(path: &Path) -> Error {
+    let given = "stands there, and no manifest.json lists it as written by this program";
+    let allowed = "a new folder, or one that this command wrote; nothing was written";
+    Error::input(path.display(), given, allowed)
+}
+
+fn is_picture(path: &Path) -> bool {
+    let ending = path.extension().and_then(|ending| ending.to_str());
+    ending.is_some_and(|ending| ["svg", "png"].contains(&ending))
+}
+
+/// A folder of data that a subcommand other than `run` writes, with a manifest that lists its files.
+#[derive(Debug)]
+pub struct DataFolder {
+    folder: PathBuf,
+    writer: &'static str,
+    files: Map<String, Value>,
+}
+
+impl DataFolder {
+    /// Claims a folder for files of these names; nothing is written yet. `writer` is the subcommand.
+    ///
+    /// # Errors
+    /// Those of [`OwnedFiles::read`] and [`OwnedFiles::check`].
+    pub fn claim<'a>(
+        folder: &Path,
+        writer: &'static str,
+        names: impl IntoIterator<Item = &'a str> + Clone,
+    ) -> Result<Self> {
+        Self::claim_with(folder, writer, names, |_| false)
+    }
+
+    /// Claims a folder as [`claim`](Self::claim) does, with files that no manifest lists but whose bytes tell that the program wrote them.
+    ///
+    /// # Errors
+    /// Those of [`claim`](Self::claim).
+    pub fn claim_with<'a>(
+        folder: &Path,
+        writer: &'static str,
+        names: impl IntoIterator<Item = &'a str> + Clone,
+        is_ours: impl Fn(&[u8]) -> bool,
+    ) -> Result<Self> {
+        let mut owned = OwnedFiles::read(folder, writer)?;
+        for name in names.clone() {
+            if fs::read(folder.join(name)).is_ok_and(|bytes| is_ours(&bytes)) {
+                owned.names.insert(name.to_owned());
+            }
+        }
+        owned.check(names.clone())?;
+        let absent = |name: &str| fs::symlink_metadata(folder.join(name)).is_err();
+        let before = owned.names.into_iter().filter(|name| !absent(name));
+        let names = names.into_iter().map(str::to_owned).chain(before);
+        let names = names.filter(|name| name != MANIFEST_FILE);
+        Ok(Self {
+            folder: folder.to_owned(),
+            writer,
+            files: names
+                .map(|name| (name, Value::Object(Map::new())))
+                .collect(),
+        })
+    }
+
+    /// Adds facts about a file to the manifest, such as its quantity and unit.
+    pub fn describe(&mut self, name: &str, facts: Value) {
+        self.files.insert(name.to_owned(), facts);
+    }
+
+    /// Writes the manifest. Call this before the files are put in place: if the process is killed in between, the next one may replace them.
+    ///
+    /// # Errors
+    /// If the manifest cannot be written.
+    pub fn write_manifest(&self) -> Result<()> {
+        let manifest = serde_json::json!({
+            "program": concat!("bubbletouch ", env!("CARGO_PKG_VERSION")),
+            "written_by": self.writer,
+            "files": self.files,
+        });
+        let text = serde_json::to_string_pretty(&manifest).map_err(std::io::Error::from);
+        let path = self.folder.join(MANIFEST_FILE);
+        let text = text.map_err(|e| Error::io(&path, "write", e))?;
+        write_bytes(&path, (text + "\n").as_bytes())
+    }
+}
