@@ -89,7 +89,10 @@ impl Check<'_> {
         let array = self.array_of(recorded, &spec.skin)?;
         if !array.is_placed() {
             let needs_places = |step: &&StepSpec| match step {
-                StepSpec::Smoothing => true,
+                StepSpec::Smoothing => {
+                    let widths = spec.signal.axes.of("smoothing_mm").into_iter();
+                    widths.flat_map(Axis::values).any(|width| width > 0.0)
+                }
                 StepSpec::Error(error) => NEED_PLACES.contains(error),
                 StepSpec::Force | StepSpec::Noise => false,
             };

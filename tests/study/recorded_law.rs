@@ -25,12 +25,11 @@ duration_s = 2.5
 
 const LEARNED: &str = "[sensing]\nmeasurements = 12\n[recognition]\nclassifier = \"linear_svm\"\n";
 
-const TABLES: [&str; 5] = [
+const TABLES: [&str; 4] = [
     "accuracy.csv",
     "summary.csv",
     "confusion.csv",
     "comparison.csv",
-    "pareto.csv",
 ];
 
 /// Runs a study, exports its touches, and runs the study of these.
