@@ -11,7 +11,7 @@ use bubbletouch::mesh::{LengthUnit, MeshReport, SizeLimits};
 use bubbletouch::objects::{Catalogue, Entry, Object, SphereUnion};
 use bubbletouch::report::object_picture::contact_sheet;
 use bubbletouch::report::terminal::rows_text;
-use bubbletouch::study::{ObjectsSpec, load_mesh, read_mesh_file};
+use bubbletouch::study::{ModelSpec, ObjectsSpec, load_mesh, read_mesh_file};
 use rayon::prelude::*;
 use std::path::PathBuf;
 
@@ -38,7 +38,7 @@ pub struct Args {
     /// A TOML file of objects instead of the built-in ones
     #[arg(long, value_name = "FILE.toml", conflicts_with_all = ["set", "mesh"])]
     objects: Option<PathBuf>,
-    /// A PLY, OBJ or STL mesh instead, as one sphere a vertex
+    /// A PLY, OBJ or STL mesh instead; packed with spheres to be drawn
     #[arg(long, value_name = "FILE", conflicts_with_all = ["names", "set"])]
     mesh: Option<PathBuf>,
     /// Unit of the mesh file: m, cm, mm or in [default: m, and 0.1 mm to 10 m large]
@@ -105,7 +105,7 @@ fn report(args: &MeshArgs) -> Result<()> {
 
 fn spheres(object: &Object) -> &SphereUnion {
     let spheres = object.model.spheres();
-    spheres.expect("solids and vertices are listed as spheres")
+    spheres.expect("solids and packed meshes are drawn as spheres")
 }
 
 impl Args {
@@ -113,6 +113,7 @@ impl Args {
         if let Some(path) = &self.mesh {
             let spec = ObjectsSpec {
                 unit: self.unit,
+                model: self.out.is_some().then_some(ModelSpec::Packed),
                 ..ObjectsSpec::default()
             };
             return Ok(vec![("mesh".to_owned(), load_mesh(path, &spec, None)?)]);
@@ -144,7 +145,10 @@ fn table(listed: &[Listed]) -> String {
             set.clone(),
             object.name.clone(),
             object.n_parts.to_string(),
-            object.model.n_spheres().to_string(),
+            match object.model.n_triangles() {
+                0 => object.model.n_spheres().to_string(),
+                n => format!("{n} triangles"),
+            },
             format!("{:.0} × {:.0} × {:.0}", size.x, size.y, size.z),
         ]
     });

@@ -50,7 +50,7 @@ pub struct Args {
     place: Place,
     #[command(flatten)]
     many: press_poses::Args,
-    /// What a mesh becomes: vertex_spheres, mesh (itself) or packed [default: vertex_spheres]
+    /// What a mesh becomes: mesh (itself), packed or vertex_spheres [default: mesh]
     #[arg(long, value_name = "MODEL", value_parser = word::<ModelSpec>, conflicts_with_all = ["object", "spheres"])]
     model: Option<ModelSpec>,
     /// Unit of the file of the mesh or the spheres: m, cm, mm or in [default: m, and of a size that the array can feel]
@@ -215,6 +215,7 @@ impl Args {
                 unit: self.unit,
                 sizes: Some(can_feel),
                 model: self.model,
+                pitch: Some(self.pitch_mm * MM),
                 surface_error_mm: Some(surface_error_mm),
                 ..ObjectsSpec::default()
             };

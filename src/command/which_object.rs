@@ -1,14 +1,18 @@
 //! Which object a command is about: a mesh file or a built-in one; and its packing, with progress shown.
 
+use super::streams::note;
 use super::unused::check_used;
 use bubbletouch::Result;
 use bubbletouch::mesh::{LengthUnit, SizeLimits, Surface};
 use bubbletouch::objects::{Catalogue, SphereUnion};
-use bubbletouch::packing::{Body, error_of_file, pack_mesh_watched};
+use bubbletouch::packing::{Body, error_of_file, pack_mesh_watched, slow_packing};
 use bubbletouch::report::fit_picture::Original;
 use bubbletouch::report::progress::to_stderr;
 use bubbletouch::study::{load_catalogue, read_mesh};
 use std::path::{Path, PathBuf};
+
+/// Surface errors of solids that are smaller than this share of their size may take minutes.
+const FINE: f64 = 1e-4;
 
 #[derive(clap::Args)]
 pub struct WhichObject {
@@ -71,9 +75,21 @@ impl WhichObject {
     /// Few spheres within a tolerance (metres) of what spheres shall stand for.
     pub fn pack(&self, object: &Original, tolerance: f64) -> Result<SphereUnion> {
         let (surface, body) = match object {
-            Original::Solid(solid) => return solid.pack(tolerance),
+            Original::Solid(solid) => {
+                if tolerance < FINE * solid.bounds().size().length() {
+                    note(format_args!(
+                        "note: {}: a surface error of {:e} mm is small beside the object: to pack and to measure it may take minutes",
+                        self.object,
+                        1e3 * tolerance
+                    ));
+                }
+                return solid.pack(tolerance);
+            }
             Original::Mesh(surface, body) => (surface, body),
         };
+        if let Some(slow) = slow_packing(surface, *body, tolerance) {
+            note(format_args!("note: {}: {slow}", self.object));
+        }
         const STEPS: u64 = 100;
         let progress = to_stderr();
         progress.stage("pack", STEPS);

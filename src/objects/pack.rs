@@ -44,17 +44,18 @@ pub fn pack(solid: &Solid, tolerance: f64) -> Result<SphereUnion> {
     }
     let mut kept = Vec::new();
     for (index, part) in solid.parts().iter().enumerate() {
-        let spheres = part.pack(fit);
-        if spheres.len() > MAX_SPHERES {
+        let packed = part.resolves(fit).then(|| part.pack(fit));
+        let Some(spheres) = packed.filter(|spheres| spheres.len() <= MAX_SPHERES) else {
             return Err(Error::input(
                 "surface error",
                 format!(
-                    "{tolerance} m, which takes more than {MAX_SPHERES} spheres for part {}",
+                    "{:e} mm, which takes more than {MAX_SPHERES} spheres for part {}",
+                    1e3 * tolerance,
                     index + 1
                 ),
                 "a larger surface error",
             ));
-        }
+        };
         kept.extend(
             spheres
                 .into_iter()
@@ -71,7 +72,8 @@ fn pack_less(solid: &Solid, tolerance: f64, fit: Fit) -> Result<SphereUnion> {
         None => Err(Error::input(
             "surface error",
             format!(
-                "{tolerance} m, which takes more than {MAX_SPHERES} spheres for a solid less other shapes, or walls too thin for it"
+                "{:e} mm, which takes more than {MAX_SPHERES} spheres for a solid less other shapes, or walls too thin for it",
+                1e3 * tolerance
             ),
             "a larger surface error, or subtracted shapes that leave thicker walls",
         )),

@@ -45,6 +45,11 @@ enum Kernel {
     Strand(Strand),
 }
 
+/// Smallest gap of a turned polygon, as a share of its size: intervals on its edges are known to 1e-9 of an edge. The rim of a sharp
+/// edge takes more spheres than are allowed long before. Larger: refuses fine packings; smaller: edges count as covered that no sphere
+/// reaches.
+const MIN_REACH: f64 = 1e-8;
+
 impl Part {
     /// A shape at a pose.
     ///
@@ -95,6 +100,13 @@ impl Part {
             Kernel::Strand(strand) => strand.support(inside),
         };
         support + self.pose.translation.dot(direction)
+    }
+
+    /// Whether rounding is small beside the gaps that a packing may leave.
+    pub(super) fn resolves(&self, fit: Fit) -> bool {
+        let along = |axis: DVec3| self.support(axis) + self.support(-axis);
+        let size = DVec3::new(along(DVec3::X), along(DVec3::Y), along(DVec3::Z)).length();
+        !matches!(self.kernel, Kernel::Lathe(_)) || fit.reach() >= MIN_REACH * size
     }
 
     /// Spheres whose union is the part.

@@ -74,6 +74,6 @@ mod target;
 
 pub use detail_chain::DetailChain;
 pub use medial_spheres::medial_spheres;
-pub use pack::{Packing, error_of_file, pack_mesh, pack_mesh_watched};
+pub use pack::{Packing, error_of_file, pack_mesh, pack_mesh_watched, slow_packing};
 pub use packing_error::{PackingError, Spread, packing_error};
 pub use target::Body;

@@ -124,6 +124,12 @@ pub(super) fn sample(target: &Target) -> Result<Sampling> {
     Ok(sampling)
 }
 
+/// About how many spheres a packing takes.
+pub(super) fn estimated_spheres(target: &Target) -> f64 {
+    let demand = Demand::of(target);
+    demand.bent.min(demand.flat)
+}
+
 /// About how many balls it takes to cover a surface.
 struct Demand {
     /// If each covered no more than it does of a plane.

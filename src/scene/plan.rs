@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::file_path::with_absolute_paths;
 use crate::objects::Model;
 use crate::random::Seed;
-use crate::study::{Check, not_negative, positive};
+use crate::study::{Check, ModelSpec, not_negative, positive};
 use crate::toml_numbers::with_line;
 use glam::DVec3;
 use std::collections::{BTreeMap, BTreeSet};
@@ -101,10 +101,15 @@ impl ScenePlan {
         let patches = patches.collect::<Result<Vec<_>>>()?;
         let pitches = spec.patches.iter().map(|patch| patch.layout.pitch_mm());
         let finest_mm = pitches.fold(f64::INFINITY, f64::min);
+        // Free objects touch spheres only.
+        let default_model = match spec.objects.iter().any(|object| object.free.is_some()) {
+            true => ModelSpec::Packed,
+            false => ModelSpec::Mesh,
+        };
         let objects = spec
             .objects
             .iter()
-            .map(|object| reader.object(object, (&robots, &patches), finest_mm));
+            .map(|object| reader.object(object, (&robots, &patches), (finest_mm, default_model)));
         let (objects, models): (Vec<_>, Vec<_>) =
             objects.collect::<Result<Vec<_>>>()?.into_iter().unzip();
         check_presses(&reader.check, &spec)?;

@@ -32,8 +32,8 @@ pub struct PlannedObject {
 
 impl ObjectSpec {
     /// `surface_error_mm`, or its default beside patches of which the finest has this pitch.
-    fn surface_error_or_default_mm(&self, finest_mm: f64) -> f64 {
-        let model = self.model.unwrap_or_default();
+    fn surface_error_or_default_mm(&self, finest_mm: f64, for_mesh: ModelSpec) -> f64 {
+        let model = self.mesh.as_ref().map_or(ModelSpec::Mesh, |_| for_mesh);
         let default = || model.default_surface_error_mm(finest_mm);
         self.surface_error_mm.unwrap_or_else(default)
     }
@@ -62,10 +62,11 @@ impl Reader<'_> {
         &self,
         spec: &ObjectSpec,
         (robots, patches): (&[PlannedRobot], &[PlannedPatch]),
-        finest_mm: f64,
+        (finest_mm, default): (f64, ModelSpec),
     ) -> Result<(PlannedObject, Model)> {
         let key = &format!("objects.{}", spec.name);
-        let model = self.model(key, spec, finest_mm)?;
+        let for_mesh = spec.model.unwrap_or(default);
+        let model = self.model(key, spec, finest_mm, for_mesh)?;
         let is_carried = spec.robot.is_some() || spec.link.is_some();
         if is_carried && (spec.free.is_some() || spec.motion.is_some()) {
             let allowed = "one of robot, motion and free";
@@ -94,7 +95,7 @@ impl Reader<'_> {
             movement,
             press: press.transpose()?,
             ball: ball(&model),
-            surface_error: MM * spec.surface_error_or_default_mm(finest_mm),
+            surface_error: MM * spec.surface_error_or_default_mm(finest_mm, for_mesh),
         };
         Ok((object, model))
     }
@@ -112,7 +113,14 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn model(&self, key: &str, spec: &ObjectSpec, finest_mm: f64) -> Result<Model> {
+    /// What an object is made of; a mesh becomes `model`.
+    fn model(
+        &self,
+        key: &str,
+        spec: &ObjectSpec,
+        finest_mm: f64,
+        model: ModelSpec,
+    ) -> Result<Model> {
         if let Some(model) = self.models.get(&spec.name) {
             return self.model_in_memory(key, spec, model);
         }
@@ -137,7 +145,7 @@ impl Reader<'_> {
                 .error(key, given, format!("it only beside {beside}")));
         }
         let is_made_of_spheres =
-            spec.object.is_some() || (spec.mesh.is_some() && spec.model == Some(ModelSpec::Packed));
+            spec.object.is_some() || (spec.mesh.is_some() && model == ModelSpec::Packed);
         if spec.surface_error_mm.is_some() && has_file && !is_made_of_spheres {
             let given = "given beside spheres, or a mesh that is not packed";
             let allowed = "it only beside object = \"NAME\" or model = \"packed\"";
@@ -145,7 +153,7 @@ impl Reader<'_> {
                 .check
                 .error(&format!("{key}.surface_error_mm"), given, allowed));
         }
-        let error_mm = spec.surface_error_or_default_mm(finest_mm);
+        let error_mm = spec.surface_error_or_default_mm(finest_mm, model);
         let error_key = format!("{key}.surface_error_mm");
         let allowed = "a positive number of millimetres";
         let surface_error = MM * self.check.value(&error_key, error_mm, positive, allowed)?;
@@ -173,7 +181,8 @@ impl Reader<'_> {
                 self.open(key, path)?;
                 let wanted = ObjectsSpec {
                     unit: spec.unit,
-                    model: spec.model,
+                    model: Some(model),
+                    pitch: Some(MM * finest_mm),
                     surface_error_mm: Some(error_mm),
                     ..ObjectsSpec::default()
                 };

@@ -85,6 +85,8 @@ impl Range {
 const MOST_COPIES: usize = 1000;
 /// Far above it a tilt adds no plane.
 const TILT: Range = Range::Of(|deg| deg > 0.0 && deg <= 45.0, "above 0, at most 45");
+/// A slide of a kilometre has far fewer steps than it passes taxels; the square of 1e160 mm is infinite.
+const SLIDE: Range = Range::Of(|mm| (0.0..=1e6).contains(&mm), "0 to 1000000");
 pub const COUNT: Range = Range::Count(1, MOST_COUNTED);
 
 /// How far spheres may be from a surface, mm. Below a nanometre rounding of coordinates is as large.
@@ -120,7 +122,7 @@ const KEYS: [(&str, Range); 59] = [
     ("skin.stiffness_n_per_m", Range::Positive),
     ("skin.damping_n_s_per_m", Range::NotNegative),
     ("touches.per_object", TOUCHES),
-    ("touches.slide_mm", Range::NotNegative),
+    ("touches.slide_mm", SLIDE),
     ("touches.slide_deg", Range::Finite),
     ("touches.frames", Range::Count(1, MOST_FRAMES)),
     ("touches.speed_mm_per_s", Range::NotNegative),

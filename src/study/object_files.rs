@@ -2,22 +2,27 @@
 
 use super::content_hash::sha256;
 use super::packings::pack_within;
+use super::plan::millimetres;
 use super::spec::{ModelSpec, ObjectsSpec};
 use crate::error::{Error, Result};
 use crate::files::SetName;
 use crate::geometry::Aabb;
 use crate::mesh::{
-    LengthUnit, MeshFile, MeshFormat, Orientation, SizeLimits, Surface, TriangleMesh,
+    LengthUnit, MeshFile, MeshFormat, Orientation, SizeLimits, Surface, TriangleMesh, Welded,
 };
 use crate::objects::{
     Catalogue, Entry, MeshModel, Object, Sphere, SphereUnion, read_spheres, vertex_spheres,
 };
+use crate::packing::{Body, packing_error};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Display;
 use std::fs::File;
 use std::io::{BufReader, Write};
 use std::path::{Path, PathBuf};
+
+/// Points of a mesh at which the error of vertex spheres is measured. Larger: slower; smaller: the largest error may be missed.
+const N_ERROR_POINTS: usize = 2000;
 
 /// A mesh of a study.
 #[derive(Clone, Debug)]
@@ -162,16 +167,36 @@ fn check_regular(path: &Path) -> Result<()> {
 }
 
 /// A mesh file as an object, as a study's objects say; its name is the file's without the ending. Packings are looked for and kept in the folder
-/// `packings`, if one is given.
+/// `packings`, if one is given. Vertex spheres that are far from the mesh are reported on standard error.
 ///
 /// # Errors
 /// A file that cannot be read, or is of another size than can be felt; a mesh that cannot be what it is to become.
 pub fn load_mesh(path: &Path, spec: &ObjectsSpec, packings: Option<&Path>) -> Result<Object> {
+    let built = build_mesh(path, spec, packings)?;
+    note_vertex_spheres(std::slice::from_ref(&built), spec);
+    Ok(built.object)
+}
+
+/// An object that was made from a mesh.
+struct BuiltMesh {
+    object: Object,
+    /// How far vertex spheres are from the mesh, metres; `None` of other models, and of files without faces.
+    vertex_error: Option<f64>,
+}
+
+fn build_mesh(path: &Path, spec: &ObjectsSpec, packings: Option<&Path>) -> Result<BuiltMesh> {
     let place = path.display().to_string();
     let mesh = read_mesh_file(path, spec.unit, &spec.sizes())?;
     let closed = |file| outward_mesh(file, &place, spec.close_holes()).map(|(mesh, _)| mesh);
+    let mut vertex_error = None;
     let model = match spec.model.unwrap_or_default() {
-        ModelSpec::VertexSpheres => vertex_spheres(&place, mesh.vertices())?.into(),
+        ModelSpec::VertexSpheres => {
+            let spheres = vertex_spheres(&place, mesh.vertices())?;
+            if spec.pitch.is_some() {
+                vertex_error = vertex_sphere_error(mesh, &spheres);
+            }
+            spheres.into()
+        }
         ModelSpec::Mesh => MeshModel::new(closed(mesh)?).into(),
         ModelSpec::Packed => {
             let surface = Surface::new(closed(mesh)?);
@@ -179,7 +204,44 @@ pub fn load_mesh(path: &Path, spec: &ObjectsSpec, packings: Option<&Path>) -> Re
             packed.spheres.into()
         }
     };
-    Ok(Object::of_one_part(stem(path), model))
+    Ok(BuiltMesh {
+        object: Object::of_one_part(stem(path), model),
+        vertex_error,
+    })
+}
+
+/// The largest distance found between the surfaces of a mesh and of spheres around its vertices, metres; `None` if the file has no
+/// faces, or faces that are not convex.
+fn vertex_sphere_error(file: MeshFile, spheres: &SphereUnion) -> Option<f64> {
+    let (mesh, _) = file.into_mesh("").ok()?.turned_outwards();
+    let is_closed = Welded::new(&mesh).n_unbalanced() == 0;
+    let body = if is_closed { Body::Solid } else { Body::Sheet };
+    let error = packing_error(&Surface::new(mesh), body, spheres, N_ERROR_POINTS);
+    Some(error.protrusion.max.max(error.gap.max))
+}
+
+/// Reports on standard error, in one line, how far vertex spheres are from their meshes, if that is more than half a pitch.
+fn note_vertex_spheres(built: &[BuiltMesh], spec: &ObjectsSpec) {
+    let Some(pitch) = spec.pitch else { return };
+    let errors = built
+        .iter()
+        .filter_map(|b| Some((b.vertex_error?, &b.object.name)));
+    let far: Vec<_> = errors.filter(|(error, _)| *error > 0.5 * pitch).collect();
+    let Some((largest, name)) = far.iter().max_by(|(a, _), (b, _)| a.total_cmp(b)) else {
+        return;
+    };
+    let meshes = match built.len() {
+        1 => String::new(),
+        n => format!(" in {} of {n} meshes", far.len()),
+    };
+    // A closed standard error changes nothing.
+    let _ = writeln!(
+        std::io::stderr(),
+        "note: vertex spheres are up to {:.2} mm from the surface ({name}), more than half the pitch of {} mm{meshes}; \
+         model = \"mesh\" touches meshes exactly",
+        1e3 * largest,
+        millimetres(pitch)
+    );
 }
 
 /// Reads the triangles of a mesh file with its closed parts turned outwards, and which way they face. Holes up to `close_holes`
@@ -262,8 +324,12 @@ fn load_meshes(folder: &Path, spec: &ObjectsSpec, packings: Option<&Path>) -> Re
         return Err(Error::input("key objects.close_holes_mm", given, allowed));
     }
     let paths = mesh_paths(folder, spec)?;
-    let meshes = paths.par_iter().map(|path| load_mesh(path, spec, packings));
-    meshes.collect()
+    let meshes = paths
+        .par_iter()
+        .map(|path| build_mesh(path, spec, packings));
+    let meshes = meshes.collect::<Result<Vec<_>>>()?;
+    note_vertex_spheres(&meshes, spec);
+    Ok(meshes.into_iter().map(|built| built.object).collect())
 }
 
 fn stem(path: &Path) -> String {

@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::files::write_bytes;
 use crate::mesh::{Surface, TriangleMesh};
 use crate::objects::{SphereUnion, read_spheres, write_spheres};
-use crate::packing::{Body, error_of_file, pack_mesh};
+use crate::packing::{Body, error_of_file, pack_mesh, slow_packing};
 use std::fs;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -44,8 +44,12 @@ pub fn pack_within(
         let was_kept = true;
         return Ok(Packed { spheres, was_kept });
     }
+    if let Some(slow) = slow_packing(surface, Body::Solid, tolerance) {
+        // That nobody reads it changes nothing.
+        let _ = writeln!(std::io::stderr(), "note: {place}: {slow}");
+    }
     let packing = pack_mesh(surface, Body::Solid, tolerance).map_err(|error| {
-        let advice = "a study closes small holes with objects.close_holes_mm; open meshes can be touched with model = \"mesh\"";
+        let advice = "a study closes small holes with objects.close_holes_mm; open meshes can be touched with model = \"mesh\", free ones with model = \"vertex_spheres\"";
         error_of_file(error, place, advice)
     })?;
     if let (Some(folder), Some(path)) = (folder, path) {

@@ -28,12 +28,16 @@ impl ModelSpec {
 }
 
 impl ObjectsSpec {
-    /// Says how far spheres may be from surfaces, where the study leaves it to the arrays.
+    /// Sets the defaults that depend on the arrays: the model of meshes and how far spheres may be from surfaces.
     pub(crate) fn settle_surface_error(&mut self, arrays: &[TaxelArray]) {
-        let pitches = arrays.iter().map(|array| array.pitch() / MM);
-        let finest = pitches.fold(f64::INFINITY, f64::min);
+        if self.meshes.is_some() {
+            // Written down, so that a study tells which model it was run with.
+            self.model.get_or_insert_default();
+        }
+        let finest = finest_pitch(arrays);
         let model = self.model.unwrap_or_default();
-        let default = || model.default_surface_error_mm(finest);
+        let default = || model.default_surface_error_mm(finest / MM);
+        self.pitch = Some(finest);
         self.surface_error_mm = Some(self.surface_error_mm.unwrap_or_else(default));
         self.settle_sizes(arrays);
     }
@@ -62,6 +66,12 @@ impl ObjectsSpec {
     pub(super) fn surface_error(&self) -> f64 {
         self.surface_error_mm.unwrap_or(SURFACE_ERROR_MM) * MM
     }
+}
+
+/// The least distance between taxels of all arrays, metres.
+fn finest_pitch(arrays: &[TaxelArray]) -> f64 {
+    let pitches = arrays.iter().map(TaxelArray::pitch);
+    pitches.fold(f64::INFINITY, f64::min)
 }
 
 impl SkinSpec {

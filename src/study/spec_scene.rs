@@ -19,7 +19,7 @@ pub struct ObjectsSpec {
     pub names: Option<Vec<String>>,
     /// A folder of PLY, OBJ or STL meshes, one object a file; its path is relative to the study file.
     pub meshes: Option<FilePath>,
-    /// What the meshes become; spheres around their vertices when left out.
+    /// What the meshes become; themselves when left out.
     pub model: Option<ModelSpec>,
     /// The unit of the meshes' files. When left out, metres, and each must be of a size that the arrays can feel.
     #[serde(alias = "mesh_unit")]
@@ -27,6 +27,10 @@ pub struct ObjectsSpec {
     /// That size: a plan knows the arrays.
     #[serde(skip)]
     pub sizes: Option<SizeLimits>,
+    /// Distance between the taxels of the finest array, metres. Vertex spheres that are farther than half of it from their mesh are
+    /// reported on standard error.
+    #[serde(skip)]
+    pub pitch: Option<f64>,
     /// How far the surface of a solid, or of a packed mesh, may be outside its spheres, mm; they reach at most half of it outside
     /// the solid, so that the two are equally high on average. When left out, 0.25; with
     /// `model = "packed"` a tenth of the finest pitch, which leaves a mean deflection error of about 2 % of the pitch.
@@ -156,10 +160,10 @@ pub enum SensedSpec {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ModelSpec {
-    /// One sphere a vertex, as the original \[BT\].
-    #[default]
+    /// One sphere a vertex, as the published protocol \[BT\].
     VertexSpheres,
     /// The triangles themselves, touched exactly.
+    #[default]
     Mesh,
     /// Few spheres within `surface_error_mm` of the mesh, which must be closed.
     Packed,

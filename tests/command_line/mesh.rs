@@ -153,6 +153,100 @@ fn skin_over_a_mesh_points_outwards_whichever_way_the_file_faces() {
 }
 
 #[test]
+fn a_mesh_is_touched_as_it_is_unless_vertex_spheres_are_named() {
+    let case = Case::new();
+    case.file("cube.obj", cube());
+    let press = |model: &str| {
+        let press = format!(
+            "press --mesh cube.obj --unit mm{model} --taxels 48x48 --depth-mm 2 --out frame.csv"
+        );
+        case.succeeds(&words(&press)).1
+    };
+    for model in ["", " --model mesh", " --model packed"] {
+        let said = press(model);
+        assert!(
+            said.starts_with("400 of 2304 taxels touched"),
+            "{model}: {said}"
+        );
+    }
+    let said = press(" --model vertex_spheres");
+    assert!(said.contains("note: vertex spheres are up to "), "{said}");
+    assert!(said.contains("more than half the pitch of 2 mm"), "{said}");
+    assert!(!said.contains("\n400 of"), "{said}");
+}
+
+#[test]
+fn a_study_touches_meshes_as_they_are_and_writes_that_down() {
+    let case = Case::new();
+    std::fs::create_dir(case.path("meshes")).unwrap();
+    case.file("meshes/cube.obj", cube());
+    case.file("meshes/flat.obj", cube().replace(" 40\n", " 12\n"));
+    let study = "question = \"Which?\"\n[objects]\nmeshes = \"meshes\"\nunit = \"mm\"\nMODEL\n[skin]\npitch_mm = 2.0\ntaxels = 16\nstroke_mm = 5.0\n\
+                 [touches]\nper_object = 8\nyaw_deg = { uniform = [0.0, 90.0] }\ndepth_mm = 2.0\n[sensing]\nensemble = \"gaussian\"\nratio = 16\n\
+                 [recognition]\nclassifier = \"linear_svm\"\nc = 1.0\n";
+    let mut frames = Vec::new();
+    for (name, model) in [
+        ("default", ""),
+        ("mesh", "model = \"mesh\""),
+        ("vertex", "model = \"vertex_spheres\""),
+    ] {
+        case.file("study.toml", study.replace("MODEL", model));
+        let (_, said) = case.succeeds(&words(&format!("touches study.toml --out {name}")));
+        let note = "in 2 of 2 meshes; model = \"mesh\" touches meshes exactly";
+        assert_eq!(said.contains(note), name == "vertex", "{said}");
+        frames.push(std::fs::read(case.path(name).join("frames.npy")).unwrap());
+    }
+    assert_eq!(frames[0], frames[1]);
+    assert_ne!(frames[0], frames[2]);
+    case.file("study.toml", study.replace("MODEL", ""));
+    case.succeeds(&words("run study.toml --out results"));
+    let resolved = std::fs::read_to_string(case.path("results/study.toml")).unwrap();
+    assert!(resolved.contains("model = \"mesh\""), "{resolved}");
+}
+
+#[test]
+fn a_free_object_of_a_mesh_is_packed() {
+    let case = Case::new();
+    case.file("cube.obj", cube());
+    case.file("open.obj", cube().replace("f 5 6 8 7\n", ""));
+    let scene = "title = \"A cube that falls\"\ndt_ms = 10.0\noutput_hz = 100.0\nduration_s = 0.05\n[[patches]]\nname = \"pad\"\n\
+                 layout = { grid = { nx = 8, ny = 8, pitch_mm = 4.0 } }\nstroke_mm = 5.0\nstiffness_n_per_m = 100.0\n\
+                 [[objects]]\nname = \"cube\"\nmesh = \"FILE\"\nunit = \"mm\"\nfree = { mass_kg = 0.1 }\nat = { position_mm = [0.0, 0.0, 3.0] }\n";
+    case.file("scene.toml", scene.replace("FILE", "cube.obj"));
+    case.succeeds(&words("simulate scene.toml --out simulated"));
+    case.file("scene.toml", scene.replace("FILE", "open.obj"));
+    let output = case.run(&words("simulate scene.toml --out open"));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(
+        said.contains("open.obj: a hole") && said.contains("vertex_spheres"),
+        "{said}"
+    );
+}
+
+#[test]
+fn what_takes_minutes_says_so_before_it_begins() {
+    let case = Case::new();
+    case.file("cube.obj", cube());
+    let pack = "objects pack cube.obj --unit mm --surface-error-mm 0.05 --out cube.csv";
+    let mut command = case.command(&words(pack));
+    let mut child = command
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut first = String::new();
+    let mut lines = std::io::BufReader::new(child.stderr.take().unwrap());
+    std::io::BufRead::read_line(&mut lines, &mut first).unwrap();
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(
+        first.starts_with("note: cube.obj: a surface error of 5e-2 mm takes about "),
+        "{first}"
+    );
+    assert!(first.contains("min of one processor"), "{first}");
+}
+
+#[test]
 fn packed_spheres_are_written_and_shown_beside_the_mesh() {
     let case = Case::new();
     case.file("cube.obj", cube());

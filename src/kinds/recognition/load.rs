@@ -10,6 +10,7 @@ use crate::study::axes::AxisValues;
 use crate::study::memory::check_touches;
 use crate::study::object_files::load_objects;
 use crate::study::plan::Plan;
+use crate::study::shear_ripple::note_shear_ripple;
 use crate::study::simulation::draw_touches;
 use crate::study::spec::{HumanTouchSpec, ObjectsSpec, RecordedSpec, StudySpec};
 use crate::study::touch_set::TouchSet;
@@ -75,7 +76,7 @@ impl RecognitionStudy {
         packings: Option<&Path>,
         ceiling: Option<u64>,
     ) -> Result<Self> {
-        let mut objects = HashMap::new();
+        let (mut objects, mut has_noted) = (HashMap::new(), false);
         let mut drawn: HashMap<String, Arc<dyn TouchSet + Send>> = HashMap::new();
         let mut variants = Vec::with_capacity(plans.len());
         for (variant, plan) in plans {
@@ -94,6 +95,9 @@ impl RecognitionStudy {
                     Entry::Occupied(known) => known.into_mut(),
                     Entry::Vacant(new) => new.insert(load_objects(inputs.objects, packings)?),
                 };
+                if !has_noted {
+                    has_noted = note_shear_ripple(&plan, objects)?;
+                }
                 check_touches(&plan, objects.len(), ceiling)?;
                 Arc::new(draw_touches(objects.clone(), inputs.placement, &seed)?)
             };
