@@ -51,7 +51,7 @@ fn a_free_object_that_starts_inside_another_is_refused_with_both_and_the_overlap
             "s.toml, key objects.third.at: free object `third` starts 30.0 mm inside `second`; {allowed}"
         )
     );
-    // In an object that stands, before or after it in the file, or is moved: the free one is named first.
+    // The origin of the ball is its lowest point. In an object that stands, before or after it in the file, or is moved: the free one is named first.
     let stands = ("stands", TENNIS, place, "");
     let moves = (
         "moves",
@@ -63,7 +63,7 @@ fn a_free_object_that_starts_inside_another_is_refused_with_both_and_the_overlap
     for other in [stands, moves] {
         for objects in [[small, other], [other, small]] {
             let expected = format!(
-                "s.toml, key objects.small.at: free object `small` starts 36.7 mm inside `{}`",
+                "s.toml, key objects.small.at: free object `small` starts 4.0 mm inside `{}`",
                 other.0
             );
             assert!(said(&objects).starts_with(&expected), "{}", said(&objects));
