@@ -284,7 +284,9 @@ fn a_mug_on_a_bed_is_where_the_balance_of_one_object_puts_it_and_rises_with_the_
 
 /// A tennis ball at x = ±`apart` on a bed, each with a line of its own.
 fn two_balls(apart: f64, one: &str, other: &str) -> ScenePlan {
-    parse(&format!(
+    // A scene that is read has free objects that start apart; they are moved together afterwards.
+    let read = apart.max(33.0);
+    let mut plan = parse(&format!(
         r#"
         title = "Two balls on a bed"
         duration_s = 0.0
@@ -304,11 +306,20 @@ fn two_balls(apart: f64, one: &str, other: &str) -> ScenePlan {
         [[objects]]
         name = "other"
         object = "tennis"
-        at = {{ position_mm = [{apart}, 0.0, -3.0] }}
+        at = {{ position_mm = [{read}, 0.0, -3.0] }}
         {other}
         "#,
-        -apart
-    ))
+        -read
+    ));
+    for (object, x) in plan.objects.iter_mut().zip([-apart, apart]) {
+        match &mut object.movement {
+            Movement::Free { start: pose, .. } | Movement::Imposed(Motion::Fixed(pose)) => {
+                pose.translation.x = 1e-3 * x;
+            }
+            _ => panic!("the balls stand or are free"),
+        }
+    }
+    plan
 }
 
 #[test]
