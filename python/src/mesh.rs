@@ -5,14 +5,16 @@ use crate::errors::{bad_input, check_readable, exception, guarded};
 use crate::model::{corners, unit_of};
 use crate::sphere_union::SphereUnion;
 use crate::threads::aside;
-use bubbletouch::mesh::{SizeLimits, Surface, TriangleMesh};
+use bubbletouch::mesh::{Orientation, SizeLimits, Surface, TriangleMesh};
 use bubbletouch::objects::{MeshModel, Model, vertex_spheres};
 use bubbletouch::packing::{Body, error_of_file, pack_mesh_watched};
 use bubbletouch::study::read_mesh_file;
 use glam::DVec3;
 use ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
+use std::ffi::CString;
 use std::path::PathBuf;
 
 /// What else may be done about a mesh that cannot be packed.
@@ -50,6 +52,18 @@ impl Mesh {
     pub fn triangle_mesh(&self) -> &TriangleMesh {
         self.triangles.mesh()
     }
+
+    /// Warns in Python if triangles of this mesh were turned outwards.
+    ///
+    /// # Errors
+    /// The warning, where Python raises it.
+    pub fn warn_if_turned(&self, py: Python, orientation: &Orientation) -> PyResult<()> {
+        if !orientation.is_turned() {
+            return Ok(());
+        }
+        let text = CString::new(format!("{}: {orientation}", self.place)).unwrap_or_default();
+        PyErr::warn(py, &py.get_type::<PyUserWarning>(), &text, 1)
+    }
 }
 
 #[pymethods]
@@ -68,7 +82,8 @@ impl Mesh {
     /// A PLY, OBJ or STL file.
     ///
     /// unit: of the file's numbers; None: metres, and then an object of 0.1 mm to 10 m. close_holes: the widest hole that is closed by a
-    /// cone, metres. Raises OSError for a file that cannot be read, ValueError for one that is no such mesh.
+    /// cone, metres. Closed parts that face inwards are turned outwards, with a UserWarning. Raises OSError for a file that cannot be read,
+    /// ValueError for one that is no such mesh.
     #[staticmethod]
     #[pyo3(signature = (path, *, unit=None, close_holes=None))]
     fn read(
@@ -83,35 +98,50 @@ impl Mesh {
             let place = path.display().to_string();
             let read = || {
                 let file = read_mesh_file(&path, unit, &SizeLimits::ANY)?;
-                let mesh = file.into_mesh(&place)?;
-                Ok(Self::new(
-                    place.clone(),
-                    match close_holes {
-                        Some(widest) => mesh.with_holes_closed(widest)?.mesh,
-                        None => mesh,
-                    },
-                ))
+                let (mut mesh, orientation) = file.into_mesh(&place)?.turned_outwards();
+                let mut orientations = vec![orientation];
+                if let Some(widest) = close_holes {
+                    let (closed, orientation) =
+                        mesh.with_holes_closed(widest)?.mesh.turned_outwards();
+                    mesh = closed;
+                    orientations.push(orientation);
+                }
+                Ok((Self::new(place.clone(), mesh), orientations))
             };
-            py.detach(read).map_err(exception)
+            let (mesh, orientations) = py.detach(read).map_err(exception)?;
+            for orientation in &orientations {
+                mesh.warn_if_turned(py, orientation)?;
+            }
+            Ok(mesh)
         })
     }
 
     /// Few spheres for the solid that the mesh encloses, on all cores.
     ///
     /// No sphere reaches more than tolerance / 2 (metres, positive) outside it, and no point of its surface is more than the tolerance
-    /// outside the spheres: proved, or a ValueError. The mesh must be closed; with sheet=True its surface itself is packed, without
-    /// thickness. Takes seconds for a scan of 16,000 triangles. Ctrl-C ends it.
+    /// outside the spheres: proved, or a ValueError. The mesh must be closed; parts that face inwards are turned outwards, with a
+    /// UserWarning. With sheet=True its surface itself is packed, without thickness. Takes seconds for a scan of 16,000 triangles. Ctrl-C ends it.
     #[pyo3(signature = (tolerance, *, sheet=false))]
     fn pack(&self, py: Python, tolerance: f64, sheet: bool) -> PyResult<SphereUnion> {
         guarded(|| {
             let mesh = self.triangle_mesh().clone();
             let body = if sheet { Body::Sheet } else { Body::Solid };
-            let packed = aside(py, move |stop| {
+            let (orientation, packed) = aside(py, move |stop| {
+                let (mesh, orientation) = match body {
+                    Body::Solid => mesh.turned_outwards(),
+                    Body::Sheet => (mesh, Orientation::Outwards),
+                };
                 let surface = Surface::new(mesh);
-                pack_mesh_watched(&surface, body, tolerance, &mut |_| stop.end_if_told())
+                let watch = &mut |_| stop.end_if_told();
+                (
+                    orientation,
+                    pack_mesh_watched(&surface, body, tolerance, watch),
+                )
             })?;
             let packed = packed.map_err(|error| error_of_file(error, &self.place, ADVICE));
-            Ok(SphereUnion::of(packed.map_err(exception)?.spheres))
+            let packed = packed.map_err(exception)?;
+            self.warn_if_turned(py, &orientation)?;
+            Ok(SphereUnion::of(packed.spheres))
         })
     }
 
@@ -151,7 +181,7 @@ impl Mesh {
         self.triangle_mesh().area()
     }
 
-    /// m³; negative if the triangles face inwards.
+    /// m³; negative if the triangles of the arrays that it was made from face inwards.
     #[getter]
     fn volume(&self) -> f64 {
         self.triangle_mesh().volume_and_centroid().0

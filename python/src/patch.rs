@@ -198,7 +198,8 @@ impl Patch {
 
     /// Taxels spread over a mesh's outer surface, as many as on a grid of this pitch, at least 0.83 pitches apart; 0.3 ms a taxel. A taxel
     /// whose axis would meet the mesh again is left out: see n_left_out. The region is where all that is given holds: bounds (2, 3), its least
-    /// and greatest corner; plane (2, 3), a point and the direction to the side that counts; triangles, their numbers.
+    /// and greatest corner; plane (2, 3), a point and the direction to the side that counts; triangles, their numbers. Closed parts of the
+    /// mesh that face inwards are turned outwards, with a UserWarning.
     #[staticmethod]
     #[pyo3(signature = (mesh, pitch, stroke, *, seed=0, bounds=None, plane=None, triangles=None, taxel_radius=None, stiffness=100.0, damping=0.0))]
     #[expect(clippy::too_many_arguments, reason = "named in Python")]
@@ -217,7 +218,7 @@ impl Patch {
     ) -> PyResult<Self> {
         guarded(|| {
             let seed = whole_number("seed", seed)?;
-            let mesh = mesh.get().triangle_mesh();
+            let mesh = mesh.get();
             let two = |place: &str, given: &Bound<PyAny>| match points(place, given)?[..] {
                 [first, second] => Ok((first, second)),
                 ref several => {
@@ -234,9 +235,15 @@ impl Patch {
                 beyond: plane.map(|given| two("plane", given)).transpose()?,
                 triangles,
             };
-            let layout = py.detach(|| Layout::draped_on(mesh, pitch, &region, &Seed::new(seed)));
+            let (layout, orientation) = py.detach(|| {
+                let (outwards, orientation) = mesh.triangle_mesh().clone().turned_outwards();
+                let layout = Layout::draped_on(&outwards, pitch, &region, &Seed::new(seed));
+                (layout, orientation)
+            });
+            let layout = layout.map_err(exception)?;
+            mesh.warn_if_turned(py, &orientation)?;
             let taxel = taxel(pitch, stroke, (taxel_radius, stiffness, damping));
-            Self::with(layout.map_err(exception)?, taxel)
+            Self::with(layout, taxel)
         })
     }
 

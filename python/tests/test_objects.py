@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import warnings
 from pathlib import Path
 
 import bubbletouch as bt
@@ -29,6 +30,36 @@ def test_a_packing_keeps_its_promise(box: bt.Mesh) -> None:
     surface[np.arange(2000), np.arange(2000) % 3] = box.bounds[1][np.arange(2000) % 3]
     gap = np.linalg.norm(surface[:, None] - packed.centers, axis=2) - packed.radii
     assert gap.min(axis=1).max() <= tolerance
+
+
+def test_a_mesh_that_faces_inwards_is_turned_outwards_with_a_warning(box: bt.Mesh, tmp_path: Path) -> None:
+    said = "12 of 12 triangles faced inwards and were turned outwards"
+    inwards = bt.Mesh(box.vertices, box.triangles[:, ::-1])
+    with pytest.warns(UserWarning, match=f"mesh: {said}"):
+        packed = inwards.pack(1e-3)
+    np.testing.assert_allclose(packed.bounds, box.pack(1e-3).bounds, atol=1e-3)
+    with pytest.warns(UserWarning, match=f"mesh: {said}"):
+        patch = bt.Patch.draped(inwards, 4e-3, 2e-3)
+    assert (((patch.centers - [0, 0, 0.01]) * patch.axes).sum(1) > 0).all()
+    path = tmp_path / "box.obj"
+    corners = [f"v {x} {y} {z}" for x, y, z in inwards.vertices]
+    path.write_text("\n".join([*corners, *(f"f {a + 1} {b + 1} {c + 1}" for a, b, c in inwards.triangles)]))
+    with pytest.warns(UserWarning, match=f"box.obj: {said}"):
+        read = bt.Mesh.read(path)
+    assert read.volume == pytest.approx(24e-6)
+
+
+def test_a_mesh_that_faces_outwards_or_is_a_sheet_is_not_turned(box: bt.Mesh, tmp_path: Path) -> None:
+    path = tmp_path / "corner.obj"
+    path.write_text("v 0 0 0\nv 5 0 0\nv 0 5 0\nf 1 3 2\n")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        box.pack(1e-3)
+        bt.Patch.draped(box, 4e-3, 2e-3)
+        bt.Mesh(box.vertices, box.triangles[:, ::-1]).pack(1e-3, sheet=True)
+        sheet = bt.Mesh.read(path, unit="mm")
+    a, b, c = sheet.vertices[sheet.triangles[0]]
+    assert np.cross(b - a, c - a)[2] < 0
 
 
 def test_vertex_spheres_are_one_a_vertex(box: bt.Mesh) -> None:

@@ -101,7 +101,7 @@ def test_what_cannot_be_a_step_or_a_frame_is_refused(patch: bt.Patch, frames: Fl
     with pytest.raises(ValueError, match="crosstalk: 2; a fraction, 0 to 1"):
         bt.Step.error("crosstalk", crosstalk=2)
     chain = bt.Chain([bt.Step.noise(0.1)], patch)
-    with pytest.raises(ValueError, match=r"frames: shape \(20, 32, 47\); \(n, …\) with 1536 taxels"):
+    with pytest.raises(ValueError, match=r"frames: shape \(20, 32, 47\); \(n, 32, 48\) or \(n, 1536\), or one frame"):
         chain(frames[:, :, 1:])
     spoilt = frames.copy()
     spoilt[3, 1, 2] = np.nan
@@ -192,7 +192,7 @@ def test_frames_of_a_grid_have_its_rows_and_columns() -> None:
     np.testing.assert_array_equal(chain(frames[0]).ravel(), flat[0])
     for turned in (frames.swapaxes(1, 2), frames[0].T, frames.reshape(3, 2, 12)):
         for call in (chain, chain.read_touch, projection):
-            with pytest.raises(ValueError, match=r"frames: shape .*\(n, 4, 6\) or \(n, 24\)"):
+            with pytest.raises(ValueError, match=r"frames: shape .*\(n, 6, 4\) or \(n, 24\)"):
                 call(turned)
     with pytest.raises(ValueError, match="rates: shape"):
         chain(frames, rates=frames.swapaxes(1, 2))

@@ -54,15 +54,16 @@ class Mesh:
         """A PLY, OBJ or STL file.
 
         unit: of the file's numbers; None: metres, and then an object of 0.1 mm to 10 m. close_holes: the widest hole that is closed by a
-        cone, metres. Raises OSError for a file that cannot be read, ValueError for one that is no such mesh.
+        cone, metres. Closed parts that face inwards are turned outwards, with a UserWarning. Raises OSError for a file that cannot be read,
+        ValueError for one that is no such mesh.
         """
 
     def pack(self, tolerance: float, *, sheet: bool = False) -> SphereUnion:
         """Few spheres for the solid that the mesh encloses, on all cores.
 
         No sphere reaches more than tolerance / 2 (metres, positive) outside it, and no point of its surface is more than the tolerance
-        outside the spheres: proved, or a ValueError. The mesh must be closed; with sheet=True its surface itself is packed, without
-        thickness. Takes seconds for a scan of 16,000 triangles. Ctrl-C ends it.
+        outside the spheres: proved, or a ValueError. The mesh must be closed; parts that face inwards are turned outwards, with a
+        UserWarning. With sheet=True its surface itself is packed, without thickness. Takes seconds for a scan of 16,000 triangles. Ctrl-C ends it.
         """
 
     def vertex_spheres(self) -> SphereUnion:
@@ -86,7 +87,7 @@ class Mesh:
 
     @property
     def volume(self) -> float:
-        """m³; negative if the triangles face inwards."""
+        """m³; negative if the triangles of the arrays that it was made from face inwards."""
 
     @property
     def centroid(self) -> NDArray[np.float64]:
@@ -325,7 +326,8 @@ class Patch:
     ) -> Patch:
         """Taxels spread over a mesh's outer surface, as many as on a grid of this pitch, at least 0.83 pitches apart; 0.3 ms a taxel. A taxel
         whose axis would meet the mesh again is left out: see n_left_out. The region is where all that is given holds: bounds (2, 3), its least
-        and greatest corner; plane (2, 3), a point and the direction to the side that counts; triangles, their numbers.
+        and greatest corner; plane (2, 3), a point and the direction to the side that counts; triangles, their numbers. Closed parts of the
+        mesh that face inwards are turned outwards, with a UserWarning.
         """
 
     @staticmethod

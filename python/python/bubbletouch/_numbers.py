@@ -26,7 +26,8 @@ def real(name: str, value: Any, *, above: float = -math.inf, least: float = -mat
 def whole(name: str, value: Any, *, least: int, most: int = _MOST) -> int:
     """A whole number from `least` to `most`; a float without a fraction is one. Raises TypeError and ValueError as real() does."""
     allowed = f"at least {least}" if most == _MOST else f"a whole number from {least} to {most}"
-    if isinstance(value, bool) or not isinstance(value, Integral | Real):
+    is_number = isinstance(value, Real) and not isinstance(value, bool)
+    if not is_number:
         raise TypeError(f"{name}: {value!r}; a whole number, {allowed}")
     if not isinstance(value, Integral) and not float(value).is_integer():
         given = "NaN" if math.isnan(value) else value

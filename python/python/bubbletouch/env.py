@@ -184,7 +184,7 @@ class FindObjectVector(VectorEnv[NDArray[np.float32], NDArray[np.float32], Any])
         self._is_over[:] = False
         return self._observe()[0], {"object": self._which.copy()}
 
-    def _generators(self, seeds: Sequence[int | None]) -> list[np.random.Generator]:
+    def _generators(self, seeds: int | Sequence[int | None]) -> list[np.random.Generator]:
         given = list(seeds) if isinstance(seeds, Sequence | np.ndarray) else None
         if given is None:
             raise TypeError(f"seed: {seeds!r}; a whole number, one for each of {self.num_envs} environments, or None")

@@ -301,9 +301,10 @@ def _row_numbers(name: str, rows: ArrayLike, n_rows: int) -> NDArray[np.int64]:
     if given.ndim != 1:
         raise ValueError(f"{name}: shape {given.shape}; (n,) numbers of rows, or a mask of {n_rows} rows")
     try:
-        return np.arange(n_rows)[given.astype(np.int64) if given.size == 0 else given]
+        chosen: NDArray[np.int64] = np.arange(n_rows)[given.astype(np.int64) if given.size == 0 else given]
     except IndexError as error:
         raise ValueError(f"{name}: {error}; numbers below {n_rows}, or a mask of {n_rows} rows") from None
+    return chosen
 
 
 _SVC_NAMES = ("C", "kernel", "degree", "gamma", "coef0", "tol", "multi_class", "max_memory")
