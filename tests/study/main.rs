@@ -13,6 +13,7 @@ mod calibration;
 mod experiments;
 mod families;
 mod frames;
+mod generated;
 mod hardware;
 mod images;
 mod intervals;

@@ -1,0 +1,97 @@
+//! Law: a changed key changes some byte of the results, or is refused.
+
+use super::generator::{GeneratedStudy, Generator};
+use super::outcome::run;
+use bubbletouch::study::all_strengths;
+use bubbletouch::study::progress::Silent;
+use std::collections::BTreeMap;
+
+/// Studies in which a key is tried before it counts as one without effect: a small study may give the same answers by chance.
+const MAX_STUDIES: u64 = 12;
+
+/// Tables of results without times, and the numbers that the classifier of the first configuration learns from.
+fn results(study: &GeneratedStudy) -> Option<(BTreeMap<String, Vec<u8>>, Vec<u64>)> {
+    let loaded = study.load().ok()?;
+    let mut tables = run(&loaded).ok()?;
+    tables.retain(|name, _| !matches!(&name[..], "timing.csv" | "pareto.csv" | "stages.csv"));
+    let set = loaded.first().features((0, 0), &Silent).ok()?;
+    let values = set.data.records.iter().map(|value| value.to_bits());
+    Some((
+        tables,
+        values
+            .chain(set.split.train.iter().map(|&row| row as u64))
+            .collect(),
+    ))
+}
+
+/// Whether another value of `key` is refused or changes results in one of several studies.
+fn has_effect(key: &str, steps: &[&str]) -> bool {
+    (0..MAX_STUDIES).any(|number| {
+        let mut generator = Generator::new(key, number);
+        let mut values = generator.values(key);
+        assert!(values.len() >= 2, "{key} has values: {values:?}");
+        let first = values.swap_remove(0);
+        let with_key = |study: &GeneratedStudy| {
+            let mut study = study.clone();
+            if !steps.is_empty() {
+                study.table.remove("signal");
+                let steps: Vec<toml::Value> = steps.iter().map(|&step| step.into()).collect();
+                // A moving press and a grid, which some sensor errors need.
+                study = study
+                    .without("skin.layout")
+                    .with("signal.steps", steps)
+                    .with("touches.frames", 3)
+                    .with("touches.speed_mm_per_s", 10.0);
+            }
+            study.with(key, first.clone())
+        };
+        let study = with_key(&generator.study(|study| with_key(study).load().is_ok()));
+        let Some(before) = results(&study) else {
+            return false;
+        };
+        values
+            .into_iter()
+            .any(|value| results(&study.with(key, value)).is_none_or(|after| before != after))
+    })
+}
+
+#[test]
+fn a_changed_key_changes_some_byte_of_the_results() {
+    for key in [
+        "seed",
+        "skin.pitch_mm",
+        "skin.taxels",
+        "skin.stroke_mm",
+        "skin.layout",
+        "touches.depth_mm",
+        "touches.frames",
+        "touches.per_object",
+        "sensing.ensemble",
+        "sensing.ratio",
+        "recognition.features",
+        "recognition.classifier",
+        "recognition.scaling",
+        "recognition.train_touches",
+        "recognition.mislabelled_fraction",
+        "recognition.class_imbalance",
+        "recognition.fused_touches",
+        "recognition.test_fraction",
+    ] {
+        assert!(has_effect(key, &[]), "{key} has no effect");
+    }
+    for (key, step) in [
+        ("signal.noise_std_full_scale", "noise"),
+        ("signal.smoothing_mm", "smoothing"),
+    ] {
+        assert!(has_effect(key, &[step]), "{key} has no effect");
+    }
+}
+
+#[test]
+fn a_changed_strength_of_a_sensor_error_changes_some_byte_of_the_results() {
+    for (error, strength) in all_strengths() {
+        let key = format!("signal.{}", strength.key);
+        let step = error.about().step;
+        assert!(has_effect(&key, &[step]), "{key} has no effect");
+    }
+}

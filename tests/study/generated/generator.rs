@@ -1,0 +1,307 @@
+//! Random small studies: keys and values from the descriptors of sensor errors, ensembles, features and classifiers.
+
+use crate::study::laid_out;
+use bubbletouch::kinds::recognition::RecognitionStudy;
+use bubbletouch::recognition::ClassifierKind;
+use bubbletouch::recognition::features::ImageFeature;
+use bubbletouch::sensing::Ensemble;
+use bubbletouch::study::all_strengths;
+use rand::seq::SliceRandom;
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use toml::{Table, Value};
+
+/// Attempts to draw a study that the program accepts. Most draws are accepted; a bound keeps a broken generator from running for ever.
+const MAX_DRAWS: usize = 200;
+
+/// Number of studies that each law is checked on: `BUBBLETOUCH_GENERATED_STUDIES`, or 10.
+pub fn n_studies() -> u64 {
+    let given = std::env::var("BUBBLETOUCH_GENERATED_STUDIES");
+    given.map_or(10, |n| n.parse().expect("a number of studies"))
+}
+
+/// A study as the text of its file, by the path of each key.
+#[derive(Clone, Debug)]
+pub struct GeneratedStudy {
+    pub table: Table,
+}
+
+impl GeneratedStudy {
+    /// The value of a key, `None` if the study does not have it.
+    pub fn get(&self, key: &str) -> Option<&Value> {
+        let (table, key) = key.split_once('.').unwrap_or(("", key));
+        match table {
+            "" => self.table.get(key),
+            table => self.table.get(table)?.get(key),
+        }
+    }
+
+    /// The study with this value of a key.
+    pub fn with(&self, key: &str, value: impl Into<Value>) -> Self {
+        let mut changed = self.clone();
+        let (table, key) = key.split_once('.').unwrap_or(("", key));
+        let inner = match table {
+            "" => &mut changed.table,
+            table => {
+                let inner = changed.table.entry(table);
+                let inner = inner.or_insert_with(|| Table::new().into());
+                inner.as_table_mut().expect("a table")
+            }
+        };
+        inner.insert(key.to_owned(), value.into());
+        changed
+    }
+
+    /// The study without this key.
+    pub fn without(&self, key: &str) -> Self {
+        let mut changed = self.clone();
+        let (table, key) = key.split_once('.').unwrap_or(("", key));
+        match table {
+            "" => changed.table.remove(key),
+            table => {
+                let inner = changed.table.get_mut(table).and_then(Value::as_table_mut);
+                inner.and_then(|inner| inner.remove(key))
+            }
+        };
+        changed
+    }
+
+    /// The study with `values` of `key` as an axis.
+    pub fn swept(&self, key: &str, values: Vec<Value>) -> Self {
+        let mut changed = self.without(key);
+        let axes = changed.table.entry("axes");
+        let axes = axes.or_insert_with(|| Table::new().into());
+        let axes = axes.as_table_mut().expect("a table");
+        axes.insert(key.to_owned(), values.into());
+        changed
+    }
+
+    pub fn text(&self) -> String {
+        toml::to_string(&self.table).expect("a table has a TOML form")
+    }
+
+    /// The study laid out as the command lays it out; an error if it is refused.
+    pub fn load(&self) -> bubbletouch::Result<RecognitionStudy> {
+        laid_out(&self.text())
+    }
+}
+
+/// Draws studies. The same law and number give the same study.
+pub struct Generator {
+    pub rng: ChaCha8Rng,
+}
+
+impl Generator {
+    pub fn new(law: &str, number: u64) -> Self {
+        let law = law.bytes().fold(0, |hash: u64, byte| {
+            hash.wrapping_mul(0x100_0000_01b3) ^ u64::from(byte)
+        });
+        Self {
+            rng: ChaCha8Rng::seed_from_u64(law ^ number),
+        }
+    }
+
+    /// A study that the program accepts and `is_wanted` allows.
+    pub fn study(&mut self, is_wanted: impl Fn(&GeneratedStudy) -> bool) -> GeneratedStudy {
+        let mut refused = Vec::new();
+        for _ in 0..MAX_DRAWS {
+            let study = self.draw();
+            if !is_wanted(&study) {
+                continue;
+            }
+            match study.load() {
+                Ok(_) => return study,
+                Err(error) => refused.push(error.to_string()),
+            }
+        }
+        panic!("no study of {MAX_DRAWS} was accepted: {refused:#?}");
+    }
+
+    fn one<T: Clone>(&mut self, values: &[T]) -> T {
+        values.choose(&mut self.rng).expect("values").clone()
+    }
+
+    fn happens(&mut self, chance: f64) -> bool {
+        self.rng.gen_bool(chance)
+    }
+
+    /// Values of a key that a study may take, in random order; none of a key that this generator does not know.
+    pub fn values(&mut self, key: &str) -> Vec<Value> {
+        let mut values: Vec<Value> = match key {
+            "seed" => vec![1.into(), 2.into(), 3.into()],
+            "skin.pitch_mm" => vec![3.0.into(), 4.0.into(), 5.0.into()],
+            "skin.taxels" => vec![6.into(), 7.into(), 8.into()],
+            "skin.stroke_mm" => vec![2.0.into(), 5.0.into()],
+            "skin.stiffness_n_per_m" => vec![50.0.into(), 100.0.into(), 300.0.into()],
+            "skin.layout" => words(&["grid", "hexagonal", "disc"]),
+            "touches.depth_mm" => vec![1.0.into(), 2.0.into(), 4.0.into()],
+            "touches.frames" => vec![1.into(), 2.into(), 3.into()],
+            "touches.per_object" => vec![12.into(), 16.into()],
+            "signal.noise_std_full_scale" => vec![0.02.into(), 0.1.into(), 0.3.into()],
+            "signal.smoothing_mm" => vec![3.0.into(), 6.0.into()],
+            "sensing.ensemble" => Ensemble::NAMES
+                .iter()
+                .map(|(name, _)| (*name).into())
+                .collect(),
+            "sensing.ratio" => vec![2.0.into(), 4.0.into(), 6.0.into()],
+            "recognition.features" => {
+                let images = ImageFeature::NAMES.iter().map(|(name, _)| *name);
+                let plain = ["raw", "centred", "unit_norm", "centred_unit_norm"];
+                words(&plain.into_iter().chain(images).collect::<Vec<_>>())
+            }
+            "recognition.classifier" => {
+                let names = ClassifierKind::NAMES.iter();
+                names.map(|(name, _)| (*name).into()).collect()
+            }
+            "recognition.scaling" => words(&["none", "standard", "overall"]),
+            "recognition.c" => vec![0.01.into(), 1.0.into(), 100.0.into()],
+            "recognition.n_neighbours" => vec![1.into(), 3.into(), 5.into()],
+            "recognition.n_trees" => vec![3.into(), 7.into()],
+            "recognition.train_touches" => vec![4.into(), 6.into(), 8.into()],
+            "recognition.mislabelled_fraction" => vec![0.0.into(), 0.2.into(), 0.4.into()],
+            "recognition.class_imbalance" => vec![1.0.into(), 2.0.into()],
+            "recognition.fused_touches" => vec![1.into(), 2.into()],
+            "recognition.training_readings" => vec![1.into(), 2.into(), 3.into()],
+            "recognition.test_fraction" => vec![0.25.into(), 0.5.into()],
+            key => strength_values(key.strip_prefix("signal.").unwrap_or_default()),
+        };
+        values.shuffle(&mut self.rng);
+        values
+    }
+
+    fn draw(&mut self) -> GeneratedStudy {
+        let mut study = GeneratedStudy {
+            table: Table::new(),
+        }
+        .with("question", "Does the law hold?")
+        .with("seed", self.rng.gen_range(1..1000))
+        .with("trials", 2);
+        let balls = ["golf", "tennis", "baseball", "squash"];
+        let solids = ["mug", "banana", "apple", "bowl"];
+        let (set, all) = self.one(&[("balls", balls), ("balls", balls), ("household", solids)]);
+        let n = self.rng.gen_range(2..=4);
+        let names = all.choose_multiple(&mut self.rng, n).copied();
+        let names: Vec<Value> = names.map(Value::from).collect();
+        study = study
+            .with("objects.sets", words(&[set]))
+            .with("objects.names", names);
+        if set == "household" {
+            study = study.with("objects.surface_error_mm", 2.0);
+        }
+        let always = [
+            "skin.pitch_mm",
+            "skin.taxels",
+            "skin.stroke_mm",
+            "touches.per_object",
+            "touches.depth_mm",
+            "sensing.ensemble",
+            "recognition.classifier",
+        ];
+        for key in always {
+            study = self.with_any(study, key);
+        }
+        for key in ["touches.offset_x_mm", "touches.offset_y_mm"] {
+            study = study.with(key, uniform(-6.0, 6.0));
+        }
+        if self.happens(0.5) {
+            study = study.with("touches.yaw_deg", uniform(0.0, 90.0));
+        }
+        if study.get("sensing.ensemble").and_then(Value::as_str) != Some("identity") {
+            study = self.with_any(study, "sensing.ratio");
+        }
+        let sometimes = [
+            ("skin.layout", 0.2),
+            ("skin.stiffness_n_per_m", 0.2),
+            ("touches.frames", 0.4),
+            ("recognition.features", 0.5),
+            ("recognition.scaling", 0.3),
+            ("recognition.train_touches", 0.3),
+            ("recognition.mislabelled_fraction", 0.2),
+            ("recognition.class_imbalance", 0.2),
+            ("recognition.fused_touches", 0.2),
+            ("recognition.training_readings", 0.3),
+            ("recognition.test_fraction", 0.3),
+        ];
+        for (key, chance) in sometimes {
+            if self.happens(chance) {
+                study = self.with_any(study, key);
+            }
+        }
+        let study = self.with_signal(study);
+        self.with_classifier_options(study)
+    }
+
+    fn with_any(&mut self, study: GeneratedStudy, key: &str) -> GeneratedStudy {
+        let value = self.values(key).swap_remove(0);
+        study.with(key, value)
+    }
+
+    /// Adds the steps of a signal chain in the order of the chain's documentation.
+    fn with_signal(&mut self, mut study: GeneratedStudy) -> GeneratedStudy {
+        let mut steps = Vec::new();
+        if self.happens(0.2) {
+            steps.push("force");
+        }
+        for (error, strength) in all_strengths() {
+            let step = error.about().step;
+            if steps.last() != Some(&step) && !self.happens(0.15) {
+                continue;
+            }
+            let key = format!("signal.{}", strength.key);
+            let values = self.values(&key);
+            if let Some(value) = values.into_iter().next() {
+                study = study.with(&key, value);
+                if steps.last() != Some(&step) {
+                    steps.push(step);
+                }
+            }
+        }
+        for (step, key) in [
+            ("noise", "signal.noise_std_full_scale"),
+            ("smoothing", "signal.smoothing_mm"),
+        ] {
+            if self.happens(0.5) {
+                steps.push(step);
+                study = self.with_any(study, key);
+            }
+        }
+        study.with("signal.steps", words(&steps))
+    }
+
+    fn with_classifier_options(&mut self, study: GeneratedStudy) -> GeneratedStudy {
+        let classifier = study.get("recognition.classifier").and_then(Value::as_str);
+        let key = match classifier {
+            Some("k_nearest") => "recognition.n_neighbours",
+            Some("random_forest") => "recognition.n_trees",
+            Some(name) if name.ends_with("svm") => "recognition.c",
+            _ => return study,
+        };
+        self.with_any(study, key)
+    }
+}
+
+fn words(words: &[&str]) -> Vec<Value> {
+    words.iter().map(|&word| word.into()).collect()
+}
+
+/// `{ uniform = [low, high] }`
+pub fn uniform(low: f64, high: f64) -> Value {
+    let range: Vec<Value> = vec![low.into(), high.into()];
+    Table::from_iter([("uniform".to_owned(), range.into())]).into()
+}
+
+/// Values above zero that a strength of a sensor error may take, of any unit.
+fn strength_values(key: &str) -> Vec<Value> {
+    let found = all_strengths().find(|(_, strength)| strength.key == key);
+    let Some((_, strength)) = found else {
+        return Vec::new();
+    };
+    let all = [0.05, 0.1, 0.3, 0.5, 2.0, 6.0, 10.0];
+    let allowed = all.into_iter().filter(|&value| {
+        (strength.is_allowed)(value) && (!strength.is_whole || f64::fract(value) == 0.0)
+    });
+    // Shares of one whole are at most 1 together, and large ones leave no signal.
+    let is_share = strength.unit == "%";
+    let allowed = allowed.filter(|&value| !is_share || value < 0.4);
+    allowed.map(Value::from).collect()
+}

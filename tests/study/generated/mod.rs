@@ -1,0 +1,11 @@
+//! Laws of recognition studies, checked on generated studies. `BUBBLETOUCH_GENERATED_STUDIES` sets the number of studies of each law.
+
+mod alone_or_swept;
+mod changed_keys;
+mod exported_rows;
+mod folders;
+mod generator;
+mod leaks;
+mod order;
+mod outcome;
+mod repeated;

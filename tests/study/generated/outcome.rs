@@ -1,0 +1,36 @@
+//! The tables of a study as rows of text.
+
+use bubbletouch::kinds::recognition::RecognitionStudy;
+use bubbletouch::report::folder::table_files;
+use bubbletouch::report::recognition::tables_of;
+use bubbletouch::study::progress::Silent;
+use std::collections::BTreeMap;
+
+/// A row of a table: the text of each column.
+pub type Row = BTreeMap<String, String>;
+
+/// Runs a study in memory and returns its tables by file name, or an error where a run refuses it.
+pub fn run(study: &RecognitionStudy) -> bubbletouch::Result<BTreeMap<String, Vec<u8>>> {
+    let files = table_files(&tables_of(&study.run(&Silent)?)?);
+    Ok(files.into_iter().collect())
+}
+
+/// The rows of a CSV file.
+pub fn rows(csv: &[u8]) -> Vec<Row> {
+    let mut reader = csv::Reader::from_reader(csv);
+    let rows = reader.deserialize();
+    rows.map(Result::unwrap).collect()
+}
+
+/// Rows without some columns, sorted.
+pub fn sorted_without(rows: Vec<Row>, columns: &[&str]) -> Vec<Row> {
+    let mut rows: Vec<Row> = rows
+        .into_iter()
+        .map(|mut row| {
+            row.retain(|column, _| !columns.contains(&column.as_str()));
+            row
+        })
+        .collect();
+    rows.sort();
+    rows
+}

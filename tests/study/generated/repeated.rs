@@ -1,0 +1,69 @@
+//! Law: repeating a trial never makes a claim stronger.
+
+use super::generator::{Generator, n_studies};
+use super::outcome::{Row, rows, run};
+use toml::Value;
+
+/// Smallest ratio of the widths of two intervals that counts as the same width. Each trial orders the training rows anew, which moves single answers; ten
+/// times as many independent trials would give a ratio of 0.32.
+const SAME: f64 = 0.97;
+
+fn number(row: &Row, column: &str) -> Option<f64> {
+    row.get(column).and_then(|text| text.parse().ok())
+}
+
+#[test]
+fn trials_that_are_the_same_make_no_claim_stronger() {
+    for number_of_study in 0..n_studies() {
+        let mut generator = Generator::new("repeated trials", number_of_study);
+        // Two fixed splits and nothing drawn by trial: every second trial is the same.
+        let fixed = |study: &super::generator::GeneratedStudy| {
+            let yaws: Vec<Value> = [0.0, 20.0, 40.0, 60.0].map(Value::from).to_vec();
+            let classifiers = ["linear_svm", "nearest_centroid"].map(Value::from);
+            let mut study = study
+                .without("recognition.test_fraction")
+                .without("recognition.train_touches")
+                .without("recognition.mislabelled_fraction")
+                .without("recognition.class_imbalance")
+                .without("recognition.training_readings")
+                .without("recognition.fused_touches")
+                .without("recognition.n_neighbours")
+                .without("recognition.n_trees")
+                .without("sensing.ratio")
+                .with("sensing.ensemble", "identity")
+                .with("recognition.split", "half_of_yaws")
+                .with("recognition.classifier", classifiers.to_vec())
+                .with("touches.yaw_deg", yaws);
+            study.table.remove("signal");
+            study.with("signal.steps", Vec::<Value>::new())
+        };
+        let study = fixed(&generator.study(|study| fixed(study).load().is_ok()));
+        let of_trials = |n: i64| {
+            let tables = run(&study.with("trials", n).load().unwrap()).unwrap();
+            (
+                rows(&tables["comparison.csv"]),
+                rows(&tables["summary.csv"]),
+            )
+        };
+        let (two, many) = (of_trials(2), of_trials(20));
+        for (few, many) in two.0.iter().zip(&many.0) {
+            let p = [few, many].map(|row| number(row, "p_value").unwrap_or(1.0));
+            assert!(p[1] >= p[0] - 1e-12, "p {p:?} of\n{}", study.text());
+        }
+        for (few, many) in two.1.iter().zip(&many.1) {
+            for [low, high] in [
+                ["accuracy_low", "accuracy_high"],
+                ["bootstrap_low", "bootstrap_high"],
+            ] {
+                let width = |row: &Row| Some(number(row, high)? - number(row, low)?);
+                if let (Some(few), Some(many)) = (width(few), width(many)) {
+                    assert!(
+                        many >= SAME * few,
+                        "{low}: {few} and {many} of\n{}",
+                        study.text()
+                    );
+                }
+            }
+        }
+    }
+}
