@@ -22,6 +22,8 @@ static N_STARTED: AtomicU64 = AtomicU64::new(0);
 /// A file in the making. [`commit`](Self::commit) puts it in place; dropped before, it leaves nothing behind.
 #[derive(Debug)]
 pub struct WholeFile {
+    /// The path as given, for errors.
+    given: PathBuf,
     path: PathBuf,
     /// Where it is written until then; `None` for a device or a pipe, which no rename can replace.
     partial: Option<PathBuf>,
@@ -35,6 +37,7 @@ impl WholeFile {
     /// If this process has read the file ([`protect_inputs`]), or no file can be made there.
     pub fn create(path: &Path) -> Result<Self> {
         check_output(path)?;
+        let given = path;
         let path = &link_target(path)?;
         let name = path.file_name().ok_or_else(|| {
             Error::input(path.display(), "no file name", "a path that ends in one")
@@ -62,9 +65,10 @@ impl WholeFile {
                     "a file to write in a folder that is there",
                 )
             }
-            _ => Error::io(path, "write", e),
+            _ => Error::io(given, "write", e),
         })?;
         Ok(Self {
+            given: given.to_owned(),
             path: path.to_owned(),
             partial,
             writer: BufWriter::new(file),
@@ -79,7 +83,7 @@ impl WholeFile {
         &mut self,
         fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
     ) -> Result<()> {
-        fill(&mut self.writer).map_err(|e| Error::io(&self.path, "write", e))
+        fill(&mut self.writer).map_err(|e| Error::io(&self.given, "write", e))
     }
 
     /// Makes it durable and puts it in place, over what stood there.

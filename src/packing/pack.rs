@@ -58,8 +58,9 @@ pub fn pack_mesh_watched(
     })
 }
 
-/// Spheres from which on [`slow_packing`] returns a sentence: about a minute of one processor.
-const MANY_SPHERES: f64 = 10_000.0;
+/// Number of spheres from which on [`slow_packing`] returns a sentence: about half a minute of one processor. Larger: long packings begin without a word;
+/// smaller: packings of seconds are announced.
+const MANY_SPHERES: f64 = 5_000.0;
 
 /// Milliseconds of one processor for each sphere of a packing, about: 13 s for 2201 spheres of a scan.
 const MS_A_SPHERE: f64 = 6.0;

@@ -148,7 +148,7 @@ fn sentences(found: &[ColumnDifferences]) -> Vec<String> {
     said
 }
 
-/// Says which rows and entries differ that the means of [`sentences`] do not cover: outcomes, numbers that one run lacks, and all other columns.
+/// Says which rows and entries differ that the means of `sentences` do not cover: outcomes, numbers that one run lacks, and all other columns.
 pub fn entries_words(found: &[ColumnDifferences], tables: &[TableEntries]) -> Vec<String> {
     let has_moved = |file: &str, column: &str| {
         let mut of_column = found.iter().filter(|one| one.column.name == column);
@@ -166,7 +166,7 @@ pub fn entries_words(found: &[ColumnDifferences], tables: &[TableEntries]) -> Ve
         })
     };
     let said = tables.iter();
-    let said = said.map(|table| table_words(table, counts_rows(table), &has_moved));
+    let said = said.map(|table| table_words(table, counts_rows(table), has_moved));
     said.flatten().collect()
 }
 

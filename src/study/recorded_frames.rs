@@ -572,7 +572,9 @@ impl TouchSet for RecordedFrames {
             row("Recorded in", self.spec.frames.display().to_string()),
         ];
         let masked = self.is_masked[..self.n_taxels].iter().enumerate();
-        let masked = masked.filter_map(|(taxel, &is)| is.then(|| taxel.to_string()));
+        let masked = masked
+            .filter(|&(_, &is)| is)
+            .map(|(taxel, _)| taxel.to_string());
         let masked: Vec<String> = masked.collect();
         if !masked.is_empty() {
             let taxels = format!(

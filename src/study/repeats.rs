@@ -151,14 +151,16 @@ pub struct Tested {
 pub struct Paired {
     ours: Vec<Repeat>,
     theirs: Vec<Repeat>,
+    /// Sizes of the trials of ours that are paired, or of all of ours if none is; `None` if a size is unknown.
+    sizes: Option<Vec<TrialSize>>,
     /// Whether several trials had one split.
     has_repeats: bool,
 }
 
 impl Paired {
     /// The trials of two configurations by their numbers.
-    pub fn of(ours: &[Repeat], theirs: &[Repeat]) -> Self {
-        let pairs = ours.iter().filter_map(|ours| {
+    pub fn of(all_ours: &[Repeat], theirs: &[Repeat]) -> Self {
+        let pairs = all_ours.iter().filter_map(|ours| {
             let theirs = theirs.iter().find(|theirs| theirs.trial == ours.trial);
             Some((*ours, *theirs?))
         });
@@ -174,10 +176,17 @@ impl Paired {
         let (n_ours, n_theirs) = (n_places(&ours), n_places(&theirs));
         let places = if n_ours <= n_theirs { &ours } else { &theirs };
         let merge = |trials: &[Repeat]| merged(trials, |number| places[number].place());
+        let (merged_ours, merged_theirs) = (merge(&ours), merge(&theirs));
+        let sized = if ours.is_empty() {
+            all_ours
+        } else {
+            &merged_ours
+        };
         Self {
             has_repeats: n_ours.min(n_theirs) < ours.len(),
-            ours: merge(&ours),
-            theirs: merge(&theirs),
+            sizes: sized.iter().map(|trial| trial.size).collect(),
+            ours: merged_ours,
+            theirs: merged_theirs,
         }
     }
 
@@ -198,15 +207,14 @@ impl Paired {
     /// # Errors
     /// A trial without training or test rows.
     pub fn tested(&self) -> Result<Option<Tested>> {
-        let sizes: Option<Vec<TrialSize>> = self.ours.iter().map(|trial| trial.size).collect();
-        let Some(sizes) = sizes else {
+        let Some(sizes) = self.sizes.as_ref().filter(|sizes| !sizes.is_empty()) else {
             return Ok(None);
         };
-        let n_needed = trials_needed(&sizes, CONFIDENCE)?;
+        let n_needed = trials_needed(sizes, CONFIDENCE)?;
         let splits: BTreeSet<usize> = self.ours.iter().map(|trial| trial.split).collect();
         let is_enough = n_needed.is_some_and(|needed| splits.len() >= needed);
         let n_projections = (self.ours.len() / splits.len().max(1)).max(1);
-        let test = self.test(&sizes)?;
+        let test = self.test(sizes)?;
         // More trials would repeat the same splits.
         let is_final = self.has_repeats && !is_enough;
         Ok(Some(Tested {

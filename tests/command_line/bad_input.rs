@@ -449,6 +449,7 @@ fn is_whole(path: &Path) -> bool {
     let bytes = fs::read(path).unwrap();
     match path.extension().and_then(|e| e.to_str()) {
         Some("csv" | "toml") => bytes.ends_with(b"\n"),
+        Some("json") => serde_json::from_slice::<serde_json::Value>(&bytes).is_ok(),
         // It grows; what is torn at its end the next run drops (tests/study_resume.rs).
         Some("jsonl") => true,
         Some("svg") => bytes.trim_ascii_end().ends_with(b"</svg>"),
@@ -517,7 +518,7 @@ fn keys_of_a_choice_are_checked_and_none_is_silently_ignored() {
     };
     refuses(
         "choose_gamma = [1.0]",
-        &["choose_gamma", "no classifier", "γ"],
+        &["choose_gamma", "no classifier", "rbf_svm"],
     );
     refuses("gamma = 1.0", &["recognition.gamma", "no classifier"]);
     refuses("choose_folds = 3", &["choose_folds", "choose_c"]);
@@ -540,7 +541,7 @@ fn keys_of_a_choice_are_checked_and_none_is_silently_ignored() {
     );
     rbf(
         "choose_gamma = [1.0, -1.0]",
-        &["choose_gamma", "-1", "positive"],
+        &["choose_gamma", "-1", "above 0"],
     );
 }
 

@@ -242,7 +242,7 @@ fn labels_of_every_form_are_answered_in_their_own_values() {
         .iter()
         .map(|label| format!("kind {label}"))
         .collect();
-    case.file("labels.csv", format!("kind\n{}\n", words.join("\n")));
+    case.file("labels.csv", format!("{}\n", words.join("\n")));
     assert_eq!(answered(), n_correct);
     let bytes = std::fs::read(case.path("out.npy")).unwrap();
     assert!(String::from_utf8_lossy(&bytes[..80]).contains("'<U6'"));

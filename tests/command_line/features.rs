@@ -113,6 +113,7 @@ fn the_library_reads_what_the_command_writes_and_threads_change_no_byte() {
         "cell.toml",
         "features.npy",
         "labels.npy",
+        "manifest.json",
         "objects.csv",
         "test.npy",
         "train.npy",

@@ -39,7 +39,15 @@ fn every_shipped_scene_says_what_it_asks_and_runs() {
             .map(|entry| entry.unwrap().file_name().into_string().unwrap())
             .collect::<Vec<_>>();
         files.sort();
-        assert_eq!(files, ["recording.npz", "scene.toml", "wrenches.csv"]);
+        assert_eq!(
+            files,
+            [
+                "manifest.json",
+                "recording.npz",
+                "scene.toml",
+                "wrenches.csv"
+            ]
+        );
     }
 }
 

@@ -297,6 +297,7 @@ fn one_array_needs_no_folder_of_its_own_and_threads_change_no_byte() {
             "manifest.json",
             "objects.csv",
             "poses.npy",
+            "recorded.toml",
             "touches.csv"
         ]
     );

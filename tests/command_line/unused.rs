@@ -67,6 +67,7 @@ taxels = 8
 stroke_mm = 5.0
 [touches]
 per_object = 4
+offset_x_mm = { uniform = [-6.0, 6.0] }
 depth_mm = 3.0
 [signal]
 noise_std_full_scale = 0.1
@@ -81,7 +82,7 @@ dictionary = "dct"
 fn recognition(classifier: &str, more: &str) -> String {
     format!(
         "question = \"q\"\n[objects]\nsets = [\"cans\"]\n[skin]\npitch_mm = 8.0\ntaxels = 8\nstroke_mm = 5.0\n\
-         [touches]\nper_object = 8\ndepth_mm = 3.0\n[sensing]\nratio = 4\n[recognition]\nclassifier = {classifier}\n{more}\n"
+         [touches]\nper_object = 8\ndepth_mm = {{ uniform = [2.0, 3.0] }}\n[sensing]\nratio = 4\n[recognition]\nclassifier = {classifier}\n{more}\n"
     )
 }
 

@@ -337,7 +337,7 @@ fn a_wrong_catalogue_names_file_line_and_object() {
         ),
         (
             good.to_string() + "position_mm = [0, 0, inf]\n",
-            "own.toml, line 8, object `mug`, part 1 (cylinder): position_mm: [0.0, 0.0, inf]; three finite",
+            "own.toml:8, key object.mug.part[1].position_mm: inf; a finite number",
         ),
         (
             good.repeat(2),

@@ -46,7 +46,7 @@ fn each_of_few_cells_has_one_line_with_its_interval() {
     for (cells, heading) in [
         (
             quickstart_cells(),
-            "pitch array size m compression accuracy macro F1",
+            "pitch array m compression accuracy macro F1",
         ),
         (noise_cells(), "noise smoothing classifier accuracy"),
     ] {

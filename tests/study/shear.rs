@@ -209,7 +209,7 @@ fn what_contradicts_itself_is_refused_by_its_key() {
         ),
         (
             with("friction = 0.4", "friction = -0.4"),
-            "study.toml, key skin.friction: -0.4; zero or a positive number",
+            "study.toml, key skin.friction: -0.4; zero or a positive number, at least 1e-12",
         ),
     ] {
         assert_eq!(Study::error(&text), expected);

@@ -231,7 +231,7 @@ fn numbers_out_of_their_range_are_refused_with_their_key() {
         ("output_hz", "output_hz = -1.0"),
         ("duration_s", "duration_s = inf"),
         ("duration_s", "duration_s = 1e12"),
-        ("duration_s", "dt_ms = 1e-30"),
+        ("dt_ms", "dt_ms = 1e-30"),
     ] {
         let said = refused("title = \"A scene\"", &format!("title = \"\"\n{to}"));
         says(&said, &[&format!("key {key}:")]);

@@ -24,7 +24,7 @@ pub fn read(path: &Path) -> Result<FileArray> {
     let mut rows: Vec<(usize, Vec<String>)> = Vec::new();
     for (number, line) in text.lines().enumerate().filter(|(_, line)| is_data(line)) {
         let cells = match separator {
-            None => line.split_whitespace().map(str::to_owned).collect(),
+            None => numbers_or_text(line),
             Some(separator) => cells(line, separator),
         };
         if let Some((first, known)) = rows.first()
@@ -78,6 +78,15 @@ pub fn read(path: &Path) -> Result<FileArray> {
         },
         elements: Elements::Numbers(numbers),
     })
+}
+
+/// The numbers of a line that are separated by spaces, or the line as one text.
+fn numbers_or_text(line: &str) -> Vec<String> {
+    let words: Vec<String> = line.split_whitespace().map(str::to_owned).collect();
+    match words.iter().all(|word| word.parse::<f64>().is_ok()) {
+        true => words,
+        false => vec![line.trim().trim_matches('"').to_owned()],
+    }
 }
 
 /// The cells of a line, without the quotes around them.
