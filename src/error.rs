@@ -67,8 +67,11 @@ impl Error {
         }
     }
 
-    /// An [`Error::Io`] that says which file and which action.
+    /// An [`Error::Io`] that says which file and which action; an [`Error::Input`] where a folder stands in the place of a file to read.
     pub fn io(path: impl AsRef<Path>, action: &'static str, source: std::io::Error) -> Self {
+        if action == "read" && source.kind() == ErrorKind::IsADirectory {
+            return Self::input(path.as_ref().display(), "a folder", "a file");
+        }
         Self::Io {
             path: path.as_ref().to_owned(),
             action,
