@@ -19,8 +19,8 @@ use std::path::PathBuf;
 pub struct Args {
     #[command(flatten)]
     study: StudyArgs,
-    /// Where to write frames.npy, labels.npy, poses.npy, depths.npy, touches.csv, objects.csv, recorded.toml and manifest.json
-    /// (quantity and unit of frames); one folder for each array, and for each value of an axis that changes touches, if the study has several
+    /// Where to write frames.npy, shear.npy (of skins that read shear), labels.npy, poses.npy, depths.npy, touches.csv, objects.csv, recorded.toml and manifest.json
+    /// (quantities and units of frames and shear); one folder for each array, and for each value of an axis that changes touches, if the study has several
     #[arg(long, value_name = "FOLDER")]
     out: PathBuf,
     /// Frames as this cell of the study reads them (its number in the study's tables), with noise and whatever else its signal has;
@@ -69,10 +69,11 @@ pub fn touches(args: &Args) -> Result<()> {
         .flat_map(|set| TOUCH_FILES.map(|name| below(set, name)));
     let files: Vec<String> = files.collect();
     let mut claimed = DataFolder::claim(&args.out, "touches", files.iter().map(String::as_str))?;
-    let is_force = read.as_ref().is_some_and(|read| read.is_force);
+    let is_force = read.as_ref().map(|read| read.is_force);
     for set in &sets {
-        let units = touch_units(set.array, is_force);
-        claimed.describe(&below(set, "frames.npy"), units);
+        for (name, units) in touch_units(set.array, is_force) {
+            claimed.describe(&below(set, name), units);
+        }
     }
     output_folder(&args.out)?;
     claimed.write_manifest()?;

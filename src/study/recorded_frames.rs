@@ -24,7 +24,7 @@ use crate::error::{Error, Result};
 use crate::random::Seed;
 use crate::recognition::data::split::Side;
 use crate::signal::Quantity;
-use ndarray::{Array1, Array2, ArrayView1, ArrayViewMut2};
+use ndarray::{Array1, Array2, ArrayView1, ArrayViewMut2, Axis, concatenate};
 use rand::Rng;
 use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
@@ -72,6 +72,8 @@ struct FramesOfFile {
     readings: Array2<f64>,
     kind: ElementKind,
     place: String,
+    /// The file of the forces across, if they have one of their own.
+    shear_place: Option<String>,
 }
 
 impl RecordedFrames {
@@ -193,18 +195,30 @@ impl RecordedSpec {
     fn read_frames(&self, name: &str, ceiling: Option<u64>) -> Result<FramesOfFile> {
         let path = self.file_of(name).unwrap_or(&self.frames);
         let shape = self.shape_of(name)?;
+        let shear = self.shear_shape(name, &shape)?;
         let n = shape.n_touches;
-        // Twice in f64 where the axes are moved.
-        let bytes = 16.0 * (n * shape.n_frames) as f64 * shape.n_frame_values() as f64;
+        let of_shear = shear.as_ref().map_or(0, FrameShape::n_frame_values);
+        let n_values = shape.n_frame_values() + of_shear;
+        // Twice in f64 where the axes are moved or files are joined.
+        let bytes = 16.0 * (n * shape.n_frames) as f64 * n_values as f64;
         check_memory(bytes, ceiling, "frames")
             .map_err(|allowed| Error::input(path.display(), format!("{n} touches"), allowed))?;
         let array = FileArray::read(path, name)?;
         let (place, kind) = (array.place.clone(), array.kind);
+        let mut readings = shape.arrange(array.into_numbers()?);
+        let mut shear_place = None;
+        if let (Some((path, name)), Some(shape)) = (self.shear_of(name), shear) {
+            let array = FileArray::read(path, name)?;
+            shear_place = Some(array.place.clone());
+            let across = shape.arrange(array.into_numbers()?);
+            readings = concatenate![Axis(1), readings, across];
+        }
         Ok(FramesOfFile {
-            readings: shape.arrange(array.into_numbers()?),
+            readings,
             shape,
             kind,
             place,
+            shear_place,
         })
     }
 
@@ -442,7 +456,9 @@ fn masked(files: &[&FramesOfFile], n_taxels: usize) -> Result<Vec<bool>> {
                 continue;
             }
             let taxel = place % n_taxels;
-            let at = format!("{}, frame {row}, taxel {taxel}", file.place);
+            let own = file.shear_place.as_ref().filter(|_| place >= n_taxels);
+            let own = own.unwrap_or(&file.place);
+            let at = format!("{own}, frame {row}, taxel {taxel}");
             let allowed = match reading.is_nan() {
                 true => format!(
                     "a finite number (a taxel that is NaN in at least {:.0} % of the frames is masked; this one is in {} of {n_frames})",

@@ -15,6 +15,14 @@ pub struct RecordedSpec {
     /// 64 bits. The other files may be left out where this is an archive that contains their arrays.
     #[serde(deserialize_with = "file_path")]
     pub frames: PathBuf,
+    /// The two forces across the axis of each taxel, newtons, of a skin that reads shear: the axes of `frames`, and before those of the place the axis c of
+    /// two values. Without it all three values of a taxel are in `frames`.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "optional_file_path"
+    )]
+    pub shear: Option<PathBuf>,
     /// n: the class of every touch: whole numbers, texts, or n × classes of 0 and 1.
     #[serde(
         default,
@@ -39,6 +47,13 @@ pub struct RecordedSpec {
         deserialize_with = "optional_file_path"
     )]
     pub frames_test: Option<PathBuf>,
+    /// Forces across of the given test set, as in `shear`.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "optional_file_path"
+    )]
+    pub shear_test: Option<PathBuf>,
     /// Their classes, as in `labels`.
     #[serde(
         default,
@@ -129,6 +144,8 @@ impl RecordedSpec {
         let labels = Some(&mut self.labels).filter(|path| !is_empty(path));
         let files = [Some(&mut self.frames), labels].into_iter().flatten();
         let others = [
+            &mut self.shear,
+            &mut self.shear_test,
             &mut self.groups,
             &mut self.frames_test,
             &mut self.labels_test,
@@ -142,6 +159,8 @@ impl RecordedSpec {
     pub fn files(&self) -> Vec<&Path> {
         let labels = Some(self.labels.as_path()).filter(|path| !path.as_os_str().is_empty());
         let others = [
+            &self.shear,
+            &self.shear_test,
             &self.groups,
             &self.frames_test,
             &self.labels_test,
@@ -179,19 +198,61 @@ impl RecordedSpec {
     pub fn shape_of(&self, name: &str) -> Result<FrameShape> {
         let path = self.file_of(name).unwrap_or(&self.frames);
         let shape = FileArray::shape_of(path, name)?;
-        let axes = FrameAxes {
-            order: self.order.as_deref(),
-            grid: self.grid,
-            n_values: self.n_values.max(1),
-            key: "recorded.order",
+        let n_values = match self.shear {
+            Some(_) => 1,
+            None => self.n_values.max(1),
         };
+        let axes = self.axes(self.order.as_deref(), n_values);
         frame_shape(&path.display().to_string(), &shape, axes)
+    }
+
+    fn axes<'a>(&self, order: Option<&'a str>, n_values: usize) -> FrameAxes<'a> {
+        FrameAxes {
+            order,
+            grid: self.grid,
+            n_values,
+            key: "recorded.order",
+        }
+    }
+
+    /// The file of the forces across that belong to `frames` or `frames_test`, and the name of its array.
+    pub fn shear_of(&self, name: &str) -> Option<(&Path, &'static str)> {
+        let (path, name) = match name {
+            "frames" => (&self.shear, "shear"),
+            _ => (&self.shear_test, "shear_test"),
+        };
+        Some((path.as_deref()?, name))
+    }
+
+    /// The axes of the forces across that belong to `frames` or `frames_test`, whose axes are given; `None` if there is no such file.
+    ///
+    /// # Errors
+    /// If its axes are not those of the frames with two values of each taxel.
+    pub fn shear_shape(&self, name: &str, frames: &FrameShape) -> Result<Option<FrameShape>> {
+        let Some((path, array)) = self.shear_of(name) else {
+            return Ok(None);
+        };
+        let of_frames = self.file_of(name).unwrap_or(&self.frames);
+        let (order, expected) = frames.beside(&FileArray::shape_of(of_frames, name)?, 2);
+        let shape = FileArray::shape_of(path, array)?;
+        let place = path.display().to_string();
+        if shape != expected {
+            let given = format!("an array of shape {shape:?}");
+            let letters: Vec<String> = order.chars().map(String::from).collect();
+            let allowed = format!(
+                "shape {expected:?} (\"{}\"): the axes of {}, and two forces of each taxel",
+                letters.join(" "),
+                of_frames.display()
+            );
+            return Err(Error::input(place, given, allowed));
+        }
+        frame_shape(&place, &shape, self.axes(Some(&order), 2)).map(Some)
     }
 
     /// Refuses what is missing or stands alone.
     ///
     /// # Errors
-    /// No labels; a test set without labels or frames.
+    /// No labels; a test set without labels or frames; forces across of a skin that does not read them, or of one of two sets.
     pub fn check_files(&self) -> Result<()> {
         if self.file_of("labels").is_none() {
             let allowed = "labels = \"FILE\", the class of every touch (or an array `labels` in the archive of the frames)";
@@ -199,6 +260,34 @@ impl RecordedSpec {
         }
         let has = |name| self.file_of(name).is_some();
         let (frames, labels) = (has("frames_test"), has("labels_test"));
+        let both = [("shear", &self.shear), ("shear_test", &self.shear_test)];
+        for (key, path) in both {
+            let key = format!("key recorded.{key}");
+            if let (Some(path), ..=1) = (path, self.n_values) {
+                let allowed = "no such key without skin.sensed = \"shear\"";
+                return Err(Error::input(key, path.display(), allowed));
+            }
+        }
+        match (frames, &self.shear, &self.shear_test) {
+            (true, Some(_), None) => {
+                let allowed =
+                    "the forces across of frames_test, as recorded.shear has those of frames";
+                return Err(Error::input(
+                    "key recorded.shear_test",
+                    "no such key beside shear and frames_test",
+                    allowed,
+                ));
+            }
+            (_, None, Some(path)) | (false, _, Some(path)) => {
+                let allowed = "no such key without recorded.shear and recorded.frames_test";
+                return Err(Error::input(
+                    "key recorded.shear_test",
+                    path.display(),
+                    allowed,
+                ));
+            }
+            _ => {}
+        }
         match (frames, labels, has("groups_test")) {
             (true, false, _) => Err(Error::input(
                 "key recorded.labels_test",

@@ -2,7 +2,8 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `frames.npy` | n × ny × nx (1 × n_taxels of layouts without rows), f32, metres of deflection, without noise; or as a cell reads them; of touches of F frames n × F × ny × nx; with `skin.sensed = "shear"` 3 × ny × nx a frame, the second and third in newtons |
+//! | `frames.npy` | n × ny × nx (1 × n_taxels of layouts without rows), f32, metres of deflection, without noise; or as a cell reads them; of touches of F frames n × F × ny × nx |
+//! | `shear.npy` | with `skin.sensed = "shear"` n × 2 × ny × nx (n × F × 2 × ny × nx), f32: the forces across the axis of each taxel, along x and y of its frame, newtons |
 //! | `labels.npy` | n, i64: the object's number |
 //! | `poses.npy` | n × 7, f64: the object in the patch frame when it is read: x, y, z in metres, quaternion x, y, z, w |
 //! | `depths.npy` | n, f64: metres past first contact |
@@ -12,7 +13,8 @@
 //! | `objects.csv` | one row an object: number, name, spheres (0 of a mesh), touches |
 //!
 //! Deflections are what the press gives: no noise, no smoothing, none of the sensor errors of `[signal]`. Frames as a cell reads them
-//! ([`ReadFrames`]) have all of these, in metres or, with the step `force`, in newtons; only `frames.npy` differs.
+//! ([`ReadFrames`]) have all of these, in metres or, with the step `force`, in newtons; only `frames.npy` differs. With
+//! `skin.sensed = "shear"` a cell reads three forces: `frames.npy` then has 3 × ny × nx newtons a frame, and there is no `shear.npy`.
 
 use super::array_press::{ArrayPress, ArrayWorkspace};
 use super::axis::Axis;
@@ -123,8 +125,9 @@ impl ReadFrames {
 }
 
 /// Names of the files that touches may be written to, in the folder of an array.
-pub const TOUCH_FILES: [&str; 8] = [
-    "frames.npy",
+pub const TOUCH_FILES: [&str; 9] = [
+    FRAMES,
+    SHEAR,
     "labels.npy",
     "poses.npy",
     "depths.npy",
@@ -133,19 +136,81 @@ pub const TOUCH_FILES: [&str; 8] = [
     "objects.csv",
     "recorded.toml",
 ];
+const FRAMES: &str = "frames.npy";
+const SHEAR: &str = "shear.npy";
 
-/// Returns quantity and unit of `frames.npy`, channel by channel, as JSON.
-pub fn touch_units(array: &TaxelArray, is_force: bool) -> serde_json::Value {
+/// Returns the quantities and units of the arrays of frames, channel by channel, as JSON, by the names of their files. `is_force` is known of frames
+/// as a cell reads them, which are one array.
+pub fn touch_units(
+    array: &TaxelArray,
+    is_force: Option<bool>,
+) -> Vec<(&'static str, serde_json::Value)> {
     let first = match is_force {
-        true => ("force", "N"),
-        false => ("deflection", "m"),
+        Some(true) => ("force", "N"),
+        _ => ("deflection", "m"),
     };
-    let mut channels = vec![first];
-    if array.sensed().n_channels() > 1 {
-        channels.extend([("shear force along x", "N"), ("shear force along y", "N")]);
+    let across = [("shear force along x", "N"), ("shear force along y", "N")];
+    let across = &across[..array.sensed().n_channels() - 1];
+    let facts = |channels: &[(&str, &str)]| {
+        let (quantities, units): (Vec<&str>, Vec<&str>) = channels.iter().copied().unzip();
+        serde_json::json!({"quantity": quantities, "unit": units})
+    };
+    match (across, is_force) {
+        ([], _) => vec![(FRAMES, facts(&[first]))],
+        (_, None) => vec![(FRAMES, facts(&[first])), (SHEAR, facts(across))],
+        (_, Some(_)) => vec![(FRAMES, facts(&[&[first], across].concat()))],
     }
-    let (quantities, units): (Vec<&str>, Vec<&str>) = channels.into_iter().unzip();
-    serde_json::json!({"quantity": quantities, "unit": units})
+}
+
+/// The files of frames: one for each quantity, or one of what a cell reads.
+struct FrameFiles {
+    frames: NpyFile,
+    shear: Option<NpyFile>,
+    /// Values of a frame that the array reads, and those of them that `frames` takes.
+    n_values: usize,
+    n_first: usize,
+}
+
+impl FrameFiles {
+    fn create(
+        folder: &Path,
+        (array, n_frames): (&TaxelArray, usize),
+        n_touches: usize,
+        is_read: bool,
+    ) -> Result<Self> {
+        let file = |name: &str, n_channels| {
+            let (_, shape) = frames_shape(array, n_frames, n_channels);
+            let shape = [&[n_touches][..], &shape].concat();
+            NpyFile::create(&folder.join(name), "<f4", &shape)
+        };
+        let n_channels = array.sensed().n_channels();
+        let n_first = if is_read { n_channels } else { 1 };
+        let shear = (n_first < n_channels).then(|| file(SHEAR, n_channels - n_first));
+        Ok(Self {
+            frames: file(FRAMES, n_first)?,
+            shear: shear.transpose()?,
+            n_values: array.n_values(),
+            n_first: n_first * array.n_taxels(),
+        })
+    }
+
+    /// Adds whole frames, each of all its channels.
+    fn push(&mut self, frames: &[f32]) -> Result<()> {
+        for frame in frames.chunks(self.n_values) {
+            let (first, across) = frame.split_at(self.n_first);
+            self.frames
+                .push(first.iter().map(|value| value.to_le_bytes()))?;
+            if let Some(shear) = &mut self.shear {
+                shear.push(across.iter().map(|value| value.to_le_bytes()))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn commit(self) -> Result<()> {
+        let files = [Some(self.frames), self.shear].into_iter().flatten();
+        files.map(NpyFile::commit).collect()
+    }
 }
 
 /// Simulates all touches of an array, F frames each, drawn a block at a time, and writes them into a folder that exists, with the deepest frames as
@@ -175,7 +240,7 @@ pub fn write_touches(
         let shape = [&[n_touches], shape].concat();
         NpyFile::create(&folder.join(name), descr, &shape)
     };
-    let mut frames = file("frames.npy", "<f4", &frames_shape(array, n_frames).1)?;
+    let mut frames = FrameFiles::create(folder, (array, n_frames), n_touches, read.is_some())?;
     let mut labels = file("labels.npy", "<i8", &[])?;
     let mut poses = file("poses.npy", "<f8", &[7])?;
     let mut depths = file("depths.npy", "<f8", &[])?;
@@ -205,14 +270,15 @@ pub fn write_touches(
                 poses.push(reading.pose.map(f64::to_le_bytes))?;
                 depths.push([reading.depth.to_le_bytes()])?;
                 let of_touch = read.map_or(reading.frames, |read| read.frame(reading.row.touch));
-                frames.push(of_touch.into_iter().map(f32::to_le_bytes))?;
+                frames.push(&of_touch)?;
                 table.row(reading.row)?;
             }
             progress.advance(block.len() as u64);
         }
         n_before += source.n_touches();
     }
-    for file in [frames, labels, poses, depths] {
+    frames.commit()?;
+    for file in [labels, poses, depths] {
         file.commit()?;
     }
     write_taxels(folder, array)?;
@@ -249,13 +315,12 @@ pub fn write_human_touches(
     let n_frames = human.n_frames();
     progress.stage(&format!("touch {}", array.describe()), labels.len() as u64);
     let made = touches.simulate((array, n_frames), &FramePlace::Memory, progress)?;
-    let (_, shape) = frames_shape(array, n_frames);
-    let shape = [&[labels.len()][..], &shape].concat();
-    let mut frames = NpyFile::create(&folder.join("frames.npy"), "<f4", &shape)?;
+    let mut frames = FrameFiles::create(folder, (array, n_frames), labels.len(), false)?;
     let mut row = vec![0.0; array.n_values()];
     for number in 0..labels.len() * n_frames {
         made.read(number, &mut row)?;
-        frames.push(row.iter().map(|&value| (value as f32).to_le_bytes()))?;
+        let row: Vec<f32> = row.iter().map(|&value| value as f32).collect();
+        frames.push(&row)?;
     }
     frames.commit()?;
     write_integers(&folder.join("labels.npy"), labels.to_vec())?;
@@ -279,9 +344,9 @@ pub fn write_human_touches(
     Ok(labels.len())
 }
 
-/// The letters of the axes of frames, and the lengths of those of a touch.
-fn frames_shape(array: &TaxelArray, n_frames: usize) -> (String, Vec<usize>) {
-    let ((ny, nx), n_channels) = (array.shape(), array.sensed().n_channels());
+/// The letters of the axes of frames of some channels, and the lengths of those of a touch.
+fn frames_shape(array: &TaxelArray, n_frames: usize, n_channels: usize) -> (String, Vec<usize>) {
+    let (ny, nx) = array.shape();
     let axes = [("t", n_frames), ("c", n_channels), ("y", ny), ("x", nx)];
     let is_written = |(letter, length): &(&str, usize)| "yx".contains(letter) || *length > 1;
     let (letters, shape): (Vec<&str>, Vec<usize>) = axes.into_iter().filter(is_written).unzip();
@@ -295,9 +360,10 @@ fn recorded(
     names: impl Iterator<Item = String>,
 ) -> RecordedSpec {
     RecordedSpec {
-        frames: "frames.npy".into(),
+        frames: FRAMES.into(),
+        shear: (array.sensed().n_channels() > 1).then(|| SHEAR.into()),
         labels: "labels.npy".into(),
-        order: Some(frames_shape(array, n_frames).0),
+        order: Some(frames_shape(array, n_frames, 1).0),
         names: Some(names.collect()),
         full_scale: Some(array.taxel().stroke),
         ..RecordedSpec::default()
@@ -316,6 +382,12 @@ fn write_recorded(
         skin: SkinSpec,
     }
     let is_grid = array.layout() == ArrayLayout::Grid;
+    let units = match recorded.shear {
+        Some(_) => {
+            "# frames.npy has deflections in metres, shear.npy the forces along x and y of each taxel in newtons."
+        }
+        None => "# frames.npy has deflections in metres.",
+    };
     let tables = Tables {
         recorded,
         skin: SkinSpec {
@@ -327,7 +399,7 @@ fn write_recorded(
     };
     let tables = toml::to_string(&tables).expect("every key has a TOML form");
     let text = format!(
-        "# In place of [objects], [touches], [human_touch] and [skin] of the study that made these touches; --objects is this folder.\n\n{tables}"
+        "# In place of [objects], [touches], [human_touch] and [skin] of the study that made these touches; --objects is this folder.\n{units}\n\n{tables}"
     );
     write_bytes(&folder.join("recorded.toml"), text.as_bytes())
 }

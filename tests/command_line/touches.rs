@@ -7,7 +7,7 @@ use bubbletouch::geometry::Pose;
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::simulate_array;
 use glam::{DQuat, DVec3};
-use ndarray::{Array1, Array2, Array3};
+use ndarray::{Array1, Array2, Array3, Array4};
 use ndarray_npy::{ReadableElement, read_npy};
 use std::io::Write;
 use std::path::Path;
@@ -462,13 +462,22 @@ fn the_manifest_has_the_units_of_all_channels() {
     let skin =
         "stroke_mm = 5.0\nsensed = \"shear\"\nfriction = 0.4\nshear_stiffness_n_per_m = 300.0";
     case.file("shear.toml", study.replace("stroke_mm = 5.0", skin));
-    let units = |folder: &str| {
+    let units = |folder: &str, name: &str| {
         let text = std::fs::read_to_string(case.path(folder).join("manifest.json")).unwrap();
         let json: serde_json::Value = serde_json::from_str(&text).unwrap();
-        json["files"]["frames.npy"]["unit"].clone()
+        json["files"][name]["unit"].clone()
     };
     case.succeeds(&["touches", "shear.toml", "--out", "shear"]);
-    assert_eq!(units("shear"), serde_json::json!(["m", "N", "N"]));
+    assert_eq!(units("shear", "frames.npy"), serde_json::json!(["m"]));
+    assert_eq!(units("shear", "shear.npy"), serde_json::json!(["N", "N"]));
+    let frames: Array3<f32> = read_npy(case.path("shear/frames.npy")).unwrap();
+    let across: Array4<f32> = read_npy(case.path("shear/shear.npy")).unwrap();
+    assert_eq!((frames.dim(), across.dim()), ((40, 8, 8), (40, 2, 8, 8)));
+    // Metres within the stroke; more newtons than that.
+    assert!(frames.iter().all(|&d| (0.0..=5e-3).contains(&d)));
+    assert!(across.iter().any(|&force| force.abs() > 5e-3));
     case.succeeds(&["touches", "shear.toml", "--out", "cell", "--cell", "0"]);
-    assert_eq!(units("cell"), serde_json::json!(["N", "N", "N"]));
+    let three = serde_json::json!(["N", "N", "N"]);
+    assert_eq!(units("cell", "frames.npy"), three);
+    assert!(!case.path("cell/shear.npy").exists());
 }

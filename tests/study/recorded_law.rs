@@ -2,6 +2,9 @@
 
 use crate::command::Case;
 use bubbletouch::signal::SENSOR_ERRORS;
+use bubbletouch::study::{write_integers, write_npy};
+use ndarray::{Array4, Array5, Axis, concatenate};
+use ndarray_npy::read_npy;
 
 const PRESSED: &str = r#"
 [objects]
@@ -179,4 +182,107 @@ fn recorded_touches_come_after_others_as_simulated_ones_do() {
         "fresh",
     ]);
     assert_ne!(read("fresh"), read("simulated"));
+}
+
+/// Forces across in a file of their own are the same frames as all values in one; what does not fit is refused.
+#[test]
+fn shear_in_a_file_of_its_own_is_joined_to_the_frames() {
+    let case = Case::new();
+    let head = "question = \"?\"\ntrials = 2\n";
+    let skin = format!("{SKIN}sensed = \"shear\"\nfriction = 0.5\n");
+    let touched = PRESSED.replace("per_object = 10", "per_object = 10\nframes = 2");
+    case.file("study.toml", format!("{head}{touched}{skin}{LEARNED}"));
+    case.succeeds(&["touches", "study.toml", "--out", "touches"]);
+    let frames: Array4<f32> = read_npy(case.path("touches/frames.npy")).unwrap();
+    let shear: Array5<f32> = read_npy(case.path("touches/shear.npy")).unwrap();
+    let all = concatenate![Axis(2), frames.clone().insert_axis(Axis(2)), shear];
+    write_npy(&case.path("touches/all.npy"), &all).unwrap();
+    // The first six touches of each class train.
+    let part = |is_test: bool| -> Vec<usize> {
+        (0..30)
+            .filter(|touch| (touch % 10 >= 6) == is_test)
+            .collect()
+    };
+    for (set, is_test) in [("a", false), ("b", true)] {
+        let path = |name: &str| case.path(&format!("touches/{name}_{set}.npy"));
+        let touches = part(is_test);
+        write_npy(&path("frames"), &frames.select(Axis(0), &touches)).unwrap();
+        write_npy(&path("shear"), &shear.select(Axis(0), &touches)).unwrap();
+        write_npy(&path("all"), &all.select(Axis(0), &touches)).unwrap();
+        write_integers(&path("labels"), touches.iter().map(|touch| touch / 10)).unwrap();
+    }
+    let skin = "[skin]\npitch_mm = 4.0\nstroke_mm = 5.0\nsensed = \"shear\"\nfriction = 0.5\n";
+    let study = |keys: &str, skin: &str| {
+        let keys: String = keys
+            .split(", ")
+            .map(|key| {
+                let (key, name) = key.split_once(' ').unwrap();
+                format!("{key} = \"{name}.npy\"\n")
+            })
+            .collect();
+        format!("{head}[recorded]\n{keys}full_scale = 5e-3\n{skin}{LEARNED}")
+    };
+    let run = |name: &str, keys: &str, skin: &str| {
+        // Beside its files: paths are those of the folder of the study.
+        case.file(&format!("touches/{name}.toml"), study(keys, skin));
+        let study = format!("touches/{name}.toml");
+        case.run(&["run", &study, "--out", name])
+    };
+    let table = |name: &str, keys: &str| {
+        let ran = run(name, keys, skin);
+        assert!(
+            ran.status.success(),
+            "{}",
+            String::from_utf8_lossy(&ran.stderr)
+        );
+        std::fs::read_to_string(case.path(name).join("accuracy.csv")).unwrap()
+    };
+    let labels = "labels labels";
+    let one = table("one", &format!("frames all, {labels}"));
+    assert_eq!(
+        table("two", &format!("frames frames, shear shear, {labels}")),
+        one
+    );
+    let test = "labels labels_a, labels_test labels_b";
+    let one = table(
+        "one_set",
+        &format!("frames all_a, frames_test all_b, {test}"),
+    );
+    let sets = "frames frames_a, frames_test frames_b";
+    let two = format!("{sets}, shear shear_a, shear_test shear_b, {test}");
+    assert_eq!(table("two_sets", &two), one);
+    for (keys, words) in [
+        (
+            format!("frames frames, shear frames, {labels}"),
+            "frames.npy: an array of shape [30, 2, 8, 8]; shape [30, 2, 2, 8, 8] (\"n t c y x\")",
+        ),
+        (
+            format!("frames frames, shear shear_a, {labels}"),
+            "shear_a.npy: an array of shape [18, 2, 2, 8, 8]; shape [30, 2, 2, 8, 8]",
+        ),
+        (
+            format!("{sets}, shear shear_a, {test}"),
+            "key recorded.shear_test: no such key beside shear",
+        ),
+        (
+            format!("{sets}, shear_test shear_b, {test}"),
+            "no such key without recorded.shear and",
+        ),
+    ] {
+        let refused = run("refused", &keys, skin);
+        let said = String::from_utf8_lossy(&refused.stderr);
+        assert_eq!(refused.status.code(), Some(2), "{said}");
+        assert!(said.contains(words), "{said}\ndoes not say {words}");
+    }
+    let plain = "[skin]\npitch_mm = 4.0\nstroke_mm = 5.0\n";
+    let refused = run(
+        "refused",
+        &format!("frames frames, shear shear, {labels}"),
+        plain,
+    );
+    let said = String::from_utf8_lossy(&refused.stderr);
+    assert_eq!(refused.status.code(), Some(2), "{said}");
+    assert!(said.contains("key recorded.shear: "), "{said}");
+    assert!(said.contains("skin.sensed = \"shear\""), "{said}");
+    assert!(!case.path("refused").exists());
 }

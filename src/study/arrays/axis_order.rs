@@ -44,12 +44,30 @@ pub struct FrameShape {
     n_values: usize,
     /// The axes of the file in the order n, t, c, y, x.
     axes: Vec<usize>,
+    /// The letters of the axes of the file.
+    order: String,
 }
 
 impl FrameShape {
     /// Numbers of a frame.
     pub fn n_frame_values(&self) -> usize {
         self.n_values * self.rows * self.columns
+    }
+
+    /// Returns the order and the lengths of an array beside this one, of shape `shape`, that has `n_values` of each taxel instead of one: they are
+    /// the axis c before those of the place.
+    pub fn beside(&self, shape: &[usize], n_values: usize) -> (String, Vec<usize>) {
+        let (mut order, mut shape) = (self.order.clone(), shape.to_owned());
+        let has_rows = order.contains('y');
+        match order.find('c').filter(|_| has_rows) {
+            Some(axis) => shape[axis] = n_values,
+            None => {
+                let place = order.find(['c', 'y', 'x']).unwrap_or(order.len());
+                order.insert(place, 'c');
+                shape.insert(place, n_values);
+            }
+        }
+        (order, shape)
     }
 
     /// Returns frames as rows, shape (n · F, values · rows · columns), of the numbers of a file.
@@ -164,6 +182,7 @@ pub fn frame_shape(place: &str, shape: &[usize], axes: FrameAxes) -> Result<Fram
         has_grid: has_rows || axes.grid.is_some(),
         n_values: axes.n_values,
         axes: "ntcyx".chars().flat_map(axes_of).collect(),
+        order: order.clone(),
     };
     let is_side = |side| (1..=MOST_SIDE).contains(&side);
     let is_allowed = found.n_touches > 0
