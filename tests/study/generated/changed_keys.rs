@@ -9,8 +9,11 @@ use std::collections::BTreeMap;
 /// Studies in which a key is tried before it counts as one without effect: a small study may give the same answers by chance.
 const MAX_STUDIES: u64 = 12;
 
-/// Tables of results without times, and the numbers that the classifier of the first configuration learns from.
-fn results(study: &GeneratedStudy) -> Option<(BTreeMap<String, Vec<u8>>, Vec<u64>)> {
+/// Tables of results without times.
+type ResultTables = BTreeMap<String, Vec<u8>>;
+
+/// Returns the tables of a study, and the bits of the numbers that the classifier of the first configuration learns from; `None` if the study is refused.
+fn results(study: &GeneratedStudy) -> Option<(ResultTables, Vec<u64>)> {
     let loaded = study.load().ok()?;
     let mut tables = run(&loaded).ok()?;
     tables.retain(|name, _| !matches!(&name[..], "timing.csv" | "pareto.csv" | "stages.csv"));
