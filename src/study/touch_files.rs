@@ -208,8 +208,8 @@ impl FrameFiles {
     }
 
     fn commit(self) -> Result<()> {
-        let files = [Some(self.frames), self.shear].into_iter().flatten();
-        files.map(NpyFile::commit).collect()
+        let mut files = [Some(self.frames), self.shear].into_iter().flatten();
+        files.try_for_each(NpyFile::commit)
     }
 }
 

@@ -306,7 +306,7 @@ fn edits_that_the_manifest_hides_are_noticed_when_all_work_runs_again() {
         let table = fs::read_to_string(&path).unwrap();
         let last = table.lines().last().unwrap();
         let edited = format!("{table}{last}\n");
-        let [from, to] = [&table, &edited].map(|text| bubbletouch::study::sha256(text));
+        let [from, to] = [&table, &edited].map(bubbletouch::study::sha256);
         fs::write(&path, &edited).unwrap();
         let hidden = manifest.replace(&from, &to);
         assert_ne!(hidden, manifest);
