@@ -255,7 +255,7 @@ fn range_of(axis: TouchAxis) -> (fn(f64) -> bool, &'static str) {
 
 fn count_error(given: impl ToString, most: usize) -> Error {
     Error::input(
-        "touches per_object",
+        "key touches.per_object",
         given,
         format!("a number from 1 to {most}"),
     )

@@ -18,6 +18,7 @@ use crate::study::{HumanTouches, RecordedFrames};
 use crate::world::Placement;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -99,13 +100,33 @@ impl RecognitionStudy {
                     has_noted = note_shear_ripple(&plan, objects)?;
                 }
                 check_touches(&plan, objects.len(), ceiling)?;
-                Arc::new(draw_touches(objects.clone(), inputs.placement, &seed)?)
+                let n_touches = inputs.placement.n_touches() * objects.len() as f64;
+                if let Some(slow) = slow_splits(n_touches, plan.spec.trials) {
+                    // A closed standard error changes nothing.
+                    let _ = writeln!(std::io::stderr(), "note: {place}: {slow}");
+                }
+                let drawn = draw_touches(objects.clone(), inputs.placement, &seed);
+                Arc::new(drawn.map_err(|error| error.under(format!("{place}, ")))?)
             };
             drawn.insert(content, touched.clone());
             variants.push((variant, plan, touched));
         }
         Self::of_variants(variants).map_err(|error| error.under(format!("{place}, ")))
     }
+}
+
+/// Seconds that splitting takes for each touch and trial, about: 42 s for 600,000 touches in 1,000 trials.
+const SPLIT_S: f64 = 7e-8;
+
+/// Seconds of splitting from which on [`slow_splits`] returns a sentence. Larger: a command is silent for longer; smaller: short waits are announced.
+const SLOW_SPLITS_S: f64 = 5.0;
+
+/// Returns a sentence about the expected time of splitting touches if a command waits for it, before it begins.
+fn slow_splits(n_touches: f64, n_trials: usize) -> Option<String> {
+    let seconds = SPLIT_S * n_touches * n_trials as f64;
+    (seconds >= SLOW_SPLITS_S).then(|| {
+        format!("splitting {n_touches} touches in {n_trials} trials takes about {seconds:.0} s")
+    })
 }
 
 /// Everything of a plan that its touches are drawn from, beside the array and the files of its objects. Plans with equal inputs share their touches.
@@ -140,4 +161,18 @@ impl<'a> TouchInputs<'a> {
 /// Returns a text that is equal for plans with the same touches, beside the array and the files of their objects.
 pub fn touch_content(plan: &Plan) -> String {
     TouchInputs::of(plan).key()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::slow_splits;
+
+    #[test]
+    fn many_touches_in_many_trials_are_announced() {
+        assert_eq!(
+            slow_splits(6e5, 1000).as_deref(),
+            Some("splitting 600000 touches in 1000 trials takes about 42 s")
+        );
+        assert_eq!(slow_splits(37_152.0, 4), None);
+    }
 }
