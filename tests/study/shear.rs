@@ -7,7 +7,7 @@ use bubbletouch::study::progress::Silent;
 use bubbletouch::study::simulate_array;
 use bubbletouch::world::{Shear, Shears};
 use glam::{DVec2, DVec3};
-use ndarray::{Array2, Array4, s};
+use ndarray::{Array2, Array3, Array4, s};
 
 const STUDY: &str = r#"
 question = "?"
@@ -226,8 +226,11 @@ fn the_command_writes_channels_of_their_own() {
     let case = Case::new();
     case.file("study.toml", STUDY);
     case.succeeds(&["touches", "study.toml", "--out", "touches"]);
-    let frames: Array4<f32> = ndarray_npy::read_npy(case.path("touches/frames.npy")).unwrap();
-    assert_eq!(frames.dim(), (36, 3, 8, 8));
+    let frames: Array3<f32> = ndarray_npy::read_npy(case.path("touches/frames.npy")).unwrap();
+    assert_eq!(frames.dim(), (36, 8, 8));
+    let shear: Array4<f32> = ndarray_npy::read_npy(case.path("touches/shear.npy")).unwrap();
+    assert_eq!(shear.dim(), (36, 2, 8, 8));
+    assert!(shear.iter().any(|&force| force != 0.0));
     assert!(!case.path("touches/taxels.npy").exists());
     case.succeeds(&["run", "study.toml", "--out", "results"]);
 }
