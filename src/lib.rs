@@ -161,6 +161,7 @@ pub mod guide;
 mod in_range;
 pub mod kinds;
 pub mod mesh;
+mod note;
 mod numbers_csv;
 pub mod objects;
 pub mod packing;

@@ -1,8 +1,8 @@
 //! Paths in a study or scene file: relative to that file, absolute where the file is written out.
 
+use crate::note::note;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::cell::RefCell;
-use std::io::Write;
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
 
@@ -52,13 +52,11 @@ impl FilePath {
         let folder = FOLDER.with_borrow(Option::clone);
         let resolved = folder.map_or_else(|| written.clone(), |folder| folder.join(&written));
         if resolved != written && !resolved.exists() && written.exists() {
-            // That nobody reads it changes nothing.
-            let _ = writeln!(
-                std::io::stderr(),
-                "note: {} is relative to the current folder; the next version looks for it as {}, relative to the study file",
+            note(format_args!(
+                "{} is relative to the current folder; the next version looks for it as {}, relative to the study file",
                 written.display(),
                 resolved.display()
-            );
+            ));
             // Absolute, so that no folder is put before it.
             let resolved = std::path::absolute(&written).unwrap_or_else(|_| written.clone());
             return Self { written, resolved };

@@ -10,6 +10,7 @@ use crate::geometry::Aabb;
 use crate::mesh::{
     LengthUnit, MeshFile, MeshFormat, Orientation, SizeLimits, Surface, TriangleMesh, Welded,
 };
+use crate::note::note;
 use crate::objects::{
     Catalogue, Entry, MeshModel, Object, Sphere, SphereUnion, read_spheres, vertex_spheres,
 };
@@ -18,7 +19,7 @@ use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Display;
 use std::fs::File;
-use std::io::{BufReader, Write};
+use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 /// Points of a mesh at which the error of vertex spheres is measured. Larger: slower; smaller: the largest error may be missed.
@@ -234,14 +235,12 @@ fn note_vertex_spheres(built: &[BuiltMesh], spec: &ObjectsSpec) {
         1 => String::new(),
         n => format!(" in {} of {n} meshes", far.len()),
     };
-    // A closed standard error changes nothing.
-    let _ = writeln!(
-        std::io::stderr(),
-        "note: vertex spheres are up to {:.2} mm from the surface ({name}), more than half the pitch of {} mm{meshes}; \
+    note(format_args!(
+        "vertex spheres are up to {:.2} mm from the surface ({name}), more than half the pitch of {} mm{meshes}; \
          model = \"mesh\" touches meshes exactly",
         1e3 * largest,
         millimetres(pitch)
-    );
+    ));
 }
 
 /// Reads the triangles of a mesh file with its closed parts turned outwards, and which way they face. Holes up to `close_holes`
@@ -265,8 +264,7 @@ fn outward_mesh(
     place: &str,
     close_holes: Option<f64>,
 ) -> Result<(TriangleMesh, Orientation)> {
-    // A closed standard error changes nothing.
-    let note = |text: &dyn Display| drop(writeln!(std::io::stderr(), "note: {place}: {text}"));
+    let note = |text: &dyn Display| note(format_args!("{place}: {text}"));
     let (mut mesh, mut orientation) = file.into_mesh(place)?.turned_outwards();
     if orientation.is_turned() {
         note(&orientation);

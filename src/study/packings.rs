@@ -7,10 +7,11 @@ use super::content_hash::{bytes_of_mesh, bytes_of_numbers, sha256};
 use crate::error::{Error, Result};
 use crate::files::write_bytes;
 use crate::mesh::{Surface, TriangleMesh};
+use crate::note::note;
 use crate::objects::{SphereUnion, read_spheres, write_spheres};
 use crate::packing::{Body, error_of_file, pack_mesh, slow_packing};
 use std::fs;
-use std::io::{ErrorKind, Write};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// Changes whenever [`pack_mesh`] gives other spheres for the same mesh.
@@ -45,8 +46,7 @@ pub fn pack_within(
         return Ok(Packed { spheres, was_kept });
     }
     if let Some(slow) = slow_packing(surface, Body::Solid, tolerance) {
-        // That nobody reads it changes nothing.
-        let _ = writeln!(std::io::stderr(), "note: {place}: {slow}");
+        note(format_args!("{place}: {slow}"));
     }
     let packing = pack_mesh(surface, Body::Solid, tolerance).map_err(|error| {
         let advice = "a study closes small holes with objects.close_holes_mm; open meshes can be touched with model = \"mesh\", free ones with model = \"vertex_spheres\"";
@@ -92,12 +92,10 @@ fn kept(path: &Path) -> Result<Option<SphereUnion>> {
     match spheres {
         Ok(spheres) if said == seal(rows).as_bytes() => Ok(Some(spheres)),
         _ => {
-            // That nobody reads it changes nothing.
-            let _ = writeln!(
-                std::io::stderr(),
-                "note: {} is damaged, or of another version: it is made again",
+            note(format_args!(
+                "{} is damaged, or of another version: it is made again",
                 path.display()
-            );
+            ));
             Ok(None)
         }
     }

@@ -10,10 +10,10 @@ use super::taxel_array::TaxelArray;
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::mesh::TriangleMesh;
+use crate::note::note;
 use crate::objects::{MeshModel, Model, Object, Part, Shape, Solid};
 use crate::world::Spread;
 use glam::DVec3;
-use std::io::Write;
 
 /// Edges of the box that is pressed, metres: as large as the objects of the built-in sets.
 const BOX: DVec3 = DVec3::new(0.04, 0.04, 0.02);
@@ -121,17 +121,15 @@ pub(crate) fn note_shear_ripple(plan: &Plan, objects: &[Object]) -> Result<bool>
         let Some(ripple) = ShearRipple::measure(array, spec.surface_error(), depth)? else {
             continue;
         };
-        // A closed standard error changes nothing.
-        let _ = writeln!(
-            std::io::stderr(),
-            "note: {packed} of {} objects are spheres within {} mm: on a flat face a taxel of the {} mm array reads {:.3} ± {:.3} N of shear \
+        note(format_args!(
+            "{packed} of {} objects are spheres within {} mm: on a flat face a taxel of the {} mm array reads {:.3} ± {:.3} N of shear \
              that no exact face has; meshes with model = \"mesh\" have none",
             objects.len(),
             spec.surface_error() / MM,
             super::plan::millimetres(array.pitch()),
             ripple.mean,
             ripple.std
-        );
+        ));
         return Ok(true);
     }
     Ok(false)

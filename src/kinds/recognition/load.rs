@@ -5,6 +5,7 @@ use super::study::RecognitionStudy;
 use crate::error::{Error, Result};
 use crate::files::with_folder;
 use crate::kinds::{self, Kind, Source};
+use crate::note::note;
 use crate::random::Seed;
 use crate::study::axes::AxisValues;
 use crate::study::memory::check_touches;
@@ -18,7 +19,6 @@ use crate::study::{HumanTouches, RecordedFrames};
 use crate::world::Placement;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
-use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -102,8 +102,7 @@ impl RecognitionStudy {
                 check_touches(&plan, objects.len(), ceiling)?;
                 let n_touches = inputs.placement.n_touches() * objects.len() as f64;
                 if let Some(slow) = slow_splits(n_touches, plan.spec.trials) {
-                    // A closed standard error changes nothing.
-                    let _ = writeln!(std::io::stderr(), "note: {place}: {slow}");
+                    note(format_args!("{place}: {slow}"));
                 }
                 let drawn = draw_touches(objects.clone(), inputs.placement, &seed);
                 Arc::new(drawn.map_err(|error| error.under(format!("{place}, ")))?)
