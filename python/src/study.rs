@@ -8,6 +8,7 @@ use bubbletouch::Result;
 use bubbletouch::kinds::{Source, check_folder, load, read_tables};
 use bubbletouch::report::advice::{self, Offers, Wish};
 use bubbletouch::report::advice_answers::{answers, answers_json};
+use bubbletouch::report::study_folder::ChartFormat;
 use bubbletouch::shell_line::shell_line;
 use bubbletouch::study::journal::{JOURNAL_FILE, Journal};
 use bubbletouch::study::pieces::{Part, PieceManner};
@@ -133,7 +134,7 @@ fn run(asked: &Asked, told: &Told) -> Result<Vec<Table>> {
         ..Manifest::ended(study.identity(), started)
     };
     told.stage("report", 1);
-    study.write(results, &outcome, manifest)?;
+    study.write(results, &outcome, manifest, ChartFormat::default())?;
     told.advance(1);
     Ok(outcome.tables)
 }

@@ -1,8 +1,10 @@
 //! `bubbletouch report`: the charts and the page of a folder of results again, from its tables.
 
+use super::classify::word;
 use super::results_folder::{checked_manifest, load_study};
 use super::streams::{note, say};
 use bubbletouch::report::page::StudyAbout;
+use bubbletouch::report::study_folder::ChartFormat;
 use bubbletouch::shell_line::shell_line;
 use bubbletouch::study::provenance::MANIFEST_FILE;
 use bubbletouch::{Error, Result};
@@ -15,6 +17,9 @@ pub struct Args {
     /// Draw every chart as a file; without it the first 24
     #[arg(long)]
     all_charts: bool,
+    /// Write charts as svg, png or both
+    #[arg(long, value_name = "FORMAT", default_value = "svg", value_parser = word::<ChartFormat>)]
+    chart_format: ChartFormat,
 }
 
 pub fn report(args: &Args) -> Result<()> {
@@ -44,6 +49,7 @@ pub fn report(args: &Args) -> Result<()> {
         command,
         manifest,
         all_charts: args.all_charts,
+        chart_format: args.chart_format,
         ..StudyAbout::default()
     };
     study.report(folder, about)?;

@@ -7,12 +7,16 @@ use bubbletouch::study::provenance::Manifest;
 use bubbletouch::{Error, Result};
 use std::path::Path;
 
-/// Checks the files of a folder that a run made beside tables: charts, pictures and the page.
-pub fn check_page(folder: &Path, manifest: &Manifest) -> Result<()> {
+/// Checks the files of a folder that a run made beside tables: charts, pictures and the page. Returns the number of files that are missing: they are
+/// drawn from the tables again.
+pub fn check_page(folder: &Path, manifest: &Manifest) -> Result<usize> {
     let files = manifest.files_sha256.iter().flatten();
-    files
+    let files = files.map(|(name, hash)| (folder.join(name), hash));
+    let (there, missing): (Vec<_>, Vec<_>) = files.partition(|(path, _)| path.exists());
+    there
         .into_iter()
-        .try_for_each(|(name, hash)| check(&folder.join(name), hash))
+        .try_for_each(|(path, hash)| check(&path, hash))?;
+    Ok(missing.len())
 }
 
 /// The manifest of a folder, whose study and tables are as it says; none if there is no manifest.

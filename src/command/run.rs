@@ -23,7 +23,7 @@ pub struct Args {
     #[arg(long)]
     fail_fast: bool,
     /// Do only part I of N of the work, for one of N processes or machines; `bubbletouch merge` puts them together
-    #[arg(long, value_name = "I/N")]
+    #[arg(long, value_name = "I/N", conflicts_with = "chart_format")]
     shard: Option<Shard>,
     /// End as if killed when so many work items are kept: to try what is left of a run
     #[arg(long, value_name = "N", hide = true, default_value_t = 0)]

@@ -1,5 +1,6 @@
 //! A run of a study from its file to its folder of results: how `run` and `merge` begin, and how they end.
 
+use super::classify::word;
 use super::memory_limit::MemoryLimit;
 use super::output::terminal_width;
 use super::streams::{say, write_out};
@@ -7,6 +8,7 @@ use super::study_args::StudyArgs;
 use bubbletouch::kinds::{self, AnyStudy, Outcome, Source};
 use bubbletouch::report::csv_tables::FAILURES_FILE;
 use bubbletouch::report::progress::{json_lines, to_stderr};
+use bubbletouch::report::study_folder::ChartFormat;
 use bubbletouch::study::journal::check_set_aside;
 use bubbletouch::study::progress::{Progress, Silent};
 use bubbletouch::study::provenance::Manifest;
@@ -45,6 +47,9 @@ pub struct RunArgs {
     /// Say what happens as JSON lines on standard output
     #[arg(long)]
     json: bool,
+    /// Write charts as svg, png or both
+    #[arg(long, value_name = "FORMAT", default_value = "svg", value_parser = word::<ChartFormat>)]
+    chart_format: ChartFormat,
 }
 
 impl RunArgs {
@@ -108,7 +113,7 @@ impl<'a> StudyRun<'a> {
             n_finished_before: n_before,
             ..Manifest::ended(study.identity(), self.started)
         };
-        study.write(folder, outcome, manifest)?;
+        study.write(folder, outcome, manifest, self.args.chart_format)?;
         self.progress.advance(1);
         let elapsed_s = self.elapsed_s();
         self.progress.finish(&format!("{what}{elapsed_s:.1} s"));

@@ -5,6 +5,7 @@ use super::results_folder::{check_page, checked_manifest, load_study};
 use super::streams::say;
 use super::study_args::set_threads;
 use bubbletouch::report::progress::to_stderr;
+use bubbletouch::shell_line::shell_line;
 use bubbletouch::study::provenance::{MANIFEST_FILE, SOURCE};
 use bubbletouch::{Error, Result};
 use std::path::PathBuf;
@@ -32,7 +33,13 @@ pub fn verify(args: &Args) -> Result<()> {
         let path = folder.join(MANIFEST_FILE);
         Error::input(path.display(), "is missing", "the manifest of a run")
     })?;
-    check_page(folder, &manifest)?;
+    let n_missing = check_page(folder, &manifest)?;
+    if n_missing > 0 {
+        let again = shell_line(&["bubbletouch", "report", &folder.display().to_string()]);
+        say(format_args!(
+            "note: missing charts, pictures or page: {n_missing} files; {again} draws them"
+        ))?;
+    }
     if manifest.source != SOURCE {
         say(format_args!(
             "note: the results were made by {} (commit {}), not by this version",

@@ -2,6 +2,7 @@
 
 use crate::error::Result;
 use crate::report::page::StudyAbout;
+use crate::report::study_folder::ChartFormat;
 use crate::study::journal::{Identity, Journal};
 use crate::study::pieces::{Part, PieceManner};
 use crate::study::progress::Progress;
@@ -39,7 +40,13 @@ pub trait AnyStudy {
     ///
     /// # Errors
     /// What cannot be drawn; a file that cannot be written.
-    fn write(&self, folder: &Path, outcome: &Outcome, run: Manifest) -> Result<()>;
+    fn write(
+        &self,
+        folder: &Path,
+        outcome: &Outcome,
+        run: Manifest,
+        chart_format: ChartFormat,
+    ) -> Result<()>;
 
     /// What a person reads at the end, in lines of about `width` letters.
     fn words(&self, outcome: &Outcome, width: usize) -> String;

@@ -10,7 +10,7 @@ use crate::files::{DataFolder, OwnedFiles, RUN};
 use crate::report::csv_tables::FAILURES_FILE;
 use crate::report::folder::{NamedFile, table_files, write_files};
 use crate::report::page::StudyAbout;
-use crate::report::study_folder::{Beyond, Found, files_with};
+use crate::report::study_folder::{Beyond, ChartFormat, Found, files_with};
 use crate::study::journal::{Identity, Journal};
 use crate::study::pieces::{NamedPiece, Part, PieceFailure, PieceManner, PiecesRun};
 use crate::study::progress::{Progress, Silent};
@@ -126,7 +126,13 @@ impl<K: Kind> AnyStudy for Loaded<K> {
         Ok(Outcome { tables, n_failed })
     }
 
-    fn write(&self, dir: &Path, outcome: &Outcome, run: Manifest) -> Result<()> {
+    fn write(
+        &self,
+        dir: &Path,
+        outcome: &Outcome,
+        run: Manifest,
+        chart_format: ChartFormat,
+    ) -> Result<()> {
         let hashes = |repeats: bool| {
             let tables = outcome.tables.iter();
             let files = tables.filter(|t| t.repeats == repeats && !t.csv.is_empty());
@@ -148,6 +154,7 @@ impl<K: Kind> AnyStudy for Loaded<K> {
             name: manifest.study.clone(),
             command: manifest.command.clone(),
             manifest: Some(manifest.clone()),
+            chart_format,
             ..StudyAbout::default()
         };
         let page = self.files_of(of_run, &outcome.tables)?;

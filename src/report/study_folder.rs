@@ -7,6 +7,7 @@ use crate::report::page::{Beside, Section, StudyAbout, study_page};
 use crate::report::terminal::{paragraph, table_text};
 use crate::table::{ChartSpec, Role, Table};
 use rayon::prelude::*;
+use serde::Deserialize;
 
 /// A picture that is no chart: frames, bodies, objects.
 pub struct NamedPicture {
@@ -40,8 +41,21 @@ pub struct Beyond {
     pub sections: Vec<Section>,
 }
 
-/// Charts that are drawn, unless all are asked for; of all, those in the page (for readers without script) and as PNG. More: a page too
-/// heavy for a phone, and minutes for what the page shows anyway when it is asked.
+/// File formats of charts. Pictures of frames and objects are PNG files in every case.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ChartFormat {
+    /// SVG files, about a fifth of the size of PNG files.
+    #[default]
+    Svg,
+    /// PNG files with two pixels per unit of the SVG file.
+    Png,
+    /// Both files for each chart.
+    Both,
+}
+
+/// Charts that are drawn, unless all are asked for; of all, those in the page (for readers without script). More: a page too heavy for a
+/// phone, and minutes for what the page shows anyway when it is asked.
 pub const MOST_CHARTS: usize = 24;
 
 /// The files of charts, pictures and the page, with what else there is, which is made while charts are drawn. A chart that no row has a
@@ -63,17 +77,20 @@ pub fn files_with(
             charts.push(spec.clone());
         }
     }
-    let draw = |(number, spec): (usize, &ChartSpec)| {
+    let format = about.chart_format;
+    let draw = |spec: &ChartSpec| {
         let drawing = chart::draw(spec, found.tables)?;
-        let png = (number < MOST_CHARTS).then(|| drawing.png());
+        let png = (format != ChartFormat::Svg).then(|| drawing.png());
         Ok((png.transpose()?, drawing.svg(&spec.title)))
     };
-    let draw_all = || charts.par_iter().enumerate().map(draw).collect();
+    let draw_all = || charts.par_iter().map(draw).collect();
     let (drawn, beyond): (Result<Vec<_>>, _) = rayon::join(draw_all, beyond);
     let mut files = Vec::new();
     for (ChartSpec { name, .. }, (png, svg)) in charts.iter().zip(drawn?) {
         files.extend(png.map(|png| (format!("{name}.png"), png)));
-        files.push((format!("{name}.svg"), svg.clone().into_bytes()));
+        if format != ChartFormat::Png {
+            files.push((format!("{name}.svg"), svg.clone().into_bytes()));
+        }
         beside.charts.push(svg);
     }
     // More would make the page slow; each can be arranged to show what the others do.

@@ -228,9 +228,23 @@ pub struct ReportSpec {
     pub samples: Option<Vec<String>>,
     /// Whether to chart accuracy against time with its Pareto front; when left out, if at least three classifiers are swept.
     pub pareto: Option<bool>,
+    /// Configurations whose confusion matrix is in `confusion.csv`.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub confusion: ConfusionMatrices,
     /// Accuracies that others published, shown beside the best of the cells that each is about.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub published: Vec<PublishedSpec>,
+}
+
+/// `report.confusion`: configurations whose confusion matrix is in `confusion.csv`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ConfusionMatrices {
+    /// All configurations.
+    #[default]
+    All,
+    /// The most accurate configuration and those of `confused.csv`. With many objects, the other matrices are most of the bytes of a folder.
+    Best,
 }
 
 /// `{ claim = "98 % at 64:1", accuracy = 0.98, source = "[CL]", ratio = 64.0, ensemble = "sbhe" }`

@@ -2,6 +2,7 @@
 
 use super::conditions::most_accurate;
 use super::evaluation::Evaluation;
+use super::spec::ConfusionMatrices;
 use super::summary::{compare_with_best, most_confused, pareto, summarise};
 use super::table::{Cell, Confusion, Tables, TrialScore};
 use super::variance_table::variances;
@@ -9,12 +10,13 @@ use crate::error::Result;
 use std::collections::BTreeMap;
 
 /// Fills every table but those of stages and of published numbers; `name` returns the class of a label in a cell, `n_folds` the number of folds of a
-/// cell's study, 1 without folds.
+/// cell's study, 1 without folds, and `matrices` lists the cells that keep their confusion matrix.
 pub fn tabulate(
     tables: &mut Tables,
     mut scored: Vec<(Cell, Evaluation)>,
     name: impl Fn(&Cell, usize) -> String,
     n_folds: impl Fn(&Cell) -> usize,
+    matrices: ConfusionMatrices,
 ) -> Result<()> {
     scored.sort_by_key(|(cell, evaluation)| (cell.cell, evaluation.score.trial));
     share_columns(
@@ -53,6 +55,14 @@ pub fn tabulate(
     if let Some(best) = most_accurate(accuracies) {
         let fused = most_fused(cells(), best);
         tables.confused = most_confused(&tables.confusion, best, fused)?;
+        if matrices == ConfusionMatrices::Best {
+            let all = tables.summary.iter();
+            let charted = most_accurate(all.map(|(cell, score)| (cell.cell, score.accuracy)));
+            let kept = [Some(best), fused.map(|(cell, _)| cell), charted];
+            tables
+                .confusion
+                .retain(|row| kept.contains(&Some(row.cell)));
+        }
     }
     tables.pareto = pareto(&tables.accuracy, &tables.timing)?;
     Ok(())

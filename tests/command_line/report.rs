@@ -79,6 +79,131 @@ fn but_for_seconds(page: &str) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
+/// Files of charts in a folder, sorted.
+fn chart_files(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap();
+    let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let mut names: Vec<String> = names
+        .filter(|name| name.starts_with("accuracy_by"))
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn charts_are_svg_files_unless_another_format_is_given() {
+    let case = Case::new();
+    case.file("asked.toml", STUDY);
+    case.succeeds(&["run", "asked.toml", "--out", "svg"]);
+    case.succeeds(&["run", "asked.toml", "--out", "png", "--chart-format", "png"]);
+    let [svg, png] = ["svg", "png"].map(|name| chart_files(&case.path(name)));
+    assert!(!svg.is_empty() && svg.iter().all(|name| name.ends_with(".svg")));
+    let as_svg: Vec<String> = png
+        .iter()
+        .map(|name| name.replace(".png", ".svg"))
+        .collect();
+    assert_eq!(as_svg, svg);
+    // Pictures of touches are PNG files in every case.
+    assert!(case.path("svg/snapshots.png").exists());
+    case.succeeds(&["report", "svg", "--chart-format", "both"]);
+    assert_eq!(chart_files(&case.path("svg")).len(), 2 * svg.len());
+    case.succeeds(&["verify", "svg", "--cells", "1"]);
+    // A missing chart is a note, because it is no result; a chart that was edited is an error.
+    fs::remove_file(case.path("png").join(&png[0])).unwrap();
+    let (said, _) = case.succeeds(&["verify", "png", "--cells", "1"]);
+    let note = "missing charts, pictures or page: 1 files; bubbletouch report png draws them";
+    assert!(said.contains(note), "{said}");
+    case.file(&format!("svg/{}", svg[0]), "<svg/>");
+    let verified = case.run(&["verify", "svg", "--cells", "1"]);
+    assert_eq!(verified.status.code(), Some(2));
+    let refused = case.run(&["run", "asked.toml", "--out", "new", "--chart-format", "pdf"]);
+    assert_eq!(refused.status.code(), Some(2));
+    let said = String::from_utf8(refused.stderr).unwrap();
+    assert!(said.contains("`svg`, `png`, `both`"), "{said}");
+    // A shard draws no charts.
+    let shard = ["run", "asked.toml", "--shard", "1/2", "--out", "new"];
+    let refused = case.run(&[&shard[..], &["--chart-format", "png"]].concat());
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(!case.path("new").exists());
+}
+
+#[test]
+fn confusion_matrices_of_the_best_cells_alone_leave_the_other_tables_as_they_are() {
+    let case = Case::new();
+    let fused = STUDY.replace("classifier =", "fused_touches = [1, 4]\nclassifier =");
+    case.file("all.toml", &fused);
+    case.file(
+        "best.toml",
+        format!("{fused}\n[report]\nconfusion = \"best\"\n"),
+    );
+    for name in ["all", "best"] {
+        case.succeeds(&["run", &format!("{name}.toml"), "--out", name]);
+    }
+    let read = |folder: &str, name: &str| fs::read_to_string(case.path(folder).join(name)).unwrap();
+    for name in [
+        "accuracy.csv",
+        "summary.csv",
+        "confused.csv",
+        "comparison.csv",
+    ] {
+        assert_eq!(read("all", name), read("best", name), "{name}");
+    }
+    let (all, best) = (read("all", "confusion.csv"), read("best", "confusion.csv"));
+    let cells = |text: &str| -> Vec<String> {
+        let cells = text.lines().skip(1);
+        let mut cells: Vec<String> = cells
+            .map(|line| line.split(',').next().unwrap().to_owned())
+            .collect();
+        cells.dedup();
+        cells
+    };
+    let kept = cells(&best);
+    assert!(
+        !kept.is_empty() && kept.len() <= 3 && cells(&all).len() == 8,
+        "{kept:?}"
+    );
+    let of_kept = |line: &&str| {
+        kept.iter()
+            .any(|cell| line.starts_with(&format!("{cell},")))
+    };
+    let expected: Vec<&str> = all.lines().skip(1).filter(of_kept).collect();
+    assert_eq!(best.lines().skip(1).collect::<Vec<_>>(), expected);
+    // The chart shows the same matrix, and the line of chance is drawn.
+    let tiles = |folder: &str| {
+        let svg = read(folder, "confusion.svg");
+        // The note before the tiles counts the rows of other cells.
+        svg.split_once("settings.").unwrap().1.to_owned()
+    };
+    assert_eq!(tiles("all"), tiles("best"));
+    let chart = &chart_files(&case.path("best"))[0];
+    assert!(read("best", chart).contains("chance (1 in 3)"));
+    assert_eq!(read("best", chart), read("all", chart));
+    case.succeeds(&["report", "best"]);
+    case.succeeds(&["verify", "best", "--cells", "2"]);
+    case.succeeds(&["verify", "best", "--cells", "1000"]);
+    case.succeeds(&["advise", "best", "--accuracy", "0.1"]);
+    // Where the number of objects is an axis, the matrices of all configurations are needed.
+    let axes = "[axes]\n\"objects.names\" = [[\"mug\", \"banana\"], [\"mug\", \"banana\", \"scissors\"]]\n";
+    let text = format!("{fused}\n[report]\nconfusion = \"best\"\n{axes}");
+    case.file(
+        "sizes.toml",
+        text.replace("names = [\"mug\", \"banana\", \"scissors\"]\n", ""),
+    );
+    for command in [
+        &["plan", "sizes.toml"][..],
+        &["run", "sizes.toml", "--out", "sizes"],
+    ] {
+        let refused = case.run(command);
+        assert_eq!(refused.status.code(), Some(2));
+        let said = String::from_utf8(refused.stderr).unwrap();
+        assert!(
+            said.contains("confusion") && said.contains("differ"),
+            "{said}"
+        );
+    }
+    assert!(!case.path("sizes").exists());
+}
+
 #[test]
 fn the_page_comes_again_from_the_tables() {
     let case = Case::new();

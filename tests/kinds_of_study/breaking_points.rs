@@ -94,7 +94,7 @@ fn each_way_breaks_where_it_must_and_threads_change_no_byte() {
         "summary.csv",
         "breaking_points.csv",
         "noise.svg",
-        "c.png",
+        "c.svg",
         "study.toml",
     ] {
         assert!(!read("1", name).is_empty());

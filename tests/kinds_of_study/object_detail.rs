@@ -266,7 +266,6 @@ fn detail_tables_are_the_same_bytes_at_any_number_of_threads_and_obey_their_laws
     let kept = again.iter().filter(|time| time.was_kept).count();
     assert_eq!(kept, 2 * 3, "packings of the first run");
     for chart in ["surface_error_by_spheres", "deflection_error_by_spheres"] {
-        assert!(!read("1", &format!("{chart}.png")).is_empty());
         let svg = String::from_utf8(read("1", &format!("{chart}.svg"))).unwrap();
         assert!(svg.contains("spheres an object") && svg.contains("(mm)"));
     }

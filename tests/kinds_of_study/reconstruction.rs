@@ -130,7 +130,7 @@ fn the_tables_are_the_same_bytes_at_any_number_of_threads_and_hold_every_cell() 
     for name in [
         "frames.png",
         "error_sbhe_noise_0.1.svg",
-        "error_by_time_noise_0.png",
+        "error_by_time_noise_0.svg",
     ] {
         assert!(!read("1", name).is_empty(), "{name}");
     }

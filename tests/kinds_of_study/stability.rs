@@ -56,7 +56,7 @@ fn ours_is_right_everywhere_the_others_break_where_they_must_and_threads_change_
         "stability_summary.csv",
         "stability_rest.svg",
         "stability_press.svg",
-        "stability_plunger.png",
+        "stability_plunger.svg",
         "study.toml",
     ] {
         assert!(!read("1", name).is_empty());

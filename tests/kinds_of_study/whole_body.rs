@@ -193,7 +193,6 @@ fn tables_but_for_times_are_the_same_bytes_at_any_number_of_threads_and_obey_the
         "time_by_spheres",
         "time_by_stage",
     ] {
-        assert!(!read("1", &format!("{chart}.png")).is_empty());
         let svg = String::from_utf8(read("1", &format!("{chart}.svg"))).unwrap();
         assert!(svg.contains("time of a step") && svg.contains("a millisecond"));
     }

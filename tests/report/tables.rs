@@ -6,7 +6,7 @@ use crate::report_synthetic::{
 };
 use bubbletouch::report::page::StudyAbout;
 use bubbletouch::report::recognition::{read_tables, tables_of};
-use bubbletouch::report::study_folder::MOST_CHARTS;
+use bubbletouch::report::study_folder::{ChartFormat, MOST_CHARTS};
 use bubbletouch::sensing::Ensemble;
 use bubbletouch::study::table::{Cell, Comparison, PStatus, Tables};
 use std::collections::BTreeMap;
@@ -153,11 +153,12 @@ fn the_first_charts_are_drawn_and_the_page_says_which_are_left_out() {
     }
     let made = tables(cells, 1, 8);
     let dir = tempfile::tempdir().unwrap();
-    let drawn = |name: &str, all_charts| {
+    let drawn = |name: &str, all_charts, chart_format| {
         let folder = dir.path().join(name);
         let page = ReportPage {
             about: StudyAbout {
                 all_charts,
+                chart_format,
                 ..about().about
             },
             ..about()
@@ -172,13 +173,15 @@ fn the_first_charts_are_drawn_and_the_page_says_which_are_left_out() {
         let html = String::from_utf8(names["report.html"].clone()).unwrap();
         (of_ending(".svg"), of_ending(".png"), html)
     };
-    let (first, png, html) = drawn("first", false);
+    let (first, png, html) = drawn("first", false, ChartFormat::Svg);
     // One of them shows what was taken for what.
     let most = MOST_CHARTS - 1;
-    assert_eq!((first.len(), png.len()), (most, most));
-    let (all, png, all_html) = drawn("all", true);
+    assert_eq!((first.len(), png.len()), (most, 0));
+    let (svg, png, _) = drawn("png", false, ChartFormat::Png);
+    assert_eq!((svg.len(), png.len()), (0, most));
+    let (all, png, all_html) = drawn("all", true, ChartFormat::Both);
     assert!(all.len() > most + 1 && first.iter().all(|name| all.contains(name)));
-    assert_eq!(png.len(), most);
+    assert_eq!(png.len(), all.len());
     let n_left_out = all.len() - most;
     let said = format!("{n_left_out} more, from accuracy_by_");
     assert!(
@@ -244,11 +247,8 @@ fn equal_tables_give_equal_bytes_in_every_file() {
         names[TABLE_FILES.len()..],
         [
             "limits.csv",
-            "accuracy_by_noise.png",
             "accuracy_by_noise.svg",
-            "accuracy_by_noise_per_classifier.png",
             "accuracy_by_noise_per_classifier.svg",
-            "confusion.png",
             "confusion.svg",
             "report.html",
         ]

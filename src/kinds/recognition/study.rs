@@ -4,7 +4,7 @@ use super::cost::{fit_s, touch_s};
 use super::load::TouchInputs;
 use super::measuring::Job;
 use super::rows::{RecognitionRows, TouchRow};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::report::recognition::tables_of;
 use crate::study::Samples;
 use crate::study::axes::AxisValues;
@@ -16,7 +16,7 @@ use crate::study::plan::{Plan, millimetres};
 use crate::study::progress::Progress;
 use crate::study::published::{check_published, compare_with_published};
 use crate::study::short_hash;
-use crate::study::spec::{ObjectsSpec, RecordedSpec};
+use crate::study::spec::{ConfusionMatrices, ObjectsSpec, RecordedSpec};
 use crate::study::sweep::{Group, StudyPart, Sweep};
 use crate::study::table::{Cell, StageTime, Tables};
 use crate::study::tabulate::tabulate;
@@ -114,7 +114,16 @@ impl RecognitionStudy {
             });
         }
         let cells: Vec<&Cell> = study.all_cells().collect();
-        check_published(&study.first().plan.spec.report.published, &cells)?;
+        let report = &study.first().plan.spec.report;
+        check_published(&report.published, &cells)?;
+        // The matrices tell the chance of a guess in each cell.
+        let n_objects = |part: &StudyPart| part.touched.class_names().len();
+        let n_first = n_objects(study.first());
+        let differ = study.parts.iter().any(|part| n_objects(part) != n_first);
+        if differ && report.confusion == ConfusionMatrices::Best {
+            let allowed = "all, because configurations differ in their number of objects";
+            return Err(Error::input("key report.confusion", "best", allowed));
+        }
         study.place_groups();
         Ok(study)
     }
@@ -333,9 +342,15 @@ impl RecognitionStudy {
             let spec = &self.parts[cell.variant.number].plan.spec;
             spec.recognition.folds.unwrap_or(1)
         };
-        tabulate(&mut tables, scored.collect(), name, n_folds)?;
-        let published = &self.first().plan.spec.report.published;
-        tables.published = compare_with_published(published, &tables.summary)?;
+        let report = &self.first().plan.spec.report;
+        tabulate(
+            &mut tables,
+            scored.collect(),
+            name,
+            n_folds,
+            report.confusion,
+        )?;
+        tables.published = compare_with_published(&report.published, &tables.summary)?;
         tables.has_folds = self.first().plan.spec.recognition.folds.is_some();
         tables.stages = self.stages(&touches);
         tables.limits = self.limits(&tables.accuracy, &touches);

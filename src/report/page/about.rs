@@ -1,5 +1,6 @@
 //! What a study says of itself, beside its tables.
 
+use crate::report::study_folder::ChartFormat;
 use crate::study::provenance::Manifest;
 
 /// What a study says of itself, beside its tables.
@@ -21,4 +22,6 @@ pub struct StudyAbout {
     pub manifest: Option<Manifest>,
     /// Whether every chart is drawn as a file, however many there are.
     pub all_charts: bool,
+    /// File format of the charts.
+    pub chart_format: ChartFormat,
 }

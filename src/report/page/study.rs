@@ -6,7 +6,7 @@ use super::frame::{Section, html, sentences_html};
 use super::picture::{figure, png_element};
 use super::provenance::provenance_html;
 use crate::report::drawing::escape;
-use crate::report::study_folder::{Beyond, Found, NamedPicture};
+use crate::report::study_folder::{Beyond, ChartFormat, Found, NamedPicture};
 use crate::table::{ChartSpec, Column, Scale, Table, short_number};
 
 /// Letters of pictures for readers without script, at most: a study of thousands of rows has megabytes of them.
@@ -30,7 +30,7 @@ pub(crate) struct Beside {
 /// The page.
 pub(crate) fn page(about: &StudyAbout, found: &Found, beside: &Beside) -> String {
     let data = PageData::of(found.tables, found.charts);
-    let charts = charts_html(found.charts, &data, beside);
+    let charts = charts_html(about, found.charts, &data, beside);
     let pictures = beside.beyond.pictures.iter().map(picture_html).collect();
     let mut sections = vec![
         Section::new("answer", "Answer", sentences_html(found.answers)),
@@ -54,7 +54,12 @@ fn picture_html(picture: &NamedPicture) -> String {
 }
 
 /// A chart that the script draws, and its picture for readers without.
-fn charts_html(charts: &[ChartSpec], data: &PageData, beside: &Beside) -> String {
+fn charts_html(
+    about: &StudyAbout,
+    charts: &[ChartSpec],
+    data: &PageData,
+    beside: &Beside,
+) -> String {
     let mut letters = 0;
     let drawn = charts.iter().zip(&beside.charts);
     let held = drawn.filter(|(chart, _)| data.holds(chart.table));
@@ -65,7 +70,13 @@ fn charts_html(charts: &[ChartSpec], data: &PageData, beside: &Beside) -> String
                 letters += svg.len();
                 figure(svg, &chart.title)
             }
-            false => format!("<p>This chart lies beside the page: {name}.svg.</p>"),
+            false => {
+                let ending = match about.chart_format {
+                    ChartFormat::Png => "png",
+                    ChartFormat::Svg | ChartFormat::Both => "svg",
+                };
+                format!("<p>This chart lies beside the page: {name}.{ending}.</p>")
+            }
         };
         let title = escape(&chart.title);
         let note = match chart.note.is_empty() {

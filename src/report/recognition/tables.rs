@@ -221,7 +221,7 @@ fn note_of_few_trials(table: &Table) -> Option<String> {
 /// The share that guessing recognises, a column of [`CELLS`] where cells differ in it.
 pub(super) const CHANCE: &str = "chance";
 
-/// Returns 1 / the number of objects that each cell tells apart, if cells differ in it.
+/// Returns 1 / the number of objects that each cell tells apart, if cells differ in it and each has its confusion matrix.
 fn chance_of_cells(summary: &Table, confusion: &Table) -> Option<(Column, Data)> {
     let mut n_objects: HashMap<u64, usize> = HashMap::new();
     for rows in confusion.groups(&["cell", "object"], 0..confusion.n_rows) {
@@ -230,9 +230,9 @@ fn chance_of_cells(summary: &Table, confusion: &Table) -> Option<(Column, Data)>
     }
     let chance = (0..summary.n_rows).map(|row| {
         let n_objects = n_objects.get(&summary.number("cell", row).to_bits());
-        n_objects.map_or(f64::NAN, |&n| 1.0 / n as f64)
+        n_objects.map(|&n| 1.0 / n as f64)
     });
-    let chance = Data::Numbers(chance.collect());
+    let chance = Data::Numbers(chance.collect::<Option<_>>()?);
     let role = Role::Value(Better::Neither);
     let column = Column::new(CHANCE, role, "chance", "", Scale::Share);
     chance.varies(0..summary.n_rows).then_some((column, chance))
