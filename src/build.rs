@@ -8,6 +8,7 @@ fn main() {
     // Not the commit itself: that would build everything again after each.
     for path in [
         "src",
+        "crates",
         "objects",
         "experiments/quickstart.toml",
         "Cargo.toml",
@@ -16,7 +17,7 @@ fn main() {
         println!("cargo::rerun-if-changed={path}");
     }
     let mut files = Vec::new();
-    for path in ["src", "objects", "Cargo.toml", "Cargo.lock"] {
+    for path in ["src", "crates", "objects", "Cargo.toml", "Cargo.lock"] {
         add_files(Path::new(path), &mut files);
     }
     files.sort();
@@ -70,6 +71,8 @@ fn commit() -> String {
         "--porcelain",
         "--",
         "src",
+        "crates",
+        "crates",
         "objects",
         "Cargo.toml",
         "Cargo.lock",

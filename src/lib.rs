@@ -150,38 +150,21 @@
 // They panic where nobody reads any more.
 #![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
 
-pub mod calibration;
-pub mod contact;
-pub mod dynamics;
-pub mod error;
 pub mod file_path;
-pub mod files;
-pub mod geometry;
 pub mod guide;
-mod in_range;
 pub mod kinds;
-pub mod mesh;
-mod note;
-mod numbers_csv;
-pub mod objects;
-pub mod packing;
-pub mod quantile;
-pub mod random;
 pub mod recognition;
 pub mod report;
 pub mod scene;
-pub mod sensing;
 pub mod shell_line;
-pub mod signal;
-mod spelling;
-#[cfg(test)]
-#[path = "../tests/fixtures/standard_errors/mod.rs"]
-mod standard_errors;
 pub mod study;
+mod study_file;
 pub mod table;
-mod toml_numbers;
-mod toml_text;
-pub mod whole_body;
-pub mod world;
 
-pub use error::{Error, Result};
+#[cfg(test)]
+use bubbletouch_sim::standard_errors;
+pub use bubbletouch_sim::{
+    Error, Result, calibration, contact, dynamics, error, files, geometry, mesh, objects, packing,
+    quantile, random, sensing, signal, whole_body, world,
+};
+pub(crate) use bubbletouch_sim::{note, numbers_csv, spelling, toml_numbers, toml_text};

@@ -31,7 +31,7 @@ pub(super) fn touches_of<'a>(
         .collect();
     let features = concatenate(Axis(0), &chosen).expect("every object has as many columns");
     let labels = (0..chosen.len()).flat_map(|label| std::iter::repeat_n(label, touches.len()));
-    dataset(features, Array1::from_iter(labels))
+    Ok(dataset(features, Array1::from_iter(labels))?)
 }
 
 /// The share of a classifier's right answers to some touches, 0 to 1, with its 95 % Wilson interval.

@@ -37,8 +37,10 @@
 pub mod classifiers;
 pub mod data;
 pub mod evaluation;
-pub mod features;
 pub mod statistics;
-pub mod svm;
+
+pub use bubbletouch_sim::features;
+#[doc(inline)]
+pub use bubbletouch_svm as svm;
 
 pub use classifiers::{ClassifierAbout, ClassifierKind, Train};

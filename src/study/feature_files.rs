@@ -210,7 +210,7 @@ pub fn read_features(folder: &Path) -> Result<FeatureSet> {
     check_split(folder, &split, n_rows)?;
     let features = features.as_standard_layout().into_owned();
     let data = dataset(features, Array1::from(labels.labels));
-    let data = data.map_err(|error| error.under(format!("{}: ", folder.display())))?;
+    let data = data.map_err(|error| Error::from(error).under(format!("{}: ", folder.display())))?;
     Ok(FeatureSet {
         data,
         split,
@@ -279,7 +279,7 @@ impl FeatureSet {
             let allowed = format!("1 to {}, the training rows of the split", train.len());
             return Err(Error::input("training rows", n, allowed));
         }
-        rows(&self.data, &train[..n])
+        Ok(rows(&self.data, &train[..n])?)
     }
 
     /// The test rows.
@@ -287,7 +287,7 @@ impl FeatureSet {
     /// # Errors
     /// No rows.
     pub fn test(&self) -> Result<Dataset> {
-        rows(&self.data, &self.split.test)
+        Ok(rows(&self.data, &self.split.test)?)
     }
 }
 

@@ -26,7 +26,7 @@ use crate::error::{Error, Result};
 use crate::random::Seed;
 use crate::recognition::ClassifierKind;
 use crate::recognition::data::split::Split;
-use crate::recognition::data::spoiled::mislabelled;
+use crate::recognition::data::spoiled::{mislabelled, with_imbalance};
 use crate::recognition::evaluation::next_touch::Poses;
 use crate::sensing::Ensemble;
 use ndarray::Array1;
@@ -237,9 +237,12 @@ impl Sweep {
         };
         match cell.class_imbalance {
             None => Ok(split),
-            Some(ratio) => {
-                split.with_imbalance(self.labels.view(), ratio, &training_stream(plan, trial))
-            }
+            Some(ratio) => with_imbalance(
+                &split,
+                self.labels.view(),
+                ratio,
+                &training_stream(plan, trial),
+            ),
         }
     }
 

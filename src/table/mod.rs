@@ -9,7 +9,7 @@ mod chart;
 mod column;
 mod file;
 mod front;
-mod numbers;
+use bubbletouch_sim::numbers;
 mod row_macro;
 mod rows;
 #[allow(clippy::module_inception)]

@@ -6,8 +6,7 @@ mod command;
 mod kinds;
 #[path = "../fixtures/mesh_shapes/mod.rs"]
 mod mesh_shapes;
-#[path = "../fixtures/standard_errors/mod.rs"]
-mod standard_errors;
+use bubbletouch_sim::standard_errors;
 
 mod asked;
 mod breaking_points;

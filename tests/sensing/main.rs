@@ -2,8 +2,7 @@
 
 #[path = "../fixtures/counting/mod.rs"]
 mod counting;
-#[path = "../fixtures/standard_errors/mod.rs"]
-mod standard_errors;
+use bubbletouch_sim::standard_errors;
 
 mod body_readout;
 mod sensing_dictionaries;

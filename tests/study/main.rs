@@ -2,8 +2,7 @@
 
 #[path = "../fixtures/command/mod.rs"]
 mod command;
-#[path = "../fixtures/standard_errors/mod.rs"]
-mod standard_errors;
+use bubbletouch_sim::standard_errors;
 #[path = "../fixtures/study/mod.rs"]
 mod study;
 

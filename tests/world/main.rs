@@ -8,8 +8,7 @@ mod counting;
 mod random_scenes;
 #[path = "../fixtures/reference_data/mod.rs"]
 mod reference_data;
-#[path = "../fixtures/standard_errors/mod.rs"]
-mod standard_errors;
+use bubbletouch_sim::standard_errors;
 #[path = "../fixtures/recording/mod.rs"]
 mod stored;
 

@@ -4,7 +4,7 @@ use super::scale::WayScale;
 use crate::study::spec::{
     ObjectsSpec, RecognitionSpec, SensingSpec, SignalSpec, SkinSpec, TouchesSpec,
 };
-use crate::toml_text::study_file;
+use crate::study_file::study_file;
 use serde::{Deserialize, Serialize};
 
 study_file! {

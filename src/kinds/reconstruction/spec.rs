@@ -3,7 +3,7 @@
 use crate::sensing::{Basis, Effort, Solver};
 use crate::study::defaults::count;
 use crate::study::{Axis, ObjectsSpec, SensingSpec, SignalSpec, SkinSpec, TouchesSpec};
-use crate::toml_text::study_file;
+use crate::study_file::study_file;
 use serde::{Deserialize, Serialize};
 
 study_file! {

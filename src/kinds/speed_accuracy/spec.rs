@@ -4,7 +4,7 @@ use crate::files::FilePath;
 use crate::recognition::ClassifierKind;
 use crate::sensing::Ensemble;
 use crate::study::spec::{ObjectsSpec, SkinSpec, TouchesSpec};
-use crate::toml_text::study_file;
+use crate::study_file::study_file;
 use serde::{Deserialize, Serialize};
 
 study_file! {

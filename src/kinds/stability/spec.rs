@@ -3,7 +3,7 @@
 use crate::files::FilePath;
 use crate::study::Axis;
 use crate::study::defaults::number;
-use crate::toml_text::toml_file;
+use crate::study_file::toml_file;
 use serde::{Deserialize, Serialize};
 
 /// The file.

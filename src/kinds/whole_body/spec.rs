@@ -3,7 +3,7 @@
 use crate::files::FilePath;
 use crate::sensing::Ensemble;
 use crate::study::defaults::{count, number};
-use crate::toml_text::study_file;
+use crate::study_file::study_file;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

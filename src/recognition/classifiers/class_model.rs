@@ -79,11 +79,3 @@ pub(crate) fn log_priors(labels: ArrayView1<usize>, classes: &[usize]) -> Array1
     };
     classes.iter().map(share).collect()
 }
-
-/// For every row, the position of its label in `classes` (ascending, and holding every label).
-pub(crate) fn positions(labels: ArrayView1<usize>, classes: &[usize]) -> Vec<usize> {
-    labels
-        .iter()
-        .map(|&label| classes.partition_point(|&class| class < label))
-        .collect()
-}

@@ -149,7 +149,7 @@ impl Classifier {
     ) -> Result<Chosen> {
         let (_, scaled) = self.scaled(training)?;
         if let Some(params) = self.kernel_svm(1.0) {
-            return choose(&params, &scaled, folds, candidates);
+            return Ok(choose(&params, &scaled, folds, candidates)?);
         }
         let train = |fitting: &Dataset, c| {
             let model = self.train_model(fitting, Some(c), seed)?;

@@ -11,9 +11,9 @@ use crate::recognition::classifiers::classifier_about::{ClassifierAbout, PRODUCT
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis};
 use std::sync::Arc;
 
-use crate::recognition::classifiers::class_model::{ClassModel, log_vote_shares, positions};
-use crate::recognition::classifiers::linear_svm::checked_classes;
-use crate::recognition::data::dataset::{Dataset, check_width};
+use crate::recognition::classifiers::class_model::{ClassModel, log_vote_shares};
+use crate::recognition::data::dataset::checked_classes;
+use crate::recognition::data::dataset::{Dataset, check_width, positions};
 use crate::{Error, Result};
 
 pub(crate) const ABOUT: ClassifierAbout = ClassifierAbout {

@@ -1,21 +1,13 @@
-//! Linear soft-margin SVMs. By default [`svm`](crate::recognition::svm) trains them, on a kernel matrix, as it does other kernels.
-//!
-//! With `solver = "coordinate_descent"` and `multiclass = "one_vs_rest"` this file trains them without a kernel matrix: memory n × m, whatever n.
-//! The bias is the weight of an added feature of constant 1, and so is regularised with the others, as in LIBLINEAR
-//! (`intercept_scaling = 1`): centre the features, or expect a bias closer to 0 than the kernel SVM's.
-//!
-//! One-vs-rest: for each class `½|w|² + C Σ_i max(0, 1 − y_i w·x_i)`, by dual coordinate descent.
+//! Linear soft-margin SVMs; see [`svm`](crate::recognition::svm), and [`bubbletouch_svm::linear_svm`] for coordinate descent.
 
+use ndarray::{Array2, ArrayView2};
+
+use crate::Result;
+use crate::recognition::classifiers::class_model::ClassModel;
 use crate::recognition::classifiers::classifier_about::{ClassifierAbout, PRODUCT_S};
 use crate::recognition::svm::kernel::Kernel;
-use ndarray::{Array1, Array2, ArrayView2, Axis, Zip, s};
 
-use crate::random::Seed;
-use crate::recognition::classifiers::class_model::{ClassModel, positions};
-use crate::recognition::classifiers::coordinate_descent::{self, Rows};
-use crate::recognition::classifiers::linear_model::LinearModel;
-use crate::recognition::data::dataset::{Dataset, check_features, check_labels, distinct};
-use crate::{Error, Result};
+pub use bubbletouch_svm::linear_svm::{Convergence, LinearSvm, LinearSvmParams, MAX_PASSES};
 
 pub(crate) const ABOUT: ClassifierAbout = ClassifierAbout {
     has_gamma: false,
@@ -23,197 +15,19 @@ pub(crate) const ABOUT: ClassifierAbout = ClassifierAbout {
     ..ClassifierAbout::svm("linear SVM", |_| Kernel::Linear)
 };
 
-/// Passes over the rows after which a solver gives up: scikit-learn's default for LinearSVC.
-pub const MAX_PASSES: usize = 1000;
-
-/// What a linear SVM is trained with.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LinearSvmParams {
-    /// C > 0: what a unit of margin violation costs.
-    pub c: f64,
-    /// The largest violation of the optimality conditions (spread of projected gradients) when the solver stops, in
-    /// units of the margin; above 0. scikit-learn's default for LinearSVC is 1e-4.
-    pub tolerance: f64,
-    /// Passes over the rows after which the solver gives up and says so; at least 1.
-    pub max_passes: usize,
-}
-
-impl Default for LinearSvmParams {
-    /// C = 1, tolerance 1e-3, [`MAX_PASSES`].
-    fn default() -> Self {
-        Self {
-            c: 1.0,
-            tolerance: 1e-3,
-            max_passes: MAX_PASSES,
-        }
-    }
-}
-
-/// How a problem's solver ended.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Convergence {
-    /// The objective in the weights; the optimum is at most this.
-    pub primal: f64,
-    /// The objective in the multipliers; the optimum is at least this. `primal − dual` is the duality gap.
-    pub dual: f64,
-    /// Passes over the rows.
-    pub n_passes: usize,
-    /// Whether it stopped at [`LinearSvmParams::max_passes`], short of its tolerance.
-    pub is_capped: bool,
-}
-
-/// A trained linear SVM; its scores are decision values.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LinearSvm {
-    classes: Vec<usize>,
-    model: LinearModel,
-    convergence: Vec<Convergence>,
-}
-
-/// The multipliers of a solved problem, and how the solver ended.
-#[derive(Clone, Debug)]
-pub(crate) struct Solved {
-    /// Signed multipliers: `w = Σ a_i x_i`.
-    pub multipliers: Vec<f64>,
-    pub n_passes: usize,
-    pub is_capped: bool,
-}
-
-impl LinearSvmParams {
-    /// Trains on labelled measurements. The order in which rows are visited is drawn by `seed`.
-    ///
-    /// # Errors
-    /// C, tolerance or cap out of range, empty data, a NaN or infinite feature or one whose square overflows, another
-    /// number of labels than rows, or a single class.
-    pub fn train(&self, data: &Dataset, seed: &Seed) -> Result<LinearSvm> {
-        self.check()?;
-        let classes = checked_classes(data)?;
-        let rows = Rows::new(data.records.view())?;
-        let label = positions(data.targets.view(), &classes);
-        let mut multipliers = Array2::zeros((classes.len(), label.len()));
-        let mut ends = Vec::with_capacity(classes.len());
-        for class in 0..classes.len() {
-            let sign: Vec<f64> = label
-                .iter()
-                .map(|&label| if label == class { 1.0 } else { -1.0 })
-                .collect();
-            let seed = seed.named("class").numbered(class as u64);
-            let solved = coordinate_descent::solve(&rows, &sign, self, &seed);
-            multipliers
-                .row_mut(class)
-                .assign(&Array1::from(solved.multipliers));
-            ends.push((solved.n_passes, solved.is_capped));
-        }
-        Ok(self.against_rest(data, classes, &label, multipliers, &ends))
-    }
-
-    fn check(&self) -> Result<()> {
-        for (name, value) in [("C", self.c), ("tolerance", self.tolerance)] {
-            if !(value > 0.0 && value.is_finite()) {
-                let allowed = "a finite number above 0 is allowed";
-                return Err(Error::input(name, value, allowed));
-            }
-        }
-        if self.max_passes == 0 {
-            return Err(Error::input("passes", 0, "at least 1 is allowed"));
-        }
-        Ok(())
-    }
-
-    /// Weights and duality gaps of the binary problems, from their multipliers (n_classes × n_rows).
-    fn against_rest(
-        &self,
-        data: &Dataset,
-        classes: Vec<usize>,
-        label: &[usize],
-        multipliers: Array2<f64>,
-        ends: &[(usize, bool)],
-    ) -> LinearSvm {
-        let model = weights(&multipliers, data.records.view());
-        let values = data.records.dot(&model.weights.t()) + &model.bias;
-        let squares = squared_norms(&model);
-        let convergence = (0..classes.len())
-            .map(|class| {
-                let loss: f64 =
-                    Zip::from(values.column(class))
-                        .and(label)
-                        .fold(0.0, |sum, &value, &label| {
-                            let sign = if label == class { 1.0 } else { -1.0 };
-                            sum + (1.0 - sign * value).max(0.0)
-                        });
-                let half = 0.5 * squares[class];
-                let sum = multipliers.row(class).mapv(f64::abs).sum();
-                Convergence {
-                    primal: half + self.c * loss,
-                    dual: sum - half,
-                    n_passes: ends[class].0,
-                    is_capped: ends[class].1,
-                }
-            })
-            .collect();
-        LinearSvm {
-            classes,
-            model,
-            convergence,
-        }
-    }
-}
-
-impl LinearSvm {
-    /// Weights and biases.
-    pub fn model(&self) -> &LinearModel {
-        &self.model
-    }
-
-    /// How each problem's solver ended: one per class.
-    pub fn convergence(&self) -> &[Convergence] {
-        &self.convergence
-    }
-}
-
 impl ClassModel for LinearSvm {
     fn classes(&self) -> &[usize] {
-        &self.classes
+        LinearSvm::classes(self)
     }
 
     fn scores(&self, features: ArrayView2<f64>) -> Result<Array2<f64>> {
-        self.model.scores(features)
+        Ok(self.model().scores(features)?)
     }
 
     fn n_capped(&self) -> usize {
-        self.convergence.iter().filter(|end| end.is_capped).count()
+        self.convergence()
+            .iter()
+            .filter(|end| end.is_capped)
+            .count()
     }
-}
-
-/// The distinct labels of data that a classifier can be trained on.
-///
-/// # Errors
-/// Empty data, a NaN or infinite feature, another number of labels than rows, or a single class.
-pub(crate) fn checked_classes(data: &Dataset) -> Result<Vec<usize>> {
-    check_features(data.records.view())?;
-    check_labels(data.records.nrows(), data.targets.view())?;
-    let classes = distinct(data.targets.view());
-    if classes.len() < 2 {
-        let given = format!("the single class {}", classes[0]);
-        return Err(Error::input(
-            "labels",
-            given,
-            "at least two classes are needed",
-        ));
-    }
-    Ok(classes)
-}
-
-/// `w_k = Σ_i a_ki x_i` and `b_k = Σ_i a_ki`, afresh from the multipliers: no rounding of the updates is left.
-fn weights(multipliers: &Array2<f64>, features: ArrayView2<f64>) -> LinearModel {
-    LinearModel {
-        weights: multipliers.dot(&features),
-        bias: multipliers.sum_axis(Axis(1)),
-    }
-}
-
-/// `|w_k|² + b_k²` per class.
-fn squared_norms(model: &LinearModel) -> Array1<f64> {
-    let weights = model.weights.slice(s![.., ..]);
-    weights.map_axis(Axis(1), |w| w.dot(&w)) + model.bias.mapv(|b| b * b)
 }

@@ -11,11 +11,11 @@ use crate::recognition::classifiers::classifier_about::ClassifierAbout;
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis, s};
 use std::sync::Arc;
 
-use crate::recognition::classifiers::class_model::{ClassModel, log_priors, positions};
+use crate::recognition::classifiers::class_model::{ClassModel, log_priors};
 use crate::recognition::classifiers::lbfgs::minimise;
 use crate::recognition::classifiers::linear_model::LinearModel;
-use crate::recognition::classifiers::linear_svm::checked_classes;
-use crate::recognition::data::dataset::Dataset;
+use crate::recognition::data::dataset::checked_classes;
+use crate::recognition::data::dataset::{Dataset, positions};
 use crate::{Error, Result};
 
 pub(crate) const ABOUT: ClassifierAbout = ClassifierAbout {

@@ -6,13 +6,12 @@ use serde::{Deserialize, Serialize};
 mod classifier_about;
 pub mod class_model;
 pub mod classifier;
-pub(crate) mod coordinate_descent;
 pub(crate) mod lbfgs;
-pub mod linear_model;
 pub mod parameters;
 pub(crate) mod ranked;
 pub mod trained_classifier;
 
+pub use bubbletouch_svm::linear_model;
 pub use classifier_about::{ClassifierAbout, Train};
 
 // Everything that a study may say of a classifier follows from its line here and from the file that it names.

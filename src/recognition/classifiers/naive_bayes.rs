@@ -10,7 +10,7 @@ use ndarray::{Array1, Array2, ArrayView1, ArrayView2};
 use std::sync::Arc;
 
 use crate::recognition::classifiers::class_model::{ClassModel, log_priors};
-use crate::recognition::classifiers::linear_svm::checked_classes;
+use crate::recognition::data::dataset::checked_classes;
 use crate::recognition::data::dataset::{Dataset, check_width};
 use crate::{Error, Result};
 

@@ -7,7 +7,7 @@
 use crate::Result;
 use crate::recognition::classifiers::class_model::ClassModel;
 use crate::recognition::classifiers::classifier_about::ClassifierAbout;
-use crate::recognition::classifiers::linear_svm::checked_classes;
+use crate::recognition::data::dataset::checked_classes;
 use crate::recognition::data::dataset::{Dataset, check_width};
 use ndarray::{Array2, ArrayView2, Axis};
 use std::sync::Arc;

@@ -10,11 +10,11 @@ use rand::Rng;
 use std::sync::Arc;
 
 use crate::random::Seed;
-use crate::recognition::classifiers::class_model::{ClassModel, log_vote_shares, positions};
+use crate::recognition::classifiers::class_model::{ClassModel, log_vote_shares};
 use crate::recognition::classifiers::decision_tree::{Growth, Tree, check_depth};
-use crate::recognition::classifiers::linear_svm::checked_classes;
 use crate::recognition::classifiers::ranked::Ranked;
-use crate::recognition::data::dataset::{Dataset, check_width};
+use crate::recognition::data::dataset::checked_classes;
+use crate::recognition::data::dataset::{Dataset, check_width, positions};
 use crate::{Error, Result};
 
 pub(crate) const ABOUT: ClassifierAbout = ClassifierAbout {

@@ -32,7 +32,7 @@ pub(crate) enum Model {
 impl Model {
     pub(crate) fn labels(&self, scaled: ArrayView2<f64>) -> Result<Array1<usize>> {
         match self {
-            Self::Svm(model) => model.labels(scaled),
+            Self::Svm(model) => Ok(model.labels(scaled)?),
             Self::Classes(model) => model.labels(scaled),
         }
     }
@@ -85,7 +85,7 @@ impl TrainedClassifier {
     pub fn scores(&self, features: ArrayView2<f64>) -> Result<Array2<f64>> {
         let scaled = self.scaling.apply(features)?;
         match &self.model {
-            Model::Svm(model) => model.decision_values(scaled.view()),
+            Model::Svm(model) => Ok(model.decision_values(scaled.view())?),
             Model::Classes(model) => model.scores(scaled.view()),
         }
     }

@@ -40,50 +40,48 @@ pub fn mislabelled(labels: ArrayView1<usize>, fraction: f64, seed: &Seed) -> Res
     Ok(wrong)
 }
 
-impl Split {
-    /// The split with classes that are rarer and rarer: of K classes in random order the r-th (from 0) keeps the leading
-    /// n · ratio^(−r / (K − 1)) of its training rows, rounded, n being the fewest training rows of any class. So the first has
-    /// `ratio` times as many as the last: the long tail of Cui et al., *Class-balanced loss based on effective number of
-    /// samples*, 2019. The test rows stay.
-    ///
-    /// # Errors
-    /// A ratio below 1 or not finite, or one that leaves a class without a row (above 2 n).
-    pub fn with_imbalance(
-        &self,
-        labels: ArrayView1<usize>,
-        ratio: f64,
-        seed: &Seed,
-    ) -> Result<Self> {
-        let classes = rows_by_class(labels, self.train.iter().copied());
-        let fewest = classes.values().map(Vec::len).min().unwrap_or(0);
-        let most = 2.0 * fewest as f64;
-        if !(1.0..=most).contains(&ratio) {
-            return Err(Error::input(
-                "class imbalance",
-                ratio,
-                format!("from 1 to {most}, twice the fewest training rows of a class"),
-            ));
-        }
-        let mut order: Vec<usize> = classes.keys().copied().collect();
-        order.shuffle(&mut seed.named("class imbalance").rng());
-        let last = (order.len() - 1).max(1) as f64;
-        let mut left = BTreeMap::new();
-        for (rank, class) in order.into_iter().enumerate() {
-            let kept = fewest as f64 * ratio.powf(-(rank as f64) / last);
-            left.insert(class, kept.round().max(1.0) as usize);
-        }
-        let keep = |row: &usize| match left.get_mut(&labels[*row]) {
-            Some(0) | None => false,
-            Some(left) => {
-                *left -= 1;
-                true
-            }
-        };
-        Ok(Self {
-            train: self.train.iter().copied().filter(keep).collect(),
-            test: self.test.clone(),
-        })
+/// The split with classes that are rarer and rarer: of K classes in random order the r-th (from 0) keeps the leading
+/// n · ratio^(−r / (K − 1)) of its training rows, rounded, n being the fewest training rows of any class. So the first has
+/// `ratio` times as many as the last: the long tail of Cui et al., *Class-balanced loss based on effective number of
+/// samples*, 2019. The test rows stay.
+///
+/// # Errors
+/// A ratio below 1 or not finite, or one that leaves a class without a row (above 2 n).
+pub fn with_imbalance(
+    split: &Split,
+    labels: ArrayView1<usize>,
+    ratio: f64,
+    seed: &Seed,
+) -> Result<Split> {
+    let classes = rows_by_class(labels, split.train.iter().copied());
+    let fewest = classes.values().map(Vec::len).min().unwrap_or(0);
+    let most = 2.0 * fewest as f64;
+    if !(1.0..=most).contains(&ratio) {
+        return Err(Error::input(
+            "class imbalance",
+            ratio,
+            format!("from 1 to {most}, twice the fewest training rows of a class"),
+        ));
     }
+    let mut order: Vec<usize> = classes.keys().copied().collect();
+    order.shuffle(&mut seed.named("class imbalance").rng());
+    let last = (order.len() - 1).max(1) as f64;
+    let mut left = BTreeMap::new();
+    for (rank, class) in order.into_iter().enumerate() {
+        let kept = fewest as f64 * ratio.powf(-(rank as f64) / last);
+        left.insert(class, kept.round().max(1.0) as usize);
+    }
+    let keep = |row: &usize| match left.get_mut(&labels[*row]) {
+        Some(0) | None => false,
+        Some(left) => {
+            *left -= 1;
+            true
+        }
+    };
+    Ok(Split {
+        train: split.train.iter().copied().filter(keep).collect(),
+        test: split.test.clone(),
+    })
 }
 
 fn rows_by_class(
@@ -147,7 +145,7 @@ mod tests {
             (16.0, [5, 10, 20, 40, 80]),
             (100.0, [1, 3, 8, 25, 80]),
         ] {
-            let split = whole.with_imbalance(labels.view(), ratio, &Seed::new(4));
+            let split = with_imbalance(&whole, labels.view(), ratio, &Seed::new(4));
             let split = split.unwrap();
             let classes = rows_by_class(labels.view(), split.train.iter().copied());
             let mut counts: Vec<usize> = classes.values().map(Vec::len).collect();
@@ -157,7 +155,7 @@ mod tests {
             assert!(split.train.is_sorted(), "leading rows, in their order");
         }
         for ratio in [0.5, 161.0, f64::NAN, f64::INFINITY] {
-            let error = whole.with_imbalance(labels.view(), ratio, &Seed::new(4));
+            let error = with_imbalance(&whole, labels.view(), ratio, &Seed::new(4));
             assert!(error.unwrap_err().to_string().contains("from 1 to 160"));
         }
     }

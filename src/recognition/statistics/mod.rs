@@ -3,8 +3,9 @@
 pub mod bootstrap;
 pub mod comparison;
 pub mod grouped;
-pub mod interval;
 pub mod many_tests;
 pub(crate) mod mean_squares;
 pub mod rank_correlation;
 pub mod variance;
+
+pub use bubbletouch_sim::interval;

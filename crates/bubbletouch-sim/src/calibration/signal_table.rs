@@ -1,0 +1,61 @@
+//! The `[signal]` table of what was found, as studies read it.
+
+use super::smoothing::narrow;
+use super::{Calibration, Estimate};
+use crate::numbers::short_number;
+
+/// What is found below this is none: half of the last digit that is written.
+const NONE: f64 = 5e-5;
+
+impl Calibration {
+    /// TOML, on a skin whose taxels are so many millimetres apart: each key with its interval; as comments what is not identifiable, and why. An
+    /// estimate with a wide interval is not identifiable.
+    pub fn signal_table(&self, pitch_mm: f64) -> String {
+        let smoothing = narrow(self.smoothing.clone());
+        let smoothing = smoothing.map(|pitches| pitches * pitch_mm);
+        let [dead, stuck, converter] =
+            [&self.dead, &self.stuck, &self.converter].map(|estimate| estimate.clone().resolved());
+        let parameters: [(&str, &str, &Estimate); 8] = [
+            ("crosstalk", "crosstalk", &self.crosstalk),
+            ("gain", "gain_std", &self.gain),
+            ("drift", "drift_std_full_scale", &self.drift),
+            ("noise", "noise_std_full_scale", &self.noise),
+            ("smoothing", "smoothing_mm", &smoothing),
+            ("faults", "dead_fraction", &dead),
+            ("faults", "stuck_fraction", &stuck),
+            ("quantisation", "adc_bits", &converter),
+        ];
+        let mut steps = Vec::new();
+        let mut keys = String::new();
+        for (step, key, estimate) in parameters {
+            keys += &line(key, estimate);
+            if estimate.value().is_some() {
+                steps.push(format!("\"{step}\""));
+            }
+        }
+        steps.dedup();
+        format!("[signal]\nsteps = [{}]\n{keys}", steps.join(", "))
+    }
+
+    /// The line of `[skin]` for the stiffness.
+    pub fn stiffness_line(&self) -> String {
+        line("stiffness_n_per_m", &self.stiffness)
+    }
+}
+
+fn line(key: &str, estimate: &Estimate) -> String {
+    match estimate {
+        Estimate::Found {
+            value,
+            interval: [low, high],
+        } => {
+            let shown = |number: f64| match number.abs() < NONE {
+                true => "0".to_owned(),
+                false => short_number(number),
+            };
+            let [value, low, high] = [*value, *low, *high].map(shown);
+            format!("{key} = {value}  # 95 % interval {low} to {high}\n")
+        }
+        Estimate::NotIdentifiable(why) => format!("# {key}: not identifiable: {why}\n"),
+    }
+}

@@ -1,0 +1,91 @@
+//! Which vector instructions the kernels use.
+
+use serde::{Deserialize, Serialize};
+use std::sync::OnceLock;
+
+/// Vector instructions of x86-64; other processors have the baseline of theirs alone. All give the same bits, as nothing is fused:
+/// whoever does not want to compare them needs no other than the best.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Instructions {
+    /// The last of those below that the processor has.
+    #[default]
+    Best,
+    /// What every processor has that the program is built for.
+    Baseline,
+    /// 256 bits: AVX2.
+    Avx2,
+    /// 512 bits: AVX-512 F, BW, DQ and VL.
+    Avx512,
+}
+
+impl Instructions {
+    /// Those that this processor has, the best one last.
+    pub fn here() -> &'static [Self] {
+        static HERE: OnceLock<Vec<Instructions>> = OnceLock::new();
+        HERE.get_or_init(|| [vec![Self::Baseline], Self::beyond_baseline()].concat())
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    fn beyond_baseline() -> Vec<Self> {
+        use std::arch::is_x86_feature_detected as has;
+        let has_256 = has!("avx2") && has!("fma");
+        let has_512 = has!("avx512f") && has!("avx512bw") && has!("avx512dq") && has!("avx512vl");
+        match (has_256, has_512) {
+            (false, _) => Vec::new(),
+            (true, false) => vec![Self::Avx2],
+            (true, true) => vec![Self::Avx2, Self::Avx512],
+        }
+    }
+
+    #[cfg(not(target_arch = "x86_64"))]
+    fn beyond_baseline() -> Vec<Self> {
+        Vec::new()
+    }
+
+    /// What is meant: the best one by its name; of what the processor has not, the best that it has.
+    pub fn resolved(self) -> Self {
+        let here = Self::here();
+        match here.contains(&self) {
+            true => self,
+            false => here[here.len() - 1],
+        }
+    }
+}
+
+/// A function compiled once for each of the [`Instructions`], which are its first argument: the same body, which must be
+/// `#[inline(always)]` with all that it calls.
+macro_rules! for_instructions {
+    ($(#[$meta:meta])* $vis:vis fn $name:ident($($arg:ident: $type:ty),* $(,)?) $(-> $out:ty)? = $body:ident) => {
+        $(#[$meta])*
+        $vis fn $name(
+            instructions: $crate::contact::Instructions,
+            $($arg: $type),*
+        ) $(-> $out)? {
+            use $crate::contact::Instructions;
+
+            #[multiversion::multiversion(targets(
+                "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma"
+            ))]
+            fn avx512($($arg: $type),*) $(-> $out)? {
+                $body($($arg),*)
+            }
+
+            #[multiversion::multiversion(targets("x86_64+avx2+fma"))]
+            fn avx2($($arg: $type),*) $(-> $out)? {
+                $body($($arg),*)
+            }
+
+            fn baseline($($arg: $type),*) $(-> $out)? {
+                $body($($arg),*)
+            }
+
+            match instructions.resolved() {
+                Instructions::Avx512 => avx512($($arg),*),
+                Instructions::Avx2 => avx2($($arg),*),
+                Instructions::Baseline | Instructions::Best => baseline($($arg),*),
+            }
+        }
+    };
+}
+pub(crate) use for_instructions;

@@ -1,0 +1,357 @@
+//! Presses: of any patch on any objects, to a depth, a travel or a force along its z axis, or right at a pose.
+//!
+//! A flat grid of taxels that go equally deep is pressed row by row (`grid_press`, `grid_force`), any other patch taxel by taxel
+//! (`approach`); what both can do is the same, to rounding.
+
+use super::approach::Approach;
+use super::grid_press::Until;
+use super::row::{Filling, Row};
+use super::workspace::Workspace;
+use super::{grid_force, tree_press};
+use crate::error::Result;
+use crate::geometry::Pose;
+use crate::objects::Model;
+use crate::world::{Patch, Taxels};
+
+/// What a press did, beside what it left in the [`Workspace`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Contact {
+    /// How far the patch went along its way from the pose it was given, metres; negative if it had to go back.
+    pub travel: f64,
+    /// Taxels with a deflection above zero.
+    pub n_touched: usize,
+    /// Taxels at their stroke that an object would push further.
+    pub n_saturated: usize,
+}
+
+/// What ends a press.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Goal {
+    /// Nothing: [`press_at_pose`].
+    Pose,
+    /// Metres past first contact: [`press_to_depth`].
+    Depth(f64),
+    /// Metres from the pose: [`press_to_travel`].
+    Travel(f64),
+    /// Newtons that the springs carry: [`press_to_force`].
+    Force(f64),
+}
+
+/// The press that a goal asks for; `None` (and zero deflections) where the patch meets nothing on its way.
+///
+/// # Errors
+/// Those of [`press_to_force`].
+///
+/// # Panics
+/// If there are not as many poses as objects.
+pub fn press(
+    patch: &Patch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    goal: Goal,
+    workspace: &mut Workspace,
+) -> Result<Option<Contact>> {
+    let placed = (objects, patch_from_objects);
+    to_goal(patch, placed, goal, (workspace, &mut Filling::nothing()))
+}
+
+/// The same press, whose deflections are written into a row, too: faster than a copy of them, where rows are many.
+///
+/// # Errors
+/// Those of [`press_to_force`]; then nobody knows what is in the row.
+///
+/// # Panics
+/// If there are not as many poses as objects, or the row has not one place a taxel.
+pub fn press_into(
+    patch: &Patch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    goal: Goal,
+    row: Row,
+    workspace: &mut Workspace,
+) -> Result<Option<Contact>> {
+    let placed = (objects, patch_from_objects);
+    press_filling(patch, placed, goal, (workspace, Filling::of(row)))
+}
+
+/// The same press into a row of zeros. What nothing has come near is left alone: an array whose pages were never written costs nothing there.
+///
+/// # Errors
+/// Those of [`press_into`].
+///
+/// # Panics
+/// As [`press_into`].
+pub fn press_onto_zeros(
+    patch: &Patch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    goal: Goal,
+    zeros: Row,
+    workspace: &mut Workspace,
+) -> Result<Option<Contact>> {
+    let placed = (objects, patch_from_objects);
+    press_filling(patch, placed, goal, (workspace, Filling::of_zeros(zeros)))
+}
+
+fn press_filling(
+    patch: &Patch,
+    placed: (&[Model], &[Pose]),
+    goal: Goal,
+    (workspace, mut filling): (&mut Workspace, Filling),
+) -> Result<Option<Contact>> {
+    assert_eq!(filling.row.len(), patch.n_taxels(), "one number a taxel");
+    let contact = to_goal(patch, placed, goal, (workspace, &mut filling))?;
+    match workspace.is_on_grid() {
+        // Written there, or nothing is touched.
+        true => filling.finish(),
+        false => filling.row.write(workspace.deflections()),
+    }
+    Ok(contact)
+}
+
+fn to_goal(
+    patch: &Patch,
+    placed: (&[Model], &[Pose]),
+    goal: Goal,
+    scratch: (&mut Workspace, &mut Filling),
+) -> Result<Option<Contact>> {
+    Ok(match goal {
+        Goal::Pose => Some(at_pose(patch, placed, scratch)),
+        Goal::Depth(depth) => to_depth(patch, placed, depth, scratch),
+        Goal::Travel(travel) => Some(to_travel(patch, placed, travel, scratch)),
+        Goal::Force(force) => to_force(patch, placed, force, scratch)?,
+    })
+}
+
+/// How far the patch must travel along z until the first taxel is touched, metres (negative: it already is); `None` where no
+/// travel would touch anything.
+///
+/// Poses are `patch_from_object`, one an object. Closed form: a taxel that travels along a line meets a sphere at a root.
+///
+/// # Panics
+/// If there are not as many poses as objects.
+pub fn first_contact(
+    patch: &Patch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    workspace: &mut Workspace,
+) -> Option<f64> {
+    match patch.even_grid() {
+        Some(grid) => {
+            let until = Until::Depth(0.0);
+            workspace
+                .on_grid()
+                .gather(grid, objects, patch_from_objects, until)
+        }
+        None => Approach::ahead(patch).first_contact(objects, patch_from_objects),
+    }
+}
+
+/// Presses until the patch is `depth` metres past first contact; `None` (and zero deflections) where it meets nothing.
+///
+/// The patch comes from the front and all counts, however deep: past the stroke taxels are saturated. On a flat patch no taxel that is
+/// touched at a depth is deflected less at a larger one.
+///
+/// # Panics
+/// If there are not as many poses as objects.
+pub fn press_to_depth(
+    patch: &Patch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    depth: f64,
+    workspace: &mut Workspace,
+) -> Option<Contact> {
+    let placed = (objects, patch_from_objects);
+    to_depth(patch, placed, depth, (workspace, &mut Filling::nothing()))
+}
+
+fn to_depth(
+    patch: &Patch,
+    (objects, patch_from_objects): (&[Model], &[Pose]),
+    depth: f64,
+    (workspace, filling): (&mut Workspace, &mut Filling),
+) -> Option<Contact> {
+    let Some(grid) = patch.even_grid() else {
+        let approach = Approach::ahead(patch);
+        let first = approach.first_contact(objects, patch_from_objects);
+        let travels = first.map(|first| [first, first + depth]);
+        return approach.deflect(objects, patch_from_objects, travels, workspace);
+    };
+    let press = workspace.on_grid();
+    let first = press.gather(grid, objects, patch_from_objects, Until::Depth(depth));
+    if first.is_none() {
+        press.touch_nothing(grid);
+    }
+    first.map(|first| press.indent(grid, first + depth, filling))
+}
+
+/// Presses until the patch has moved `travel` metres along z from the pose given, from the front: the press of [`press_to_depth`]
+/// with this travel.
+///
+/// # Panics
+/// If there are not as many poses as objects.
+pub fn press_to_travel(
+    patch: &Patch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    travel: f64,
+    workspace: &mut Workspace,
+) -> Contact {
+    let placed = (objects, patch_from_objects);
+    to_travel(patch, placed, travel, (workspace, &mut Filling::nothing()))
+}
+
+fn to_travel(
+    patch: &Patch,
+    (objects, patch_from_objects): (&[Model], &[Pose]),
+    travel: f64,
+    (workspace, filling): (&mut Workspace, &mut Filling),
+) -> Contact {
+    let Some(grid) = patch.even_grid() else {
+        let approach = Approach::ahead(patch);
+        let first = approach.first_contact(objects, patch_from_objects);
+        let travels = first.filter(|first| *first < travel);
+        let travels = travels.map(|first| [first, travel]);
+        let contact = approach.deflect(objects, patch_from_objects, travels, workspace);
+        let contact = contact.unwrap_or_default();
+        return Contact { travel, ..contact };
+    };
+    let press = workspace.on_grid();
+    press.gather(grid, objects, patch_from_objects, Until::Travel(travel));
+    press.indent(grid, travel, filling)
+}
+
+/// Presses until the springs carry `force` newtons together, Σ k δ: to within 1e-12 of it, or to the last bit of the travel.
+///
+/// `None` (and zero deflections) where the patch meets nothing. The travel may be negative, as that of
+/// [`press_to_depth`]: to the depth of this travel past [`first_contact`] it is the same press.
+///
+/// # Errors
+/// A force that is not a positive number; one that is more than what the object can press into the taxels' strokes: the text
+/// says the largest force, and its travel.
+///
+/// # Panics
+/// If there are not as many poses as objects.
+///
+/// ```
+/// use bubbletouch_sim::contact::{Workspace, press_to_force};
+/// use bubbletouch_sim::geometry::Pose;
+/// use bubbletouch_sim::objects::{Sphere, SphereUnion};
+/// use bubbletouch_sim::world::{Grid, Patch, Taxel};
+/// use glam::DVec3;
+///
+/// let grid = Grid { nx: 32, ny: 32, pitch: 2e-3 };
+/// let taxel = Taxel { radius: 1e-3, stiffness: 100.0, damping: 0.0, stroke: 5e-3 };
+/// let patch = Patch::grid(grid, taxel)?;
+/// let ball = Sphere { center: DVec3::new(0.0, 0.0, 0.1), radius: 0.03 };
+/// let objects = [SphereUnion::new(vec![ball])?.into()];
+/// let mut workspace = Workspace::new();
+/// let contact = press_to_force(&patch, &objects, &[Pose::IDENTITY], 5.0, &mut workspace)?;
+/// assert!(contact.is_some(), "the ball is over the patch");
+/// let force = taxel.stiffness * workspace.deflections().iter().sum::<f64>();
+/// assert!((force - 5.0).abs() < 5e-12);
+/// # Ok::<(), bubbletouch_sim::Error>(())
+/// ```
+pub fn press_to_force(
+    patch: &Patch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    force: f64,
+    workspace: &mut Workspace,
+) -> Result<Option<Contact>> {
+    let placed = (objects, patch_from_objects);
+    to_force(patch, placed, force, (workspace, &mut Filling::nothing()))
+}
+
+fn to_force(
+    patch: &Patch,
+    (objects, patch_from_objects): (&[Model], &[Pose]),
+    force: f64,
+    (workspace, filling): (&mut Workspace, &mut Filling),
+) -> Result<Option<Contact>> {
+    match (patch.even_grid(), patch.taxels()) {
+        (Some(grid), Taxels::Equal(taxel)) => grid_force::press(
+            (grid, taxel.stiffness),
+            objects,
+            patch_from_objects,
+            force,
+            (workspace.on_grid(), filling),
+        ),
+        _ => Approach::ahead(patch).press_to_force(objects, patch_from_objects, force, workspace),
+    }
+}
+
+/// Presses a patch on objects, right where they are: poses are `patch_from_object`, one an object.
+///
+/// What is behind the substrate does not count (the contact stage's title page has the rule), for each taxel by itself: so what a forearm
+/// rests on does not press on its other side. What has gone far past the stroke lies there, too, unless it is known how it came
+/// ([`press_to_depth`]). A single part decides each touched taxel; where two need the same, the object that comes first, and of a union the first of its spheres.
+///
+/// ```
+/// use bubbletouch_sim::contact::{Workspace, press_with_contacts, spring_load};
+/// use bubbletouch_sim::geometry::Pose;
+/// use bubbletouch_sim::objects::{Sphere, SphereUnion};
+/// use bubbletouch_sim::world::{Layout, Patch, Taxel, Taxels};
+/// use glam::DVec3;
+///
+/// // A fingertip: half a ball of 8 mm with a taxel every 1.5 mm.
+/// let layout = Layout::sphere_cap(8e-3, std::f64::consts::FRAC_PI_2, 1.5e-3)?;
+/// let taxel = Taxel { radius: 0.5e-3, stiffness: 100.0, damping: 0.0, stroke: 2e-3 };
+/// let fingertip = Patch::new("fingertip", layout, Taxels::Equal(taxel))?;
+///
+/// // A marble comes half a millimetre too near, from the side.
+/// let marble = Sphere { center: DVec3::ZERO, radius: 8e-3 };
+/// let objects = [SphereUnion::new(vec![marble])?.into()];
+/// let pose = Pose::from_translation(16e-3 * DVec3::new(0.6, 0.0, 0.8));
+/// let mut workspace = Workspace::new();
+/// let counts = press_with_contacts(&fingertip, &objects, &[pose], &mut workspace);
+/// assert!(counts.n_touched > 3 && counts.n_saturated == 0);
+///
+/// // The marble is pushed back the way it came.
+/// let load = spring_load(&fingertip, workspace.contacts());
+/// let force = load.on_object.force;
+/// assert!(force.normalize().dot(DVec3::new(0.6, 0.0, 0.8)) > 0.95);
+/// # Ok::<(), bubbletouch_sim::Error>(())
+/// ```
+///
+/// # Panics
+/// If there are not as many poses as objects.
+pub fn press_with_contacts(
+    patch: &Patch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    workspace: &mut Workspace,
+) -> Contact {
+    tree_press::push(patch, objects, patch_from_objects, workspace);
+    tree_press::meet(patch, objects, patch_from_objects, workspace)
+}
+
+/// The deflections of [`press_with_contacts`] alone, where nobody wants to know what touches what.
+///
+/// # Panics
+/// If there are not as many poses as objects.
+pub fn press_at_pose(
+    patch: &Patch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    workspace: &mut Workspace,
+) -> Contact {
+    let placed = (objects, patch_from_objects);
+    at_pose(patch, placed, (workspace, &mut Filling::nothing()))
+}
+
+fn at_pose(
+    patch: &Patch,
+    (objects, patch_from_objects): (&[Model], &[Pose]),
+    (workspace, filling): (&mut Workspace, &mut Filling),
+) -> Contact {
+    let are_spheres = || objects.iter().all(|object| object.spheres().is_some());
+    match patch.even_grid() {
+        Some(grid) if are_spheres() && !workspace.holds_any() => {
+            let press = workspace.on_grid();
+            press.gather(grid, objects, patch_from_objects, Until::Pose);
+            press.indent(grid, 0.0, filling)
+        }
+        _ => tree_press::deflect(patch, objects, patch_from_objects, workspace),
+    }
+}

@@ -1,0 +1,66 @@
+//! Randomness by name: one ChaCha stream per name, never by call order.
+//!
+//! A name is a path such as `(2018, "noise", "mug", 17)`. Its SHA-256 is the key of a ChaCha8 stream, so
+//! any draw can be made alone, on any thread or machine, and is the same.
+//!
+//! ```
+//! use bubbletouch_sim::random::Seed;
+//! use rand::Rng;
+//!
+//! let study = Seed::new(2018);
+//! let a: f64 = study.named("noise").named("mug").numbered(17).rng().r#gen();
+//! let b: f64 = study.named("noise").named("mug").numbered(17).rng().r#gen();
+//! let c: f64 = study.named("noise").named("mug").numbered(18).rng().r#gen();
+//! assert_eq!(a, b);
+//! assert_ne!(a, c);
+//! ```
+
+mod counter;
+
+pub use counter::{CounterKey, GROUP};
+
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use sha2::{Digest, Sha256};
+
+/// The name of a random stream; it grows by [`named`](Seed::named) and [`numbered`](Seed::numbered).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Seed([u8; 32]);
+
+impl Seed {
+    /// The root of all streams of a study.
+    pub fn new(seed: u64) -> Self {
+        Self(Sha256::digest(seed.to_le_bytes()).into())
+    }
+
+    /// The child with this word appended to the name.
+    pub fn named(&self, word: &str) -> Self {
+        self.child(b"word", word.as_bytes())
+    }
+
+    /// The child with this number appended to the name.
+    pub fn numbered(&self, number: u64) -> Self {
+        self.child(b"number", &number.to_le_bytes())
+    }
+
+    /// The generator of this name's stream, at its start.
+    pub fn rng(&self) -> ChaCha8Rng {
+        ChaCha8Rng::from_seed(self.0)
+    }
+
+    fn child(&self, kind: &[u8], bytes: &[u8]) -> Self {
+        let mut hash = Sha256::new();
+        hash.update(self.0);
+        hash.update(kind);
+        hash.update(bytes);
+        Self(hash.finalize().into())
+    }
+}
+
+/// The streams `class/0`, `class/1`, … of this name.
+#[cfg(feature = "learning")]
+impl bubbletouch_svm::streams::Streams for Seed {
+    fn of_class(&self, class: u64) -> ChaCha8Rng {
+        self.named("class").numbered(class).rng()
+    }
+}

@@ -1,0 +1,308 @@
+//! Dictionaries: bases in which frames are sparse, or nearly so.
+
+use super::cosine::{self, cosines};
+use super::pca::Pca;
+use super::wavelet::Wavelet;
+use crate::error::{Error, Result};
+use crate::random::Seed;
+use ndarray::{Array1, Array2, ArrayView2, ArrayViewMut1, ArrayViewMut2, Axis, s};
+use serde::{Deserialize, Serialize};
+
+/// Components that a PCA dictionary keeps when none are asked for.
+const PCA_ATOMS: usize = 256;
+
+/// Which basis a dictionary takes its atoms from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Basis {
+    /// Products of cosines (DCT-II), any array.
+    Dct,
+    /// The Haar wavelet pyramid; sides are powers of two.
+    Haar,
+    /// The pyramid of Daubechies' wavelet with two vanishing moments, periodic; sides are powers of two.
+    Daubechies4,
+    /// Principal components of training frames, about their mean.
+    Pca,
+}
+
+/// k orthonormal atoms ψⱼ of n taxels, and the point they start from: a frame is x = x₀ + Σⱼ αⱼ ψⱼ, nearly.
+///
+/// ```
+/// use bubbletouch_sim::sensing::{Basis, Dictionary};
+/// use ndarray::Array2;
+///
+/// let dictionary = Dictionary::complete(Basis::Dct, (8, 8))?;
+/// let frames = Array2::from_shape_fn((3, 64), |(i, j)| ((i + 1) * j) as f64);
+/// let coefficients = dictionary.analyse(frames.view());
+/// let again = dictionary.synthesise(coefficients.view());
+/// assert!((&again - &frames).iter().all(|error| error.abs() < 1e-9));
+/// # Ok::<(), bubbletouch_sim::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Dictionary {
+    basis: Basis,
+    grid: (usize, usize),
+    form: Form,
+    /// x₀: the mean training frame of PCA, zero of the others.
+    origin: Array1<f64>,
+    energy: Option<Energy>,
+}
+
+/// What training frames say of a dictionary.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Energy {
+    /// Mean over training frames of αⱼ², k.
+    pub of_atoms: Array1<f64>,
+    /// Mean square a taxel of what no atom shows.
+    pub rest: f64,
+}
+
+/// How coefficients are found.
+#[derive(Clone, Debug)]
+enum Form {
+    /// Products with cosines along y and x, then the chosen coefficients.
+    Cosine([Array2<f64>; 2], Vec<usize>),
+    /// A pyramid, then the chosen coefficients.
+    Wavelet(Wavelet, Vec<usize>),
+    /// k × n.
+    Stored(Array2<f64>),
+}
+
+impl Dictionary {
+    /// All n atoms of a fixed basis of an ny × nx array, about zero.
+    ///
+    /// # Errors
+    /// PCA, which needs training frames; a wavelet of an array whose sides are not powers of two; no taxels.
+    pub fn complete(basis: Basis, grid: (usize, usize)) -> Result<Self> {
+        let n = grid.0 * grid.1;
+        if n == 0 {
+            return Err(Error::input("dictionary", "no taxels", "at least one"));
+        }
+        let all = (0..n).collect();
+        let form = match basis {
+            Basis::Dct => Form::Cosine([cosines(grid.0), cosines(grid.1)], all),
+            Basis::Haar | Basis::Daubechies4 => {
+                Wavelet::check(grid)?;
+                let wavelet = match basis {
+                    Basis::Haar => Wavelet::haar(),
+                    _ => Wavelet::daubechies4(),
+                };
+                Form::Wavelet(wavelet, all)
+            }
+            Basis::Pca => {
+                return Err(Error::input(
+                    "dictionary",
+                    "pca without training frames",
+                    "a fixed basis, or a dictionary learned from frames",
+                ));
+            }
+        };
+        Ok(Self {
+            basis,
+            grid,
+            form,
+            origin: Array1::zeros(n),
+            energy: None,
+        })
+    }
+
+    /// The atoms that carry most of the training frames (n_frames × n): at most `n_atoms`, in the basis' order; of PCA the
+    /// first components. All when `None` (of PCA at most 256).
+    ///
+    /// # Errors
+    /// As [`complete`](Self::complete); no frames; frames of another length; a value that is not finite; no atoms asked for.
+    pub fn learned(
+        basis: Basis,
+        grid: (usize, usize),
+        frames: ArrayView2<f64>,
+        n_atoms: Option<usize>,
+        seed: &Seed,
+    ) -> Result<Self> {
+        check_training(grid, frames, n_atoms)?;
+        if basis == Basis::Pca {
+            let pca = Pca::new(frames, n_atoms.unwrap_or(PCA_ATOMS), seed);
+            return Ok(Self::of_components(grid, pca));
+        }
+        let mut dictionary = Self::complete(basis, grid)?;
+        let coefficients = dictionary.analyse(frames);
+        let n_frames = frames.nrows() as f64;
+        let energy = coefficients.mapv(|c| c * c).sum_axis(Axis(0)) / n_frames;
+        let mut order: Vec<usize> = (0..energy.len()).collect();
+        order.sort_by(|&i, &j| energy[j].total_cmp(&energy[i]).then(i.cmp(&j)));
+        order.truncate(n_atoms.unwrap_or(usize::MAX));
+        order.sort_unstable();
+        let of_atoms = energy.select(Axis(0), &order);
+        let n = energy.len();
+        let rest = ((energy.sum() - of_atoms.sum()) / n as f64).max(0.0);
+        dictionary.energy = Some(Energy {
+            of_atoms,
+            rest: if order.len() == n { 0.0 } else { rest },
+        });
+        match &mut dictionary.form {
+            Form::Cosine(_, chosen) | Form::Wavelet(_, chosen) => *chosen = order,
+            Form::Stored(_) => {}
+        }
+        Ok(dictionary)
+    }
+
+    fn of_components(grid: (usize, usize), pca: Pca) -> Self {
+        let rest = (pca.total_variance - pca.variance.sum()) / pca.mean.len() as f64;
+        Self {
+            basis: Basis::Pca,
+            grid,
+            form: Form::Stored(pca.components),
+            origin: pca.mean,
+            energy: Some(Energy {
+                of_atoms: pca.variance,
+                rest: rest.max(0.0),
+            }),
+        }
+    }
+
+    /// Where its atoms come from.
+    pub fn basis(&self) -> Basis {
+        self.basis
+    }
+
+    /// n.
+    pub fn n_taxels(&self) -> usize {
+        self.origin.len()
+    }
+
+    /// k ≤ n.
+    pub fn n_atoms(&self) -> usize {
+        match &self.form {
+            Form::Cosine(_, chosen) | Form::Wavelet(_, chosen) => chosen.len(),
+            Form::Stored(atoms) => atoms.nrows(),
+        }
+    }
+
+    /// x₀, n.
+    pub fn origin(&self) -> &Array1<f64> {
+        &self.origin
+    }
+
+    /// What training frames say of the atoms; `None` for a dictionary that has seen none.
+    pub fn energy(&self) -> Option<&Energy> {
+        self.energy.as_ref()
+    }
+
+    /// αⱼ = ψⱼ·(x − x₀) of each frame (n_frames × n): n_frames × k.
+    ///
+    /// # Panics
+    /// When a frame does not have n values.
+    pub fn analyse(&self, frames: ArrayView2<f64>) -> Array2<f64> {
+        assert_eq!(frames.ncols(), self.n_taxels(), "taxels in a frame");
+        if let Form::Stored(atoms) = &self.form {
+            return (&frames - &self.origin).dot(&atoms.t());
+        }
+        let mut coefficients = Array2::zeros((frames.nrows(), self.n_atoms()));
+        let mut all = Array1::zeros(self.n_taxels());
+        for (frame, row) in frames.outer_iter().zip(coefficients.outer_iter_mut()) {
+            all.assign(&frame);
+            match &self.form {
+                Form::Cosine([wy, wx], chosen) => {
+                    let found = cosine::analyse(self.as_grid(&mut all).view(), wy, wx);
+                    pick(found.iter().copied(), chosen, row);
+                }
+                Form::Wavelet(wavelet, chosen) => {
+                    wavelet.analyse(self.as_grid(&mut all));
+                    pick(all.iter().copied(), chosen, row);
+                }
+                Form::Stored(_) => {}
+            }
+        }
+        coefficients
+    }
+
+    /// x₀ + Σⱼ αⱼ ψⱼ of each row of coefficients (n_frames × k): n_frames × n.
+    ///
+    /// # Panics
+    /// When a row does not have k values.
+    pub fn synthesise(&self, coefficients: ArrayView2<f64>) -> Array2<f64> {
+        let mut frames = self.combine(coefficients);
+        if self.basis == Basis::Pca {
+            frames += &self.origin;
+        }
+        frames
+    }
+
+    /// Σⱼ αⱼ ψⱼ, without x₀.
+    pub(super) fn combine(&self, coefficients: ArrayView2<f64>) -> Array2<f64> {
+        assert_eq!(coefficients.ncols(), self.n_atoms(), "atoms in a row");
+        if let Form::Stored(atoms) = &self.form {
+            return coefficients.dot(atoms);
+        }
+        let mut frames = Array2::zeros((coefficients.nrows(), self.n_taxels()));
+        for (row, mut frame) in coefficients.outer_iter().zip(frames.outer_iter_mut()) {
+            let (Form::Cosine(_, chosen) | Form::Wavelet(_, chosen)) = &self.form else {
+                continue;
+            };
+            for (&place, &value) in chosen.iter().zip(row) {
+                frame[place] = value;
+            }
+            let mut grid = frame
+                .into_shape_with_order(self.grid)
+                .expect("a row of n values");
+            match &self.form {
+                Form::Cosine([wy, wx], _) => {
+                    let found = cosine::synthesise(grid.view(), wy, wx);
+                    grid.assign(&found);
+                }
+                Form::Wavelet(wavelet, _) => wavelet.synthesise(grid),
+                Form::Stored(_) => {}
+            }
+        }
+        frames
+    }
+
+    /// Atoms `range` as frames, one a row.
+    pub(super) fn atoms(&self, range: std::ops::Range<usize>) -> Array2<f64> {
+        if let Form::Stored(atoms) = &self.form {
+            return atoms.slice(s![range, ..]).to_owned();
+        }
+        let mut units = Array2::zeros((range.len(), self.n_atoms()));
+        units.slice_mut(s![.., range]).diag_mut().fill(1.0);
+        self.combine(units.view())
+    }
+
+    fn as_grid<'a>(&self, frame: &'a mut Array1<f64>) -> ArrayViewMut2<'a, f64> {
+        let view = frame.view_mut().into_shape_with_order(self.grid);
+        view.expect("n values in order")
+    }
+}
+
+fn pick(all: impl Iterator<Item = f64>, chosen: &[usize], mut row: ArrayViewMut1<f64>) {
+    let mut places = chosen.iter().zip(row.iter_mut()).peekable();
+    for (place, value) in all.enumerate() {
+        if let Some((_, to)) = places.next_if(|(wanted, _)| **wanted == place) {
+            *to = value;
+        }
+    }
+}
+
+fn check_training(
+    grid: (usize, usize),
+    frames: ArrayView2<f64>,
+    n_atoms: Option<usize>,
+) -> Result<()> {
+    let n = grid.0 * grid.1;
+    if frames.nrows() == 0 || frames.ncols() != n || n == 0 {
+        return Err(Error::input(
+            "training frames",
+            format!("{} of {} taxels", frames.nrows(), frames.ncols()),
+            format!("at least one, of {n} taxels"),
+        ));
+    }
+    if let Some(((row, column), value)) = frames.indexed_iter().find(|(_, v)| !v.is_finite()) {
+        return Err(Error::input(
+            format!("training frame {row}, taxel {column}"),
+            value,
+            "a finite number",
+        ));
+    }
+    if n_atoms == Some(0) {
+        return Err(Error::input("number of atoms", 0, "at least 1"));
+    }
+    Ok(())
+}

@@ -1,0 +1,301 @@
+//! What the taxels of a whole body read, each by itself: the cost follows those that somebody asks for.
+//!
+//! A [`Chain`](super::Chain) draws the noise of a frame taxel after taxel, so two million taxels cost two million normal numbers a frame. Here
+//! the noise of a taxel at a frame, its zero at a time, its gain and its fault are [draws by number](crate::random::CounterKey): functions of the
+//! skin's name, the taxel, the frame and the time. What a taxel reads is the same whether it is read alone, with those that are
+//! touched, or with all of its patch.
+//!
+//! Steps and strengths are those of a chain, with the same distributions and other draws; but zeros [drift](super::SensorError::Drift) along straight lines
+//! between 64 times of a session, and each taxel [fails](super::SensorError::Faults) by itself, so that the share of dead and stuck ones is one on average.
+
+use super::faults::check_together;
+use super::taxel_step::{CHUNK, Chunk, TaxelStep};
+use super::{MOST_STRENGTHS, Moment, Quantisation, Quantity, SensorError, SignalStep};
+use crate::error::{Error, Result};
+use crate::random::Seed;
+use crate::whole_body::{BodyState, WholeBody};
+use crate::world::Taxel;
+use rayon::prelude::*;
+
+/// Taxels from which on threads share the reading. Less is done before a second thread is awake.
+pub const WORTH_THREADS: usize = 4 * CHUNK;
+
+/// The electronics of a body: checked steps, prepared for its patches.
+///
+/// ```
+/// use bubbletouch_sim::geometry::Pose;
+/// use bubbletouch_sim::objects::{Sphere, SphereClusters, SphereUnion};
+/// use bubbletouch_sim::random::Seed;
+/// use bubbletouch_sim::signal::{BodyReading, BodyReadout, Moment, Noise, NoiseUnit, SensorError, SignalStep};
+/// use bubbletouch_sim::whole_body::{BodyState, WholeBody};
+/// use bubbletouch_sim::world::{Grid, Patch, Taxel};
+/// use glam::DVec3;
+///
+/// let taxel = Taxel { radius: 1e-3, stiffness: 100.0, damping: 0.0, stroke: 2e-3 };
+/// let palm = Patch::grid(Grid { nx: 40, ny: 40, pitch: 2e-3 }, taxel)?;
+/// let body = WholeBody::new(&[palm])?;
+/// let mut state = BodyState::at_rest(&body);
+/// let ball = SphereUnion::new(vec![Sphere { center: DVec3::ZERO, radius: 0.03 }])?;
+/// let at = [Pose::from_translation(DVec3::new(0.0, 0.0, 0.0305))];
+/// state.press(&body, &[SphereClusters::new(&ball)], &at, 1e-3);
+///
+/// // Noise of 1 % of full scale, and one taxel in a hundred is dead.
+/// let skin = Seed::new(2018).named("skin");
+/// let noise = SignalStep::Noise(Noise { std: 0.01, unit: NoiseUnit::FullScale });
+/// let steps = [noise, SensorError::Faults.step(&[0.01], skin)];
+/// let readout = BodyReadout::new(&steps, &body, &skin)?;
+///
+/// // Frame 7, in the middle of a session: the touched taxels, and all of a patch.
+/// let moment = Moment { frame: 7, time: 0.5 };
+/// let mut reading = BodyReading::default();
+/// readout.read_touched(&body, &state, moment, &mut reading);
+/// let mut palm = vec![0.0; 1600];
+/// readout.read_patch(&body, &state, 0, moment, &mut palm);
+/// for (number, value) in reading.iter() {
+///     let (patch, taxel) = body.place_of(number);
+///     assert!(patch == 0 && value == palm[taxel]);
+/// }
+/// # Ok::<(), bubbletouch_sim::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct BodyReadout {
+    begins: Quantity,
+    /// Of each patch.
+    steps: Vec<Vec<TaxelStep>>,
+    /// The number of each patch's first taxel, and how many taxels there are.
+    firsts: Vec<usize>,
+}
+
+/// What some taxels of a body read; reused, so that a reading allocates nothing once the largest touch has been seen.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BodyReading {
+    /// Their numbers, ascending.
+    pub taxels: Vec<usize>,
+    /// What each reads, metres or newtons.
+    pub values: Vec<f64>,
+}
+
+impl BodyReading {
+    /// Number and value.
+    pub fn iter(&self) -> impl Iterator<Item = (usize, f64)> {
+        let values = self.values.iter().copied();
+        self.taxels.iter().copied().zip(values)
+    }
+}
+
+impl BodyReadout {
+    /// Checks the steps in their order and prepares them for each patch: [`Force`](SignalStep::Force) as the first or not at all, then noise, gain
+    /// mismatch, drift, faults and quantisation. `noise` names the noise of all frames.
+    ///
+    /// # Errors
+    /// A step that needs other taxels or other frames; force that is not the first; a strength out of its range; a unit of noise that the
+    /// readings do not have by then.
+    pub fn new(steps: &[SignalStep], body: &WholeBody, noise: &Seed) -> Result<Self> {
+        let is_force = steps.first() == Some(&SignalStep::Force);
+        let begins = match is_force {
+            true => Quantity::Force,
+            false => Quantity::Deflection,
+        };
+        let steps = &steps[usize::from(is_force)..];
+        let patches = body.patches().iter();
+        let of_patch = patches.map(|patch| prepare(steps, begins, patch.taxel(), noise));
+        let firsts = body.firsts().iter().copied();
+        Ok(Self {
+            begins,
+            steps: of_patch.collect::<Result<_>>()?,
+            firsts: firsts.chain([body.n_taxels()]).collect(),
+        })
+    }
+
+    /// What readings are.
+    pub fn quantity(&self) -> Quantity {
+        self.begins
+    }
+
+    /// Reads the taxels that the last press has deflected, ascending. Others read their noise, zero and fault; to see these, ask for
+    /// [a patch](Self::read_patch) or [any taxels](Self::read).
+    ///
+    /// # Panics
+    /// If the body is another one, or the time is not from 0 to 1.
+    pub fn read_touched(
+        &self,
+        body: &WholeBody,
+        state: &BodyState,
+        moment: Moment,
+        reading: &mut BodyReading,
+    ) {
+        reading.taxels.clear();
+        reading.values.clear();
+        for (first, touched) in state.touched_of_patches(body) {
+            let numbers = touched.iter().map(|&(taxel, _)| first + taxel as usize);
+            reading.taxels.extend(numbers);
+            if self.begins == Quantity::Deflection {
+                let felt = touched.iter().map(|&(_, deflection)| deflection);
+                reading.values.extend(felt);
+            }
+        }
+        if self.begins == Quantity::Force {
+            reading
+                .values
+                .extend(state.forces(body).map(|(_, force)| force));
+        }
+        self.read(&reading.taxels, moment, &mut reading.values);
+    }
+
+    /// Reads all taxels of a patch, n_taxels, in the order of its layout.
+    ///
+    /// # Panics
+    /// If the body is another one, there is no such patch, there is not one value for each of its taxels, or the time is not from 0 to 1.
+    pub fn read_patch(
+        &self,
+        body: &WholeBody,
+        state: &BodyState,
+        patch: usize,
+        moment: Moment,
+        values: &mut [f64],
+    ) {
+        let numbers = self.firsts[patch]..self.firsts[patch + 1];
+        match self.begins {
+            Quantity::Deflection => values.copy_from_slice(state.deflections(patch)),
+            Quantity::Force => {
+                values.fill(0.0);
+                let of_patch = state
+                    .forces(body)
+                    .filter(|(taxel, _)| numbers.contains(taxel));
+                of_patch.for_each(|(taxel, force)| values[taxel - numbers.start] = force);
+            }
+        }
+        self.read(&numbers.collect::<Vec<_>>(), moment, values);
+    }
+
+    /// Changes what taxels feel (metres or newtons, 0 where nothing touches them) to what they read; any taxels in any order. The result does
+    /// not depend on the number of threads.
+    ///
+    /// # Panics
+    /// If there is not one value for each taxel, there is no such taxel, or the time is not from 0 to 1.
+    pub fn read(&self, taxels: &[usize], moment: Moment, values: &mut [f64]) {
+        assert_eq!(taxels.len(), values.len(), "one value for each taxel");
+        assert!(
+            (0.0..=1.0).contains(&moment.time),
+            "a share of the session, 0 to 1"
+        );
+        if taxels.len() < WORTH_THREADS {
+            let mut chunk = Chunk::default();
+            let chunks = taxels.chunks(CHUNK).zip(values.chunks_mut(CHUNK));
+            chunks.for_each(|(taxels, values)| self.read_chunk(&mut chunk, taxels, moment, values));
+            return;
+        }
+        let chunks = taxels.par_chunks(CHUNK).zip(values.par_chunks_mut(CHUNK));
+        chunks.for_each_init(Chunk::default, |chunk, (taxels, values)| {
+            self.read_chunk(chunk, taxels, moment, values);
+        });
+    }
+
+    fn read_chunk(
+        &self,
+        chunk: &mut Chunk,
+        mut taxels: &[usize],
+        moment: Moment,
+        mut values: &mut [f64],
+    ) {
+        while let Some(&first) = taxels.first() {
+            let patch = self.firsts.partition_point(|&of| of <= first) - 1;
+            let numbers = self.firsts[patch]..self.firsts[patch + 1];
+            let of_patch = taxels.iter().take_while(|taxel| numbers.contains(taxel));
+            let n = of_patch.count();
+            assert!(n > 0, "a taxel of this body");
+            let (here, rest) = values.split_at_mut(n);
+            chunk.lay(&taxels[..n]);
+            for step in &self.steps[patch] {
+                chunk.apply(step, moment, here);
+            }
+            (taxels, values) = (&taxels[n..], rest);
+        }
+    }
+}
+
+/// The steps in the unit of a patch; those of no strength are left out.
+fn prepare(
+    steps: &[SignalStep],
+    quantity: Quantity,
+    taxel: &Taxel,
+    noise: &Seed,
+) -> Result<Vec<TaxelStep>> {
+    let mut prepared = Vec::new();
+    let mut n_noises = 0;
+    for step in steps {
+        match step {
+            SignalStep::Noise(of) => {
+                n_noises += 1;
+                let std = of.std_of(quantity, taxel)?;
+                let key = noise.named("noise").numbered(n_noises).counter_key();
+                prepared.extend((std > 0.0).then_some(TaxelStep::Noise { key, std }));
+            }
+            SignalStep::Error {
+                error,
+                strengths,
+                skin,
+            } => {
+                if strengths.iter().any(|&strength| strength != 0.0) {
+                    let full_scale = quantity.full_scale(taxel);
+                    prepared.push(taxel_step(*error, strengths, full_scale, skin)?);
+                }
+            }
+            SignalStep::Force => return Err(refused("force", "after another step")),
+            SignalStep::Smoothing { .. } => return Err(refused("smoothing", OF_OTHERS)),
+        }
+    }
+    Ok(prepared)
+}
+
+/// Why a step is refused.
+const OF_OTHERS: &str = "which needs other taxels or other frames";
+
+fn refused(step: &str, why: &str) -> Error {
+    let allowed = "force first, then noise, gain, drift, faults, quantisation";
+    Error::input(
+        "steps of a body's readout",
+        format!("{step}, {why}"),
+        allowed,
+    )
+}
+
+fn taxel_step(
+    error: SensorError,
+    strengths: &[f64; MOST_STRENGTHS],
+    full_scale: f64,
+    skin: &Seed,
+) -> Result<TaxelStep> {
+    let about = error.about();
+    for (strength, &value) in about.strengths.iter().zip(strengths) {
+        if !(strength.is_allowed)(value) {
+            return Err(Error::input(strength.key, value, strength.allowed));
+        }
+    }
+    let [first, second] = *strengths;
+    let key = skin.named(about.step).counter_key();
+    Ok(match error {
+        SensorError::Gain => TaxelStep::Gain {
+            key,
+            s: first.powi(2).ln_1p().sqrt(),
+        },
+        SensorError::Drift => TaxelStep::Drift {
+            key,
+            std: first * full_scale,
+        },
+        SensorError::Faults => {
+            check_together(first, second)?;
+            TaxelStep::Faults {
+                key,
+                dead: first,
+                stuck: second,
+                full_scale,
+            }
+        }
+        SensorError::Quantisation => {
+            let converter = Quantisation::new(first as u32, [0.0, full_scale])?;
+            TaxelStep::Quantisation(converter)
+        }
+        _ => return Err(refused(about.step, OF_OTHERS)),
+    })
+}

@@ -1,0 +1,115 @@
+//! Names that were perhaps meant, numbers of things, and durations.
+
+use crate::error::{Error, Result};
+
+/// At most this many are offered: more is a list that nobody reads.
+const OFFERED: usize = 8;
+
+/// A number of things, each called `one`: `1 thread`, `2 threads`.
+pub fn counted(number: usize, one: &str) -> String {
+    let plural = if number == 1 { "" } else { "s" };
+    format!("{number} {one}{plural}")
+}
+
+/// Seconds in words: no more digits than an estimate has.
+pub fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 1.0 => "under 1 s".to_owned(),
+        s if s < 99.5 => format!("{s:.0} s"),
+        s if s < 5970.0 => format!("{:.0} min", s / 60.0),
+        s if s < 172_800.0 => format!("{:.1} h", s / 3600.0),
+        s => format!("{:.1} days", s / 86_400.0),
+    }
+}
+
+/// The place of a name among `names`; the error offers those it resembles.
+pub fn known<'a>(
+    place: impl ToString,
+    name: &str,
+    names: impl IntoIterator<Item = &'a str> + Clone,
+) -> Result<usize> {
+    let found = names.clone().into_iter().position(|known| known == name);
+    found.ok_or_else(|| Error::input(place, format!("`{name}`"), nearest_names(name, names)))
+}
+
+/// The error's last part for a name that is not among `names`: those it resembles, else the first few there are.
+pub fn nearest_names<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> String {
+    let all: Vec<&str> = names.into_iter().collect();
+    let mut near: Vec<(usize, &str)> = all
+        .iter()
+        .map(|known| (distance(name, known), *known))
+        .filter(|(far, known)| far * 3 <= known.chars().count().max(6))
+        .collect();
+    near.sort();
+    if near.is_empty() {
+        let more = if all.len() > OFFERED { ", …" } else { "" };
+        return match all.len() {
+            0 => "there is none".to_owned(),
+            _ => format!("one of {}{more}", quoted(&all[..all.len().min(OFFERED)])),
+        };
+    }
+    near.truncate(OFFERED);
+    let near: Vec<&str> = near.into_iter().map(|(_, known)| known).collect();
+    format!("perhaps {}", quoted(&near))
+}
+
+/// The known word that an unknown one is a slip of, if it is: at most two letters off and no more than a third of it.
+pub fn slip_of<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
+    let near = |known: &&&str| {
+        let far = distance(word, known);
+        far <= 2 && far * 3 <= known.chars().count()
+    };
+    known.iter().find(near).copied()
+}
+
+/// Letters to insert, delete, replace or swap; capitals count as small ones.
+fn distance(a: &str, b: &str) -> usize {
+    strsim::damerau_levenshtein(&a.to_lowercase(), &b.to_lowercase())
+}
+
+fn quoted(names: &[&str]) -> String {
+    let names: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+    names.join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_written_with_as_many_digits_as_they_deserve() {
+        let words = [0.2, 1.0, 42.4, 99.6, 600.0, 7200.0, 259_200.0].map(duration);
+        let expected = [
+            "under 1 s",
+            "1 s",
+            "42 s",
+            "2 min",
+            "10 min",
+            "2.0 h",
+            "3.0 days",
+        ];
+        assert_eq!(words, expected);
+    }
+
+    #[test]
+    fn a_slip_is_offered_what_was_meant_and_a_stranger_the_list() {
+        let names = ["elbow", "wrist", "shoulder_pan"];
+        assert_eq!(nearest_names("elbwo", names), "perhaps `elbow`");
+        assert_eq!(
+            nearest_names("Shoulder_Pan", names),
+            "perhaps `shoulder_pan`"
+        );
+        assert_eq!(
+            nearest_names("knee", ["hip"; 9]).matches("hip").count(),
+            OFFERED
+        );
+        assert_eq!(nearest_names("knee", []), "there is none");
+    }
+
+    #[test]
+    fn a_tag_of_another_tool_is_no_slip() {
+        assert_eq!(slip_of("orgin", &["origin", "axis"]), Some("origin"));
+        assert_eq!(slip_of("sensor", &["origin", "axis"]), None);
+        assert_eq!(slip_of("xyz", &["rpy"]), None);
+    }
+}

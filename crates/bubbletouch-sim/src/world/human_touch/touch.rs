@@ -1,0 +1,218 @@
+//! One touch: its parameters as they were drawn, and where they put the hand.
+
+use super::course::{Course, State};
+use super::posture::{Posture, spheres};
+use super::{TouchKind, TouchRanges};
+use crate::error::{Error, Result};
+use crate::geometry::Pose;
+use crate::objects::{Hand, SphereUnion};
+use crate::random::Seed;
+use rand::Rng;
+use rand_chacha::ChaCha8Rng;
+use std::f64::consts::PI;
+use std::ops::RangeInclusive;
+
+/// A touch of a forearm.
+///
+/// ```
+/// use bubbletouch_sim::random::Seed;
+/// use bubbletouch_sim::world::{HumanTouch, TouchKind, TouchRanges};
+///
+/// let surface = 0.043;
+/// let ranges = TouchRanges::usual(TouchKind::Pat);
+/// let pat = HumanTouch::draw(TouchKind::Pat, &ranges, surface, &Seed::new(3))?;
+/// assert!((2..=4).contains(&pat.contacts));
+/// // The hand starts and ends in the air, and is drawn alike from the same seed.
+/// assert!(pat.at(0.0).height > 0.01 && pat.at(pat.duration()).height > 0.01);
+/// assert_eq!(pat, HumanTouch::draw(TouchKind::Pat, &ranges, surface, &Seed::new(3))?);
+/// # Ok::<(), bubbletouch_sim::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct HumanTouch {
+    /// Its kind.
+    pub kind: TouchKind,
+    /// How many fingertips touch (1 to 4); 5 is the flat hand, or a grip.
+    pub fingers: usize,
+    /// Where on the arm the touch begins: metres from its middle along its axis (+z).
+    pub along: f64,
+    /// Where around it, radians from +x.
+    pub around: f64,
+    /// Metres past first contact, where the hand presses most; of a grab, the palm's.
+    pub depth: f64,
+    /// Seconds from first contact to that depth, and back.
+    pub rise: f64,
+    /// Seconds at that depth, each contact.
+    pub hold: f64,
+    /// How often the hand touches.
+    pub contacts: usize,
+    /// The way along the skin, metres.
+    pub travel: f64,
+    /// Its direction, radians from +z towards larger angles around the arm.
+    pub direction: f64,
+    /// Of the skin, metres from the arm's axis.
+    pub surface: f64,
+    /// Of the anchor above the skin where the open hand first touches it, metres.
+    first_contact: f64,
+    posture: Posture,
+    course: Course,
+}
+
+/// A hand at an instant of a touch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HandState {
+    /// Its size and how its fingers are bent.
+    pub hand: Hand,
+    /// Where it is: metres, in the frame whose z axis is the arm's.
+    pub patch_from_hand: Pose,
+    /// Above first contact of the open hand, metres; negative while it presses.
+    pub height: f64,
+    /// How far its fingers have closed, 0 to 1.
+    pub closed: f64,
+}
+
+impl HandState {
+    /// The hand as spheres, in its own frame.
+    pub fn spheres(&self) -> SphereUnion {
+        spheres(&self.hand)
+    }
+}
+
+impl HumanTouch {
+    /// Draws a touch of a kind on an arm whose skin is `surface` metres from its axis.
+    ///
+    /// Every parameter is uniform in its range, and independent of all others.
+    ///
+    /// # Errors
+    /// A range that [`TouchRanges::check`] refuses; a surface that is not 5 to 500 mm away.
+    pub fn draw(kind: TouchKind, ranges: &TouchRanges, surface: f64, seed: &Seed) -> Result<Self> {
+        ranges
+            .check()
+            .map_err(|error| error.under(format!("{}, ", kind.name())))?;
+        if !(0.005..=0.5).contains(&surface) {
+            let given = format!("{surface} m");
+            return Err(Error::input("radius of the arm", given, "0.005 to 0.5 m"));
+        }
+        let rng = &mut seed.named("human touch").rng();
+        let any = |range: &RangeInclusive<f64>, rng: &mut ChaCha8Rng| rng.gen_range(range.clone());
+        let is_flat = matches!(kind, TouchKind::Shove | TouchKind::Grab);
+        let chosen = ranges.fingers[rng.gen_range(0..ranges.fingers.len())];
+        let fingers = if is_flat { 5 } else { chosen };
+        let shape = (
+            any(&ranges.hand_length, rng),
+            fingers,
+            any(&ranges.yaw, rng),
+        );
+        let mut posture = Posture::draw(kind, shape, rng);
+        let (along, around) = (any(&ranges.along, rng), any(&ranges.around, rng));
+        let depth = any(&ranges.depth, rng);
+        let (rise, hold) = (any(&ranges.rise, rng), any(&ranges.hold, rng));
+        let moves = matches!(kind, TouchKind::Stroke | TouchKind::Shove);
+        let travel = if moves { any(&ranges.travel, rng) } else { 0.0 };
+        let seconds = travel / any(&ranges.speed, rng);
+        let turned = if rng.r#gen() { PI } else { 0.0 };
+        let direction = turned + any(&ranges.direction, rng);
+        let contacts = match kind {
+            TouchKind::Pat => rng.gen_range(ranges.contacts.clone()),
+            _ => 1,
+        };
+        if kind == TouchKind::Grab {
+            posture.close(surface, depth, any(&ranges.grip, rng));
+        }
+        let high = State {
+            height: any(&ranges.clearance, rng),
+            ..State::default()
+        };
+        let mut course = Course::from(high);
+        match kind {
+            TouchKind::Tap | TouchKind::Hold => {
+                course.press(depth, rise);
+                course.wait(hold);
+            }
+            TouchKind::Stroke => {
+                course.press(depth, rise);
+                slide(&mut course, seconds, travel, depth);
+                course.wait(hold);
+            }
+            TouchKind::Shove => {
+                // It lays the hand on, then pushes.
+                course.press(0.4 * depth, rise);
+                slide(&mut course, seconds, travel, depth);
+                course.wait(hold);
+            }
+            TouchKind::Pat => {
+                for contact in 0..contacts {
+                    if contact > 0 {
+                        course.lift(any(&ranges.lift, rng), rise);
+                    }
+                    course.press(depth, rise);
+                    course.wait(hold);
+                }
+            }
+            TouchKind::Grab => {
+                let closing = any(&ranges.closing, rng);
+                course.press(depth, rise);
+                close(&mut course, closing, 1.0);
+                course.wait(hold);
+                close(&mut course, closing, 0.0);
+            }
+        }
+        course.lift(high.height, rise);
+        Ok(Self {
+            kind,
+            fingers,
+            along,
+            around,
+            depth,
+            rise,
+            hold,
+            contacts,
+            travel,
+            direction,
+            surface,
+            first_contact: posture.first_contact(surface),
+            posture,
+            course,
+        })
+    }
+
+    /// Seconds from when the hand starts in the air to when it is back there.
+    pub fn duration(&self) -> f64 {
+        self.course.duration()
+    }
+
+    /// The hand at a time in seconds; before the start and after the end it stays in the air.
+    pub fn at(&self, time: f64) -> HandState {
+        let state = self.course.at(time);
+        let (sin, cos) = self.direction.sin_cos();
+        // The way is about the place: half of it comes before.
+        let slid = state.slid - 0.5 * self.travel;
+        let along = self.along + slid * cos;
+        let around = self.around + slid * sin / self.surface;
+        let radius = self.surface + self.first_contact + state.height;
+        HandState {
+            hand: self.posture.hand(state.closed),
+            patch_from_hand: self.posture.pose((along, around), radius),
+            height: state.height,
+            closed: state.closed,
+        }
+    }
+}
+
+/// Slides while it goes to a depth.
+fn slide(course: &mut Course, seconds: f64, travel: f64, depth: f64) {
+    let to = State {
+        height: -depth,
+        slid: travel,
+        ..course.end()
+    };
+    course.go(seconds, to);
+}
+
+/// Closes the fingers, or opens them.
+fn close(course: &mut Course, seconds: f64, closed: f64) {
+    let to = State {
+        closed,
+        ..course.end()
+    };
+    course.go(seconds, to);
+}

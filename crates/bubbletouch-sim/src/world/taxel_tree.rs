@@ -1,0 +1,385 @@
+//! A tree of boxes over the taxels of a patch, so that a sphere looks only at those that it can reach.
+//!
+//! With h = (c − p)·n and b the distance beside the axis, a sphere (c, R) pushes a taxel (rest centre p, axis n, radius ρ, stroke s) only if
+//! b < S = ρ + R and if the sphere is not wholly behind the substrate, `h + √(S² − b²) ≥ −s − ρ` (title page of [`contact`](crate::contact)).
+//! So c is less than S away from the taxel's stretch, from p back to p − (s + ρ) n. The boxes are around stretches.
+
+use super::{Layout, Taxel, Taxels};
+use crate::geometry::Aabb;
+use glam::DVec3;
+
+/// Taxels in a leaf, at most: what a vector instruction or two look at together. More: taxels are looked at in vain; fewer: more boxes are.
+pub(crate) const LEAF: usize = 8;
+/// A stroke that nothing ends, metres.
+const ENDLESS: f64 = 1e6;
+/// What rounding may add to a reach, far above 1e-16 and far below what is felt.
+const ROUNDING: f64 = 1.0 + 1e-9;
+
+/// The taxels of a patch, neighbours together.
+#[derive(Clone, Debug)]
+pub struct TaxelTree {
+    /// Each before all that are below it.
+    nodes: Vec<Node>,
+    leaves: Vec<Leaf>,
+    /// The largest s + ρ, metres.
+    depth: f64,
+}
+
+/// A taxel with what its contact needs.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PlacedTaxel {
+    /// Its number in the layout.
+    pub number: u32,
+    /// p, metres.
+    pub center: DVec3,
+    /// Unit vectors across the axis; X and Y for a taxel along Z, so that a flat patch is computed as a grid is.
+    pub across: [DVec3; 2],
+    /// n, unit.
+    pub axis: DVec3,
+    /// ρ, metres.
+    pub radius: f64,
+    /// −s − ρ, metres: what is lower along the axis is behind the substrate.
+    pub behind: f64,
+}
+
+/// Taxels that are neighbours, coordinate by coordinate; those behind the last are like the last, but that everything is behind them.
+#[derive(Clone, Debug)]
+pub(crate) struct Leaf {
+    pub numbers: [u32; LEAF],
+    /// p: x, y, z, metres.
+    pub centers: [[f64; LEAF]; 3],
+    /// Two unit vectors across each axis.
+    pub across: [[[f64; LEAF]; 3]; 2],
+    /// n, unit.
+    pub axes: [[f64; LEAF]; 3],
+    /// ρ, metres.
+    pub radii: [f64; LEAF],
+    /// −s − ρ, metres.
+    pub behind: [f64; LEAF],
+}
+
+/// The number of no taxel.
+const NONE: u32 = u32::MAX;
+
+/// A box around the stretches of some taxels.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Node {
+    pub bounds: Aabb,
+    /// The largest ρ, metres.
+    pub radius: f64,
+    /// The leaf that it is, if it is one.
+    leaf: Option<u32>,
+    /// The first node that is not below this one.
+    next: u32,
+}
+
+impl TaxelTree {
+    pub fn new(layout: &Layout, taxels: &Taxels) -> Self {
+        let n_taxels = layout.n_taxels();
+        let depths =
+            (0..n_taxels).map(|number| taxels.at(number).stroke + taxels.at(number).radius);
+        let mut tree = Self {
+            nodes: Vec::new(),
+            leaves: Vec::with_capacity(n_taxels.div_ceil(LEAF)),
+            depth: depths.fold(0.0, f64::max),
+        };
+        let mut numbers: Vec<u32> = (0..n_taxels as u32).collect();
+        if n_taxels > 0 {
+            tree.split((layout, taxels), &mut numbers);
+        }
+        tree
+    }
+
+    /// Taxels at the same places as they travel along a direction (unit): their axes are the direction, and their strokes do not end.
+    pub fn travelling(layout: &Layout, taxels: &Taxels, direction: DVec3) -> Self {
+        let endless = |taxel: &Taxel| Taxel {
+            stroke: ENDLESS,
+            ..*taxel
+        };
+        let taxels = match taxels {
+            Taxels::Equal(taxel) => Taxels::Equal(endless(taxel)),
+            Taxels::Each(each) => Taxels::Each(each.iter().map(endless).collect()),
+        };
+        let centers = layout.centers().iter();
+        Self::new(
+            &Layout::of_taxels(centers.map(|&center| (center, direction))),
+            &taxels,
+        )
+    }
+
+    /// The box around the stretches of all taxels, metres; `None` if there are none.
+    pub fn bounds(&self) -> Option<&Aabb> {
+        self.nodes.first().map(|root| &root.bounds)
+    }
+
+    /// The largest ρ, metres.
+    pub fn largest_radius(&self) -> f64 {
+        self.nodes.first().map_or(0.0, |root| root.radius)
+    }
+
+    /// The largest s + ρ, metres.
+    pub fn depth(&self) -> f64 {
+        self.depth
+    }
+
+    /// Whether a ball can push a taxel, or comes near to it; metres, in the patch frame.
+    #[inline]
+    pub fn is_near(&self, center: DVec3, radius: f64) -> bool {
+        let root = self.nodes.first();
+        root.is_some_and(|root| root.is_near(center, radius))
+    }
+
+    /// Calls `visit` with each taxel that a ball can push, and with some others; metres, in the patch frame.
+    #[inline]
+    pub(crate) fn each_near(
+        &self,
+        center: DVec3,
+        radius: f64,
+        mut visit: impl FnMut(&PlacedTaxel),
+    ) {
+        self.each_leaf(
+            |node| node.is_near(center, radius),
+            |leaf| leaf.taxels().for_each(|taxel| visit(&taxel)),
+        );
+    }
+
+    /// Calls `visit` with each leaf that is below nodes that `may_count` alone.
+    #[inline(always)]
+    pub(crate) fn each_leaf(
+        &self,
+        mut may_count: impl FnMut(&Node) -> bool,
+        mut visit: impl FnMut(&Leaf),
+    ) {
+        let mut index = 0;
+        while let Some(node) = self.nodes.get(index) {
+            if !may_count(node) {
+                index = node.next as usize;
+                continue;
+            }
+            if let Some(leaf) = node.leaf {
+                visit(&self.leaves[leaf as usize]);
+            }
+            index += 1;
+        }
+    }
+
+    /// Makes the nodes of some taxels, halved across the longest side of what is around their centres into full leaves; which is the first.
+    fn split(&mut self, of: (&Layout, &Taxels), numbers: &mut [u32]) -> usize {
+        let (layout, taxels) = of;
+        let index = self.nodes.len();
+        if numbers.len() <= LEAF {
+            let placed = numbers.iter();
+            let placed = placed.map(|&number| PlacedTaxel::of(layout, taxels, number as usize));
+            let placed: Vec<PlacedTaxel> = placed.collect();
+            let leaf = Some(self.leaves.len() as u32);
+            self.leaves.push(Leaf::of(&placed));
+            let node = Node::around(&placed);
+            let next = index as u32 + 1;
+            self.nodes.push(Node { leaf, next, ..node });
+            return index;
+        }
+        let center = |number: u32| layout.centers()[number as usize];
+        let all = || numbers.iter().map(|&number| center(number));
+        let low = all().fold(DVec3::INFINITY, DVec3::min);
+        let side = (all().fold(DVec3::NEG_INFINITY, DVec3::max) - low).max_position();
+        let half = (numbers.len() / 2).next_multiple_of(LEAF);
+        // Ties by number: the tree depends on nothing but the taxels.
+        numbers.select_nth_unstable_by(half, |&a, &b| {
+            let order = center(a)[side].total_cmp(&center(b)[side]);
+            order.then(a.cmp(&b))
+        });
+        let (left, right) = numbers.split_at_mut(half);
+        self.nodes.push(Node::EMPTY);
+        let parts = [self.split(of, left), self.split(of, right)].map(|part| self.nodes[part]);
+        self.nodes[index] = Node {
+            bounds: Aabb {
+                min: parts[0].bounds.min.min(parts[1].bounds.min),
+                max: parts[0].bounds.max.max(parts[1].bounds.max),
+            },
+            radius: parts[0].radius.max(parts[1].radius),
+            leaf: None,
+            next: self.nodes.len() as u32,
+        };
+        index
+    }
+}
+
+impl Leaf {
+    fn of(taxels: &[PlacedTaxel]) -> Self {
+        let at = |k: usize| &taxels[k.min(taxels.len() - 1)];
+        let lanes = |of: &dyn Fn(&PlacedTaxel) -> f64| std::array::from_fn(|k| of(at(k)));
+        let vectors = |of: &dyn Fn(&PlacedTaxel) -> DVec3| {
+            std::array::from_fn(|axis| lanes(&|taxel| of(taxel)[axis]))
+        };
+        Self {
+            numbers: std::array::from_fn(|k| taxels.get(k).map_or(NONE, |taxel| taxel.number)),
+            centers: vectors(&|taxel| taxel.center),
+            across: [0, 1].map(|side| vectors(&|taxel| taxel.across[side])),
+            axes: vectors(&|taxel| taxel.axis),
+            radii: lanes(&|taxel| taxel.radius),
+            behind: std::array::from_fn(|k| taxels.get(k).map_or(f64::INFINITY, |t| t.behind)),
+        }
+    }
+
+    /// Of one of its taxels.
+    #[inline(always)]
+    pub fn vector(&self, of: &[[f64; LEAF]; 3], k: usize) -> DVec3 {
+        DVec3::new(of[0][k], of[1][k], of[2][k])
+    }
+
+    /// One by one.
+    fn taxels(&self) -> impl Iterator<Item = PlacedTaxel> {
+        let numbers = self.numbers.iter().enumerate();
+        let numbers = numbers.take_while(|(_, number)| **number != NONE);
+        numbers.map(move |(k, &number)| PlacedTaxel {
+            number,
+            center: self.vector(&self.centers, k),
+            across: [0, 1].map(|side| self.vector(&self.across[side], k)),
+            axis: self.vector(&self.axes, k),
+            radius: self.radii[k],
+            behind: self.behind[k],
+        })
+    }
+}
+
+impl Node {
+    /// How far the foremost place of its taxels is along a direction, at most, metres.
+    #[inline(always)]
+    pub fn front(&self, direction: DVec3) -> f64 {
+        let (least, largest) = (self.bounds.min * direction, self.bounds.max * direction);
+        least.max(largest).element_sum()
+    }
+
+    /// Before what is below it is known.
+    const EMPTY: Self = Self {
+        bounds: Aabb {
+            min: DVec3::ZERO,
+            max: DVec3::ZERO,
+        },
+        radius: 0.0,
+        leaf: None,
+        next: 0,
+    };
+
+    fn around(taxels: &[PlacedTaxel]) -> Self {
+        Self {
+            bounds: Aabb::around(taxels.iter().map(PlacedTaxel::stretch))
+                .expect("no node is empty"),
+            radius: taxels.iter().map(|t| t.radius).fold(0.0, f64::max),
+            leaf: None,
+            next: 0,
+        }
+    }
+
+    /// Whether a ball can push one of its taxels.
+    #[inline(always)]
+    pub fn is_near(&self, center: DVec3, radius: f64) -> bool {
+        self.room(center, radius) >= 0.0
+    }
+
+    /// (R + ρ)² less the square of how far a ball's middle is from its stretches, m²; not less than what there is for any of its taxels.
+    #[inline(always)]
+    pub fn room(&self, center: DVec3, radius: f64) -> f64 {
+        let reach = (self.radius + radius) * ROUNDING;
+        reach * reach - self.bounds.distance_squared(center)
+    }
+}
+
+impl PlacedTaxel {
+    /// A taxel of a layout by its number.
+    pub fn of(layout: &Layout, taxels: &Taxels, number: usize) -> Self {
+        let frame = layout.frame(number);
+        let taxel = taxels.at(number);
+        Self {
+            number: number as u32,
+            center: layout.centers()[number],
+            across: [frame.x_axis, frame.y_axis],
+            axis: frame.z_axis,
+            radius: taxel.radius,
+            behind: -taxel.stroke - taxel.radius,
+        }
+    }
+
+    /// The box around the stretch from its rest centre back to where its substrate is.
+    fn stretch(&self) -> Aabb {
+        let end = self.center + self.behind * self.axis;
+        Aabb {
+            min: self.center.min(end),
+            max: self.center.max(end),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Seed;
+    use crate::world::Taxel;
+    use rand::Rng;
+
+    #[test]
+    fn no_taxel_that_a_ball_can_push_is_left_out() {
+        let mut rng = Seed::new(1).named("taxel tree").rng();
+        let mut direction = || {
+            let mut random = || rng.gen_range(-1.0..1.0);
+            DVec3::new(random(), random(), random()).normalize_or(DVec3::X)
+        };
+        let n = 3000;
+        let centers: Vec<DVec3> = (0..n).map(|_| 0.05 * direction()).collect();
+        // Half of the axes point outwards, as on a ball, and half anywhere.
+        let axis = |k: usize| {
+            if k.is_multiple_of(2) {
+                20.0 * centers[k]
+            } else {
+                direction()
+            }
+        };
+        let axes: Vec<DVec3> = (0..n).map(axis).map(DVec3::normalize).collect();
+        let layout = Layout::new(centers, axes).unwrap();
+        let taxels = (0..n).map(|k| Taxel {
+            radius: 1e-3 + 1e-6 * k as f64,
+            stiffness: 1.0,
+            damping: 0.0,
+            stroke: 6e-3 - 1e-6 * k as f64,
+        });
+        let tree = TaxelTree::new(&layout, &Taxels::Each(taxels.collect()));
+        let mut n_pushed = 0;
+        let mut n_visited = 0;
+        for case in 0..300 {
+            let mut rng = Seed::new(2).numbered(case).rng();
+            let mut random = || rng.gen_range(-0.08..0.08);
+            let center = DVec3::new(random(), random(), random());
+            let radius = 10f64.powf(rng.gen_range(-6.0..-1.5));
+            let mut is_visited = vec![false; n];
+            tree.each_near(center, radius, |taxel| {
+                is_visited[taxel.number as usize] = true
+            });
+            n_visited += is_visited.iter().filter(|&&v| v).count();
+            for taxel in tree.leaves.iter().flat_map(Leaf::taxels) {
+                let height = (center - taxel.center).dot(taxel.axis);
+                let beside2 = center.distance_squared(taxel.center) - height * height;
+                let q = (radius + taxel.radius).powi(2) - beside2;
+                if q > 0.0 && q.sqrt() > height && height + q.sqrt() >= taxel.behind {
+                    n_pushed += 1;
+                    assert!(is_visited[taxel.number as usize], "case {case}");
+                }
+            }
+        }
+        assert!(n_pushed > 1000, "{n_pushed}");
+        assert!(n_visited < 300 * n / 4, "most are left out: {n_visited}");
+    }
+
+    #[test]
+    fn a_flat_taxel_has_the_axes_of_the_patch() {
+        let layout = Layout::new(vec![DVec3::ZERO], vec![DVec3::Z]).unwrap();
+        let taxel = Taxel {
+            radius: 1e-3,
+            stiffness: 1.0,
+            damping: 0.0,
+            stroke: 5e-3,
+        };
+        let tree = TaxelTree::new(&layout, &Taxels::Equal(taxel));
+        let taxel = tree.leaves[0].taxels().next().unwrap();
+        assert_eq!(taxel.across, [DVec3::X, DVec3::Y]);
+    }
+}

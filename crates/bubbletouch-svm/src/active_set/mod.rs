@@ -1,0 +1,338 @@
+//! The optimum of a binary problem by equations: an active-set method [Scheinberg 2006].
+//!
+//! Pairs of variables come near the optimum in a few steps and then may take a million to reach it. But where it is known which
+//! variables rest on a bound, what is left is a system of linear equations: f is to be equal on all free variables, and the sum
+//! of their changes 0. Where that leads beyond a bound, the way ends there and goes on without that variable. Where it does not,
+//! the variable at a bound that violates the optimality conditions most becomes free, until none does. A support vector machine
+//! of few features has few free variables, so that [their equations](crate::active_set::free_factor) are short.
+
+pub(crate) mod free_factor;
+pub(crate) mod pair_search;
+
+use crate::active_set::free_factor::FreeFactor;
+use crate::linalg::scalar::Scalar;
+use crate::smo::{Gram, bounds, violation};
+
+/// Free variables whose equations are solved, at most; others wait until it is their turn.
+const MOST_FREE: usize = 384;
+/// Variables that become free together, at most, and how far each is to violate the conditions as a share of the farthest.
+const MOST_ENTERING: usize = 8;
+const SHARE_OF_FARTHEST: f64 = 0.5;
+/// Times that f may be found to differ on the free variables when it should be equal: rows that depend on each other.
+const MOST_REPEATS: u64 = 8;
+
+/// What to go for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ActiveSetGoal {
+    /// C.
+    pub c: f64,
+    /// The largest violation of the optimality conditions.
+    pub tolerance: f64,
+    /// Ways to go at most: each ends at the optimum of the free variables or with one fewer.
+    pub most_ways: u64,
+}
+
+/// Goes from β of the problem's rows, and `f = y − Kβ`, toward their optimum. How many ways it took; 0 where fewer
+/// than two are free.
+pub(crate) fn settle<T: Scalar, G: Gram<T>>(
+    gram: &mut G,
+    labels: &[f64],
+    (beta, f): (&mut [f64], &mut [f64]),
+    goal: ActiveSetGoal,
+) -> u64 {
+    let Some(mut active_set) = ActiveSet::new(gram, labels, (beta, f), goal.c) else {
+        return 0;
+    };
+    let (mut n_ways, mut n_repeats) = (0, 0);
+    while n_ways < goal.most_ways {
+        // A turn at least, so that there is an end where nothing can move.
+        n_ways += active_set.settle_free(goal.most_ways - n_ways).max(1);
+        active_set.follow(gram);
+        if active_set.violation() <= goal.tolerance {
+            break;
+        }
+        let entering = active_set.entering();
+        n_repeats += u64::from(entering.is_empty());
+        if n_repeats > MOST_REPEATS || !active_set.join(gram, &entering) {
+            break;
+        }
+    }
+    n_ways
+}
+
+/// The way from one set of free variables to the next.
+struct ActiveSet<'a> {
+    labels: &'a [f64],
+    beta: &'a mut [f64],
+    /// y − Kβ of β before its last changes.
+    f: &'a mut [f64],
+    /// How β has changed since.
+    changes: Vec<f64>,
+    c: f64,
+    factor: FreeFactor,
+    /// Whether each variable has a place there.
+    has_place: Vec<bool>,
+    /// f of all free variables when it was last made equal.
+    level: f64,
+}
+
+impl<'a> ActiveSet<'a> {
+    /// Of the variables that are free; `None` where they are fewer than two.
+    fn new<T: Scalar, G: Gram<T>>(
+        gram: &mut G,
+        labels: &'a [f64],
+        (beta, f): (&'a mut [f64], &'a mut [f64]),
+        c: f64,
+    ) -> Option<Self> {
+        let is_free = |&i: &usize| {
+            let (lowest, highest) = bounds(labels[i], c);
+            beta[i] > lowest && beta[i] < highest
+        };
+        let free: Vec<usize> = (0..labels.len()).filter(is_free).take(MOST_FREE).collect();
+        (free.len() > 1).then(|| {
+            let mut own = Self {
+                changes: vec![0.0; labels.len()],
+                factor: FreeFactor::default(),
+                has_place: Vec::new(),
+                labels,
+                beta,
+                f,
+                c,
+                level: 0.0,
+            };
+            own.take(gram, &free);
+            own
+        })
+    }
+
+    /// Takes the equations of these variables.
+    fn take<T: Scalar, G: Gram<T>>(&mut self, gram: &mut G, free: &[usize]) {
+        self.factor = FreeFactor::new(gram, free);
+        self.has_place = vec![false; self.labels.len()];
+        for (_, variable) in self.factor.variables() {
+            self.has_place[variable] = true;
+        }
+    }
+
+    /// Goes to the optimum of the free variables, of which those that meet a bound stay there. How many ways it took.
+    fn settle_free(&mut self, most_ways: u64) -> u64 {
+        let mut f = self.factor.values(&self.f[..]);
+        for n_ways in 0..most_ways {
+            let Some((steps, level)) = self.factor.solve(&f) else {
+                return n_ways;
+            };
+            self.level = level;
+            let (share, blocked) = self.way(&steps);
+            let ridge = self.factor.ridge();
+            for (place, variable) in self.factor.variables() {
+                let step = share * steps[place];
+                self.beta[variable] += step;
+                self.changes[variable] += step;
+                f[place] -= share * (f[place] - level) - ridge * step;
+            }
+            let Some((place, bound)) = blocked else {
+                return n_ways + 1;
+            };
+            let variable = self.factor.variable(place);
+            self.changes[variable] += bound - self.beta[variable];
+            self.beta[variable] = bound;
+            f[place] = 0.0;
+            self.has_place[variable] = false;
+            self.factor.leave(place);
+        }
+        most_ways
+    }
+
+    /// The share of these steps that leads to the first bound, at most 1, and where a variable meets that: its place, and the
+    /// bound.
+    fn way(&self, steps: &[f64]) -> (f64, Option<(usize, f64)>) {
+        let (mut share, mut blocked) = (1.0, None);
+        for (place, variable) in self.factor.variables() {
+            let (beta, step) = (self.beta[variable], steps[place]);
+            let (lowest, highest) = bounds(self.labels[variable], self.c);
+            let bound = if step > 0.0 { highest } else { lowest };
+            if step != 0.0 && (bound - beta) / step <= share {
+                (share, blocked) = ((bound - beta) / step, Some((place, bound)));
+            }
+        }
+        (share, blocked)
+    }
+
+    /// Takes f to β.
+    fn follow<T: Scalar, G: Gram<T>>(&mut self, gram: &mut G) {
+        gram.take_times(&self.changes, self.f);
+        self.changes.fill(0.0);
+    }
+
+    fn violation(&self) -> f64 {
+        violation(self.beta, self.labels, self.f, self.c)
+    }
+
+    /// The variables without equations that are farthest beyond the level, if any is farther than all that have them.
+    fn entering(&self) -> Vec<usize> {
+        let mut beyond = vec![0.0; self.beta.len()];
+        let mut farthest = [0.0_f64; 2];
+        for (i, beyond) in beyond.iter_mut().enumerate() {
+            let (lowest, highest) = bounds(self.labels[i], self.c);
+            let by = self.f[i] - self.level;
+            let rises = if self.beta[i] < highest { by } else { 0.0 };
+            let falls = if self.beta[i] > lowest { -by } else { 0.0 };
+            let farthest = &mut farthest[usize::from(self.has_place[i])];
+            *beyond = rises.max(falls);
+            *farthest = beyond.max(*farthest);
+        }
+        if farthest[0] <= farthest[1] {
+            return Vec::new();
+        }
+        let least = SHARE_OF_FARTHEST * farthest[0];
+        let is_far = |&i: &usize| !self.has_place[i] && beyond[i] >= least;
+        let mut entering: Vec<usize> = (0..beyond.len()).filter(is_far).collect();
+        entering.sort_by(|&i, &j| beyond[j].total_cmp(&beyond[i]));
+        entering.truncate(MOST_ENTERING);
+        entering
+    }
+
+    /// Makes variables free, as many as there is room for; whether that is any, or none was to be.
+    fn join<T: Scalar, G: Gram<T>>(&mut self, gram: &mut G, entering: &[usize]) -> bool {
+        for (number, &variable) in entering.iter().enumerate() {
+            if !self.factor.join(gram, variable) {
+                // Those that enter come first: what depends on them waits.
+                let free = self.factor.variables().map(|(_, variable)| variable);
+                let all = entering[number..].iter().copied().chain(free);
+                let all: Vec<usize> = all.take(MOST_FREE).collect();
+                self.take(gram, &all);
+                return self.has_place[variable];
+            }
+            self.has_place[variable] = true;
+        }
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::smo::{Dense, Smo, extremes};
+    use ndarray::{Array1, Array2};
+
+    /// Products of n rows of m features with no pattern, the first half apart from the others.
+    fn problem(n: usize, m: usize, apart: f64) -> (Array2<f64>, Vec<f64>) {
+        let rows = Array2::from_shape_fn((n, m), |(i, j)| {
+            let side = if i < n / 2 { apart } else { -apart };
+            // The sine's last digits: rows that do not depend on each other.
+            (((i * m + j) as f64).sin() * 1e4).fract() + side
+        });
+        (
+            rows.dot(&rows.t()),
+            (0..n).map(|i| if i < n / 2 { 1.0 } else { -1.0 }).collect(),
+        )
+    }
+
+    fn objective(beta: &[f64], f: &[f64], labels: &[f64]) -> f64 {
+        let terms = (0..f.len()).map(|i| beta[i] * (labels[i] + f[i]) / 2.0);
+        terms.sum()
+    }
+
+    fn f_of(kernel: &Array2<f64>, beta: &[f64], labels: &[f64]) -> Vec<f64> {
+        let product = kernel.dot(&Array1::from(beta.to_vec()));
+        labels.iter().zip(product).map(|(y, p)| y - p).collect()
+    }
+
+    fn goal(c: f64, tolerance: f64) -> ActiveSetGoal {
+        ActiveSetGoal {
+            c,
+            tolerance,
+            most_ways: 5000,
+        }
+    }
+
+    /// Settles from β, and compares with what pairs of variables reach.
+    fn assert_settles((kernel, labels): &(Array2<f64>, Vec<f64>), start: Vec<f64>, c: f64) {
+        let mut gram = Dense::<f64>::default();
+        gram.of_whole(kernel.view());
+        let expected = Smo::new(&mut gram, labels).solve(c, 1e-7).objective;
+        let (mut beta, mut f) = (start.clone(), f_of(kernel, &start, labels));
+        let before = objective(&beta, &f, labels);
+        let n_ways = settle(&mut gram, labels, (&mut beta, &mut f), goal(c, 1e-7));
+        assert!(n_ways > 0);
+        let found = objective(&beta, &f, labels);
+        assert!(found >= before, "{found} {before}");
+        assert!(
+            (found - expected).abs() < 1e-6 * expected,
+            "{found} {expected}"
+        );
+        let (highest, lowest) = extremes(&beta, labels, &f, c);
+        assert!(highest - lowest <= 1e-7, "{}", highest - lowest);
+        for (f, expected) in f.iter().zip(f_of(kernel, &beta, labels)) {
+            assert!((f - expected).abs() < 1e-8 * c.max(1.0), "{f} {expected}");
+        }
+        assert!((beta.iter().sum::<f64>() - start.iter().sum::<f64>()).abs() < 1e-9 * c.max(1.0));
+        for (beta, y) in beta.iter().zip(labels) {
+            assert!((0.0..=c).contains(&(beta * y)), "{beta} of {c}");
+        }
+    }
+
+    #[test]
+    fn from_a_rough_solution_the_optimum_is_reached() {
+        for (n, m, apart, c) in [
+            (40, 60, 0.1, 10.0),
+            (60, 200, 0.3, 1.0),
+            (50, 70, 0.0, 0.02),
+            (90, 12, 0.1, 30.0),
+        ] {
+            let (kernel, labels) = problem(n, m, apart);
+            let mut gram = Dense::<f64>::default();
+            gram.of_whole(kernel.view());
+            let mut smo = Smo::new(&mut gram, &labels);
+            assert!(smo.reach(c, 0.05, |_| None).is_solved);
+            let rough = smo.variables().0.to_vec();
+            assert_settles(&(kernel, labels), rough, c);
+        }
+    }
+
+    #[test]
+    fn of_rows_that_depend_on_each_other_more_are_free_than_there_are_equations() {
+        // Three features: no equations for more than four free ones. All are free at first, of the last more than have places.
+        for n in [20, MOST_FREE + 60] {
+            let problem = problem(n, 3, 0.1);
+            let start = problem.1.iter().map(|y| 0.1 * y).collect();
+            assert_settles(&problem, start, 1.0);
+        }
+    }
+
+    #[test]
+    fn rows_that_take_no_part_keep_out() {
+        let (kernel, mut labels) = problem(60, 8, 0.1);
+        // As many of either class.
+        for label in labels.iter_mut().step_by(5) {
+            *label = 0.0;
+        }
+        let start = labels.iter().map(|y| 0.1 * y).collect();
+        assert_settles(&(kernel, labels), start, 1.0);
+    }
+
+    #[test]
+    fn it_goes_no_further_than_it_may() {
+        let (kernel, labels) = problem(60, 20, 0.1);
+        let mut gram = Dense::<f64>::default();
+        gram.of_whole(kernel.view());
+        let start: Vec<f64> = labels.iter().map(|y| 0.1 * y).collect();
+        for most_ways in [0, 1, 7] {
+            let (mut beta, mut f) = (start.clone(), f_of(&kernel, &start, &labels));
+            let goal = ActiveSetGoal {
+                most_ways,
+                ..goal(1.0, 1e-9)
+            };
+            let n_ways = settle(&mut gram, &labels, (&mut beta, &mut f), goal);
+            assert_eq!(n_ways, most_ways);
+            for (f, expected) in f.iter().zip(f_of(&kernel, &beta, &labels)) {
+                assert!((f - expected).abs() < 1e-9, "{f} {expected}");
+            }
+        }
+        let (mut beta, mut f) = (vec![0.0; 60], labels.clone());
+        assert_eq!(
+            settle(&mut gram, &labels, (&mut beta, &mut f), goal(1.0, 1e-9)),
+            0
+        );
+    }
+}

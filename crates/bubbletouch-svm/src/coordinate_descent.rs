@@ -1,0 +1,158 @@
+//! Dual coordinate descent for the binary linear SVM with hinge loss [Hsieh et al. 2008, algorithm 3; LIBLINEAR].
+//!
+//! Minimise `½|w|² − Σ_i a_i` over `0 ≤ a_i ≤ C`, with `w = Σ_i y_i a_i x_i`. One coordinate at a time, in random order,
+//! a_i takes its best value `clamp(a_i − G/|x_i|², 0, C)` with `G = y_i w·x_i − 1`, and w follows. A row whose
+//! multiplier sits at a bound and whose gradient pushes it there by more than any violation of the last pass is left
+//! out (shrunk) until the rest has converged; then all rows are looked at again.
+
+use ndarray::{Array2, ArrayView2, s};
+use rand::Rng;
+
+use crate::linear_svm::{LinearSvmParams, Solved};
+use crate::{Error, Result};
+
+/// Lanes of the inner products: the rows are padded to a multiple of it. Fewer would leave vector units idle, more
+/// would only pad.
+const LANES: usize = 8;
+
+/// A change of a multiplier, or a gradient, smaller than this is rounding.
+pub(crate) const ROUNDING: f64 = 1e-12;
+
+/// Training rows with the bias feature appended and padded by zeros: contiguous, in f64.
+#[derive(Clone, Debug)]
+pub(crate) struct Rows {
+    values: Array2<f64>,
+    squared_norms: Vec<f64>,
+}
+
+impl Rows {
+    /// Copies the features (n × m, finite).
+    pub(crate) fn new(features: ArrayView2<f64>) -> Result<Self> {
+        let (n_rows, m) = features.dim();
+        let mut values = Array2::zeros((n_rows, (m + 1).next_multiple_of(LANES)));
+        values.slice_mut(s![.., ..m]).assign(&features);
+        values.column_mut(m).fill(1.0);
+        let squared_norms: Vec<f64> = values.rows().into_iter().map(|x| x.dot(&x)).collect();
+        if let Some(row) = squared_norms.iter().position(|norm| !norm.is_finite()) {
+            return Err(Error::input(
+                format!("features, row {row}"),
+                "values whose squares overflow",
+                "scaled features are needed",
+            ));
+        }
+        Ok(Self {
+            values,
+            squared_norms,
+        })
+    }
+
+    pub(crate) fn n_rows(&self) -> usize {
+        self.squared_norms.len()
+    }
+
+    /// m + 1, padded.
+    pub(crate) fn width(&self) -> usize {
+        self.values.ncols()
+    }
+
+    pub(crate) fn row(&self, row: usize) -> &[f64] {
+        let width = self.width();
+        // In standard layout by construction.
+        &self.values.as_slice().unwrap_or_default()[row * width..][..width]
+    }
+
+    /// `|x|²`, at least 1 (the bias feature).
+    pub(crate) fn squared_norm(&self, row: usize) -> f64 {
+        self.squared_norms[row]
+    }
+}
+
+/// Solves one binary problem with y = `sign` (±1 per row): the signed multipliers `y_i a_i`.
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
+pub(crate) fn solve(
+    rows: &Rows,
+    sign: &[f64],
+    params: &LinearSvmParams,
+    rng: &mut impl Rng,
+) -> Solved {
+    let n_rows = rows.n_rows();
+    let mut alpha = vec![0.0; n_rows];
+    let mut w = vec![0.0; rows.width()];
+    let mut order: Vec<usize> = (0..n_rows).collect();
+    let mut n_active = n_rows;
+    // The projected gradients of the last pass spanned these; a row beyond them is shrunk.
+    let mut bounds = (f64::NEG_INFINITY, f64::INFINITY);
+    for pass in 1..=params.max_passes {
+        let mut seen = (f64::INFINITY, f64::NEG_INFINITY);
+        let mut visited = 0;
+        while visited < n_active {
+            // 32 bits: the draw takes as long as a short row's product.
+            let other = visited + rng.gen_range(0..(n_active - visited) as u32) as usize;
+            order.swap(visited, other);
+            let i = order[visited];
+            let x = rows.row(i);
+            let gradient = sign[i] * dot(&w, x) - 1.0;
+            let (at_lower, at_upper) = (alpha[i] <= 0.0, alpha[i] >= params.c);
+            if (at_lower && gradient > bounds.1) || (at_upper && gradient < bounds.0) {
+                n_active -= 1;
+                order.swap(visited, n_active);
+                continue;
+            }
+            visited += 1;
+            let pushes_out = (at_lower && gradient > 0.0) || (at_upper && gradient < 0.0);
+            let projected = if pushes_out { 0.0 } else { gradient };
+            seen = (seen.0.min(projected), seen.1.max(projected));
+            if projected.abs() > ROUNDING {
+                let old = alpha[i];
+                alpha[i] = (old - gradient / rows.squared_norm(i)).clamp(0.0, params.c);
+                add_scaled(&mut w, (alpha[i] - old) * sign[i], x);
+            }
+        }
+        let has_converged = seen.1 - seen.0 <= params.tolerance;
+        if has_converged && n_active == n_rows {
+            return solved(alpha, sign, pass, false);
+        }
+        if has_converged {
+            n_active = n_rows;
+            bounds = (f64::NEG_INFINITY, f64::INFINITY);
+        } else {
+            bounds.0 = if seen.0 < 0.0 {
+                seen.0
+            } else {
+                f64::NEG_INFINITY
+            };
+            bounds.1 = if seen.1 > 0.0 { seen.1 } else { f64::INFINITY };
+        }
+    }
+    solved(alpha, sign, params.max_passes, true)
+}
+
+fn solved(alpha: Vec<f64>, sign: &[f64], n_passes: usize, is_capped: bool) -> Solved {
+    Solved {
+        multipliers: alpha.iter().zip(sign).map(|(a, y)| a * y).collect(),
+        n_passes,
+        is_capped,
+    }
+}
+
+/// `a·b`, of padded rows.
+#[inline(always)]
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let (a, b) = (a.as_chunks::<LANES>().0, b.as_chunks::<LANES>().0);
+    let (n, mut sums) = (a.len().min(b.len()), [0.0; LANES]);
+    for at in 0..n {
+        for lane in 0..LANES {
+            sums[lane] += a[at][lane] * b[at][lane];
+        }
+    }
+    sums.iter().sum()
+}
+
+/// `w += factor · x`, of padded rows.
+#[inline(always)]
+pub(crate) fn add_scaled(w: &mut [f64], factor: f64, x: &[f64]) {
+    let n = w.len().min(x.len());
+    for at in 0..n {
+        w[at] += factor * x[at];
+    }
+}

@@ -1,0 +1,246 @@
+//! A binary problem on the rows of all folds, solved for one fold after the other along C.
+//!
+//! Rows that a fold holds out keep their place: their label is 0 and so is their multiplier, and their f is less what the
+//! decision function adds up to there, so that a fold's rows are judged by what the solver knows already. A fold starts from
+//! the multipliers of the last one where the objective is higher there than at the last C's, stretched.
+
+use std::ops::Range;
+
+use crate::cross_validation::seed::Exchange;
+use crate::linalg::scalar::Scalar;
+use crate::smo::{Dense, Gram, Smo};
+use crate::training::Goal;
+
+/// A fold's problem, solved for every C.
+pub(crate) struct FoldPath {
+    /// 1 for positive rows, −1 for negative ones, 0 for those that are held out.
+    labels: Vec<f64>,
+    /// By C, as far as a larger C changes them.
+    pub solutions: Vec<FoldSolution>,
+}
+
+/// The solution of a fold's problem for one C, or for several that it is the same for.
+pub(crate) struct FoldSolution {
+    /// Which these are, by number.
+    pub numbers: Range<usize>,
+    /// β of all rows of the problem.
+    pub beta: Vec<f64>,
+    /// `y − Kβ` of all rows, y being 0 where a row is held out.
+    pub f: Vec<f64>,
+    /// ρ.
+    pub rho: f64,
+    /// Whether the solver stopped at its cap.
+    pub is_capped: bool,
+}
+
+impl FoldPath {
+    /// Tells of one fold after the other, given the labels of each, one a row of the Gram matrix; those of `positive` are of
+    /// the positive class.
+    pub fn of_pair<T: Scalar>(
+        gram: &mut Dense<T>,
+        (folds, positive): (Vec<Vec<f64>>, &Range<usize>),
+        goal: Goal,
+        mut told: impl FnMut(&Self),
+    ) {
+        let n = gram.len();
+        let label = |at: usize| if positive.contains(&at) { 1.0 } else { -1.0 };
+        let all: Vec<f64> = (0..n).map(label).collect();
+        let sums = sums_of_folds(gram, &all, &folds);
+        let mut last: Option<Self> = None;
+        for (labels, sums) in folds.into_iter().zip(sums) {
+            let smo = Smo::new(gram, &labels).at_bounds(goal.path[0], &sums);
+            let exchange = |last: Self| {
+                let exchange = Exchange::new((&last.labels, &labels), positive);
+                (last, exchange)
+            };
+            let last_and_exchange = last.take().map(exchange);
+            let seed = |gram: &mut Dense<T>, number: usize| {
+                let (last, exchange) = last_and_exchange.as_ref()?;
+                last.moved(number, (&labels, exchange), gram)
+            };
+            let solutions = along(smo, goal, seed);
+            told(last.insert(Self { labels, solutions }));
+        }
+    }
+
+    /// The same for a class against all others. Classes that no hyperplane parts from the rest have values that are equal
+    /// within the tolerance, and the largest wins: there the start decides. So it starts from nothing, as training does.
+    pub fn of_class<T: Scalar>(
+        gram: &mut Dense<T>,
+        folds: Vec<Vec<f64>>,
+        goal: Goal,
+        mut told: impl FnMut(&Self),
+    ) {
+        for labels in folds {
+            let smo = Smo::new(gram, &labels);
+            let solutions = along(smo, goal, |_, _| None);
+            told(&Self { labels, solutions });
+        }
+    }
+
+    /// β and f of one C with the multipliers of lost rows moved to gained ones.
+    fn moved<T: Scalar>(
+        &self,
+        number: usize,
+        (labels, exchange): (&[f64], &Exchange),
+        gram: &mut Dense<T>,
+    ) -> Option<(Vec<f64>, Vec<f64>)> {
+        let last = self.solutions.len() - 1;
+        let FoldSolution { beta, f, .. } = &self.solutions[number.min(last)];
+        let moved = exchange.moved(beta, |row| gram.row(row))?;
+        let mut moved_f = gram.times(&difference(&moved, beta));
+        let both = labels.iter().zip(&self.labels);
+        for ((moved, f), (label, before)) in moved_f.iter_mut().zip(f).zip(both) {
+            *moved = f + ((label - before) - *moved);
+        }
+        Some((moved, moved_f))
+    }
+}
+
+/// Solves for every C, ascending, until a solution holds for all larger ones.
+fn along<T: Scalar>(
+    mut smo: Smo<Dense<T>>,
+    goal: Goal,
+    seed: impl Fn(&mut Dense<T>, usize) -> Option<(Vec<f64>, Vec<f64>)>,
+) -> Vec<FoldSolution> {
+    let n_path = goal.path.len();
+    let mut solutions = Vec::with_capacity(n_path);
+    for (number, &c) in goal.path.iter().enumerate() {
+        let reached = smo.reach(c, goal.tolerance, |gram| seed(gram, number));
+        let (beta, f) = smo.variables();
+        // Where no multiplier is kept down by its bound, a larger C changes nothing.
+        let holds_for_larger = reached.is_solved && beta.iter().all(|beta| beta.abs() < c);
+        let end = if holds_for_larger { n_path } else { number + 1 };
+        solutions.push(FoldSolution {
+            numbers: number..end,
+            rho: smo.rho(c),
+            is_capped: !reached.is_solved,
+            beta: beta.to_vec(),
+            f: f.to_vec(),
+        });
+        if end == n_path {
+            break;
+        }
+    }
+    solutions
+}
+
+/// The Gram matrix times the labels of each fold, which are those of all rows but for 0 where the fold holds a row out.
+fn sums_of_folds<T: Scalar>(gram: &mut Dense<T>, all: &[f64], folds: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let held_out: Vec<Vec<f64>> = folds.iter().map(|labels| difference(all, labels)).collect();
+    // Rows that one fold holds out, as is usual, are in the sum of what folds hold out already.
+    let rest = held_out.iter().fold(all.to_vec(), |a, b| difference(&a, b));
+    let of_held_out: Vec<Vec<f64>> = held_out.iter().map(|rows| gram.times(rows)).collect();
+    let mut of_all = gram.times(&rest);
+    for sums in &of_held_out {
+        of_all.iter_mut().zip(sums).for_each(|(a, b)| *a += b);
+    }
+    let of_fold = of_held_out.iter().map(|sums| difference(&of_all, sums));
+    of_fold.collect()
+}
+
+fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::Array2;
+
+    const N: usize = 45;
+    const POSITIVE: Range<usize> = 0..20;
+
+    fn kernel(gamma: f64, i: usize, j: usize) -> f64 {
+        let at = |i: usize| (i as f64 * 1.7).sin() + if POSITIVE.contains(&i) { 0.4 } else { 0.0 };
+        (-gamma * (at(i) - at(j)).powi(2)).exp()
+    }
+
+    fn gram(gamma: f64, rows: &[usize]) -> Dense<f64> {
+        let values = |(i, j): (usize, usize)| kernel(gamma, rows[i], rows[j]);
+        let mut gram = Dense::default();
+        gram.of_whole(Array2::from_shape_fn((rows.len(), rows.len()), values).view());
+        gram
+    }
+
+    fn label(at: usize, fold: usize) -> f64 {
+        match (at % 3 == fold, POSITIVE.contains(&at)) {
+            (true, _) => 0.0,
+            (false, true) => 1.0,
+            (false, false) => -1.0,
+        }
+    }
+
+    #[test]
+    fn a_fold_is_solved_as_if_it_had_its_rows_alone_and_f_judges_those_held_out() {
+        let all: Vec<usize> = (0..N).collect();
+        let goal = Goal {
+            path: &[0.05, 1.0, 20.0, 400.0],
+            tolerance: 1e-9,
+            memory: usize::MAX,
+        };
+        let folds: Vec<Vec<f64>> = (0..3)
+            .map(|fold| all.iter().map(|&at| label(at, fold)).collect())
+            .collect();
+        // A kernel that leaves the classes mixed, and one by which each row is alone: then a large C bounds no multiplier.
+        for gamma in [1.0, 1e6] {
+            let mut whole = gram(gamma, &all);
+            let mut fold = 0;
+            let mut check = |path: &FoldPath| {
+                assert_is_alone((gamma, path), fold % 3, goal);
+                assert_eq!(path.solutions.len() < goal.path.len(), gamma > 1.0);
+                fold += 1;
+            };
+            FoldPath::of_pair(&mut whole, (folds.clone(), &POSITIVE), goal, &mut check);
+            FoldPath::of_class(&mut whole, folds.clone(), goal, &mut check);
+            assert_eq!(fold, 6);
+        }
+    }
+
+    /// A fold's solutions are those of its rows alone.
+    fn assert_is_alone((gamma, path): (f64, &FoldPath), fold: usize, goal: Goal) {
+        let rows: Vec<usize> = (0..N).filter(|at| at % 3 != fold).collect();
+        let own: Vec<f64> = rows.iter().map(|&at| label(at, fold)).collect();
+        let mut part = gram(gamma, &rows);
+        let mut alone = Smo::new(&mut part, &own);
+        let numbers = path
+            .solutions
+            .iter()
+            .flat_map(|found| found.numbers.clone());
+        assert!(numbers.eq(0..goal.path.len()));
+        for (number, &c) in goal.path.iter().enumerate() {
+            let holds = |found: &&FoldSolution| found.numbers.contains(&number);
+            let found = path.solutions.iter().find(holds).unwrap();
+            let expected = alone.solve(c, goal.tolerance);
+            assert!((found.rho - expected.rho).abs() < 1e-6, "{fold} {c}");
+            for at in 0..N {
+                let terms = rows.iter().zip(&expected.coefficients);
+                let sum: f64 = terms
+                    .map(|(&row, beta)| beta * kernel(gamma, row, at))
+                    .sum();
+                let f = label(at, fold) - sum;
+                assert!((found.f[at] - f).abs() < 1e-6, "{fold} {c} {at}");
+                assert!(at % 3 != fold || found.beta[at] == 0.0);
+            }
+        }
+    }
+
+    #[test]
+    fn sums_of_folds_are_the_gram_matrix_times_their_labels() {
+        let mut whole = gram(1.0, &(0..N).collect::<Vec<_>>());
+        let label = |at: usize| if POSITIVE.contains(&at) { 1.0 } else { -1.0 };
+        let all: Vec<f64> = (0..N).map(label).collect();
+        // Rows that one fold holds out, that two do and that none does.
+        for held_out in [[0, 1, 2], [0, 1, 1], [0, 0, 0]] {
+            let kept = |fold: usize, at: usize| f64::from(u8::from(at % 3 != held_out[fold]));
+            let labels = |fold: usize| (0..N).map(|at| all[at] * kept(fold, at)).collect();
+            let folds: Vec<Vec<f64>> = (0..3).map(labels).collect();
+            let found = sums_of_folds(&mut whole, &all, &folds);
+            for (found, labels) in found.iter().zip(&folds) {
+                for (found, expected) in found.iter().zip(whole.times(labels)) {
+                    assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+                }
+            }
+        }
+    }
+}

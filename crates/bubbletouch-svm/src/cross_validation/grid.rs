@@ -1,0 +1,161 @@
+//! Cross-validation of a whole grid of C and kernels on one matrix of products.
+//!
+//! All folds and all candidates share the products of rows with each other: a pair's part of a kernel is made of them once for
+//! all folds, which [leave rows out](crate::cross_validation::fold_path). Along C each solution starts from the last, that of a pair
+//! at the first C from all multipliers at their bounds and, from the second fold on,
+//! [from that of the fold before](crate::cross_validation::seed) where that is nearer. Validation rows are
+//! [judged](crate::cross_validation::judgement) by their own class's problems first.
+
+use ndarray::{Array1, Array2};
+
+use crate::Multiclass;
+use crate::cross_validation::fold_path::FoldPath;
+use crate::cross_validation::judgement::Judgement;
+use crate::gram::product_kernel::ProductKernel;
+use crate::gram::sorted::Sorted;
+use crate::kernel::KernelFunction;
+use crate::linalg::scalar::Scalar;
+use crate::smo::Dense;
+use crate::split::Split;
+use crate::training::Goal;
+
+/// Folds whose solutions are held at once: as many as are usual, so that many take no more memory.
+const FOLDS_AT_ONCE: usize = 8;
+
+/// Neighbouring classes whose pairs with as many others come together: of 140 rows each, kernel values of 5 MB.
+const CLASSES_AT_ONCE: usize = 8;
+
+/// Training rows and their division into folds.
+pub(crate) struct Grid<'a, T> {
+    /// The rows, by class.
+    pub sorted: &'a Sorted<T>,
+    /// How they are divided, by their own numbers; a row counts once in a fold.
+    pub folds: &'a [Split],
+    /// One-vs-one or one-vs-rest.
+    pub multiclass: Multiclass,
+}
+
+/// A fold in terms of sorted rows.
+struct Fold {
+    /// Whether each row is trained on.
+    is_training: Vec<bool>,
+    /// Whether any row of each class is.
+    is_class: Vec<bool>,
+    validation: Vec<usize>,
+}
+
+impl<T: Scalar> Grid<'_, T> {
+    /// Validation rows recognised, over all folds, per kernel and C (kernels.len() × path.len()), and solves stopped at the
+    /// iteration cap.
+    pub fn n_correct(&self, kernels: &[KernelFunction], goal: Goal) -> (Array2<usize>, usize) {
+        let rows = (self.sorted.points(), self.sorted.ranges());
+        // One kernel, of several γ: all are made of the same numbers.
+        let pairwise = kernels[0].own_pairwise(rows.0.all().values);
+        let folds: Vec<Fold> = self.folds.iter().map(|split| self.fold(split)).collect();
+        let mut counts = Array2::zeros((kernels.len(), goal.path.len()));
+        let mut n_capped = 0;
+        for (&kernel, mut counts) in kernels.iter().zip(counts.rows_mut()) {
+            let kernel = ProductKernel::new(rows, pairwise.view(), kernel);
+            for folds in folds.chunks(FOLDS_AT_ONCE) {
+                for judgement in self.judge(folds, &kernel, goal) {
+                    n_capped += judgement.n_capped();
+                    counts += &Array1::from(judgement.n_right(&kernel));
+                }
+            }
+        }
+        (counts, n_capped)
+    }
+
+    fn fold(&self, split: &Split) -> Fold {
+        let place = self.sorted.place();
+        let mut is_training = vec![false; place.len()];
+        split
+            .train
+            .iter()
+            .for_each(|&row| is_training[place[row]] = true);
+        let ranges = self.sorted.ranges().iter();
+        let mut validation: Vec<usize> = split.test.iter().map(|&row| place[row]).collect();
+        validation.sort_unstable();
+        Fold {
+            is_class: ranges
+                .map(|range| is_training[range.clone()].contains(&true))
+                .collect(),
+            is_training,
+            validation,
+        }
+    }
+
+    /// Solves all problems of some folds, and judges their validation rows.
+    fn judge(&self, folds: &[Fold], kernel: &ProductKernel<T>, goal: Goal) -> Vec<Judgement<T>> {
+        let judgement = |fold| self.judgement(fold, goal.path.len());
+        let mut judgements: Vec<Judgement<T>> = folds.iter().map(judgement).collect();
+        let mut gram = Dense::default();
+        if self.multiclass == Multiclass::OneVsRest {
+            kernel.write_all(&mut gram);
+        }
+        for (number, problem) in self.problems() {
+            if let (positive, Some(negative)) = problem {
+                kernel.write_pair((positive, negative), &mut gram);
+            }
+            let takes_part = |fold: &Fold, class: usize| fold.is_class[class];
+            let both = folds.iter().zip(&mut judgements).filter(|(fold, _)| {
+                takes_part(fold, problem.0) && problem.1.is_none_or(|class| takes_part(fold, class))
+            });
+            let (folds, judgements): (Vec<&Fold>, Vec<_>) = both.unzip();
+            let labels = self.labels(problem, &folds);
+            let mut judgements = judgements.into_iter();
+            let judge = |path: &FoldPath| {
+                let judgement = judgements.next().expect("each fold has one");
+                path.solutions
+                    .iter()
+                    .for_each(|solution| judgement.take(number, solution));
+            };
+            match problem.1 {
+                Some(_) => {
+                    let positive = 0..self.sorted.ranges()[problem.0].len();
+                    FoldPath::of_pair(&mut gram, (labels, &positive), goal, judge);
+                }
+                None => FoldPath::of_class(&mut gram, labels, goal, judge),
+            }
+        }
+        judgements
+    }
+
+    fn judgement(&self, fold: &Fold, n_path: usize) -> Judgement<T> {
+        let ranges = self.sorted.ranges();
+        let of_class = |row: &usize| ranges.partition_point(|range| range.end <= *row);
+        let rows = fold.validation.iter().map(|row| (*row, of_class(row)));
+        let known = rows.filter(|(_, class)| fold.is_class[*class]).collect();
+        Judgement::new((known, &fold.is_class), ranges, self.multiclass, n_path)
+    }
+
+    /// All problems with their numbers; pairs of neighbouring classes come together, so that their part of the kernel stays in the cache.
+    fn problems(&self) -> Vec<(usize, (usize, Option<usize>))> {
+        let problems = self.multiclass.problems(self.sorted.ranges().len());
+        let mut problems: Vec<_> = problems.into_iter().enumerate().collect();
+        let group = |class: usize| class / CLASSES_AT_ONCE;
+        problems.sort_by_key(|&(_, (a, b))| (group(a), b.map(group)));
+        problems
+    }
+
+    /// The labels of a problem's rows in each fold, 0 where it holds a row out.
+    fn labels(
+        &self,
+        (positive, negative): (usize, Option<usize>),
+        folds: &[&Fold],
+    ) -> Vec<Vec<f64>> {
+        let ranges = self.sorted.ranges();
+        let all = 0..self.sorted.points().len();
+        let rows = match negative {
+            Some(negative) => ranges[positive].clone().chain(ranges[negative].clone()),
+            None => all.chain(0..0),
+        };
+        let label = |fold: &Fold, row: usize| match fold.is_training[row] {
+            false => 0.0,
+            true if ranges[positive].contains(&row) => 1.0,
+            true => -1.0,
+        };
+        let of_fold = |fold: &&Fold| rows.clone().map(|row| label(fold, row)).collect();
+        folds.iter().map(of_fold).collect()
+    }
+}

@@ -1,0 +1,249 @@
+//! Which validation rows of a fold are recognised.
+//!
+//! What its own class's problems say of a row is known as they are solved. A row that its class wins in each of them is recognised,
+//! whatever the others say: every other class has lost one. The rest are put to the vote of all problems, by the matrix products of
+//! [prediction](crate::predict).
+
+use std::ops::Range;
+
+use ndarray::{Array2, ArrayView2, Axis};
+
+use crate::Multiclass;
+use crate::cross_validation::fold_path::FoldSolution;
+use crate::gram::product_kernel::ProductKernel;
+use crate::linalg::scalar::Scalar;
+use crate::predict::class_weights::{ClassWeights, weighted_sums};
+use crate::predict::voting::Ballot;
+
+/// Rows put to the vote at once: a bound on the memory of their kernel values.
+const ROWS_AT_ONCE: usize = 512;
+
+/// The validation rows of a fold, and its problems as they are solved.
+pub(crate) struct Judgement<T> {
+    multiclass: Multiclass,
+    /// All problems, by the positions of their classes, in the order of [`Multiclass::problems`].
+    problems: Vec<(usize, Option<usize>)>,
+    /// Whether each class is trained on.
+    is_class: Vec<bool>,
+    /// Rows whose class is trained on, ascending, with the position of that class.
+    rows: Vec<(usize, usize)>,
+    /// Whether each row's own class loses a problem, by C.
+    is_beaten: Array2<bool>,
+    /// β by C and class.
+    weights: Vec<Vec<ClassWeights<T>>>,
+    /// ρ: C × problems.
+    rho: Array2<f64>,
+    /// Whether any problem's solution is another than for the C before, by C.
+    is_new: Vec<bool>,
+    n_capped: usize,
+}
+
+impl<T: Scalar> Judgement<T> {
+    /// Of these validation rows, each with the position of its class, and whether each class is trained on; along so many C. The
+    /// rows of all classes lie in these ranges.
+    pub fn new(
+        (rows, is_class): (Vec<(usize, usize)>, &[bool]),
+        ranges: &[Range<usize>],
+        multiclass: Multiclass,
+        n_path: usize,
+    ) -> Self {
+        let problems = multiclass.problems(is_class.len());
+        let of_class = |(class, range): (usize, &Range<usize>)| {
+            ClassWeights::zeros(class, range.clone(), problems.iter().copied())
+        };
+        let of_c = || ranges.iter().enumerate().map(of_class).collect();
+        Self {
+            multiclass,
+            is_class: is_class.to_vec(),
+            is_beaten: Array2::from_elem((rows.len(), n_path), false),
+            rows,
+            weights: (0..n_path).map(|_| of_c()).collect(),
+            rho: Array2::zeros((n_path, problems.len())),
+            is_new: vec![false; n_path],
+            n_capped: 0,
+            problems,
+        }
+    }
+
+    /// Solves stopped at the iteration cap.
+    pub fn n_capped(&self) -> usize {
+        self.n_capped
+    }
+
+    /// Takes a problem's solution for some C.
+    pub fn take(&mut self, problem: usize, solution: &FoldSolution) {
+        let numbers = solution.numbers.clone();
+        self.is_new[numbers.start] = true;
+        self.n_capped += usize::from(solution.is_capped) * numbers.len();
+        let (positive, negative) = self.problems[problem];
+        let classes = match negative {
+            Some(negative) => vec![positive, negative],
+            None => (0..self.is_class.len()).collect(),
+        };
+        for number in numbers {
+            self.rho[[number, problem]] = solution.rho;
+            let mut start = 0;
+            for &class in &classes {
+                let weights = &mut self.weights[number][class];
+                let end = start + weights.vectors.len();
+                weights.set(problem, &solution.beta[start..end]);
+                if negative.is_some() {
+                    let own = weights.vectors.clone();
+                    let f = (own, &solution.f[start..end]);
+                    self.look(number, (class, class == positive), f, solution.rho);
+                }
+                start = end;
+            }
+        }
+    }
+
+    /// Notes which validation rows of a class lose a pair: `−f` is what its decision function adds up to before ρ.
+    fn look(
+        &mut self,
+        number: usize,
+        (class, is_positive): (usize, bool),
+        (own, f): (Range<usize>, &[f64]),
+        rho: f64,
+    ) {
+        let first = self.rows.partition_point(|row| row.1 < class);
+        let last = self.rows.partition_point(|row| row.1 <= class);
+        for at in first..last {
+            let sum = -f[self.rows[at].0 - own.start];
+            self.is_beaten[[at, number]] |= (sum > rho) != is_positive;
+        }
+    }
+
+    /// Rows that are recognised, by C.
+    pub fn n_right(&self, kernel: &ProductKernel<T>) -> Vec<usize> {
+        let is_settled =
+            |at: &usize| self.is_pairs() && !self.is_beaten.row(*at).iter().any(|x| *x);
+        let (settled, open): (Vec<usize>, Vec<usize>) = (0..self.rows.len()).partition(is_settled);
+        let mut n_right = vec![settled.len(); self.weights.len()];
+        for some in open.chunks(ROWS_AT_ONCE) {
+            let rows: Vec<usize> = some.iter().map(|&at| self.rows[at].0).collect();
+            let values = kernel.rows(&rows);
+            let mut n_elected = 0;
+            for (number, n_right) in n_right.iter_mut().enumerate() {
+                if self.is_new[number] {
+                    n_elected = self.n_elected(number, some, values.view());
+                }
+                *n_right += n_elected;
+            }
+        }
+        n_right
+    }
+
+    /// Of some rows with these kernel values, those whose own class wins all its pairs or is elected.
+    fn n_elected(&self, number: usize, some: &[usize], values: ArrayView2<T>) -> usize {
+        let is_open = |place: &usize| !self.is_pairs() || self.is_beaten[[some[*place], number]];
+        let open: Vec<usize> = (0..some.len()).filter(is_open).collect();
+        let values = values.select(Axis(0), &open);
+        let sums = weighted_sums(&self.weights[number], values.view(), self.problems.len());
+        let between = (self.is_class.len(), self.multiclass);
+        let is_class = |class: usize| self.is_class[class];
+        let winners = Ballot::elect(&sums, self.rho.row(number), between, is_class);
+        let winners = winners.into_iter().zip(&open);
+        let n_elected = winners.filter(|(winner, place)| *winner == self.rows[some[**place]].1);
+        some.len() - open.len() + n_elected.count()
+    }
+
+    fn is_pairs(&self) -> bool {
+        self.multiclass == Multiclass::OneVsOne
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gram::points::Points;
+    use crate::kernel::KernelFunction;
+    use crate::predict::voting::first_maximum;
+    use ndarray::{Array1, Array2};
+
+    const N: usize = 60;
+    const C: [f64; 4] = [0.1, 1.0, 10.0, 10.0];
+    const RANGES: [Range<usize>; 4] = [0..16, 16..30, 30..44, 44..60];
+
+    /// Four classes that overlap on a line.
+    fn kernel() -> Array2<f64> {
+        let at = |i: usize| (i / 15) as f64 * 0.8 + (i as f64 * 1.7).sin();
+        Array2::from_shape_fn((N, N), |(i, j)| (-(at(i) - at(j)).powi(2)).exp())
+    }
+
+    /// β with no pattern, 0 where a row is not trained on; the last C's again at some C.
+    fn path(members: &[usize], own: &Range<usize>, is_training: &[bool]) -> Vec<Vec<f64>> {
+        let beta = |c: f64, at: usize| {
+            let size = (c * (0.6 + (at as f64 * 2.3 + c).sin())).clamp(0.0, c);
+            let sign = if own.contains(&at) { 1.0 } else { -1.0 };
+            if is_training[at] { sign * size } else { 0.0 }
+        };
+        let of_c = |&c: &f64| members.iter().map(|&at| beta(c, at)).collect();
+        C.iter().map(of_c).collect()
+    }
+
+    #[test]
+    fn rows_are_recognised_as_the_votes_of_all_problems_say() {
+        let kernel = kernel();
+        let is_training: Vec<bool> = (0..N).map(|at| at % 4 != 1).collect();
+        let class = |at: usize| RANGES.iter().position(|range| range.contains(&at)).unwrap();
+        let rows: Vec<(usize, usize)> = (1..N).step_by(4).map(|at| (at, class(at))).collect();
+        let points = Points::new(Array2::zeros((N, 1)).view(), Array1::zeros(1).view());
+        let kernel_function = KernelFunction::Linear;
+        let product_kernel = ProductKernel::new((&points, &RANGES), kernel.view(), kernel_function);
+        for multiclass in [Multiclass::OneVsOne, Multiclass::OneVsRest] {
+            let mut judgement =
+                Judgement::new((rows.clone(), &[true; 4]), &RANGES, multiclass, C.len());
+            // Votes of each row, or values, by C.
+            let mut scores = vec![vec![[0.0; 4]; rows.len()]; C.len()];
+            for (problem, (positive, negative)) in multiclass.problems(4).into_iter().enumerate() {
+                let own = RANGES[positive].clone();
+                let classes = match negative {
+                    Some(negative) => vec![positive, negative],
+                    None => vec![0, 1, 2, 3],
+                };
+                let members: Vec<usize> =
+                    classes.iter().flat_map(|&at| RANGES[at].clone()).collect();
+                for (number, beta) in path(&members, &own, &is_training).iter().enumerate() {
+                    let rho = 0.03 * C[number];
+                    let sum = |row: usize| {
+                        let terms = members.iter().zip(beta);
+                        terms
+                            .map(|(&at, beta)| beta * kernel[[at, row]])
+                            .sum::<f64>()
+                    };
+                    for (&(row, _), scores) in rows.iter().zip(&mut scores[number]) {
+                        match negative {
+                            None => scores[positive] = sum(row) - rho,
+                            Some(_) if sum(row) > rho => scores[positive] += 1.0,
+                            Some(negative) => scores[negative] += 1.0,
+                        }
+                    }
+                    let solution = FoldSolution {
+                        numbers: number..number + 1,
+                        beta: beta.clone(),
+                        f: members.iter().map(|&row| -sum(row)).collect(),
+                        rho,
+                        is_capped: number == 1,
+                    };
+                    judgement.take(problem, &solution);
+                }
+            }
+            let expected: Vec<usize> = scores
+                .iter()
+                .map(|scores| {
+                    let right = rows.iter().zip(scores);
+                    right
+                        .filter(|(row, scores)| first_maximum(&scores[..]) == row.1)
+                        .count()
+                })
+                .collect();
+            let found = judgement.n_right(&product_kernel);
+            assert_eq!(found, expected, "{multiclass:?}");
+            assert!(
+                expected.iter().all(|&n| n > 3 && n < rows.len()),
+                "{expected:?}"
+            );
+            assert_eq!(judgement.n_capped(), multiclass.problems(4).len());
+        }
+    }
+}

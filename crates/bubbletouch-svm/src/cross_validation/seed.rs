@@ -1,0 +1,98 @@
+//! A start for one fold from the solution of another.
+//!
+//! Two folds of k share all but 2/k of their rows. The multipliers of rows that one fold trains on and the other does not go
+//! to the most similar rows that it gains [DeCoste, Wagstaff 2000; Wen et al. 2017], so that `Σβ = 0` and the bounds hold as
+//! before.
+
+use std::ops::Range;
+
+use crate::linalg::scalar::Scalar;
+
+/// The rows of a problem that one fold trains on and another does not.
+pub(crate) struct Exchange {
+    /// For each class those that are lost and those that are gained, ascending.
+    sides: [(Vec<usize>, Vec<usize>); 2],
+}
+
+impl Exchange {
+    /// From a fold to another, by the labels of all rows, which are 0 where a fold holds one out.
+    pub fn new((before, labels): (&[f64], &[f64]), positive: &Range<usize>) -> Self {
+        let mut sides = [(); 2].map(|()| (Vec::new(), Vec::new()));
+        for (at, (before, label)) in before.iter().zip(labels).enumerate() {
+            let (lost, gained) = &mut sides[usize::from(positive.contains(&at))];
+            match (*before != 0.0, *label != 0.0) {
+                (true, false) => lost.push(at),
+                (false, true) => gained.push(at),
+                _ => (),
+            }
+        }
+        Self { sides }
+    }
+
+    /// β of the one fold for the other; `None` where a multiplier finds no row of its class that has none. `similar` gives the
+    /// kernel values of a row.
+    pub fn moved<'k, T: Scalar>(
+        &self,
+        beta: &[f64],
+        similar: impl Fn(usize) -> &'k [T],
+    ) -> Option<Vec<f64>> {
+        let mut moved = beta.to_vec();
+        for (lost, gained) in &self.sides {
+            let mut gained = gained.clone();
+            for &lost in lost.iter().filter(|&&at| beta[at] != 0.0) {
+                let similar = similar(lost);
+                let mut nearest = (T::neg_infinity(), None);
+                for (number, &at) in gained.iter().enumerate() {
+                    if similar[at] > nearest.0 {
+                        nearest = (similar[at], Some(number));
+                    }
+                }
+                moved[gained.swap_remove(nearest.1?)] = beta[lost];
+                moved[lost] = 0.0;
+            }
+        }
+        Some(moved)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::Array2;
+
+    /// Rows on a line, the first four positive; similarity falls with distance.
+    const AT: [f64; 8] = [0.0, 1.0, 2.0, 3.0, 0.4, 1.4, 2.4, 3.4];
+
+    fn seed(beta: &[f64], was: &[usize], is: &[usize]) -> Option<Vec<f64>> {
+        let kernel = Array2::from_shape_fn((8, 8), |(i, j)| -(AT[i] - AT[j]).abs());
+        let labels = |fold: &[usize]| {
+            let sign = |at: usize| if at < 4 { 1.0 } else { -1.0 };
+            let label = |at: usize| if fold.contains(&at) { sign(at) } else { 0.0 };
+            (0..8).map(label).collect::<Vec<f64>>()
+        };
+        let row = |at: usize| &kernel.as_slice().unwrap()[at * 8..][..8];
+        let exchange = Exchange::new((&labels(was), &labels(is)), &(0..4));
+        exchange.moved(beta, row)
+    }
+
+    #[test]
+    fn multipliers_of_lost_rows_go_to_the_most_similar_gained_rows_of_their_class() {
+        let beta = [0.5, 0.0, 0.0, 1.0, -0.7, 0.0, -0.8, 0.0];
+        // Rows 3 and 4 are lost; 1, 2, 5 and 7 are gained.
+        let found = seed(&beta, &[0, 3, 4, 6], &[0, 1, 2, 5, 6, 7]);
+        assert_eq!(found.unwrap(), [0.5, 0.0, 1.0, 0.0, 0.0, -0.7, -0.8, 0.0]);
+    }
+
+    #[test]
+    fn rows_without_multipliers_are_lost_for_nothing() {
+        let beta = [0.5, 0.0, 0.0, 0.0, -0.5, 0.0, 0.0, 0.0];
+        let found = seed(&beta, &[0, 1, 4, 5], &[0, 4]);
+        assert_eq!(found.unwrap(), beta);
+    }
+
+    #[test]
+    fn a_multiplier_that_finds_no_row_of_its_class_makes_no_start() {
+        let beta = [0.5, 0.0, 0.0, 0.0, -0.5, 0.0, 0.0, 0.0];
+        assert_eq!(seed(&beta, &[0, 1, 4, 5], &[1, 4, 5, 6]), None);
+    }
+}

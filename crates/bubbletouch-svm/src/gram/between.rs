@@ -1,0 +1,103 @@
+//! Kernel values between classes, computed for many classes at once.
+
+use std::ops::Range;
+
+use ndarray::ArrayViewMut2;
+
+use crate::gram::sorted::Sorted;
+use crate::linalg::scalar::Scalar;
+
+/// Rows of a group of classes, at least, while classes last: enough that a product's time goes into its multiplications.
+const GROUP_ROWS: usize = 512;
+
+/// The classes whose rows these are, in groups of about [`GROUP_ROWS`] rows.
+pub(crate) fn groups(ranges: &[Range<usize>]) -> Vec<Range<usize>> {
+    let mut groups: Vec<Range<usize>> = Vec::new();
+    for class in 0..ranges.len() {
+        match groups.last_mut() {
+            Some(group) if ranges[class].start - ranges[group.start].start < GROUP_ROWS => {
+                group.end = class + 1;
+            }
+            _ => groups.push(class..class + 1),
+        }
+    }
+    groups
+}
+
+/// Each pair of classes, the smaller first, of one group or across two.
+pub(crate) fn pairs(
+    own: Range<usize>,
+    other: Range<usize>,
+) -> impl Iterator<Item = (usize, usize)> {
+    own.flat_map(move |a| other.clone().filter(move |&b| b > a).map(move |b| (a, b)))
+}
+
+/// A group of classes: its rows, and their kernel values.
+pub(crate) struct Group<'a, T> {
+    sorted: &'a Sorted<T>,
+    rows: Range<usize>,
+    /// Those of its rows with each other, row by row.
+    own: Vec<T>,
+}
+
+impl<'a, T: Scalar> Group<'a, T> {
+    /// Of these classes.
+    pub fn new(sorted: &'a Sorted<T>, classes: &Range<usize>) -> Self {
+        let rows = sorted.rows_of(classes);
+        let points = sorted.points().range(rows.clone());
+        let own = points.own_kernel(&sorted.kernel());
+        Self {
+            sorted,
+            rows,
+            own: own.into_raw_vec_and_offset().0,
+        }
+    }
+
+    /// Bytes that groups take, with the kernel values between two of them.
+    pub fn bytes(sorted: &Sorted<T>, groups: &[Range<usize>]) -> usize {
+        let sizes = || groups.iter().map(|group| sorted.rows_of(group).len());
+        let squares: usize = sizes().map(|n| n * n).sum();
+        let largest = sizes().max().unwrap_or(0);
+        (squares + largest * largest) * size_of::<T>()
+    }
+
+    /// Kernel values of another group's rows with these: row by row, in the memory of the last ones.
+    pub fn with(&self, other: &Self, values: &mut Vec<T>) {
+        let size = (other.rows.len(), self.rows.len());
+        values.resize(size.0 * size.1, T::zero());
+        let values = ArrayViewMut2::from_shape(size, values);
+        let values = values.expect("room for all values was made");
+        let [own, others] =
+            [self, other].map(|group| self.sorted.points().range(group.rows.clone()));
+        others.write_kernel(own, &self.sorted.kernel(), values);
+    }
+
+    /// Of kernel values with this group those of some rows with some of its own, row by row; all rows begin with `first`.
+    fn part<'v>(
+        &self,
+        (values, first): (&'v [T], usize),
+        rows: &Range<usize>,
+        columns: &Range<usize>,
+    ) -> Vec<&'v [T]> {
+        let columns = columns.start - self.rows.start..columns.end - self.rows.start;
+        let width = self.rows.len();
+        let rows = rows.start - first..rows.end - first;
+        rows.map(|row| &values[row * width..][columns.clone()])
+            .collect()
+    }
+
+    /// Kernel values of some of its rows with others of its, row by row.
+    pub fn own_part(&self, rows: &Range<usize>, columns: &Range<usize>) -> Vec<&[T]> {
+        self.part((&self.own, self.rows.start), rows, columns)
+    }
+
+    /// Kernel values of another group's rows with its own, of those that [`with`](Self::with) gave.
+    pub fn part_with<'v>(
+        &self,
+        other: &Self,
+        values: &'v [T],
+        (rows, columns): (&Range<usize>, &Range<usize>),
+    ) -> Vec<&'v [T]> {
+        self.part((values, other.rows.start), rows, columns)
+    }
+}

@@ -1,0 +1,116 @@
+//! What one pass over training rows tells of them.
+
+use ndarray::{Array1, ArrayView2};
+
+use crate::Result;
+use crate::dataset::check_features;
+use crate::kernel::KernelFunction;
+
+/// Sums side by side, so that no addition waits for the one before.
+const LANES: usize = 8;
+
+/// Mean and size of training rows (n × m).
+#[derive(Clone, Debug)]
+pub(crate) struct Extent {
+    mean: Array1<f64>,
+    /// The largest squared length of a row; infinite where it is beyond what a number holds.
+    pub largest_norm: f64,
+}
+
+impl Extent {
+    /// Of rows that are finite: one pass finds their extent, and that they are.
+    ///
+    /// # Errors
+    /// No rows or columns, or a NaN or infinite feature, named by row and column.
+    pub fn of(features: ArrayView2<f64>) -> Result<Self> {
+        let mut sums = vec![0.0; features.ncols()];
+        let (mut largest_norm, mut all_finite) = (0.0_f64, !features.is_empty());
+        for row in features.rows() {
+            let norm = match row.as_slice() {
+                Some(row) => add_row(&mut sums, row),
+                None => add_row(&mut sums, &row.to_vec()),
+            };
+            all_finite &= norm.is_finite();
+            largest_norm = largest_norm.max(norm);
+        }
+        if !all_finite {
+            // Or only too large to square.
+            check_features(features)?;
+            largest_norm = f64::INFINITY;
+        }
+        Ok(Self {
+            mean: Array1::from(sums) / features.nrows() as f64,
+            largest_norm,
+        })
+    }
+
+    /// Where kernels are taken about: the mean of the rows where that changes nothing but rounding, else the origin.
+    pub fn centre(&self, kernel: &KernelFunction) -> Array1<f64> {
+        match kernel.has_any_centre() {
+            true => self.mean.clone(),
+            false => Array1::zeros(self.mean.len()),
+        }
+    }
+}
+
+/// Adds a row to the sums; its squared length.
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
+fn add_row(sums: &mut [f64], row: &[f64]) -> f64 {
+    let (sums, last_sums) = sums.as_chunks_mut::<LANES>();
+    let (row, last) = row.as_chunks::<LANES>();
+    let n = sums.len();
+    let row = &row[..n];
+    let mut squares = [0.0; LANES];
+    for at in 0..n {
+        for lane in 0..LANES {
+            sums[at][lane] += row[at][lane];
+            squares[lane] += row[at][lane] * row[at][lane];
+        }
+    }
+    let mut norm = 0.0;
+    for square in squares {
+        norm += square;
+    }
+    for at in 0..last_sums.len() {
+        last_sums[at] += last[at];
+        norm += last[at] * last[at];
+    }
+    norm
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::{Array2, Axis, s};
+
+    #[test]
+    fn the_extent_is_the_mean_and_the_largest_squared_length() {
+        let all = Array2::from_shape_fn((7, 21), |(i, j)| ((i * 21 + j) as f64 * 1.7).sin());
+        for features in [all.view(), all.slice(s![.., ..;2]), all.slice(s![..3, ..8])] {
+            let extent = Extent::of(features).unwrap();
+            let mean = features.mean_axis(Axis(0)).unwrap();
+            let close = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-15;
+            let centre = extent.centre(&KernelFunction::Linear);
+            assert!(centre.iter().zip(&mean).all(close));
+            let norms = features.rows().into_iter().map(|row| row.dot(&row));
+            let largest = norms.fold(0.0, f64::max);
+            assert!((extent.largest_norm - largest).abs() < 1e-13);
+        }
+    }
+
+    #[test]
+    fn what_is_not_finite_is_named_and_what_is_only_large_is_not() {
+        let mut features = Array2::from_elem((3, 20), 1e200);
+        assert_eq!(
+            Extent::of(features.view()).unwrap().largest_norm,
+            f64::INFINITY
+        );
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            features[[1, 17]] = bad;
+            let error = Extent::of(features.view()).unwrap_err().to_string();
+            assert!(error.starts_with("features, row 1, column 17: "), "{error}");
+        }
+        assert!(Extent::of(Array2::zeros((0, 3)).view()).is_err());
+        assert!(Extent::of(Array2::zeros((3, 0)).view()).is_err());
+    }
+}

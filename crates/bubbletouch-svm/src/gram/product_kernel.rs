@@ -1,0 +1,116 @@
+//! Kernel values made of the pairwise numbers of all rows (products, of most kernels) when they are asked for: those within classes
+//! once, those between two when their pair is solved, those of a row when it is judged.
+
+use std::ops::Range;
+
+use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis, s};
+
+use crate::gram::points::Points;
+use crate::kernel::KernelFunction;
+use crate::linalg::scalar::Scalar;
+use crate::smo::Dense;
+
+/// A kernel on rows whose pairwise numbers are known.
+pub(crate) struct ProductKernel<'a, T> {
+    points: &'a Points<T>,
+    /// Where the rows of each class are.
+    ranges: &'a [Range<usize>],
+    /// n × n.
+    pairwise: ArrayView2<'a, T>,
+    kernel: KernelFunction,
+    /// Values of the rows of each class with each other.
+    within: Vec<Array2<T>>,
+}
+
+impl<'a, T: Scalar> ProductKernel<'a, T> {
+    /// Of rows, class by class, whose pairwise numbers are these.
+    pub fn new(
+        (points, ranges): (&'a Points<T>, &'a [Range<usize>]),
+        pairwise: ArrayView2<'a, T>,
+        kernel: KernelFunction,
+    ) -> Self {
+        let mut own = Self {
+            points,
+            ranges,
+            pairwise,
+            kernel,
+            within: Vec::new(),
+        };
+        for (class, range) in ranges.iter().enumerate() {
+            let mut values = Array2::zeros((range.len(), range.len()));
+            own.write((class, class), values.view_mut());
+            own.within.push(values);
+        }
+        own
+    }
+
+    /// Writes the kernel values of the rows of a class with those of another.
+    fn write(&self, (class, other): (usize, usize), mut to: ArrayViewMut2<T>) {
+        let (rows, others) = (self.ranges[class].clone(), self.ranges[other].clone());
+        let pairwise = self.pairwise.slice(s![rows.clone(), others.clone()]);
+        to.assign(&pairwise);
+        let (rows, others) = (self.points.range(rows), self.points.range(others));
+        rows.apply(to, others, &self.kernel);
+    }
+
+    /// Those of all rows with each other.
+    pub fn write_all(&self, to: &mut Dense<T>) {
+        let (mut values, all) = (self.pairwise.to_owned(), self.points.all());
+        all.apply(values.view_mut(), all, &self.kernel);
+        to.of_whole(values.view());
+    }
+
+    /// Those of the rows of two classes with each other, of which the first comes first.
+    pub fn write_pair(&self, (first, second): (usize, usize), to: &mut Dense<T>) {
+        let within = [first, second].map(|class| self.within[class].view());
+        to.of_blocks(within, |below| self.write((second, first), below));
+    }
+
+    /// Those of some rows with all.
+    pub fn rows(&self, rows: &[usize]) -> Array2<T> {
+        let mut values = self.pairwise.select(Axis(0), rows);
+        let own = self.points.select(rows);
+        own.all()
+            .apply(values.view_mut(), self.points.all(), &self.kernel);
+        values
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::products::own_products;
+    use crate::smo::Gram;
+    use ndarray::Array1;
+
+    #[test]
+    fn values_are_those_of_the_rows_however_they_are_asked_for() {
+        let rows = Array2::from_shape_fn((23, 4), |(i, j)| ((i * 4 + j) as f64 * 1.7).sin());
+        let points = Points::<f64>::new(rows.view(), Array1::zeros(4).view());
+        let kernel = KernelFunction::Rbf { gamma: 0.3 };
+        let expected = points.all().own_kernel(&kernel);
+        let ranges = [0..9, 9..10, 10..23];
+        let products = own_products(points.all().values);
+        let found = ProductKernel::new((&points, &ranges), products.view(), kernel);
+        let mut gram = Dense::default();
+        for (a, b) in [(0, 1), (0, 2), (1, 2)] {
+            found.write_pair((a, b), &mut gram);
+            let rows: Vec<usize> = ranges[a].clone().chain(ranges[b].clone()).collect();
+            assert_eq!(gram.len(), rows.len());
+            for (i, &row) in rows.iter().enumerate() {
+                for (j, &other) in rows.iter().enumerate() {
+                    assert!((gram.row(i)[j] - expected[[row, other]]).abs() < 1e-14);
+                }
+                assert!(gram.row(i)[rows.len()..].iter().all(|value| *value == 0.0));
+            }
+        }
+        found.write_all(&mut gram);
+        let some = [22, 0, 9, 10];
+        for (&row, values) in some.iter().zip(found.rows(&some).rows()) {
+            assert_eq!(gram.row(row)[..23], values.to_vec());
+            for (value, expected) in values.iter().zip(expected.row(row)) {
+                assert!((value - expected).abs() < 1e-14);
+            }
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! Training rows sorted by class, about their centre.
+
+use std::ops::Range;
+
+use ndarray::{Array1, ArrayView1, ArrayView2};
+
+use crate::BinaryProblem;
+use crate::dataset::Dataset;
+use crate::gram::between::pairs;
+use crate::gram::points::Points;
+use crate::kernel::KernelFunction;
+use crate::linalg::scalar::Scalar;
+
+/// Training rows sorted by class, about their centre.
+#[derive(Clone)]
+pub(crate) struct Sorted<T> {
+    points: Points<T>,
+    /// The original number of each sorted row.
+    order: Vec<usize>,
+    /// Where each original row is.
+    place: Vec<usize>,
+    /// The sorted rows of each class.
+    ranges: Vec<Range<usize>>,
+    classes: Vec<usize>,
+    kernel: KernelFunction,
+    centre: Array1<f64>,
+    /// The square of the largest distance of a row from it.
+    farthest: f64,
+    /// `(x − c)·c` per sorted row, for ρ about the origin with a linear kernel; empty for the others.
+    centre_products: Vec<f64>,
+}
+
+impl<T: Scalar> Sorted<T> {
+    /// Sorts rows by class; within a class they keep their order.
+    pub fn new(
+        data: &Dataset,
+        classes: &[usize],
+        kernel: KernelFunction,
+        centre: ArrayView1<f64>,
+    ) -> Self {
+        Self::within_classes(data, classes, kernel, centre, |_| 0)
+    }
+
+    /// Sorts rows by class, and within a class by a key.
+    pub fn within_classes(
+        data: &Dataset,
+        classes: &[usize],
+        kernel: KernelFunction,
+        centre: ArrayView1<f64>,
+        key: impl Fn(usize) -> usize,
+    ) -> Self {
+        let labels = data.targets.view();
+        let mut order: Vec<usize> = (0..labels.len()).collect();
+        order.sort_by_key(|&row| (labels[row], key(row)));
+        let start = |class: usize| order.partition_point(|&row| labels[row] < class);
+        let ranges = classes
+            .iter()
+            .map(|&class| start(class)..start(class + 1))
+            .collect();
+        let mut place = vec![0; order.len()];
+        for (at, &row) in order.iter().enumerate() {
+            place[row] = at;
+        }
+        let rows = order.iter().map(|&row| data.records.row(row));
+        let (mut centre_products, mut farthest) = (Vec::new(), 0.0_f64);
+        let points = Points::of_rows_and(rows, centre, |moved| {
+            farthest = farthest.max(moved.norm);
+            if kernel == KernelFunction::Linear {
+                centre_products.push(moved.along_centre);
+            }
+        });
+        Self {
+            points,
+            farthest,
+            order,
+            place,
+            ranges,
+            classes: classes.to_vec(),
+            kernel,
+            centre: centre.to_owned(),
+            centre_products,
+        }
+    }
+
+    /// The same rows by their coordinates along some directions (k × m).
+    pub fn along(&self, directions: ArrayView2<T>) -> Self {
+        Self {
+            points: self.points.along(directions),
+            order: self.order.clone(),
+            place: self.place.clone(),
+            ranges: self.ranges.clone(),
+            classes: self.classes.clone(),
+            kernel: self.kernel,
+            centre: Array1::zeros(directions.nrows()),
+            farthest: self.farthest,
+            centre_products: Vec::new(),
+        }
+    }
+
+    /// The rows, class by class.
+    pub fn points(&self) -> &Points<T> {
+        &self.points
+    }
+
+    /// The rows alone.
+    pub fn into_points(self) -> Points<T> {
+        self.points
+    }
+
+    /// The original number of each sorted row.
+    pub fn order(&self) -> &[usize] {
+        &self.order
+    }
+
+    /// Where each original row is among the sorted ones.
+    pub fn place(&self) -> &[usize] {
+        &self.place
+    }
+
+    /// The kernel of all problems.
+    pub fn kernel(&self) -> KernelFunction {
+        self.kernel
+    }
+
+    /// What was subtracted from every row.
+    pub fn centre(&self) -> ArrayView1<'_, f64> {
+        self.centre.view()
+    }
+
+    /// The square of the largest distance of a row from the centre.
+    pub fn farthest(&self) -> f64 {
+        self.farthest
+    }
+
+    /// ρ of a problem's decision function about the centre.
+    pub fn rho_about_centre(&self, problem: &BinaryProblem) -> f64 {
+        problem.solution.rho
+            - self.moved(
+                problem.rows.iter().map(|&row| self.place[row]),
+                &problem.solution.coefficients,
+            )
+    }
+
+    /// What the centre adds to ρ, for coefficients of these sorted rows; 0 for kernels other than the linear one.
+    pub fn moved(&self, rows: impl Iterator<Item = usize>, coefficients: &[f64]) -> f64 {
+        if self.centre_products.is_empty() {
+            return 0.0;
+        }
+        rows.zip(coefficients)
+            .map(|(row, beta)| beta * self.centre_products[row])
+            .sum()
+    }
+
+    /// The classes, ascending.
+    pub fn classes(&self) -> &[usize] {
+        &self.classes
+    }
+
+    /// Each class with its sorted rows.
+    pub fn classes_and_ranges(&self) -> impl Iterator<Item = (usize, Range<usize>)> + '_ {
+        self.classes
+            .iter()
+            .copied()
+            .zip(self.ranges.iter().cloned())
+    }
+
+    /// The sorted rows of each class.
+    pub fn ranges(&self) -> &[Range<usize>] {
+        &self.ranges
+    }
+
+    /// The rows of neighbouring classes.
+    pub fn rows_of(&self, classes: &Range<usize>) -> Range<usize> {
+        self.ranges[classes.start].start..self.ranges[classes.end - 1].end
+    }
+
+    /// All pairs of classes, by their positions: (0, 1), (0, 2), …, (1, 2), ….
+    pub fn all_pairs(&self) -> impl Iterator<Item = (usize, usize)> + use<T> {
+        let all = 0..self.classes.len();
+        pairs(all.clone(), all)
+    }
+
+    /// Sorted numbers of the rows of two classes.
+    pub fn pair_rows(&self, a: usize, b: usize) -> Vec<usize> {
+        self.ranges[a]
+            .clone()
+            .chain(self.ranges[b].clone())
+            .collect()
+    }
+}

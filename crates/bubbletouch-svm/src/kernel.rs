@@ -1,0 +1,442 @@
+//! Kernels of the support vector machines: all that tells one from another, so that a new one is a case of each `match` here.
+//!
+//! A kernel value is a function of one pairwise number, which all γ share (the product x·z, of matrix products), and of the rows' squared norms.
+
+use ndarray::{Array2, ArrayView1, ArrayView2, ArrayViewMut2};
+use serde::{Deserialize, Serialize};
+
+use crate::gram::extent::Extent;
+use crate::linalg::products::{multiply, with_each_other};
+use crate::linalg::row_products;
+use crate::linalg::scalar::Scalar;
+use crate::{Error, Result};
+
+/// The largest exponent of an RBF kernel, γ times the squared distance between two rows, for f32: the exponent's rounding is
+/// the kernel value's relative error.
+const SINGLE_EXPONENT: f64 = 1e4;
+
+/// The width parameter γ of a kernel, in inverse squared feature units; of a Laplacian one in inverse feature units.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Gamma {
+    /// `1 / (m · var(X))`, the variance taken over all training features; 1 where that is 0 (scikit-learn's default). Of a Laplacian
+    /// kernel `1 / (m · √var(X))`.
+    Scale,
+    /// A number above 0.
+    Value(f64),
+}
+
+/// The kernel `K(x, z)` of a support vector machine.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kernel {
+    /// `x·z`.
+    Linear,
+    /// `exp(−γ|x − z|²)`.
+    Rbf {
+        /// γ.
+        gamma: Gamma,
+    },
+    /// `exp(−γ|x − z|₁)`, of the sum of absolute differences: a feature that is far off counts less than with [`Rbf`](Self::Rbf). Slower:
+    /// distances of this kind are no matrix product.
+    Laplacian {
+        /// γ.
+        gamma: Gamma,
+    },
+    /// `(γ x·z + c₀)^d`.
+    Polynomial {
+        /// γ.
+        gamma: Gamma,
+        /// c₀ ≥ 0 (a negative one makes the dual problem non-convex).
+        coef0: f64,
+        /// d ≥ 1.
+        degree: u32,
+    },
+}
+
+impl Kernel {
+    /// The same kernel with another γ; a linear one has none.
+    pub fn with_gamma(self, gamma: Gamma) -> Self {
+        match self {
+            Self::Linear => Self::Linear,
+            Self::Rbf { .. } => Self::Rbf { gamma },
+            Self::Laplacian { .. } => Self::Laplacian { gamma },
+            Self::Polynomial { coef0, degree, .. } => Self::Polynomial {
+                gamma,
+                coef0,
+                degree,
+            },
+        }
+    }
+
+    /// Returns γ as it was given, or `None` for a linear kernel.
+    pub fn gamma(&self) -> Option<Gamma> {
+        match *self {
+            Self::Linear => None,
+            Self::Rbf { gamma } | Self::Laplacian { gamma } | Self::Polynomial { gamma, .. } => {
+                Some(gamma)
+            }
+        }
+    }
+
+    /// What γ is if nobody says, of the training features (n_rows × m).
+    pub fn gamma_scale(&self, features: ArrayView2<f64>) -> f64 {
+        let variance = variance(features);
+        let spread = match self {
+            Self::Laplacian { .. } => variance.sqrt(),
+            _ => variance,
+        };
+        let scale = features.ncols() as f64 * spread;
+        if scale > 0.0 { 1.0 / scale } else { 1.0 }
+    }
+
+    /// The kernel with γ as a number, taken from the training features (n_rows × m) of this extent.
+    pub(crate) fn resolve(
+        &self,
+        features: ArrayView2<f64>,
+        extent: &Extent,
+    ) -> Result<KernelFunction> {
+        let number = |gamma: Gamma| match gamma {
+            Gamma::Scale => Ok(self.gamma_scale(features)),
+            Gamma::Value(gamma) if gamma > 0.0 && gamma.is_finite() => Ok(gamma),
+            Gamma::Value(gamma) => {
+                let allowed = "'scale' or a finite number above 0 is allowed";
+                Err(Error::input("gamma", gamma, allowed))
+            }
+        };
+        let function = match *self {
+            Self::Linear => KernelFunction::Linear,
+            Self::Rbf { gamma } => KernelFunction::Rbf {
+                gamma: number(gamma)?,
+            },
+            Self::Laplacian { gamma } => KernelFunction::Laplacian {
+                gamma: number(gamma)?,
+            },
+            Self::Polynomial {
+                gamma,
+                coef0,
+                degree,
+            } => {
+                if !(coef0 >= 0.0 && coef0.is_finite()) {
+                    let allowed = "a finite number of at least 0 is allowed";
+                    return Err(Error::input("coef0", coef0, allowed));
+                }
+                if !(1..=20).contains(&degree) {
+                    return Err(Error::input("degree", degree, "1 to 20 is allowed"));
+                }
+                KernelFunction::Polynomial {
+                    gamma: number(gamma)?,
+                    coef0,
+                    degree,
+                }
+            }
+        };
+        function.check(extent.largest_norm)?;
+        Ok(function)
+    }
+}
+
+/// Of all features.
+fn variance(features: ArrayView2<f64>) -> f64 {
+    // Two plain passes; ndarray's own variance divides at every value.
+    let n = features.len() as f64;
+    let mean = features.sum() / n;
+    let of_row = |row: ArrayView1<f64>| match row.as_slice() {
+        Some(row) => squares_about(mean, row),
+        None => squares_about(mean, &row.to_vec()),
+    };
+    features.rows().into_iter().map(of_row).sum::<f64>() / n
+}
+
+/// `Σ (x − mean)²`.
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
+fn squares_about(mean: f64, values: &[f64]) -> f64 {
+    let (lanes, last) = values.as_chunks::<8>();
+    let mut squares = [0.0; 8];
+    for values in lanes {
+        for lane in 0..8 {
+            squares[lane] += (values[lane] - mean) * (values[lane] - mean);
+        }
+    }
+    let last = last.iter().map(|value| (value - mean) * (value - mean));
+    squares.iter().sum::<f64>() + last.sum::<f64>()
+}
+
+/// A kernel with every parameter a number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum KernelFunction {
+    Linear,
+    Rbf { gamma: f64 },
+    Laplacian { gamma: f64 },
+    Polynomial { gamma: f64, coef0: f64, degree: u32 },
+}
+
+impl KernelFunction {
+    /// Refuses rows whose largest squared norm is so large that some kernel value is infinite. None exceeds those of a row
+    /// with itself, nor a squared distance four times the largest squared norm.
+    fn check(&self, norm: f64) -> Result<()> {
+        let largest = match *self {
+            Self::Linear | Self::Rbf { .. } | Self::Laplacian { .. } => 4.0 * norm,
+            Self::Polynomial {
+                gamma,
+                coef0,
+                degree,
+            } => (gamma * norm + coef0).powi(degree as i32),
+        };
+        if largest.is_finite() {
+            return Ok(());
+        }
+        Err(Error::input(
+            "features",
+            format!("a row of squared length {norm:e}"),
+            "its kernel value must be a finite number: scale the features, or take a smaller gamma or degree",
+        ))
+    }
+
+    /// γ, of a kernel that has one.
+    pub fn gamma(&self) -> Option<f64> {
+        match *self {
+            Self::Linear => None,
+            Self::Rbf { gamma } | Self::Laplacian { gamma } | Self::Polynomial { gamma, .. } => {
+                Some(gamma)
+            }
+        }
+    }
+
+    /// Whether a constant that is added to all features changes nothing but a decision function's ρ: then rows are taken about
+    /// their mean, where products are small and keep their digits.
+    pub fn has_any_centre(&self) -> bool {
+        match self {
+            Self::Linear | Self::Rbf { .. } | Self::Laplacian { .. } => true,
+            Self::Polynomial { .. } => false,
+        }
+    }
+
+    /// The largest `K(x, x)` of rows of which the farthest is so far from the centre (squared), where f32 has the digits for
+    /// values of rows so far apart; `None`: it has not.
+    pub fn largest_in_single(&self, farthest: f64) -> Option<f64> {
+        match *self {
+            Self::Linear => Some(farthest),
+            // Where exponents are large, K is nearly the identity and coefficients are near 1, whatever C.
+            Self::Rbf { gamma } if 4.0 * gamma * farthest > SINGLE_EXPONENT => None,
+            Self::Rbf { .. } => Some(1.0),
+            Self::Laplacian { .. } => None,
+            // A power is rounded as often as it is multiplied. Products about a centre are mostly far below the largest, powers about no
+            // centre are not: of a cubic kernel at C K = 4e3 the optimality conditions are met to three tolerances of 1e-3.
+            Self::Polynomial { degree, .. } => {
+                Some(10.0 * f64::from(degree) * self.of_norm(farthest))
+            }
+        }
+    }
+
+    /// The pairwise numbers of rows (n_left × m) with others (n × m), which values are made of: into n_left × n.
+    pub fn pairwise<T: Scalar>(
+        &self,
+        left: ArrayView2<T>,
+        right: ArrayView2<T>,
+        to: ArrayViewMut2<T>,
+    ) {
+        match self {
+            Self::Laplacian { .. } => absolute_differences(left, right, to),
+            _ => multiply(left, right, to),
+        }
+    }
+
+    /// The same of one row (m) with others, each of which lies in one piece.
+    pub fn pairwise_of_row<T: Scalar>(&self, row: &[T], others: &[&[T]], to: &mut [T]) {
+        match self {
+            Self::Laplacian { .. } => {
+                for (to, other) in to.chunks_exact_mut(1).zip(others) {
+                    absolute_differences_of(row, other, to);
+                }
+            }
+            _ => row_products::multiply(&[row], others, to),
+        }
+    }
+
+    /// The same of all rows (n × m) with each other: n × n.
+    pub fn own_pairwise<T: Scalar>(&self, rows: ArrayView2<T>) -> Array2<T> {
+        with_each_other(rows, |left, right, to| self.pairwise(left, right, to))
+    }
+
+    /// `K(x, x)` of a row's squared norm.
+    pub fn of_norm<T: Scalar>(&self, norm: T) -> T {
+        match *self {
+            Self::Linear => norm,
+            Self::Rbf { .. } | Self::Laplacian { .. } => T::one(),
+            Self::Polynomial {
+                gamma,
+                coef0,
+                degree,
+            } => {
+                let mut value = [norm];
+                polynomials(&mut value, (T::of(gamma), T::of(coef0)), degree);
+                value[0]
+            }
+        }
+    }
+
+    /// Values in place of a row's pairwise numbers, of its squared norm and the others'.
+    pub fn of_pairwise<T: Scalar>(&self, pairwise: &mut [T], norm: T, norms: &[T]) {
+        match *self {
+            Self::Linear => {}
+            Self::Rbf { gamma } => {
+                distances(pairwise, norm, norms);
+                T::exponentials(pairwise, gamma);
+            }
+            Self::Laplacian { gamma } => T::exponentials(pairwise, gamma),
+            Self::Polynomial {
+                gamma,
+                coef0,
+                degree,
+            } => polynomials(pairwise, (T::of(gamma), T::of(coef0)), degree),
+        }
+    }
+}
+
+/// `(γ p + c₀)^d` in place of each product.
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
+fn polynomials<T: Scalar>(products: &mut [T], base: (T, T), degree: u32) {
+    let (lanes, last) = products.as_chunks_mut::<16>();
+    for values in lanes {
+        *values = powers(*values, base, degree);
+    }
+    for value in last {
+        [*value] = powers([*value], base, degree);
+    }
+}
+
+/// Those of some values side by side, by squaring.
+#[inline(always)]
+fn powers<T: Scalar, const N: usize>(
+    mut values: [T; N],
+    (gamma, coef0): (T, T),
+    degree: u32,
+) -> [T; N] {
+    let mut powers = [T::one(); N];
+    for value in &mut values {
+        *value = gamma * *value + coef0;
+    }
+    for bit in 0..u32::BITS - degree.leading_zeros() {
+        for lane in 0..N {
+            if degree >> bit & 1 == 1 {
+                powers[lane] *= values[lane];
+            }
+            values[lane] *= values[lane];
+        }
+    }
+    powers
+}
+
+/// `|x|² + |z|² − 2 x·z` in place of each product, not below 0.
+#[multiversion::multiversion(targets("x86_64+avx2+fma"))]
+fn distances<T: Scalar>(products: &mut [T], norm: T, norms: &[T]) {
+    let two = T::one() + T::one();
+    for (value, &other) in products.iter_mut().zip(norms) {
+        let distance = norm + other - two * *value;
+        *value = if distance > T::zero() {
+            distance
+        } else {
+            T::zero()
+        };
+    }
+}
+
+/// `|x − z|₁` of rows x with rows z: the same bits in either order and with any instructions.
+fn absolute_differences<T: Scalar>(
+    left: ArrayView2<T>,
+    right: ArrayView2<T>,
+    mut to: ArrayViewMut2<T>,
+) {
+    let (left, right) = (left.as_standard_layout(), right.as_standard_layout());
+    let all = right.as_slice().expect("it is in standard layout");
+    for (mut to, left) in to.rows_mut().into_iter().zip(left.rows()) {
+        let to = to.as_slice_mut().expect("rows of values are contiguous");
+        let left = left.as_slice().expect("it is in standard layout");
+        absolute_differences_of(left, all, to);
+    }
+}
+
+/// Those of one row with rows that follow each other.
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
+fn absolute_differences_of<T: Scalar>(left: &[T], rows: &[T], to: &mut [T]) {
+    let (left_lanes, left_last) = left.as_chunks::<16>();
+    for at in 0..to.len() {
+        let row = &rows[at * left.len()..][..left.len()];
+        let (lanes, last) = row.as_chunks::<16>();
+        let mut sums = [T::zero(); 16];
+        for block in 0..left_lanes.len() {
+            for lane in 0..16 {
+                sums[lane] += (left_lanes[block][lane] - lanes[block][lane]).abs();
+            }
+        }
+        let mut sum = T::zero();
+        for value in sums {
+            sum += value;
+        }
+        for column in 0..last.len() {
+            sum += (left_last[column] - last[column]).abs();
+        }
+        to[at] = sum;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::{Array2, array};
+
+    #[test]
+    fn gamma_scale_is_the_inverse_of_columns_times_variance() {
+        let features = array![[1.0, 3.0], [5.0, 7.0]];
+        let gamma = Gamma::Scale;
+        let (rbf, laplacian) = (Kernel::Rbf { gamma }, Kernel::Laplacian { gamma });
+        assert_eq!(rbf.gamma_scale(features.view()), 1.0 / (2.0 * 5.0));
+        assert_eq!(
+            laplacian.gamma_scale(features.view()),
+            1.0 / (2.0 * 5_f64.sqrt())
+        );
+        assert_eq!(rbf.gamma_scale(Array2::ones((3, 2)).view()), 1.0);
+    }
+
+    fn assert_powers<T: Scalar>(tolerance: f64) {
+        // More than a whole number of registers.
+        let products: Vec<f64> = (0..37).map(|i| f64::from(i) * 0.03 - 0.4).collect();
+        for degree in 1..=20 {
+            let mut powers: Vec<T> = products.iter().map(|&product| T::of(product)).collect();
+            polynomials(&mut powers, (T::of(0.7), T::of(1.0)), degree);
+            for (power, product) in powers.iter().zip(&products) {
+                let exact = (0.7 * product + 1.0).powi(degree as i32);
+                let error = (power.wide() - exact).abs();
+                assert!(error <= f64::from(degree) * tolerance * exact, "{degree}");
+            }
+        }
+    }
+
+    #[test]
+    fn polynomial_values_are_powers_in_both_precisions() {
+        assert_powers::<f32>(2.0 * f64::from(f32::EPSILON));
+        assert_powers::<f64>(2.0 * f64::EPSILON);
+    }
+
+    #[test]
+    fn parameters_out_of_range_are_refused() {
+        let features = array![[1.0]];
+        for gamma in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            let gamma = Gamma::Value(gamma);
+            let extent = Extent::of(features.view()).unwrap();
+            for kernel in [Kernel::Rbf { gamma }, Kernel::Laplacian { gamma }] {
+                assert!(kernel.resolve(features.view(), &extent).is_err());
+            }
+        }
+        for (coef0, degree) in [(-1.0, 2), (f64::NAN, 2), (0.0, 0), (0.0, 21)] {
+            let gamma = Gamma::Scale;
+            let kernel = Kernel::Polynomial {
+                gamma,
+                coef0,
+                degree,
+            };
+            let extent = Extent::of(features.view()).unwrap();
+            assert!(kernel.resolve(features.view(), &extent).is_err());
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! Products of rows with other rows, by matrix products.
+
+use ndarray::linalg::general_mat_mul;
+use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis, s};
+
+use crate::linalg::scalar::Scalar;
+
+/// Rows whose products with each other and with all before are one matrix product: of n rows half of n / 256 are computed twice.
+const ROWS_AT_ONCE: usize = 128;
+/// So few rows are multiplied where the others lie; of more, a matrix product's copy pays.
+pub(crate) const FEW_ROWS: usize = 4;
+/// Rows and columns mirrored at once: a cache line of f32.
+const TILE: usize = 16;
+
+/// `x_i · z_j` of rows x (n_left × m) with rows z (n × m): into n_left × n.
+pub(crate) fn multiply<T: Scalar>(
+    left: ArrayView2<T>,
+    right: ArrayView2<T>,
+    mut to: ArrayViewMut2<T>,
+) {
+    if left.nrows() <= FEW_ROWS && in_place(left, right, &mut to) {
+        return;
+    }
+    // Transposed, so that a row's products with many of these are written side by side.
+    let (one, zero) = (T::one(), T::zero());
+    general_mat_mul(one, &right, &left.t(), zero, &mut to.reversed_axes());
+}
+
+/// The same of a few rows with many, where they lie: a matrix product would copy the many first. `false`, and nothing written, where that
+/// cannot be.
+fn in_place<T: Scalar>(
+    left: ArrayView2<T>,
+    right: ArrayView2<T>,
+    to: &mut ArrayViewMut2<T>,
+) -> bool {
+    let (Some(few), Some(many)) = (slices(left), slices(right)) else {
+        return false;
+    };
+    let mut products = vec![T::zero(); few.len() * many.len()];
+    let is_done = T::products_in_place(&few, &many, &mut products);
+    if is_done {
+        let values = to.iter_mut().zip(products);
+        values.for_each(|(to, product)| *to = product);
+    }
+    is_done
+}
+
+/// Rows, if each of them lies in one piece.
+fn slices<T>(rows: ArrayView2<'_, T>) -> Option<Vec<&[T]>> {
+    let row = |row: usize| rows.index_axis_move(Axis(0), row).to_slice();
+    (0..rows.nrows()).map(row).collect()
+}
+
+/// `z_i · z_j` of all rows (n × m): n × n, symmetric.
+pub(crate) fn own_products<T: Scalar>(rows: ArrayView2<T>) -> Array2<T> {
+    with_each_other(rows, multiply)
+}
+
+/// What `pairwise` makes of rows with others, as [`multiply`] does and the same in either order, of all rows (n × m): n × n, half of it copied.
+pub(crate) fn with_each_other<T: Scalar>(
+    rows: ArrayView2<T>,
+    pairwise: impl Fn(ArrayView2<T>, ArrayView2<T>, ArrayViewMut2<T>),
+) -> Array2<T> {
+    let n = rows.nrows();
+    let mut products = Array2::zeros((n, n));
+    for start in (0..n).step_by(ROWS_AT_ONCE) {
+        let end = n.min(start + ROWS_AT_ONCE);
+        let (left, right) = (rows.slice(s![start..end, ..]), rows.slice(s![..end, ..]));
+        pairwise(left, right, products.slice_mut(s![start..end, ..end]));
+    }
+    mirror(&mut products.view_mut());
+    products
+}
+
+/// Copies what is below the diagonal to above it, in tiles that stay in the cache.
+pub(crate) fn mirror<T: Copy>(square: &mut ArrayViewMut2<T>) {
+    let n = square.nrows();
+    for top in (0..n).step_by(TILE) {
+        for left in (0..=top).step_by(TILE) {
+            for i in top..n.min(top + TILE) {
+                for j in left..i.min(left + TILE) {
+                    square[[j, i]] = square[[i, j]];
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rows<T: Scalar>(n: usize, m: usize) -> Array2<T> {
+        Array2::from_shape_fn((n, m), |(i, j)| T::of(((i * m + j) as f64 * 1.7).sin()))
+    }
+
+    fn assert_products<T: Scalar>(tolerance: f64) {
+        for (n_left, n, m) in [
+            (5, 70, 33),
+            (20, 1, 600),
+            (1, 17, 1),
+            (2, 32, 21),
+            (3, 33, 4),
+        ] {
+            let (left, right) = (rows::<T>(n_left, m), rows::<T>(n, m));
+            // Sums of m products below 1, each addition rounded.
+            let tolerance = tolerance * (m as f64 / 100.0).max(1.0);
+            let expected = left.dot(&right.t());
+            // Into a part of something larger.
+            let mut to = Array2::zeros((n_left, n + 3));
+            multiply(left.view(), right.view(), to.slice_mut(s![.., 2..n + 2]));
+            for ((i, j), expected) in expected.indexed_iter() {
+                assert!((to[[i, j + 2]] - *expected).wide().abs() < tolerance);
+            }
+            let own = own_products(right.view());
+            for ((i, j), expected) in right.dot(&right.t()).indexed_iter() {
+                assert!((own[[i, j]] - *expected).wide().abs() < tolerance);
+                assert_eq!(own[[i, j]], own[[j, i]]);
+            }
+        }
+    }
+
+    #[test]
+    fn products_are_those_of_ndarray_in_both_precisions() {
+        assert_products::<f32>(1e-4);
+        assert_products::<f64>(1e-12);
+    }
+
+    #[test]
+    fn products_of_rows_with_each_other_are_those_with_others() {
+        let m = 21;
+        for n in [0, 1, 4, 128, 129, 300] {
+            let rows = rows::<f32>(n, m);
+            let own = own_products(rows.view());
+            for ((i, j), &product) in own.indexed_iter() {
+                let both = rows.row(i).into_iter().zip(rows.row(j));
+                let expected: f32 = both.map(|(a, b)| a * b).sum();
+                assert!((product - expected).abs() < 1e-5, "{n}: {i} {j}");
+                assert_eq!(product, own[[j, i]]);
+            }
+        }
+    }
+}

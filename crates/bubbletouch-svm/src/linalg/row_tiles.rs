@@ -1,0 +1,299 @@
+//! Products of a few f32 rows with a few others where they lie, each row read once for all of a tile's products.
+//!
+//! Written with the processor's vector instructions: the compiler makes them of plain loops over a tile's sums, too, but not
+//! in every build, and a build where it does not is ten times slower.
+
+/// Products of some rows with others, all equally long, row by row into `products`; `false`, and nothing written, where the
+/// processor has not got the instructions.
+#[cfg(target_arch = "x86_64")]
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
+pub(crate) fn products_in_place(rows: &[&[f32]], others: &[&[f32]], products: &mut [f32]) -> bool {
+    multiversion::target::match_target! {
+        "x86_64+avx512f" => {
+            avx512::products(rows, others, products);
+            true
+        }
+        "x86_64+avx2+fma" => {
+            avx2::products(rows, others, products);
+            true
+        }
+        _ => {
+            let _ = (rows, others, products);
+            false
+        }
+    }
+}
+
+#[cfg(not(target_arch = "x86_64"))]
+pub(crate) fn products_in_place(_: &[&[f32]], _: &[&[f32]], _: &mut [f32]) -> bool {
+    false
+}
+
+/// Features that pass at once: the rows of a tile stay in the first cache while the others pass.
+#[cfg(target_arch = "x86_64")]
+const DEPTH: usize = 1024;
+
+/// Goes over all tiles of N rows with M others: `tile` gives the products of one. What the last few lack is made up by their
+/// last row. Loops, not iterators: what the standard library does with closures is not always compiled into one piece with them.
+#[cfg(target_arch = "x86_64")]
+fn by_tiles<'r, const N: usize, const M: usize>(
+    (rows, others): (&[&'r [f32]], &[&'r [f32]]),
+    products: &mut [f32],
+    tile: impl Fn([&'r [f32]; N], [&'r [f32]; M]) -> [[f32; M]; N],
+) {
+    let n_features = rows.first().map_or(0, |row| row.len());
+    if n_features == 0 {
+        products.fill(0.0);
+    }
+    for start in (0..n_features).step_by(DEPTH) {
+        let end = n_features.min(start + DEPTH);
+        for i in (0..rows.len()).step_by(N) {
+            let mut left: [&[f32]; N] = [&[]; N];
+            for at in 0..N {
+                left[at] = &rows[(i + at).min(rows.len() - 1)][start..end];
+            }
+            for j in (0..others.len()).step_by(M) {
+                let mut right: [&[f32]; M] = [&[]; M];
+                for at in 0..M {
+                    right[at] = &others[(j + at).min(others.len() - 1)][start..end];
+                }
+                let tile = tile(left, right);
+                let width = M.min(others.len() - j);
+                for at in 0..N.min(rows.len() - i) {
+                    let to = &mut products[(i + at) * others.len() + j..][..width];
+                    match to.first_chunk_mut::<M>() {
+                        Some(to) if start == 0 => *to = tile[at],
+                        _ => put(to, &tile[at], start == 0),
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Writes a tile's products if they are those of the first features, else adds them.
+#[cfg(target_arch = "x86_64")]
+fn put(to: &mut [f32], products: &[f32], is_first: bool) {
+    for (to, product) in to.iter_mut().zip(products) {
+        let before = if is_first { 0.0 } else { *to };
+        *to = before + product;
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+mod avx512 {
+    use std::arch::x86_64::{
+        __m512, _mm512_add_ps, _mm512_castpd_ps, _mm512_castps_pd, _mm512_fmadd_ps,
+        _mm512_setzero_ps, _mm512_shuffle_f32x4, _mm512_unpackhi_pd, _mm512_unpackhi_ps,
+        _mm512_unpacklo_pd, _mm512_unpacklo_ps,
+    };
+
+    use crate::linalg::vector_registers::{load, store};
+
+    /// Values in a vector register.
+    const LANES: usize = 16;
+    /// Rows multiplied with as many others at once: their sums meet in one register.
+    const N: usize = 4;
+
+    #[target_feature(enable = "avx512f")]
+    pub fn products(rows: &[&[f32]], others: &[&[f32]], products: &mut [f32]) {
+        match rows {
+            [_] => super::by_tiles((rows, others), products, |left, right| [row(left, right)]),
+            _ => super::by_tiles((rows, others), products, |left, right| tile(left, right)),
+        }
+    }
+
+    /// The products of one row with a few others: the same bits as in a [`tile`].
+    #[target_feature(enable = "avx512f")]
+    fn row([left]: [&[f32]; 1], right: [&[f32]; N]) -> [f32; N] {
+        let n = left.len();
+        let left_lanes: &[[f32; LANES]] = left.as_chunks().0;
+        let mut right_lanes: [&[[f32; LANES]]; N] = [&[]; N];
+        for j in 0..N {
+            right_lanes[j] = right[j][..n].as_chunks().0;
+        }
+        let mut sums = [_mm512_setzero_ps(); N];
+        for at in 0..left_lanes.len() {
+            let mut own = sums;
+            for j in 0..N {
+                own[j] = load(&right_lanes[j][at]);
+            }
+            sums = add_products(sums, load(&left_lanes[at]), own);
+        }
+        let zero = _mm512_setzero_ps();
+        let sums = store(add_parts(add_parts(add_lanes(sums), zero), zero));
+        let mut products = [0.0; N];
+        for j in 0..N {
+            products[j] = sums[j];
+            for at in left_lanes.len() * LANES..n {
+                products[j] += left[at] * right[j][at];
+            }
+        }
+        products
+    }
+
+    /// All products of a few rows with a few others. Each lane keeps its own sums; they meet at the end.
+    ///
+    /// A name for the sums of each row: an array of arrays is kept in memory.
+    #[target_feature(enable = "avx512f")]
+    fn tile(left: [&[f32]; N], right: [&[f32]; N]) -> [[f32; N]; N] {
+        let n = left[0].len();
+        let mut left_lanes: [&[[f32; LANES]]; N] = [&[]; N];
+        let mut right_lanes: [&[[f32; LANES]]; N] = [&[]; N];
+        for i in 0..N {
+            left_lanes[i] = left[i][..n].as_chunks().0;
+            right_lanes[i] = right[i][..n].as_chunks().0;
+        }
+        let n_lanes = n / LANES;
+        let zero = [_mm512_setzero_ps(); N];
+        let (mut a, mut b, mut c, mut d) = (zero, zero, zero, zero);
+        for at in 0..n_lanes {
+            let mut own = zero;
+            for j in 0..N {
+                own[j] = load(&right_lanes[j][at]);
+            }
+            a = add_products(a, load(&left_lanes[0][at]), own);
+            b = add_products(b, load(&left_lanes[1][at]), own);
+            c = add_products(c, load(&left_lanes[2][at]), own);
+            d = add_products(d, load(&left_lanes[3][at]), own);
+        }
+        let first = add_parts(add_lanes(a), add_lanes(b));
+        let second = add_parts(add_lanes(c), add_lanes(d));
+        let sums = store(add_parts(first, second));
+        let mut products = [[0.0; N]; N];
+        for i in 0..N {
+            for j in 0..N {
+                products[i][j] = sums[i * N + j];
+            }
+        }
+        if n_lanes * LANES < n {
+            for i in 0..N {
+                for j in 0..N {
+                    for at in n_lanes * LANES..n {
+                        products[i][j] += left[i][at] * right[j][at];
+                    }
+                }
+            }
+        }
+        products
+    }
+
+    #[inline]
+    #[target_feature(enable = "avx512f")]
+    fn add_products(sums: [__m512; N], left: __m512, right: [__m512; N]) -> [__m512; N] {
+        [
+            _mm512_fmadd_ps(left, right[0], sums[0]),
+            _mm512_fmadd_ps(left, right[1], sums[1]),
+            _mm512_fmadd_ps(left, right[2], sums[2]),
+            _mm512_fmadd_ps(left, right[3], sums[3]),
+        ]
+    }
+
+    /// The sums of four neighbouring lanes, of four registers side by side: a₀ b₀ c₀ d₀ a₁ b₁ ….
+    #[inline]
+    #[target_feature(enable = "avx512f")]
+    fn add_lanes([a, b, c, d]: [__m512; N]) -> __m512 {
+        let ab = _mm512_add_ps(_mm512_unpacklo_ps(a, b), _mm512_unpackhi_ps(a, b));
+        let cd = _mm512_add_ps(_mm512_unpacklo_ps(c, d), _mm512_unpackhi_ps(c, d));
+        let (ab, cd) = (_mm512_castps_pd(ab), _mm512_castps_pd(cd));
+        let low = _mm512_castpd_ps(_mm512_unpacklo_pd(ab, cd));
+        let high = _mm512_castpd_ps(_mm512_unpackhi_pd(ab, cd));
+        _mm512_add_ps(low, high)
+    }
+
+    /// Adds neighbouring quarters: a₀ + a₁, a₂ + a₃, b₀ + b₁, b₂ + b₃.
+    #[inline]
+    #[target_feature(enable = "avx512f")]
+    fn add_parts(a: __m512, b: __m512) -> __m512 {
+        let even = _mm512_shuffle_f32x4(a, b, 0b10_00_10_00);
+        let odd = _mm512_shuffle_f32x4(a, b, 0b11_01_11_01);
+        _mm512_add_ps(even, odd)
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+mod avx2 {
+    use std::arch::x86_64::{
+        __m256, _mm_add_ps, _mm_add_ss, _mm_cvtss_f32, _mm_movehl_ps, _mm_shuffle_ps,
+        _mm256_castps256_ps128, _mm256_extractf128_ps, _mm256_fmadd_ps, _mm256_setr_ps,
+        _mm256_setzero_ps,
+    };
+
+    /// Values in a vector register.
+    const LANES: usize = 8;
+    /// Rows multiplied with [`M`] others at once: their sums and what is read of the rows fill 16 vector registers.
+    const N: usize = 4;
+    /// See [`N`].
+    const M: usize = 3;
+
+    #[target_feature(enable = "avx2,fma")]
+    pub fn products(rows: &[&[f32]], others: &[&[f32]], products: &mut [f32]) {
+        match rows {
+            [_] => super::by_tiles((rows, others), products, |left, right| {
+                tile::<1>(left, right)
+            }),
+            _ => super::by_tiles((rows, others), products, |left, right| {
+                tile::<N>(left, right)
+            }),
+        }
+    }
+
+    /// All products of a few rows with a few others. Each lane keeps its own sums; they meet at the end.
+    ///
+    /// Loops, not closures: a function of the standard library that calls a closure has not got its vector instructions.
+    #[target_feature(enable = "avx2,fma")]
+    fn tile<const N: usize>(left: [&[f32]; N], right: [&[f32]; M]) -> [[f32; M]; N] {
+        let n = left[0].len();
+        let mut left_lanes: [&[[f32; LANES]]; N] = [&[]; N];
+        let mut right_lanes: [&[[f32; LANES]]; M] = [&[]; M];
+        for i in 0..N {
+            left_lanes[i] = left[i][..n].as_chunks().0;
+        }
+        for j in 0..M {
+            right_lanes[j] = right[j][..n].as_chunks().0;
+        }
+        let n_lanes = n / LANES;
+        let mut sums = [[_mm256_setzero_ps(); M]; N];
+        for at in 0..n_lanes {
+            let mut own = [_mm256_setzero_ps(); M];
+            for j in 0..M {
+                own[j] = load(&right_lanes[j][at]);
+            }
+            for i in 0..N {
+                let other = load(&left_lanes[i][at]);
+                for j in 0..M {
+                    sums[i][j] = _mm256_fmadd_ps(other, own[j], sums[i][j]);
+                }
+            }
+        }
+        let mut products = [[0.0; M]; N];
+        for i in 0..N {
+            for j in 0..M {
+                products[i][j] = sum(sums[i][j]);
+                for at in n_lanes * LANES..n {
+                    products[i][j] += left[i][at] * right[j][at];
+                }
+            }
+        }
+        products
+    }
+
+    #[inline]
+    #[target_feature(enable = "avx2,fma")]
+    fn load(lanes: &[f32; LANES]) -> __m256 {
+        let [a, b, c, d, e, f, g, h] = *lanes;
+        _mm256_setr_ps(a, b, c, d, e, f, g, h)
+    }
+
+    /// The sum of all lanes, halves onto halves.
+    #[inline]
+    #[target_feature(enable = "avx2,fma")]
+    fn sum(lanes: __m256) -> f32 {
+        let four = _mm_add_ps(
+            _mm256_castps256_ps128(lanes),
+            _mm256_extractf128_ps(lanes, 1),
+        );
+        let two = _mm_add_ps(four, _mm_movehl_ps(four, four));
+        _mm_cvtss_f32(_mm_add_ss(two, _mm_shuffle_ps(two, two, 1)))
+    }
+}

@@ -1,0 +1,124 @@
+//! What the support vectors of one class weigh in its binary problems.
+
+use std::ops::Range;
+
+use ndarray::{Array2, ArrayView2, s};
+
+use crate::BinaryProblem;
+use crate::gram::sorted::Sorted;
+use crate::linalg::scalar::Scalar;
+
+/// The coefficients of one class's support vectors in the problems that the class takes part in.
+#[derive(Clone, Debug)]
+pub(crate) struct ClassWeights<T> {
+    /// Which support vectors.
+    pub vectors: Range<usize>,
+    /// The problems, ascending: for one-vs-one those with the other classes in order.
+    pub problems: Vec<usize>,
+    /// problems.len() × vectors.len().
+    pub coefficients: Array2<T>,
+}
+
+impl<V: Scalar> ClassWeights<V> {
+    /// None yet of a class in these problems, which are named by their positive and negative class.
+    pub fn zeros(
+        class: usize,
+        vectors: Range<usize>,
+        problems: impl Iterator<Item = (usize, Option<usize>)>,
+    ) -> Self {
+        let takes_part = |(positive, negative): (usize, Option<usize>)| {
+            negative.is_none_or(|negative| positive == class || negative == class)
+        };
+        let own = problems.enumerate().filter(|(_, sides)| takes_part(*sides));
+        let own: Vec<usize> = own.map(|(problem, _)| problem).collect();
+        Self {
+            coefficients: Array2::zeros((own.len(), vectors.len())),
+            vectors,
+            problems: own,
+        }
+    }
+
+    /// Of all rows of a class.
+    pub fn new<T: Scalar>(
+        sorted: &Sorted<T>,
+        class: usize,
+        vectors: Range<usize>,
+        problems: &[BinaryProblem],
+    ) -> Self {
+        let sides = problems.iter().map(|p| (p.positive, p.negative));
+        let mut weights = Self::zeros(class, vectors, sides);
+        let own = weights.problems.iter();
+        for (&problem, mut own) in own.zip(weights.coefficients.rows_mut()) {
+            let BinaryProblem { rows, solution, .. } = &problems[problem];
+            for (&row, &coefficient) in rows.iter().zip(&solution.coefficients) {
+                let at = sorted.place()[row];
+                if weights.vectors.contains(&at) {
+                    own[at - weights.vectors.start] = V::of(coefficient);
+                }
+            }
+        }
+        weights
+    }
+
+    /// Sets the coefficients of a problem that the class takes part in.
+    pub fn set(&mut self, problem: usize, coefficients: &[f64]) {
+        if let Ok(place) = self.problems.binary_search(&problem) {
+            let own = self.coefficients.row_mut(place);
+            own.into_iter()
+                .zip(coefficients)
+                .for_each(|(own, &coefficient)| *own = V::of(coefficient));
+        }
+    }
+
+    /// Only of the rows that support some problem, appended to those of the classes before.
+    pub fn of_support(self, support: &mut Vec<usize>) -> Self {
+        let is_support = |at: &usize| {
+            self.coefficients
+                .column(*at)
+                .iter()
+                .any(|x| *x != V::zero())
+        };
+        let kept: Vec<usize> = (0..self.vectors.len()).filter(is_support).collect();
+        let first = support.len();
+        support.extend(kept.iter().map(|at| self.vectors.start + at));
+        let shape = (self.problems.len(), kept.len());
+        let coefficients = Array2::from_shape_fn(shape, |(i, j)| self.coefficients[[i, kept[j]]]);
+        Self {
+            vectors: first..support.len(),
+            coefficients,
+            ..self
+        }
+    }
+}
+
+/// `Σ y a K(x_i, x)` from kernel values (rows × vectors) and what the vectors of each class weigh: n_problems × rows.
+pub(crate) fn weighted_sums<T: Scalar>(
+    weights: &[ClassWeights<T>],
+    kernel_values: ArrayView2<T>,
+    n_problems: usize,
+) -> Array2<T> {
+    let mut sums = Array2::zeros((n_problems, kernel_values.nrows()));
+    for class in weights {
+        let own = kernel_values.slice(s![.., class.vectors.clone()]);
+        let part = class.coefficients.dot(&own.t());
+        for (part, &problem) in part.rows().into_iter().zip(&class.problems) {
+            let mut sum = sums.row_mut(problem);
+            sum += &part;
+        }
+    }
+    sums
+}
+
+impl ClassWeights<f64> {
+    /// Adds `Σ y_i a_i x_i` of the class's rows to the normals of its problems (n_problems × m).
+    pub fn add_to<T: Scalar>(&self, normals: &mut Array2<f64>, sorted: &Sorted<T>) {
+        let points = sorted.points().in_place();
+        for (weights, &problem) in self.coefficients.rows().into_iter().zip(&self.problems) {
+            let mut normal = normals.row_mut(problem);
+            let normal = normal
+                .as_slice_mut()
+                .expect("normals are stored one by one");
+            points.add_weighted(normal, self.vectors.clone().zip(weights.iter().copied()));
+        }
+    }
+}

@@ -1,0 +1,220 @@
+//! The decision functions of all binary problems, by matrix products.
+
+use std::borrow::Cow;
+
+use ndarray::{Array1, Array2, ArrayView2, Axis, s};
+
+use crate::gram::points::Points;
+use crate::gram::sorted::Sorted;
+use crate::kernel::KernelFunction;
+use crate::linalg::products::{FEW_ROWS, multiply};
+use crate::linalg::scalar::Scalar;
+use crate::predict::class_weights::{ClassWeights, weighted_sums};
+use crate::predict::unbeaten::{Pairs, unbeaten_by_hyperplanes};
+use crate::predict::voting::Ballot;
+use crate::{BinaryProblem, Multiclass};
+
+/// Rows whose decision values are computed at once. Fewer, and a product spends its time on bringing the support vectors into order; more,
+/// and their kernel values (10 MB with 5,000 support vectors) take much memory.
+const BLOCK_ROWS: usize = 512;
+
+/// `Σ y a K(x_i, x) − ρ` for all problems.
+#[derive(Clone, Debug)]
+pub(crate) struct DecisionFunctions<T> {
+    /// Subtracted from support vectors and from rows that are asked for.
+    centre: Array1<f64>,
+    /// ρ per problem; for a linear kernel, that about the centre.
+    rho: Array1<f64>,
+    sums: Sums<T>,
+}
+
+/// `Σ y a K(x_i, x)`.
+#[derive(Clone, Debug)]
+enum Sums<T> {
+    /// The hyperplanes' normals, n_problems × m.
+    Hyperplanes(Array2<T>),
+    /// Kernel values, weighted.
+    Support(Support<T>),
+}
+
+/// Support vectors, class by class.
+#[derive(Clone, Debug)]
+struct Support<T> {
+    kernel: KernelFunction,
+    vectors: Points<T>,
+    weights: Vec<ClassWeights<T>>,
+    /// For one-vs-one.
+    pairs: Option<Pairs<T>>,
+}
+
+impl<T: Scalar> DecisionFunctions<T> {
+    /// Those of the problems that these rows were trained for. Rows that are given away become the support vectors where they
+    /// lie; the normals of linear problems' hyperplanes are summed unless they are known.
+    pub fn new(
+        rows: Cow<Sorted<T>>,
+        problems: &[BinaryProblem],
+        normals: Option<Array2<T>>,
+    ) -> Self {
+        let sorted = rows.as_ref();
+        let classes = || sorted.classes_and_ranges();
+        let centre = sorted.centre().to_owned();
+        let (rho, sums) = match sorted.kernel() {
+            KernelFunction::Linear => {
+                let about_centre = problems.iter().map(|p| sorted.rho_about_centre(p));
+                let sum = || {
+                    let mut normals = Array2::zeros((problems.len(), sorted.centre().len()));
+                    for (class, rows) in classes() {
+                        let weights = ClassWeights::new(sorted, class, rows, problems);
+                        weights.add_to(&mut normals, sorted);
+                    }
+                    normals.mapv(T::of)
+                };
+                let normals = normals.unwrap_or_else(sum);
+                (about_centre.collect(), Sums::Hyperplanes(normals))
+            }
+            kernel => {
+                let mut support = Vec::new();
+                let weights = classes().map(|(class, rows)| {
+                    ClassWeights::new(sorted, class, rows, problems).of_support(&mut support)
+                });
+                let weights: Vec<_> = weights.collect();
+                let rho = problems.iter().map(|p| p.solution.rho).collect();
+                let are_pairs = problems.iter().all(|p| p.negative.is_some());
+                let pairs = are_pairs.then(|| Pairs::new(&weights, &rho));
+                let vectors = match rows {
+                    Cow::Borrowed(sorted) => sorted.points().select(&support),
+                    Cow::Owned(sorted) => sorted.into_points().keep(&support),
+                };
+                let support = Support {
+                    kernel,
+                    vectors,
+                    weights,
+                    pairs,
+                };
+                (rho, Sums::Support(support))
+            }
+        };
+        Self { centre, rho, sums }
+    }
+
+    /// Decision values of rows (n × m): n × n_problems.
+    pub fn values(&self, features: ArrayView2<f64>) -> Array2<f64> {
+        let mut values = Array2::zeros((features.nrows(), self.rho.len()));
+        let mut room = self.room(features.nrows());
+        let blocks = values.axis_chunks_iter_mut(Axis(0), BLOCK_ROWS);
+        for (mut values, points) in blocks.zip(self.blocks(&features)) {
+            let sums = self.sums_of(&points, &mut room);
+            values.zip_mut_with(&sums.t(), |to, from| *to = from.wide());
+            values -= &self.rho;
+        }
+        values
+    }
+
+    /// The position of the class that each row's decision values speak for.
+    pub fn winners(&self, features: ArrayView2<f64>, between: (usize, Multiclass)) -> Vec<usize> {
+        let elect = |sums: Array2<T>| Ballot::elect(&sums, self.rho.view(), between, |_| true);
+        let mut room = self.room(features.nrows());
+        let of_block = |points: Points<T>| match &self.sums {
+            Sums::Support(
+                support @ Support {
+                    pairs: Some(pairs), ..
+                },
+            ) if points.len() <= FEW_ROWS => {
+                let Support {
+                    vectors, kernel, ..
+                } = support;
+                elect_open(pairs.unbeaten_by_few(&points, vectors, kernel), |open| {
+                    elect(self.sums_of(&points.select(open), &mut room))
+                })
+            }
+            Sums::Support(
+                support @ Support {
+                    pairs: Some(pairs), ..
+                },
+            ) => {
+                let values = support.kernel_values(&points, &mut room);
+                elect_open(pairs.unbeaten(values), |open| {
+                    let values = values.select(Axis(0), open);
+                    elect(weighted_sums(
+                        &support.weights,
+                        values.view(),
+                        self.rho.len(),
+                    ))
+                })
+            }
+            // All pairs of many rows are one matrix product, faster than a tenth of them one by one.
+            Sums::Hyperplanes(normals)
+                if between.1 == Multiclass::OneVsOne && points.len() <= FEW_ROWS =>
+            {
+                let hyperplanes = (normals.view(), self.rho.view());
+                elect_open(
+                    unbeaten_by_hyperplanes(between.0, hyperplanes, &points),
+                    |open| elect(self.sums_of(&points.select(open), &mut room)),
+                )
+            }
+            _ => elect(self.sums_of(&points, &mut room)),
+        };
+        self.blocks(&features).flat_map(of_block).collect()
+    }
+
+    fn blocks<'a>(&'a self, features: &'a ArrayView2<f64>) -> impl Iterator<Item = Points<T>> + 'a {
+        features
+            .axis_chunks_iter(Axis(0), BLOCK_ROWS)
+            .map(|rows| Points::new(rows, self.centre.view()))
+    }
+
+    /// Room for a block's kernel values: written over and over, so that its memory is asked for once.
+    fn room(&self, n_rows: usize) -> Array2<T> {
+        let n_vectors = match &self.sums {
+            Sums::Hyperplanes(_) => 0,
+            Sums::Support(support) => support.vectors.len(),
+        };
+        Array2::zeros((BLOCK_ROWS.min(n_rows), n_vectors))
+    }
+
+    /// `Σ y a K(x_i, x)` of some rows: n_problems × rows, so that all rows of a problem lie side by side.
+    fn sums_of(&self, points: &Points<T>, room: &mut Array2<T>) -> Array2<T> {
+        match &self.sums {
+            Sums::Hyperplanes(normals) => {
+                let mut sums = Array2::zeros((normals.nrows(), points.len()));
+                let (normals, rows) = (normals.view(), points.all().values);
+                match points.len() <= FEW_ROWS {
+                    true => multiply(rows, normals, sums.view_mut().reversed_axes()),
+                    false => multiply(normals, rows, sums.view_mut()),
+                }
+                sums
+            }
+            Sums::Support(support) => {
+                let values = support.kernel_values(points, room);
+                weighted_sums(&support.weights, values, self.rho.len())
+            }
+        }
+    }
+}
+
+/// The winners of rows, where some are open: those are elected, by number.
+fn elect_open(
+    mut winners: Vec<Option<usize>>,
+    elect: impl FnOnce(&[usize]) -> Vec<usize>,
+) -> Vec<usize> {
+    let is_open = |row: &usize| winners[*row].is_none();
+    let open: Vec<usize> = (0..winners.len()).filter(is_open).collect();
+    if !open.is_empty() {
+        for (&row, winner) in open.iter().zip(elect(&open)) {
+            winners[row] = Some(winner);
+        }
+    }
+    winners.into_iter().flatten().collect()
+}
+
+impl<T: Scalar> Support<T> {
+    /// `K(x, x_i)`: rows × vectors.
+    fn kernel_values<'a>(&self, points: &Points<T>, room: &'a mut Array2<T>) -> ArrayView2<'a, T> {
+        let n = points.len();
+        let values = room.slice_mut(s![..n, ..]);
+        points
+            .all()
+            .write_kernel(self.vectors.all(), &self.kernel, values);
+        room.slice(s![..n, ..])
+    }
+}

@@ -1,0 +1,202 @@
+//! From the decision values of binary problems to one class.
+
+use ndarray::{Array1, Array2, ArrayView1, ArrayView2};
+
+use crate::Multiclass;
+use crate::linalg::scalar::Scalar;
+
+/// Which class the decision values speak for: for one-vs-one those of all pairs (0, 1), (0, 2), …, (1, 2), … of the
+/// classes' positions, the first positive; for one-vs-rest one a class.
+#[derive(Clone, Debug)]
+pub(crate) struct Voting {
+    classes: Vec<usize>,
+    multiclass: Multiclass,
+}
+
+impl Voting {
+    /// Between these classes, ascending.
+    pub fn new(classes: &[usize], multiclass: Multiclass) -> Self {
+        Self {
+            classes: classes.to_vec(),
+            multiclass,
+        }
+    }
+
+    /// The classes, ascending.
+    pub fn classes(&self) -> &[usize] {
+        &self.classes
+    }
+
+    /// How binary problems make one of many classes.
+    pub fn multiclass(&self) -> Multiclass {
+        self.multiclass
+    }
+
+    /// The label that each row of decision values (n_rows × n_problems) speaks for.
+    pub fn labels(&self, values: ArrayView2<f64>) -> Array1<usize> {
+        let values = values.as_standard_layout();
+        let mut votes = Vec::new();
+        values
+            .rows()
+            .into_iter()
+            .map(|row| self.label(row.as_slice().unwrap_or_default(), &mut votes))
+            .collect()
+    }
+
+    /// The label that a row of decision values speaks for; `votes` is scratch.
+    fn label(&self, values: &[f64], votes: &mut Vec<u32>) -> usize {
+        let winner = match self.multiclass {
+            Multiclass::OneVsRest => first_maximum(values),
+            _ => {
+                votes.clear();
+                votes.resize(self.classes.len(), 0);
+                count(values, votes);
+                first_maximum(votes)
+            }
+        };
+        self.classes[winner]
+    }
+}
+
+/// The votes of many rows, taken problem by problem.
+#[derive(Clone, Debug)]
+pub(crate) enum Ballot {
+    /// One-vs-one: votes, n_classes × n_rows.
+    Counts(Array2<u16>),
+    /// One-vs-rest: of the problems so far the largest value, and whose it is; one a row.
+    Best(Vec<f64>, Vec<usize>),
+}
+
+impl Ballot {
+    /// No votes yet.
+    pub fn new(n_classes: usize, n_rows: usize, multiclass: Multiclass) -> Self {
+        match multiclass {
+            Multiclass::OneVsRest => Self::Best(vec![f64::NEG_INFINITY; n_rows], vec![0; n_rows]),
+            _ => Self::Counts(Array2::zeros((n_classes, n_rows))),
+        }
+    }
+
+    /// Takes the values of one problem, less ρ: those above 0 are for the positive class, of which, and of the negative one,
+    /// these are the positions. Problems come in the order of [`Multiclass::problems`].
+    pub fn take<T: Scalar>(
+        &mut self,
+        (positive, negative): (usize, Option<usize>),
+        values: &[T],
+        rho: f64,
+    ) {
+        match self {
+            Self::Counts(votes) => {
+                for (vote, &value) in votes.row_mut(positive).iter_mut().zip(values) {
+                    *vote += u16::from(value.wide() > rho);
+                }
+                for (vote, &value) in votes
+                    .row_mut(negative.unwrap_or(positive))
+                    .iter_mut()
+                    .zip(values)
+                {
+                    *vote += u16::from(value.wide() <= rho);
+                }
+            }
+            Self::Best(best, winners) => {
+                for ((best, winner), &value) in best.iter_mut().zip(winners).zip(values) {
+                    let value = value.wide() - rho;
+                    if value > *best {
+                        (*best, *winner) = (value, positive);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The position of the class that each row's votes are for, by the sums of problems (n_problems × n_rows) and their ρ. Problems
+    /// between these classes whose classes do not all take part have no vote.
+    pub fn elect<T: Scalar>(
+        sums: &Array2<T>,
+        rho: ArrayView1<f64>,
+        (n_classes, multiclass): (usize, Multiclass),
+        takes_part: impl Fn(usize) -> bool,
+    ) -> Vec<usize> {
+        let mut ballot = Self::new(n_classes, sums.ncols(), multiclass);
+        let problems = multiclass.problems(n_classes).into_iter();
+        for (((positive, negative), sums), &rho) in problems.zip(sums.rows()).zip(rho) {
+            if takes_part(positive) && negative.is_none_or(&takes_part) {
+                let sums = sums.to_slice().expect("sums are stored problem by problem");
+                ballot.take((positive, negative), sums, rho);
+            }
+        }
+        ballot.winners()
+    }
+
+    /// The position of the class that each row's votes are for; of equals the first.
+    pub fn winners(&self) -> Vec<usize> {
+        match self {
+            Self::Best(_, winners) => winners.clone(),
+            Self::Counts(votes) => votes
+                .columns()
+                .into_iter()
+                .map(|votes| first_maximum(&votes.to_vec()))
+                .collect(),
+        }
+    }
+}
+
+/// Votes per class, as LIBSVM counts them: a value above 0 is for the positive class, any other for the negative. The
+/// problems are all pairs of classes in order, so those of a class with all later ones lie side by side.
+fn count(values: &[f64], votes: &mut [u32]) {
+    let mut rest = values;
+    for class in 0..votes.len() {
+        let (own, later) = votes[class..].split_at_mut(1);
+        let (values, after) = rest.split_at(later.len());
+        rest = after;
+        for (vote, &value) in later.iter_mut().zip(values) {
+            let is_own = u32::from(value > 0.0);
+            own[0] += is_own;
+            *vote += 1 - is_own;
+        }
+    }
+}
+
+/// The position of the largest value; the first of equals.
+pub fn first_maximum<V: PartialOrd>(values: &[V]) -> usize {
+    let mut best = 0;
+    for (i, value) in values.iter().enumerate() {
+        if *value > values[best] {
+            best = i;
+        }
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::array;
+
+    #[test]
+    fn ties_go_to_the_lowest_class() {
+        let voting = Voting::new(&[2, 5, 9], Multiclass::OneVsOne);
+        // A cycle: one vote each.
+        let values = array![[1.0, -1.0, 1.0], [-1.0, -1.0, 1.0], [0.0, 0.0, 0.0]];
+        assert_eq!(voting.labels(values.view()), array![2, 5, 9]);
+        let voting = Voting::new(&[2, 5, 9], Multiclass::OneVsRest);
+        let values = array![[0.5, 0.5, -1.0], [-3.0, -2.0, -2.0]];
+        assert_eq!(voting.labels(values.view()), array![2, 5]);
+    }
+
+    #[test]
+    fn votes_taken_problem_by_problem_elect_whom_rows_of_values_elect() {
+        let value = |i: usize| (i as f64 * 1.7).sin().max(-0.2);
+        for multiclass in [Multiclass::OneVsOne, Multiclass::OneVsRest] {
+            let problems = multiclass.problems(5);
+            let values = Array2::from_shape_fn((70, problems.len()), |(i, j)| value(11 * i + j));
+            let mut ballot = Ballot::new(5, 70, multiclass);
+            for (&problem, column) in problems.iter().zip(values.columns()) {
+                ballot.take(problem, &column.mapv(|v| v + 0.3).to_vec(), 0.3);
+            }
+            let classes = [10, 11, 12, 13, 14];
+            let expected = Voting::new(&classes, multiclass).labels(values.view());
+            let winners: Vec<usize> = ballot.winners().iter().map(|at| classes[*at]).collect();
+            assert_eq!(winners, expected.to_vec(), "{multiclass:?}");
+        }
+    }
+}

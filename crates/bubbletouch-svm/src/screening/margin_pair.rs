@@ -1,0 +1,279 @@
+//! Two classes, solved on the rows that take part.
+
+use ndarray::Array2;
+
+use crate::active_set::pair_search::{PairGoal, reach_by_equations};
+use crate::dual::DualSolution;
+use crate::linalg::row_products::{Rows, multiply};
+use crate::linalg::scalar::Scalar;
+use crate::linalg::transposed::write_columns;
+use crate::screening::margin_rows::{Ranked, RankedRow, SIGNS, Sides, find_below, smallest};
+use crate::smo::{Part, Reached, Room, extremes, gather};
+
+/// Rows that join in a round, at least, while rows violate.
+const FEWEST_JOINING: usize = 24;
+/// The share of a pair's rows from which on all take part.
+const MOST_SHARE: f64 = 0.6;
+
+/// Products of a class's rows with each other.
+pub(crate) struct Within<T> {
+    products: Array2<T>,
+    diagonal: Vec<T>,
+}
+
+impl<T: Scalar> Within<T> {
+    /// Of n × n products, stored row by row.
+    pub fn new(products: Array2<T>) -> Self {
+        Self {
+            diagonal: products.diag().to_vec(),
+            products,
+        }
+    }
+
+    /// The products of one row.
+    fn row(&self, row: usize) -> &[T] {
+        let n = self.diagonal.len();
+        &self
+            .products
+            .as_slice()
+            .expect("a product is stored row by row")[row * n..][..n]
+    }
+}
+
+/// What pairs need in turn, so that its memory is asked for once.
+pub(crate) struct Scratch<'r, T> {
+    /// The rows of both classes that take part.
+    rows: [Vec<&'r [T]>; 2],
+    /// New products across.
+    across: Vec<T>,
+    /// Rows by how far they are beyond something.
+    pub ranked: Ranked,
+    /// Rows of one class that are below a bound.
+    below: Vec<usize>,
+}
+
+impl<T> Default for Scratch<'_, T> {
+    fn default() -> Self {
+        Self {
+            rows: [Vec::new(), Vec::new()],
+            across: Vec::new(),
+            ranked: Ranked::new(),
+            below: Vec::new(),
+        }
+    }
+}
+
+/// Two classes, the first of them positive.
+pub(crate) struct MarginPair<T> {
+    classes: [usize; 2],
+    /// Of each class the rows that take part, in the order in which they joined.
+    rows: Sides,
+    /// Whether each row of each class takes part.
+    takes_part: [Vec<bool>; 2],
+    /// Products of the first's rows with the second's, and of the second's with the first's, row by row.
+    across: [Vec<T>; 2],
+    /// Coefficients of the first's rows, then of the second's.
+    beta: Vec<f64>,
+    /// y − w·x of the same rows, about.
+    f: Vec<f64>,
+    /// The C that the coefficients belong to; 0 before the first.
+    c: f64,
+    n_iterations: u64,
+    /// Whether the last solve ended within its tolerance.
+    is_solved: bool,
+}
+
+impl<T: Scalar> MarginPair<T> {
+    /// Two classes of so many rows, of which none takes part.
+    pub fn new(classes: [usize; 2], sizes: [usize; 2]) -> Self {
+        Self {
+            classes,
+            rows: [Vec::new(), Vec::new()],
+            takes_part: sizes.map(|n| vec![false; n]),
+            across: [Vec::new(), Vec::new()],
+            beta: Vec::new(),
+            f: Vec::new(),
+            c: 0.0,
+            n_iterations: 0,
+            is_solved: false,
+        }
+    }
+
+    /// The positions of the two classes.
+    pub fn classes(&self) -> [usize; 2] {
+        self.classes
+    }
+
+    /// Lets rows of both classes take part, with coefficients of 0. `products` are `w·x` of all rows of both, none before
+    /// the first solution; the rows of a class lie among all from `starts` on.
+    pub fn join<'r>(
+        &mut self,
+        joining: &Sides,
+        products: [&[T]; 2],
+        (all, starts): (Rows<'r, T>, [usize; 2]),
+        scratch: &mut Scratch<'r, T>,
+    ) {
+        let before = self.rows.each_ref().map(Vec::len);
+        self.take_in(joining, products);
+        let Scratch { rows, across, .. } = scratch;
+        for (side, to) in rows.iter_mut().enumerate() {
+            to.clear();
+            to.extend(
+                self.rows[side]
+                    .iter()
+                    .map(|row| all.row(starts[side] + row)),
+            );
+        }
+        let [first, second] = &*rows;
+        // The new rows of the first meet all of the second, the old ones its new ones.
+        let n_new = second.len() - before[1];
+        across.resize(first.len() * second.len(), T::zero());
+        let (right, below) = across.split_at_mut(before[0] * n_new);
+        multiply(&first[..before[0]], &second[before[1]..], right);
+        let below = &mut below[..(first.len() - before[0]) * second.len()];
+        multiply(&first[before[0]..], second, below);
+        let old = std::mem::take(&mut self.across[0]);
+        let mut to = Vec::with_capacity(first.len() * second.len());
+        for row in 0..before[0] {
+            to.extend_from_slice(&old[row * before[1]..][..before[1]]);
+            to.extend_from_slice(&right[row * n_new..][..n_new]);
+        }
+        to.extend_from_slice(below);
+        self.across[1].resize(to.len(), T::zero());
+        let whole: Vec<&[T]> = to.chunks_exact(second.len().max(1)).collect();
+        write_columns(&whole, &mut self.across[1], first.len());
+        self.across[0] = to;
+    }
+
+    fn take_in(&mut self, joining: &Sides, products: [&[T]; 2]) {
+        let n = self.beta.len() + joining[0].len() + joining[1].len();
+        let (mut beta, mut f) = (Vec::with_capacity(n), Vec::with_capacity(n));
+        let mut start = 0;
+        for (side, joining) in joining.iter().enumerate() {
+            let end = start + self.rows[side].len();
+            beta.extend_from_slice(&self.beta[start..end]);
+            f.extend_from_slice(&self.f[start..end]);
+            start = end;
+            for &row in joining {
+                beta.push(0.0);
+                let product = products[side].get(row).map_or(0.0, |value| value.wide());
+                f.push(SIGNS[side] - product);
+                self.takes_part[side][row] = true;
+            }
+            self.rows[side].extend(joining);
+        }
+        (self.beta, self.f) = (beta, f);
+    }
+
+    /// Solves on the rows that take part, from the last solution. `within` holds the products within each class; rows of the
+    /// Gram matrix are written into the memory of the last one.
+    pub fn solve(&mut self, within: &[Within<T>], room: &mut Room<T>, goal: PairGoal) {
+        let (beta, f) = (std::mem::take(&mut self.beta), std::mem::take(&mut self.f));
+        let [first, second] = &self.rows;
+        let within = self.classes.map(|class| &within[class]);
+        let diagonal = |side: usize| {
+            let rows = self.rows[side].iter();
+            rows.map(move |&row| within[side].diagonal[row])
+        };
+        let write = |i: usize, to: &mut [T]| {
+            let (left, right) = to.split_at_mut(first.len());
+            if i < first.len() {
+                gather(left, within[0].row(first[i]), first);
+                right.copy_from_slice(&self.across[0][i * second.len()..][..second.len()]);
+            } else {
+                let i = i - first.len();
+                left.copy_from_slice(&self.across[1][i * first.len()..][..first.len()]);
+                gather(right, within[1].row(second[i]), second);
+            }
+        };
+        let mut gram = Part::new(diagonal(0).chain(diagonal(1)), write, room);
+        let labels = self.labels();
+        let given = (&labels[..], (beta, f), self.c);
+        let (variables, reached) = reach_by_equations(&mut gram, given, goal);
+        (self.beta, self.f) = variables;
+        self.c = goal.c;
+        self.n_iterations += reached.n_iterations;
+        self.is_solved = reached.is_solved;
+    }
+
+    fn labels(&self) -> Vec<f64> {
+        let mut labels = vec![SIGNS[0]; self.rows[0].len()];
+        labels.resize(labels.len() + self.rows[1].len(), SIGNS[1]);
+        labels
+    }
+
+    /// The rows that weigh in the solution, by the place of their class and their number within it, with their coefficients.
+    pub fn weighing(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
+        let of_side = |side: usize| self.rows[side].iter().map(move |&row| (side, row));
+        let rows = of_side(0).chain(of_side(1)).zip(&self.beta);
+        rows.map(|((side, row), &beta)| (side, row, beta))
+    }
+
+    /// The rows that are to join, when `w·x` of all rows of both classes are these: the worst of those that violate the
+    /// optimality conditions; all, once most take part; `None` when none violates them.
+    ///
+    /// All rows hold within the tolerance when none that does not take part is further than half of it beyond the middle of
+    /// what the others leave open.
+    pub fn joining(
+        &self,
+        products: [&[T]; 2],
+        goal: PairGoal,
+        scratch: &mut Scratch<T>,
+    ) -> Option<Sides> {
+        let (highest, lowest) = extremes(&self.beta, &self.labels(), &self.f, goal.c);
+        let middle = (highest + lowest) / 2.0;
+        // By how much a row is beyond, least first.
+        let violating = &mut scratch.ranked;
+        violating.clear();
+        for (number, products) in products.into_iter().enumerate() {
+            // f lies beyond the middle by more than half the tolerance where w·x is less than this, by its sign.
+            let bound = T::of(SIGNS[number] * (SIGNS[number] - middle) - goal.tolerance / 2.0);
+            let sign = T::of(SIGNS[number]);
+            find_below(products, sign, bound, &mut scratch.below);
+            for &row in &scratch.below {
+                if !self.takes_part[number][row] {
+                    let beyond = (sign * products[row] - bound).wide();
+                    violating.push(RankedRow::new(beyond, (number, row)));
+                }
+            }
+        }
+        if violating.is_empty() {
+            return None;
+        }
+        let n_joining = violating.len().min(FEWEST_JOINING.max(violating.len() / 2));
+        let n_all = (products[0].len() + products[1].len()) as f64;
+        if (self.beta.len() + n_joining) as f64 > MOST_SHARE * n_all {
+            return Some([0, 1].map(|side| self.outside(side).collect()));
+        }
+        let mut joining = [0, 1].map(|_| Vec::with_capacity(n_joining));
+        for row in smallest(violating, n_joining) {
+            let (side, row) = row.place();
+            joining[side].push(row);
+        }
+        Some(joining)
+    }
+
+    /// The rows of a class that do not take part.
+    fn outside(&self, side: usize) -> impl Iterator<Item = usize> + '_ {
+        let takes_part = &self.takes_part[side];
+        (0..takes_part.len()).filter(|&row| !takes_part[row])
+    }
+
+    /// The last solution in terms of all rows of both classes.
+    pub fn solution(&mut self) -> DualSolution {
+        let n_first = self.takes_part[0].len();
+        let mut coefficients = vec![0.0; n_first + self.takes_part[1].len()];
+        for (side, row, beta) in self.weighing() {
+            coefficients[side * n_first + row] = beta;
+        }
+        let reached = Reached {
+            is_solved: self.is_solved,
+            n_iterations: std::mem::take(&mut self.n_iterations),
+        };
+        let variables = (&self.beta[..], &self.labels()[..], &self.f[..]);
+        DualSolution {
+            coefficients,
+            ..reached.solution(variables, self.c)
+        }
+    }
+}

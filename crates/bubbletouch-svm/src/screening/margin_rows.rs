@@ -1,0 +1,120 @@
+//! Rows of two classes, and which of them are nearest to the margin.
+
+use crate::linalg::scalar::Scalar;
+
+/// Products looked at side by side.
+const LANES: usize = 32;
+
+/// y of a pair's first class and of its second.
+pub(crate) const SIGNS: [f64; 2] = [1.0, -1.0];
+
+/// Rows of a pair's first class and of its second, by their number within the class.
+pub(crate) type Sides = [Vec<usize>; 2];
+
+/// A row by its class, the first or the second, and its number within the class.
+pub(crate) type RowOfPair = (usize, usize);
+
+/// A row of a pair by how far it is beyond something: compared by that, then by its place. In one number, since it is compared
+/// more often than read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct RankedRow(u128);
+
+impl RankedRow {
+    /// A row that is so far beyond.
+    pub fn new(beyond: f64, (side, row): RowOfPair) -> Self {
+        // Ordered like the number: a negative one's bits are turned round, a positive one comes after them.
+        let bits = beyond.to_bits();
+        let turned = match bits >> 63 {
+            0 => bits | 1 << 63,
+            _ => !bits,
+        };
+        Self(u128::from(turned) << 64 | (side as u128) << 63 | row as u128)
+    }
+
+    /// Its class and its number within the class.
+    pub fn place(self) -> RowOfPair {
+        let place = self.0 as u64;
+        ((place >> 63) as usize, (place & (u64::MAX >> 1)) as usize)
+    }
+}
+
+/// Rows of pairs by how far they are beyond something; in turn for all pairs, so that memory is asked for once.
+pub(crate) type Ranked = Vec<RankedRow>;
+
+/// The n rows of either class that are nearest to the other when `w·x` of all rows of both are these.
+pub(crate) fn nearest<T: Scalar>(products: [&[T]; 2], n: usize, ranked: &mut Ranked) -> Sides {
+    [0, 1].map(|side| {
+        let products = products[side].iter().enumerate();
+        ranked.clear();
+        ranked.extend(
+            products
+                .map(|(row, product)| RankedRow::new(SIGNS[side] * product.wide(), (side, row))),
+        );
+        let nearest = smallest(ranked, n).iter();
+        nearest.map(|row| row.place().1).collect()
+    })
+}
+
+/// The n rows that are least far beyond, in no order.
+pub(crate) fn smallest(rows: &mut [RankedRow], n: usize) -> &[RankedRow] {
+    if n < rows.len() {
+        rows.select_nth_unstable(n);
+        return &rows[..n];
+    }
+    rows
+}
+
+/// Makes `places` those of the products that, times a sign, are below a bound. A piece at a time: most have none.
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
+pub(crate) fn find_below<T: Scalar>(products: &[T], sign: T, bound: T, places: &mut Vec<usize>) {
+    places.clear();
+    for start in (0..products.len()).step_by(LANES) {
+        let piece = &products[start..products.len().min(start + LANES)];
+        let mut is_any = false;
+        for &product in piece {
+            is_any |= sign * product < bound;
+        }
+        if is_any {
+            for (at, &product) in piece.iter().enumerate() {
+                if sign * product < bound {
+                    places.push(start + at);
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_are_ordered_by_what_they_are_beyond_then_by_their_place() {
+        let beyond = [-f64::INFINITY, -2.0, -1e-300, -0.0, 0.0, 1e-300, 0.5, 7.0];
+        let places = [(0, 0), (0, 5), (1, 0), (1, u32::MAX as usize)];
+        let all = beyond.map(|beyond| places.map(|place| (beyond, place)));
+        let all = all.as_flattened();
+        let ranked: Vec<RankedRow> = all.iter().map(|&(by, at)| RankedRow::new(by, at)).collect();
+        assert!(ranked.is_sorted());
+        assert!(
+            ranked
+                .iter()
+                .zip(all)
+                .all(|(row, own)| row.place() == own.1)
+        );
+    }
+
+    #[test]
+    fn the_nearest_rows_are_those_of_a_sort() {
+        let products: Vec<f64> = (0..50).map(|i| (f64::from(i) * 2.3).sin()).collect();
+        let [mut near, mut other] = nearest([&products, &products], 7, &mut Ranked::new());
+        let mut order: Vec<usize> = (0..50).collect();
+        order.sort_by(|&a, &b| products[a].total_cmp(&products[b]));
+        near.sort_unstable();
+        other.sort_unstable();
+        let [mut least, mut most] = [order[..7].to_vec(), order[43..].to_vec()];
+        least.sort_unstable();
+        most.sort_unstable();
+        assert_eq!([near, other], [least, most]);
+    }
+}

@@ -1,0 +1,247 @@
+//! One-vs-one linear SVMs solved on the rows near their margins.
+//!
+//! Where classes part well, a hyperplane rests on few rows, yet products of all rows with each other cost most of the
+//! training when there are many features. So each pair of classes is solved on a few rows of either; all rows are held
+//! against the hyperplane; those that violate the optimality conditions join, and the pair is solved again from where it
+//! was. At the end every row satisfies the conditions, so the solution is that of the whole problem. The pairs of
+//! some classes take such rounds together: a round's hyperplanes meet the rows of a class in one matrix product.
+//!
+//! [Which rows to start with](crate::screening::first_rows) is found in a few dimensions.
+
+use std::ops::Range;
+
+use crate::active_set::pair_search::PairGoal;
+use crate::dual::DualSolution;
+use crate::gram::sorted::Sorted;
+use crate::linalg::products::own_products;
+use crate::linalg::row_products::multiply;
+use crate::linalg::scalar::Scalar;
+use crate::screening::first_rows::{CLASSES_AT_ONCE, FEW_DIMENSIONS, OTHERS_AT_ONCE};
+use crate::screening::margin_pair::{MarginPair, Scratch, Within};
+use crate::screening::margin_rows::{Sides, nearest};
+use crate::smo::{Dense, Room};
+
+/// Rounds in the few dimensions.
+const FEW_ROUNDS: usize = 2;
+/// The tolerance in the few dimensions: at 0.5 the rows found are no longer those of the solution.
+const ROUGH_TOLERANCE: f64 = 0.1;
+/// Iterations of a solve in the few dimensions, at most: classes that all features part may overlap there.
+const ROUGH_ITERATIONS: u64 = 1000;
+/// Rows of each class that a pair starts with in all dimensions.
+const ROWS_NEAR_MARGIN: usize = 24;
+
+/// The rows of all classes, as their pairs need them.
+pub(crate) struct Classes<'a, T> {
+    pub sorted: &'a Sorted<T>,
+    /// Products within each class.
+    within: Vec<Within<T>>,
+}
+
+impl<'a, T: Scalar> Classes<'a, T> {
+    /// Of these rows.
+    pub fn new(sorted: &'a Sorted<T>) -> Self {
+        let within = |range: &Range<usize>| {
+            let own = sorted.points().range(range.clone());
+            Within::new(own_products(own.values))
+        };
+        Self {
+            sorted,
+            within: sorted.ranges().iter().map(within).collect(),
+        }
+    }
+
+    /// Where the rows of two classes begin.
+    fn starts(&self, classes: [usize; 2]) -> [usize; 2] {
+        classes.map(|class| self.sorted.ranges()[class].start)
+    }
+
+    /// How many rows two classes have.
+    fn sizes(&self, classes: [usize; 2]) -> [usize; 2] {
+        classes.map(|class| self.sorted.ranges()[class].len())
+    }
+}
+
+/// Some pairs of classes, each with the rows it is solved on.
+pub(crate) struct NearMargin<'c, 'a, T> {
+    classes: &'c Classes<'a, T>,
+    pairs: Vec<MarginPair<T>>,
+    room: Room<T>,
+    scratch: Scratch<'c, T>,
+    round: Round<T>,
+}
+
+/// What a round found of a pair: the normal of its hyperplane, and `w·x` of all rows of both classes.
+type Found<'f, T> = (&'f [T], [&'f [T]; 2]);
+
+/// What a round found, of one pair after another.
+#[derive(Default)]
+struct Round<T> {
+    /// The hyperplanes' normals.
+    normals: Vec<T>,
+    /// `w·x` of all rows of both classes, class by class.
+    products: Vec<T>,
+    /// Where the products of both classes of each pair lie.
+    places: Vec<[Range<usize>; 2]>,
+}
+
+impl<T> Round<T> {
+    /// `w·x` of all rows of both classes of the pair that came so late.
+    fn products(&self, number: usize) -> [&[T]; 2] {
+        let places = self.places[number].each_ref();
+        places.map(|place| &self.products[place.clone()])
+    }
+}
+
+impl<'c, 'a, T: Scalar> NearMargin<'c, 'a, T> {
+    /// These pairs of classes, not solved yet, on these rows.
+    pub fn new(classes: &'c Classes<'a, T>, pairs: &[(usize, usize)], rows: &[Sides]) -> Self {
+        let pair = |&(a, b): &(usize, usize)| MarginPair::new([a, b], classes.sizes([a, b]));
+        let mut all = Self {
+            classes,
+            pairs: pairs.iter().map(pair).collect(),
+            room: Room::new(),
+            scratch: Scratch::default(),
+            round: Round::default(),
+        };
+        for (pair, rows) in rows.iter().enumerate() {
+            all.join(pair, rows, None);
+        }
+        all
+    }
+
+    /// Bytes that the products take when all rows of all pairs take part, with the hyperplanes of a round, the rows of a pair and
+    /// the directions of few dimensions, and all rows along them.
+    pub fn most_bytes(sorted: &Sorted<T>) -> usize {
+        let sizes = || sorted.ranges().iter().map(Range::len);
+        let within: usize = sizes().map(|n| n * n).sum();
+        let largest = sizes().max().unwrap_or(0);
+        let n_pairs = CLASSES_AT_ONCE * OTHERS_AT_ONCE;
+        // Both ways.
+        let across = n_pairs * 2 * largest.pow(2);
+        let normals = n_pairs * (sorted.centre().len() + 2 * largest);
+        let few = sorted.points().len() * FEW_DIMENSIONS;
+        (2 * within + across + normals + few) * size_of::<T>() + Dense::<T>::bytes(2 * largest)
+    }
+
+    /// Solves all pairs for this C, starting from the solutions of the last one, to a violation of the optimality conditions
+    /// of at most `tolerance`. Coefficients are those of all rows of the first class, then of the second. With each the
+    /// normal of its hyperplane.
+    pub fn solve(&mut self, c: f64, tolerance: f64) -> Vec<(DualSolution, Vec<T>)> {
+        let goal = PairGoal {
+            c,
+            tolerance,
+            most_iterations: None,
+        };
+        self.settle(goal, usize::MAX, |pair, (normal, _), _| {
+            (pair.solution(), normal.to_vec())
+        })
+    }
+
+    /// The rows of all pairs that are near the margin for this C, roughly.
+    pub fn near_margin(mut self, c: f64) -> Vec<Sides> {
+        let goal = PairGoal {
+            c,
+            tolerance: ROUGH_TOLERANCE,
+            most_iterations: Some(ROUGH_ITERATIONS),
+        };
+        self.settle(goal, FEW_ROUNDS, |_, (_, products), scratch| {
+            nearest(products, ROWS_NEAR_MARGIN, &mut scratch.ranked)
+        })
+    }
+
+    /// Solves all pairs in rounds, until no row violates the optimality conditions or the rounds are over; what is made of
+    /// each pair after its last round.
+    fn settle<R>(
+        &mut self,
+        goal: PairGoal,
+        most_rounds: usize,
+        mut settled: impl FnMut(&mut MarginPair<T>, Found<T>, &mut Scratch<'c, T>) -> R,
+    ) -> Vec<R> {
+        let mut results = Vec::new();
+        results.resize_with(self.pairs.len(), || None);
+        let n_features = self.classes.sorted.centre().len();
+        let mut open: Vec<usize> = (0..self.pairs.len()).collect();
+        let mut n_rounds = 0;
+        while !open.is_empty() {
+            n_rounds += 1;
+            let mut still_open = Vec::new();
+            self.solve_round(&open, goal);
+            for (number, &pair) in open.iter().enumerate() {
+                let products = self.round.products(number);
+                let joining = self.pairs[pair].joining(products, goal, &mut self.scratch);
+                match joining {
+                    Some(joining) if n_rounds < most_rounds => {
+                        still_open.push(pair);
+                        self.join(pair, &joining, Some(number));
+                    }
+                    _ => {
+                        let normal = &self.round.normals[number * n_features..][..n_features];
+                        let found = (normal, products);
+                        let pair = (&mut self.pairs[pair], &mut results[pair]);
+                        *pair.1 = Some(settled(pair.0, found, &mut self.scratch));
+                    }
+                }
+            }
+            open = still_open;
+        }
+        results.into_iter().flatten().collect()
+    }
+
+    /// Solves some pairs on the rows that take part, and multiplies all their rows with the hyperplanes.
+    fn solve_round(&mut self, pairs: &[usize], goal: PairGoal) {
+        let n_features = self.classes.sorted.centre().len();
+        let mut round = std::mem::take(&mut self.round);
+        round.normals.clear();
+        let mut sums = vec![0.0; n_features];
+        for &pair in pairs {
+            self.pairs[pair].solve(&self.classes.within, &mut self.room, goal);
+            sums.fill(0.0);
+            self.add_normal(pair, &mut sums);
+            round.normals.extend(sums.iter().map(|&sum| T::of(sum)));
+        }
+        round.places.clear();
+        round.places.resize(pairs.len(), [0..0, 0..0]);
+        let points = self.classes.sorted.points().in_place();
+        let (mut normals, mut rows) = (Vec::new(), Vec::new());
+        let mut end = 0;
+        for (class, range) in self.classes.sorted.ranges().iter().enumerate() {
+            normals.clear();
+            let start = end;
+            for (number, &pair) in pairs.iter().enumerate() {
+                let classes = self.pairs[pair].classes();
+                if let Some(side) = classes.iter().position(|&own| own == class) {
+                    normals.push(&round.normals[number * n_features..][..n_features]);
+                    round.places[number][side] = end..end + range.len();
+                    end += range.len();
+                }
+            }
+            if end > round.products.len() {
+                round.products.resize(end, T::zero());
+            }
+            if !normals.is_empty() {
+                rows.clear();
+                rows.extend(range.clone().map(|row| points.row(row)));
+                multiply(&normals, &rows, &mut round.products[start..end]);
+            }
+        }
+        self.round = round;
+    }
+
+    /// Adds a pair's `w = Σ β_i x_i`.
+    fn add_normal(&self, pair: usize, sums: &mut [f64]) {
+        let starts = self.classes.starts(self.pairs[pair].classes());
+        let rows = self.pairs[pair].weighing();
+        let rows = rows.map(|(side, row, beta)| (starts[side] + row, beta));
+        let points = self.classes.sorted.points();
+        points.in_place().add_weighted(sums, rows);
+    }
+
+    /// Lets rows of both classes of a pair take part, which came so late in the last round.
+    fn join(&mut self, pair: usize, joining: &Sides, number: Option<usize>) {
+        let classes: &'c Classes<'a, T> = self.classes;
+        let starts = classes.starts(self.pairs[pair].classes());
+        let products = number.map_or([&[][..]; 2], |number| self.round.products(number));
+        let all = (classes.sorted.points().in_place(), starts);
+        self.pairs[pair].join(joining, products, all, &mut self.scratch);
+    }
+}

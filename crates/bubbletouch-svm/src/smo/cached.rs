@@ -1,0 +1,155 @@
+//! A Gram matrix too large to hold.
+
+use ndarray::{Array2, Axis};
+
+use super::curvatures::InverseCurvatures;
+use super::gram::{Dense, Gram};
+use super::passes::padded;
+use crate::gram::points::Points;
+use crate::kernel::KernelFunction;
+use crate::linalg::scalar::Scalar;
+
+/// A Gram matrix too large to hold: rows are computed when asked for, and the latest kept.
+pub(crate) struct Cached<'a, T> {
+    points: &'a Points<T>,
+    kernel: KernelFunction,
+    stride: usize,
+    diagonal: Vec<T>,
+    inverses: InverseCurvatures<T>,
+    /// Bytes that kept rows, and a part of the matrix, may take.
+    limit: usize,
+    rows: Vec<Kept<T>>,
+    /// Where row i is kept.
+    place: Vec<Option<usize>>,
+    n_asked: u64,
+}
+
+/// A row in the cache.
+struct Kept<T> {
+    row: usize,
+    last_asked: u64,
+    values: Vec<T>,
+}
+
+/// Kernel rows computed at once for a weighted sum.
+const BLOCK: usize = 256;
+
+impl<'a, T: Scalar> Cached<'a, T> {
+    /// K of these points; kept rows take at most `limit` bytes, but two are always kept.
+    pub fn new(points: &'a Points<T>, kernel: KernelFunction, limit: usize) -> Self {
+        let n = points.len();
+        let mut diagonal = points.all().diagonal(&kernel);
+        diagonal.resize(padded(n), T::zero());
+        let mut inverses = InverseCurvatures::new();
+        inverses.renew(usize::MAX, &diagonal);
+        Self {
+            points,
+            kernel,
+            stride: padded(n),
+            inverses,
+            diagonal,
+            limit,
+            rows: Vec::new(),
+            place: vec![None; n],
+            n_asked: 0,
+        }
+    }
+
+    /// Makes sure that row i is kept, and says where.
+    fn fetch(&mut self, i: usize) -> usize {
+        self.n_asked += 1;
+        let at = match self.place[i] {
+            Some(at) => at,
+            None => {
+                let at = self.make_room();
+                let row = self.points.range(i..i + 1);
+                let kernel = row.kernel(self.points.all(), &self.kernel);
+                let values = &mut self.rows[at].values;
+                values.clear();
+                values.extend(kernel.iter());
+                values.resize(self.stride, T::zero());
+                self.rows[at].row = i;
+                self.place[i] = Some(at);
+                at
+            }
+        };
+        self.rows[at].last_asked = self.n_asked;
+        at
+    }
+
+    /// An empty place, or that of the row that was not asked for the longest.
+    fn make_room(&mut self) -> usize {
+        let most = (self.limit / (self.stride * size_of::<T>()).max(1)).max(2);
+        if self.rows.len() < most {
+            self.rows.push(Kept {
+                row: 0,
+                last_asked: 0,
+                values: Vec::new(),
+            });
+            return self.rows.len() - 1;
+        }
+        let mut oldest = 0;
+        for (at, kept) in self.rows.iter().enumerate() {
+            if kept.last_asked < self.rows[oldest].last_asked {
+                oldest = at;
+            }
+        }
+        self.place[self.rows[oldest].row] = None;
+        oldest
+    }
+}
+
+impl<T: Scalar> Gram<T> for Cached<'_, T> {
+    fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    fn rows(&mut self, i: usize, j: usize) -> (&[T], &[T]) {
+        self.fetch(i);
+        let at_j = self.fetch(j);
+        // Row i was asked for last before j, so it was not j's that replaced it.
+        let at_i = self.place[i].unwrap_or(at_j);
+        (&self.rows[at_i].values, &self.rows[at_j].values)
+    }
+
+    fn row_and_diagonal(&mut self, i: usize) -> (&[T], &[T]) {
+        let at = self.fetch(i);
+        (&self.rows[at].values, &self.diagonal)
+    }
+
+    fn inverse_curvatures(&mut self, i: usize) -> &[T] {
+        let at = self.fetch(i);
+        self.inverses
+            .of_row(i, &self.rows[at].values, &self.diagonal)
+    }
+
+    fn smallest_curvature(&self) -> T {
+        self.inverses.smallest()
+    }
+
+    fn times(&mut self, beta: &[f64]) -> Vec<f64> {
+        let mut sums = vec![0.0; self.points.len()];
+        let support: Vec<usize> = (0..beta.len()).filter(|&j| beta[j] != 0.0).collect();
+        for block in support.chunks(BLOCK) {
+            let rows = self.points.select(block);
+            let values: Array2<T> = rows.all().kernel(self.points.all(), &self.kernel);
+            for (row, &j) in values.axis_iter(Axis(0)).zip(block) {
+                for (sum, value) in sums.iter_mut().zip(row) {
+                    *sum += beta[j] * value.wide();
+                }
+            }
+        }
+        sums
+    }
+
+    fn fits(&self, n: usize) -> bool {
+        Dense::<T>::bytes(n) <= self.limit
+    }
+
+    fn part(&mut self, indices: &[usize]) -> Dense<T> {
+        let some = self.points.select(indices);
+        let mut part = Dense::default();
+        part.of_whole(some.all().own_kernel(&self.kernel).view());
+        part
+    }
+}

@@ -1,0 +1,112 @@
+//! The inverse of the dual objective's curvature along the lines that move two variables, row by row of the Gram matrix.
+//!
+//! The same rows are asked for again and again: at every C, and in cross-validation in every fold.
+
+use crate::linalg::scalar::Scalar;
+
+/// Curvature along a pair's line, at least, relative to the Gram matrix's largest entry: equal rows with unequal labels
+/// have none.
+const SMALLEST_CURVATURE: f64 = 1e-12;
+
+/// Rows up to which all are kept: 4 MB of f32.
+const MOST_KEPT: usize = 1000;
+
+/// The smallest curvature that counts, given the diagonal.
+fn smallest<T: Scalar>(diagonal: &[T]) -> T {
+    let largest = diagonal.iter().fold(T::zero(), |a, &b| a.max(b));
+    (T::of(SMALLEST_CURVATURE) * largest).max(T::min_positive_value())
+}
+
+/// Rows of inverse curvatures, kept from when each is first asked for where a matrix has few rows.
+#[derive(Clone, Debug)]
+pub(super) struct InverseCurvatures<T> {
+    values: Vec<T>,
+    /// Which rows are kept; empty where none is, and the values are those of the row asked for last.
+    is_here: Vec<bool>,
+    smallest: T,
+}
+
+impl<T: Scalar> InverseCurvatures<T> {
+    pub fn new() -> Self {
+        Self {
+            values: Vec::new(),
+            is_here: Vec::new(),
+            smallest: T::zero(),
+        }
+    }
+
+    /// Of another matrix of n rows, with this diagonal, padded like a row; in the memory of the last.
+    pub fn renew(&mut self, n: usize, diagonal: &[T]) {
+        let n_kept = if n <= MOST_KEPT { n } else { 0 };
+        self.is_here.clear();
+        self.is_here.resize(n_kept, false);
+        let n_values = n_kept.max(1) * diagonal.len();
+        if self.values.len() < n_values {
+            self.values.resize(n_values, T::zero());
+        }
+        self.smallest = smallest(diagonal);
+    }
+
+    /// The smallest curvature that counts.
+    pub fn smallest(&self) -> T {
+        self.smallest
+    }
+
+    /// Those along the lines of i and each other, given row i and the diagonal.
+    #[inline(always)]
+    pub fn of_row(&mut self, i: usize, row: &[T], diagonal: &[T]) -> &[T] {
+        let (place, is_here) = match self.is_here.get_mut(i) {
+            Some(is_here) => (i, std::mem::replace(is_here, true)),
+            None => (0, false),
+        };
+        let values = &mut self.values[place * diagonal.len()..][..diagonal.len()];
+        if !is_here {
+            write(values, (row, diagonal), (diagonal[i], self.smallest));
+        }
+        values
+    }
+}
+
+/// `1 / (K_ii + K_jj − 2 K_ij)`, the curvature at least the smallest.
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
+fn write<T: Scalar>(to: &mut [T], (row, diagonal): (&[T], &[T]), (own, smallest): (T, T)) {
+    let n = to.len();
+    let (row, diagonal) = (&row[..n], &diagonal[..n]);
+    let two = T::one() + T::one();
+    for at in 0..n {
+        let curvature = own + diagonal[at] - two * row[at];
+        let curvature = if curvature > smallest {
+            curvature
+        } else {
+            smallest
+        };
+        to[at] = T::one() / curvature;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn inverses_are_those_of_the_definition_whether_kept_or_not_and_never_infinite() {
+        let row = |i: usize| (0..16).map(move |j| ((i * 5 + j * 3) as f64 * 1.7).sin());
+        let diagonal: Vec<f64> = (0..16).map(|i| 2.0 + f64::from(i)).collect();
+        for n in [16, MOST_KEPT + 1] {
+            let mut inverses = InverseCurvatures::new();
+            inverses.renew(n, &diagonal);
+            for i in [3, 0, 3, 15, 3] {
+                let row: Vec<f64> = row(i).collect();
+                for (j, &found) in inverses.of_row(i, &row, &diagonal).iter().enumerate() {
+                    let curvature = diagonal[i] + diagonal[j] - 2.0 * row[j];
+                    assert_eq!(found, 1.0 / curvature, "{n} {i} {j}");
+                }
+            }
+        }
+        // Equal rows.
+        let mut inverses = InverseCurvatures::new();
+        inverses.renew(2, &[1.0_f32; 16]);
+        let found = inverses.of_row(0, &[1.0; 16], &[1.0; 16]);
+        assert!(found.iter().all(|&found| found == 1.0 / 1e-12), "{found:?}");
+    }
+}

@@ -1,0 +1,180 @@
+//! Gram matrices as the solver reads them: two rows at a time, the diagonal, a weighted sum of rows, a part.
+
+use ndarray::{ArrayView1, ArrayView2, ArrayViewMut2, s};
+
+use super::curvatures::InverseCurvatures;
+use super::passes::padded;
+use super::row_sums::weighted_sum;
+use crate::linalg::scalar::Scalar;
+use crate::linalg::transposed::write_columns;
+
+/// K of one binary problem, n × n, symmetric and positive semidefinite. Rows are padded to whole lanes with zeros.
+pub(crate) trait Gram<T> {
+    /// n.
+    fn len(&self) -> usize;
+    /// Rows i and j.
+    fn rows(&mut self, i: usize, j: usize) -> (&[T], &[T]);
+    /// Row i and the diagonal, padded like a row.
+    fn row_and_diagonal(&mut self, i: usize) -> (&[T], &[T]);
+    /// `1 / (K_ii + K_jj − 2 K_ij)` for each j, padded like a row; at most that of the smallest curvature that counts.
+    fn inverse_curvatures(&mut self, i: usize) -> &[T];
+    /// The smallest curvature that counts.
+    fn smallest_curvature(&self) -> T;
+    /// `K β`, summed in f64 (n values).
+    fn times(&mut self, beta: &[f64]) -> Vec<f64>;
+    /// Takes `K β` from f.
+    fn take_times(&mut self, beta: &[f64], f: &mut [f64]) {
+        for (f, product) in f.iter_mut().zip(self.times(beta)) {
+            *f -= product;
+        }
+    }
+    /// Whether a part of this many rows would fit in memory.
+    fn fits(&self, n: usize) -> bool;
+    /// The rows and columns at these indices.
+    fn part(&mut self, indices: &[usize]) -> Dense<T>;
+}
+
+/// A Gram matrix that is held whole.
+#[derive(Clone, Debug)]
+pub(crate) struct Dense<T> {
+    n: usize,
+    stride: usize,
+    /// n rows of `stride` values.
+    values: Vec<T>,
+    diagonal: Vec<T>,
+    inverses: InverseCurvatures<T>,
+}
+
+impl<T: Scalar> Default for Dense<T> {
+    /// No rows yet.
+    fn default() -> Self {
+        Self {
+            n: 0,
+            stride: 0,
+            values: Vec::new(),
+            diagonal: Vec::new(),
+            inverses: InverseCurvatures::new(),
+        }
+    }
+}
+
+impl<T: Scalar> Dense<T> {
+    /// Bytes that a matrix of n rows takes.
+    pub fn bytes(n: usize) -> usize {
+        n * padded(n) * size_of::<T>()
+    }
+
+    /// Takes on a new matrix of n rows, in the memory of the old one; `fill` writes the n values of each row, or leaves what
+    /// is written later.
+    pub fn refill(&mut self, n: usize, mut fill: impl FnMut(usize, &mut [T])) {
+        self.n = n;
+        self.stride = padded(n);
+        self.values.resize(n * self.stride, T::zero());
+        for (i, row) in self.values.chunks_exact_mut(self.stride.max(1)).enumerate() {
+            fill(i, &mut row[..n]);
+            row[n..].fill(T::zero());
+        }
+        self.diagonal.clear();
+        self.diagonal
+            .extend((0..n).map(|i| self.values[i * self.stride + i]));
+        self.diagonal.resize(self.stride, T::zero());
+        self.inverses.renew(n, &self.diagonal);
+    }
+
+    /// A whole matrix.
+    pub fn of_whole(&mut self, whole: ArrayView2<T>) {
+        self.refill(whole.nrows(), |i, to| copy(to, whole.row(i)));
+    }
+
+    /// A symmetric matrix of two groups of rows: those within each, and those of the second with the first, which `write`
+    /// writes.
+    pub fn of_blocks(
+        &mut self,
+        [own, others]: [ArrayView2<T>; 2],
+        write: impl FnOnce(ArrayViewMut2<T>),
+    ) {
+        let n_first = own.nrows();
+        self.refill(n_first + others.nrows(), |at, to| {
+            let (left, right) = to.split_at_mut(n_first);
+            match at.checked_sub(n_first) {
+                None => copy(left, own.row(at)),
+                Some(at) => copy(right, others.row(at)),
+            }
+        });
+        let (above, below) =
+            self.values[..self.n * self.stride].split_at_mut(n_first * self.stride);
+        let shape = (others.nrows(), self.stride);
+        let both = ArrayViewMut2::from_shape(shape, &mut *below);
+        let both = both.expect("there is room for all rows");
+        write(both.slice_move(s![.., ..n_first]));
+        let rows = below.chunks_exact(self.stride.max(1));
+        let rows: Vec<&[T]> = rows.map(|row| &row[..n_first]).collect();
+        if n_first > 0 {
+            write_columns(&rows, &mut above[n_first..], self.stride);
+        }
+    }
+
+    /// A row.
+    #[inline(always)]
+    pub fn row(&self, i: usize) -> &[T] {
+        &self.values[i * self.stride..(i + 1) * self.stride]
+    }
+}
+
+/// Copies a row.
+fn copy<T: Copy>(to: &mut [T], from: ArrayView1<T>) {
+    match from.as_slice() {
+        Some(from) => to.copy_from_slice(from),
+        None => to.iter_mut().zip(from).for_each(|(to, &from)| *to = from),
+    }
+}
+
+impl<T: Scalar> Gram<T> for Dense<T> {
+    fn len(&self) -> usize {
+        self.n
+    }
+
+    #[inline(always)]
+    fn rows(&mut self, i: usize, j: usize) -> (&[T], &[T]) {
+        (self.row(i), self.row(j))
+    }
+
+    #[inline(always)]
+    fn row_and_diagonal(&mut self, i: usize) -> (&[T], &[T]) {
+        (self.row(i), &self.diagonal)
+    }
+
+    #[inline(always)]
+    fn inverse_curvatures(&mut self, i: usize) -> &[T] {
+        let row = &self.values[i * self.stride..(i + 1) * self.stride];
+        self.inverses.of_row(i, row, &self.diagonal)
+    }
+
+    #[inline(always)]
+    fn smallest_curvature(&self) -> T {
+        self.inverses.smallest()
+    }
+
+    fn times(&mut self, beta: &[f64]) -> Vec<f64> {
+        weighted_sum(self.n, beta, |j| self.row(j))
+    }
+
+    fn fits(&self, _: usize) -> bool {
+        true
+    }
+
+    fn part(&mut self, indices: &[usize]) -> Self {
+        let mut part = Self::default();
+        part.refill(indices.len(), |i, to| {
+            gather(to, self.row(indices[i]), indices)
+        });
+        part
+    }
+}
+
+/// Copies these columns of a row.
+pub(crate) fn gather<T: Copy>(to: &mut [T], from: &[T], columns: &[usize]) {
+    for (to, &column) in to.iter_mut().zip(columns) {
+        *to = from[column];
+    }
+}

@@ -1,0 +1,151 @@
+//! A Gram matrix whose values are held elsewhere: rows are brought together when the solver first asks for them.
+
+use super::curvatures::InverseCurvatures;
+use super::gram::{Dense, Gram, gather};
+use super::passes::padded;
+use super::row_sums::weighted_sum;
+use crate::linalg::scalar::Scalar;
+
+/// Room for the rows of parts, one part after another.
+#[derive(Debug)]
+pub(crate) struct Room<T> {
+    values: Vec<T>,
+    is_here: Vec<bool>,
+    diagonal: Vec<T>,
+    inverses: InverseCurvatures<T>,
+}
+
+impl<T: Scalar> Room<T> {
+    pub fn new() -> Self {
+        Self {
+            values: Vec::new(),
+            is_here: Vec::new(),
+            diagonal: Vec::new(),
+            inverses: InverseCurvatures::new(),
+        }
+    }
+}
+
+/// K of n rows, by what writes the n values of a row.
+pub(crate) struct Part<'a, T, F> {
+    n: usize,
+    stride: usize,
+    write: F,
+    room: &'a mut Room<T>,
+}
+
+/// K of two classes from the rows of its blocks: within each, and across, those of the first with the second and of the second
+/// with the first.
+pub(crate) fn part_of_blocks<'a, T: Scalar>(
+    within: &'a [Vec<&[T]>; 2],
+    across: &'a [Vec<&[T]>; 2],
+    room: &'a mut Room<T>,
+) -> Part<'a, T, impl Fn(usize, &mut [T])> {
+    let n_first = within[0].len();
+    let diagonal = within.iter().flat_map(|block| {
+        let rows = block.iter().enumerate();
+        rows.map(|(at, row)| row[at])
+    });
+    let write = move |i: usize, to: &mut [T]| {
+        let (left, right) = to.split_at_mut(n_first);
+        let (side, row) = if i < n_first {
+            (0, i)
+        } else {
+            (1, i - n_first)
+        };
+        let (own, other) = if side == 0 {
+            (left, right)
+        } else {
+            (right, left)
+        };
+        own.copy_from_slice(within[side][row]);
+        other.copy_from_slice(across[side][row]);
+    };
+    Part::new(diagonal, write, room)
+}
+
+impl<'a, T: Scalar, F: FnMut(usize, &mut [T])> Part<'a, T, F> {
+    /// Of as many rows as the diagonal has values.
+    pub fn new(diagonal: impl Iterator<Item = T>, write: F, room: &'a mut Room<T>) -> Self {
+        room.diagonal.clear();
+        room.diagonal.extend(diagonal);
+        let n = room.diagonal.len();
+        let stride = padded(n);
+        room.diagonal.resize(stride, T::zero());
+        room.is_here.clear();
+        room.is_here.resize(n, false);
+        if room.values.len() < n * stride {
+            room.values.resize(n * stride, T::zero());
+        }
+        room.inverses.renew(n, &room.diagonal);
+        Self {
+            n,
+            stride,
+            write,
+            room,
+        }
+    }
+
+    fn bring(&mut self, i: usize) {
+        if self.room.is_here[i] {
+            return;
+        }
+        self.room.is_here[i] = true;
+        let to = &mut self.room.values[i * self.stride..][..self.stride];
+        let (to, padding) = to.split_at_mut(self.n);
+        (self.write)(i, to);
+        padding.fill(T::zero());
+    }
+
+    fn at(&self, i: usize) -> &[T] {
+        &self.room.values[i * self.stride..][..self.stride]
+    }
+}
+
+impl<T: Scalar, F: FnMut(usize, &mut [T])> Gram<T> for Part<'_, T, F> {
+    fn len(&self) -> usize {
+        self.n
+    }
+
+    fn rows(&mut self, i: usize, j: usize) -> (&[T], &[T]) {
+        self.bring(i);
+        self.bring(j);
+        (self.at(i), self.at(j))
+    }
+
+    fn row_and_diagonal(&mut self, i: usize) -> (&[T], &[T]) {
+        self.bring(i);
+        (self.at(i), &self.room.diagonal)
+    }
+
+    fn inverse_curvatures(&mut self, i: usize) -> &[T] {
+        self.bring(i);
+        let room = &mut *self.room;
+        let row = &room.values[i * self.stride..][..self.stride];
+        room.inverses.of_row(i, row, &room.diagonal)
+    }
+
+    fn smallest_curvature(&self) -> T {
+        self.room.inverses.smallest()
+    }
+
+    fn times(&mut self, beta: &[f64]) -> Vec<f64> {
+        (0..beta.len())
+            .filter(|&j| beta[j] != 0.0)
+            .for_each(|j| self.bring(j));
+        weighted_sum(self.n, beta, |j| self.at(j))
+    }
+
+    fn fits(&self, _: usize) -> bool {
+        true
+    }
+
+    fn part(&mut self, indices: &[usize]) -> Dense<T> {
+        indices.iter().for_each(|&i| self.bring(i));
+        let mut part = Dense::default();
+        part.refill(indices.len(), |i, to| {
+            gather(to, self.at(indices[i]), indices)
+        });
+        part
+    }
+}

@@ -1,0 +1,240 @@
+//! The solver's two passes over all variables, written so that the compiler makes vector instructions of them; f32 has
+//! [its own](super::passes_512) where the processor allows it.
+//!
+//! Every slice is a whole number of [`LANES`] long ([`padded`]). Each lane keeps its own extreme; where the extreme of all is
+//! gets looked up afterwards, the lowest index of equals, so results do not depend on the processor.
+
+use crate::linalg::scalar::Scalar;
+
+/// Values handled side by side: two vector registers of eight f32, four of four f64.
+pub(super) const LANES: usize = 16;
+
+/// The smallest whole number of lanes that holds n values.
+pub(super) fn padded(n: usize) -> usize {
+    n.next_multiple_of(LANES)
+}
+
+/// The largest of `a + b`. A lane keeps its own; they meet at the end.
+#[inline(always)]
+fn largest_sum<T: Scalar>(a: &[T], b: &[T]) -> T {
+    let mut lanes = [T::neg_infinity(); LANES];
+    for (a, b) in a
+        .as_chunks::<LANES>()
+        .0
+        .iter()
+        .zip(b.as_chunks::<LANES>().0)
+    {
+        for lane in 0..LANES {
+            let value = a[lane] + b[lane];
+            lanes[lane] = if value > lanes[lane] {
+                value
+            } else {
+                lanes[lane]
+            };
+        }
+    }
+    lanes
+        .iter()
+        .fold(T::neg_infinity(), |a, &b| if b > a { b } else { a })
+}
+
+/// The largest of `a`, at least 0.
+#[inline(always)]
+fn largest<T: Scalar>(a: &[T]) -> T {
+    let mut lanes = [T::zero(); LANES];
+    for a in a.as_chunks::<LANES>().0 {
+        for lane in 0..LANES {
+            lanes[lane] = if a[lane] > lanes[lane] {
+                a[lane]
+            } else {
+                lanes[lane]
+            };
+        }
+    }
+    lanes
+        .iter()
+        .fold(T::zero(), |a, &b| if b > a { b } else { a })
+}
+
+/// The first index for which `is` holds; `any` says whether it does anywhere in a chunk, all lanes at once.
+#[inline(always)]
+fn first(n: usize, is: impl Fn(usize) -> bool) -> usize {
+    for start in (0..n).step_by(LANES) {
+        let mut is_here = false;
+        for lane in 0..LANES {
+            is_here |= is(start + lane);
+        }
+        if is_here {
+            return (start..start + LANES)
+                .find(|&index| is(index))
+                .unwrap_or(start);
+        }
+    }
+    0
+}
+
+/// Where the largest of `f + up` is, the first of equals: the next variable to raise. `None` when none can be.
+#[inline(always)]
+pub(super) fn select_up<T: Scalar>(f: &[T], up: &[T]) -> Option<usize> {
+    let up = &up[..f.len()];
+    let highest = largest_sum(f, up);
+    if highest > T::neg_infinity() {
+        Some(first(f.len(), |at| f[at] + up[at] == highest))
+    } else {
+        None
+    }
+}
+
+/// Takes `f − step (row_i − row_j)` in place, and finds the next variable to raise.
+#[multiversion::multiversion(targets("x86_64+avx2+fma"))]
+pub(crate) fn step_along<T: Scalar>(
+    f: &mut [T],
+    (row_i, row_j): (&[T], &[T]),
+    step: T,
+    up: &[T],
+) -> Option<usize> {
+    let n = f.len();
+    let (row_i, row_j) = (&row_i[..n], &row_j[..n]);
+    for at in 0..n {
+        f[at] -= step * (row_i[at] - row_j[at]);
+    }
+    select_up(f, up)
+}
+
+/// What the second pass found.
+pub(crate) struct Down<T> {
+    /// The variable to lower with `i`: the largest gain of the dual objective, to second order [Fan, Chen, Lin 2005];
+    /// `None` when no pair violates the optimality conditions.
+    pub j: Option<usize>,
+    /// How far they are violated: the largest of f that can be raised less the smallest that can be lowered.
+    pub violation: T,
+}
+
+/// The variable to lower when i, whose f is `highest`, is raised. `low` is 0 where a variable can be lowered and −∞ elsewhere;
+/// `inverses` are the inverse curvatures along the lines of i; `gains` is scratch.
+#[multiversion::multiversion(targets("x86_64+avx2+fma"))]
+pub(crate) fn select_down<T: Scalar>(
+    (f, low): (&[T], &[T]),
+    inverses: &[T],
+    highest: T,
+    gains: &mut [T],
+) -> Down<T> {
+    let n = gains.len();
+    let (f, low, inverses) = (&f[..n], &low[..n], &inverses[..n]);
+    for at in 0..n {
+        let difference = highest - f[at] + low[at];
+        let difference = if difference > T::zero() {
+            difference
+        } else {
+            T::zero()
+        };
+        gains[at] = difference * difference * inverses[at];
+    }
+    let best = largest(gains);
+    let gains = &*gains;
+    Down {
+        j: if best > T::zero() {
+            Some(first(n, |at| gains[at] == best))
+        } else {
+            None
+        },
+        violation: violation(f, low, highest),
+    }
+}
+
+/// The largest of `highest − f + low`, at least 0.
+#[inline(always)]
+fn violation<T: Scalar>(f: &[T], low: &[T], highest: T) -> T {
+    let mut lanes = [T::zero(); LANES];
+    for (f, low) in f
+        .as_chunks::<LANES>()
+        .0
+        .iter()
+        .zip(low.as_chunks::<LANES>().0)
+    {
+        for lane in 0..LANES {
+            let value = highest - f[lane] + low[lane];
+            lanes[lane] = if value > lanes[lane] {
+                value
+            } else {
+                lanes[lane]
+            };
+        }
+    }
+    lanes
+        .iter()
+        .fold(T::zero(), |a, &b| if b > a { b } else { a })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Values with no pattern; some lanes repeat, so that ties occur.
+    fn values(n: usize, salt: f64) -> Vec<f64> {
+        (0..n)
+            .map(|i| ((i % 37) as f64 * 1.7 + salt).sin())
+            .collect()
+    }
+
+    #[test]
+    fn the_passes_find_what_a_plain_loop_finds() {
+        let n = 5 * LANES;
+        let infinite = |i: usize, every: usize| i.is_multiple_of(every);
+        let up: Vec<f64> = (0..n)
+            .map(|i| {
+                if infinite(i, 3) {
+                    f64::NEG_INFINITY
+                } else {
+                    0.0
+                }
+            })
+            .collect();
+        let low: Vec<f64> = (0..n)
+            .map(|i| if infinite(i, 4) { f64::INFINITY } else { 0.0 })
+            .collect();
+        let (row_i, row_j) = (values(n, 0.1), values(n, 0.5));
+        let inverses: Vec<f64> = values(n, 2.0).iter().map(|v| v + 3.0).collect();
+        let mut f = values(n, 0.9);
+        let mut plain = f.clone();
+
+        let next = step_along(&mut f, (&row_i, &row_j), 0.3, &up);
+        for i in 0..n {
+            plain[i] -= 0.3 * (row_i[i] - row_j[i]);
+        }
+        assert_eq!(f, plain);
+        let mut best = (f64::NEG_INFINITY, 0);
+        for i in 0..n {
+            if plain[i] + up[i] > best.0 {
+                best = (plain[i] + up[i], i);
+            }
+        }
+        assert_eq!(next, Some(best.1));
+        assert_eq!(select_up(&f, &up), next);
+
+        let highest = best.0;
+        let down = select_down((&f, &low), &inverses, highest, &mut vec![0.0; n]);
+        let (mut gain, mut at, mut violation) = (0.0, None, 0.0_f64);
+        for j in 0..n {
+            let difference = highest - f[j] + low[j];
+            if difference > 0.0 {
+                violation = violation.max(difference);
+                if difference * difference * inverses[j] > gain {
+                    gain = difference * difference * inverses[j];
+                    at = Some(j);
+                }
+            }
+        }
+        assert_eq!(down.j, at);
+        assert_eq!(down.violation, violation);
+    }
+
+    #[test]
+    fn nothing_is_found_where_nothing_can_move() {
+        let f = vec![1.0_f32; LANES];
+        assert_eq!(select_up(&f, &[f32::NEG_INFINITY; LANES]), None);
+        let low = [f32::NEG_INFINITY; LANES];
+        let down = select_down((&f, &low), &[1.0; LANES], 1.0, &mut [0.0; LANES]);
+        assert!(down.j.is_none() && down.violation == 0.0);
+    }
+}

@@ -1,0 +1,45 @@
+//! Weighted sums of rows, in f64.
+
+use crate::linalg::scalar::Scalar;
+
+/// The first n values of `Σ β_j row_j`, in f64.
+pub(super) fn weighted_sum<'a, T: Scalar>(
+    n: usize,
+    beta: &[f64],
+    row: impl Fn(usize) -> &'a [T],
+) -> Vec<f64> {
+    let mut sums = vec![0.0; n];
+    // Without branches: which rows weigh has no pattern.
+    let (mut weighing, mut n_weighing) = (vec![0; beta.len()], 0);
+    for (j, &beta) in beta.iter().enumerate() {
+        weighing[n_weighing] = j;
+        n_weighing += usize::from(beta != 0.0);
+    }
+    let (fours, last) = weighing[..n_weighing].as_chunks::<4>();
+    for four in fours {
+        add_four(&mut sums, &four.map(|j| (row(j), beta[j])));
+    }
+    last.iter()
+        .for_each(|&j| add_row(&mut sums, row(j), beta[j]));
+    sums
+}
+
+/// Four rows one after the other: the sums are read and written a quarter as often.
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
+fn add_four<T: Scalar>(sums: &mut [f64], rows: &[(&[T], f64); 4]) {
+    let n = sums.len();
+    let [(a, p), (b, q), (c, r), (d, s)] = *rows;
+    let (a, b, c, d) = (&a[..n], &b[..n], &c[..n], &d[..n]);
+    for at in 0..n {
+        let sum = sums[at] + p * a[at].wide() + q * b[at].wide();
+        sums[at] = sum + r * c[at].wide() + s * d[at].wide();
+    }
+}
+
+/// Adds β times a row to sums in f64.
+#[multiversion::multiversion(targets("x86_64+avx2+fma"))]
+pub(super) fn add_row<T: Scalar>(sums: &mut [f64], row: &[T], beta: f64) {
+    for (sum, value) in sums.iter_mut().zip(row) {
+        *sum += beta * value.wide();
+    }
+}

@@ -1,0 +1,150 @@
+//! Where the search for a solution may start.
+
+use super::Smo;
+use super::gram::Gram;
+use super::row_sums::add_row;
+use super::variables::linear_and_quadratic;
+use crate::linalg::scalar::Scalar;
+
+impl<G> Smo<'_, G> {
+    /// The same problem, not solved yet, to start from all multipliers at C, as the solution for a small one has them: all
+    /// but the surplus of the larger class, where these rows are farthest on their side. From nothing where the objective
+    /// is highest before C when all multipliers grow together. `sums` are `K y`.
+    pub fn at_bounds<T: Scalar>(mut self, c: f64, sums: &[f64]) -> Self
+    where
+        G: Gram<T>,
+    {
+        let y = self.y;
+        let curvature: f64 = y.iter().zip(sums).map(|(y, sum)| y * sum).sum();
+        // Nor when kernel values have left nothing to go by.
+        let still_rises = c * curvature <= y.iter().map(|y| y * y).sum::<f64>();
+        if !still_rises {
+            return self;
+        }
+        let balance: f64 = y.iter().sum();
+        let mut larger: Vec<usize> = (0..y.len()).filter(|&i| y[i] * balance > 0.0).collect();
+        larger.sort_by(|&i, &j| (y[j] * sums[j]).total_cmp(&(y[i] * sums[i])));
+        self.beta = y.iter().map(|y| c * y).collect();
+        self.f = y.iter().zip(sums).map(|(y, sum)| y - c * sum).collect();
+        for &i in larger.iter().take(balance.abs() as usize) {
+            self.beta[i] = 0.0;
+            let n = y.len();
+            let (row, _) = self.gram.row_and_diagonal(i);
+            add_row(&mut self.f, &row[..n], c * y[i]);
+        }
+        self.c = c;
+        self
+    }
+
+    /// Takes β to another C: multiplied by what is best for the objective, as far as the new bounds allow.
+    pub(super) fn stretch(&mut self, c: f64) {
+        let (linear, quadratic) = linear_and_quadratic(&self.beta, self.y, &self.f);
+        if self.c > 0.0 && self.c != c && quadratic > 0.0 {
+            let most = c / self.c;
+            let factor = (linear / quadratic).clamp(0.0, most);
+            for (beta, y) in self.beta.iter_mut().zip(self.y) {
+                let is_at_bound = *beta == self.c * y;
+                *beta = if is_at_bound && factor == most {
+                    c * y
+                } else {
+                    (factor * *beta).clamp(-c, c)
+                };
+            }
+            for (f, y) in self.f.iter_mut().zip(self.y) {
+                *f = y - factor * (y - *f);
+            }
+        }
+    }
+
+    /// Goes on from another β and its f if the objective is higher there.
+    pub(super) fn prefer(&mut self, other: (Vec<f64>, Vec<f64>)) {
+        let objective = self.objective();
+        let own = (
+            std::mem::replace(&mut self.beta, other.0),
+            std::mem::replace(&mut self.f, other.1),
+        );
+        // Not either where kernel values have left nothing to compare.
+        let is_higher = self.objective() > objective;
+        if !is_higher {
+            (self.beta, self.f) = own;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::smo::Dense;
+    use ndarray::Array2;
+
+    /// exp(−γ d²) of points on a line that the classes share; one class is larger by five.
+    fn problem(gamma: f64) -> (Dense<f64>, Vec<f64>) {
+        let n = 45;
+        let at = |i: usize| (i as f64 * 1.7).sin() + if i % 9 < 4 { 0.4 } else { 0.0 };
+        let kernel =
+            Array2::from_shape_fn((n, n), |(i, j)| (-gamma * (at(i) - at(j)).powi(2)).exp());
+        let mut gram = Dense::default();
+        gram.of_whole(kernel.view());
+        (
+            gram,
+            (0..n).map(|i| if i % 9 < 4 { 1.0 } else { -1.0 }).collect(),
+        )
+    }
+
+    #[test]
+    fn the_start_is_allowed_and_f_is_its_gradient() {
+        let (mut gram, y) = problem(0.01);
+        let sums = gram.times(&y);
+        let smo = Smo::new(&mut gram, &y).at_bounds(0.1, &sums);
+        assert_eq!(smo.beta.iter().filter(|beta| **beta == 0.0).count(), 5);
+        assert!(smo.beta.iter().sum::<f64>().abs() < 1e-12);
+        let (beta, f) = (smo.beta.clone(), smo.f.clone());
+        let mut resumed = Smo::going_on(&mut gram, &y, (beta, Vec::new()), 0.1);
+        resumed.f = vec![0.0; f.len()];
+        resumed.refresh();
+        for (f, expected) in f.iter().zip(&resumed.f) {
+            assert!((f - expected).abs() < 1e-12, "{f} {expected}");
+        }
+    }
+
+    #[test]
+    fn the_solution_is_that_from_nothing() {
+        for (gamma, c) in [(0.01, 0.1), (1.0, 0.1), (1.0, 1.0), (30.0, 10.0)] {
+            let (mut gram, y) = problem(gamma);
+            let expected = Smo::new(&mut gram, &y).solve(c, 1e-9);
+            let sums = gram.times(&y);
+            let mut smo = Smo::new(&mut gram, &y).at_bounds(c, &sums);
+            let found = smo.solve(c, 1e-9);
+            assert!(
+                (found.objective - expected.objective).abs() < 1e-8,
+                "{gamma} {c}"
+            );
+            assert!((found.rho - expected.rho).abs() < 1e-6, "{gamma} {c}");
+        }
+    }
+
+    #[test]
+    fn a_large_c_starts_from_nothing() {
+        let (mut gram, y) = problem(30.0);
+        let sums = gram.times(&y);
+        let smo = Smo::new(&mut gram, &y).at_bounds(1e4, &sums);
+        assert!(smo.c == 0.0 && smo.beta.iter().all(|beta| *beta == 0.0));
+    }
+
+    #[test]
+    fn another_start_leads_to_the_same_solution_and_the_optimum_itself_takes_no_step() {
+        let (mut gram, y) = problem(1.0);
+        let expected = Smo::new(&mut gram, &y).solve(1.0, 1e-9);
+        for factor in [1.0, 0.5, 0.0] {
+            let other = expected.coefficients.iter().map(|beta| factor * beta);
+            let other: Vec<f64> = other.collect();
+            let products = gram.times(&other);
+            let f = y.iter().zip(products).map(|(y, product)| y - product);
+            let f: Vec<f64> = f.collect();
+            let mut smo = Smo::new(&mut gram, &y);
+            let found = smo.solve_or_from(1.0, 1e-9, |_| Some((other, f)));
+            assert!((found.objective - expected.objective).abs() < 1e-8);
+            assert_eq!(found.n_iterations == Some(0), factor == 1.0, "{factor}");
+        }
+    }
+}

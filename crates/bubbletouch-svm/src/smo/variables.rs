@@ -1,0 +1,278 @@
+//! The variables of the dual problem that the solver may move, and one step of two of them.
+
+use super::passes::padded;
+use crate::linalg::scalar::Scalar;
+
+/// Variables looked at side by side.
+const LANES: usize = 8;
+/// Variables whose extremes are looked for side by side: so many that the compiler makes a loop of them, which it turns into
+/// vectors as it is; eight, written out one after the other, become vectors with much shuffling.
+const EXTREMES_LANES: usize = 64;
+
+/// 0 where β can move, −∞ elsewhere.
+#[inline(always)]
+fn mark<T: Scalar>(can_move: bool) -> T {
+    if can_move {
+        T::zero()
+    } else {
+        T::neg_infinity()
+    }
+}
+
+/// Notes in which directions all β can move.
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
+fn mark_all<T: Scalar>(beta: &[f64], y: &[f64], c: f64, up: &mut [T], low: &mut [T]) {
+    let n = beta.len();
+    let (y, up, low) = (&y[..n], &mut up[..n], &mut low[..n]);
+    for i in 0..n {
+        let (lowest, highest) = bounds(y[i], c);
+        up[i] = mark(beta[i] < highest);
+        low[i] = mark(beta[i] > lowest);
+    }
+}
+
+/// Where a variable may be: between 0 and C for a positive row, between −C and 0 for a negative one, at 0 for one that takes no
+/// part.
+#[inline(always)]
+pub(crate) fn bounds(y: f64, c: f64) -> (f64, f64) {
+    (c * y.min(0.0), c * y.max(0.0))
+}
+
+/// β and what the passes read of it; slices are padded to whole lanes with variables that cannot move.
+#[derive(Clone, Debug)]
+pub(crate) struct Variables<T> {
+    /// `β_i = y_i a_i`.
+    pub beta: Vec<f64>,
+    y: Vec<f64>,
+    c: f64,
+    /// `f_i = y_i − (Kβ)_i`, the gradient of the dual objective along β_i.
+    pub f: Vec<T>,
+    /// 0 where β_i can be raised, −∞ elsewhere.
+    pub up: Vec<T>,
+    /// 0 where β_i can be lowered, −∞ elsewhere.
+    pub low: Vec<T>,
+    /// Scratch of the second pass.
+    pub gains: Vec<T>,
+}
+
+impl<T: Scalar> Variables<T> {
+    pub fn new(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> Self {
+        let n = beta.len();
+        let mut own_f = Vec::with_capacity(padded(n));
+        own_f.extend(f.iter().map(|&f| T::of(f)));
+        own_f.resize(padded(n), T::zero());
+        let mut variables = Self {
+            beta: beta.to_vec(),
+            y: y.to_vec(),
+            c,
+            f: own_f,
+            up: vec![T::neg_infinity(); padded(n)],
+            low: vec![T::neg_infinity(); padded(n)],
+            gains: vec![T::zero(); padded(n)],
+        };
+        mark_all(beta, y, c, &mut variables.up, &mut variables.low);
+        variables
+    }
+
+    /// Only the variables at these indices.
+    pub fn select(&self, indices: &[usize]) -> Self {
+        let beta: Vec<f64> = indices.iter().map(|&i| self.beta[i]).collect();
+        let y: Vec<f64> = indices.iter().map(|&i| self.y[i]).collect();
+        let f: Vec<f64> = indices.iter().map(|&i| self.f[i].wide()).collect();
+        Self::new(&beta, &y, &f, self.c)
+    }
+
+    /// Notes in which directions β_i can move, where that is new: what was just written piecemeal is slow to read as a whole.
+    #[inline(always)]
+    fn mark(&mut self, i: usize) {
+        let (lowest, highest) = bounds(self.y[i], self.c);
+        let (up, low) = (mark(self.beta[i] < highest), mark(self.beta[i] > lowest));
+        if self.up[i] != up {
+            self.up[i] = up;
+        }
+        if self.low[i] != low {
+            self.low[i] = low;
+        }
+    }
+
+    /// Raises β_i and lowers β_j by as much: to the optimum along that line, or to the first bound. How much it was.
+    #[inline(always)]
+    pub fn step(&mut self, i: usize, j: usize, curvature: f64) -> f64 {
+        let wanted = (self.f[i].wide() - self.f[j].wide()) / curvature;
+        let (lowest, highest) = (bounds(self.y[j], self.c).0, bounds(self.y[i], self.c).1);
+        let (room_i, room_j) = (highest - self.beta[i], self.beta[j] - lowest);
+        let step = wanted.min(room_i).min(room_j);
+        // Exactly on a bound that was reached: rounding must not leave a variable a hair from it.
+        self.beta[i] = if step == room_i {
+            highest
+        } else {
+            self.beta[i] + step
+        };
+        self.beta[j] = if step == room_j {
+            lowest
+        } else {
+            self.beta[j] - step
+        };
+        self.mark(i);
+        self.mark(j);
+        step
+    }
+
+    /// The variables that may still move, when `highest` is the largest f of those that can be raised and `lowest` the
+    /// smallest of those that can be lowered: the others are at a bound and want to stay there [Joachims 1999].
+    pub fn worth_keeping(&self, highest: T, lowest: T) -> Vec<usize> {
+        (0..self.beta.len())
+            .filter(|&i| {
+                let can_rise = self.up[i] == T::zero();
+                let can_fall = self.low[i] == T::zero();
+                match (can_rise, can_fall) {
+                    (true, true) => true,
+                    (true, false) => self.f[i] >= lowest,
+                    (false, true) => self.f[i] <= highest,
+                    (false, false) => false,
+                }
+            })
+            .collect()
+    }
+}
+
+/// `(max of f that can be raised, min of f that can be lowered)`, in f64, for any β within its bounds.
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
+pub(crate) fn extremes(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> (f64, f64) {
+    // Each lane keeps its own; halves meet halves at the end.
+    let mut highest = [f64::NEG_INFINITY; EXTREMES_LANES];
+    let mut lowest = [f64::INFINITY; EXTREMES_LANES];
+    let chunks = beta.chunks(EXTREMES_LANES).zip(y.chunks(EXTREMES_LANES));
+    for ((beta, y), f) in chunks.zip(f.chunks(EXTREMES_LANES)) {
+        let n = beta.len();
+        let (y, f) = (&y[..n], &f[..n]);
+        let (highest, lowest) = (&mut highest[..n], &mut lowest[..n]);
+        for at in 0..n {
+            let (low, high) = bounds(y[at], c);
+            let raised = if beta[at] < high {
+                f[at]
+            } else {
+                f64::NEG_INFINITY
+            };
+            let lowered = if beta[at] > low { f[at] } else { f64::INFINITY };
+            highest[at] = larger(raised, highest[at]);
+            lowest[at] = smaller(lowered, lowest[at]);
+        }
+    }
+    let mut width = EXTREMES_LANES / 2;
+    while width > 0 {
+        for lane in 0..width {
+            highest[lane] = larger(highest[lane + width], highest[lane]);
+            lowest[lane] = smaller(lowest[lane + width], lowest[lane]);
+        }
+        width /= 2;
+    }
+    (highest[0], lowest[0])
+}
+
+/// The first if it is larger than the second, which is a number.
+#[inline(always)]
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// The first if it is smaller than the second, which is a number.
+#[inline(always)]
+fn smaller(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// `Σ y β` and `β K β` of β and its f, of which the dual objective is the first less half the second.
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
+pub(super) fn linear_and_quadratic(beta: &[f64], y: &[f64], f: &[f64]) -> (f64, f64) {
+    let (beta, last_beta) = beta.as_chunks::<LANES>();
+    let (y, last_y) = y.as_chunks::<LANES>();
+    let (f, last_f) = f.as_chunks::<LANES>();
+    let n = beta.len();
+    let (y, f) = (&y[..n], &f[..n]);
+    // Each lane keeps its own; they meet at the end.
+    let (mut linear, mut quadratic) = ([0.0; LANES], [0.0; LANES]);
+    for at in 0..n {
+        for lane in 0..LANES {
+            linear[lane] += beta[at][lane] * y[at][lane];
+            quadratic[lane] += beta[at][lane] * (y[at][lane] - f[at][lane]);
+        }
+    }
+    for at in 0..last_beta.len() {
+        linear[at] += last_beta[at] * last_y[at];
+        quadratic[at] += last_beta[at] * (last_y[at] - last_f[at]);
+    }
+    (linear.iter().sum(), quadratic.iter().sum())
+}
+
+/// The sum of f over the variables between their bounds, and how many these are.
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
+fn sum_of_free(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> (f64, f64) {
+    let (beta, last_beta) = beta.as_chunks::<LANES>();
+    let (y, last_y) = y.as_chunks::<LANES>();
+    let (f, last_f) = f.as_chunks::<LANES>();
+    let n = beta.len();
+    let (y, f) = (&y[..n], &f[..n]);
+    // Each lane keeps its own; they meet at the end.
+    let (mut sum, mut n_free) = ([0.0; LANES], [0.0; LANES]);
+    for at in 0..n {
+        for lane in 0..LANES {
+            let is_free = weight_if_free(beta[at][lane], y[at][lane], c);
+            sum[lane] += is_free * f[at][lane];
+            n_free[lane] += is_free;
+        }
+    }
+    for at in 0..last_beta.len() {
+        let is_free = weight_if_free(last_beta[at], last_y[at], c);
+        sum[at] += is_free * last_f[at];
+        n_free[at] += is_free;
+    }
+    (sum.iter().sum(), n_free.iter().sum())
+}
+
+/// 1 for a variable between its bounds, 0 for another.
+#[inline(always)]
+fn weight_if_free(beta: f64, y: f64, c: f64) -> f64 {
+    let (low, high) = bounds(y, c);
+    f64::from(u8::from((beta > low) & (beta < high)))
+}
+
+/// ρ: the mean of −f over the variables between their bounds, or the middle of what the others allow (LIBSVM's rule).
+pub(super) fn rho(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> f64 {
+    let (sum, n_free) = sum_of_free(beta, y, f, c);
+    if n_free > 0.0 {
+        return -sum / n_free;
+    }
+    match extremes(beta, y, f, c) {
+        (highest, lowest) if highest.is_finite() && lowest.is_finite() => -(highest + lowest) / 2.0,
+        (highest, _) if highest.is_finite() => -highest,
+        (_, lowest) => -lowest,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn extremes_are_those_of_all_that_can_move_however_many_there_are() {
+        let c = 2.0;
+        for n in [0, 1, 7, 63, 64, 65, 150] {
+            let y: Vec<f64> = (0..n).map(|i| [1.0, -1.0, 0.0][i % 3]).collect();
+            let beta = |i: usize| c * y[i] * [0.0, 0.3, 1.0, 1.0][i / 3 % 4];
+            let beta: Vec<f64> = (0..n).map(beta).collect();
+            let f: Vec<f64> = (0..n).map(|i| (i as f64 * 1.7).sin()).collect();
+            let (mut highest, mut lowest) = (f64::NEG_INFINITY, f64::INFINITY);
+            for i in 0..n {
+                let (low, high) = bounds(y[i], c);
+                if beta[i] < high {
+                    highest = highest.max(f[i]);
+                }
+                if beta[i] > low {
+                    lowest = lowest.min(f[i]);
+                }
+            }
+            assert_eq!(extremes(&beta, &y, &f, c), (highest, lowest), "{n}");
+        }
+    }
+}

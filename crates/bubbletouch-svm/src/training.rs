@@ -1,0 +1,251 @@
+//! Many binary problems from one set of rows: what they share is computed once.
+//!
+//! One-vs-one needs every block of kernel values between two classes exactly once, and every block within a class for all
+//! its pairs: rows are sorted by class, blocks within classes are kept, and of a pair's the solver reads what it asks
+//! for. So n rows of k classes take about n²/k values in memory, not n².
+//! One-vs-rest shares the whole matrix. All C of a path are solved while a problem's Gram matrix is at hand, each from the last.
+
+use std::ops::Range;
+
+use ndarray::Array2;
+
+use crate::BinaryProblem;
+use crate::dual::DualSolution;
+use crate::gram::between::{Group, groups, pairs};
+use crate::gram::sorted::Sorted;
+use crate::kernel::KernelFunction;
+use crate::linalg::scalar::Scalar;
+use crate::linalg::transposed::write_columns;
+use crate::screening::first_rows::{PairsNearMargin, few_dimensions};
+use crate::screening::near_margin::NearMargin;
+use crate::smo::{Cached, Dense, Gram, Room, Smo, part_of_blocks};
+
+/// Features from which on one-vs-one linear SVMs are solved on the rows near their margins.
+const SCREENING_FROM_FEATURES: usize = 128;
+/// Rows a class, on average, below which there is little to leave out.
+const SCREENING_FROM_ROWS: usize = 64;
+
+/// Solved problems.
+pub(crate) struct Trained<T> {
+    pub problems: Vec<BinaryProblem>,
+    /// The normals of their hyperplanes about the centre (n_problems × m), where these were needed to solve them.
+    pub normals: Option<Array2<T>>,
+}
+
+/// What to solve for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Goal<'a> {
+    /// The penalties, in the order in which each starts from the last.
+    pub path: &'a [f64],
+    /// The largest violation of the optimality conditions.
+    pub tolerance: f64,
+    /// Most bytes of kernel values held at once.
+    pub memory: usize,
+}
+
+impl<T: Scalar> Sorted<T> {
+    /// Solves every pair of classes: for each C of the path, the problems (0, 1), (0, 2), …, (1, 2), ….
+    pub fn one_vs_one(&self, goal: Goal) -> Vec<Trained<T>> {
+        if self.is_worth_screening(goal.memory) {
+            return self.pairs_near_margin(goal);
+        }
+        let mut problems = vec![Vec::new(); goal.path.len()];
+        if self.fits(goal.memory) {
+            self.pairs_from_blocks(goal, &mut problems);
+        } else {
+            self.pairs_from_rows(goal, &mut problems);
+        }
+        without_normals(problems)
+    }
+
+    /// Whether the blocks within groups of classes, those between two groups and the largest pair fit.
+    fn fits(&self, memory: usize) -> bool {
+        let largest = self.ranges().iter().map(Range::len).max().unwrap_or(0);
+        Group::bytes(self, &groups(self.ranges())) + Dense::<T>::bytes(2 * largest) <= memory
+    }
+
+    /// Whether products take so long that hyperplanes should say which are needed.
+    fn is_worth_screening(&self, memory: usize) -> bool {
+        let most = || NearMargin::most_bytes(self);
+        self.kernel() == KernelFunction::Linear
+            && self.centre().len() >= SCREENING_FROM_FEATURES
+            && self.points().len() >= SCREENING_FROM_ROWS * self.ranges().len()
+            && most() <= memory
+    }
+
+    fn pairs_near_margin(&self, goal: Goal) -> Vec<Trained<T>> {
+        let few = few_dimensions(self);
+        let all = PairsNearMargin::new(self, &few);
+        let n_classes = self.classes().len();
+        let mut problems = vec![Vec::new(); goal.path.len()];
+        let shape = (n_classes * (n_classes - 1) / 2, self.centre().len());
+        let mut normals = vec![Array2::zeros(shape); goal.path.len()];
+        for pairs in all.blocks() {
+            let mut near_margin = all.near(&pairs, goal.path[0]);
+            for (at, &c) in goal.path.iter().enumerate() {
+                let solutions = near_margin.solve(c, goal.tolerance);
+                for (&(a, b), (solution, normal)) in pairs.iter().zip(solutions) {
+                    let sides = (self.classes()[a], Some(self.classes()[b]));
+                    problems[at].push(self.problem(&self.pair_rows(a, b), sides, solution));
+                    // The pairs of the classes before, then those of the first with the others.
+                    let number = a * (2 * n_classes - a - 1) / 2 + (b - a - 1);
+                    let to = normals[at].row_mut(number).into_slice();
+                    to.expect("normals are stored one by one")
+                        .copy_from_slice(&normal);
+                }
+            }
+        }
+        in_order(&mut problems);
+        let with_normals = |(problems, normals)| Trained {
+            problems,
+            normals: Some(normals),
+        };
+        problems
+            .into_iter()
+            .zip(normals)
+            .map(with_normals)
+            .collect()
+    }
+
+    fn pairs_from_blocks(&self, goal: Goal, problems: &mut [Vec<BinaryProblem>]) {
+        let classes = groups(self.ranges());
+        let groups: Vec<Group<T>> = classes.iter().map(|own| Group::new(self, own)).collect();
+        let (mut between, mut above, mut room) = (Vec::new(), Vec::new(), Room::new());
+        for (at, own) in groups.iter().enumerate() {
+            for (number, other) in groups.iter().enumerate().skip(at) {
+                if number > at {
+                    own.with(other, &mut between);
+                }
+                for (a, b) in pairs(classes[at].clone(), classes[number].clone()) {
+                    let [first, second] = [a, b].map(|class| &self.ranges()[class]);
+                    let below = if number > at {
+                        own.part_with(other, &between, (second, first))
+                    } else {
+                        own.own_part(second, first)
+                    };
+                    above.resize(first.len() * second.len(), T::zero());
+                    write_columns(&below, &mut above, second.len());
+                    let across = [above.chunks_exact(second.len()).collect(), below];
+                    let within = [own.own_part(first, first), other.own_part(second, second)];
+                    let mut gram = part_of_blocks(&within, &across, &mut room);
+                    self.solve_pair(&mut gram, (a, b), goal, problems);
+                }
+            }
+        }
+        in_order(problems);
+    }
+
+    fn pairs_from_rows(&self, goal: Goal, problems: &mut [Vec<BinaryProblem>]) {
+        for (a, b) in self.all_pairs() {
+            let points = self.points().select(&self.pair_rows(a, b));
+            let mut gram = Cached::new(&points, self.kernel(), goal.memory);
+            self.solve_pair(&mut gram, (a, b), goal, problems);
+        }
+    }
+
+    fn solve_pair<G: Gram<T>>(
+        &self,
+        gram: &mut G,
+        (a, b): (usize, usize),
+        goal: Goal,
+        problems: &mut [Vec<BinaryProblem>],
+    ) {
+        let n_first = self.ranges()[a].len();
+        let mut labels = vec![1.0; n_first];
+        labels.resize(gram.len(), -1.0);
+        let sides = (self.classes()[a], Some(self.classes()[b]));
+        self.solve(
+            gram,
+            (&labels, &self.pair_rows(a, b)),
+            sides,
+            goal,
+            problems,
+        );
+    }
+
+    /// Solves each class against all others: for each C of the path, one problem a class.
+    pub fn one_vs_rest(&self, goal: Goal) -> Vec<Trained<T>> {
+        let mut problems = vec![Vec::new(); goal.path.len()];
+        // Twice: as the product leaves it, and as the solver reads it.
+        if 2 * Dense::<T>::bytes(self.points().len()) <= goal.memory {
+            let all = self.points().all();
+            let mut gram = Dense::default();
+            gram.of_whole(all.own_kernel(&self.kernel()).view());
+            self.against_rest(&mut gram, goal, &mut problems);
+        } else {
+            let mut gram = Cached::new(self.points(), self.kernel(), goal.memory);
+            self.against_rest(&mut gram, goal, &mut problems);
+        }
+        without_normals(problems)
+    }
+
+    fn against_rest<G: Gram<T>>(
+        &self,
+        gram: &mut G,
+        goal: Goal,
+        problems: &mut [Vec<BinaryProblem>],
+    ) {
+        let rows: Vec<usize> = (0..self.points().len()).collect();
+        for (range, &class) in self.ranges().iter().zip(self.classes()) {
+            let mut labels = vec![-1.0; rows.len()];
+            labels[range.clone()].fill(1.0);
+            self.solve(gram, (&labels, &rows), (class, None), goal, problems);
+            // Back into the order of the training rows, which all these problems share.
+            for problem in problems.iter_mut().filter_map(|path| path.last_mut()) {
+                let mut coefficients = vec![0.0; rows.len()];
+                for (&row, &beta) in problem.rows.iter().zip(&problem.solution.coefficients) {
+                    coefficients[row] = beta;
+                }
+                problem.solution.coefficients = coefficients;
+                problem.rows.clone_from(&rows);
+            }
+        }
+    }
+
+    /// One problem on these sorted rows, along the path.
+    fn solve<G: Gram<T>>(
+        &self,
+        gram: &mut G,
+        (labels, rows): (&[f64], &[usize]),
+        sides: (usize, Option<usize>),
+        goal: Goal,
+        problems: &mut [Vec<BinaryProblem>],
+    ) {
+        let mut smo = Smo::new(gram, labels);
+        for (&c, problems) in goal.path.iter().zip(problems) {
+            let solution = smo.solve(c, goal.tolerance);
+            problems.push(self.problem(rows, sides, solution));
+        }
+    }
+
+    /// A problem on these sorted rows, from its solution about the centre.
+    fn problem(
+        &self,
+        rows: &[usize],
+        (positive, negative): (usize, Option<usize>),
+        mut solution: DualSolution,
+    ) -> BinaryProblem {
+        solution.rho += self.moved(rows.iter().copied(), &solution.coefficients);
+        BinaryProblem {
+            positive,
+            negative,
+            rows: rows.iter().map(|&row| self.order()[row]).collect(),
+            solution,
+        }
+    }
+}
+
+fn without_normals<T>(problems: Vec<Vec<BinaryProblem>>) -> Vec<Trained<T>> {
+    let trained = |problems| Trained {
+        problems,
+        normals: None,
+    };
+    problems.into_iter().map(trained).collect()
+}
+
+/// Sorts the problems of each C by their classes.
+fn in_order(problems: &mut [Vec<BinaryProblem>]) {
+    for problems in problems {
+        problems.sort_by_key(|problem| (problem.positive, problem.negative));
+    }
+}
