@@ -1,7 +1,7 @@
 //! What a press in singles instead of doubles would cost in accuracy and gain in time, on one core.
 //!
 //! `cargo bench --bench precision` prints a table; with `-- --write`, it also goes to `results/whole_body/precision.csv`, and as a chart
-//! to `precision.svg` and `.png` beside it.
+//! to `precision.svg` beside it.
 //!
 //! The same kernel in both: `kinds::speed_accuracy::flat_press`.
 
@@ -151,7 +151,6 @@ fn main() -> bubbletouch::Result<()> {
         file.commit()?;
         let title = "A press in singles: error and gain";
         write_bytes(&folder.join("precision.svg"), drawing.svg(title).as_bytes())?;
-        write_bytes(&folder.join("precision.png"), &drawing.png()?)?;
     }
     Ok(())
 }
