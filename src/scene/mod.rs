@@ -59,6 +59,7 @@
 mod by_hand;
 mod frame;
 mod free_objects;
+mod link_surface;
 mod mount;
 mod numbers;
 mod overlap;

@@ -1,5 +1,6 @@
 //! Skin of a scene: layouts and taxels, and what carries them.
 
+use super::link_surface::LinkSurface;
 use super::mount::Mount;
 use super::plan_robot::PlannedRobot;
 use super::plan_signal::PlannedSignal;
@@ -68,7 +69,8 @@ impl Reader<'_> {
         self.check
             .value(&pitch_key, pitch_mm, positive, "a positive number")?;
         let layout_key = &format!("{key}.layout");
-        let layout = self.layout(layout_key, &spec.layout, &seed.named(&spec.name))?;
+        let layout = self.layout(layout_key, spec, robots, &seed.named(&spec.name))?;
+        self.mount_on_draped_link(layout_key, spec)?;
         let (taxels, shears) = self.taxels(key, spec, layout.n_taxels())?;
         let skin = self.under(key, Patch::new(&spec.name, layout, taxels))?;
         if let Some(shears) = &shears {
@@ -82,9 +84,15 @@ impl Reader<'_> {
         })
     }
 
-    fn layout(&self, key: &str, spec: &LayoutSpec, seed: &Seed) -> Result<Layout> {
-        let pitch = spec.pitch_mm() * MM;
-        let layout = match *spec {
+    fn layout(
+        &self,
+        key: &str,
+        spec: &PatchSpec,
+        robots: &[PlannedRobot],
+        seed: &Seed,
+    ) -> Result<Layout> {
+        let pitch = spec.layout.pitch_mm() * MM;
+        let layout = match spec.layout {
             LayoutSpec::Grid { nx, ny, .. } => Layout::grid(&Grid { nx, ny, pitch }),
             LayoutSpec::Hexagonal { nx, ny, .. } => Layout::hexagonal(nx, ny, pitch),
             LayoutSpec::Disc { radius_mm, .. } => Layout::disc(radius_mm * MM, pitch),
@@ -108,15 +116,50 @@ impl Reader<'_> {
                 ref region,
                 ..
             } => {
-                let (place, _) = self.open(&format!("{key}.mesh"), path)?;
-                let read = read_mesh(&self.path(path), unit, &SizeLimits::ANY, None);
-                let outward = read.and_then(|(mesh, orientation)| {
-                    orientation.require(&place)?;
-                    Ok(mesh)
-                });
-                let mesh = self.under(key, outward)?;
+                let region_key = &format!("{key}.region");
+                let link = region.as_ref().and_then(|region| region.link.as_deref());
+                let mesh = match (path, link) {
+                    (Some(path), None) => {
+                        let (place, _) = self.open(&format!("{key}.mesh"), path)?;
+                        let read = read_mesh(&self.path(path), unit, &SizeLimits::ANY, None);
+                        let outward = read.and_then(|(mesh, orientation)| {
+                            orientation.require(&place)?;
+                            Ok(mesh)
+                        });
+                        self.under(key, outward)?
+                    }
+                    (None, Some(link)) => {
+                        let key = &format!("{region_key}.link");
+                        if unit.is_some() {
+                            let allowed = "no unit: the robot's file has metres and scales";
+                            return Err(self.check.error(key, "a link beside unit", allowed));
+                        }
+                        let Some(name) = &spec.robot else {
+                            let given = format!("`{link}` without a robot");
+                            return Err(self.check.error(
+                                key,
+                                given,
+                                "robot = \"NAME\" of the patch",
+                            ));
+                        };
+                        let names = robots.iter().map(|robot| robot.name.as_str());
+                        let robot =
+                            self.known(&format!("patches.{}.robot", spec.name), name, names)?;
+                        let role = region.as_ref().and_then(|region| region.shapes);
+                        let surface = LinkSurface { link, role };
+                        self.link_surface(key, &robots[robot], &surface, pitch)?
+                    }
+                    (both_or_neither, _) => {
+                        let given = match both_or_neither {
+                            Some(_) => "mesh and region.link",
+                            None => "neither mesh nor region.link",
+                        };
+                        let allowed = "mesh = \"FILE\" or region = { link = \"NAME\" }, a link of the patch's robot";
+                        return Err(self.check.error(key, given, allowed));
+                    }
+                };
                 let region = match region {
-                    Some(region) => self.region(&format!("{key}.region"), region, path)?,
+                    Some(region) => self.region(region_key, region, path.as_deref())?,
                     None => DrapeRegion::default(),
                 };
                 Layout::draped_on(&mesh, pitch, &region, seed)
@@ -125,9 +168,38 @@ impl Reader<'_> {
         self.under(key, layout)
     }
 
-    /// The part of a mesh file that carries taxels.
-    fn region(&self, key: &str, spec: &RegionSpec, mesh: &Path) -> Result<DrapeRegion> {
+    /// Mounts a patch that is draped over a link on this link.
+    fn mount_on_draped_link(&self, key: &str, spec: &mut PatchSpec) -> Result<()> {
+        let LayoutSpec::Draped { region, .. } = &spec.layout else {
+            return Ok(());
+        };
+        let Some(draped) = region.as_ref().and_then(|region| region.link.as_ref()) else {
+            return Ok(());
+        };
+        let carrier = spec.link.get_or_insert_with(|| draped.clone());
+        match carrier == draped {
+            true => Ok(()),
+            false => {
+                let given = format!("`{draped}` of a patch that link `{carrier}` carries");
+                let allowed = "one link: the link that skin is draped over carries the patch";
+                Err(self
+                    .check
+                    .error(&format!("{key}.region.link"), given, allowed))
+            }
+        }
+    }
+
+    /// The part of a mesh file, or of a link if there is no file, that carries taxels.
+    fn region(&self, key: &str, spec: &RegionSpec, mesh: Option<&Path>) -> Result<DrapeRegion> {
         let refuse = |given: &str, allowed: &str| Err(self.check.error(key, given, allowed));
+        if spec.shapes.is_some() && spec.link.is_none() {
+            return refuse("shapes alone", "link beside them");
+        }
+        if mesh.is_none() && (spec.group.is_some() || spec.triangles.is_some()) {
+            let allowed = "a box or a plane: groups and triangles are of a mesh file";
+            return refuse("group or triangles beside link", allowed);
+        }
+        let mesh = mesh.unwrap_or(Path::new(""));
         let vector = |name: &str, numbers| self.vector(&format!("{key}.{name}"), numbers, MM);
         let bounds = match (spec.box_min_mm, spec.box_max_mm) {
             (Some(min), Some(max)) => Some(Aabb {

@@ -6,6 +6,7 @@ use crate::error::Result;
 use crate::spelling::nearest_names;
 use crate::world::{Joint, JointTrajectory, Motion, Robot};
 use ndarray::Array2;
+use std::path::{Path, PathBuf};
 
 /// A robot whose motion is known.
 #[derive(Clone, Debug)]
@@ -14,6 +15,8 @@ pub struct PlannedRobot {
     pub name: String,
     /// Its links and joints.
     pub robot: Robot,
+    /// The folder of its URDF file, which the meshes of its links are relative to.
+    pub folder: Option<PathBuf>,
     /// Where its base is.
     pub base: Motion,
     /// Where its joints are; `None` if they stay at their [rest positions](Robot::rest_positions).
@@ -48,6 +51,10 @@ impl Reader<'_> {
             base: self.motion(key, &spec.at, spec.motion.as_ref())?,
             joints: self.joints(&format!("{key}.joints"), spec.joints.as_ref(), &robot)?,
             robot,
+            folder: spec.urdf.as_ref().map(|path| self.path(path)).map(|path| {
+                let folder = path.parent();
+                folder.unwrap_or(Path::new("")).to_owned()
+            }),
         })
     }
 

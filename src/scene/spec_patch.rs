@@ -4,6 +4,7 @@ use super::numbers::Numbers;
 use super::spec::PoseSpec;
 use crate::file_path::FilePath;
 use crate::mesh::LengthUnit;
+use crate::world::ShapeRole;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -122,10 +123,11 @@ pub enum LayoutSpec {
         /// Between neighbours.
         pitch_mm: f64,
     },
-    /// Over the outer surface of a triangle mesh.
+    /// Over the outer surface of a triangle mesh, or of a link of the patch's robot.
     Draped {
-        /// Its file.
-        mesh: FilePath,
+        /// The file of the mesh; left out where `region.link` names a link.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        mesh: Option<FilePath>,
         /// Unit of the file's numbers. When left out, metres, and 0.1 mm to 10 m large.
         #[serde(default, alias = "mesh_unit", skip_serializing_if = "Option::is_none")]
         unit: Option<LengthUnit>,
@@ -154,6 +156,13 @@ pub struct RegionSpec {
     /// A point of the plane, beside `plane_normal`; the mesh's origin when left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plane_point_mm: Option<[f64; 3]>,
+    /// On the shapes of this link of the patch's `robot`, in place of a mesh file; the link carries the patch. The box and the plane are then in
+    /// the link's frame.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub link: Option<String>,
+    /// Beside `link`: `collision` or `visual` shapes; when left out, the collision shapes if the link has any, else the visual ones.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shapes: Option<ShapeRole>,
     /// On the faces of an OBJ file's group (`g`) or object (`o`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub group: Option<String>,

@@ -137,3 +137,159 @@ fn an_error_of_the_surface_is_given_only_where_spheres_are_made() {
     let (_folder, plan) = scene("", &object("object = \"mug\""));
     plan.unwrap();
 }
+
+/// A hand whose palm is a box, whose tip is a ball to touch and a cube of centimetres to see, whose wrist is a capsule, and whose base is bare.
+const HAND: &str = r#"<robot name="hand"><link name="base"/>
+<link name="palm"><collision><origin xyz="0 0 0.01"/><geometry><box size="0.04 0.03 0.02"/></geometry></collision></link>
+<link name="tip"><visual><geometry><mesh filename="package://hand_description/meshes/cube.obj" scale="0.01 -0.01 0.01"/></geometry></visual>
+<collision><origin xyz="0.1 0 0"/><geometry><sphere radius="0.012"/></geometry></collision></link>
+<link name="wrist"><visual><geometry><capsule radius="0.01" length="0.03"/></geometry></visual>
+<visual><geometry><cylinder radius="0.02" length="0.01"/></geometry></visual></link>
+<link name="lost"><visual><geometry><mesh filename="absent.obj"/></geometry></visual></link>
+<joint name="a" type="fixed"><parent link="base"/><child link="palm"/><origin xyz="0 0 0.5"/></joint>
+<joint name="b" type="fixed"><parent link="palm"/><child link="tip"/></joint>
+<joint name="c" type="fixed"><parent link="palm"/><child link="wrist"/></joint>
+<joint name="d" type="fixed"><parent link="palm"/><child link="lost"/></joint></robot>"#;
+
+/// A unit cube about the origin, edges of 2.
+const CUBE: &str = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n\
+    f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
+/// A scene with skin draped over the hand: keys of the layout, and other keys of the patch.
+fn hand(draped: &str, more: &str) -> bubbletouch::Result<ScenePlan> {
+    let folder = tempfile::tempdir().unwrap();
+    let robots = folder.path().join("hand_description/urdf");
+    let meshes = folder.path().join("hand_description/meshes");
+    for (folder, name, text) in [(&robots, "hand.urdf", HAND), (&meshes, "cube.obj", CUBE)] {
+        std::fs::create_dir_all(folder).unwrap();
+        std::fs::write(folder.join(name), text).unwrap();
+    }
+    let text = format!(
+        "title = \"A hand\"\n[[robots]]\nname = \"left\"\nurdf = \"hand_description/urdf/hand.urdf\"\n\
+         [[patches]]\nname = \"skin\"\nstroke_mm = 2.0\n{more}\nlayout = {{ draped = {{ pitch_mm = 2.0, {draped} }} }}\n"
+    );
+    let plan = ScenePlan::new("s.toml", folder.path(), SceneSpec::parse("s.toml", &text)?)?;
+    // The resolved scene is the same from any folder.
+    let resolved = SceneSpec::parse("r.toml", &plan.spec.to_toml()).unwrap();
+    let again = ScenePlan::new("r.toml", Path::new("/"), resolved).unwrap();
+    assert_eq!(
+        plan.patches[0].skin.layout(),
+        again.patches[0].skin.layout()
+    );
+    Ok(plan)
+}
+
+#[test]
+fn skin_is_draped_over_the_shapes_of_a_named_link_which_carries_it() {
+    const ROBOT: &str = "robot = \"left\"";
+    let plan = hand("region = { link = \"palm\" }", ROBOT).unwrap();
+    assert_eq!(pad_at(&plan), DVec3::new(0.0, 0.0, 0.5));
+    let layout = plan.patches[0].skin.layout();
+    let half = DVec3::new(0.02, 0.015, 0.01);
+    for (&center, &axis) in layout.centers().iter().zip(layout.axes()) {
+        let out = (center - DVec3::new(0.0, 0.0, 0.01)).abs() - half;
+        assert!(out.max_element().abs() < 1e-12, "{center}");
+        assert!((center - DVec3::new(0.0, 0.0, 0.01)).dot(axis) > 0.0);
+    }
+    // As many as a grid of 2 mm has on 52 cm².
+    let area = 8.0 * (half.x * half.y + half.y * half.z + half.z * half.x);
+    let share = layout.n_taxels() as f64 * 4e-6 / area;
+    assert!((0.9..1.15).contains(&share), "{share}");
+    // Beside a plane, in the link's frame; the link may be named twice.
+    let twice = format!("{ROBOT}\nlink = \"palm\"");
+    let top = "region = { link = \"palm\", plane_point_mm = [0.0, 0.0, 20.0], plane_normal = [0.0, 0.0, 1.0] }";
+    let plan = hand(top, &twice).unwrap();
+    let mut centers = plan.patches[0].skin.layout().centers().iter();
+    assert!(centers.all(|center| (center.z - 0.02).abs() < 1e-12));
+    // Collision shapes if there are any: a ball, whose facets lie at most 2 % of a pitch inside.
+    let plan = hand("region = { link = \"tip\" }", ROBOT).unwrap();
+    let layout = plan.patches[0].skin.layout();
+    for (center, axis) in layout.centers().iter().zip(layout.axes()) {
+        let from_middle = *center - DVec3::new(0.1, 0.0, 0.0);
+        let inside = 0.012 - from_middle.length();
+        assert!((-1e-12..=2.0 * 0.02 * 2e-3).contains(&inside), "{inside}");
+        assert!(from_middle.normalize().dot(*axis) > 0.99);
+    }
+    // The visual mesh is found in its package, scaled and mirrored.
+    let plan = hand("region = { link = \"tip\", shapes = \"visual\" }", ROBOT).unwrap();
+    let layout = plan.patches[0].skin.layout();
+    for (&center, &axis) in layout.centers().iter().zip(layout.axes()) {
+        assert!((center.abs().max_element() - 0.01).abs() < 1e-12);
+        assert!(center.dot(axis) > 0.0);
+    }
+    // Shapes that overlap have one outer surface: nothing of the capsule is left within the disc.
+    let plan = hand("region = { link = \"wrist\" }", ROBOT).unwrap();
+    let mut centers = plan.patches[0].skin.layout().centers().iter();
+    assert!(
+        centers.all(|center| center.z.abs() > 0.005 - 1e-9 || center.truncate().length() > 0.019)
+    );
+}
+
+#[test]
+fn what_cannot_be_draped_over_a_link_is_refused_with_the_key() {
+    let refused = |draped: &str, more: &str, expected: &str| {
+        let error = hand(draped, more).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        let said = error.to_string();
+        assert!(said.contains(expected), "{said}");
+    };
+    let robot = "robot = \"left\"";
+    let link = "region = { link = \"palm\" }";
+    let key = "key patches.skin.layout.region.link";
+    refused(
+        "region = { link = \"thumb\" }",
+        robot,
+        "link of robot `hand`: `thumb`; one of `base`, `palm`, `tip`, `wrist`, `lost`",
+    );
+    refused(
+        "region = { link = \"base\" }",
+        robot,
+        &format!(
+            "{key}: `base`, a link without shapes that have a volume; a link with such shapes: `palm`, `tip`"
+        ),
+    );
+    let visual = "region = { link = \"palm\", shapes = \"visual\" }";
+    refused(
+        visual,
+        robot,
+        "`palm`, a link without visual shapes that have a volume; a link with such shapes: `tip`, `wrist`, `lost`",
+    );
+    refused(
+        "region = { link = \"lost\" }",
+        robot,
+        "absent.obj: a mesh that is not found",
+    );
+    refused(
+        link,
+        "",
+        &format!("{key}: `palm` without a robot; robot = \"NAME\" of the patch"),
+    );
+    refused(link, "robot = \"right\"", "key patches.skin.robot: `right`");
+    let other = format!("{robot}\nlink = \"tip\"");
+    refused(
+        link,
+        &other,
+        "`palm` of a patch that link `tip` carries; one link",
+    );
+    refused(
+        &format!("mesh = \"hand_description/meshes/cube.obj\", {link}"),
+        robot,
+        "mesh and region.link; mesh = \"FILE\" or",
+    );
+    refused("", robot, "neither mesh nor region.link");
+    refused(
+        &format!("unit = \"cm\", {link}"),
+        robot,
+        "a link beside unit",
+    );
+    refused(
+        "region = { link = \"palm\", triangles = [0, 3] }",
+        robot,
+        "group or triangles beside link",
+    );
+    refused(
+        "mesh = \"hand_description/meshes/cube.obj\", unit = \"cm\", region = { shapes = \"visual\" }",
+        robot,
+        "shapes alone; link beside them",
+    );
+}

@@ -4,6 +4,7 @@ use super::xml::Element;
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 /// A rigid body of a [`Robot`](super::Robot).
 #[derive(Clone, Debug, PartialEq)]
@@ -26,7 +27,8 @@ pub struct LinkShape {
 }
 
 /// What a shape on a link is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum ShapeRole {
     /// What is seen.
     Visual,
@@ -64,7 +66,7 @@ pub enum LinkGeometry {
     },
     /// Triangles in a file of their own.
     Mesh {
-        /// As it is written: a path beside the URDF's, `file://…` or `package://…`. It is not opened: skin lies on the other forms.
+        /// As it is written: a path beside the URDF's, `file://…` or `package://…`. It is opened only for skin that is draped over the link.
         file: String,
         /// Metres per unit of the mesh file along each axis; not zero, negative where it is mirrored.
         scale: DVec3,
