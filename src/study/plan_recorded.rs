@@ -4,7 +4,7 @@ use super::axis::Axis;
 use super::check::{Check, not_negative, positive};
 use super::plan::MM;
 use super::spec::{
-    ObjectsSpec, RecordedSpec, SensedSpec, SkinSpec, StepSpec, StudySpec, TouchesSpec,
+    ObjectsSpec, RecordedSpec, SensedSpec, SkinSpec, StepSpec, StudySpec, TouchesSpec, ZeroSpec,
 };
 use super::taxel_array::TaxelArray;
 use crate::error::{Error, Result};
@@ -57,16 +57,19 @@ impl Check<'_> {
             let allowed = "no such key: recorded.groups says what stays together";
             return Err(self.error("recognition.keep_together", "given", allowed));
         }
-        self.value(
-            "recorded.zero",
-            recorded.zero,
-            f64::is_finite,
-            "a finite number",
-        )?;
+        let (key, allowed) = ("recorded.zero", "a finite number");
+        let zero = match recorded.zero {
+            ZeroSpec::One(zero) => self.value(key, zero, f64::is_finite, allowed)?,
+            // The zeros of the file are compared with the full scale when the frames are read.
+            ZeroSpec::Each(_) => f64::NEG_INFINITY,
+        };
         if let Some(full_scale) = recorded.full_scale
-            && !(full_scale.is_finite() && full_scale > recorded.zero)
+            && !(full_scale.is_finite() && full_scale > zero)
         {
-            let allowed = format!("a number above recorded.zero, {}", recorded.zero);
+            let allowed = match zero.is_finite() {
+                true => format!("a number above recorded.zero, {zero}"),
+                false => allowed.to_owned(),
+            };
             return Err(self.error("recorded.full_scale", full_scale, allowed));
         }
         self.of_time(recorded, spec)?;

@@ -14,7 +14,7 @@ use super::object_files::file_content;
 use super::plan::Plan;
 use super::progress::Progress;
 use super::samples::{Samples, Snapshots, spread_samples};
-use super::spec::{PreviousTouch, RecordedSpec};
+use super::spec::{PreviousTouch, RecordedSpec, ZeroSpec};
 use super::sweep::Sweep;
 use super::taxel_array::TaxelArray;
 use super::touch_set::TouchSet;
@@ -50,6 +50,8 @@ pub struct RecordedFrames {
     order: Vec<usize>,
     /// Whether each value of a frame is masked.
     is_masked: Vec<bool>,
+    /// What each taxel reads that nothing touches; 0 of a masked one.
+    zeros: Vec<f64>,
     /// The reading of a taxel at its stroke.
     full_scale: f64,
     /// The reading from which on a taxel is saturated.
@@ -125,7 +127,8 @@ impl RecordedFrames {
         let depths = depths.map(|depths| order.iter().map(|&touch| depths[touch]).collect());
         let n_taxels = train.shape.rows * train.shape.columns;
         let is_masked = masked(&files, n_taxels)?;
-        let (full_scale, saturation) = spec.full_scale_of(&files, n_taxels, depths.is_some())?;
+        let zeros = spec.checked_zeros(&train.shape, &is_masked)?;
+        let (full_scale, saturation) = spec.full_scale_of(&files, &zeros, depths.is_some())?;
         let n_frames = train.shape.n_frames;
         let none = Array2::zeros((0, train.readings.ncols()));
         Ok(Self {
@@ -135,6 +138,7 @@ impl RecordedFrames {
             counts,
             order,
             is_masked,
+            zeros,
             full_scale,
             saturation,
             n_frames,
@@ -158,26 +162,28 @@ impl RecordedFrames {
 
     /// A frame of a touch: metres of deflection, and newtons of forces across.
     fn values(&self, (touch, frame): (usize, usize), stroke: f64) -> Array1<f64> {
-        let (zero, full_scale) = (self.spec.zero, self.full_scale);
         let readings = self.frame(touch, frame);
         let values = readings.iter().zip(&self.is_masked).enumerate();
         let values = values.map(
             |(place, (&reading, &is_masked))| match place < self.n_taxels {
                 _ if is_masked => 0.0,
-                true => (reading - zero) / (full_scale - zero) * stroke,
+                true => {
+                    let zero = self.zeros[place];
+                    (reading - zero) / (self.full_scale - zero) * stroke
+                }
                 false => reading,
             },
         );
         values.collect()
     }
 
-    /// Readings of a touch along the axes of its taxels, without those that are masked.
-    fn pushes(&self, touch: usize) -> impl Iterator<Item = f64> + '_ {
+    /// Readings of a touch along the axes of its taxels and what the taxels read that nothing touches, without those that are masked.
+    fn pushes(&self, touch: usize) -> impl Iterator<Item = (f64, f64)> + '_ {
         let frames = (0..self.n_frames).flat_map(move |frame| {
             let readings = self.frame(touch, frame).into_iter().zip(&self.is_masked);
-            readings.take(self.n_taxels)
+            readings.zip(&self.zeros)
         });
-        frames.filter_map(|(&reading, &is_masked)| (!is_masked).then_some(reading))
+        frames.filter_map(|((&reading, &is_masked), &zero)| (!is_masked).then_some((reading, zero)))
     }
 }
 
@@ -380,23 +386,55 @@ impl RecordedSpec {
         }
     }
 
+    /// What each taxel reads that nothing touches; 0 of a masked one.
+    fn checked_zeros(&self, shape: &FrameShape, is_masked: &[bool]) -> Result<Vec<f64>> {
+        let mut zeros = self.zeros(shape)?;
+        for (taxel, zero) in zeros.iter_mut().enumerate() {
+            if is_masked[taxel] {
+                *zero = 0.0;
+            } else if !zero.is_finite()
+                && let ZeroSpec::Each(path) = &self.zero
+            {
+                let place = format!("{}, taxel {taxel}", path.display());
+                let allowed = "a finite number (only a taxel that is masked may be without one)";
+                return Err(Error::input(place, *zero, allowed));
+            }
+        }
+        Ok(zeros)
+    }
+
     /// The reading of a taxel at its full scale, and that from which on it is saturated: at or above a full scale that is given, or at a largest
     /// reading that many frames share (of touches whose depths are known, that may be their depth).
     fn full_scale_of(
         &self,
         files: &[&FramesOfFile],
-        n_taxels: usize,
+        zeros: &[f64],
         are_depths_known: bool,
     ) -> Result<(f64, f64)> {
         let frames = || files.iter().flat_map(|file| file.readings.outer_iter());
-        let pushes = || frames().map(|frame| frame.into_iter().take(n_taxels).copied());
+        let pushes = || frames().map(|frame| frame.into_iter().take(zeros.len()).copied());
         let largest = pushes().flatten().filter(|reading| !reading.is_nan());
         let largest = largest.fold(f64::NEG_INFINITY, f64::max);
-        if largest <= self.zero {
-            let given = format!("no reading above recorded.zero, {}", self.zero);
-            if self.full_scale.is_none() {
-                return Err(Error::input(self.frames.display(), given, "touches"));
-            }
+        let full_scale = self.full_scale.unwrap_or(largest);
+        let highest = zeros.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        if highest >= full_scale {
+            return Err(match &self.zero {
+                ZeroSpec::One(zero) => {
+                    let given = format!("no reading above recorded.zero, {zero}");
+                    Error::input(self.frames.display(), given, "touches")
+                }
+                ZeroSpec::Each(path) => {
+                    let taxel = zeros.iter().position(|&zero| zero == highest);
+                    let place = format!("{}, taxel {}", path.display(), taxel.unwrap_or(0));
+                    let allowed = match self.full_scale {
+                        Some(full_scale) => format!("below recorded.full_scale, {full_scale}"),
+                        None => format!(
+                            "below the largest reading, {largest}, which stands for the full scale"
+                        ),
+                    };
+                    Error::input(place, highest, allowed)
+                }
+            });
         }
         let spacing = match files[0].kind {
             ElementKind::Float(spacing) => spacing,
@@ -405,12 +443,12 @@ impl RecordedSpec {
         let given = self.full_scale.map(|full| full - spacing * full.abs());
         let shared = match are_depths_known {
             true => None,
-            false => plateau(pushes).filter(|&level| level > self.zero),
+            false => plateau(pushes).filter(|&level| level > highest),
         };
         let saturation = given
             .unwrap_or(f64::INFINITY)
             .min(shared.unwrap_or(f64::INFINITY));
-        Ok((self.full_scale.unwrap_or(largest), saturation))
+        Ok((full_scale, saturation))
     }
 }
 
@@ -515,8 +553,12 @@ impl TouchSet for RecordedFrames {
                     *to = from as f32;
                 }
             }
-            let largest = self.pushes(touch).fold(f64::NEG_INFINITY, f64::max);
-            (largest <= self.spec.zero, largest >= self.saturation)
+            let mut pushes = self.pushes(touch);
+            let is_missed = !self.pushes(touch).any(|(reading, zero)| reading > zero);
+            (
+                is_missed,
+                pushes.any(|(reading, _)| reading >= self.saturation),
+            )
         };
         frames.make(&touches, || (), copy, progress)?;
         Ok(frames)

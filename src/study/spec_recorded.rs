@@ -3,7 +3,9 @@
 use super::arrays::{FileArray, FrameAxes, FrameShape, frame_shape, is_member};
 use crate::error::{Error, Result};
 use crate::files::{file_path, optional_file_path};
-use serde::{Deserialize, Serialize};
+use serde::de::{IntoDeserializer, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
+use std::fmt;
 use std::path::{Path, PathBuf};
 
 /// `[recorded]`: what a skin has read, in files of NumPy (`.npy`, `.npz`) or tables (`.csv`). `[skin]` says how far apart its taxels are and what their
@@ -70,9 +72,9 @@ pub struct RecordedSpec {
     pub groups_test: Option<PathBuf>,
     /// What the classes are called, by their labels.
     pub names: Option<Vec<String>>,
-    /// The reading of a taxel that nothing touches; 0 when left out.
+    /// The reading of a taxel that nothing touches: one number, or a file with the number of each taxel; 0 when left out.
     #[serde(default)]
-    pub zero: f64,
+    pub zero: ZeroSpec,
     /// The reading of a taxel at its full scale, which is its stroke; the largest of the frames when left out.
     pub full_scale: Option<f64>,
     /// n: how far each touch was pressed, metres; with `speed_mm_per_s` this is the time between its frames.
@@ -94,6 +96,65 @@ pub struct RecordedSpec {
     /// Values of a taxel: a plan knows what its skin reads. 0: one.
     #[serde(skip)]
     pub n_values: usize,
+}
+
+/// `zero = 100.0` or `zero = "zero.npy"`: what taxels read that nothing touches.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum ZeroSpec {
+    /// All taxels read the same.
+    One(f64),
+    /// A file with one number for each taxel: an array with the axes that taxels have in `frames`, or a list, row by row.
+    Each(PathBuf),
+}
+
+impl Default for ZeroSpec {
+    fn default() -> Self {
+        Self::One(0.0)
+    }
+}
+
+impl<'de> Deserialize<'de> for ZeroSpec {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        /// Tells a number from a path.
+        struct NumberOrPath;
+        impl Visitor<'_> for NumberOrPath {
+            type Value = ZeroSpec;
+
+            fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+                formatter.write_str("a number, or the path of a file with a number for each taxel")
+            }
+
+            fn visit_f64<E: serde::de::Error>(
+                self,
+                number: f64,
+            ) -> std::result::Result<ZeroSpec, E> {
+                Ok(ZeroSpec::One(number))
+            }
+
+            fn visit_i64<E: serde::de::Error>(
+                self,
+                number: i64,
+            ) -> std::result::Result<ZeroSpec, E> {
+                Ok(ZeroSpec::One(number as f64))
+            }
+
+            fn visit_u64<E: serde::de::Error>(
+                self,
+                number: u64,
+            ) -> std::result::Result<ZeroSpec, E> {
+                Ok(ZeroSpec::One(number as f64))
+            }
+
+            fn visit_str<E: serde::de::Error>(
+                self,
+                path: &str,
+            ) -> std::result::Result<ZeroSpec, E> {
+                file_path(path.into_deserializer()).map(ZeroSpec::Each)
+            }
+        }
+        deserializer.deserialize_any(NumberOrPath)
+    }
 }
 
 /// What a skin that remembers was touched by before each touch.
@@ -142,7 +203,11 @@ impl RecordedSpec {
     /// All files that are named, to be found in another folder.
     pub fn files_mut(&mut self) -> impl Iterator<Item = &mut PathBuf> {
         let labels = Some(&mut self.labels).filter(|path| !is_empty(path));
-        let files = [Some(&mut self.frames), labels].into_iter().flatten();
+        let zero = match &mut self.zero {
+            ZeroSpec::One(_) => None,
+            ZeroSpec::Each(path) => Some(path),
+        };
+        let files = [Some(&mut self.frames), labels, zero].into_iter().flatten();
         let others = [
             &mut self.shear,
             &mut self.shear_test,
@@ -168,8 +233,12 @@ impl RecordedSpec {
             &self.depths,
         ];
         let others = others.into_iter().flatten().map(PathBuf::as_path);
-        let files = [Some(self.frames.as_path()), labels].into_iter().flatten();
-        files.chain(others).collect()
+        let zero = match &self.zero {
+            ZeroSpec::One(_) => None,
+            ZeroSpec::Each(path) => Some(path.as_path()),
+        };
+        let files = [Some(self.frames.as_path()), labels, zero];
+        files.into_iter().flatten().chain(others).collect()
     }
 
     /// The file of the array `name`: the one that is given, or the archive of the frames if it contains the array.
@@ -204,6 +273,29 @@ impl RecordedSpec {
         };
         let axes = self.axes(self.order.as_deref(), n_values);
         frame_shape(&path.display().to_string(), &shape, axes)
+    }
+
+    /// What each taxel reads that nothing touches, shape (rows · columns), row by row.
+    ///
+    /// # Errors
+    /// If the file cannot be read or does not have one number for each taxel of `shape`, the axes of `frames`.
+    pub fn zeros(&self, shape: &FrameShape) -> Result<Vec<f64>> {
+        let path = match &self.zero {
+            ZeroSpec::One(number) => return Ok(vec![*number; shape.rows * shape.columns]),
+            ZeroSpec::Each(path) => path,
+        };
+        let array = FileArray::read(path, "zero")?;
+        let (place, given) = (array.place.clone(), array.shape.clone());
+        let frames = FileArray::shape_of(&self.frames, "frames")?;
+        shape
+            .arrange_taxels(array.into_numbers()?, &frames)
+            .map_err(|expected| {
+                let allowed = format!(
+                    "shape {expected:?}, one number for each taxel of {}",
+                    self.frames.display()
+                );
+                Error::input(place, format!("an array of shape {given:?}"), allowed)
+            })
     }
 
     fn axes<'a>(&self, order: Option<&'a str>, n_values: usize) -> FrameAxes<'a> {

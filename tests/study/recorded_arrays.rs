@@ -324,6 +324,79 @@ fn an_offset_is_subtracted_before_it_costs_digits() {
 }
 
 #[test]
+fn each_taxel_may_rest_at_a_reading_of_its_own() {
+    let case = written();
+    let folder = case.folder();
+    let usual = scores(&(keys(folder, "frames.npy", "labels.npy") + "full_scale = 2.0"));
+    // Taxels rest at 62, 60, 56, 48, 32 and read 64 at the full scale: the same shares of the full scale, to the bit.
+    let range = |row: usize, column: usize| 2f64.powi(1 + ((row * 3 + column) % 5) as i32);
+    let zeros = Array::from_shape_fn((8, 8), |(row, column)| 64.0 - range(row, column));
+    let own = Array3::from_shape_fn((N, 8, 8), |(touch, row, column)| {
+        let reading = frames()[[touch, row, column]];
+        zeros[[row, column]] + 0.5 * range(row, column) * reading
+    });
+    write_npy(&case.path("own.npy"), &own).unwrap();
+    write_npy(&case.path("zero.npy"), &zeros).unwrap();
+    let own_keys = keys(folder, "own.npy", "labels.npy") + "full_scale = 64.0\n";
+    let with = |zero: &str| own_keys.clone() + &key(folder, "zero", zero);
+    assert_eq!(scores(&with("zero.npy")), usual);
+    // One for all is wrong here.
+    assert_ne!(scores(&(own_keys.clone() + "zero = 32.0")), usual);
+    // As a list, and as a table of rows and columns.
+    let list = zeros.iter().copied().collect::<ndarray::Array1<f64>>();
+    write_npy(&case.path("list.npy"), &list).unwrap();
+    let rows = zeros.outer_iter().map(|row| {
+        let cells: Vec<String> = row.iter().map(f64::to_string).collect();
+        cells.join(",") + "\n"
+    });
+    std::fs::write(case.path("zero.csv"), rows.collect::<String>()).unwrap();
+    assert_eq!(scores(&with("list.npy")), usual);
+    assert_eq!(scores(&with("zero.csv")), usual);
+    // Axes in another order are those of the frames.
+    let turned = own
+        .permuted_axes([0, 2, 1])
+        .as_standard_layout()
+        .into_owned();
+    write_npy(&case.path("turned.npy"), &turned).unwrap();
+    let turned = zeros.t().as_standard_layout().into_owned();
+    write_npy(&case.path("turned_zero.npy"), &turned).unwrap();
+    let keys_turned =
+        keys(folder, "turned.npy", "labels.npy") + "full_scale = 64.0\norder = \"n x y\"\n";
+    assert_eq!(
+        scores(&(keys_turned + &key(folder, "zero", "turned_zero.npy"))),
+        usual
+    );
+    // What is wrong is said in one sentence.
+    let refused = |name: &str, zeros: &ArrayD<f64>, expected: &str| {
+        write_npy(&case.path(name), zeros).unwrap();
+        let said = error(&with(name));
+        assert!(said.contains(&format!("{name}{expected}")), "{said}");
+        assert_eq!(said.lines().count(), 1, "{said}");
+    };
+    let mut wrong = zeros.clone().into_dyn();
+    wrong[[2, 3]] = f64::NAN;
+    refused("nan.npy", &wrong, ", taxel 19: NaN; a finite number");
+    wrong[[2, 3]] = 64.0;
+    refused(
+        "high.npy",
+        &wrong,
+        ", taxel 19: 64; below recorded.full_scale, 64",
+    );
+    let small = ArrayD::zeros(vec![4, 4]);
+    refused(
+        "small.npy",
+        &small,
+        ": an array of shape [4, 4]; shape [8, 8], one number for each taxel",
+    );
+    assert!(error(&with("absent.npy")).contains("absent.npy: cannot be read"));
+    let said = error(&(own_keys.clone() + "zero = [1.0]"));
+    assert!(
+        said.contains("a number, or the path of a file with a number for each taxel"),
+        "{said}"
+    );
+}
+
+#[test]
 fn clipped_readings_are_saturated_and_others_are_not() {
     let case = written();
     let folder = case.folder();

@@ -70,6 +70,43 @@ impl FrameShape {
         (order, shape)
     }
 
+    /// Returns one number of each taxel, row by row, shape (rows · columns), of an array with the axes that taxels have in a file of frames of
+    /// the shape `frames`, or of rows × columns, or of a list. The error is the shape that was expected.
+    pub fn arrange_taxels(
+        &self,
+        numbers: ArrayD<f64>,
+        frames: &[usize],
+    ) -> std::result::Result<Vec<f64>, Vec<usize>> {
+        let n_taxels = self.rows * self.columns;
+        // One axis c of the file counts values of a taxel.
+        let of_values = match self.order.contains('y') {
+            true => self
+                .order
+                .match_indices('c')
+                .map(|(axis, _)| axis)
+                .collect(),
+            false if self.n_values > 1 => self.order.find('c').into_iter().collect(),
+            false => Vec::new(),
+        };
+        let is_of_taxels = |axis: &usize| {
+            let letter = self.order.as_bytes()[*axis];
+            !matches!(letter, b'n' | b't') && !of_values.contains(axis)
+        };
+        let of_taxels: Vec<usize> = (0..frames.len()).filter(is_of_taxels).collect();
+        let expected: Vec<usize> = of_taxels.iter().map(|&axis| frames[axis]).collect();
+        if numbers.shape() == expected {
+            let place = |axis: &usize| of_taxels.iter().position(|own| own == axis);
+            let axes: Vec<usize> = self.axes.iter().filter_map(place).collect();
+            return Ok(numbers.permuted_axes(axes).iter().copied().collect());
+        }
+        let is_list = numbers.len() == n_taxels
+            && numbers.shape().iter().filter(|&&length| length > 1).count() <= 1;
+        match is_list || numbers.shape() == [self.rows, self.columns] {
+            true => Ok(numbers.iter().copied().collect()),
+            false => Err(expected),
+        }
+    }
+
     /// Returns frames as rows, shape (n · F, values · rows · columns), of the numbers of a file.
     ///
     /// # Panics
