@@ -39,9 +39,14 @@ pub fn same_rows(folder: &Path, again: &[Table], is_whole: bool) -> Result<usize
     for table in of_items.filter(|table| is_whole || !table.is_summary) {
         let path = folder.join(table.file);
         let text = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, "read", e))?;
-        let lines = text.lines();
-        let stands: BTreeSet<&str> = lines.clone().collect();
         let content = String::from_utf8_lossy(&table.csv);
+        let header = content.lines().next().unwrap_or_default();
+        let same_columns = match is_whole || text.lines().next() == Some(header) {
+            true => None,
+            false => columns_of(&text, header),
+        };
+        let lines = same_columns.as_deref().unwrap_or(&text).lines();
+        let stands: BTreeSet<&str> = lines.clone().collect();
         for row in content.lines().skip(1) {
             if !stands.contains(row) {
                 let nearest = lines.zip(1..).max_by_key(|(other, _)| n_alike(row, other));
@@ -61,6 +66,28 @@ pub fn same_rows(folder: &Path, again: &[Table], is_whole: bool) -> Result<usize
         }
     }
     Ok(n_rows)
+}
+
+/// Returns a table restricted to the columns of `header`. Columns such as the number of groups exist only if some row of the whole table has them, so
+/// the table of a few work items may lack them. Returns `None` if the table lacks a column of `header`.
+fn columns_of(text: &str, header: &str) -> Option<String> {
+    let mut reader = csv::ReaderBuilder::new();
+    let mut reader = reader.has_headers(false).from_reader(text.as_bytes());
+    let mut rows = reader.records();
+    let names = rows.next()?.ok()?;
+    let places = header
+        .split(',')
+        .map(|column| names.iter().position(|name| name == column));
+    let places: Vec<usize> = places.collect::<Option<_>>()?;
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(header.split(',')).ok()?;
+    for row in rows {
+        let row = row.ok()?;
+        writer
+            .write_record(places.iter().filter_map(|&place| row.get(place)))
+            .ok()?;
+    }
+    String::from_utf8(writer.into_inner().ok()?).ok()
 }
 
 /// Leading letters that two rows share: rows begin with what they are about.

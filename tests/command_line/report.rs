@@ -204,6 +204,52 @@ fn confusion_matrices_of_the_best_cells_alone_leave_the_other_tables_as_they_are
     assert!(!case.path("sizes").exists());
 }
 
+/// The columns of groups and of repeated splits exist if any row has them; a few work items may have none of these rows.
+#[test]
+fn verify_takes_a_few_work_items_of_a_study_with_groups_and_repeated_splits() {
+    let case = Case::new();
+    let text = STUDY.replace("trials = 2", "trials = 4").replace(
+        "depth_mm = 3.0",
+        "depth_mm = 3.0\nyaw_deg = [0.0, 30.0, 60.0, 90.0]",
+    );
+    let axes = "[axes]\n\"recognition.split\" = [\"random\", \"half_of_yaws\"]\n";
+    case.file("splits.toml", text + axes);
+    case.succeeds(&["run", "splits.toml", "--out", "found"]);
+    let accuracy = fs::read_to_string(case.path("found/accuracy.csv")).unwrap();
+    let header = accuracy.lines().next().unwrap();
+    assert!(header.contains("distinct_split") && header.contains("n_groups"));
+    for draw in 0..8 {
+        let draw = draw.to_string();
+        case.succeeds(&["verify", "found", "--cells", "1", "--draw", &draw]);
+    }
+    // A row that differs is found in a table of fewer columns, too. The manifest is edited with the table, so that its hash is right.
+    let n_correct = header.split(',').position(|name| name == "n_correct");
+    let edited: Vec<String> = accuracy
+        .lines()
+        .enumerate()
+        .map(|(number, line)| {
+            let mut fields: Vec<&str> = line.split(',').collect();
+            if number > 0 {
+                fields[n_correct.unwrap()] = "1";
+            }
+            fields.join(",")
+        })
+        .collect();
+    let edited = edited.join("\n") + "\n";
+    let manifest = fs::read_to_string(case.path("found/manifest.json")).unwrap();
+    let hash = |text: &str| bubbletouch::study::sha256(text.as_bytes());
+    let manifest = manifest.replace(&hash(&accuracy), &hash(&edited));
+    case.file("found/manifest.json", manifest);
+    case.file("found/accuracy.csv", edited);
+    for draw in 0..8 {
+        let draw = draw.to_string();
+        let verified = case.run(&["verify", "found", "--cells", "1", "--draw", &draw]);
+        assert_eq!(verified.status.code(), Some(2));
+        let said = String::from_utf8(verified.stderr).unwrap();
+        assert!(said.contains("found/accuracy.csv:"), "{said}");
+    }
+}
+
 #[test]
 fn the_page_comes_again_from_the_tables() {
     let case = Case::new();
