@@ -8,12 +8,8 @@ use super::spec::{
 };
 use super::taxel_array::TaxelArray;
 use crate::error::{Error, Result};
-use crate::signal::SensorError;
 use crate::world::{ArrayLayout, Grid};
 use glam::DVec2;
-
-/// Sensor errors of taxels beside each other, or of rows and columns.
-const NEED_PLACES: [SensorError; 2] = [SensorError::Crosstalk, SensorError::MatrixReadout];
 
 impl RecordedSpec {
     /// Notes how many values a taxel of the skin reads.
@@ -96,7 +92,7 @@ impl Check<'_> {
                     let widths = spec.signal.axes.of("smoothing_mm").into_iter();
                     widths.flat_map(Axis::values).any(|width| width > 0.0)
                 }
-                StepSpec::Error(error) => NEED_PLACES.contains(error),
+                StepSpec::Error(error) => error.about().needs_places,
                 StepSpec::Force | StepSpec::Noise => false,
             };
             if let Some(step) = spec.signal.steps.iter().find(needs_places) {

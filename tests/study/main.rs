@@ -27,5 +27,6 @@ mod recorded;
 mod recorded_arrays;
 mod recorded_law;
 mod repeatability;
+mod sensor_error_names;
 mod shear;
 mod variance;

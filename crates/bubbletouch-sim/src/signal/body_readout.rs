@@ -5,17 +5,18 @@
 //! skin's name, the taxel, the frame and the time. What a taxel reads is the same whether it is read alone, with those that are
 //! touched, or with all of its patch.
 //!
-//! Steps and strengths are those of a chain, with the same distributions and other draws; but zeros [drift](super::SensorError::Drift) along straight lines
-//! between 64 times of a session, and each taxel [fails](super::SensorError::Faults) by itself, so that the share of dead and stuck ones is one on average.
+//! Steps and strengths are those of a chain, with the same distributions and other draws. A sensor error can be read so if its description has
+//! [`by_taxel`](super::ErrorAbout::by_taxel).
 
-use super::faults::check_together;
-use super::taxel_step::{CHUNK, Chunk, TaxelStep};
-use super::{MOST_STRENGTHS, Moment, Quantisation, Quantity, SensorError, SignalStep};
+use super::noise::NoiseByNumber;
+use super::taxel_effect::{CHUNK, Chunk, TaxelEffect};
+use super::{MOST_STRENGTHS, Moment, Quantity, SENSOR_ERRORS, SensorError, SignalStep};
 use crate::error::{Error, Result};
 use crate::random::Seed;
 use crate::whole_body::{BodyState, WholeBody};
 use crate::world::Taxel;
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// Taxels from which on threads share the reading. Less is done before a second thread is awake.
 pub const WORTH_THREADS: usize = 4 * CHUNK;
@@ -61,7 +62,7 @@ pub const WORTH_THREADS: usize = 4 * CHUNK;
 pub struct BodyReadout {
     begins: Quantity,
     /// Of each patch.
-    steps: Vec<Vec<TaxelStep>>,
+    steps: Vec<Vec<Arc<dyn TaxelEffect>>>,
     /// The number of each patch's first taxel, and how many taxels there are.
     firsts: Vec<usize>,
 }
@@ -84,8 +85,8 @@ impl BodyReading {
 }
 
 impl BodyReadout {
-    /// Checks the steps in their order and prepares them for each patch: [`Force`](SignalStep::Force) as the first or not at all, then noise, gain
-    /// mismatch, drift, faults and quantisation. `noise` names the noise of all frames.
+    /// Checks the steps in their order and prepares them for each patch: [`Force`](SignalStep::Force) as the first or not at all, then noise and
+    /// sensor errors that each taxel has by itself. `noise` names the noise of all frames.
     ///
     /// # Errors
     /// A step that needs other taxels or other frames; force that is not the first; a strength out of its range; a unit of noise that the
@@ -207,7 +208,7 @@ impl BodyReadout {
             let (here, rest) = values.split_at_mut(n);
             chunk.lay(&taxels[..n]);
             for step in &self.steps[patch] {
-                chunk.apply(step, moment, here);
+                step.apply(chunk, moment, here);
             }
             (taxels, values) = (&taxels[n..], rest);
         }
@@ -220,8 +221,8 @@ fn prepare(
     quantity: Quantity,
     taxel: &Taxel,
     noise: &Seed,
-) -> Result<Vec<TaxelStep>> {
-    let mut prepared = Vec::new();
+) -> Result<Vec<Arc<dyn TaxelEffect>>> {
+    let mut prepared: Vec<Arc<dyn TaxelEffect>> = Vec::new();
     let mut n_noises = 0;
     for step in steps {
         match step {
@@ -229,7 +230,9 @@ fn prepare(
                 n_noises += 1;
                 let std = of.std_of(quantity, taxel)?;
                 let key = noise.named("noise").numbered(n_noises).counter_key();
-                prepared.extend((std > 0.0).then_some(TaxelStep::Noise { key, std }));
+                if std > 0.0 {
+                    prepared.push(Arc::new(NoiseByNumber { key, std }));
+                }
             }
             SignalStep::Error {
                 error,
@@ -238,7 +241,7 @@ fn prepare(
             } => {
                 if strengths.iter().any(|&strength| strength != 0.0) {
                     let full_scale = quantity.full_scale(taxel);
-                    prepared.push(taxel_step(*error, strengths, full_scale, skin)?);
+                    prepared.push(taxel_effect(*error, strengths, full_scale, skin)?);
                 }
             }
             SignalStep::Force => return Err(refused("force", "after another step")),
@@ -252,50 +255,31 @@ fn prepare(
 const OF_OTHERS: &str = "which needs other taxels or other frames";
 
 fn refused(step: &str, why: &str) -> Error {
-    let allowed = "force first, then noise, gain, drift, faults, quantisation";
+    let errors = SENSOR_ERRORS.iter().map(|error| error.about());
+    let by_taxel = errors.filter(|about| about.by_taxel.is_some());
+    let words: Vec<&str> = by_taxel.map(|about| about.step).collect();
     Error::input(
         "steps of a body's readout",
         format!("{step}, {why}"),
-        allowed,
+        format!("force first, then noise, {}", words.join(", ")),
     )
 }
 
-fn taxel_step(
+fn taxel_effect(
     error: SensorError,
     strengths: &[f64; MOST_STRENGTHS],
     full_scale: f64,
     skin: &Seed,
-) -> Result<TaxelStep> {
+) -> Result<Arc<dyn TaxelEffect>> {
     let about = error.about();
     for (strength, &value) in about.strengths.iter().zip(strengths) {
         if !(strength.is_allowed)(value) {
             return Err(Error::input(strength.key, value, strength.allowed));
         }
     }
-    let [first, second] = *strengths;
+    let prepare = about
+        .by_taxel
+        .ok_or_else(|| refused(about.step, OF_OTHERS))?;
     let key = skin.named(about.step).counter_key();
-    Ok(match error {
-        SensorError::Gain => TaxelStep::Gain {
-            key,
-            s: first.powi(2).ln_1p().sqrt(),
-        },
-        SensorError::Drift => TaxelStep::Drift {
-            key,
-            std: first * full_scale,
-        },
-        SensorError::Faults => {
-            check_together(first, second)?;
-            TaxelStep::Faults {
-                key,
-                dead: first,
-                stuck: second,
-                full_scale,
-            }
-        }
-        SensorError::Quantisation => {
-            let converter = Quantisation::new(first as u32, [0.0, full_scale])?;
-            TaxelStep::Quantisation(converter)
-        }
-        _ => return Err(refused(about.step, OF_OTHERS)),
-    })
+    Ok(prepare(strengths, full_scale, key)?.into())
 }

@@ -53,19 +53,22 @@ impl Crosstalk {
     }
 }
 
-pub(super) const ABOUT: ErrorAbout = ErrorAbout::new(
-    "crosstalk",
-    &[Strength::fraction("crosstalk", "crosstalk")],
-    |&[leak, _], skin| {
-        Ok(match skin.patch.layout().as_grid() {
-            Some(grid) => Box::new(Crosstalk::new(leak, grid)?),
-            None => Box::new(SurfaceLeak {
-                leak: fraction("crosstalk", leak)?,
-                neighbours: Neighbours::of(skin.patch),
-            }),
-        })
-    },
-);
+pub(super) const ABOUT: ErrorAbout = ErrorAbout {
+    needs_places: true,
+    ..ErrorAbout::new(
+        "crosstalk",
+        &[Strength::fraction("crosstalk", "crosstalk")],
+        |&[leak, _], skin| {
+            Ok(match skin.patch.layout().as_grid() {
+                Some(grid) => Box::new(Crosstalk::new(leak, grid)?),
+                None => Box::new(SurfaceLeak {
+                    leak: fraction("crosstalk", leak)?,
+                    neighbours: Neighbours::of(skin.patch),
+                }),
+            })
+        },
+    )
+};
 
 /// A leak to the neighbours on a skin that is no grid.
 #[derive(Debug)]

@@ -8,11 +8,14 @@
 //!
 //! so the zero at any time is known without the times before it, and touches need no order. 64 terms hold 99.7 % of the
 //! variance; c makes the variance at the end σ² exactly.
+//!
+//! A [`BodyReadout`](super::BodyReadout) draws by number instead: there W is linear between 2⁶ + 1 equally spaced times of the session.
 
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
+use super::taxel_effect::{Chunk, Moment, TaxelEffect};
 use crate::error::Result;
 use crate::in_range::not_negative;
-use crate::random::Seed;
+use crate::random::{CounterKey, Seed};
 use rand::Rng;
 use rand_distr::StandardNormal;
 use std::f64::consts::{PI, SQRT_2};
@@ -76,6 +79,10 @@ fn frequency(mode: usize) -> f64 {
 
 pub(super) const ABOUT: ErrorAbout = ErrorAbout {
     is_of_skin: true,
+    by_taxel: Some(|&[std, _], full_scale, key| {
+        let std = std * full_scale;
+        Ok(Box::new(ZerosByNumber { key, std }))
+    }),
     is_random_by_reading: true,
     taxel_s: |n_frames| 1.7e-8 / n_frames as f64,
     ..ErrorAbout::new(
@@ -111,6 +118,38 @@ impl Effect for Zeros {
             }
         }
     }
+}
+
+/// Halvings of the session in the draws by number: 2⁶ pieces, as many numbers a taxel as [`N_MODES`].
+const N_HALVINGS: u32 = 6;
+
+/// Zeros drawn by the taxels' numbers: σ W(t), with σ in the frame's unit.
+#[derive(Debug)]
+struct ZerosByNumber {
+    key: CounterKey,
+    std: f64,
+}
+
+impl TaxelEffect for ZerosByNumber {
+    fn apply(&self, chunk: &mut Chunk, moment: Moment, values: &mut [f64]) {
+        let terms = walk(moment.time).map(|(node, weight)| (node, self.std * weight));
+        chunk.draw_sum(self.key, terms);
+        chunk.each(values, |value, zero| value + zero);
+    }
+}
+
+/// Returns indices and weights of the normal numbers whose weighted sum is a Wiener process at a time from 0 to 1, by Lévy's construction: number 0
+/// is the value at the end, and number 2ˡ + k displaces the middle of piece k when 2ˡ pieces of time are halved.
+fn walk(time: f64) -> [(u64, f64); 1 + N_HALVINGS as usize] {
+    let mut terms = [(0, time); 1 + N_HALVINGS as usize];
+    for (halving, term) in terms[1..].iter_mut().enumerate() {
+        let n_pieces = 1u64 << halving;
+        let within = time * n_pieces as f64;
+        let piece = (within as u64).min(n_pieces - 1);
+        let tent = 1.0 - (2.0 * (within - piece as f64) - 1.0).abs();
+        *term = (n_pieces + piece, 0.5 * tent / (n_pieces as f64).sqrt());
+    }
+    terms
 }
 
 #[cfg(test)]

@@ -2,11 +2,14 @@
 //!
 //! Which taxels, and at which levels, belongs to the skin. Taxels fail in one random order of the skin, the dead from its
 //! front and the stuck from its back: a skin with more faults has all those of a skin with fewer.
+//!
+//! In a [`BodyReadout`](super::BodyReadout) each taxel fails independently: the fractions are probabilities there.
 
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
+use super::taxel_effect::{CHUNK, Chunk, Moment, TaxelEffect};
 use crate::error::{Error, Result};
 use crate::in_range::fraction;
-use crate::random::Seed;
+use crate::random::{CounterKey, Seed};
 use rand::Rng;
 use rand::seq::SliceRandom;
 
@@ -43,7 +46,7 @@ impl Levels {
 }
 
 /// No taxel is dead and stuck.
-pub(super) fn check_together(dead: f64, stuck: f64) -> Result<()> {
+fn check_together(dead: f64, stuck: f64) -> Result<()> {
     if dead + stuck <= 1.0 {
         return Ok(());
     }
@@ -54,6 +57,15 @@ pub(super) fn check_together(dead: f64, stuck: f64) -> Result<()> {
 
 pub(super) const ABOUT: ErrorAbout = ErrorAbout {
     is_of_skin: true,
+    by_taxel: Some(|&[dead, stuck], full_scale, key| {
+        check_together(dead, stuck)?;
+        Ok(Box::new(FaultsByNumber {
+            key,
+            dead,
+            stuck,
+            full_scale,
+        }))
+    }),
     ..ErrorAbout::new(
         "faults",
         &[
@@ -76,6 +88,33 @@ impl Effect for Levels {
                 frame[taxel] = level;
             }
         }
+    }
+}
+
+/// Faults drawn by the taxels' numbers: 0 with probability `dead`, a level of its own up to `full_scale` with probability `stuck`.
+#[derive(Debug)]
+struct FaultsByNumber {
+    key: CounterKey,
+    dead: f64,
+    stuck: f64,
+    full_scale: f64,
+}
+
+impl TaxelEffect for FaultsByNumber {
+    fn apply(&self, chunk: &mut Chunk, _: Moment, values: &mut [f64]) {
+        let mut levels = [0.0; CHUNK];
+        if self.stuck > 0.0 {
+            chunk.draw_uniforms(self.key, 1);
+            let levels = &mut levels[..values.len()];
+            chunk.each(levels, |_, level| self.full_scale * level);
+        }
+        chunk.draw_uniforms(self.key, 0);
+        let mut levels = levels.iter();
+        chunk.each(values, |value, luck| match levels.next() {
+            _ if luck < self.dead => 0.0,
+            Some(&level) if luck > 1.0 - self.stuck => level,
+            _ => value,
+        });
     }
 }
 

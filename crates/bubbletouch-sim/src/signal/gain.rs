@@ -4,9 +4,10 @@
 //! deviation `std`, above zero at any strength. Imaging calls this fixed-pattern noise, \[SD\] mismatching.
 
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
+use super::taxel_effect::{Chunk, Moment, TaxelEffect};
 use crate::error::Result;
 use crate::in_range::not_negative;
-use crate::random::Seed;
+use crate::random::{CounterKey, Seed};
 use rand::Rng;
 use rand_distr::StandardNormal;
 
@@ -24,6 +25,10 @@ fn gains(std: f64, skin: &Seed, n_taxels: usize) -> Result<Vec<f64>> {
 
 pub(super) const ABOUT: ErrorAbout = ErrorAbout {
     is_of_skin: true,
+    by_taxel: Some(|&[std, _], _, key| {
+        let s = std.powi(2).ln_1p().sqrt();
+        Ok(Box::new(GainsByNumber { key, s }))
+    }),
     ..ErrorAbout::new(
         "gain",
         &[Strength::share(
@@ -52,6 +57,21 @@ impl Effect for Gains {
                 *value *= gain;
             }
         }
+    }
+}
+
+/// Gains drawn by the taxels' numbers: exp(s z − s²/2).
+#[derive(Debug)]
+struct GainsByNumber {
+    key: CounterKey,
+    s: f64,
+}
+
+impl TaxelEffect for GainsByNumber {
+    fn apply(&self, chunk: &mut Chunk, _: Moment, values: &mut [f64]) {
+        let s = self.s;
+        chunk.draw_sum(self.key, [(0, s)]);
+        chunk.each(values, |value, z| value * (z - 0.5 * s * s).exp());
     }
 }
 

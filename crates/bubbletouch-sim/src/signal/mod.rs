@@ -47,7 +47,7 @@ mod sensor_error;
 mod smoothing;
 mod step;
 mod surface_smoothing;
-mod taxel_step;
+mod taxel_effect;
 
 // Everything that a study may say of a sensor error follows from its line here and from the file that it names.
 sensor_errors! {
@@ -71,7 +71,7 @@ pub use quantisation::Quantisation;
 pub use sensor_error::{Effect, ErrorAbout, MOST_STRENGTHS, Prepare, Skin, Strength, TouchRead};
 pub use smoothing::Smoothing;
 pub use step::SignalStep;
-pub use taxel_step::Moment;
+pub use taxel_effect::Moment;
 
 use crate::world::Taxel;
 

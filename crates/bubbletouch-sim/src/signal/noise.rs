@@ -1,9 +1,10 @@
 //! Additive Gaussian noise.
 
 use super::Quantity;
+use super::taxel_effect::{Chunk, Moment, TaxelEffect};
 use crate::error::{Error, Result};
 use crate::in_range::not_negative;
-use crate::random::Seed;
+use crate::random::{CounterKey, Seed};
 use crate::world::Taxel;
 use rand::Rng;
 use rand_distr::StandardNormal;
@@ -67,6 +68,20 @@ pub(super) fn add_normal(frame: &mut [f64], std: f64, stream: &Seed) {
     for value in frame {
         let z: f64 = rng.sample(StandardNormal);
         *value += std * z;
+    }
+}
+
+/// Noise drawn by the numbers of taxels and frames; σ in the frame's unit.
+#[derive(Debug)]
+pub(super) struct NoiseByNumber {
+    pub key: CounterKey,
+    pub std: f64,
+}
+
+impl TaxelEffect for NoiseByNumber {
+    fn apply(&self, chunk: &mut Chunk, moment: Moment, values: &mut [f64]) {
+        chunk.draw_sum(self.key, [(moment.frame, self.std)]);
+        chunk.each(values, |value, noise| value + noise);
     }
 }
 

@@ -4,6 +4,7 @@
 //! a sign. What is outside reads as the nearest end: a converter clips as well as it rounds.
 
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
+use super::taxel_effect::{Chunk, Moment, TaxelEffect};
 use crate::error::{Error, Result};
 
 /// The most bits. A finer step is below anything that a touch could change.
@@ -48,6 +49,9 @@ impl Quantisation {
 
 pub(super) const ABOUT: ErrorAbout = ErrorAbout {
     taxel_s: |_| 3e-9,
+    by_taxel: Some(|&[bits, _], full_scale, _| {
+        Ok(Box::new(Quantisation::new(bits as u32, [0.0, full_scale])?))
+    }),
     ..ErrorAbout::new(
         "quantisation",
         &[Strength {
@@ -69,6 +73,12 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
 impl Effect for Quantisation {
     fn apply(&self, frames: &mut [f64], _: &TouchRead, _: &mut [f64]) {
         self.convert(frames);
+    }
+}
+
+impl TaxelEffect for Quantisation {
+    fn apply(&self, _: &mut Chunk, _: Moment, values: &mut [f64]) {
+        self.convert(values);
     }
 }
 

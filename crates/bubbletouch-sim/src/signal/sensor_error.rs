@@ -1,8 +1,9 @@
 //! What a sensor error says of itself: its step, its strengths, what it belongs to, what it costs, and how it is made.
 
+use super::taxel_effect::TaxelEffect;
 use super::{SENSOR_ERRORS, SensorError, SignalStep};
 use crate::error::Result;
-use crate::random::Seed;
+use crate::random::{CounterKey, Seed};
 use crate::world::Patch;
 use std::fmt::Debug;
 
@@ -28,6 +29,11 @@ pub struct Strength {
 /// Checks strengths of which at least one is not zero, and prepares what they do to the signal of a skin.
 pub type Prepare = fn(&[f64; MOST_STRENGTHS], &Skin) -> Result<Box<dyn Effect>>;
 
+/// Prepares an error for the taxels of a whole body, from allowed strengths of which at least one is not zero, the full scale (metres or
+/// newtons) and the key of its draws.
+pub type PrepareByTaxel =
+    fn(&[f64; MOST_STRENGTHS], f64, CounterKey) -> Result<Box<dyn TaxelEffect>>;
+
 /// A sensor error.
 #[derive(Debug)]
 pub struct ErrorAbout {
@@ -43,10 +49,14 @@ pub struct ErrorAbout {
     pub remembers: bool,
     /// Whether it shows only in frames that the press moves through.
     pub needs_motion: bool,
+    /// Whether the error depends on where the taxels are: on their neighbours, or on rows and columns.
+    pub needs_places: bool,
     /// About how many seconds it takes for one taxel of one frame, of so many frames a touch.
     pub taxel_s: fn(usize) -> f64,
     /// Checks strengths of which at least one is not zero, and prepares what they do.
     pub prepare: Prepare,
+    /// Prepares the error for a [`BodyReadout`](super::BodyReadout); `None` if it depends on other taxels or on other frames.
+    pub by_taxel: Option<PrepareByTaxel>,
 }
 
 /// Strengths of an error, at most.
@@ -112,8 +122,10 @@ impl ErrorAbout {
             is_random_by_reading: false,
             remembers: false,
             needs_motion: false,
+            needs_places: false,
             taxel_s: |_| 3e-10,
             prepare,
+            by_taxel: None,
         }
     }
 }
