@@ -144,6 +144,44 @@ fn what_the_readme_and_the_guide_link_to_is_there() {
     }
 }
 
+/// Bytes of the committed results, at most.
+const MAX_RESULTS_BYTES: u64 = 12_000_000;
+
+/// The folders hold tables, and each chart once: files that a reader makes again by one command are not committed.
+#[test]
+fn committed_results_are_small_and_every_picture_is_shown() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let listed = Command::new("git")
+        .args(["ls-files", "-z", "results"])
+        .current_dir(root)
+        .output();
+    let names = listed.map(|listed| String::from_utf8(listed.stdout).unwrap());
+    let names = names.unwrap_or_default();
+    if names.is_empty() {
+        println!("SKIPPED: the source is no git repository, or there is no git");
+        return;
+    }
+    let names: Vec<&str> = names.split_terminator('\0').collect();
+    let size = |name: &&str| fs::metadata(root.join(name)).map_or(0, |meta| meta.len());
+    let n_bytes: u64 = names.iter().map(size).sum();
+    assert!(n_bytes <= MAX_RESULTS_BYTES, "{n_bytes} bytes in results/");
+    let mut shown: Vec<String> = Vec::new();
+    for (document, text) in documents() {
+        let up = if document.contains('/') { "../" } else { "" };
+        let linked = linked_files(&text).filter_map(|target| target.strip_prefix(up));
+        shown.extend(linked.map(str::to_owned));
+    }
+    let is_table = |name: &str| {
+        [".csv", ".toml", ".json", ".md"]
+            .iter()
+            .any(|end| name.ends_with(end))
+    };
+    for name in names {
+        let is_shown = shown.iter().any(|shown| shown == name);
+        assert!(is_table(name) || is_shown, "{name} is shown nowhere");
+    }
+}
+
 #[test]
 fn the_readme_fits_in_two_hundred_lines() {
     let n_lines = documents()[0].1.lines().count();
