@@ -29,8 +29,10 @@ pub struct Args {
 pub fn compare(args: &Args) -> Result<()> {
     check_ending(args.out.as_deref(), "csv")?;
     check_ending(args.html.as_deref(), "html")?;
-    let (kind, first) = kinds::read_tables(&args.first)?;
-    let (other, second) = kinds::read_tables(&args.second)?;
+    let (kind, mut first) = kinds::read_tables(&args.first)?;
+    let (other, mut second) = kinds::read_tables(&args.second)?;
+    first.extend(kinds::read_failures(&args.first)?);
+    second.extend(kinds::read_failures(&args.second)?);
     let [first_name, second_name] =
         [&args.first, &args.second].map(|path| path.display().to_string());
     if kind.table != other.table {

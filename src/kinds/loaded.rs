@@ -21,7 +21,8 @@ use crate::toml_numbers::with_line;
 use std::path::Path;
 
 /// Work items that failed.
-const FAILURES: File<PieceFailure> = File::new(FAILURES_FILE, "What failed, and why", "");
+pub(super) const FAILURES: File<PieceFailure> =
+    File::new(FAILURES_FILE, "What failed, and why", "");
 
 /// A study that is read and checked, and what its results depend on.
 pub struct Loaded<K> {

@@ -99,6 +99,15 @@ pub fn read_tables(folder: &Path) -> Result<(About, Vec<Table>)> {
     Ok((entry.about, (entry.read)(folder)?))
 }
 
+/// Returns the table of the work items of a folder that failed, or `None` if it has no such table or none failed.
+///
+/// # Errors
+/// A table that cannot be read, or has other columns.
+pub fn read_failures(folder: &Path) -> Result<Option<Table>> {
+    let found = loaded::FAILURES.read_if_there(folder)?;
+    Ok(found.filter(|failures| failures.n_rows > 0))
+}
+
 /// Text that is not TOML is told so by whoever reads the study.
 fn find(text: &str) -> Option<&'static Entry> {
     let table = toml_text::table(text)?;

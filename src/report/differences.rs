@@ -169,10 +169,10 @@ impl<'a> Settings<'a> {
         said.collect::<Vec<_>>().join(", ")
     }
 
-    /// A count that a table may have.
+    /// Returns a count, or `None` if the table does not have the column or the row has no number there.
     fn count(&self, column: &str, row: usize) -> Option<usize> {
-        let numbers = self.table.numbers(column)?;
-        Some(numbers[row] as usize)
+        let number = self.table.numbers(column)?[row];
+        (!number.is_nan()).then_some(number as usize)
     }
 
     /// The numbers of a column in some rows.

@@ -10,6 +10,9 @@ use std::collections::{BTreeMap, HashMap};
 /// Columns whose numbers name configurations, which other runs number otherwise.
 const CONFIGURATION_NUMBERS: [&str; 2] = ["cell", "best_cell"];
 
+/// Roles of the columns that tell rows apart.
+const KEY_ROLES: [Role; 3] = [Role::Choice, Role::Condition, Role::Subject];
+
 /// A row of one version and the same row of the other.
 type Pair = (usize, usize);
 
@@ -79,10 +82,15 @@ fn configurations(tables: &[Table]) -> Configurations {
         };
         // In a table of configurations the number is a note beside their settings.
         if column.role == Role::Note {
+            // Seeds are subjects, too; a trial is one of a configuration.
+            let columns = Setting::of_roles(table, &KEY_ROLES);
+            let columns: Vec<Setting> = columns.filter(|one| one.column.name != "trial").collect();
             for row in 0..table.n_rows {
-                let roles = [Role::Choice, Role::Condition];
-                let settings = settings(table, row, &roles, &Configurations::new());
-                known.entry(numbers.key(row)).or_insert(settings);
+                let said = columns.iter();
+                let said = said.filter_map(|one| entry(*one, row, &Configurations::new()));
+                known
+                    .entry(numbers.key(row))
+                    .or_insert_with(|| said.collect());
             }
         }
     }
@@ -108,7 +116,7 @@ fn entry(one: Setting, row: usize, configurations: &Configurations) -> Option<St
 }
 
 fn of_table(tables: [&Table; 2], configurations: &[Configurations; 2]) -> TableEntries {
-    let roles = [Role::Choice, Role::Condition, Role::Subject];
+    let roles = KEY_ROLES;
     let mut places: HashMap<String, Vec<usize>> = HashMap::new();
     let [first, second] = tables;
     let key = |side: usize, row| settings(tables[side], row, &roles, &configurations[side]);
@@ -126,11 +134,8 @@ fn of_table(tables: [&Table; 2], configurations: &[Configurations; 2]) -> TableE
         let columns = of.columns.iter().filter(|column| !has(other, column));
         columns.map(|column| column.name.to_string()).collect()
     };
-    let compared = Setting::all(second).filter(|one| {
-        let is_key = roles.contains(&one.column.role);
-        let is_number = one.column.name == "cell";
-        !is_key && !is_number && has(first, one.column)
-    });
+    let compared = Setting::all(second)
+        .filter(|one| !roles.contains(&one.column.role) && has(first, one.column));
     let columns = compared.filter_map(|one| of_column(one, tables, configurations, &pairs));
     TableEntries {
         file: second.file,

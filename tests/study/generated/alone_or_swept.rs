@@ -17,6 +17,9 @@ const AXES: &[&str] = &[
     "touches.depth_mm",
     "touches.frames",
     "touches.per_object",
+    "touches.speed_mm_per_s",
+    "skin.damping_n_s_per_m",
+    "skin.friction",
     "signal.noise_std_full_scale",
     "signal.smoothing_mm",
     "sensing.ensemble",
@@ -32,6 +35,10 @@ const AXES: &[&str] = &[
     "recognition.fused_touches",
     "recognition.training_readings",
     "recognition.test_fraction",
+    "recognition.over_time",
+    "recognition.tilted_copies",
+    "recognition.foremost_full_scale",
+    "recognition.gamma",
 ];
 
 /// Keys that exist in an `[axes]` study only through its own column, whose name the table of the study alone does not have.

@@ -1,22 +1,17 @@
 //! Law: a changed key changes some byte of the results, or is refused.
 
 use super::generator::{GeneratedStudy, Generator};
-use super::outcome::run;
+use super::outcome::{Tables, run, without_times};
 use bubbletouch::study::all_strengths;
 use bubbletouch::study::progress::Silent;
-use std::collections::BTreeMap;
 
 /// Studies in which a key is tried before it counts as one without effect: a small study may give the same answers by chance.
 const MAX_STUDIES: u64 = 12;
 
-/// Tables of results without times.
-type ResultTables = BTreeMap<String, Vec<u8>>;
-
 /// Returns the tables of a study, and the bits of the numbers that the classifier of the first configuration learns from; `None` if the study is refused.
-fn results(study: &GeneratedStudy) -> Option<(ResultTables, Vec<u64>)> {
+fn results(study: &GeneratedStudy) -> Option<(Tables, Vec<u64>)> {
     let loaded = study.load().ok()?;
-    let mut tables = run(&loaded).ok()?;
-    tables.retain(|name, _| !matches!(&name[..], "timing.csv" | "pareto.csv" | "stages.csv"));
+    let tables = without_times(run(&loaded).ok()?);
     let set = loaded.first().features((0, 0), &Silent).ok()?;
     let values = set.data.records.iter().map(|value| value.to_bits());
     Some((
@@ -79,12 +74,23 @@ fn a_changed_key_changes_some_byte_of_the_results() {
         "recognition.class_imbalance",
         "recognition.fused_touches",
         "recognition.test_fraction",
+        "recognition.c",
+        "recognition.gamma",
+        "recognition.n_neighbours",
+        "recognition.n_trees",
+        "recognition.over_time",
+        "recognition.tilted_copies",
+        "recognition.foremost_full_scale",
+        "recognition.training_readings",
     ] {
         assert!(has_effect(key, &[]), "{key} has no effect");
     }
     for (key, step) in [
         ("signal.noise_std_full_scale", "noise"),
         ("signal.smoothing_mm", "smoothing"),
+        // They change what is read only where forces are.
+        ("skin.stiffness_n_per_m", "force"),
+        ("skin.damping_n_s_per_m", "force"),
     ] {
         assert!(has_effect(key, &[step]), "{key} has no effect");
     }

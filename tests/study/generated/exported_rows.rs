@@ -54,11 +54,8 @@ fn exported_rows_give_the_answers_of_the_run() {
         });
         let train_touches = generator.values("recognition.train_touches");
         let study = study
-            .without("recognition.c")
-            .without("recognition.n_neighbours")
-            .without("recognition.n_trees")
+            .classified_by("nearest_centroid")
             .without("recognition.scaling")
-            .with("recognition.classifier", "nearest_centroid")
             .with("recognition.train_touches", train_touches[..2].to_vec());
         let Ok(loaded) = study.load() else {
             continue;

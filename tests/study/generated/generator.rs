@@ -76,6 +76,22 @@ impl GeneratedStudy {
         changed
     }
 
+    /// The study with another classifier, without the keys of its own.
+    pub fn classified_by(&self, classifier: impl Into<Value>) -> Self {
+        let keys = [
+            "c",
+            "gamma",
+            "choose_c",
+            "choose_folds",
+            "n_neighbours",
+            "n_trees",
+        ];
+        let plain = keys.iter().fold(self.clone(), |study, key| {
+            study.without(&format!("recognition.{key}"))
+        });
+        plain.with("recognition.classifier", classifier)
+    }
+
     pub fn text(&self) -> String {
         toml::to_string(&self.table).expect("a table has a TOML form")
     }
@@ -137,6 +153,10 @@ impl Generator {
             "touches.depth_mm" => vec![1.0.into(), 2.0.into(), 4.0.into()],
             "touches.frames" => vec![1.into(), 2.into(), 3.into()],
             "touches.per_object" => vec![12.into(), 16.into()],
+            "touches.speed_mm_per_s" => vec![5.0.into(), 20.0.into()],
+            "skin.damping_n_s_per_m" => vec![0.1.into(), 0.5.into()],
+            "skin.friction" => vec![0.3.into(), 0.6.into()],
+            "trials" => vec![2.into(), 4.into()],
             "signal.noise_std_full_scale" => vec![0.02.into(), 0.1.into(), 0.3.into()],
             "signal.smoothing_mm" => vec![3.0.into(), 6.0.into()],
             "sensing.ensemble" => Ensemble::NAMES
@@ -163,6 +183,10 @@ impl Generator {
             "recognition.fused_touches" => vec![1.into(), 2.into()],
             "recognition.training_readings" => vec![1.into(), 2.into(), 3.into()],
             "recognition.test_fraction" => vec![0.25.into(), 0.5.into()],
+            "recognition.over_time" => words(&["deepest", "moments", "course", "summarised"]),
+            "recognition.tilted_copies" => vec![1.into(), 2.into()],
+            "recognition.foremost_full_scale" => vec![0.2.into(), 0.6.into()],
+            "recognition.gamma" => vec![0.01.into(), 0.1.into(), 1.0.into()],
             key => strength_values(key.strip_prefix("signal.").unwrap_or_default()),
         };
         values.shuffle(&mut self.rng);
@@ -227,8 +251,46 @@ impl Generator {
                 study = self.with_any(study, key);
             }
         }
+        study = self.with_dependent_keys(study);
         let study = self.with_signal(study);
         self.with_classifier_options(study)
+    }
+
+    /// Adds keys that have an effect only beside others.
+    fn with_dependent_keys(&mut self, mut study: GeneratedStudy) -> GeneratedStudy {
+        let n_frames = study.get("touches.frames").and_then(Value::as_integer);
+        if n_frames.is_some_and(|n| n > 1) {
+            if self.happens(0.5) {
+                study = self.with_any(study, "touches.speed_mm_per_s");
+                if self.happens(0.4) {
+                    study = self.with_any(study, "skin.damping_n_s_per_m");
+                }
+            }
+            if self.happens(0.3) {
+                study = self.with_any(study, "recognition.over_time");
+            }
+        }
+        if self.happens(0.1) {
+            study = study.with("skin.sensed", "shear");
+            study = self.with_any(study, "skin.friction");
+        }
+        let features = study.get("recognition.features").and_then(Value::as_str);
+        let mut names = ImageFeature::NAMES.iter();
+        if features.is_some_and(|features| names.any(|(name, _)| *name == features)) {
+            for key in [
+                "recognition.tilted_copies",
+                "recognition.foremost_full_scale",
+            ] {
+                if self.happens(0.3) {
+                    study = self.with_any(study, key);
+                }
+            }
+        }
+        // A fold for each trial.
+        if study.get("recognition.test_fraction").is_none() && self.happens(0.15) {
+            study = study.with("recognition.folds", 2);
+        }
+        study
     }
 
     fn with_any(&mut self, study: GeneratedStudy, key: &str) -> GeneratedStudy {
@@ -273,7 +335,18 @@ impl Generator {
         let key = match classifier {
             Some("k_nearest") => "recognition.n_neighbours",
             Some("random_forest") => "recognition.n_trees",
-            Some(name) if name.ends_with("svm") => "recognition.c",
+            Some(name) if name.ends_with("svm") => {
+                let study = match name == "rbf_svm" && self.happens(0.3) {
+                    true => self.with_any(study, "recognition.gamma"),
+                    false => study,
+                };
+                if self.happens(0.2) {
+                    let candidates = vec![Value::from(0.1), Value::from(10.0)];
+                    let study = study.with("recognition.choose_c", candidates);
+                    return study.with("recognition.choose_folds", 2);
+                }
+                return self.with_any(study, "recognition.c");
+            }
             _ => return study,
         };
         self.with_any(study, key)

@@ -2,10 +2,13 @@
 
 mod alone_or_swept;
 mod changed_keys;
+mod charts;
+mod edits;
 mod exported_rows;
 mod folders;
 mod generator;
 mod leaks;
 mod order;
 mod outcome;
+mod recorded;
 mod repeated;

@@ -9,8 +9,20 @@ use std::collections::BTreeMap;
 /// A row of a table: the text of each column.
 pub type Row = BTreeMap<String, String>;
 
+/// Tables by the names of their files.
+pub type Tables = BTreeMap<String, Vec<u8>>;
+
+/// Files of times, which differ from run to run.
+const TIMES: [&str; 3] = ["timing.csv", "pareto.csv", "stages.csv"];
+
+/// Tables without those of times.
+pub fn without_times(mut tables: Tables) -> Tables {
+    tables.retain(|name, _| !TIMES.contains(&&name[..]));
+    tables
+}
+
 /// Runs a study in memory and returns its tables by file name, or an error where a run refuses it.
-pub fn run(study: &RecognitionStudy) -> bubbletouch::Result<BTreeMap<String, Vec<u8>>> {
+pub fn run(study: &RecognitionStudy) -> bubbletouch::Result<Tables> {
     let files = table_files(&tables_of(&study.run(&Silent)?)?);
     Ok(files.into_iter().collect())
 }

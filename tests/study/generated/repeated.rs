@@ -27,12 +27,12 @@ fn trials_that_are_the_same_make_no_claim_stronger() {
                 .without("recognition.class_imbalance")
                 .without("recognition.training_readings")
                 .without("recognition.fused_touches")
-                .without("recognition.n_neighbours")
-                .without("recognition.n_trees")
+                .without("recognition.folds")
+                .without("recognition.tilted_copies")
                 .without("sensing.ratio")
+                .classified_by(classifiers.to_vec())
                 .with("sensing.ensemble", "identity")
                 .with("recognition.split", "half_of_yaws")
-                .with("recognition.classifier", classifiers.to_vec())
                 .with("touches.yaw_deg", yaws);
             study.table.remove("signal");
             study.with("signal.steps", Vec::<Value>::new())
