@@ -144,7 +144,7 @@ fn a_shard_is_not_finished_and_its_merge_is() {
 }
 
 /// How far the estimates of a real run were off. Not a test of this code alone but of the machine too, so by hand:
-/// `cargo test --release --test command_events -- --ignored --nocapture`, on a machine that does nothing else.
+/// `cargo test --release --test command_line events -- --ignored --nocapture`, on a machine that does nothing else.
 #[test]
 #[ignore = "asserts times"]
 fn the_time_left_of_a_real_run_is_right_within_thirty_percent_after_its_first_tenth() {

@@ -1,9 +1,19 @@
-//! The command: every subcommand, bad input, the README.
+//! The command and what it writes: subcommands, bad input, pages, charts, pictures and recordings.
 
+#[path = "../fixtures/browser/mod.rs"]
+mod browser;
+#[path = "../fixtures/chart_tables/mod.rs"]
+mod chart_tables;
 #[path = "../fixtures/command/mod.rs"]
 mod command;
-#[path = "../fixtures/reference_data/mod.rs"]
+#[path = "../../crates/bubbletouch-sim/tests/laws/fixtures/counting.rs"]
+mod counting;
+#[path = "../fixtures/kinds/mod.rs"]
+mod kinds;
+#[path = "../../crates/bubbletouch-sim/tests/laws/fixtures/reference_data.rs"]
 mod reference_data;
+#[path = "../fixtures/report_synthetic/mod.rs"]
+mod report_synthetic;
 #[path = "../fixtures/recording/mod.rs"]
 mod stored;
 #[path = "../fixtures/study/mod.rs"]
@@ -17,6 +27,8 @@ mod features;
 mod instructions;
 mod mesh;
 mod outputs;
+mod own_objects;
+mod page;
 mod paths;
 mod press;
 mod readme;

@@ -1,12 +1,19 @@
-//! Long runs: kill and resume, shards, merge, job arrays.
+//! Long runs: kill and resume, shards, merge, job arrays; and readers of files that meet hostile bytes.
 
 #[path = "../fixtures/command/mod.rs"]
 mod command;
+#[path = "../../crates/bubbletouch-sim/tests/laws/fixtures/counting.rs"]
+mod counting;
 #[path = "../fixtures/faults/mod.rs"]
 mod faults;
+#[path = "../fixtures/fuzzing/mod.rs"]
+mod fuzzing;
 #[path = "../fixtures/kinds/mod.rs"]
 mod kinds;
+#[path = "../fixtures/study/mod.rs"]
+mod study;
 
+mod fuzz;
 mod hostile;
 mod pieces;
 mod resume;

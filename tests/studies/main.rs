@@ -1,10 +1,14 @@
-//! Studies that recognise: tables, memory, repeatability.
+//! Studies of every kind end to end, and the classifiers that they train.
 
 #[path = "../fixtures/command/mod.rs"]
 mod command;
-use bubbletouch_sim::standard_errors;
+#[path = "../fixtures/kinds/mod.rs"]
+mod kinds;
+#[path = "../../crates/bubbletouch-sim/tests/laws/fixtures/mesh_shapes.rs"]
+mod mesh_shapes;
 #[path = "../fixtures/study/mod.rs"]
 mod study;
+use bubbletouch_sim::standard_errors;
 
 mod accuracy;
 mod axes;
@@ -16,6 +20,8 @@ mod generated;
 mod hardware;
 mod images;
 mod intervals;
+mod kept_packings;
+mod kinds_of_study;
 mod laws;
 mod layouts;
 mod memory;
@@ -23,6 +29,7 @@ mod next_touch;
 mod pose_splits;
 mod quickstart;
 mod readings;
+mod recognition;
 mod recorded;
 mod recorded_arrays;
 mod recorded_law;

@@ -1,19 +1,20 @@
-//! Objects: meshes, solids, catalogues and packings.
+//! The laws of the simulation, each checked against a slow or an independent computation.
 
-#[path = "../fixtures/mesh_shapes/mod.rs"]
-mod mesh_shapes;
-#[path = "../fixtures/overlapping/mod.rs"]
-mod overlapping;
-#[path = "../fixtures/random_scenes/mod.rs"]
-mod random_scenes;
-#[path = "../fixtures/reference_data/mod.rs"]
-mod reference_data;
+mod fixtures {
+    pub mod counting;
+    pub mod double_double;
+    pub mod mesh_shapes;
+    pub mod overlapping;
+    pub mod random_scenes;
+    pub mod reference_data;
+    pub mod scans;
+}
+mod contact;
+mod objects;
+mod sensing;
+mod world;
 
-mod catalogue;
-mod files;
-mod mesh_files;
-mod mesh_surface;
-mod orientation;
-mod packing;
-mod packing_laws;
-mod solids;
+use bubbletouch_sim::standard_errors;
+use fixtures::{
+    counting, double_double, mesh_shapes, overlapping, random_scenes, reference_data, scans,
+};

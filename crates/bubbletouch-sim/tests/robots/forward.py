@@ -6,7 +6,7 @@ and a fixed joint that turns back; the turn is the shortest one from +z to the a
 FOLLOWERS writes them out.
 
     python3 -m venv venv && venv/bin/pip install pin==4.1.0 numpy
-    venv/bin/python tests/robots/forward.py
+    venv/bin/python crates/bubbletouch-sim/tests/robots/forward.py
 """
 
 import csv

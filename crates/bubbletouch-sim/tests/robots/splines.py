@@ -1,7 +1,7 @@
 """Splines of SciPy at the way-points of tests/robot_motion.rs: prints the numbers that the test quotes.
 
     python3 -m venv venv && venv/bin/pip install scipy==1.17.1
-    venv/bin/python tests/robots/splines.py
+    venv/bin/python crates/bubbletouch-sim/tests/robots/splines.py
 """
 
 import numpy as np

@@ -1,14 +1,14 @@
 //! The SVM engine against the definitions: every objective, violation and duality gap here is computed again from the
 //! features, one kernel value at a time, whatever the solver kept, shared, shrank, cached or rounded on its way.
 
+use crate::drawn::{folds, rng};
 use crate::svm_conditions::{Worth, kernel_value};
-use bubbletouch::random::Seed;
-use bubbletouch::recognition::data::dataset::{Dataset, dataset, rows};
-use bubbletouch::recognition::data::split::{Split, stratified_k_fold};
-use bubbletouch::recognition::svm::cross_validation::choice::{Candidates, Chosen, choose};
-use bubbletouch::recognition::svm::kernel::{Gamma, Kernel};
-use bubbletouch::recognition::svm::predict::svm_model::SvmModel;
-use bubbletouch::recognition::svm::{BinaryProblem, Multiclass, Solver, SvmParams};
+use bubbletouch_svm::cross_validation::choice::{Candidates, Chosen, choose};
+use bubbletouch_svm::dataset::{Dataset, dataset, rows};
+use bubbletouch_svm::kernel::{Gamma, Kernel};
+use bubbletouch_svm::predict::svm_model::SvmModel;
+use bubbletouch_svm::split::Split;
+use bubbletouch_svm::{BinaryProblem, Multiclass, Solver, SvmParams};
 use linfa::DatasetBase;
 use linfa::traits::Fit;
 use linfa_svm::Svm;
@@ -41,15 +41,13 @@ fn params(kernel: Kernel, c: f64, tolerance: f64) -> SvmParams {
 /// Normal clouds of `counts` rows in `m` features of unit spread, a class each, whose centres lie `apart` times a normal
 /// vector from the origin; the rows of all classes are mixed.
 fn clouds(counts: &[usize], m: usize, apart: f64, seed: u64) -> Dataset {
-    let seed = Seed::new(seed);
-    let mut rng = seed.named("centres").rng();
+    let mut rng = rng(seed);
     let centres = Array2::from_shape_fn((counts.len(), m), |_| {
         apart * rng.sample::<f64, _>(StandardNormal)
     });
     let mut labels: Vec<usize> = (0..counts.len())
         .flat_map(|class| std::iter::repeat_n(class, counts[class]))
         .collect();
-    let mut rng = seed.named("rows").rng();
     for last in (1..labels.len()).rev() {
         labels.swap(last, rng.gen_range(0..=last));
     }
@@ -235,7 +233,7 @@ fn wide_rows_that_span_no_dimension_are_solved_too() {
 /// Four classes of 300 rows: f32 at the usual tolerance.
 fn large() -> (Dataset, Array2<f64>) {
     let data = clouds(&[300, 300, 300, 300], 8, 0.7, 3);
-    let mut rng = Seed::new(4).rng();
+    let mut rng = rng(4);
     let probes = Array2::from_shape_fn((800, 8), |_| 1.3 * rng.sample::<f64, _>(StandardNormal));
     (data, probes)
 }
@@ -649,7 +647,7 @@ fn accuracies(params: SvmParams, data: &Dataset, folds: &[Split], chosen: &Chose
 #[test]
 fn of_43_small_classes_the_choice_on_one_matrix_is_that_of_training_one_by_one() {
     let data = clouds(&[8; 43], 12, 0.8, 16);
-    let folds = stratified_k_fold(data.targets.view(), 2, &Seed::new(1)).unwrap();
+    let folds = folds(&data.targets, 2);
     for kernel in [Kernel::Linear, RBF] {
         for multiclass in [Multiclass::OneVsOne, Multiclass::OneVsRest] {
             let params = SvmParams {
@@ -672,7 +670,7 @@ fn labels_of_rows_that_no_fold_holds_change_no_choice() {
     let (held, seen): (Vec<usize>, Vec<usize>) = (0..90).partition(|row| row % 3 == 0);
     let labels = seen.iter().map(|&row| data.targets[row]);
     let labels: Array1<usize> = labels.collect();
-    let folds = stratified_k_fold(labels.view(), 3, &Seed::new(1)).unwrap();
+    let folds = folds(&labels, 3);
     let whole = |rows: &[usize]| rows.iter().map(|&at| seen[at]).collect();
     let folds = folds.iter().map(|fold| Split {
         train: whole(&fold.train),
@@ -738,7 +736,7 @@ fn a_class_that_a_fold_does_not_train_on_is_never_recognised_there() {
 #[test]
 fn a_choice_for_a_problem_that_training_would_refuse_is_refused() {
     let data = clouds(&[20, 20], 4, 1.0, 19);
-    let folds = stratified_k_fold(data.targets.view(), 2, &Seed::new(1)).unwrap();
+    let folds = folds(&data.targets, 2);
     let params = SvmParams {
         solver: Solver::CoordinateDescent,
         ..SvmParams::default()

@@ -1,8 +1,8 @@
 //! Sets on which support vector machines break: their outcome is known without another program.
 
-use bubbletouch::recognition::data::dataset::dataset;
-use bubbletouch::recognition::svm::kernel::{Gamma, Kernel};
-use bubbletouch::recognition::svm::{Multiclass, SvmParams};
+use bubbletouch_svm::dataset::dataset;
+use bubbletouch_svm::kernel::{Gamma, Kernel};
+use bubbletouch_svm::{Multiclass, SvmParams};
 use ndarray::{Array1, Array2, array};
 
 const RBF: Kernel = Kernel::Rbf {

@@ -2,9 +2,9 @@
 //! states it.
 
 use crate::svm_conditions::Worth;
-use bubbletouch::recognition::data::dataset::{Dataset, dataset};
-use bubbletouch::recognition::svm::kernel::{Gamma, Kernel};
-use bubbletouch::recognition::svm::{Multiclass, SvmParams};
+use bubbletouch_svm::dataset::{Dataset, dataset};
+use bubbletouch_svm::kernel::{Gamma, Kernel};
+use bubbletouch_svm::{Multiclass, SvmParams};
 use ndarray::{Array1, Array2};
 
 const RBF: Kernel = Kernel::Rbf {

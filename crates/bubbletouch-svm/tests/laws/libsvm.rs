@@ -1,14 +1,14 @@
 //! The support vector machines against LIBSVM on sets that are hard for such programs.
 //!
-//! `tests/recognition_goldens/libsvm.json` holds sets and LIBSVM's solutions, by scikit-learn 1.9.1; `make_libsvm.py` beside it
+//! `libsvm.json` holds sets and LIBSVM's solutions, by scikit-learn 1.9.1; `make_libsvm.py` beside it
 //! made it and says how exact LIBSVM's solutions are: it keeps kernel values in 32 bits, and the file gives for every case
 //! the duality gap of its coefficients and what follows for its decision values.
 
 use crate::svm_conditions::{Worth, kernel_value};
-use bubbletouch::recognition::data::dataset::{Dataset, dataset};
-use bubbletouch::recognition::svm::kernel::{Gamma, Kernel};
-use bubbletouch::recognition::svm::predict::svm_model::SvmModel;
-use bubbletouch::recognition::svm::{Multiclass, SvmParams};
+use bubbletouch_svm::dataset::{Dataset, dataset};
+use bubbletouch_svm::kernel::{Gamma, Kernel};
+use bubbletouch_svm::predict::svm_model::SvmModel;
+use bubbletouch_svm::{Multiclass, SvmParams};
 use ndarray::{Array1, Array2, ArrayView1};
 use std::collections::BTreeMap;
 
@@ -82,7 +82,7 @@ impl Case {
 }
 
 fn goldens() -> Goldens {
-    serde_json::from_str(include_str!("../recognition_goldens/libsvm.json")).unwrap()
+    serde_json::from_str(include_str!("libsvm.json")).unwrap()
 }
 
 fn matrix(rows: &[Vec<f64>]) -> Array2<f64> {

@@ -1,9 +1,9 @@
 //! The support vector machines against scikit-learn's numbers and the optimality conditions, on easy and on hard sets.
 
 use crate::svm_conditions::Worth;
-use bubbletouch::recognition::data::dataset::{Dataset, dataset};
-use bubbletouch::recognition::svm::kernel::{Gamma, Kernel};
-use bubbletouch::recognition::svm::{BinaryProblem, Multiclass, SvmParams};
+use bubbletouch_svm::dataset::{Dataset, dataset};
+use bubbletouch_svm::kernel::{Gamma, Kernel};
+use bubbletouch_svm::{BinaryProblem, Multiclass, SvmParams};
 use linfa::DatasetBase;
 use ndarray::{Array1, Array2, Axis, array, s};
 

@@ -1,12 +1,12 @@
 //! A skin of any layout moved past first contact: against the grid's own press, and against all pairs of spheres.
 
-use bubbletouch::contact::{
+use bubbletouch_sim::contact::{
     Approach, Contact, Goal, Row, Workspace, first_contact, press, press_into, press_onto_zeros,
     press_to_depth, press_to_force, press_to_travel, press_with_contacts,
 };
-use bubbletouch::geometry::Pose;
-use bubbletouch::objects::{MeshModel, Model, Sphere, SphereUnion};
-use bubbletouch::world::{ArrayLayout, Grid, Layout, Patch, Taxels};
+use bubbletouch_sim::geometry::Pose;
+use bubbletouch_sim::objects::{MeshModel, Model, Sphere, SphereUnion};
+use bubbletouch_sim::world::{ArrayLayout, Grid, Layout, Patch, Taxels};
 use glam::DVec3;
 use rand::Rng;
 

@@ -1,11 +1,11 @@
 //! Laws of free objects: they rest where all forces balance, wherever the world is, or they are said to leave.
 
-use bubbletouch::contact::balance::{Balance, Balancer, FreeObject, Outcome, PlacedSkin};
-use bubbletouch::contact::{Workspace, press_with_contacts, spring_load};
-use bubbletouch::geometry::Pose;
-use bubbletouch::objects::{Model, Sphere, SphereUnion};
-use bubbletouch::random::Seed;
-use bubbletouch::world::{Grid, Layout, Patch, Taxel, Taxels, center_of_mass};
+use bubbletouch_sim::contact::balance::{Balance, Balancer, FreeObject, Outcome, PlacedSkin};
+use bubbletouch_sim::contact::{Workspace, press_with_contacts, spring_load};
+use bubbletouch_sim::geometry::Pose;
+use bubbletouch_sim::objects::{Model, Sphere, SphereUnion};
+use bubbletouch_sim::random::Seed;
+use bubbletouch_sim::world::{Grid, Layout, Patch, Taxel, Taxels, center_of_mass};
 use glam::{DQuat, DVec3};
 use rand::Rng;
 use rayon::prelude::*;

@@ -1,10 +1,10 @@
 //! Where the balance of free objects could break. Each case has the behaviour that `guide::limits` states.
 
 use crate::random_scenes::{TAXEL, direction, rng};
-use bubbletouch::contact::balance::{Balance, Balancer, FreeObject, Outcome, PlacedSkin};
-use bubbletouch::geometry::Pose;
-use bubbletouch::objects::{Sphere, SphereUnion};
-use bubbletouch::world::{Grid, Layout, Patch, Taxel, Taxels};
+use bubbletouch_sim::contact::balance::{Balance, Balancer, FreeObject, Outcome, PlacedSkin};
+use bubbletouch_sim::geometry::Pose;
+use bubbletouch_sim::objects::{Sphere, SphereUnion};
+use bubbletouch_sim::world::{Grid, Layout, Patch, Taxel, Taxels};
 use glam::{DQuat, DVec3};
 use rand::Rng;
 

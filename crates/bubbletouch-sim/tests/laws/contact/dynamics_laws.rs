@@ -1,13 +1,13 @@
 //! Laws of taxels with mass: closed forms, rest, energy, and the limit of explicit steps.
 
-use bubbletouch::contact::balance::{Balancer, FreeObject, Outcome, PlacedSkin};
-use bubbletouch::dynamics::{
+use bubbletouch_sim::contact::balance::{Balancer, FreeObject, Outcome, PlacedSkin};
+use bubbletouch_sim::dynamics::{
     Divergence, Drive, ImplicitEuler, Integrator, SemiImplicit, State, Steps, System, rest, run,
     skin_sim,
 };
-use bubbletouch::geometry::Pose;
-use bubbletouch::objects::{Model, Sphere, SphereUnion};
-use bubbletouch::world::{Grid, Layout, Patch, Phase, Taxel, Taxels, VelocityPlan};
+use bubbletouch_sim::geometry::Pose;
+use bubbletouch_sim::objects::{Model, Sphere, SphereUnion};
+use bubbletouch_sim::world::{Grid, Layout, Patch, Phase, Taxel, Taxels, VelocityPlan};
 use glam::DVec3;
 
 const RADIUS: f64 = 2e-3;
@@ -326,7 +326,7 @@ fn what_cannot_be_simulated_is_refused_by_its_name() {
 #[cfg(feature = "rapier")]
 #[test]
 fn taxels_as_bodies_in_rapier_come_to_the_same_rest_where_masses_are_alike() {
-    use bubbletouch::dynamics::{RapierSettings, RapierWorld};
+    use bubbletouch_sim::dynamics::{RapierSettings, RapierWorld};
     let (mass, m) = (0.04, 1e-3);
     let c = 2.0 * f64::sqrt(100.0 * (mass / 4.0 + m));
     let (patch, ball) = (skin(2, taxel(c)), ball());

@@ -1,14 +1,14 @@
 //! Laws of touches to a force: against a slow bisection, the press at the travel that is found, and what cannot be reached.
 
 use crate::random_scenes::Scene;
-use bubbletouch::contact::{
+use bubbletouch_sim::contact::{
     Approach, Workspace, first_contact, press_to_depth, press_to_force, press_to_travel,
     press_with_contacts, spring_load,
 };
-use bubbletouch::geometry::Pose;
-use bubbletouch::mesh::TriangleMesh;
-use bubbletouch::objects::{MeshModel, Model, Sphere, SphereUnion};
-use bubbletouch::world::{Grid, Layout, Patch, Taxel, Taxels};
+use bubbletouch_sim::geometry::Pose;
+use bubbletouch_sim::mesh::TriangleMesh;
+use bubbletouch_sim::objects::{MeshModel, Model, Sphere, SphereUnion};
+use bubbletouch_sim::world::{Grid, Layout, Patch, Taxel, Taxels};
 use glam::{DQuat, DVec3};
 use rand::Rng;
 

@@ -1,12 +1,12 @@
 //! Laws of friction on skins: the cone, dissipation, steps of any size, symmetry, and textbook slip.
 
-use bubbletouch::contact::{
+use bubbletouch_sim::contact::{
     Approach, DamperState, FrictionLoad, FrictionState, Grip, GripCounts, NormalForce, Workspace,
     press_with_contacts, spring_load,
 };
-use bubbletouch::geometry::Pose;
-use bubbletouch::objects::{MeshModel, Model, Sphere, SphereUnion};
-use bubbletouch::world::{Grid, Layout, Patch, Shear, Shears, Taxel, Taxels};
+use bubbletouch_sim::geometry::Pose;
+use bubbletouch_sim::objects::{MeshModel, Model, Sphere, SphereUnion};
+use bubbletouch_sim::world::{Grid, Layout, Patch, Shear, Shears, Taxel, Taxels};
 use glam::{DQuat, DVec2, DVec3};
 use rand::Rng;
 

@@ -1,13 +1,13 @@
 //! Laws of free objects on a skin with friction: its tips hold them inside of Coulomb's cone, and no further.
 
-use bubbletouch::contact::balance::{
+use bubbletouch_sim::contact::balance::{
     Balance, Balancer, FreeObject, Ground, Outcome, PlacedSkin, Tip,
 };
-use bubbletouch::contact::{FrictionState, NormalForce, Workspace, press_with_contacts};
-use bubbletouch::geometry::Pose;
-use bubbletouch::objects::{Model, Sphere, SphereUnion};
-use bubbletouch::random::Seed;
-use bubbletouch::world::{Grid, Patch, Shear, Shears, Taxel};
+use bubbletouch_sim::contact::{FrictionState, NormalForce, Workspace, press_with_contacts};
+use bubbletouch_sim::geometry::Pose;
+use bubbletouch_sim::objects::{Model, Sphere, SphereUnion};
+use bubbletouch_sim::random::Seed;
+use bubbletouch_sim::world::{Grid, Patch, Shear, Shears, Taxel};
 use glam::{DQuat, DVec2, DVec3, Vec3Swizzles};
 use rand::Rng;
 
@@ -121,13 +121,12 @@ impl Held {
         let friction = self.balancer.tips().iter().map(|tip| {
             let shear = self.friction.shears().at(tip.taxel);
             let force = -shear.stiffness * tip.displacement.extend(0.0);
-            bubbletouch::contact::Wrench::at(tip.place, force)
+            bubbletouch_sim::contact::Wrench::at(tip.place, force)
         });
-        let sum = normal
-            .chain(friction)
-            .fold(bubbletouch::contact::Wrench::default(), |sum, wrench| {
-                sum + wrench
-            });
+        let sum = normal.chain(friction).fold(
+            bubbletouch_sim::contact::Wrench::default(),
+            |sum, wrench| sum + wrench,
+        );
         let weight = self.world_from_patch.rotation.conjugate() * (MASS * gravity);
         let torque = sum.torque - pose.translation.cross(sum.force);
         let size = MASS * G;

@@ -1,15 +1,14 @@
 //! Laws of the contact stage, checked against a slow, obvious oracle.
 
 use crate::random_scenes::Scene;
-use bubbletouch::contact::{
+use crate::scans::scan;
+use bubbletouch_sim::contact::{
     Workspace, first_contact, press_at_pose, press_to_depth, press_to_travel, simulate,
 };
-use bubbletouch::geometry::Pose;
-use bubbletouch::mesh::LengthUnit;
-use bubbletouch::objects::{Catalogue, Model, Sphere, SphereUnion};
-use bubbletouch::random::Seed;
-use bubbletouch::study::{ModelSpec, ObjectsSpec, load_mesh};
-use bubbletouch::world::{Grid, Patch, Phase, RestPoses, Taxel, Touch, VelocityPlan};
+use bubbletouch_sim::geometry::Pose;
+use bubbletouch_sim::objects::{Catalogue, MeshModel, Model, Sphere, SphereUnion, vertex_spheres};
+use bubbletouch_sim::random::Seed;
+use bubbletouch_sim::world::{Grid, Patch, Phase, RestPoses, Taxel, Touch, VelocityPlan};
 use glam::{DQuat, DVec3};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
@@ -428,14 +427,10 @@ fn no_scanned_object_is_felt_less_the_deeper_it_is_pressed_as_a_mesh_or_as_spher
         if path.extension().is_none_or(|e| e != "ply") {
             continue;
         }
-        for model in [ModelSpec::Mesh, ModelSpec::VertexSpheres] {
-            let spec = ObjectsSpec {
-                unit: Some(LengthUnit::default()),
-                model: Some(model),
-                ..ObjectsSpec::default()
-            };
-            let object = load_mesh(&path, &spec, None).unwrap();
-            deeper_is_never_less(&object.name, &object.model, &mut workspace);
+        let (name, mesh) = (path.display().to_string(), scan(&path));
+        let spheres = vertex_spheres(&name, mesh.vertices()).unwrap();
+        for model in [MeshModel::new(mesh).into(), Model::from(spheres)] {
+            deeper_is_never_less(&name, &model, &mut workspace);
         }
         n_meshes += 1;
     }

@@ -2,13 +2,13 @@
 
 use crate::double_double::Double;
 use crate::random_scenes::{Scene, TAXEL, direction, random_pose, rng};
-use bubbletouch::contact::{
+use bubbletouch_sim::contact::{
     DamperState, GRAZING, Workspace, press_at_pose, press_to_depth, press_to_force,
     press_with_contacts, relaxation_factor, simulate, spring_load,
 };
-use bubbletouch::geometry::Pose;
-use bubbletouch::objects::{Model, Sphere, SphereUnion};
-use bubbletouch::world::{Grid, Layout, Patch, Phase, Taxel, Taxels, VelocityPlan};
+use bubbletouch_sim::geometry::Pose;
+use bubbletouch_sim::objects::{Model, Sphere, SphereUnion};
+use bubbletouch_sim::world::{Grid, Layout, Patch, Phase, Taxel, Taxels, VelocityPlan};
 use glam::{DQuat, DVec3};
 use rand::Rng;
 

@@ -1,15 +1,16 @@
 //! Laws of several free objects at once: all forces balance, by geometry alone, and nothing enters anything.
 
-use crate::reference_data;
-use bubbletouch::contact::GRAZING;
-use bubbletouch::contact::balance::{
+use crate::{reference_data, scans};
+use bubbletouch_sim::contact::GRAZING;
+use bubbletouch_sim::contact::balance::{
     Balance, Balancer, FreeObject, Ground, HalfSpace, Obstacle, Outcome, PlacedSkin, Touched,
 };
-use bubbletouch::geometry::Pose;
-use bubbletouch::objects::{Sphere, SphereUnion};
-use bubbletouch::random::Seed;
-use bubbletouch::study::{ModelSpec, ObjectsSpec, load_mesh};
-use bubbletouch::world::{Grid, Layout, Patch, Taxel, Taxels, center_of_mass};
+use bubbletouch_sim::geometry::Pose;
+use bubbletouch_sim::mesh::Surface;
+use bubbletouch_sim::objects::{Sphere, SphereUnion};
+use bubbletouch_sim::packing::{Body, pack_mesh};
+use bubbletouch_sim::random::Seed;
+use bubbletouch_sim::world::{Grid, Layout, Patch, Taxel, Taxels, center_of_mass};
 use glam::{DQuat, DVec3};
 use rand::Rng;
 use rayon::prelude::*;
@@ -474,13 +475,8 @@ fn scanned() -> Vec<SphereUnion> {
         "077_rubiks_cube",
     ];
     let packed = names.par_iter().map(|name| {
-        let spec = ObjectsSpec {
-            model: Some(ModelSpec::Packed),
-            surface_error_mm: Some(1.5),
-            ..ObjectsSpec::default()
-        };
-        let object = load_mesh(&folder.join(format!("{name}.ply")), &spec, None).unwrap();
-        object.model.spheres().unwrap().clone()
+        let surface = Surface::new(scans::scan(&folder.join(format!("{name}.ply"))));
+        pack_mesh(&surface, Body::Solid, 1.5e-3).unwrap().spheres
     });
     packed.collect()
 }

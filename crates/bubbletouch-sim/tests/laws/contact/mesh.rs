@@ -1,14 +1,14 @@
 //! Laws of contact with a mesh: one taxel and one triangle against a search, a patch against every triangle, closed forms.
 
 use crate::random_scenes::Scene;
-use bubbletouch::contact::{
+use bubbletouch_sim::contact::{
     Workspace, first_contact, press_at_pose, press_to_depth, press_to_travel, simulate,
     stopping_height,
 };
-use bubbletouch::geometry::Pose;
-use bubbletouch::mesh::{Triangle, TriangleMesh};
-use bubbletouch::objects::{MeshModel, Model, Sphere, SphereUnion};
-use bubbletouch::world::{Grid, Patch, Phase, RestPoses, Taxel, VelocityPlan};
+use bubbletouch_sim::geometry::Pose;
+use bubbletouch_sim::mesh::{Triangle, TriangleMesh};
+use bubbletouch_sim::objects::{MeshModel, Model, Sphere, SphereUnion};
+use bubbletouch_sim::world::{Grid, Patch, Phase, RestPoses, Taxel, VelocityPlan};
 use glam::{DQuat, DVec2, DVec3};
 use rand::Rng;
 

@@ -1,9 +1,9 @@
 //! A press of a grid gives the same bits with all vector instructions that the machine has.
 
-use bubbletouch::contact::{Instructions, Workspace, press_to_depth};
-use bubbletouch::geometry::Pose;
-use bubbletouch::objects::{Sphere, SphereUnion};
-use bubbletouch::world::{Grid, Patch};
+use bubbletouch_sim::contact::{Instructions, Workspace, press_to_depth};
+use bubbletouch_sim::geometry::Pose;
+use bubbletouch_sim::objects::{Sphere, SphereUnion};
+use bubbletouch_sim::world::{Grid, Patch};
 use glam::DVec3;
 use rand::Rng;
 

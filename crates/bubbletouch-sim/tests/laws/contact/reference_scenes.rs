@@ -2,10 +2,10 @@
 //!
 //! The scenes are found by BUBBLETOUCH_REFERENCE; without it the test says that it skips.
 
-use bubbletouch::contact::{Workspace, press_at_pose};
-use bubbletouch::geometry::Pose;
-use bubbletouch::objects::{Sphere, SphereUnion};
-use bubbletouch::world::{Grid, Patch, Taxel};
+use bubbletouch_sim::contact::{Workspace, press_at_pose};
+use bubbletouch_sim::geometry::Pose;
+use bubbletouch_sim::objects::{Sphere, SphereUnion};
+use bubbletouch_sim::world::{Grid, Patch, Taxel};
 use glam::{DMat3, DVec3};
 use serde_json::Value;
 use std::path::Path;

@@ -1,9 +1,9 @@
 //! Laws of taxels draped over meshes.
 
-use bubbletouch::geometry::Aabb;
-use bubbletouch::mesh::{Surface, TriangleMesh};
-use bubbletouch::random::Seed;
-use bubbletouch::world::{DrapeRegion, Layout};
+use bubbletouch_sim::geometry::Aabb;
+use bubbletouch_sim::mesh::{Surface, TriangleMesh};
+use bubbletouch_sim::random::Seed;
+use bubbletouch_sim::world::{DrapeRegion, Layout};
 use glam::DVec3;
 use rand::Rng;
 
@@ -167,7 +167,7 @@ fn without(mesh: &TriangleMesh, triangles: std::ops::Range<usize>) -> TriangleMe
 /// without its lid.
 fn hollow_meshes() -> [(&'static str, TriangleMesh); 4] {
     let at = |mesh: TriangleMesh, x: f64| {
-        let shift = bubbletouch::geometry::Pose::from_translation(DVec3::new(x, 0.0, 0.0));
+        let shift = bubbletouch_sim::geometry::Pose::from_translation(DVec3::new(x, 0.0, 0.0));
         mesh.moved(&shift)
     };
     let outer = cuboid(DVec3::splat(0.021));
@@ -239,7 +239,7 @@ fn inner_faces_carry_no_taxel_and_are_counted_and_the_outer_surface_stays_covere
     let [(_, housing), ..] = hollow_meshes();
     let [solid, hollow] = [cuboid(DVec3::splat(0.021)), housing].map(|mesh| draped(&mesh));
     assert!(hollow.n_taxels().abs_diff(solid.n_taxels()) < solid.n_taxels() / 20);
-    let moved = hollow.moved(&bubbletouch::geometry::Pose::IDENTITY);
+    let moved = hollow.moved(&bubbletouch_sim::geometry::Pose::IDENTITY);
     assert_eq!(moved.n_left_out(), hollow.n_left_out());
     assert_eq!(Layout::disc(0.02, PITCH).unwrap().n_left_out(), 0);
 }

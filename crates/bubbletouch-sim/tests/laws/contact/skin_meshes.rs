@@ -1,10 +1,10 @@
 //! Laws of contact of skins of any shape with meshes: against every triangle, the grid kernel, and a forearm on a table.
 
-use bubbletouch::contact::{Workspace, press_to_travel, press_with_contacts, spring_load};
-use bubbletouch::geometry::Pose;
-use bubbletouch::mesh::{Surface, TriangleMesh};
-use bubbletouch::objects::{MeshModel, Model};
-use bubbletouch::world::{Grid, Layout, Patch, Taxel, Taxels};
+use bubbletouch_sim::contact::{Workspace, press_to_travel, press_with_contacts, spring_load};
+use bubbletouch_sim::geometry::Pose;
+use bubbletouch_sim::mesh::{Surface, TriangleMesh};
+use bubbletouch_sim::objects::{MeshModel, Model};
+use bubbletouch_sim::world::{Grid, Layout, Patch, Taxel, Taxels};
 use glam::{DQuat, DVec3};
 use rand::Rng;
 use std::f64::consts::TAU;
@@ -131,11 +131,11 @@ fn balls_as_spheres_and_as_fine_meshes_press_nearly_the_same() {
     let skin = Patch::new("fingertip", layout, Taxels::Equal(TAXEL)).unwrap();
     let radius = 0.03;
     let mesh = MeshModel::new(icosphere(radius, 6)).into();
-    let ball = bubbletouch::objects::Sphere {
+    let ball = bubbletouch_sim::objects::Sphere {
         center: DVec3::ZERO,
         radius,
     };
-    let ball: Model = bubbletouch::objects::SphereUnion::new(vec![ball])
+    let ball: Model = bubbletouch_sim::objects::SphereUnion::new(vec![ball])
         .unwrap()
         .into();
     let pose = Pose::from_translation(DVec3::new(0.02, 0.01, 0.043));

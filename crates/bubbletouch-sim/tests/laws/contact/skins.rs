@@ -2,10 +2,12 @@
 
 use crate::counting::allocations;
 use crate::random_scenes::{TAXEL, direction, random_pose, rng};
-use bubbletouch::contact::{GRAZING, Workspace, press_to_travel, press_with_contacts, spring_load};
-use bubbletouch::geometry::Pose;
-use bubbletouch::objects::{Model, Sphere, SphereUnion};
-use bubbletouch::world::{Grid, Layout, Patch, Taxel, Taxels};
+use bubbletouch_sim::contact::{
+    GRAZING, Workspace, press_to_travel, press_with_contacts, spring_load,
+};
+use bubbletouch_sim::geometry::Pose;
+use bubbletouch_sim::objects::{Model, Sphere, SphereUnion};
+use bubbletouch_sim::world::{Grid, Layout, Patch, Taxel, Taxels};
 use glam::DVec3;
 use rand::Rng;
 
@@ -389,7 +391,7 @@ fn skin_and_objects_push_each_other_equally_and_every_spring_along_its_axis() {
         let load = spring_load(&skin, contacts);
         let both = load.on_object + load.on_patch();
         assert_eq!((both.force, both.torque), (DVec3::ZERO, DVec3::ZERO));
-        let mut parts = bubbletouch::contact::Wrench::default();
+        let mut parts = bubbletouch_sim::contact::Wrench::default();
         for object in 0..objects.len() {
             let of_one = contacts.iter().filter(|c| c.object == object);
             parts = parts + spring_load(&skin, of_one).on_object;

@@ -1,9 +1,11 @@
 //! A skin that is pressed and then drawn along: closed forms, mirrors, and a way of many small steps.
 
-use bubbletouch::contact::{Approach, FrictionState, NormalForce, Workspace, press_with_contacts};
-use bubbletouch::geometry::Pose;
-use bubbletouch::objects::{MeshModel, Model, Sphere, SphereUnion};
-use bubbletouch::world::{ArrayLayout, Grid, Patch, Shear, Shears, Taxels};
+use bubbletouch_sim::contact::{
+    Approach, FrictionState, NormalForce, Workspace, press_with_contacts,
+};
+use bubbletouch_sim::geometry::Pose;
+use bubbletouch_sim::objects::{MeshModel, Model, Sphere, SphereUnion};
+use bubbletouch_sim::world::{ArrayLayout, Grid, Patch, Shear, Shears, Taxels};
 use glam::{DVec2, DVec3};
 
 use crate::mesh_shapes;

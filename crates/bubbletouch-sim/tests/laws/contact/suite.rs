@@ -3,14 +3,14 @@
 
 use crate::mesh_shapes::{cuboid, icosphere};
 use crate::random_scenes::{TAXEL, direction, random_pose, rng};
-use bubbletouch::contact::{
+use bubbletouch_sim::contact::{
     Workspace, press_at_pose, press_to_travel, press_with_contacts, spring_load, stopping_height,
 };
-use bubbletouch::geometry::Pose;
-use bubbletouch::mesh::{Triangle, TriangleMesh};
-use bubbletouch::objects::{MeshModel, Model, Sphere, SphereClusters, SphereUnion};
-use bubbletouch::whole_body::{BodyState, WholeBody};
-use bubbletouch::world::{Dome, Extrusion, Grid, Layout, Patch, Taxel, Taxels};
+use bubbletouch_sim::geometry::Pose;
+use bubbletouch_sim::mesh::{Triangle, TriangleMesh};
+use bubbletouch_sim::objects::{MeshModel, Model, Sphere, SphereClusters, SphereUnion};
+use bubbletouch_sim::whole_body::{BodyState, WholeBody};
+use bubbletouch_sim::world::{Dome, Extrusion, Grid, Layout, Patch, Taxel, Taxels};
 use glam::{DQuat, DVec2, DVec3};
 use rand::Rng;
 

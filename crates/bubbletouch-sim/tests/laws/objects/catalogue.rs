@@ -1,8 +1,8 @@
 //! The built-in objects: what they are, where they stand, how well their spheres fit; and catalogue files that are wrong.
 
-use bubbletouch::geometry::Pose;
-use bubbletouch::objects::{Catalogue, Shape, Solid, SphereUnion, surface_error};
-use bubbletouch::random::Seed;
+use bubbletouch_sim::geometry::Pose;
+use bubbletouch_sim::objects::{Catalogue, Shape, Solid, SphereUnion, surface_error};
+use bubbletouch_sim::random::Seed;
 use glam::{DQuat, DVec3};
 use rand::Rng;
 use rayon::prelude::*;
@@ -399,66 +399,5 @@ fn an_unusable_surface_error_is_refused() {
             error.to_string().contains("more than 2000000 spheres"),
             "{name}: {error}"
         );
-    }
-}
-
-/// The page about own objects.
-const GUIDE: &str = include_str!("../../guide/own_objects.md");
-
-#[test]
-fn the_nut_of_the_guide_is_built() {
-    let example = GUIDE.split("```toml\n").nth(1).unwrap();
-    let example = example.split("```").next().unwrap();
-    let catalogue = Catalogue::parse("hardware", "hardware.toml", example).unwrap();
-    let nut = catalogue.object("nut").unwrap();
-    let size = nut.solid.bounds().size();
-    assert!((size.y - 13. * MM).abs() < 1e-12 && (size.z - 6.8 * MM).abs() < 1e-12);
-    for entry in catalogue.entries() {
-        let model = entry.build(0.1 * MM).unwrap().model;
-        let error = surface_error(&entry.solid, model.spheres().unwrap(), 0.2 * MM);
-        assert!(
-            error.protrusion <= 0.05 * MM && error.gap <= 0.1 * MM,
-            "{error:?}"
-        );
-    }
-    // A pin along the hole meets nothing.
-    let model = nut.build(0.1 * MM).unwrap().model;
-    let spheres = model.spheres().unwrap().spheres();
-    let free = spheres
-        .iter()
-        .map(|s| s.center.truncate().length() - s.radius);
-    assert!(free.fold(f64::INFINITY, f64::min) >= 0.0);
-    let wrong = example.replacen("height_mm = 6.8", "height_mm = -2", 1);
-    let error = Catalogue::parse("hardware", "hardware.toml", &wrong).unwrap_err();
-    assert!(GUIDE.contains(&format!("{error}\n")), "{error}");
-}
-
-#[test]
-fn the_guide_has_every_shape_and_every_key() {
-    let listed = |text: &str| -> Vec<String> {
-        let error = Catalogue::parse("own", "own.toml", text)
-            .unwrap_err()
-            .to_string();
-        let names = error.split('`').skip(1).step_by(2);
-        names.map(str::to_owned).collect()
-    };
-    let part = "[[object]]\nname = \"a\"\nsource = \"b\"\n[[object.part]]\n";
-    // What the reader says it expects: after the wrong name come all right ones.
-    let shapes = listed(&format!("{part}shape = \"none\"\n"));
-    let keys = listed(&format!("{part}shape = \"ball\"\nnone = 1\n"));
-    let of_object = listed("[[object]]\nnone = 1\n");
-    assert!(shapes.len() > 11 && keys.len() > 18 && of_object.len() > 4);
-    let is_in = |name: &&String| {
-        GUIDE.contains(&format!("`{name}`")) || GUIDE.contains(&format!("`{name} ="))
-    };
-    let missing: Vec<&String> = keys
-        .iter()
-        .chain(&of_object)
-        .filter(|name| *name != "none")
-        .filter(|n| !is_in(n))
-        .collect();
-    assert!(missing.is_empty(), "{missing:?}");
-    for shape in shapes.iter().filter(|name| *name != "none") {
-        assert!(GUIDE.contains(&format!("| `\"{shape}\"` |")), "{shape}");
     }
 }

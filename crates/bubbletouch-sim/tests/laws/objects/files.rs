@@ -1,7 +1,7 @@
 //! Meshes and spheres from files: what is read, and what is refused with which words.
 
-use bubbletouch::mesh::read_ply;
-use bubbletouch::objects::{read_spheres, vertex_spheres, write_spheres};
+use bubbletouch_sim::mesh::read_ply;
+use bubbletouch_sim::objects::{read_spheres, vertex_spheres, write_spheres};
 use glam::DVec3;
 use std::fmt::Write as _;
 use std::fs::File;

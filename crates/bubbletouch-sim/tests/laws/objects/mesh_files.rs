@@ -1,6 +1,6 @@
 //! Meshes from files of three kinds, in four units, and what is said about them.
 
-use bubbletouch::mesh::{
+use bubbletouch_sim::mesh::{
     LengthUnit, MeshFormat, MeshReport, Surface, TriangleMesh, read_obj, read_ply, read_stl,
 };
 use glam::DVec3;

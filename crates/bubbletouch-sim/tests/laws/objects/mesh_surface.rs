@@ -1,7 +1,7 @@
 //! Nearest points, signed distances and winding numbers of meshes, against closed forms and against trying everything.
 
-use bubbletouch::geometry::Pose;
-use bubbletouch::mesh::{Bvh, Feature, Surface, Triangle, TriangleMesh};
+use bubbletouch_sim::geometry::Pose;
+use bubbletouch_sim::mesh::{Bvh, Feature, Surface, Triangle, TriangleMesh};
 use glam::{DQuat, DVec3};
 use rand::Rng;
 

@@ -1,8 +1,8 @@
 //! Which way meshes face: closed parts are turned outwards, cavities stay, open parts are judged by rays.
 
 use crate::mesh_shapes::cuboid;
-use bubbletouch::mesh::{Orientation, Surface, TriangleMesh};
-use bubbletouch::packing::{Body, pack_mesh};
+use bubbletouch_sim::mesh::{Orientation, Surface, TriangleMesh};
+use bubbletouch_sim::packing::{Body, pack_mesh};
 use glam::DVec3;
 
 /// Turns all triangles of a mesh.

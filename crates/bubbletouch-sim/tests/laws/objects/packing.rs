@@ -1,7 +1,7 @@
 //! The packing promise, measured on every kind of solid.
 
-use bubbletouch::objects::{Shape, Solid, pack, surface_error};
-use bubbletouch::random::Seed;
+use bubbletouch_sim::objects::{Shape, Solid, pack, surface_error};
+use bubbletouch_sim::random::Seed;
 use glam::{DVec2, DVec3};
 use rand::Rng;
 

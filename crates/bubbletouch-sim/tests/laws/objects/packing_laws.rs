@@ -1,17 +1,15 @@
 //! Laws of sphere packing: what is promised holds on shapes of every kind, measured at points of the test's own choice.
 
-use bubbletouch::Result;
-use bubbletouch::geometry::Pose;
-use bubbletouch::mesh::{MeshReport, Surface, TriangleMesh, read_ply};
-use bubbletouch::packing::{Body, DetailChain, pack_mesh, packing_error};
-use bubbletouch::study::{Packed, pack_within, packing_path};
+use bubbletouch_sim::geometry::Pose;
+use bubbletouch_sim::mesh::{MeshReport, Surface, TriangleMesh};
+use bubbletouch_sim::packing::{Body, DetailChain, pack_mesh, packing_error};
 use glam::{DQuat, DVec2, DVec3};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
-use std::path::Path;
 
 use crate::mesh_shapes::{cuboid, icosphere};
 use crate::overlapping::{Judge, together, turned};
+use crate::scans::scan;
 
 const MM: f64 = 1e-3;
 
@@ -216,89 +214,6 @@ fn what_cannot_be_packed_is_an_error() {
     assert!(error.to_string().contains("volume"), "{error}");
 }
 
-fn kept(folder: &Path, surface: &Surface, tolerance: f64) -> Result<Packed> {
-    pack_within("box", surface, tolerance, Some(folder))
-}
-
-#[test]
-fn a_folder_gives_back_what_was_packed_and_knows_what_from() {
-    let folder = tempfile::tempdir().unwrap();
-    let surface = Surface::new(cuboid(DVec3::new(4.0, 3.0, 2.0) * MM));
-    let pack = |tolerance| kept(folder.path(), &surface, tolerance).unwrap();
-    let (first, again, finer) = (pack(0.3 * MM), pack(0.3 * MM), pack(0.2 * MM));
-    let was_kept = [&first, &again, &finer].map(|packed| packed.was_kept);
-    assert_eq!(was_kept, [false, true, false]);
-    assert_eq!(first.spheres, again.spheres);
-    assert_ne!(first.spheres, finer.spheres);
-    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
-    let path = |mesh| packing_path(folder.path(), mesh, 0.3 * MM);
-    let other = cuboid(DVec3::new(4.0, 3.0, 2.1) * MM);
-    assert_ne!(path(surface.mesh()), path(&other));
-}
-
-#[test]
-fn a_kept_packing_that_is_damaged_in_any_way_is_made_again() {
-    let folder = tempfile::tempdir().unwrap();
-    let surface = Surface::new(cuboid(DVec3::new(4.0, 3.0, 2.0) * MM));
-    let pack = || kept(folder.path(), &surface, 0.3 * MM);
-    let fresh = pack().unwrap().spheres;
-    let path = packing_path(folder.path(), surface.mesh(), 0.3 * MM);
-    let whole = std::fs::read(&path).unwrap();
-    assert!(pack().unwrap().was_kept);
-    let lines: Vec<&[u8]> = whole.split_inclusive(|&byte| byte == b'\n').collect();
-    let seal = lines[lines.len() - 1];
-    let flipped = |at: usize, bit: u8| {
-        let mut bytes = whole.clone();
-        bytes[at] ^= bit;
-        bytes
-    };
-    let damages = [
-        ("one sphere, no seal", lines[..2].concat()),
-        (
-            "one sphere and the seal",
-            [lines[0], lines[1], seal].concat(),
-        ),
-        ("cut in a line", whole[..whole.len() / 2].to_vec()),
-        ("a changed digit", flipped(whole.len() / 2, 1)),
-        ("a changed seal", flipped(whole.len() - 50, 1)),
-        ("the last byte gone", whole[..whole.len() - 1].to_vec()),
-        ("empty", Vec::new()),
-        (
-            "another version",
-            String::from_utf8(whole.clone())
-                .unwrap()
-                .replace("packing ", "packing 9")
-                .into_bytes(),
-        ),
-    ];
-    for (what, bytes) in damages {
-        assert_ne!(bytes, whole, "{what}");
-        std::fs::write(&path, bytes).unwrap();
-        let again = pack().unwrap();
-        assert_eq!((again.was_kept, &again.spheres), (false, &fresh), "{what}");
-        assert_eq!(std::fs::read(&path).unwrap(), whole, "{what}");
-    }
-    std::fs::remove_file(&path).unwrap();
-    std::fs::create_dir(&path).unwrap();
-    assert_eq!(pack().unwrap_err().exit_code(), 2);
-}
-
-#[test]
-fn many_threads_may_pack_the_same_mesh_into_one_folder() {
-    let folder = tempfile::tempdir().unwrap();
-    let surface = Surface::new(cuboid(DVec3::new(2.0, 1.5, 1.0) * MM));
-    let pack = || kept(folder.path(), &surface, 0.5 * MM).unwrap();
-    let packings: Vec<_> = std::thread::scope(|scope| {
-        let threads: Vec<_> = (0..16).map(|_| scope.spawn(pack)).collect();
-        threads
-            .into_iter()
-            .map(|thread| thread.join().unwrap().spheres)
-            .collect()
-    });
-    assert!(packings.windows(2).all(|pair| pair[0] == pair[1]));
-    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
-}
-
 /// Packs, and lets a judge look who shares no code with the packing.
 fn judge(what: &str, mesh: TriangleMesh, tolerance: f64, n_points: usize) -> (usize, String) {
     let surface = Surface::new(mesh);
@@ -329,7 +244,7 @@ fn parts_that_overlap_pack_within_the_tolerance_of_their_union() {
     assert_eq!(n.count(), few.len());
 }
 
-/// Takes minutes: `cargo test --release --test packing_laws -- --ignored`.
+/// Takes minutes: `cargo test --release -p bubbletouch-sim packing_laws -- --ignored`.
 #[test]
 #[ignore = "packs all objects that overlap themselves, twice"]
 fn all_parts_that_overlap_pack_within_the_tolerance_of_their_union() {
@@ -388,15 +303,13 @@ fn scanned_objects_pack_within_half_a_millimetre() {
         return;
     };
     for (name, most) in [("014_lemon", 60), ("062_dice", 200)] {
-        let path = std::path::Path::new(&folder).join(format!("{name}.ply"));
-        let file = std::io::BufReader::new(std::fs::File::open(path).unwrap());
-        let mesh = read_ply(name, file).unwrap().into_mesh(name).unwrap();
+        let mesh = scan(&folder.join(format!("{name}.ply")));
         let n = assert_packs(mesh, Body::Solid, 0.5 * MM, name);
         assert!(n < most, "{name}: {n} spheres");
     }
 }
 
-/// Takes many minutes: `cargo test --release --test packing_laws -- --ignored`.
+/// Takes many minutes: `cargo test --release -p bubbletouch-sim packing_laws -- --ignored`.
 #[test]
 #[ignore = "packs all scans of the YCB set"]
 fn all_scanned_objects_pack_within_half_a_millimetre() {
@@ -413,9 +326,7 @@ fn all_scanned_objects_pack_within_half_a_millimetre() {
     assert!(files.len() >= 43, "{} scans", files.len());
     files.into_par_iter().for_each(|path| {
         let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
-        let file = std::io::BufReader::new(std::fs::File::open(&path).unwrap());
-        let mesh = read_ply(&name, file).unwrap().into_mesh(&name).unwrap();
-        let (n, found) = judge(&name, mesh, 0.5 * MM, 2000);
+        let (n, found) = judge(&name, scan(&path), 0.5 * MM, 2000);
         println!("{name}: {n} spheres, {found}");
     });
 }

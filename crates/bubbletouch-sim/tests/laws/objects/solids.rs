@@ -1,8 +1,8 @@
 //! Distances, boxes and packings of solids, against slow and obvious answers.
 
-use bubbletouch::geometry::Pose;
-use bubbletouch::objects::{Part, Shape, Solid, pack, surface_error};
-use bubbletouch::random::Seed;
+use bubbletouch_sim::geometry::Pose;
+use bubbletouch_sim::objects::{Part, Shape, Solid, pack, surface_error};
+use bubbletouch_sim::random::Seed;
 use glam::{DQuat, DVec2, DVec3};
 use rand::Rng;
 
@@ -266,11 +266,11 @@ fn the_measured_surface_error_sees_a_sphere_that_is_missing_or_too_large() {
     let union = pack(&solid, 0.2 * MM).unwrap();
     let mut fewer = union.spheres().to_vec();
     fewer.remove(0);
-    let fewer = bubbletouch::objects::SphereUnion::new(fewer).unwrap();
+    let fewer = bubbletouch_sim::objects::SphereUnion::new(fewer).unwrap();
     assert!(surface_error(&solid, &fewer, 0.2 * MM).gap > 0.2 * MM);
     let mut larger = union.spheres().to_vec();
     larger[0].radius += 0.3 * MM;
-    let larger = bubbletouch::objects::SphereUnion::new(larger).unwrap();
+    let larger = bubbletouch_sim::objects::SphereUnion::new(larger).unwrap();
     assert!(surface_error(&solid, &larger, 0.2 * MM).protrusion > 0.29 * MM);
 }
 

@@ -1,14 +1,14 @@
 //! What the taxels of a body read: the same alone as among others, and distributed as a chain's readings are.
 
-use bubbletouch::geometry::Pose;
-use bubbletouch::objects::{Sphere, SphereClusters, SphereUnion};
-use bubbletouch::random::Seed;
-use bubbletouch::signal::{
+use bubbletouch_sim::geometry::Pose;
+use bubbletouch_sim::objects::{Sphere, SphereClusters, SphereUnion};
+use bubbletouch_sim::random::Seed;
+use bubbletouch_sim::signal::{
     BodyReading, BodyReadout, Chain, Moment, Noise, NoiseUnit, Quantity, Recording, Scratch,
     SensorError, SignalStep,
 };
-use bubbletouch::whole_body::{BodyState, WholeBody};
-use bubbletouch::world::{Dome, Extrusion, Grid, Patch, Taxel};
+use bubbletouch_sim::whole_body::{BodyState, WholeBody};
+use bubbletouch_sim::world::{Dome, Extrusion, Grid, Patch, Taxel};
 use glam::DVec3;
 use rand::Rng;
 use rand::seq::SliceRandom;

@@ -1,7 +1,7 @@
 //! Laws of dictionaries, of what a projection leaves of them, and of the statistics that say how much that is.
 
-use bubbletouch::random::Seed;
-use bubbletouch::sensing::{Basis, Dictionary, Ensemble, Projection, SensedDictionary};
+use bubbletouch_sim::random::Seed;
+use bubbletouch_sim::sensing::{Basis, Dictionary, Ensemble, Projection, SensedDictionary};
 use ndarray::{Array2, Axis};
 
 const FIXED: [Basis; 3] = [Basis::Dct, Basis::Haar, Basis::Daubechies4];
@@ -218,7 +218,7 @@ fn more_measurements_or_fewer_atoms_bring_a_projection_nearer_to_an_isometry() {
 #[test]
 fn bad_dictionaries_are_refused_by_a_clear_sentence() {
     let seed = Seed::new(1);
-    let said = |result: bubbletouch::Result<Dictionary>| result.unwrap_err().to_string();
+    let said = |result: bubbletouch_sim::Result<Dictionary>| result.unwrap_err().to_string();
     for basis in [Basis::Haar, Basis::Daubechies4] {
         let error = said(Dictionary::complete(basis, (8, 12)));
         assert!(error.contains("12 × 8 taxels; a power of two"), "{error}");

@@ -1,7 +1,7 @@
 //! Laws that every ensemble obeys.
 
-use bubbletouch::random::Seed;
-use bubbletouch::sensing::{Ensemble, Projection};
+use bubbletouch_sim::random::Seed;
+use bubbletouch_sim::sensing::{Ensemble, Projection};
 use ndarray::{Array2, ArrayView2, s};
 
 const ENSEMBLES: [Ensemble; 7] = [

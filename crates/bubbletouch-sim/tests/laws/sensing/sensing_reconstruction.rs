@@ -1,7 +1,7 @@
 //! Laws of the solvers, slow oracles beside them, and numbers of an independent program.
 
-use bubbletouch::random::Seed;
-use bubbletouch::sensing::{
+use bubbletouch_sim::random::Seed;
+use bubbletouch_sim::sensing::{
     Basis, Dictionary, Effort, Ensemble, Lasso, Lmmse, Omp, Projection, Reconstructor,
     SensedDictionary, Solver,
 };

@@ -1,8 +1,10 @@
 //! A chain that has seen one frame allocates nothing for the next ones.
 
-use bubbletouch::random::Seed;
-use bubbletouch::signal::{Chain, Noise, NoiseUnit, Recording, Scratch, SensorError, SignalStep};
-use bubbletouch::world::{Grid, Patch, Taxel};
+use bubbletouch_sim::random::Seed;
+use bubbletouch_sim::signal::{
+    Chain, Noise, NoiseUnit, Recording, Scratch, SensorError, SignalStep,
+};
+use bubbletouch_sim::world::{Grid, Patch, Taxel};
 
 use crate::counting::allocations;
 

@@ -1,9 +1,9 @@
 //! Laws of the signal stage, against SciPy and against slow obvious code.
 
 use crate::standard_errors::{assert_expected, mean_and_std, of_mean, of_std};
-use bubbletouch::random::Seed;
-use bubbletouch::signal::{Chain, Noise, NoiseUnit, Quantity, Scratch, SignalStep};
-use bubbletouch::world::{Grid, Patch, Taxel};
+use bubbletouch_sim::random::Seed;
+use bubbletouch_sim::signal::{Chain, Noise, NoiseUnit, Quantity, Scratch, SignalStep};
+use bubbletouch_sim::world::{Grid, Patch, Taxel};
 
 const PITCH: f64 = 2e-3;
 

@@ -1,8 +1,10 @@
 //! What real skins do to a signal, in chains: strengths, order, history, time, units.
 
-use bubbletouch::random::Seed;
-use bubbletouch::signal::{Chain, Noise, NoiseUnit, Recording, Scratch, SensorError, SignalStep};
-use bubbletouch::world::{Grid, Patch, Taxel};
+use bubbletouch_sim::random::Seed;
+use bubbletouch_sim::signal::{
+    Chain, Noise, NoiseUnit, Recording, Scratch, SensorError, SignalStep,
+};
+use bubbletouch_sim::world::{Grid, Patch, Taxel};
 
 const N: usize = 48;
 const NOISE: SignalStep = SignalStep::Noise(Noise {

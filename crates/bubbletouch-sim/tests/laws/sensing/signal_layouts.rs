@@ -1,10 +1,10 @@
 //! The signal of skins that are no grid: what a grid's is where both can be asked, and what symmetry says elsewhere.
 
-use bubbletouch::random::Seed;
-use bubbletouch::signal::{
+use bubbletouch_sim::random::Seed;
+use bubbletouch_sim::signal::{
     Chain, Noise, NoiseUnit, SENSOR_ERRORS, Scratch, SensorError, SignalStep,
 };
-use bubbletouch::world::{Grid, Layout, Patch, Taxel, Taxels};
+use bubbletouch_sim::world::{Grid, Layout, Patch, Taxel, Taxels};
 use glam::{DQuat, DVec3};
 use std::f64::consts::TAU;
 

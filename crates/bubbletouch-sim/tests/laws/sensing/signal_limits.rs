@@ -2,10 +2,10 @@
 //! and as many as taxels. Each case has the behaviour that `guide::limits` states.
 
 use crate::standard_errors::assert_expected;
-use bubbletouch::random::Seed;
-use bubbletouch::sensing::{Ensemble, Projection};
-use bubbletouch::signal::{Chain, Noise, NoiseUnit, Scratch, SensorError, SignalStep};
-use bubbletouch::world::{Grid, Patch, Taxel};
+use bubbletouch_sim::random::Seed;
+use bubbletouch_sim::sensing::{Ensemble, Projection};
+use bubbletouch_sim::signal::{Chain, Noise, NoiseUnit, Scratch, SensorError, SignalStep};
+use bubbletouch_sim::world::{Grid, Patch, Taxel};
 use ndarray::Array2;
 use rand::Rng;
 

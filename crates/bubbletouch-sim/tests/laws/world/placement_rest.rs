@@ -1,9 +1,11 @@
 //! Laws of resting poses, on unions whose poses are known.
 
-use bubbletouch::geometry::Pose;
-use bubbletouch::objects::{Sphere, SphereUnion};
-use bubbletouch::random::Seed;
-use bubbletouch::world::{RestPose, as_modelled, center_of_mass, stable_poses, stable_poses_about};
+use bubbletouch_sim::geometry::Pose;
+use bubbletouch_sim::objects::{Sphere, SphereUnion};
+use bubbletouch_sim::random::Seed;
+use bubbletouch_sim::world::{
+    RestPose, as_modelled, center_of_mass, stable_poses, stable_poses_about,
+};
 use glam::{DQuat, DVec3};
 use rand::Rng;
 use std::f64::consts::{PI, TAU};

@@ -1,9 +1,9 @@
 //! Laws of touch placement.
 
 use crate::standard_errors::{assert_expected, mean_and_std, of_mean, of_share};
-use bubbletouch::geometry::Pose;
-use bubbletouch::random::Seed;
-use bubbletouch::world::{Placement, RestPose, RestPoses, Spread, Touch, TouchAxis, touches};
+use bubbletouch_sim::geometry::Pose;
+use bubbletouch_sim::random::Seed;
+use bubbletouch_sim::world::{Placement, RestPose, RestPoses, Spread, Touch, TouchAxis, touches};
 
 fn rests(probabilities: &[f64]) -> Vec<RestPose> {
     let rest = |&probability| RestPose {

@@ -1,9 +1,9 @@
 //! Robots and bodies in time: smooth between way-points, and within limits at all times.
 
 use crate::counting::allocations;
-use bubbletouch::geometry::Pose;
-use bubbletouch::random::Seed;
-use bubbletouch::world::{
+use bubbletouch_sim::geometry::Pose;
+use bubbletouch_sim::random::Seed;
+use bubbletouch_sim::world::{
     Interpolation, JointTrajectory, Motion, Phase, PoseTrajectory, Robot, VelocityPlan,
 };
 use glam::{DQuat, DVec3};
@@ -43,7 +43,7 @@ fn hinge(
     robot: &Robot,
     values: &[f64],
     kind: Interpolation,
-) -> bubbletouch::Result<JointTrajectory> {
+) -> bubbletouch_sim::Result<JointTrajectory> {
     let times = (0..values.len()).map(|i| i as f64).collect();
     let positions = Array2::from_shape_fn(
         (values.len(), 2),
@@ -206,7 +206,7 @@ fn a_trajectory_is_refused_exactly_when_a_fine_search_finds_it_beyond() {
 
 const CSV: &str = "time_s,slide_mm,hinge_deg\n0,10,0\n1.5, 20,90\n2,0,-45\n";
 
-fn read(text: &str) -> bubbletouch::Result<JointTrajectory> {
+fn read(text: &str) -> bubbletouch_sim::Result<JointTrajectory> {
     JointTrajectory::read_csv(&free(), "t.csv", text.as_bytes(), Interpolation::Cubic)
 }
 
@@ -435,7 +435,7 @@ fn every_motion_says_where_it_is() {
 
 #[test]
 fn following_a_trajectory_allocates_nothing() {
-    let arm = Robot::from_urdf("arm.urdf", include_str!("../../objects/robots/arm.urdf")).unwrap();
+    let arm = Robot::read_urdf("../../objects/robots/arm.urdf".as_ref()).unwrap();
     let there = Array2::from_shape_fn((3, 7), |(i, k)| 0.2 * i as f64 - 0.05 * k as f64);
     let times = vec![0.0, 1.0, 2.0];
     let trajectory = JointTrajectory::new(&arm, times, there, Interpolation::Cubic).unwrap();

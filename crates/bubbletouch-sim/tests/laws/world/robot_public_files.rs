@@ -1,8 +1,8 @@
 //! Kinds of URDF files that are public and that a strict reader refuses: each is read, what is left out has a note, and links are where the
 //! file says.
 
-use bubbletouch::geometry::Pose;
-use bubbletouch::world::{JointKind, LinkGeometry, Robot};
+use bubbletouch_sim::geometry::Pose;
+use bubbletouch_sim::world::{JointKind, LinkGeometry, Robot};
 use glam::DVec3;
 
 fn read(text: &str) -> Robot {

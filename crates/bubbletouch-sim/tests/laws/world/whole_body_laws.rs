@@ -1,12 +1,12 @@
 //! Laws of a whole body: what its kernel finds is what the kernel for skins of any shape finds, and nothing costs but touch.
 
-use bubbletouch::contact::{DamperState, Workspace, press_with_contacts, relaxation_factor};
-use bubbletouch::geometry::Pose;
-use bubbletouch::objects::{Model, Sphere, SphereUnion};
-use bubbletouch::whole_body::{
+use bubbletouch_sim::contact::{DamperState, Workspace, press_with_contacts, relaxation_factor};
+use bubbletouch_sim::geometry::Pose;
+use bubbletouch_sim::objects::{Model, Sphere, SphereUnion};
+use bubbletouch_sim::whole_body::{
     AT_REST, BodyContact, BodyPatch, BodyState, CoveredRobot, SphereClusters, WholeBody,
 };
-use bubbletouch::world::{Dome, Extrusion, Grid, Patch, Robot, Taxel, Taxels};
+use bubbletouch_sim::world::{Dome, Extrusion, Grid, Patch, Robot, Taxel, Taxels};
 use glam::DVec3;
 use rand::Rng;
 use std::f64::consts::{PI, TAU};
@@ -403,7 +403,7 @@ fn bad_taxels_and_names_are_refused() {
 }
 
 fn humanoid() -> Robot {
-    Robot::read_urdf(Path::new("objects/robots/humanoid.urdf")).unwrap()
+    Robot::read_urdf(Path::new("../../objects/robots/humanoid.urdf")).unwrap()
 }
 
 #[test]

@@ -1,12 +1,12 @@
 //! Every way to compute a touch gives the same: with any vector instructions, any number of threads, sparse and dense; and what all
 //! spheres against all taxels give.
 
-use bubbletouch::geometry::Pose;
-use bubbletouch::objects::{Sphere, SphereUnion};
-use bubbletouch::random::Seed;
-use bubbletouch::whole_body::{BodyContact, BodyState, Instructions};
-use bubbletouch::whole_body::{SphereClusters, WORTH_THREADS, WholeBody};
-use bubbletouch::world::{Dome, Extrusion, Grid, Layout, Patch, Taxel};
+use bubbletouch_sim::geometry::Pose;
+use bubbletouch_sim::objects::{Sphere, SphereUnion};
+use bubbletouch_sim::random::Seed;
+use bubbletouch_sim::whole_body::{BodyContact, BodyState, Instructions};
+use bubbletouch_sim::whole_body::{SphereClusters, WORTH_THREADS, WholeBody};
+use bubbletouch_sim::world::{Dome, Extrusion, Grid, Layout, Patch, Taxel};
 use glam::DVec3;
 use rand::Rng;
 use std::f64::consts::{PI, TAU};

@@ -1,0 +1,20 @@
+//! Contact: indentation, force, friction, damping, balance, meshes and skins.
+
+mod approach;
+mod balance;
+mod balance_limits;
+mod dynamics_laws;
+mod force;
+mod friction;
+mod held;
+mod laws;
+mod limits;
+mod many_bodies;
+mod mesh;
+mod press_variants;
+mod reference_scenes;
+mod skin_layouts;
+mod skin_meshes;
+mod skins;
+mod slide;
+mod suite;

@@ -1,0 +1,10 @@
+//! Objects: meshes, solids, catalogues and packings.
+
+mod catalogue;
+mod files;
+mod mesh_files;
+mod mesh_surface;
+mod orientation;
+mod packing;
+mod packing_laws;
+mod solids;

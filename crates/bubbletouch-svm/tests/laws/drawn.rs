@@ -1,0 +1,48 @@
+//! Random rows, and folds of them.
+
+use bubbletouch_svm::dataset::{Dataset, dataset};
+use bubbletouch_svm::split::Split;
+use ndarray::{Array1, Array2};
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::StandardNormal;
+
+/// Random numbers of a seed.
+pub fn rng(seed: u64) -> ChaCha8Rng {
+    ChaCha8Rng::seed_from_u64(seed)
+}
+
+/// Clusters around the corners of a simplex, `apart` standard deviations from the middle: so many rows of each class.
+pub fn clusters(counts: &[usize], apart: f64, seed: u64) -> Dataset {
+    let mut rng = rng(seed);
+    let labels: Vec<usize> = (0..*counts.iter().max().unwrap())
+        .flat_map(|turn| (0..counts.len()).filter(move |&class| turn < counts[class]))
+        .collect();
+    let features = Array2::from_shape_fn((labels.len(), counts.len()), |(row, column)| {
+        let noise: f64 = rng.sample(StandardNormal);
+        noise + if labels[row] == column { apart } else { 0.0 }
+    });
+    dataset(features, Array1::from(labels)).unwrap()
+}
+
+/// `n` folds: each class's rows go to the folds in turn.
+pub fn folds(labels: &Array1<usize>, n: usize) -> Vec<Split> {
+    let mut seen = std::collections::BTreeMap::<usize, usize>::new();
+    let fold_of: Vec<usize> = (labels.iter())
+        .map(|&label| {
+            let count = seen.entry(label).or_default();
+            *count += 1;
+            *count % n
+        })
+        .collect();
+    let rows = |is_in: &dyn Fn(usize) -> bool| {
+        (0..labels.len())
+            .filter(|&row| is_in(fold_of[row]))
+            .collect()
+    };
+    let split = |fold| Split {
+        train: rows(&|of| of != fold),
+        test: rows(&|of| of == fold),
+    };
+    (0..n).map(split).collect()
+}

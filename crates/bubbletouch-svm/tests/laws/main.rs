@@ -1,0 +1,10 @@
+//! The laws of support vector machines: optimality conditions, LIBSVM's solutions, and the choice of C and γ.
+
+mod drawn;
+mod engine;
+mod hard_cases;
+mod inseparable;
+mod libsvm;
+mod limits;
+mod svm;
+mod svm_conditions;

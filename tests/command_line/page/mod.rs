@@ -1,0 +1,15 @@
+//! Files for people: page, charts, pictures and recordings.
+
+mod asked;
+mod charts;
+mod every_kind;
+mod everywhere;
+mod page;
+mod pareto;
+mod pictures;
+mod recording_files;
+mod recording_pictures;
+mod rows;
+mod study_page;
+mod tables;
+mod two_folders;

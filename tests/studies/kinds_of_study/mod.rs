@@ -1,0 +1,9 @@
+//! The kinds of study other than recognition.
+
+mod asked;
+mod breaking_points;
+mod object_detail;
+mod reconstruction;
+mod speed_accuracy;
+mod stability;
+mod whole_body;

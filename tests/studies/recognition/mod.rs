@@ -1,0 +1,8 @@
+//! Classifiers, splits and the choice of the next touch.
+
+mod classifier;
+mod kinds;
+mod limits;
+mod linear;
+mod next_touch;
+mod splits;
