@@ -32,7 +32,6 @@ from sklearn.naive_bayes import GaussianNB
 from sklearn.neighbors import KNeighborsClassifier
 from sklearn.preprocessing import StandardScaler
 from sklearn.svm import SVC, LinearSVC
-from sklearn.tree import DecisionTreeClassifier
 from threadpoolctl import threadpool_limits
 
 try:
@@ -58,7 +57,6 @@ COMPARISONS = [
     ("LogisticRegression", lambda jobs: LogisticRegression(max_iter=200), ["--classifier", "logistic_regression"], False),
     ("KNeighbors(5)", lambda jobs: KNeighborsClassifier(5, n_jobs=jobs), ["--classifier", "k_nearest"], False),
     ("GaussianNB", lambda jobs: GaussianNB(), ["--classifier", "naive_bayes"], False),
-    ("DecisionTree", lambda jobs: DecisionTreeClassifier(random_state=0), ["--classifier", "decision_tree"], False),
     ("RandomForest(100)", lambda jobs: RandomForestClassifier(random_state=0, n_jobs=jobs), ["--classifier", "random_forest"], False),
 ]
 

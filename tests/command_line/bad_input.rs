@@ -559,8 +559,9 @@ fn keys_of_single_classifiers_are_checked_and_belong_to_one_of_the_study() {
     refuses(
         "k_nearest",
         "max_depth = 3",
-        &["recognition.max_depth", "decision_tree"],
+        &["recognition.max_depth", "random_forest"],
     );
+    refuses("decision_tree", "", &["exists no more", "random_forest"]);
     refuses(
         "k_nearest",
         "n_neighbours = 0",

@@ -321,8 +321,8 @@ fn keys_of_trees_and_neighbours_reach_them() {
         shares.sum::<f64>() / rows.len() as f64
     };
     // One split parts the six objects in two: no more than two of them are ever named.
-    assert!(accuracy("decision_tree", "max_depth = 1") <= 2.0 / 6.0);
-    assert!(accuracy("decision_tree", "") > 2.0 / 6.0);
+    assert!(accuracy("random_forest", "n_trees = 1\nmax_depth = 1") <= 2.0 / 6.0);
+    assert!(accuracy("random_forest", "n_trees = 1") > 2.0 / 6.0);
     assert!(accuracy("random_forest", "n_trees = 1") < accuracy("random_forest", "n_trees = 50"));
     // All rows vote: every touch gets the same label.
     let all = accuracy("k_nearest", "n_neighbours = 120");

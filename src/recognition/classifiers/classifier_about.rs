@@ -98,10 +98,24 @@ macro_rules! classifiers {
         $(pub mod $file;)*
 
         /// A classifier that a study can sweep.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
         #[serde(rename_all = "snake_case")]
         pub enum ClassifierKind {
             $(#[doc = $doc] $name,)*
+        }
+
+        /// A name of [`NAMES`](ClassifierKind::NAMES).
+        impl<'de> Deserialize<'de> for ClassifierKind {
+            fn deserialize<D: serde::Deserializer<'de>>(names: D) -> Result<Self, D::Error> {
+                use serde::de::Error;
+                match &*String::deserialize(names)? {
+                    $(stringify!($file) => Ok(Self::$name),)*
+                    "decision_tree" => Err(D::Error::custom(
+                        "`decision_tree` exists no more; random_forest (n_trees = 1 grows one tree)",
+                    )),
+                    other => Err(D::Error::unknown_variant(other, &[$(stringify!($file)),*])),
+                }
+            }
         }
 
         impl ClassifierKind {

@@ -10,6 +10,7 @@ pub(crate) mod lbfgs;
 pub mod parameters;
 pub(crate) mod ranked;
 pub mod trained_classifier;
+mod tree;
 
 pub use bubbletouch_svm::linear_model;
 pub use classifier_about::{ClassifierAbout, Train};
@@ -24,6 +25,5 @@ classifiers! {
     KNearest k_nearest "[k nearest neighbours](k_nearest).";
     NearestCentroid nearest_centroid "The class whose mean is nearest: [nearest centroid](nearest_centroid).";
     NaiveBayes naive_bayes "Gaussian [naive Bayes](naive_bayes).";
-    DecisionTree decision_tree "A single [classification tree](decision_tree).";
     RandomForest random_forest "A [random forest](random_forest).";
 }

@@ -47,7 +47,7 @@ pub const PARAMETERS: [Parameter; 8] = [
 ];
 
 impl Parameter {
-    /// The classifiers that use it, by their names in studies: `k_nearest`, `decision_tree or random_forest`.
+    /// The classifiers that use it, by their names in studies: `k_nearest`, `linear_svm or rbf_svm`.
     pub fn users(&self) -> String {
         let all = ClassifierKind::ALL.iter().zip(ClassifierKind::NAMES);
         let users = all.filter(|(kind, _)| (self.is_used)(**kind));
@@ -70,7 +70,7 @@ mod tests {
             found.unwrap().users()
         };
         assert_eq!(users("degree"), "polynomial_svm");
-        assert_eq!(users("max_depth"), "decision_tree or random_forest");
+        assert_eq!(users("max_depth"), "random_forest");
         assert_eq!(users("gamma"), "rbf_svm or laplacian_svm or polynomial_svm");
     }
 }

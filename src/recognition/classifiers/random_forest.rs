@@ -1,8 +1,8 @@
 //! Random forests [Breiman 2001]: many trees, each grown on a bootstrap of the rows and, in every node, on √m features
 //! drawn afresh; they vote with the class shares of their leaves, as in scikit-learn.
 //!
-//! Differs from linfa-ensemble 0.8.1, because that grows linfa-trees' trees (see
-//! [`decision_tree`](crate::recognition::classifiers::decision_tree)), breaks ties of votes by the order of a `HashMap`, and draws features once a tree.
+//! Differs from linfa-ensemble 0.8.1, because that grows the trees of linfa-trees 0.8.1 (which sums impurities in f32 in the order of a `HashMap`, so
+//! two trainings on the same rows differ), breaks ties of votes by the order of a `HashMap`, and draws features once a tree.
 
 use crate::recognition::classifiers::classifier_about::ClassifierAbout;
 use ndarray::{Array2, ArrayView2};
@@ -11,8 +11,8 @@ use std::sync::Arc;
 
 use crate::random::Seed;
 use crate::recognition::classifiers::class_model::{ClassModel, log_vote_shares};
-use crate::recognition::classifiers::decision_tree::{Growth, Tree, check_depth};
 use crate::recognition::classifiers::ranked::Ranked;
+use crate::recognition::classifiers::tree::{Growth, Tree, check_depth};
 use crate::recognition::data::dataset::checked_classes;
 use crate::recognition::data::dataset::{Dataset, check_width, positions};
 use crate::{Error, Result};

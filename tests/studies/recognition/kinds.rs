@@ -1,13 +1,11 @@
-//! Every kind of classifier, asked the same way; and naive Bayes, neighbours, tree and forest against their definitions.
+//! Every kind of classifier, asked the same way; and naive Bayes, neighbours and forest against their definitions.
 //!
-//! Goldens: scikit-learn 1.9.1, `GaussianNB()`, `KNeighborsClassifier(5)` trained on the first 40 rows of [`waves`], and
-//! `DecisionTreeClassifier(max_depth=3)` on all 60.
+//! Goldens: scikit-learn 1.9.1, `GaussianNB()`, `KNeighborsClassifier(5)` trained on the first 40 rows of [`waves`].
 
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::ClassifierKind;
 use bubbletouch::recognition::classifiers::class_model::ClassModel;
 use bubbletouch::recognition::classifiers::classifier::{Classifier, Cost, predict_split};
-use bubbletouch::recognition::classifiers::decision_tree::DecisionTree;
 use bubbletouch::recognition::classifiers::k_nearest::KNearest;
 use bubbletouch::recognition::classifiers::naive_bayes::NaiveBayes;
 use bubbletouch::recognition::classifiers::random_forest::RandomForest;
@@ -18,7 +16,7 @@ use linfa::traits::Fit;
 use ndarray::{Array1, Array2, ArrayView1, Axis, array};
 use rand::Rng;
 
-const KINDS: [ClassifierKind; 9] = [
+const KINDS: [ClassifierKind; 8] = [
     ClassifierKind::LinearSvm,
     ClassifierKind::RbfSvm,
     ClassifierKind::LaplacianSvm,
@@ -26,7 +24,6 @@ const KINDS: [ClassifierKind; 9] = [
     ClassifierKind::LogisticRegression,
     ClassifierKind::KNearest,
     ClassifierKind::NaiveBayes,
-    ClassifierKind::DecisionTree,
     ClassifierKind::RandomForest,
 ];
 
@@ -192,7 +189,6 @@ fn options_out_of_range_are_refused() {
     let seed = Seed::new(0);
     assert!(RandomForest::train(&data, 0, None, &seed).is_err());
     assert!(RandomForest::train(&data, 1, Some(0), &seed).is_err());
-    assert!(DecisionTree::train(&data, Some(0)).is_err());
     let constant = dataset(Array2::ones((4, 2)), array![0, 1, 0, 1]).unwrap();
     assert!(NaiveBayes::train(&constant).is_err());
     assert!(KNearest::train(&dataset(array![[1e200], [0.0]], array![0, 1]).unwrap(), 1).is_err());
@@ -281,72 +277,6 @@ fn five_neighbours_vote_as_scikit_learns() {
         .unwrap();
     let expected = [3, 2, 2, 0, 0, 2, 2, 0, 0, 1, 2, 3, 0, 2, 2, 3, 0, 1, 2, 3];
     assert_eq!(labels.to_vec(), expected);
-}
-
-#[test]
-fn a_shallow_tree_is_scikit_learns() {
-    // Labels without ties between splits: scikit-learn's tree is the same whatever its random_state.
-    let mut data = waves();
-    data.targets = Array1::from_iter((0..60).map(|i| i * i / 7 % 3));
-    let tree = DecisionTree::train(&data, Some(3)).unwrap();
-    let (feature, threshold) = tree.first_split().unwrap();
-    assert_eq!((feature, tree.n_leaves()), (4, 5));
-    assert!((threshold + 1.3317).abs() < 1e-5);
-    let expected = [
-        2, 0, 0, 0, 0, 0, 2, 0, 2, 2, 0, 2, 2, 0, 1, 2, 0, 2, 0, 0, 0, 0, 0, 0, 0, 2, 2, 0, 2, 0,
-        2, 2, 2, 2, 2, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 1, 2, 0, 2, 0, 2, 2, 0, 2, 2, 0, 0, 2, 0, 2,
-    ];
-    let labels = tree.labels(data.records.view()).unwrap();
-    assert_eq!(labels.to_vec(), expected);
-}
-
-#[test]
-fn scores_are_the_logarithms_of_the_leafs_smoothed_shares() {
-    let data = dataset(array![[0.0], [0.0], [0.0], [1.0]], array![0, 0, 1, 2]).unwrap();
-    let tree = DecisionTree::train(&data, None).unwrap();
-    let scores = tree.scores(array![[0.4]].view()).unwrap();
-    for (score, share) in scores.iter().zip([3.0 / 6.0, 2.0 / 6.0, 1.0 / 6.0_f64]) {
-        assert!((score - share.ln()).abs() < 1e-15);
-    }
-}
-
-#[test]
-fn an_unpruned_tree_knows_its_training_rows_in_any_order() {
-    let mut data = bumps(6, 40);
-    // Labels that the features say nothing of are learnt by heart all the same.
-    data.targets
-        .iter_mut()
-        .step_by(7)
-        .for_each(|label| *label = 5 - *label);
-    let tree = DecisionTree::train(&data, None).unwrap();
-    assert_eq!(tree.labels(data.records.view()).unwrap(), data.targets);
-    let reversed: Vec<usize> = (0..240).rev().collect();
-    let other = DecisionTree::train(&rows(&data, &reversed).unwrap(), None).unwrap();
-    let between = &data.records * 0.9 + 0.02;
-    assert_eq!(
-        tree.scores(between.view()).unwrap(),
-        other.scores(between.view()).unwrap()
-    );
-}
-
-#[test]
-fn exclusive_or_is_split_though_no_first_split_helps() {
-    let data = dataset(
-        array![[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]],
-        array![0, 1, 1, 0],
-    );
-    let data = data.unwrap();
-    let tree = DecisionTree::train(&data, None).unwrap();
-    assert_eq!(tree.labels(data.records.view()).unwrap(), data.targets);
-    assert_eq!(tree.n_leaves(), 4);
-}
-
-#[test]
-fn rows_that_only_the_label_tells_apart_share_a_leaf() {
-    let data = dataset(array![[0.0], [-0.0], [0.0]], array![1, 0, 1]).unwrap();
-    let tree = DecisionTree::train(&data, None).unwrap();
-    assert_eq!((tree.n_leaves(), tree.first_split()), (1, None));
-    assert_eq!(tree.labels(data.records.view()).unwrap(), array![1, 1, 1]);
 }
 
 #[test]

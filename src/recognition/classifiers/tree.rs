@@ -1,4 +1,4 @@
-//! Classification trees [Breiman et al. 1984]: Gini impurity, binary splits `x_f ≤ threshold`, no pruning.
+//! The classification trees of a random forest [Breiman et al. 1984]: Gini impurity, binary splits `x_f ≤ threshold`, no pruning.
 //!
 //! A node takes the split that lowers the impurity most, i.e. with the largest `Σ_k l_k² / l + Σ_k r_k² / r` (l_k, r_k: rows of
 //! class k left and right); of equals the first feature looked at and its lowest threshold. Thresholds lie half-way
@@ -8,87 +8,11 @@
 //! same rows differ (2,000 rows, 20 classes: 3 of 500 predictions). It also takes values closer than 1e-5 for equal,
 //! whatever the unit, and visits every row and feature at every node.
 
-use crate::recognition::classifiers::classifier_about::ClassifierAbout;
-use ndarray::{Array2, ArrayView1, ArrayView2};
-use rand::Rng;
-use std::sync::Arc;
-
 use crate::random::Seed;
-use crate::recognition::classifiers::class_model::{ClassModel, log_vote_shares};
 use crate::recognition::classifiers::ranked::Ranked;
-use crate::recognition::data::dataset::checked_classes;
-use crate::recognition::data::dataset::{Dataset, check_width, positions};
 use crate::{Error, Result};
-
-pub(crate) const ABOUT: ClassifierAbout = ClassifierAbout {
-    has_depth: true,
-    train_s: |n_train, m, _| 3e-7 * n_train * m,
-    ..ClassifierAbout::new("decision tree", |classifier, scaled, _, _| {
-        Ok(Arc::new(DecisionTree::train(scaled, classifier.max_depth)?))
-    })
-};
-
-/// A trained tree. Scores are the logarithms of smoothed shares of the leaf's training rows.
-#[derive(Clone, Debug)]
-pub struct DecisionTree {
-    classes: Vec<usize>,
-    tree: Tree,
-}
-
-impl DecisionTree {
-    /// Grows a tree on labelled measurements, to pure leaves or to `max_depth` splits below each other. Deterministic,
-    /// and the same for any order of the rows.
-    ///
-    /// # Errors
-    /// A depth of 0, empty data, a NaN or infinite feature, another number of labels than rows, or a single class.
-    pub fn train(data: &Dataset, max_depth: Option<usize>) -> Result<Self> {
-        let classes = checked_classes(data)?;
-        check_depth(max_depth)?;
-        let label = positions(data.targets.view(), &classes);
-        let ranked = Ranked::new(data.records.view());
-        let growth = Growth {
-            n_candidates: ranked.n_features(),
-            max_depth,
-        };
-        let rows = (0..label.len() as u32).collect();
-        // All features are looked at, in order: nothing is drawn.
-        let tree = growth.grow(&ranked, &label, classes.len(), rows, &Seed::new(0));
-        Ok(Self { classes, tree })
-    }
-
-    /// Number of leaves.
-    pub fn n_leaves(&self) -> usize {
-        let is_leaf = |node: &&Node| matches!(node, Node::Leaf { .. });
-        self.tree.nodes.iter().filter(is_leaf).count()
-    }
-
-    /// The feature and threshold of the first split; `None` if there is none.
-    pub fn first_split(&self) -> Option<(usize, f64)> {
-        match self.tree.nodes[0] {
-            Node::Split {
-                feature, threshold, ..
-            } => Some((feature, threshold)),
-            Node::Leaf { .. } => None,
-        }
-    }
-}
-
-impl ClassModel for DecisionTree {
-    fn classes(&self) -> &[usize] {
-        &self.classes
-    }
-
-    fn scores(&self, features: ArrayView2<f64>) -> Result<Array2<f64>> {
-        check_width(&features, self.tree.n_features)?;
-        let mut votes = Array2::zeros((features.nrows(), self.classes.len()));
-        for (row, mut votes) in features.rows().into_iter().zip(votes.rows_mut()) {
-            for &(class, count) in self.tree.leaf(row) {
-                votes[class as usize] += f64::from(count);
-            }
-        }
-        Ok(log_vote_shares(votes))
-    }
-}
+use ndarray::ArrayView1;
+use rand::Rng;
 
 /// Refuses a tree without splits.
 pub(crate) fn check_depth(max_depth: Option<usize>) -> Result<()> {
@@ -102,7 +26,6 @@ pub(crate) fn check_depth(max_depth: Option<usize>) -> Result<()> {
 #[derive(Clone, Debug)]
 pub(crate) struct Tree {
     nodes: Vec<Node>,
-    n_features: usize,
 }
 
 #[derive(Clone, Debug)]
@@ -210,10 +133,7 @@ impl Growth {
             open.push((children[1], middle..range.end, depth + 1));
             open.push((children[0], range.start..middle, depth + 1));
         }
-        Tree {
-            nodes,
-            n_features: ranked.n_features(),
-        }
+        Tree { nodes }
     }
 
     /// The best split of a node's rows, among the candidates; `None` if no feature varies.
@@ -311,4 +231,96 @@ fn partition(rows: &mut [u32], ranked: &Ranked, split: &Split) -> usize {
         }
     }
     n_left
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::{Array2, array};
+
+    /// Grows a tree on all rows that considers every feature in each node.
+    fn grow(features: &Array2<f64>, label: &[usize], max_depth: Option<usize>) -> Tree {
+        let ranked = Ranked::new(features.view());
+        let growth = Growth {
+            n_candidates: ranked.n_features(),
+            max_depth,
+        };
+        let n_classes = label.iter().max().unwrap() + 1;
+        let rows = (0..label.len() as u32).collect();
+        growth.grow(&ranked, label, n_classes, rows, &Seed::new(0))
+    }
+
+    /// Returns the most frequent class of the leaf of each row; of equals the first.
+    fn labels(tree: &Tree, features: &Array2<f64>) -> Vec<usize> {
+        let label = |row| {
+            let counts = tree.leaf(row).iter().rev();
+            counts.max_by_key(|(_, count)| *count).unwrap().0 as usize
+        };
+        features.rows().into_iter().map(label).collect()
+    }
+
+    fn n_leaves(tree: &Tree) -> usize {
+        let is_leaf = |node: &&Node| matches!(node, Node::Leaf { .. });
+        tree.nodes.iter().filter(is_leaf).count()
+    }
+
+    /// 60 rows of 5 features, of three classes.
+    fn waves() -> (Array2<f64>, Vec<usize>) {
+        let value = |(i, j): (usize, usize)| {
+            let wave = (1.7 * (i * 5 + j) as f64 + 0.3 * (j * j) as f64).sin();
+            wave + 0.8 * (2.1 * ((i % 4) * (j + 1)) as f64).cos()
+        };
+        let features = Array2::from_shape_fn((60, 5), value);
+        (features, (0..60).map(|i| i * i / 7 % 3).collect())
+    }
+
+    /// The labels are those of scikit-learn 1.9.1, `DecisionTreeClassifier(max_depth=3)`. No two splits of these rows are equally good, so its
+    /// tree does not depend on its `random_state`.
+    #[test]
+    fn a_shallow_tree_is_scikit_learns() {
+        let (features, label) = waves();
+        let tree = grow(&features, &label, Some(3));
+        let Node::Split {
+            feature, threshold, ..
+        } = tree.nodes[0]
+        else {
+            panic!("the root is a leaf");
+        };
+        assert_eq!((feature, n_leaves(&tree)), (4, 5));
+        assert!((threshold + 1.3317).abs() < 1e-5);
+        let expected = [
+            2, 0, 0, 0, 0, 0, 2, 0, 2, 2, 0, 2, 2, 0, 1, 2, 0, 2, 0, 0, 0, 0, 0, 0, 0, 2, 2, 0, 2,
+            0, 2, 2, 2, 2, 2, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 1, 2, 0, 2, 0, 2, 2, 0, 2, 2, 0, 0, 2,
+            0, 2,
+        ];
+        assert_eq!(labels(&tree, &features), expected);
+    }
+
+    #[test]
+    fn an_unpruned_tree_fits_its_training_rows_in_any_order() {
+        let (features, label) = waves();
+        let tree = grow(&features, &label, None);
+        assert_eq!(labels(&tree, &features), label);
+        let order: Vec<usize> = (0..60).rev().collect();
+        let reversed = features.select(ndarray::Axis(0), &order);
+        let label: Vec<usize> = label.into_iter().rev().collect();
+        let other = grow(&reversed, &label, None);
+        let between = &features * 0.9 + 0.02;
+        assert_eq!(labels(&tree, &between), labels(&other, &between));
+    }
+
+    #[test]
+    fn exclusive_or_is_split_though_no_first_split_helps() {
+        let features = array![[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]];
+        let tree = grow(&features, &[0, 1, 1, 0], None);
+        assert_eq!(labels(&tree, &features), [0, 1, 1, 0]);
+        assert_eq!(n_leaves(&tree), 4);
+    }
+
+    #[test]
+    fn rows_that_only_the_label_tells_apart_share_a_leaf() {
+        let tree = grow(&array![[0.0], [-0.0], [0.0]], &[1, 0, 1], None);
+        assert_eq!(n_leaves(&tree), 1);
+        assert_eq!(tree.leaf(array![0.0].view()), [(0, 1), (1, 2)]);
+    }
 }
