@@ -23,6 +23,7 @@ pub mod dynamics;
 pub mod error;
 pub mod features;
 pub mod files;
+pub mod frame_coding;
 pub mod geometry;
 pub mod in_range;
 pub mod interval;

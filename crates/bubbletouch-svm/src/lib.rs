@@ -15,6 +15,7 @@
 //! The linear case without any kernel matrix is [`linear_svm`](crate::linear_svm).
 
 pub(crate) mod active_set;
+pub mod classifiers;
 pub(crate) mod coordinate_descent;
 pub mod cross_validation;
 pub mod dataset;
@@ -26,6 +27,7 @@ pub(crate) mod linalg;
 pub mod linear_model;
 pub mod linear_svm;
 pub mod predict;
+pub mod scaling;
 pub(crate) mod screening;
 pub(crate) mod smo;
 pub mod split;

@@ -8,6 +8,7 @@
 
 use ndarray::{Array1, Array2, ArrayView2, Axis, Zip, s};
 
+use crate::classifiers::class_model::ClassModel;
 use crate::coordinate_descent::{self, Rows};
 use crate::dataset::{Dataset, checked_classes, positions};
 use crate::linear_model::LinearModel;
@@ -88,7 +89,7 @@ impl LinearSvmParams {
                 .iter()
                 .map(|&label| if label == class { 1.0 } else { -1.0 })
                 .collect();
-            let mut rng = seed.of_class(class as u64);
+            let mut rng = seed.named("class").numbered(class as u64).rng();
             let solved = coordinate_descent::solve(&rows, &sign, self, &mut rng);
             multipliers
                 .row_mut(class)
@@ -160,10 +161,22 @@ impl LinearSvm {
     pub fn convergence(&self) -> &[Convergence] {
         &self.convergence
     }
+}
 
-    /// The distinct labels of the training rows, ascending.
-    pub fn classes(&self) -> &[usize] {
+impl ClassModel for LinearSvm {
+    fn classes(&self) -> &[usize] {
         &self.classes
+    }
+
+    fn scores(&self, features: ArrayView2<f64>) -> Result<Array2<f64>> {
+        self.model.scores(features)
+    }
+
+    fn n_capped(&self) -> usize {
+        self.convergence()
+            .iter()
+            .filter(|end| end.is_capped)
+            .count()
     }
 }
 

@@ -1,19 +1,36 @@
-//! Random numbers: one stream for each class, so that a class's solution does not depend on the other classes.
+//! Random numbers by name: one stream for each name, so that a class or a tree draws the same whatever else is trained.
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-/// A source of one random stream for each class.
-pub trait Streams {
-    /// Returns the generator of the stream of this class, at its start.
-    fn of_class(&self, class: u64) -> ChaCha8Rng;
+/// A name of random streams that grows by words and numbers, such as `tree 3 rows`.
+pub trait Streams: Copy {
+    /// Returns the name with this word appended.
+    fn named(&self, word: &str) -> Self;
+
+    /// Returns the name with this number appended.
+    fn numbered(&self, number: u64) -> Self;
+
+    /// Returns the generator of this name's stream, at its start.
+    fn rng(&self) -> ChaCha8Rng;
 }
 
-/// The streams of a seed: stream `class` of the ChaCha generator with this seed.
+/// The streams of a seed: words and numbers are hashed into it (FNV-1a).
 impl Streams for u64 {
-    fn of_class(&self, class: u64) -> ChaCha8Rng {
-        let mut rng = ChaCha8Rng::seed_from_u64(*self);
-        rng.set_stream(class);
-        rng
+    fn named(&self, word: &str) -> Self {
+        hash(*self, word.as_bytes())
     }
+
+    fn numbered(&self, number: u64) -> Self {
+        hash(*self, &number.to_le_bytes())
+    }
+
+    fn rng(&self) -> ChaCha8Rng {
+        ChaCha8Rng::seed_from_u64(*self)
+    }
+}
+
+fn hash(seed: u64, bytes: &[u8]) -> u64 {
+    let step = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3);
+    bytes.iter().fold(seed ^ 0xcbf2_9ce4_8422_2325, step)
 }

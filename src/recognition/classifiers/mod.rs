@@ -4,14 +4,11 @@ use serde::{Deserialize, Serialize};
 
 #[macro_use]
 mod classifier_about;
-pub mod class_model;
 pub mod classifier;
-pub(crate) mod lbfgs;
 pub mod parameters;
-pub(crate) mod ranked;
 pub mod trained_classifier;
-mod tree;
 
+pub use bubbletouch_svm::classifiers::class_model;
 pub use bubbletouch_svm::linear_model;
 pub use classifier_about::{ClassifierAbout, Train};
 

@@ -1,90 +1,11 @@
-//! Gaussian naive Bayes, fitted by linfa-bayes: every feature of a class is normal, independent of the others.
-//!
-//! linfa's own prediction is not used: it takes the winner of a tie by the order of a `HashMap`, and normalises
-//! probabilities without taking the largest out first (with 64 features all underflow to 0). Its joint log-likelihoods are right.
+//! A study's Gaussian naive Bayes: [`bubbletouch_svm::classifiers::naive_bayes`].
 
-use crate::recognition::classifiers::classifier_about::ClassifierAbout;
-use linfa::traits::Fit;
-use linfa_bayes::{GaussianNb, NaiveBayes as _};
-use ndarray::{Array1, Array2, ArrayView1, ArrayView2};
 use std::sync::Arc;
 
-use crate::recognition::classifiers::class_model::{ClassModel, log_priors};
-use crate::recognition::data::dataset::checked_classes;
-use crate::recognition::data::dataset::{Dataset, check_width};
-use crate::{Error, Result};
+use crate::recognition::classifiers::classifier_about::ClassifierAbout;
+
+pub use bubbletouch_svm::classifiers::naive_bayes::{NaiveBayes, VARIANCE_SMOOTHING};
 
 pub(crate) const ABOUT: ClassifierAbout = ClassifierAbout::new("naive Bayes", |_, scaled, _, _| {
     Ok(Arc::new(NaiveBayes::train(scaled)?))
 });
-
-/// Share of the largest feature's variance that is added to every variance: scikit-learn's default.
-pub const VARIANCE_SMOOTHING: f64 = 1e-9;
-
-/// A trained Gaussian naive Bayes classifier. Scores are `ln p(x | k)`.
-#[derive(Clone, Debug)]
-pub struct NaiveBayes {
-    classes: Vec<usize>,
-    model: GaussianNb<f64, usize>,
-    log_prior: Array1<f64>,
-    n_features: usize,
-}
-
-impl NaiveBayes {
-    /// Fits means and variances to labelled measurements.
-    ///
-    /// # Errors
-    /// Empty data, a NaN or infinite feature, another number of labels than rows, a single class, or features that are
-    /// all constant (no variance to smooth with).
-    pub fn train(data: &Dataset) -> Result<Self> {
-        let classes = checked_classes(data)?;
-        let is_constant = |column: ArrayView1<f64>| column.iter().all(|x| *x == column[0]);
-        if data.records.columns().into_iter().all(is_constant) {
-            return Err(Error::input(
-                "features",
-                "every one is constant",
-                "naive Bayes needs one that varies",
-            ));
-        }
-        let model = GaussianNb::params()
-            .var_smoothing(VARIANCE_SMOOTHING)
-            .fit(data)
-            .map_err(|error| {
-                Error::input("classifier", error, "see linfa-bayes's documentation")
-            })?;
-        Ok(Self {
-            log_prior: log_priors(data.targets.view(), &classes),
-            classes,
-            model,
-            n_features: data.records.ncols(),
-        })
-    }
-
-    /// `ln p(x, k)` (n_rows × n_classes).
-    ///
-    /// # Errors
-    /// Another number of columns than in training, or a NaN or infinite feature.
-    pub fn joint_log_likelihoods(&self, features: ArrayView2<f64>) -> Result<Array2<f64>> {
-        check_width(&features, self.n_features)?;
-        let by_class = self.model.joint_log_likelihood(features);
-        let mut values = Array2::zeros((features.nrows(), self.classes.len()));
-        for (mut column, class) in values.columns_mut().into_iter().zip(&self.classes) {
-            column.assign(&by_class[class]);
-        }
-        Ok(values)
-    }
-}
-
-impl ClassModel for NaiveBayes {
-    fn classes(&self) -> &[usize] {
-        &self.classes
-    }
-
-    fn scores(&self, features: ArrayView2<f64>) -> Result<Array2<f64>> {
-        Ok(self.joint_log_likelihoods(features)? - &self.log_prior)
-    }
-
-    fn log_prior(&self) -> Option<ArrayView1<'_, f64>> {
-        Some(self.log_prior.view())
-    }
-}

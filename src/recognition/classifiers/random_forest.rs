@@ -1,21 +1,10 @@
-//! Random forests [Breiman 2001]: many trees, each grown on a bootstrap of the rows and, in every node, on √m features
-//! drawn afresh; they vote with the class shares of their leaves, as in scikit-learn.
-//!
-//! Differs from linfa-ensemble 0.8.1, because that grows the trees of linfa-trees 0.8.1 (which sums impurities in f32 in the order of a `HashMap`, so
-//! two trainings on the same rows differ), breaks ties of votes by the order of a `HashMap`, and draws features once a tree.
+//! A study's random forest: [`bubbletouch_svm::classifiers::random_forest`].
 
-use crate::recognition::classifiers::classifier_about::ClassifierAbout;
-use ndarray::{Array2, ArrayView2};
-use rand::Rng;
 use std::sync::Arc;
 
-use crate::random::Seed;
-use crate::recognition::classifiers::class_model::{ClassModel, log_vote_shares};
-use crate::recognition::classifiers::ranked::Ranked;
-use crate::recognition::classifiers::tree::{Growth, Tree, check_depth};
-use crate::recognition::data::dataset::checked_classes;
-use crate::recognition::data::dataset::{Dataset, check_width, positions};
-use crate::{Error, Result};
+use crate::recognition::classifiers::classifier_about::ClassifierAbout;
+
+pub use bubbletouch_svm::classifiers::random_forest::RandomForest;
 
 pub(crate) const ABOUT: ClassifierAbout = ClassifierAbout {
     has_trees: true,
@@ -27,81 +16,3 @@ pub(crate) const ABOUT: ClassifierAbout = ClassifierAbout {
         Ok(Arc::new(forest))
     })
 };
-
-/// A trained forest. Scores are the logarithms of smoothed shares of its trees' votes.
-#[derive(Clone, Debug)]
-pub struct RandomForest {
-    classes: Vec<usize>,
-    trees: Vec<Tree>,
-    n_features: usize,
-}
-
-impl RandomForest {
-    /// Grows `n_trees` trees to pure leaves, or to `max_depth` splits below each other. Tree t draws from
-    /// `seed.named("tree").numbered(t)`, so a larger forest holds the smaller one.
-    ///
-    /// # Errors
-    /// No trees, a depth of 0, empty data, a NaN or infinite feature, another number of labels than rows, or a single
-    /// class.
-    pub fn train(
-        data: &Dataset,
-        n_trees: usize,
-        max_depth: Option<usize>,
-        seed: &Seed,
-    ) -> Result<Self> {
-        let classes = checked_classes(data)?;
-        check_depth(max_depth)?;
-        if n_trees == 0 {
-            return Err(Error::input("trees", 0, "at least 1 is allowed"));
-        }
-        let n_features = data.records.ncols();
-        let growth = Growth {
-            n_candidates: n_features.isqrt().max(1),
-            max_depth,
-        };
-        let label = positions(data.targets.view(), &classes);
-        let ranked = Ranked::new(data.records.view());
-        let n_rows = label.len() as u32;
-        let trees = (0..n_trees as u64)
-            .map(|tree| {
-                let seed = seed.named("tree").numbered(tree);
-                let mut rng = seed.named("rows").rng();
-                let rows = (0..n_rows).map(|_| rng.gen_range(0..n_rows)).collect();
-                growth.grow(
-                    &ranked,
-                    &label,
-                    classes.len(),
-                    rows,
-                    &seed.named("features"),
-                )
-            })
-            .collect();
-        Ok(Self {
-            classes,
-            trees,
-            n_features,
-        })
-    }
-}
-
-impl ClassModel for RandomForest {
-    fn classes(&self) -> &[usize] {
-        &self.classes
-    }
-
-    fn scores(&self, features: ArrayView2<f64>) -> Result<Array2<f64>> {
-        check_width(&features, self.n_features)?;
-        let mut votes = Array2::zeros((features.nrows(), self.classes.len()));
-        // Tree by tree: one stays in the processor's cache while all rows fall through it.
-        for tree in &self.trees {
-            for (row, mut votes) in features.rows().into_iter().zip(votes.rows_mut()) {
-                let counts = tree.leaf(row);
-                let n_rows: u32 = counts.iter().map(|&(_, count)| count).sum();
-                for &(class, count) in counts {
-                    votes[class as usize] += f64::from(count) / f64::from(n_rows);
-                }
-            }
-        }
-        Ok(log_vote_shares(votes))
-    }
-}

@@ -33,7 +33,7 @@ impl Model {
     pub(crate) fn labels(&self, scaled: ArrayView2<f64>) -> Result<Array1<usize>> {
         match self {
             Self::Svm(model) => Ok(model.labels(scaled)?),
-            Self::Classes(model) => model.labels(scaled),
+            Self::Classes(model) => Ok(model.labels(scaled)?),
         }
     }
 
@@ -86,7 +86,7 @@ impl TrainedClassifier {
         let scaled = self.scaling.apply(features)?;
         match &self.model {
             Model::Svm(model) => Ok(model.decision_values(scaled.view())?),
-            Model::Classes(model) => model.scores(scaled.view()),
+            Model::Classes(model) => Ok(model.scores(scaled.view())?),
         }
     }
 

@@ -1,8 +1,8 @@
 //! Frames kept in memory, or in a temporary file and read as they are wanted.
 
 use super::FrameFacts;
-use super::coding::decode;
 use crate::error::{Error, Result};
+use bubbletouch_sim::frame_coding::decode;
 use ndarray::{Array2, Axis};
 use rayon::prelude::*;
 use std::fs::File;

@@ -1,9 +1,9 @@
 //! Frames made on all threads, and put down in their order.
 
-use super::coding::encode;
 use super::{FrameFacts, Frames};
 use crate::error::Result;
 use crate::study::progress::Progress;
+use bubbletouch_sim::frame_coding::encode;
 use ndarray::{Array2, ArrayViewMut2};
 use rayon::prelude::*;
 use std::time::Instant;

@@ -1,10 +1,9 @@
 //! The frames of an array's touches: made once, read by every cell; kept in memory or, where they are too large for it, in a temporary file.
 
-mod coding;
 mod kept;
 mod making;
 
-pub(crate) use coding::most_bytes;
+pub(crate) use bubbletouch_sim::frame_coding::most_bytes;
 pub use kept::{FramePlace, Frames};
 pub(crate) use making::made_at_once;
 

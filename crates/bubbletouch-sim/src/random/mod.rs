@@ -57,10 +57,17 @@ impl Seed {
     }
 }
 
-/// The streams `class/0`, `class/1`, … of this name.
 #[cfg(feature = "learning")]
 impl bubbletouch_svm::streams::Streams for Seed {
-    fn of_class(&self, class: u64) -> ChaCha8Rng {
-        self.named("class").numbered(class).rng()
+    fn named(&self, word: &str) -> Self {
+        Seed::named(self, word)
+    }
+
+    fn numbered(&self, number: u64) -> Self {
+        Seed::numbered(self, number)
+    }
+
+    fn rng(&self) -> ChaCha8Rng {
+        Seed::rng(self)
     }
 }

@@ -28,7 +28,7 @@ pub(crate) struct Minimum {
 /// Minimises a convex function from `at`, until no component of the gradient exceeds `tolerance`.
 ///
 /// `function` gives value and gradient.
-pub(crate) fn minimise(
+pub fn minimise(
     mut function: impl FnMut(&Array1<f64>) -> (f64, Array1<f64>),
     mut at: Array1<f64>,
     tolerance: f64,

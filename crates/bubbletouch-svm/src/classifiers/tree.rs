@@ -8,8 +8,8 @@
 //! same rows differ (2,000 rows, 20 classes: 3 of 500 predictions). It also takes values closer than 1e-5 for equal,
 //! whatever the unit, and visits every row and feature at every node.
 
-use crate::random::Seed;
-use crate::recognition::classifiers::ranked::Ranked;
+use crate::classifiers::ranked::Ranked;
+use crate::streams::Streams;
 use crate::{Error, Result};
 use ndarray::ArrayView1;
 use rand::Rng;
@@ -94,7 +94,7 @@ impl Growth {
         label: &[usize],
         n_classes: usize,
         mut rows: Vec<u32>,
-        seed: &Seed,
+        seed: &impl Streams,
     ) -> Tree {
         debug_assert_eq!(label.len(), ranked.n_rows());
         let mut rng = seed.rng();
@@ -247,7 +247,7 @@ mod tests {
         };
         let n_classes = label.iter().max().unwrap() + 1;
         let rows = (0..label.len() as u32).collect();
-        growth.grow(&ranked, label, n_classes, rows, &Seed::new(0))
+        growth.grow(&ranked, label, n_classes, rows, &(0))
     }
 
     /// Returns the most frequent class of the leaf of each row; of equals the first.

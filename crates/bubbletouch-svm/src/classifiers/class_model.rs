@@ -2,14 +2,14 @@
 //!
 //! To add a classifier: a file with its parameters and a model that implements [`ClassModel`], a
 //! [`ClassifierKind`](crate::recognition::ClassifierKind), and an arm in
-//! [`Classifier::train`](crate::recognition::classifiers::classifier::Classifier::train).
+//! [`Classifier::train`](crate::classifiers::classifier::Classifier::train).
 
 use std::fmt::Debug;
 
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis};
 
 use crate::Result;
-use crate::recognition::svm::predict::voting::first_maximum;
+use crate::predict::voting::first_maximum;
 
 /// A trained classifier that scores every class.
 ///
@@ -63,7 +63,7 @@ pub trait ClassModel: Debug + Send + Sync {
 ///
 /// A class without votes is unlikely, not impossible (−∞ would silence it for all touches that follow), and few votes
 /// are believed less than many. Keeps order and ties of the votes.
-pub(crate) fn log_vote_shares(mut votes: Array2<f64>) -> Array2<f64> {
+pub fn log_vote_shares(mut votes: Array2<f64>) -> Array2<f64> {
     for mut row in votes.axis_iter_mut(Axis(0)) {
         let all = row.sum() + row.len() as f64;
         row.mapv_inplace(|votes| ((votes + 1.0) / all).ln());
@@ -72,7 +72,7 @@ pub(crate) fn log_vote_shares(mut votes: Array2<f64>) -> Array2<f64> {
 }
 
 /// `ln(n_class / n_rows)` for these classes.
-pub(crate) fn log_priors(labels: ArrayView1<usize>, classes: &[usize]) -> Array1<f64> {
+pub fn log_priors(labels: ArrayView1<usize>, classes: &[usize]) -> Array1<f64> {
     let share = |class: &usize| {
         let n_class = labels.iter().filter(|&label| label == class).count();
         (n_class as f64 / labels.len() as f64).ln()

@@ -4,7 +4,7 @@ use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis};
 use serde::{Deserialize, Serialize};
 
 use crate::Result;
-use crate::recognition::data::dataset::{check_features, check_width};
+use crate::dataset::{check_features, check_width};
 
 /// How features are scaled before a classifier sees them.
 #[derive(
@@ -73,7 +73,7 @@ impl FittedScaling {
     }
 
     /// Whether scaled features are the features themselves.
-    pub(crate) fn changes_nothing(&self) -> bool {
+    pub fn changes_nothing(&self) -> bool {
         self.offset.iter().all(|&offset| offset == 0.0)
             && self.scale.iter().all(|&scale| scale == 1.0)
     }

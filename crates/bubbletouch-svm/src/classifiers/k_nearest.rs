@@ -1,0 +1,146 @@
+//! k nearest neighbours: the k training rows closest to a row (Euclidean) vote for their classes.
+//!
+//! **Ties.** Of rows at equal distance the one with the lower index is nearer; of classes with equal votes the lower
+//! label wins, as in scikit-learn.
+//!
+//! Distances come from one matrix product a block, `|a|² + |b|² − 2 a·b`, which loses digits where rows are close. So it only
+//! nominates: every row that rounding could have kept out of the k nearest is measured again by `Σ (a − b)²`, and the
+//! neighbours are those of a search one pair at a time, exactly. (Far from the origin many are nominated: scale features.)
+
+use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis};
+
+use crate::classifiers::class_model::{ClassModel, log_vote_shares};
+use crate::dataset::checked_classes;
+use crate::dataset::{Dataset, check_width, positions};
+use crate::{Error, Result};
+
+/// Rows whose distances to all training rows are computed at once. More leave the processor's cache, fewer make the
+/// products inefficient.
+const BLOCK_ROWS: usize = 128;
+
+/// Training rows and their labels. Scores are the logarithms of smoothed shares of the votes.
+#[derive(Clone, Debug)]
+pub struct KNearest {
+    n_neighbours: usize,
+    classes: Vec<usize>,
+    /// n_rows × m.
+    rows: Array2<f64>,
+    /// The position in `classes` of each row's label.
+    label: Vec<usize>,
+    squared_norms: Array1<f64>,
+}
+
+impl KNearest {
+    /// Keeps labelled measurements for `n_neighbours` of them to vote.
+    ///
+    /// # Errors
+    /// Neighbours not in 1 to the number of rows, empty data, a NaN or infinite feature or one whose square overflows,
+    /// another number of labels than rows, or a single class.
+    pub fn train(data: &Dataset, n_neighbours: usize) -> Result<Self> {
+        let classes = checked_classes(data)?;
+        let n_rows = data.records.nrows();
+        if !(1..=n_rows).contains(&n_neighbours) {
+            return Err(Error::input(
+                "neighbours",
+                n_neighbours,
+                format!("1 to the {n_rows} training rows is allowed"),
+            ));
+        }
+        let rows = data.records.clone();
+        let squared_norms = rows.map_axis(Axis(1), |row| row.dot(&row));
+        if let Some(row) = squared_norms.iter().position(|norm| !norm.is_finite()) {
+            return Err(Error::input(
+                format!("features, row {row}"),
+                "values whose squares overflow",
+                "scaled features are needed",
+            ));
+        }
+        Ok(Self {
+            n_neighbours,
+            label: positions(data.targets.view(), &classes),
+            classes,
+            rows,
+            squared_norms,
+        })
+    }
+
+    /// The nearest training rows of each row, nearest first (n_rows × n_neighbours).
+    ///
+    /// # Errors
+    /// Another number of columns than in training, or a NaN or infinite feature.
+    pub fn neighbours(&self, features: ArrayView2<f64>) -> Result<Array2<usize>> {
+        check_width(&features, self.rows.ncols())?;
+        let mut neighbours = Array2::zeros((features.nrows(), self.n_neighbours));
+        for (block, mut found) in features
+            .axis_chunks_iter(Axis(0), BLOCK_ROWS)
+            .zip(neighbours.axis_chunks_iter_mut(Axis(0), BLOCK_ROWS))
+        {
+            let products = block.dot(&self.rows.t());
+            for ((row, products), mut found) in block
+                .rows()
+                .into_iter()
+                .zip(products.rows())
+                .zip(found.rows_mut())
+            {
+                let nearest = self.nearest(row, products);
+                found
+                    .iter_mut()
+                    .zip(nearest)
+                    .for_each(|(to, row)| *to = row);
+            }
+        }
+        Ok(neighbours)
+    }
+
+    /// The nearest training rows of one row, from its products with all of them.
+    fn nearest(&self, row: ArrayView1<f64>, products: ArrayView1<f64>) -> Vec<usize> {
+        let norm = row.dot(&row);
+        let rough = |other: usize| norm + self.squared_norms[other] - 2.0 * products[other];
+        // The k smallest rough distances, ascending; its last entry is the bar that others must pass.
+        let k = self.n_neighbours;
+        let mut smallest = vec![f64::INFINITY; k];
+        for other in 0..products.len() {
+            let distance = rough(other);
+            if distance < smallest[k - 1] {
+                let place = smallest.partition_point(|&nearer| nearer <= distance);
+                smallest.copy_within(place..k - 1, place + 1);
+                smallest[place] = distance;
+            }
+        }
+        // The neighbours' squared norms are at most 2|a|² + 2|a − b|²; a product of m terms is off by less than m roundings.
+        let bar = smallest[k - 1];
+        let rounding = 4.0 * (row.len() + 8) as f64 * f64::EPSILON;
+        let is_out = |other: &usize| {
+            let reach = 4.0 * norm + 2.0 * bar.max(0.0) + self.squared_norms[*other];
+            rough(*other) - bar > rounding * reach
+        };
+        let mut nominees: Vec<(f64, usize)> = (0..products.len())
+            .filter(|other| !is_out(other))
+            .map(|other| (squared_distance(row, self.rows.row(other)), other))
+            .collect();
+        nominees.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        nominees.truncate(k);
+        nominees.into_iter().map(|(_, other)| other).collect()
+    }
+}
+
+impl ClassModel for KNearest {
+    fn classes(&self) -> &[usize] {
+        &self.classes
+    }
+
+    fn scores(&self, features: ArrayView2<f64>) -> Result<Array2<f64>> {
+        let neighbours = self.neighbours(features)?;
+        let mut votes = Array2::zeros((features.nrows(), self.classes.len()));
+        for (mut votes, neighbours) in votes.rows_mut().into_iter().zip(neighbours.rows()) {
+            for &row in neighbours {
+                votes[self.label[row]] += 1.0;
+            }
+        }
+        Ok(log_vote_shares(votes))
+    }
+}
+
+fn squared_distance(a: ArrayView1<f64>, b: ArrayView1<f64>) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
+}

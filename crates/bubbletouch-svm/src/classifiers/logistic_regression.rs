@@ -1,0 +1,183 @@
+//! Multinomial logistic regression: `p(k | x) = exp(w_k·x + b_k) / Σ_j exp(w_j·x + b_j)`.
+//!
+//! Minimises `C Σ_i −ln p(y_i | x_i) + ½ Σ_k |w_k|²` by L-BFGS; the bias is not regularised, as in scikit-learn. For two
+//! classes, scikit-learn regularises the difference `w_1 − w_0` alone (half as much as two vectors): so does this.
+//!
+//! Differs from linfa-logistic 0.8.1, because its log-sum-exp takes the largest score of the whole matrix instead of
+//! each row's: where scores of rows differ by more than 34, probabilities and gradients are wrong and it stops short in
+//! silence (600 rows, 5 classes, C = 1,000: objective 46.6, where C = 1 reaches 9.8).
+
+use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis, s};
+
+use crate::classifiers::class_model::{ClassModel, log_priors};
+use crate::classifiers::lbfgs::minimise;
+use crate::dataset::checked_classes;
+use crate::dataset::{Dataset, positions};
+use crate::linear_model::LinearModel;
+use crate::{Error, Result};
+
+/// Iterations after which the solver gives up: ten times scikit-learn's.
+pub const MAX_ITERATIONS: usize = 1000;
+
+/// What a logistic regression is trained with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LogisticParams {
+    /// C > 0: the weight of the data against the regularisation.
+    pub c: f64,
+    /// The largest component of the gradient of the mean loss (the objective over `C n_rows`) when the solver stops;
+    /// above 0. scikit-learn's default is 1e-4.
+    pub tolerance: f64,
+    /// Iterations after which the solver gives up and says so.
+    pub max_iterations: usize,
+}
+
+impl Default for LogisticParams {
+    /// C = 1, tolerance 1e-4, [`MAX_ITERATIONS`].
+    fn default() -> Self {
+        Self {
+            c: 1.0,
+            tolerance: 1e-4,
+            max_iterations: MAX_ITERATIONS,
+        }
+    }
+}
+
+/// A trained logistic regression. Scores are `ln p(k | x) − ln p(k)`, p(k) the class's share of the training rows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Logistic {
+    classes: Vec<usize>,
+    model: LinearModel,
+    log_prior: Array1<f64>,
+    n_iterations: usize,
+    is_capped: bool,
+}
+
+impl LogisticParams {
+    /// Trains on labelled measurements. Deterministic.
+    ///
+    /// # Errors
+    /// C or tolerance out of range, empty data, a NaN or infinite feature, another number of labels than rows, or a
+    /// single class.
+    pub fn train(&self, data: &Dataset) -> Result<Logistic> {
+        for (name, value) in [("C", self.c), ("tolerance", self.tolerance)] {
+            if !(value > 0.0 && value.is_finite()) {
+                let allowed = "a finite number above 0 is allowed";
+                return Err(Error::input(name, value, allowed));
+            }
+        }
+        let classes = checked_classes(data)?;
+        let features = data.records.view();
+        let label = positions(data.targets.view(), &classes);
+        let two = if classes.len() == 2 { 2.0 } else { 1.0 };
+        let penalty = two / (self.c * label.len() as f64);
+        let n_weights = classes.len() * (features.ncols() + 1);
+        let found = minimise(
+            |w| mean_loss(features, &label, penalty, w.view()),
+            Array1::zeros(n_weights),
+            self.tolerance,
+            self.max_iterations,
+        );
+        let (weights, bias) = parts(found.at.view(), classes.len());
+        Ok(Logistic {
+            model: LinearModel {
+                weights: weights.to_owned(),
+                bias: bias.to_owned(),
+            },
+            log_prior: log_priors(data.targets.view(), &classes),
+            classes,
+            n_iterations: found.n_iterations,
+            is_capped: found.is_capped,
+        })
+    }
+}
+
+impl Logistic {
+    /// Weights and biases.
+    pub fn model(&self) -> &LinearModel {
+        &self.model
+    }
+
+    /// Iterations of the solver.
+    pub fn n_iterations(&self) -> usize {
+        self.n_iterations
+    }
+
+    /// `ln p(k | x)` (n_rows × n_classes).
+    ///
+    /// # Errors
+    /// Another number of columns than in training, or a NaN or infinite feature.
+    pub fn log_probabilities(&self, features: ArrayView2<f64>) -> Result<Array2<f64>> {
+        let mut values = self.model.scores(features)?;
+        normalise(&mut values);
+        Ok(values)
+    }
+}
+
+impl ClassModel for Logistic {
+    fn classes(&self) -> &[usize] {
+        &self.classes
+    }
+
+    fn scores(&self, features: ArrayView2<f64>) -> Result<Array2<f64>> {
+        Ok(self.log_probabilities(features)? - &self.log_prior)
+    }
+
+    fn log_prior(&self) -> Option<ArrayView1<'_, f64>> {
+        Some(self.log_prior.view())
+    }
+
+    fn n_capped(&self) -> usize {
+        usize::from(self.is_capped)
+    }
+}
+
+/// Weights (n_classes × m) and biases (n_classes) within the solver's vector.
+fn parts(vector: ArrayView1<f64>, n_classes: usize) -> (ArrayView2<f64>, ArrayView1<f64>) {
+    let (weights, bias) = vector.split_at(Axis(0), vector.len() - n_classes);
+    let m = weights.len() / n_classes;
+    let weights = weights.into_shape_with_order((n_classes, m));
+    (weights.expect("a slice of n_classes × m"), bias)
+}
+
+/// `(1/n) Σ_i −ln p(y_i | x_i) + ½ penalty Σ_k |w_k|²`, and its gradient.
+fn mean_loss(
+    features: ArrayView2<f64>,
+    label: &[usize],
+    penalty: f64,
+    vector: ArrayView1<f64>,
+) -> (f64, Array1<f64>) {
+    let n_bias = vector.len() / (features.ncols() + 1);
+    let (weights, bias) = parts(vector, n_bias);
+    let per_row = 1.0 / label.len() as f64;
+    let mut values = features.dot(&weights.t()) + bias;
+    normalise(&mut values);
+    let mut loss = 0.5 * penalty * weights.iter().map(|w| w * w).sum::<f64>();
+    for (mut row, &label) in values.rows_mut().into_iter().zip(label) {
+        loss -= per_row * row[label];
+        row.mapv_inplace(f64::exp);
+        row[label] -= 1.0;
+        row *= per_row;
+    }
+    let mut gradient = Array1::zeros(vector.len());
+    let mut by_class = values.t().dot(&features);
+    by_class.scaled_add(penalty, &weights);
+    let n_weights = weights.len();
+    gradient
+        .slice_mut(s![..n_weights])
+        .iter_mut()
+        .zip(&by_class)
+        .for_each(|(to, from)| *to = *from);
+    gradient
+        .slice_mut(s![n_weights..])
+        .assign(&values.sum_axis(Axis(0)));
+    (loss, gradient)
+}
+
+/// Subtracts `ln Σ_k exp` from each row, the row's largest value taken out first.
+fn normalise(values: &mut Array2<f64>) {
+    for mut row in values.rows_mut() {
+        let max = row.fold(f64::NEG_INFINITY, |max, &value| max.max(value));
+        let sum: f64 = row.iter().map(|value| (value - max).exp()).sum();
+        row -= max + sum.ln();
+    }
+}

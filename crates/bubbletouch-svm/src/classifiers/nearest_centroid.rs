@@ -1,0 +1,120 @@
+//! Nearest centroid: each class is the mean of its training rows, and a row is of the class whose mean is nearest (Euclidean).
+//!
+//! What scikit-learn's `NearestCentroid` is: as many numbers as classes times features, no parameter, and a decision that costs one
+//! distance a class. Scores are −½|x − μₖ|², which is `ln p(x | k)` of normal classes of variance 1 up to a constant of the row: the sum
+//! over several touches is that of all of them together. Of equal distances the lower label wins, as there.
+
+use crate::Result;
+use crate::classifiers::class_model::ClassModel;
+use crate::dataset::checked_classes;
+use crate::dataset::{Dataset, check_width};
+use ndarray::{Array2, ArrayView2, Axis};
+
+/// The mean of each class.
+#[derive(Clone, Debug)]
+pub struct NearestCentroid {
+    classes: Vec<usize>,
+    /// n_classes × m.
+    centroids: Array2<f64>,
+}
+
+impl NearestCentroid {
+    /// Averages labelled rows class by class.
+    ///
+    /// # Errors
+    /// Empty data, a NaN or infinite feature, another number of labels than rows, or a single class.
+    pub fn train(data: &Dataset) -> Result<Self> {
+        let classes = checked_classes(data)?;
+        let mut centroids = Array2::zeros((classes.len(), data.records.ncols()));
+        for (class, mut centroid) in classes.iter().zip(centroids.outer_iter_mut()) {
+            let labels = data.targets.iter().enumerate();
+            let rows: Vec<usize> = labels
+                .filter(|(_, l)| *l == class)
+                .map(|(r, _)| r)
+                .collect();
+            for &row in &rows {
+                centroid += &data.records.row(row);
+            }
+            centroid /= rows.len() as f64;
+        }
+        Ok(Self { classes, centroids })
+    }
+
+    /// The mean of each class, ascending by label: n_classes × m.
+    pub fn centroids(&self) -> ArrayView2<'_, f64> {
+        self.centroids.view()
+    }
+}
+
+impl ClassModel for NearestCentroid {
+    fn classes(&self) -> &[usize] {
+        &self.classes
+    }
+
+    fn scores(&self, features: ArrayView2<f64>) -> Result<Array2<f64>> {
+        check_width(&features, self.centroids.ncols())?;
+        let mut scores = Array2::zeros((features.nrows(), self.classes.len()));
+        for (row, mut scores) in features.axis_iter(Axis(0)).zip(scores.outer_iter_mut()) {
+            for (centroid, score) in self.centroids.outer_iter().zip(scores.iter_mut()) {
+                let squares = row.iter().zip(centroid).map(|(x, c)| (x - c).powi(2));
+                *score = -0.5 * squares.sum::<f64>();
+            }
+        }
+        Ok(scores)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::array;
+
+    fn trained() -> NearestCentroid {
+        // The example of scikit-learn's documentation, with labels 1 and 2.
+        let rows = array![
+            [-1.0, -1.0],
+            [-2.0, -1.0],
+            [-3.0, -2.0],
+            [1.0, 1.0],
+            [2.0, 1.0],
+            [3.0, 2.0]
+        ];
+        NearestCentroid::train(&Dataset::new(rows, array![1, 1, 1, 2, 2, 2])).unwrap()
+    }
+
+    #[test]
+    fn classes_are_their_means_and_the_nearest_wins() {
+        let model = trained();
+        let expected = array![[-2.0, -4.0 / 3.0], [2.0, 4.0 / 3.0]];
+        assert!(
+            (&model.centroids() - &expected)
+                .iter()
+                .all(|d| d.abs() < 1e-15)
+        );
+        let rows = array![[-0.8, -1.0], [0.1, 0.0], [2.0, 4.0 / 3.0]];
+        assert_eq!(model.labels(rows.view()).unwrap(), array![1, 2, 2]);
+        let scores = model.scores(rows.view()).unwrap();
+        // |(−0.8, −1) − (−2, −4/3)|² = 1.44 + 1/9.
+        assert!((scores[[0, 0]] + 0.5 * (1.44 + 1.0 / 9.0)).abs() < 1e-12);
+        assert_eq!(scores[[2, 1]], 0.0);
+    }
+
+    #[test]
+    fn a_row_between_two_means_is_of_the_lower_label() {
+        let halfway = array![[0.0, 0.0]];
+        assert_eq!(trained().labels(halfway.view()).unwrap(), array![1]);
+    }
+
+    #[test]
+    fn the_border_of_two_classes_is_the_plane_half_way_between_their_means() {
+        let model = trained();
+        // Along it: (4/3, −2) is at right angles to the difference of the means.
+        for step in [-3.0, -0.5, 2.0] {
+            let on = [step * 4.0 / 3.0, -2.0 * step];
+            for (side, label) in [(1e-6, 2), (-1e-6, 1)] {
+                let row = array![[on[0] + side * 2.0, on[1] + side * 4.0 / 3.0]];
+                assert_eq!(model.labels(row.view()).unwrap(), array![label], "{step}");
+            }
+        }
+    }
+}
