@@ -2,7 +2,7 @@
 
 /// A function at one place.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sample {
+pub(crate) struct Sample {
     pub value: f64,
     /// Its derivative, as far as it is known: a wrong one costs steps, not truth.
     pub slope: f64,
@@ -13,10 +13,10 @@ pub(super) struct Sample {
 const HALVED_EACH: usize = 3;
 
 /// Where a function comes up to `wanted` on its way from a value below it at `low` to no lower one at `high`: to `tolerance` of
-/// its value, or to the last bit of the place.
+/// its value, or to the last bit of the place; to that in any case if the tolerance is negative.
 ///
 /// A function that jumps upwards past the value comes up to it there: the upper side of the jump is named.
-pub(super) fn crossing(
+pub(crate) fn crossing(
     [mut low, mut high]: [f64; 2],
     (wanted, tolerance): (f64, f64),
     mut sample: impl FnMut(f64) -> Sample,

@@ -52,7 +52,7 @@ impl GridPress {
         );
         self.lines.lay(&grid.grid);
         self.behind = match goal {
-            Until::Pose => grid.behind(),
+            Until::Pose => grid.behind,
             Until::Travel(_) | Until::Depth(_) => f64::NEG_INFINITY,
         };
         let placed = Placed {

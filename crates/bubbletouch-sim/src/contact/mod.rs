@@ -13,8 +13,8 @@
 //! **Behind the substrate.** A press comes from the front and stays there: to a depth, a travel or a force all counts, however deep,
 //! so that no taxel of a flat patch is deflected less the deeper it is pressed. At a pose without such a way ([`press_at_pose`],
 //! [`press_with_contacts`]) and to free objects a sphere or a mesh counts until it is wholly behind the substrate, as far as that taxel can
-//! tell: a taxel that rests on its far side would be further back than the substrate is, `h + √(S² − b²) < −s − ρ`. So a ball that
-//! goes through a skin leaves it taxel by taxel. In a time loop, and on the way of a press, what pushed a taxel in the step before
+//! tell: a taxel that rests on its far side would be further back than the substrate is, `h + √(S² − b²) < −s − ρ` (the module `law` has this
+//! predicate). So a ball that goes through a skin leaves it taxel by taxel. In a time loop, and on the way of a press, what pushed a taxel in the step before
 //! goes on pushing it.
 //!
 //! A taxel that would have to go further than its stroke s is saturated: counted in [`Contact`], never hidden.
@@ -50,10 +50,10 @@ mod grid_lines;
 mod grid_press;
 mod hold_force;
 mod instructions;
+pub(crate) mod law;
 mod near_spheres;
 mod placed_sphere;
 mod press;
-mod raise;
 mod row;
 mod sheet;
 mod simulate;
@@ -68,6 +68,7 @@ mod workspace;
 
 pub use approach::Approach;
 pub use below::Below;
+pub(crate) use crossing::{Sample, crossing};
 pub use damper::Relaxation;
 pub use damper::{DamperState, relaxation_factor};
 pub use friction::{FrictionLoad, FrictionState, Grip, GripCounts, NormalForce};
@@ -80,7 +81,6 @@ pub use press::{
     Contact, Goal, first_contact, press, press_at_pose, press_into, press_onto_zeros,
     press_to_depth, press_to_force, press_to_travel, press_with_contacts,
 };
-pub(crate) use raise::{beats, raise};
 pub use row::Row;
 pub use simulate::{Recording, simulate};
 pub use spring_load::{AxialLoad, SpringLoad, Wrench, axial_load, spring_load};

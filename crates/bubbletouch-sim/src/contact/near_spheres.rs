@@ -1,5 +1,6 @@
 //! The spheres of an object that are where a skin is: by clusters, so that most of a large object is never looked at.
 
+use super::law;
 use crate::geometry::Pose;
 use crate::objects::{Sphere, SphereUnion};
 use crate::world::{LEAF, Leaf};
@@ -68,9 +69,7 @@ pub(super) fn needed_along(from: DVec3, frame: [DVec3; 3], reach: f64, behind: f
     let [across_x, across_y, axis] = frame;
     let (dx, dy, height) = (from.dot(across_x), from.dot(across_y), -from.dot(axis));
     let q = reach * reach - dy * dy - dx * dx;
-    let depth = q.max(0.0).sqrt() - height;
-    let gap = (behind - height).max(0.0);
-    if q > gap * gap { depth } else { 0.0 }
+    law::needed(q, height, behind)
 }
 
 /// The same of each taxel of a leaf and a sphere in the patch frame.

@@ -1,7 +1,7 @@
 //! A sphere over a flat grid, and the taxels under it, row by row.
 
 use super::grid_lines::GridLines;
-use super::raise::{ALMOST, beats, raise};
+use super::law::{self, beats, raise};
 use super::sheet::Sheet;
 use crate::geometry::Pose;
 use crate::objects::{Cluster, ClusterBounds, MOST_IN_CLUSTER, Sphere};
@@ -137,7 +137,11 @@ impl PlacedSphere {
         let DVec3 { x, y, z } = self.center;
         let (dx, dy) = (x - lines.x.nearest(x), y - lines.y.nearest(y));
         let q = self.reach * self.reach - (dx * dx + dy * dy);
-        if q > 0.0 { z - q.sqrt() } else { f64::INFINITY }
+        if q > 0.0 {
+            -law::deflection(q, z)
+        } else {
+            f64::INFINITY
+        }
     }
 
     /// Raises the deflections to what the sphere needs with its centre at a height over the grid.
@@ -180,9 +184,7 @@ impl PlacedSphere {
             for (deflection, x) in taxels.zip(&lines.x.positions[columns.clone()]) {
                 let dx = x - self.center.x;
                 let q = reach2 - dy * dy - dx * dx;
-                if q > gap * gap {
-                    *deflection = deflection.max(q.sqrt() - height);
-                }
+                *deflection = deflection.max(law::needed(q, height, behind));
             }
         }
     }
@@ -266,7 +268,6 @@ impl PlacedSphere {
         (mark, marks): (M, &mut [M]),
     ) {
         let DVec3 { x, y, z: height } = self.center;
-        let gap = (behind - height).max(0.0);
         let reach2 = self.reach * self.reach;
         let lift = height.max(0.0);
         let footprint = (reach2 - lift * lift).max(0.0);
@@ -287,12 +288,11 @@ impl PlacedSphere {
             for ((deflection, marked), place) in marked.zip(&lines.x.positions[columns]) {
                 let dx = place - x;
                 let q = reach2 - dy * dy - dx * dx;
-                if q <= gap * gap {
+                if !law::is_in_front(q, height, behind) {
                     continue;
                 }
-                let bar = (height + *deflection).max(0.0);
-                if q > bar * bar * ALMOST {
-                    let needed = q.sqrt() - height;
+                if law::may_exceed(q, height, *deflection) {
+                    let needed = law::deflection(q, height);
                     if needed > *deflection {
                         *deflection = needed;
                         *marked = mark;

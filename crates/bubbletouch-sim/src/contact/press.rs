@@ -115,12 +115,68 @@ fn to_goal(
     goal: Goal,
     scratch: (&mut Workspace, &mut Filling),
 ) -> Result<Option<Contact>> {
-    Ok(match goal {
-        Goal::Pose => Some(at_pose(patch, placed, scratch)),
-        Goal::Depth(depth) => to_depth(patch, placed, depth, scratch),
-        Goal::Travel(travel) => Some(to_travel(patch, placed, travel, scratch)),
-        Goal::Force(force) => to_force(patch, placed, force, scratch)?,
-    })
+    let until = match goal {
+        Goal::Pose => Until::Pose,
+        Goal::Depth(depth) => Until::Depth(depth),
+        Goal::Travel(travel) => Until::Travel(travel),
+        Goal::Force(force) => return to_force(patch, placed, force, scratch),
+    };
+    Ok(to_place(patch, placed, until, scratch))
+}
+
+/// Presses to a pose, a travel or a depth; `None` if the goal is a depth and nothing is met.
+fn to_place(
+    patch: &Patch,
+    (objects, patch_from_objects): (&[Model], &[Pose]),
+    until: Until,
+    (workspace, filling): (&mut Workspace, &mut Filling),
+) -> Option<Contact> {
+    let by_rows = |workspace: &Workspace| match until {
+        Until::Depth(_) | Until::Travel(_) => true,
+        // At a pose a mesh may be behind some taxels, and what is held pushes from there.
+        Until::Pose => {
+            objects.iter().all(|object| object.spheres().is_some()) && !workspace.holds_any()
+        }
+    };
+    if let Some(grid) = patch.even_grid()
+        && by_rows(workspace)
+    {
+        let press = workspace.on_grid();
+        let first = press.gather(grid, objects, patch_from_objects, until);
+        let travel = match (until, first) {
+            (Until::Pose, _) => 0.0,
+            (Until::Travel(travel), _) => travel,
+            (Until::Depth(depth), Some(first)) => first + depth,
+            (Until::Depth(_), None) => {
+                press.touch_nothing(grid);
+                return None;
+            }
+        };
+        return Some(press.indent(grid, travel, filling));
+    }
+    if let Until::Pose = until {
+        return Some(tree_press::deflect(
+            patch,
+            objects,
+            patch_from_objects,
+            workspace,
+        ));
+    }
+    let approach = Approach::ahead(patch);
+    let first = approach.first_contact(objects, patch_from_objects);
+    let travels = first.and_then(|first| match until {
+        Until::Depth(depth) => Some([first, first + depth]),
+        Until::Travel(travel) => (first < travel).then_some([first, travel]),
+        Until::Pose => None,
+    });
+    let contact = approach.deflect(objects, patch_from_objects, travels, workspace);
+    match until {
+        Until::Travel(travel) => Some(Contact {
+            travel,
+            ..contact.unwrap_or_default()
+        }),
+        _ => contact,
+    }
 }
 
 /// How far the patch must travel along z until the first taxel is touched, metres (negative: it already is); `None` where no
@@ -162,27 +218,8 @@ pub fn press_to_depth(
     workspace: &mut Workspace,
 ) -> Option<Contact> {
     let placed = (objects, patch_from_objects);
-    to_depth(patch, placed, depth, (workspace, &mut Filling::nothing()))
-}
-
-fn to_depth(
-    patch: &Patch,
-    (objects, patch_from_objects): (&[Model], &[Pose]),
-    depth: f64,
-    (workspace, filling): (&mut Workspace, &mut Filling),
-) -> Option<Contact> {
-    let Some(grid) = patch.even_grid() else {
-        let approach = Approach::ahead(patch);
-        let first = approach.first_contact(objects, patch_from_objects);
-        let travels = first.map(|first| [first, first + depth]);
-        return approach.deflect(objects, patch_from_objects, travels, workspace);
-    };
-    let press = workspace.on_grid();
-    let first = press.gather(grid, objects, patch_from_objects, Until::Depth(depth));
-    if first.is_none() {
-        press.touch_nothing(grid);
-    }
-    first.map(|first| press.indent(grid, first + depth, filling))
+    let scratch = (workspace, &mut Filling::nothing());
+    to_place(patch, placed, Until::Depth(depth), scratch)
 }
 
 /// Presses until the patch has moved `travel` metres along z from the pose given, from the front: the press of [`press_to_depth`]
@@ -198,27 +235,8 @@ pub fn press_to_travel(
     workspace: &mut Workspace,
 ) -> Contact {
     let placed = (objects, patch_from_objects);
-    to_travel(patch, placed, travel, (workspace, &mut Filling::nothing()))
-}
-
-fn to_travel(
-    patch: &Patch,
-    (objects, patch_from_objects): (&[Model], &[Pose]),
-    travel: f64,
-    (workspace, filling): (&mut Workspace, &mut Filling),
-) -> Contact {
-    let Some(grid) = patch.even_grid() else {
-        let approach = Approach::ahead(patch);
-        let first = approach.first_contact(objects, patch_from_objects);
-        let travels = first.filter(|first| *first < travel);
-        let travels = travels.map(|first| [first, travel]);
-        let contact = approach.deflect(objects, patch_from_objects, travels, workspace);
-        let contact = contact.unwrap_or_default();
-        return Contact { travel, ..contact };
-    };
-    let press = workspace.on_grid();
-    press.gather(grid, objects, patch_from_objects, Until::Travel(travel));
-    press.indent(grid, travel, filling)
+    let scratch = (workspace, &mut Filling::nothing());
+    to_place(patch, placed, Until::Travel(travel), scratch).unwrap_or_default()
 }
 
 /// Presses until the springs carry `force` newtons together, Σ k δ: to within 1e-12 of it, or to the last bit of the travel.
@@ -259,8 +277,8 @@ pub fn press_to_force(
     force: f64,
     workspace: &mut Workspace,
 ) -> Result<Option<Contact>> {
-    let placed = (objects, patch_from_objects);
-    to_force(patch, placed, force, (workspace, &mut Filling::nothing()))
+    let goal = Goal::Force(force);
+    press(patch, objects, patch_from_objects, goal, workspace)
 }
 
 fn to_force(
@@ -337,21 +355,6 @@ pub fn press_at_pose(
     workspace: &mut Workspace,
 ) -> Contact {
     let placed = (objects, patch_from_objects);
-    at_pose(patch, placed, (workspace, &mut Filling::nothing()))
-}
-
-fn at_pose(
-    patch: &Patch,
-    (objects, patch_from_objects): (&[Model], &[Pose]),
-    (workspace, filling): (&mut Workspace, &mut Filling),
-) -> Contact {
-    let are_spheres = || objects.iter().all(|object| object.spheres().is_some());
-    match patch.even_grid() {
-        Some(grid) if are_spheres() && !workspace.holds_any() => {
-            let press = workspace.on_grid();
-            press.gather(grid, objects, patch_from_objects, Until::Pose);
-            press.indent(grid, 0.0, filling)
-        }
-        _ => tree_press::deflect(patch, objects, patch_from_objects, workspace),
-    }
+    let scratch = (workspace, &mut Filling::nothing());
+    to_place(patch, placed, Until::Pose, scratch).unwrap_or_default()
 }

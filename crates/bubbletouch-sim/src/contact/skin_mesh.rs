@@ -1,5 +1,6 @@
 //! Where a mesh stops one taxel that comes up along its own axis.
 
+use super::law;
 use super::swept_triangle::stopping_height;
 use crate::geometry::{Aabb, Pose};
 use crate::mesh::Triangle;
@@ -167,12 +168,12 @@ impl<'a> AxisView<'a> {
         let turned = self.turned(triangle);
         let radius = self.taxel.radius;
         let height = stopping_height(&turned, radius, DVec2::ZERO)?;
-        if height >= self.taxel.behind {
+        if law::reaches_front(height, self.taxel.behind) {
             return Some(height);
         }
         // Seen from above, it stops a taxel that comes down at the highest place where they touch.
         let mirrored = Triangle(turned.0.map(|v| DVec3::new(v.x, v.y, -v.z)));
         let highest = -stopping_height(&mirrored, radius, DVec2::ZERO)?;
-        (highest >= self.taxel.behind).then_some(height)
+        law::reaches_front(highest, self.taxel.behind).then_some(height)
     }
 }

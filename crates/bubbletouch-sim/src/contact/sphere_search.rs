@@ -3,6 +3,7 @@
 use super::below::Below;
 use super::grid_press::{Placed, Until};
 use super::instructions::for_instructions;
+use super::law;
 use super::placed_sphere::{PlacedSphere, View};
 use crate::objects::{Model, SphereClusters};
 
@@ -43,7 +44,7 @@ fn run(search: &mut SphereSearch, placed: &Placed, goal: Until) -> f64 {
         }
         Until::Pose => {
             search.gather(placed.objects, 0.0, |sphere| {
-                sphere.center.z + sphere.reach > placed.behind
+                law::is_in_front(sphere.reach * sphere.reach, sphere.center.z, placed.behind)
             });
             f64::INFINITY
         }

@@ -9,6 +9,7 @@
 //! | edge | rise tan θ along the ground, d: distance beside it, r = √(ρ² − d²) | z_A − r cos θ, A being r sin θ before (x, y) along the edge |
 //! | corner | v, b: distance beside it | v_z − √(ρ² − b²) |
 
+use super::law;
 use crate::mesh::Triangle;
 use glam::{DVec2, DVec3, Vec3Swizzles};
 
@@ -37,7 +38,7 @@ pub fn stopping_height(triangle: &Triangle, radius: f64, at: DVec2) -> Option<f6
 #[inline]
 pub(super) fn corner_height(corner: DVec3, radius: f64, at: DVec2) -> Option<f64> {
     let q = radius * radius - at.distance_squared(corner.xy());
-    (q > 0.0).then(|| corner.z - q.sqrt())
+    (q > 0.0).then(|| -law::deflection(q, corner.z))
 }
 
 /// A face moved down by the ball's radius along its normal.

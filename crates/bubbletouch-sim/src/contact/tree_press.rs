@@ -113,7 +113,7 @@ fn push_along_rows(
     } = workspace;
     lines.lay(&grid.grid);
     let view = View::new(grid.radius, lines, pose);
-    let behind = grid.behind();
+    let behind = grid.behind;
     let mut is_near = false;
     for &number in near {
         let Some(placed) = view.place(&union.spheres()[number as usize], 0.0) else {

@@ -1,6 +1,7 @@
 //! Where a free object on its guide must end.
 
 use super::system::{Drive, System};
+use crate::contact::{Sample, crossing};
 
 /// An object at rest.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,7 +14,7 @@ pub struct Rest {
     pub stops: f64,
 }
 
-/// Where the springs carry the weight of the object and of what is stacked on it, or the stops what they do not: found by halving, as a check of everything else.
+/// Where the springs carry the weight of the object and of what is stacked on it, or the stops what they do not: found to the last bit, as a check of everything else.
 ///
 /// `None` for an imposed motion, and where no taxel is in the way.
 pub fn rest(system: &System) -> Option<Rest> {
@@ -25,12 +26,17 @@ pub fn rest(system: &System) -> Option<Rest> {
         return None;
     }
     let pushed = |travel: f64| system.starts().iter().map(move |a| (travel - a).max(0.0));
-    let carried = |travel: f64| -> f64 {
-        let taxels = system.patch.taxels();
-        let springs = pushed(travel).enumerate();
-        springs
-            .map(|(taxel, d)| taxels.at(taxel).stiffness * d)
-            .sum()
+    let carried = |travel: f64| {
+        let mut carried = Sample {
+            value: 0.0,
+            slope: 0.0,
+        };
+        for (taxel, deflection) in pushed(travel).enumerate() {
+            let stiffness = system.patch.taxels().at(taxel).stiffness;
+            carried.value += stiffness * deflection;
+            carried.slope += if deflection > 0.0 { stiffness } else { 0.0 };
+        }
+        carried
     };
     let weight = (mass + system.riders().iter().sum::<f64>()) * gravity;
     let first = system
@@ -38,21 +44,13 @@ pub fn rest(system: &System) -> Option<Rest> {
         .iter()
         .copied()
         .fold(f64::INFINITY, f64::min);
-    let (mut low, mut high) = (first, floor);
-    if carried(floor) <= weight {
-        low = floor;
-    }
-    // Until the middle is one of the ends: no two numbers are nearer.
-    while low < 0.5 * (low + high) && 0.5 * (low + high) < high {
-        let middle = 0.5 * (low + high);
-        match carried(middle) < weight {
-            true => low = middle,
-            false => high = middle,
-        }
-    }
+    let travel = match carried(floor).value <= weight {
+        true => floor,
+        false => crossing([first, floor], (weight, -1.0), carried),
+    };
     Some(Rest {
-        travel: high,
-        deflection: pushed(high).collect(),
-        stops: (weight - carried(high)).max(0.0),
+        travel,
+        deflection: pushed(travel).collect(),
+        stops: (weight - carried(travel).value).max(0.0),
     })
 }

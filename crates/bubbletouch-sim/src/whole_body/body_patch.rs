@@ -43,16 +43,16 @@ impl BodyPatch {
             let allowed = "one taxel for all places".to_owned();
             return refuse("taxels", "one each".to_owned(), allowed);
         };
-        let depth = taxel.stroke + taxel.radius;
+        let behind = taxel.substrate();
         let surface = match patch.layout().rule() {
-            Rule::Grid(grid) => Surface::Rows(RowPatch::new(Extrusion::grid(grid)?, depth)),
-            Rule::Rows(rows) => Surface::Rows(RowPatch::new(rows.clone(), depth)),
-            Rule::Dome(dome) if dome.radius() < depth => {
-                let allowed = format!("at least {depth} m, a taxel's stroke and radius");
+            Rule::Grid(grid) => Surface::Rows(RowPatch::new(Extrusion::grid(grid)?, behind)),
+            Rule::Rows(rows) => Surface::Rows(RowPatch::new(rows.clone(), behind)),
+            Rule::Dome(dome) if dome.radius() < -behind => {
+                let allowed = format!("at least {} m, a taxel's stroke and radius", -behind);
                 return refuse("dome radius", format!("{} m", dome.radius()), allowed);
             }
-            Rule::Dome(dome) => Surface::Dome(DomePatch::new(dome.clone(), depth)),
-            Rule::None => Surface::Draped(DrapedPatch::new(patch.layout(), depth)),
+            Rule::Dome(dome) => Surface::Dome(DomePatch::new(dome.clone(), behind)),
+            Rule::None => Surface::Draped(DrapedPatch::new(patch.layout(), behind)),
         };
         Ok(Self {
             name,

@@ -8,12 +8,13 @@
 //! (R² + Q) / (2R)   if Q > R²: it is above the taxel below
 //! ```
 //!
-//! and with B = R − s − ρ the sphere is not behind the substrate where `t + √(t² − Q) ≥ B`, which is where t is B or (B² + Q) / (2B) or more.
+//! and with B = R − s − ρ the sphere is in front of the substrate (`contact::law`) where `t + √(t² − Q) ≥ B`, which is where t is B or (B² + Q) / (2B) or more.
 //! On a ring t is A + A' cos(φ − φ_c): an interval.
 
 use super::lanes::ball_around;
 use super::object_press::Pushed;
 use super::patch_state::PatchState;
+use crate::contact::law;
 use crate::objects::Sphere;
 use crate::world::{Dome, DomeRing};
 use glam::{DVec3, Vec3Swizzles};
@@ -36,9 +37,9 @@ pub(super) struct DomePatch {
 }
 
 impl DomePatch {
-    /// Taxels whose substrate is `depth` metres behind their rest centres, less than the dome's radius.
-    pub fn new(dome: Dome, depth: f64) -> Self {
-        let (outer, substrate) = (dome.radius(), dome.radius() - depth);
+    /// Taxels with their substrate at the height `behind`, metres, above minus the dome's radius.
+    pub fn new(dome: Dome, behind: f64) -> Self {
+        let (outer, substrate) = (dome.radius(), dome.radius() + behind);
         let ends = dome
             .axes()
             .flat_map(|axis| [outer * axis, substrate * axis]);
@@ -97,7 +98,7 @@ impl Pushed for DomePatch {
                 let t = along + slope.dot(directions[column]);
                 let q = t * t - power;
                 match q > 0.0 && t >= behind {
-                    true => q.sqrt() - (t - radius),
+                    true => law::deflection(q, t - radius),
                     false => 0.0,
                 }
             };

@@ -6,7 +6,8 @@
 use super::lanes::{Balls, FAR, LANES, ball_around, filled};
 use super::object_press::Pushed;
 use super::patch_state::PatchState;
-use crate::contact::{Below, beats, raise};
+use crate::contact::Below;
+use crate::contact::law::{beats, raise, squares_in_front};
 use crate::objects::Sphere;
 use crate::world::Layout;
 use glam::DVec3;
@@ -20,8 +21,8 @@ const MOST_LEVELS: usize = 10;
 #[derive(Clone, Debug)]
 pub(super) struct DrapedPatch {
     n_taxels: usize,
-    /// s + ρ, metres.
-    depth: f64,
+    /// Height of the substrate, metres.
+    behind: f64,
     tiles: Vec<Tile>,
     /// The first level is one block of at most eight balls; a ball of a level is around the block of its number of the next one, and of
     /// the last level around a tile.
@@ -40,12 +41,12 @@ struct Tile {
 }
 
 impl DrapedPatch {
-    /// Taxels, at least one, whose substrate is `depth` metres behind their rest centres.
-    pub fn new(layout: &Layout, depth: f64) -> Self {
+    /// Taxels, at least one, with their substrate at the height `behind`, metres.
+    pub fn new(layout: &Layout, behind: f64) -> Self {
         let taxels = layout.centers().iter().copied();
         let taxels: Vec<_> = taxels.zip(layout.axes().iter().copied()).collect();
         // From the rest centres back to the substrate.
-        let ends = |&(center, axis): &(DVec3, DVec3)| [center, center - depth * axis];
+        let ends = |&(center, axis): &(DVec3, DVec3)| [center, center + behind * axis];
         let ball = |taxels: &[_]| ball_around(taxels.iter().flat_map(ends));
         let balls = |n: usize| taxels.chunks(n).map(ball).collect::<Vec<_>>();
         let mut levels = vec![Balls::blocks(&balls(LANES))];
@@ -56,7 +57,7 @@ impl DrapedPatch {
         }
         Self {
             n_taxels: taxels.len(),
-            depth,
+            behind,
             tiles: taxels.chunks(LANES).map(Tile::new).collect(),
             levels,
             ball: ball(&taxels),
@@ -84,8 +85,7 @@ impl DrapedPatch {
     /// Pushes a tile.
     #[inline(always)]
     fn push_tile(&self, state: &mut PatchState, tile: usize, center: DVec3, reach: f64) {
-        let behind = -self.depth;
-        // Of each taxel S² − b², negative behind the substrate, and h.
+        // Of each taxel S² − b² and h.
         let (mut squares, mut heights) = ([0.0; LANES], [0.0; LANES]);
         let Tile {
             centers: [x, y, z],
@@ -100,10 +100,10 @@ impl DrapedPatch {
                 dz - height * nz[k],
             );
             let square = reach * reach - (bx * bx + by * by + bz * bz);
-            let gap = (behind - height).max(0.0);
-            squares[k] = if square <= gap * gap { -1.0 } else { square };
+            squares[k] = square;
             heights[k] = height;
         }
+        let squares = squares_in_front(&squares, &heights, self.behind);
         let first = tile * LANES;
         let taxels = state.block(first);
         if beats(&squares, &heights, taxels) {

@@ -10,8 +10,8 @@ use glam::DVec2;
 #[derive(Clone, Debug)]
 pub(super) struct RowPatch {
     extrusion: Extrusion,
-    /// s + ρ, metres.
-    depth: f64,
+    /// Height of the substrate, metres.
+    behind: f64,
     bundles: Vec<Bundle>,
     circles: Vec<Balls>,
     lines: Lines,
@@ -29,8 +29,8 @@ pub(super) struct Bundle {
 }
 
 impl RowPatch {
-    /// Taxels whose substrate is `depth` metres behind their rest centres.
-    pub fn new(extrusion: Extrusion, depth: f64) -> Self {
+    /// Taxels with their substrate at the height `behind`, metres.
+    pub fn new(extrusion: Extrusion, behind: f64) -> Self {
         let columns = extrusion.places().iter().copied();
         let columns: Vec<_> = columns.zip(extrusion.axes().iter().copied()).collect();
         let lines = Lines::at(extrusion.rows());
@@ -40,7 +40,7 @@ impl RowPatch {
         );
         // From the rest centres back to the substrate, across the rows.
         let ends = |&(place, axis): &(DVec2, DVec2)| {
-            [place, place - depth * axis].map(|end: DVec2| end.extend(0.0))
+            [place, place + behind * axis].map(|end: DVec2| end.extend(0.0))
         };
         let circle = |columns: &[_]| ball_around(columns.iter().flat_map(ends));
         let circles: Vec<Sphere> = columns.chunks(LANES).map(circle).collect();
@@ -54,7 +54,7 @@ impl RowPatch {
             bundles: columns.chunks(LANES).map(Bundle::new).collect(),
             circles: Balls::blocks(&circles),
             extrusion,
-            depth,
+            behind,
             lines,
         }
     }
@@ -64,10 +64,10 @@ impl RowPatch {
         &self.extrusion
     }
 
-    /// −s − ρ, metres: what is lower is behind the substrate.
+    /// Height of the substrate, metres.
     #[inline(always)]
     pub fn behind(&self) -> f64 {
-        -self.depth
+        self.behind
     }
 
     /// As [`BodyPatch::ball`](super::BodyPatch::ball).

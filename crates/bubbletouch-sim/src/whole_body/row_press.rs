@@ -8,7 +8,8 @@ use super::lanes::{LANES, largest};
 use super::object_press::Pushed;
 use super::patch_state::PatchState;
 use super::row_patch::{Bundle, RowPatch};
-use crate::contact::{Below, beats, raise};
+use crate::contact::Below;
+use crate::contact::law::{beats, raise, squares_in_front};
 use glam::DVec3;
 
 /// Under so few bundles a sphere is small: to know whether it needs more takes as long as the root.
@@ -161,12 +162,10 @@ impl Share {
     /// What is left of the squares so far away, m², with substrates at the height `behind`: nothing where the sphere does not reach through one.
     #[inline(always)]
     fn through(&self, along2: f64, behind: f64) -> [f64; LANES] {
-        let (heights, mut squares) = (self.heights, self.squares);
-        for k in 0..LANES {
-            let gap = (behind - heights[k]).max(0.0);
-            let square = squares[k] - along2;
-            squares[k] = if square <= gap * gap { -1.0 } else { square };
+        let mut squares = self.squares;
+        for square in &mut squares {
+            *square -= along2;
         }
-        squares
+        squares_in_front(&squares, &self.heights, behind)
     }
 }

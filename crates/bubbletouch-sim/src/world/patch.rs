@@ -28,6 +28,8 @@ pub(crate) struct EvenGrid {
     pub radius: f64,
     /// s of all, metres.
     pub stroke: f64,
+    /// Height of the substrate, metres: [`Taxel::substrate`].
+    pub behind: f64,
 }
 
 /// The taxels of a patch as they travel along a direction.
@@ -144,12 +146,8 @@ impl EvenGrid {
             grid,
             radius: first.radius,
             stroke: first.stroke,
+            behind: first.substrate(),
         })
-    }
-
-    /// −s − ρ, metres: what is lower is behind the substrate.
-    pub fn behind(&self) -> f64 {
-        -self.stroke - self.radius
     }
 }
 

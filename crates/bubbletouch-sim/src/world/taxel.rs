@@ -18,6 +18,11 @@ pub struct Taxel {
 }
 
 impl Taxel {
+    /// Height of the substrate above the rest centre, along the axis, metres: −s − ρ. The contact law (`contact::law`) ignores what is behind.
+    pub fn substrate(&self) -> f64 {
+        -self.stroke - self.radius
+    }
+
     /// Whether it can be.
     ///
     /// # Errors

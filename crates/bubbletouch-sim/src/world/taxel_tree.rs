@@ -38,7 +38,7 @@ pub(crate) struct PlacedTaxel {
     pub axis: DVec3,
     /// ρ, metres.
     pub radius: f64,
-    /// −s − ρ, metres: what is lower along the axis is behind the substrate.
+    /// Height of the substrate along the axis, metres: [`Taxel::substrate`].
     pub behind: f64,
 }
 
@@ -76,8 +76,7 @@ pub(crate) struct Node {
 impl TaxelTree {
     pub fn new(layout: &Layout, taxels: &Taxels) -> Self {
         let n_taxels = layout.n_taxels();
-        let depths =
-            (0..n_taxels).map(|number| taxels.at(number).stroke + taxels.at(number).radius);
+        let depths = (0..n_taxels).map(|number| -taxels.at(number).substrate());
         let mut tree = Self {
             nodes: Vec::new(),
             leaves: Vec::with_capacity(n_taxels.div_ceil(LEAF)),
@@ -296,7 +295,7 @@ impl PlacedTaxel {
             across: [frame.x_axis, frame.y_axis],
             axis: frame.z_axis,
             radius: taxel.radius,
-            behind: -taxel.stroke - taxel.radius,
+            behind: taxel.substrate(),
         }
     }
 

@@ -1,5 +1,6 @@
 //! How far one sphere pushes one taxel, with its derivatives for a motion of the sphere.
 
+use super::super::law;
 use super::super::taxel_contact::GRAZING;
 use crate::world::PlacedTaxel;
 use glam::{DMat3, DVec3};
@@ -62,8 +63,9 @@ impl Reach {
 
     /// Whether the sphere is on the far side of the substrate, which is `taxel.behind` along the axis.
     pub fn is_behind(&self, taxel: &PlacedTaxel, center: DVec3) -> bool {
-        let gap = taxel.behind - (center - taxel.center).dot(self.axis);
-        gap > 0.0 && self.reach * self.reach - self.beside.length_squared() <= gap * gap
+        let height = (center - taxel.center).dot(self.axis);
+        let q = self.reach * self.reach - self.beside.length_squared();
+        height < taxel.behind && !law::is_in_front(q, height, taxel.behind)
     }
 
     pub fn derivatives(&self) -> Derivatives {

@@ -1,0 +1,162 @@
+//! The contact law \[BT\]: how far a sphere deflects a taxel, and which spheres count.
+//!
+//! | symbol | meaning | unit |
+//! |---|---|---|
+//! | S | ρ + R, radii of taxel and sphere | m |
+//! | h | height of the sphere's centre above the taxel's rest centre, along the taxel's axis | m |
+//! | b | distance of the sphere's centre from the taxel's axis | m |
+//! | q | S² − b² | m² |
+//! | B | −s − ρ, height of the substrate ([`Taxel::substrate`](crate::world::Taxel::substrate)) | m |
+//!
+//! A sphere needs the deflection `δ = √q − h` ([`deflection`]) where q > 0, unless the sphere is behind the substrate. A taxel that rests on the far
+//! side of the sphere has its centre at `h + √q`; the sphere counts if that is above B. Without a root this is
+//!
+//! ```text
+//! q > max(B − h, 0)²
+//! ```
+//!
+//! ([`is_in_front`]). A press from the front has B = −∞: all spheres with q > 0 count.
+//!
+//! Every layout has its own evaluator of this law, which finds the pairs of taxels and spheres with q > 0 and shares q and h among taxels:
+//! `placed_sphere` (rows of a flat grid), `near_spheres` (leaves of the taxel tree), `balance::reach` (with derivatives), and in `whole_body`
+//! `row_press` (extrusions), `dome_patch` (rings) and `draped_patch` (tiles). A mesh obeys the same rule with the heights at which it stops a taxel
+//! ([`reaches_front`]).
+
+use super::Below;
+
+/// Factor of squares that are compared before a root is taken: below 1 by more than rounding. Larger: rounding decides; smaller: more roots that
+/// change nothing.
+const ALMOST: f64 = 1.0 - 1e-12;
+
+/// Returns the deflection √q − h, metres, that a sphere needs; q is positive.
+#[inline(always)]
+pub(crate) fn deflection(q: f64, height: f64) -> f64 {
+    q.sqrt() - height
+}
+
+/// Returns whether a sphere counts: it meets the taxel and is not behind the substrate, whose height is `behind`, metres.
+#[inline(always)]
+pub(crate) fn is_in_front(q: f64, height: f64, behind: f64) -> bool {
+    let gap = (behind - height).max(0.0);
+    q > gap * gap
+}
+
+/// Returns whether an obstacle counts on whose far side a taxel would rest at the height `far_side`, metres: [`is_in_front`] with the root taken.
+#[inline(always)]
+pub(super) fn reaches_front(far_side: f64, behind: f64) -> bool {
+    far_side >= behind
+}
+
+/// Returns the deflection that a sphere needs, metres; 0 if the sphere does not count, and at most 0 if it is above the taxel.
+#[inline(always)]
+pub(super) fn needed(q: f64, height: f64, behind: f64) -> f64 {
+    // The root of every value: a choice between two numbers becomes a vector instruction, a branch does not.
+    let depth = deflection(q.max(0.0), height);
+    if is_in_front(q, height, behind) {
+        depth
+    } else {
+        0.0
+    }
+}
+
+/// Returns whether a sphere may need more than a deflection of at least 0, metres, without taking a root. False where it does not.
+#[inline(always)]
+pub(super) fn may_exceed(q: f64, height: f64, deflection: f64) -> bool {
+    shortfall(q, height, deflection) < 0.0
+}
+
+/// Below zero if √q − h may be above the deflection, m².
+#[inline(always)]
+fn shortfall(q: f64, height: f64, deflection: f64) -> f64 {
+    let bar = (height + deflection).max(0.0);
+    bar * bar * ALMOST - q
+}
+
+/// Returns the squares of the spheres that count, and −1 for those that do not; `squares` are q, m², and `heights` h, metres.
+#[inline(always)]
+pub(crate) fn squares_in_front<const N: usize>(
+    squares: &[f64; N],
+    heights: &[f64; N],
+    behind: f64,
+) -> [f64; N] {
+    let (heights, mut squares) = (*heights, *squares);
+    for k in 0..N {
+        let counts = is_in_front(squares[k], heights[k], behind);
+        squares[k] = if counts { squares[k] } else { -1.0 };
+    }
+    squares
+}
+
+/// Returns whether √q − h may be above a deflection in any lane; `squares` are q, m², and `heights` h, metres. False where it is not.
+#[inline(always)]
+pub(crate) fn beats<const N: usize>(
+    squares: &[f64; N],
+    heights: &[f64; N],
+    deflections: &[f64; N],
+) -> bool {
+    let (heights, deflections, mut shortfalls) = (*heights, *deflections, [0.0; N]);
+    for k in 0..N {
+        shortfalls[k] = shortfall(squares[k], heights[k], deflections[k]);
+    }
+    !Below::of(&shortfalls, 0.0).is_empty()
+}
+
+/// Raises deflections to √q − h where q is above zero; `squares` are q, m², and `heights` h, metres.
+///
+/// Written for compilers: by numbers, as the parts of an iterator that are compiled elsewhere would be called; by way of copies, as
+/// numbers in memory that may be the same are not computed together; roots of all, as those of less than nothing cost no more; and a
+/// maximum, as a comparison in its place becomes a masked store, for which some processors take ten times as long.
+#[inline(always)]
+pub(crate) fn raise<const N: usize>(
+    squares: &[f64; N],
+    heights: &[f64; N],
+    deflections: &mut [f64; N],
+) {
+    let (squares, heights, mut raised) = (*squares, *heights, *deflections);
+    for k in 0..N {
+        let needed = deflection(squares[k], heights[k]);
+        let needed = if squares[k] > 0.0 { needed } else { 0.0 };
+        raised[k] = raised[k].max(needed);
+    }
+    *deflections = raised;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Seed;
+    use rand::Rng;
+
+    #[test]
+    fn lanes_and_single_taxels_obey_one_law() {
+        let mut rng = Seed::new(48).rng();
+        let (mut n_counting, mut n_behind) = (0, 0);
+        for _ in 0..2000 {
+            let squares: [f64; 8] = std::array::from_fn(|_| rng.gen_range(-2e-5..9e-5));
+            let heights: [f64; 8] = std::array::from_fn(|_| rng.gen_range(-2e-2..1e-2));
+            let before: [f64; 8] = std::array::from_fn(|_| rng.gen_range(0.0..3e-3));
+            let behind = -6e-3;
+            let counting = squares_in_front(&squares, &heights, behind);
+            let mut raised = before;
+            raise(&counting, &heights, &mut raised);
+            for k in 0..8 {
+                let (q, h) = (squares[k], heights[k]);
+                // The rule with the root taken.
+                let far_side = h + q.max(0.0).sqrt();
+                let counts = q > 0.0 && reaches_front(far_side, behind);
+                n_counting += usize::from(counts);
+                n_behind += usize::from(q > 0.0 && !counts);
+                let expected = if counts { q.sqrt() - h } else { 0.0 };
+                assert_eq!(needed(q, h, behind), expected);
+                assert_eq!(raised[k], before[k].max(expected));
+                if raised[k] > before[k] {
+                    assert!(may_exceed(q, h, before[k]) && beats(&counting, &heights, &before));
+                }
+            }
+        }
+        assert!(
+            n_counting > 1000 && n_behind > 1000,
+            "{n_counting} {n_behind}"
+        );
+    }
+}
