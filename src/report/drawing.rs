@@ -238,9 +238,36 @@ impl Drawing {
         }
     }
 
-    /// The drawing as an SVG file that scales to the width it is given; `title` is read aloud by screen readers.
+    /// Draws a group of elements that carries `data-` attributes; only [`Self::svg_with_data`] contains the group.
+    pub fn group(&mut self, data: &[(&str, &str)], draw: impl FnOnce(&mut Self)) {
+        let attributes = data
+            .iter()
+            .map(|(name, value)| format!("data-{name}=\"{}\"", escape(value)));
+        self.elements.push(Primitive::GroupStart {
+            transform: None,
+            title: None,
+            extra_attrs: Some(attributes.collect::<Vec<_>>().join(" ")),
+        });
+        draw(self);
+        self.elements.push(Primitive::GroupEnd);
+    }
+
+    /// Returns the drawing as an SVG file that scales to the width of its place; screen readers read `title`.
     pub fn svg(&self, title: &str) -> String {
-        let plain = SvgBackend::default().render_scene(&self.scene(self.elements.clone()));
+        let is_drawn = |element: &&Primitive| {
+            !matches!(element, Primitive::GroupStart { .. } | Primitive::GroupEnd)
+        };
+        let elements = self.elements.iter().filter(is_drawn);
+        self.svg_of(elements.cloned().collect(), title)
+    }
+
+    /// Returns the same SVG with the groups and their `data-` attributes, for the script of a page.
+    pub fn svg_with_data(&self, title: &str) -> String {
+        self.svg_of(self.elements.clone(), title)
+    }
+
+    fn svg_of(&self, elements: Vec<Primitive>, title: &str) -> String {
+        let plain = SvgBackend::default().render_scene(&self.scene(elements));
         let opening = r#"<svg xmlns="http://www.w3.org/2000/svg""#;
         let scaled = format!(
             r#"{opening} viewBox="0 0 {} {}" role="img" aria-label="{}""#,

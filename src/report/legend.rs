@@ -36,6 +36,8 @@ pub(super) struct LegendEntry {
     text: String,
     /// None of a text without a mark: the legend's title.
     mark: Option<DrawMark>,
+    /// Whether the text names a series of marks, which a reader of a page can hide.
+    is_series: bool,
 }
 
 impl Heading {
@@ -82,7 +84,11 @@ impl Heading {
 impl LegendEntry {
     /// A text alone.
     pub(super) fn title(text: String) -> Self {
-        Self { text, mark: None }
+        Self {
+            text,
+            mark: None,
+            is_series: false,
+        }
     }
 
     /// A text behind a mark, which is drawn into an area as it is drawn among data.
@@ -91,6 +97,15 @@ impl LegendEntry {
         Self {
             text,
             mark: Some(mark),
+            is_series: false,
+        }
+    }
+
+    /// Creates the entry of a series: a page lets readers hide the groups that have its text as `data-series`.
+    pub(super) fn series(text: String, mark: impl Fn(&mut Drawing, Area) + 'static) -> Self {
+        Self {
+            is_series: true,
+            ..Self::new(text, mark)
         }
     }
 
@@ -104,6 +119,15 @@ impl LegendEntry {
     }
 
     fn draw(&self, drawing: &mut Drawing, x: f64, y: f64) {
+        match self.is_series {
+            true => drawing.group(&[("toggle", &self.text)], |drawing| {
+                self.draw_mark_and_text(drawing, x, y);
+            }),
+            false => self.draw_mark_and_text(drawing, x, y),
+        }
+    }
+
+    fn draw_mark_and_text(&self, drawing: &mut Drawing, x: f64, y: f64) {
         if let Some(mark) = &self.mark {
             mark(drawing, Area::new((x, y - 12.0), SWATCH));
         }

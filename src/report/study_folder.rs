@@ -54,8 +54,8 @@ pub enum ChartFormat {
     Both,
 }
 
-/// Charts that are drawn, unless all are asked for; of all, those in the page (for readers without script). More: a page too heavy for a
-/// phone, and minutes for what the page shows anyway when it is asked.
+/// Charts that are drawn, unless all are asked for, and charts in the page. With more, the page is too large for a phone and drawing takes
+/// minutes.
 pub const MOST_CHARTS: usize = 24;
 
 /// The files of charts, pictures and the page, with what else there is, which is made while charts are drawn. A chart that no row has a
@@ -81,19 +81,19 @@ pub fn files_with(
     let draw = |spec: &ChartSpec| {
         let drawing = chart::draw(spec, found.tables)?;
         let png = (format != ChartFormat::Svg).then(|| drawing.png());
-        Ok((png.transpose()?, drawing.svg(&spec.title)))
+        Ok((png.transpose()?, drawing))
     };
     let draw_all = || charts.par_iter().map(draw).collect();
     let (drawn, beyond): (Result<Vec<_>>, _) = rayon::join(draw_all, beyond);
     let mut files = Vec::new();
-    for (ChartSpec { name, .. }, (png, svg)) in charts.iter().zip(drawn?) {
+    for (ChartSpec { name, title, .. }, (png, drawing)) in charts.iter().zip(drawn?) {
         files.extend(png.map(|png| (format!("{name}.png"), png)));
         if format != ChartFormat::Png {
-            files.push((format!("{name}.svg"), svg.clone().into_bytes()));
+            files.push((format!("{name}.svg"), drawing.svg(title).into_bytes()));
         }
-        beside.charts.push(svg);
+        beside.charts.push(drawing.svg_with_data(title));
     }
-    // More would make the page slow; each can be arranged to show what the others do.
+    // More would make the page slow.
     charts.truncate(MOST_CHARTS);
     let found = Found {
         charts: &charts,
@@ -112,7 +112,10 @@ pub fn files_with(
 /// # Errors
 /// What cannot be drawn.
 pub(super) fn page_of(about: &StudyAbout, found: &Found) -> Result<String> {
-    let draw = |spec: &ChartSpec| Ok(chart::draw(spec, found.tables)?.svg(&spec.title));
+    let draw = |spec: &ChartSpec| {
+        let drawing = chart::draw(spec, found.tables)?;
+        Ok(drawing.svg_with_data(&spec.title))
+    };
     let beside = Beside {
         charts: found.charts.iter().map(draw).collect::<Result<_>>()?,
         ..Beside::default()

@@ -1,10 +1,9 @@
 //! A chart as a value: which columns of which table it shows, and how.
 
 use super::{Column, Table, Value};
-use serde::Serialize;
 
-/// What a chart shows. One renderer draws it as SVG and PNG, and the page's script draws the same.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+/// What a chart shows. One renderer draws it as SVG and PNG, and the page contains the SVG.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ChartSpec {
     /// File name without ending.
     pub name: String,
@@ -19,7 +18,6 @@ pub struct ChartSpec {
     /// The column along x; its scale is the column's.
     pub x: String,
     /// What runs along x where the column holds values of several things: its words, unit and scale in place of the column's.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub x_is: Option<Column>,
     /// The column along y. Its interval, if it has one, is drawn as a band or as whiskers.
     pub y: String,
@@ -67,7 +65,7 @@ impl Rule {
 }
 
 /// Rows of which a column has a value.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Shown {
     /// The column.
     pub column: String,
@@ -76,8 +74,7 @@ pub struct Shown {
 }
 
 /// How rows are drawn.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub enum Mark {
     /// Points joined along x; points alone where x is words.
     #[default]
@@ -94,7 +91,7 @@ pub enum Mark {
 }
 
 /// A line across the chart.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Rule {
     /// The axis on which it stands.
     pub along: Along,
@@ -105,8 +102,7 @@ pub struct Rule {
 }
 
 /// Where a rule stands.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Debug, PartialEq)]
 pub enum At {
     /// At a value of its axis.
     Value(f64),
@@ -116,8 +112,7 @@ pub enum At {
 }
 
 /// An axis of a chart.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Along {
     /// Across.
     X,

@@ -1,15 +1,13 @@
 //! What a column of a table is: its name, words, unit, scale and role.
 
 use super::{Value, short_number, time_words};
-use serde::Serialize;
 use std::borrow::Cow;
 
 /// A text that is mostly written in the program, and made where a study names its own axes.
 pub type Words = Cow<'static, str>;
 
 /// What a column is to whoever reads the table. The role is the only thing that report, page, advice and comparison look at.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// A designer decides it: pitch, ensemble, C. Advice and every "best" choose among these, within a condition.
     Choice,
@@ -28,8 +26,7 @@ pub enum Role {
 }
 
 /// Which of two values is better.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Better {
     /// The larger.
     More,
@@ -40,8 +37,7 @@ pub enum Better {
 }
 
 /// How the values of a column lie along an axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
     /// They are words, in the order of their first rows.
     Words,
@@ -54,7 +50,7 @@ pub enum Scale {
 }
 
 /// A column.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Column {
     /// Its name in the file: `pitch_mm`.
     pub name: Words,
@@ -68,14 +64,11 @@ pub struct Column {
     /// What it is.
     pub role: Role,
     /// The columns that bound it, lower and upper: of a value with an interval.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub interval: Option<[Words; 2]>,
     /// What people call its words, where these are codes: `rbf_svm`, `RBF SVM`. Of others, underscores are spaces. Of numbers, those that
     /// are more than numbers: `0` bits, `none`.
-    #[serde(skip_serializing_if = "<[_]>::is_empty")]
     pub names: &'static [(&'static str, &'static str)],
     /// Whether it may be missing from a file: only some studies have it.
-    #[serde(skip)]
     pub is_optional: bool,
 }
 

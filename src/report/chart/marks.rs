@@ -59,7 +59,7 @@ fn legend(view: &View) -> Vec<LegendEntry> {
         entries.push(LegendEntry::title(format!("{}:", view.lines.heading)));
         let is_joined = view.is_joined;
         entries.extend(view.lines.names.iter().enumerate().map(|(line, name)| {
-            LegendEntry::new(name.clone(), move |drawing, area| {
+            LegendEntry::series(name.clone(), move |drawing, area| {
                 let stroke = line_stroke(line);
                 if is_joined {
                     drawing.line(area.at(0.0, 0.5), area.at(1.0, 0.5), stroke);
@@ -112,15 +112,9 @@ impl Panel<'_> {
             .map(|line| of_line(line).collect())
             .collect();
         for (line, places) in lines.iter().enumerate() {
-            let colour = line_stroke(line).colour;
-            if view.has_bands() && places.len() > 1 {
-                self.draw_band(drawing, places, colour);
-            } else if view.has_interval() {
-                for (x, ends) in places.iter().filter_map(|p| Some((p.x, p.interval?))) {
-                    let [low, high] = ends.map(|end| self.frame.at(x, end));
-                    drawing.line(low, high, Stroke::new(colour, 1.5));
-                }
-            }
+            self.draw_series(drawing, line, |drawing| {
+                self.draw_intervals(drawing, line, places);
+            });
         }
         let fronts = self.front.fronts.iter();
         for (_, front) in fronts.filter(|(panel, _)| *panel == self.panel) {
@@ -133,23 +127,57 @@ impl Panel<'_> {
             drawing.polyline(&steps.collect::<Vec<_>>(), FRONT);
         }
         for (line, places) in lines.iter().enumerate() {
-            if view.is_joined && places.len() > 1 {
-                let path: Vec<Point> = places.iter().map(|place| self.at(place)).collect();
-                drawing.polyline(&path, line_stroke(line));
-            }
-            let is_on_front = |place: &&&Place| self.front.has(place.row);
-            let (ahead, behind): (Vec<_>, Vec<_>) = places.iter().partition(is_on_front);
-            let colour = line_stroke(line).colour;
-            let (radius, pale) = self.behind(colour);
-            for place in behind {
-                drawing.marker(line, self.at(place), radius, pale);
-            }
-            for place in ahead {
-                drawing.marker(line, self.at(place), MARKER_RADIUS + 2.4, INK);
-                drawing.marker(line, self.at(place), MARKER_RADIUS, colour);
-            }
+            self.draw_series(drawing, line, |drawing| {
+                self.draw_points(drawing, line, places);
+            });
         }
         self.draw_numbers(drawing);
+    }
+
+    /// Draws a part of a line in a group with the line's name; without a group if the chart has one line.
+    fn draw_series(&self, drawing: &mut Drawing, line: usize, draw: impl FnOnce(&mut Drawing)) {
+        match &self.view.lines.names[line][..] {
+            "" => draw(drawing),
+            name => drawing.group(&[("series", name)], draw),
+        }
+    }
+
+    /// Draws the intervals of a line as a band or as whiskers.
+    fn draw_intervals(&self, drawing: &mut Drawing, line: usize, places: &[&Place]) {
+        let colour = line_stroke(line).colour;
+        if self.view.has_bands() && places.len() > 1 {
+            self.draw_band(drawing, places, colour);
+        } else if self.view.has_interval() {
+            for (x, ends) in places.iter().filter_map(|p| Some((p.x, p.interval?))) {
+                let [low, high] = ends.map(|end| self.frame.at(x, end));
+                drawing.line(low, high, Stroke::new(colour, 1.5));
+            }
+        }
+    }
+
+    /// Draws a line and its markers, those on the Pareto front last.
+    fn draw_points(&self, drawing: &mut Drawing, line: usize, places: &[&Place]) {
+        let view = self.view;
+        if view.is_joined && places.len() > 1 {
+            let path: Vec<Point> = places.iter().map(|place| self.at(place)).collect();
+            drawing.polyline(&path, line_stroke(line));
+        }
+        let is_on_front = |place: &&Place| self.front.has(place.row);
+        let (ahead, behind): (Vec<&Place>, Vec<&Place>) =
+            places.iter().copied().partition(is_on_front);
+        let colour = line_stroke(line).colour;
+        let (radius, pale) = self.behind(colour);
+        for place in behind {
+            view.draw_mark(drawing, place, |drawing| {
+                drawing.marker(line, self.at(place), radius, pale);
+            });
+        }
+        for place in ahead {
+            view.draw_mark(drawing, place, |drawing| {
+                drawing.marker(line, self.at(place), MARKER_RADIUS + 2.4, INK);
+                drawing.marker(line, self.at(place), MARKER_RADIUS, colour);
+            });
+        }
     }
 
     fn at(&self, place: &Place) -> Point {

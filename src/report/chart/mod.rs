@@ -1,8 +1,8 @@
 //! Charts: what a [`ChartSpec`] says, of a table, as a [`Drawing`].
 //!
 //! One renderer for every chart: `view` finds rows, lines and panels in the table; `scale` says where values stand along an axis, as
-//! parts of its length; `layout` gives panels their pixels; `marks` and `tiles` draw what stands in them. The page's script draws the
-//! same specs by the same rules: [`places`] says where every point stands, and a test holds both against each other.
+//! parts of its length; `layout` gives panels their pixels; `marks` and `tiles` draw what stands in them. The page embeds the drawings:
+//! each mark is a group with the number of its row, so that the script of the page finds the row's values.
 
 mod front;
 mod layout;

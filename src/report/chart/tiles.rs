@@ -2,7 +2,7 @@
 
 use super::layout::{Layout, TICK};
 use super::rules;
-use super::view::View;
+use super::view::{Place, View};
 use crate::error::Result;
 use crate::report::colours::{INK, LINES, PAPER, Rgb, text_on, tint};
 use crate::report::drawing::{Align, Area, Drawing, Stroke, TextStyle};
@@ -56,18 +56,20 @@ pub(super) fn draw(view: &View, fill: &str, sign: Option<&str>) -> Result<Drawin
         let places = view.places.iter();
         let here = places.filter(|place| view.panel_of(place) == panel);
         let here = here.filter(|place| look.fill.data.value(place.row).is_some());
-        let tiles: Vec<(Area, Rgb, String)> = here
+        let tiles: Vec<(&Place, Area, Rgb, String)> = here
             .map(|place| {
                 let area = Area::around(frame.at(place.x, place.y), size);
-                (area, look.colour(place.row), look.sign(place.row))
+                (place, area, look.colour(place.row), look.sign(place.row))
             })
             .collect();
-        for (area, colour, _) in &tiles {
-            drawing.area(*area, *colour);
-            drawing.frame(*area, Stroke::new(PAPER, 1.0));
+        for (place, area, colour, _) in &tiles {
+            view.draw_mark(&mut drawing, place, |drawing| {
+                drawing.area(*area, *colour);
+                drawing.frame(*area, Stroke::new(PAPER, 1.0));
+            });
         }
         rules::draw(&mut drawing, view, panel, frame);
-        for (area, colour, sign) in &tiles {
+        for (_, area, colour, sign) in &tiles {
             draw_sign(&mut drawing, *area, *colour, sign);
         }
         drawing.frame(frame, Stroke::new(INK, 1.0));

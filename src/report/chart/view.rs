@@ -2,6 +2,7 @@
 
 use super::scale::Scale;
 use crate::error::{Error, Result};
+use crate::report::drawing::Drawing;
 use crate::report::swept::Setting;
 use crate::table::{Along, At, ChartSpec, Data, Mark, Role, Scale as Spacing, Table};
 use std::collections::{HashMap, HashSet};
@@ -197,6 +198,40 @@ impl<'a> View<'a> {
     /// A column by its name.
     pub fn column(&self, name: &str) -> Result<Setting<'a>> {
         column_of(self.spec, self.table, name)
+    }
+
+    /// Draws the mark of a row in a group with its data: the row's number in the table, and its values along the axes with their units.
+    pub fn draw_mark(&self, drawing: &mut Drawing, place: &Place, draw: impl FnOnce(&mut Drawing)) {
+        let spec = self.spec;
+        let words = |name: &str| {
+            let column = self.column(name).ok();
+            column.map_or_else(String::new, |one| match &spec.x_is {
+                Some(column) if name == spec.x => Setting { column, ..one }.label(place.row),
+                _ => one.label(place.row),
+            })
+        };
+        let mut data = vec![
+            ("row", place.row.to_string()),
+            ("x", words(&spec.x)),
+            ("y", words(&spec.y)),
+        ];
+        let y = self.table.column(&spec.y).map(|(column, _)| column);
+        let ends = y.and_then(|y| Some((y, self.table.interval(y, place.row)?)));
+        if let Some((y, [low, high])) = ends {
+            data.push(("interval", format!("{} to {}", y.tick(low), y.tick(high))));
+        }
+        if let Mark::Tiles { fill, .. } = &spec.mark {
+            data.push(("fill", words(fill)));
+        }
+        let panel = &self.titles[self.panel_of(place)];
+        if !panel.is_empty() {
+            data.push(("panel", panel.clone()));
+        }
+        let data: Vec<(&str, &str)> = data
+            .iter()
+            .map(|(name, value)| (*name, &value[..]))
+            .collect();
+        drawing.group(&data, draw);
     }
 
     /// What an interval is: what the words of its ends have in common before a comma, else both.

@@ -5,19 +5,11 @@ use crate::report::drawing::escape;
 
 const TEMPLATE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
-/// In the order in which each may use what comes before it.
-const SCRIPT: [&str; 11] = [
+/// `elements.js` comes first: the others use it.
+const SCRIPT: [&str; 3] = [
     include_str!("script/elements.js"),
-    include_str!("script/points.js"),
-    include_str!("script/data.js"),
-    include_str!("script/scale.js"),
-    include_str!("script/view.js"),
-    include_str!("script/chart.js"),
-    include_str!("script/filter.js"),
-    include_str!("script/explorer.js"),
+    include_str!("script/charts.js"),
     include_str!("script/tables.js"),
-    include_str!("script/advice.js"),
-    include_str!("script/main.js"),
 ];
 
 /// A part of a page with a heading.
@@ -49,8 +41,8 @@ impl Section {
     }
 }
 
-/// A page of sections, those without a body left out; the HTML of its foot, and the JSON that the script draws from.
-pub(super) fn html(about: &StudyAbout, sections: &[Section], foot: &str, data: &str) -> String {
+/// Returns a page of sections with the HTML of its foot; sections without a body are left out.
+pub(super) fn html(about: &StudyAbout, sections: &[Section], foot: &str) -> String {
     let sections = sections.iter().filter(|section| !section.body.is_empty());
     let paragraph = |class: &str, before: &str, text: &str| match text {
         "" => String::new(),
@@ -69,8 +61,6 @@ pub(super) fn html(about: &StudyAbout, sections: &[Section], foot: &str, data: &
         ),
         "sections" => sections.clone().map(Section::html).collect(),
         "foot" => foot.to_owned(),
-        // What ends an element of HTML has no place in JSON but within its strings.
-        "data" => data.replace('<', "\\u003c"),
         "script" => SCRIPT.join("\n"),
         other => format!("(no value for {other})"),
     })
@@ -135,12 +125,5 @@ mod tests {
             fill("x {{a}} y {{b}} z", value),
             "x <a {{b}}> y <b {{b}}> z"
         );
-    }
-
-    #[test]
-    fn no_text_in_the_data_ends_the_script() {
-        let html = html(&StudyAbout::default(), &[], "", "[\"</script><b>\"]");
-        assert!(html.contains("[\"\\u003c/script>\\u003cb>\"]"));
-        assert_eq!(html.matches("</script>").count(), 2);
     }
 }

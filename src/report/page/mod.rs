@@ -1,15 +1,15 @@
 //! `report.html`: one page with everything in it, that needs no network.
 //!
-//! In: tables, pictures, and what a study says of itself. Out: HTML. The numbers of a study of recognition are in the page once, as
-//! JSON; a script draws from it charts that can be asked, filtered and arranged. Without script, pictures and tables that do not
-//! move stand in their places.
+//! In: tables, charts as SVG, pictures, and the name and question of the study. Out: HTML. All charts and tables are in the HTML; the
+//! script adds tooltips, hides series, and sorts, searches and saves tables.
 
 mod about;
-mod data;
+mod choices;
 mod frame;
 mod picture;
 mod provenance;
 mod study;
+mod table;
 mod touches;
 
 pub use about::StudyAbout;

@@ -10,10 +10,10 @@ pub(super) fn png_element(png: &[u8], (width, height): (usize, usize), title: &s
     )
 }
 
-/// An `<svg>` or `<img>` element in its frame.
-pub(super) fn figure(element: &str, title: &str) -> String {
+/// Returns an `<svg>` or `<img>` element in its frame, which has the given attributes.
+pub(super) fn figure(attributes: &str, element: &str, title: &str) -> String {
     let title = escape(title);
-    format!("<figure class=\"card\" tabindex=\"0\" aria-label=\"{title}\">{element}</figure>")
+    format!("<figure {attributes} tabindex=\"0\" aria-label=\"{title}\">{element}</figure>")
 }
 
 /// RFC 4648 with padding.

@@ -1,25 +1,25 @@
 //! The page of a study of any kind.
 
 use super::about::StudyAbout;
-use super::data::PageData;
+use super::choices::choices_html;
 use super::frame::{Section, html, sentences_html};
 use super::picture::{figure, png_element};
 use super::provenance::provenance_html;
+use super::table::table_html;
 use crate::report::drawing::escape;
 use crate::report::study_folder::{Beyond, ChartFormat, Found, NamedPicture};
-use crate::table::{ChartSpec, Column, Scale, Table, short_number};
+use crate::table::{ChartSpec, Mark, Table, short_number};
+use std::collections::HashMap;
 
-/// Letters of pictures for readers without script, at most: a study of thousands of rows has megabytes of them.
-const MOST_PICTURES: usize = 600_000;
-/// Rows of a table for readers without script, at most.
-const MOST_ROWS: usize = 100;
-/// Letters of tables for readers without script, at most.
-const MOST_TABLES: usize = 150_000;
+/// Bytes of all charts in a page. With more, the page opens slowly; with less, charts of some hundred points become links.
+const MAX_CHART_BYTES: usize = 1_200_000;
+/// Bytes of all tables in a page. With more, the page opens slowly; with less, tables of some hundred rows lose their last rows.
+const MAX_TABLE_BYTES: usize = 1_200_000;
 
-/// What stands on a page beside tables and charts.
+/// Parts of a page beside tables and answers.
 #[derive(Default)]
 pub(crate) struct Beside {
-    /// The charts as SVG, in their order, for readers without script.
+    /// The charts as SVG with the data of their marks, in the order of the specs.
     pub charts: Vec<String>,
     /// Names of charts that were not drawn.
     pub left_out: Vec<String>,
@@ -29,66 +29,70 @@ pub(crate) struct Beside {
 
 /// The page.
 pub(crate) fn page(about: &StudyAbout, found: &Found, beside: &Beside) -> String {
-    let data = PageData::of(found.tables, found.charts);
-    let charts = charts_html(about, found.charts, &data, beside);
     let pictures = beside.beyond.pictures.iter().map(picture_html).collect();
     let mut sections = vec![
         Section::new("answer", "Answer", sentences_html(found.answers)),
-        Section::new("charts", "Charts", charts),
-        Section::new("choices", "What to choose", advice_html(found, &data)),
+        Section::new("charts", "Charts", charts_html(about, found, beside)),
+        Section::new("choices", "What to choose", choices_html(found)),
         Section::new("pictures", "Pictures", pictures),
     ];
     sections.extend_from_slice(&beside.beyond.sections);
     let provenance = about.manifest.as_ref().map(provenance_html);
     sections.extend([
-        Section::new("tables", "Tables", tables_html(found.tables, &data)),
+        Section::new("tables", "Tables", tables_html(found)),
         Section::new("provenance", "Provenance", provenance.unwrap_or_default()),
         Section::new("again", "Make it again", again(about)),
     ]);
-    html(about, &sections, &foot(about, found.tables), &data.json)
+    html(about, &sections, &foot(about, found.tables))
 }
 
 fn picture_html(picture: &NamedPicture) -> String {
     let title = &picture.title;
-    figure(&png_element(&picture.png, picture.size, title), title)
+    figure(
+        "card",
+        &png_element(&picture.png, picture.size, title),
+        title,
+    )
 }
 
-/// A chart that the script draws, and its picture for readers without.
-fn charts_html(
-    about: &StudyAbout,
-    charts: &[ChartSpec],
-    data: &PageData,
-    beside: &Beside,
-) -> String {
-    let mut letters = 0;
-    let drawn = charts.iter().zip(&beside.charts);
-    let held = drawn.filter(|(chart, _)| data.holds(chart.table));
-    let place = |(number, (chart, svg)): (usize, (&ChartSpec, &String))| {
-        let name = escape(&chart.name);
-        let without = match letters + svg.len() <= MOST_PICTURES {
-            true => {
-                letters += svg.len();
-                figure(svg, &chart.title)
-            }
-            false => {
-                let ending = match about.chart_format {
-                    ChartFormat::Png => "png",
-                    ChartFormat::Svg | ChartFormat::Both => "svg",
-                };
-                format!("<p>This chart lies beside the page: {name}.{ending}.</p>")
-            }
-        };
-        let title = escape(&chart.title);
-        let note = match chart.note.is_empty() {
-            true => String::new(),
-            false => format!("<p class=\"quiet\">{}</p>", escape(&chart.note)),
-        };
-        format!(
-            "<h3 id=\"chart-{name}\">{title}</h3>{note}<div class=\"chart\" data-chart=\"{number}\"></div><noscript>{without}</noscript>"
-        )
+/// Returns the charts; those that are too large for the page as links to their files.
+fn charts_html(about: &StudyAbout, found: &Found, beside: &Beside) -> String {
+    let mut bytes = 0;
+    let ending = match about.chart_format {
+        ChartFormat::Png => "png",
+        ChartFormat::Svg | ChartFormat::Both => "svg",
     };
-    let charts: String = held.enumerate().map(place).collect();
-    charts + &not_drawn(&beside.left_out)
+    let place = |(chart, svg): (&ChartSpec, &String)| {
+        let (name, title) = (escape(&chart.name), escape(&chart.title));
+        let heading = format!("<h3 class=\"unseen\" id=\"chart-{name}\">{title}</h3>");
+        if bytes + svg.len() > MAX_CHART_BYTES {
+            return format!(
+                "{heading}<p>The chart “{title}” has too many points for a page: <a href=\"{name}.{ending}\">{name}.{ending}</a>.</p>"
+            );
+        }
+        bytes += svg.len();
+        let table = found.tables.iter().find(|table| table.file == chart.table);
+        let words = |name: &str| {
+            let column = table.and_then(|table| table.column(name));
+            column.map_or_else(String::new, |(column, _)| escape(&column.words))
+        };
+        let x = match &chart.x_is {
+            Some(column) => escape(&column.words),
+            None => words(&chart.x),
+        };
+        let kind = match &chart.mark {
+            Mark::Tiles { .. } => "card chart tiles",
+            Mark::Line | Mark::Points => "card chart",
+        };
+        let attributes = format!(
+            "class=\"{kind}\" data-table=\"{}\" data-x=\"{x}\" data-y=\"{}\"",
+            escape(chart.table),
+            words(&chart.y)
+        );
+        heading + &figure(&attributes, svg, &chart.title)
+    };
+    let charts = found.charts.iter().zip(&beside.charts).map(place);
+    charts.collect::<String>() + &not_drawn(&beside.left_out)
 }
 
 /// Which charts have no file, and how they get one.
@@ -97,99 +101,55 @@ fn not_drawn(left_out: &[String]) -> String {
         return String::new();
     };
     format!(
-        "<p class=\"quiet\">Of the files of charts only the first are drawn. {} more, from {} to {}, are left out; with script this page shows \
-         every row, and <code>bubbletouch report FOLDER --all-charts</code> draws all files.</p>",
+        "<p class=\"quiet\">Only the first charts are drawn. {} more, from {} to {}, are left out; <code>bubbletouch report FOLDER --all-charts</code> \
+         draws their files, and the tables below hold their rows.</p>",
         left_out.len(),
         escape(first),
         escape(last)
     )
 }
 
-/// A place for advice on the first charted table that has choices with a value and a cost.
-fn advice_html(found: &Found, data: &PageData) -> String {
-    let charted = found.charts.iter().map(|chart| chart.table);
-    let files = charted.chain(found.tables.iter().map(|table| table.file));
-    let mut tables = files.filter_map(|file| found.tables.iter().find(|table| table.file == file));
-    let Some(table) =
-        tables.find(|table| data.holds(table.file) && table.n_rows > 1 && table.offers_choices())
-    else {
-        return String::new();
-    };
-    format!(
-        "<p class=\"quiet\">Conditions of the world are given, not chosen: each has its own advice. From the table “{title}”.</p><div data-advice=\"{file}\"></div>\
-         <noscript><p>Advice needs script; <code>bubbletouch advise</code> gives the same.</p></noscript>",
-        title = escape(table.title),
-        file = escape(table.file)
-    )
-}
-
-fn tables_html(tables: &[Table], data: &PageData) -> String {
-    let mut letters = 0;
+/// Returns all tables. Charted tables, then small ones, get their place in the page first; of the others the first rows remain.
+fn tables_html(found: &Found) -> String {
+    let is_charted = |table: &Table| found.charts.iter().any(|chart| chart.table == table.file);
+    let mut order: Vec<&Table> = found.tables.iter().filter(|t| t.n_rows > 0).collect();
+    order.sort_by_key(|table| (!is_charted(table), table.csv.len()));
+    let mut room = MAX_TABLE_BYTES;
+    let mut made = HashMap::new();
+    for table in order {
+        let table_html = table_html(table, room);
+        room = room.saturating_sub(table_html.html.len());
+        made.insert(table.file, table_html);
+    }
     let place = |table: &Table| {
         let (file, title, n) = (escape(table.file), escape(table.title), table.n_rows);
-        let times = match table.repeats {
-            true => "",
-            false => " Times differ from run to run.",
-        };
-        let body = if n == 0 {
-            "<p>No rows.</p>".to_owned()
-        } else if data.holds(table.file) {
-            let whole = without_script(table);
-            letters += whole.len();
-            let without = match letters <= MOST_TABLES {
-                true => whole,
-                false if table.csv.is_empty() => {
-                    "<p>It needs script: it has no file of its own.</p>".to_owned()
-                }
-                false => format!("<p>It lies beside this page: {file}.</p>"),
-            };
-            format!("<div data-table=\"{file}\"></div><noscript>{without}</noscript>")
-        } else {
-            match table.csv.is_empty() {
-                true => format!("<p>Its {n} rows are too many for a page.</p>"),
-                false => format!(
-                    "<p>Its {n} rows are too many for a page and lie beside it: {file}.</p>"
-                ),
+        let body = match made.get(table.file) {
+            None => "<p>No rows.</p>".to_owned(),
+            Some(made) if made.n_rows == n => made.html.clone(),
+            Some(made) => {
+                let whole = match table.csv.is_empty() {
+                    true => "the tables of which it is made, beside this page, have all".to_owned(),
+                    false => format!("<a href=\"{file}\">{file}</a> beside this page has all"),
+                };
+                format!(
+                    "<p>The first {} of {n} rows; {whole}.</p>{}",
+                    made.n_rows, made.html
+                )
             }
         };
-        let note = escape(&table.note);
         // A table that is made of others has no file.
         let name = match table.csv.is_empty() {
             true => String::new(),
             false => format!("{file}. "),
         };
+        let times = match table.repeats {
+            true => "",
+            false => " Times differ from run to run.",
+        };
+        let note = escape(&table.note);
         format!("<h3>{title}</h3><p class=\"quiet\">{name}{note}{times}</p>{body}")
     };
-    tables.iter().map(place).collect()
-}
-
-fn without_script(table: &Table) -> String {
-    let heads = table.columns.iter();
-    let heads = heads.map(|column| format!("<th scope=\"col\">{}</th>", escape(&column.title())));
-    let cell = |column: &Column, row: usize| {
-        let class = match column.scale {
-            Scale::Words => " class=\"word\"",
-            _ => "",
-        };
-        let said = table.words(&column.name, row);
-        format!("<td{class}>{}</td>", escape(&said))
-    };
-    let row = |row: usize| {
-        let cells = table.columns.iter().map(|column| cell(column, row));
-        format!("<tr>{}</tr>", cells.collect::<String>())
-    };
-    let more = match table.n_rows > MOST_ROWS {
-        true => format!("<p>The first {MOST_ROWS} of {} rows.</p>", table.n_rows),
-        false => String::new(),
-    };
-    format!(
-        "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"{}\"><table><thead><tr>{}</tr></thead><tbody>{}</tbody></table></div>{more}",
-        escape(table.title),
-        heads.collect::<String>(),
-        (0..table.n_rows.min(MOST_ROWS))
-            .map(row)
-            .collect::<String>()
-    )
+    found.tables.iter().map(place).collect()
 }
 
 fn again(about: &StudyAbout) -> String {

@@ -1,8 +1,8 @@
-//! The page of a study of any kind in a browser: its script draws what the renderer draws, and its tables are those of the files.
+//! The page of a study of any kind: its charts are the renderer's, its marks and tables are the rows of the files.
 
-use crate::browser::{ARROW_RIGHT, Browser};
+use crate::browser::{ARROW_DOWN, ARROW_RIGHT, Browser, ENTER};
 use crate::chart_tables::{charts, tables};
-use bubbletouch::report::chart::places;
+use bubbletouch::report::chart::{draw, places};
 use bubbletouch::report::folder::write_files;
 use bubbletouch::report::page::StudyAbout;
 use bubbletouch::report::study_folder::{Beyond, Found, files_with};
@@ -47,11 +47,6 @@ fn opened(tables: &[Table], charts: &[ChartSpec]) -> Option<(TempDir, Browser)> 
     Some((folder, browser))
 }
 
-/// Draws every chart, also those that are far below.
-fn draw_all(browser: &Browser) {
-    browser.run("dispatchEvent(new Event('beforeprint')); dispatchEvent(new Event('afterprint'))");
-}
-
 fn scores(tables: &[Table]) -> &Table {
     tables
         .iter()
@@ -59,181 +54,151 @@ fn scores(tables: &[Table]) -> &Table {
         .unwrap()
 }
 
-#[test]
-fn the_script_puts_every_point_where_the_renderer_puts_it() {
-    let tables = tables();
-    let charts = charts();
-    let Some((_folder, browser)) = opened(&tables, &charts) else {
-        return;
-    };
-    draw_all(&browser);
-    for (number, spec) in charts.iter().enumerate() {
-        let drawn = browser.run(&format!(
-            "return [...document.querySelectorAll('[data-chart=\"{number}\"] [data-x]')].map((p) => ['row', 'panel', 'line', 'x', 'y'].map((n) => Number(p.dataset[n])))"
-        ));
-        let mut drawn: Vec<Vec<f64>> = serde_json::from_value(drawn).unwrap();
-        drawn.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        let mut places = places(spec, &tables).unwrap();
-        places.sort_by_key(|place| place.row);
-        // A tile without a value is not drawn.
-        if spec.name != "heat" {
-            assert_eq!(drawn.len(), places.len(), "{}", spec.name);
-        }
-        for drawn in drawn {
-            let place = places
-                .iter()
-                .find(|place| place.row as f64 == drawn[0])
-                .unwrap();
-            assert_eq!(
-                [place.panel as f64, place.line as f64],
-                [drawn[1], drawn[2]],
-                "{}",
-                spec.name
-            );
-            let apart = (place.x - drawn[3]).abs().max((place.y - drawn[4]).abs());
-            assert!(apart < 2e-5, "{}: {place:?} and {drawn:?}", spec.name);
-        }
-    }
-    browser.check_quiet();
+/// Returns the values of an attribute in the order in which the text has them.
+fn attributes<'t>(text: &'t str, name: &str) -> Vec<&'t str> {
+    let start = format!(" {name}=\"");
+    let parts = text.split(&start[..]).skip(1);
+    parts.filter_map(|part| part.split('"').next()).collect()
 }
 
 #[test]
-fn every_chart_can_be_arranged_and_filtered() {
+fn every_mark_of_a_chart_in_the_page_holds_its_row_and_values() {
+    let tables = tables();
+    let (folder, page) = written(&tables, &charts());
+    let page = std::fs::read_to_string(page).unwrap();
+    for spec in charts() {
+        let drawing = draw(&spec, &tables).unwrap();
+        let svg = drawing.svg_with_data(&spec.title);
+        assert!(page.contains(svg.trim()), "{} is in the page", spec.name);
+        // The file has the same elements without groups.
+        let file = std::fs::read_to_string(folder.path().join(format!("{}.svg", spec.name)));
+        let plain = without_groups(&svg);
+        assert_eq!(file.unwrap(), plain, "{}", spec.name);
+        let table = tables.iter().find(|table| table.file == spec.table);
+        let table = table.unwrap();
+        let places = places(&spec, &tables).unwrap();
+        let mut rows: Vec<usize> = places.iter().map(|place| place.row).collect();
+        if spec.name == "heat" {
+            // A tile without a value is not drawn.
+            let accuracy = table.numbers("accuracy").unwrap();
+            rows.retain(|&row| !accuracy[row].is_nan());
+        }
+        rows.sort_unstable();
+        let marks: Vec<&str> = svg.split("<g data-row").skip(1).collect();
+        let mut marked: Vec<usize> = Vec::new();
+        for mark in marks {
+            let mark = format!("<g data-row{}", mark.split('>').next().unwrap());
+            let of = |name: &str| attributes(&mark, name).first().map(|v| (*v).to_owned());
+            let row: usize = of("data-row").unwrap().parse().unwrap();
+            assert_eq!(of("data-y"), Some(table.words(&spec.y, row)), "{mark}");
+            let (column, _) = table.column(&spec.y).unwrap();
+            let interval = table.interval(column, row);
+            let interval = interval.map(|ends| ends.map(|end| column.tick(end)).join(" to "));
+            assert_eq!(of("data-interval"), interval, "{mark}");
+            if spec.name != "words" {
+                assert_eq!(of("data-x"), Some(table.words(&spec.x, row)), "{mark}");
+            }
+            marked.push(row);
+        }
+        marked.sort_unstable();
+        assert_eq!(marked, rows, "{}", spec.name);
+    }
+}
+
+/// Returns an SVG without the tags of its groups.
+fn without_groups(svg: &str) -> String {
+    let mut parts = svg.split("<g ");
+    let first = parts.next().unwrap().to_owned();
+    let inner = parts.map(|part| part.split_once('>').unwrap().1);
+    inner
+        .fold(first, |all, part| all + part)
+        .replace("</g>", "")
+}
+
+#[test]
+fn series_are_hidden_by_mouse_and_keyboard_and_marks_are_read_by_arrow_keys() {
     let Some((_folder, browser)) = opened(&tables(), &charts()) else {
         return;
     };
-    draw_all(&browser);
-    let markers = "return document.querySelectorAll('[data-chart=\"0\"] [data-x]').length";
+    let chart = "document.querySelector('.chart')";
+    let n_shown = || {
+        browser.count(&format!(
+            "return [...{chart}.querySelectorAll('[data-row]')].filter((mark) => !mark.closest('[display=none]')).length"
+        ))
+    };
     // Three noises, three classifiers, four ratios but for one that has no value.
-    assert_eq!(browser.count(markers), 33);
-    browser.click("[data-chart='0'] summary");
-    browser.click("[data-chart='0'] [aria-label='classifier'] .chip:nth-of-type(2)");
-    assert_eq!(browser.count(markers), 24);
-    let state = "return document.querySelector('[data-chart=\"0\"] .state').textContent";
-    assert!(
-        browser
-            .text(state)
-            .contains("classifier linear SVM, k nearest"),
-        "{}",
-        browser.text(state)
+    assert_eq!(n_shown(), 33);
+    browser.click(".chart [data-toggle='RBF SVM']");
+    assert_eq!(n_shown(), 24);
+    let pressed = format!(
+        "return {chart}.querySelector('[data-toggle=\"RBF SVM\"]').getAttribute('aria-pressed')"
     );
-    browser.click("[data-chart='0'] .filter > .plain");
-    // Along crosstalk, and no panels: noise and ensemble keep one value, since several rows would stand at one point.
-    browser.choose("[data-chart='0'] label:nth-of-type(1) select", "crosstalk");
-    browser.choose("[data-chart='0'] label:nth-of-type(4) select", "none");
-    assert_eq!(browser.count(markers), 12, "{}", browser.text(state));
-    assert!(
-        browser.text(state).contains("noise 0 %"),
-        "{}",
-        browser.text(state)
-    );
-    // By keyboard.
-    browser.run("document.querySelector('[data-chart=\"0\"] .panels svg').focus()");
+    assert_eq!(browser.text(&pressed), "false");
+    browser.run(&format!("{chart}.querySelector('svg').focus()"));
+    let spoken = "return document.querySelector('[aria-live]').textContent";
     browser.press(ARROW_RIGHT);
-    browser.press(ARROW_RIGHT);
-    let said = browser.text("return document.querySelector('[aria-live]').textContent");
+    assert!(browser.text(spoken).contains("linear SVM"));
+    browser.press(ARROW_DOWN);
+    let said = browser.text(spoken);
     assert!(
-        said.contains("crosstalk 0.1 %") && said.contains("accuracy (share recognised) 0."),
-        "{said}"
+        said.contains("k nearest") && said.contains("accuracy (share recognised) 0."),
+        "the hidden series is passed over: {said}"
     );
+    browser.run(&format!(
+        "{chart}.querySelector('[data-toggle=\"RBF SVM\"]').focus()"
+    ));
+    browser.press(ENTER);
+    assert_eq!((n_shown(), &browser.text(&pressed)[..]), (33, "true"));
     browser.check_quiet();
 }
 
 #[test]
-fn every_table_sorts_filters_and_is_saved_whole() {
+fn every_table_sorts_is_searched_and_is_saved_with_the_bytes_of_its_file() {
     let tables = tables();
     let Some((_folder, browser)) = opened(&tables, &charts()) else {
         return;
     };
-    for table in &tables {
-        let host = format!("[data-table=\"{}\"]", table.file);
-        let count = browser.text(&format!(
-            "return document.querySelector('{host} [role=status]').textContent"
+    // Takes what is saved; a click on a link would start a download.
+    browser.run("URL.createObjectURL = (blob) => { blob.text().then((text) => { window.saved = text }); return 'blob:x' }; HTMLAnchorElement.prototype.click = () => {}");
+    let saved = |host: &str| {
+        browser.run("window.saved = null");
+        browser.run(&format!(
+            "document.querySelector('{host}').parentNode.nextElementSibling.querySelector('button').click()"
         ));
-        assert!(count.contains(&table.n_rows.to_string()), "{count}");
+        loop {
+            let saved = browser.run("return window.saved");
+            if let Some(text) = saved.as_str() {
+                break text.to_owned();
+            }
+        }
+    };
+    for table in &tables {
+        let host = format!("table[data-table=\"{}\"]", table.file);
+        assert_eq!(saved(&host).into_bytes(), table.csv, "{}", table.file);
     }
-    let host = "[data-table=\"scores.csv\"]";
+    let host = "table[data-table=\"scores.csv\"]";
     let first = format!("return document.querySelector('{host} tbody tr').dataset.row");
     let accuracies = scores(&tables).numbers("accuracy").unwrap();
     let best =
         (0..accuracies.len()).reduce(|a, b| if accuracies[b] > accuracies[a] { b } else { a });
-    browser.click(&format!("{host} th:nth-of-type(6) button"));
+    let accuracy = format!("{host} th[title=accuracy]");
+    browser.click(&format!("{accuracy} button"));
     assert_eq!(
         browser.text(&first),
         best.unwrap().to_string(),
         "the most accurate first"
     );
-    let order = format!(
-        "return document.querySelector('{host} th:nth-of-type(6)').getAttribute('aria-sort')"
-    );
+    let order = format!("return document.querySelector('{accuracy}').getAttribute('aria-sort')");
     assert_eq!(browser.text(&order), "descending");
-    browser.click(&format!("{host} summary"));
-    browser.click(&format!("{host} [aria-label='noise'] .chip:nth-of-type(1)"));
-    browser.click(&format!("{host} [aria-label='noise'] .chip:nth-of-type(2)"));
-    assert_eq!(
-        browser.text(&format!(
-            "return document.querySelector('{host} .state').textContent"
-        )),
-        "noise 20 %"
-    );
-    // What is saved is what is shown, with the columns of the file.
-    browser.run("URL.createObjectURL = (blob) => { blob.text().then((text) => { window.saved = text }); return 'blob:x' }; HTMLAnchorElement.prototype.click = () => {}");
-    browser.click(&format!("{host} .below button:last-of-type"));
-    let saved = loop {
-        let saved = browser.run("return window.saved ?? null");
-        if !saved.is_null() {
-            break saved.as_str().unwrap().to_owned();
-        }
-    };
-    let mut lines = saved.lines();
-    let header = String::from_utf8(scores(&tables).csv.clone()).unwrap();
-    assert_eq!(lines.next(), header.lines().next());
-    assert_eq!(lines.clone().count(), scores(&tables).n_rows / 3);
-    assert!(lines.all(|line| line.starts_with("0.2,")));
-    browser.check_quiet();
-}
-
-#[test]
-fn advice_is_given_for_each_condition_at_the_least_cost() {
-    let tables = tables();
-    let Some((_folder, browser)) = opened(&tables, &charts()) else {
-        return;
-    };
-    let wish = 0.8;
-    browser.run(&format!("const wish = document.querySelector('.advice input'); wish.value = {wish}; wish.dispatchEvent(new Event('input'))"));
-    let advised = browser.text("return document.querySelector('.advice').dataset.rows");
-    let column = |name: &str| scores(&tables).numbers(name).unwrap();
-    let (noise, crosstalk) = (column("noise"), column("crosstalk"));
-    let (accuracy, cost) = (column("accuracy"), column("decide_us"));
-    let mut wanted = Vec::new();
-    for n in [0.0, 0.05, 0.2] {
-        for c in [0.0, 0.001, 0.01, 0.1] {
-            let of_it = (0..noise.len())
-                .filter(|&row| noise[row] == n && crosstalk[row] == c && accuracy[row] >= wish);
-            let cheapest = of_it.min_by(|&a, &b| {
-                cost[a]
-                    .total_cmp(&cost[b])
-                    .then(accuracy[b].total_cmp(&accuracy[a]))
-            });
-            wanted.push(cheapest.map_or(String::new(), |row| row.to_string()));
-        }
-    }
-    assert_eq!(advised, wanted.join(","));
-    assert!(wanted.iter().any(|row| !row.is_empty()));
-    let words = browser.text("return document.querySelector('.advice').innerText");
-    assert!(
-        words.contains("With noise 20 %, crosstalk 10 %:"),
-        "{words}"
-    );
-    browser.choose(".advice select", "the best value within a budget");
-    browser.run("const wish = document.querySelector('.advice input'); wish.value = 15; wish.dispatchEvent(new Event('input'))");
-    let budget = browser.text("return document.querySelector('.advice').dataset.rows");
-    let first: usize = budget.split(',').next().unwrap().parse().unwrap();
-    let within = (0..noise.len()).filter(|&row| {
-        noise[row] == 0.0 && crosstalk[row] == 0.0 && cost[row] <= 15.0 && !accuracy[row].is_nan()
-    });
-    let best = within.map(|row| accuracy[row]).fold(0.0, f64::max);
-    assert_eq!(accuracy[first], best);
+    browser.run(&format!(
+        "const search = document.querySelector('{host}').parentNode.nextElementSibling.querySelector('input'); search.value = 'rbf 64:1'; search.dispatchEvent(new Event('input'))"
+    ));
+    let found = saved(host);
+    let mut lines = found.lines();
+    let file = String::from_utf8(scores(&tables).csv.clone()).unwrap();
+    assert_eq!(lines.next(), file.lines().next());
+    assert_eq!(lines.clone().count(), scores(&tables).n_rows / 12);
+    assert!(lines.all(|line| line.contains(",rbf_svm,") && file.lines().any(|row| row == line)));
     browser.check_quiet();
 }
 
@@ -256,9 +221,13 @@ fn the_page_is_one_file_that_stands_without_script() {
         browser.count("return document.querySelectorAll('#charts figure svg').length"),
         charts().len() as u64
     );
-    assert!(browser.count("return document.querySelectorAll('#tables tbody tr').length") > 100);
+    let n_rows: usize = tables().iter().map(|table| table.n_rows).sum();
     assert_eq!(
-        browser.count("return document.querySelectorAll('select').length"),
+        browser.count("return document.querySelectorAll('#tables tbody tr').length"),
+        n_rows as u64
+    );
+    assert_eq!(
+        browser.count("return document.querySelectorAll('button').length"),
         0
     );
 }

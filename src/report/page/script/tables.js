@@ -1,83 +1,64 @@
-// Tables that can be sorted, filtered and taken away as CSV.
+// Tables: rows can be sorted, searched, and saved as CSV with the digits of the files.
 
-const PAGE = 50;
+function sortable(table) {
+  const body = table.tBodies[0];
+  const rows = [...body.rows];
+  const heads = [...table.tHead.rows[0].cells];
+  const [count, search] = [make("p", { class: "quiet", role: "status" }), make("input", { type: "search", input: show })];
 
-class TableView {
-  constructor(host, table) {
-    Object.assign(this, { table, sorted: null, n: PAGE });
-    this.columns = table.columns.filter((column) => !this.bounds().has(column.name));
-    this.filter = new Filter(table, () => {
-      this.n = PAGE;
-      this.show();
-    });
-    this.heads = this.columns.map((column) => this.head(column));
-    this.body = make("tbody");
-    const caption = make("caption", { class: "unseen" }, table.title);
-    const grid = make("table", {}, caption, make("thead", {}, make("tr", {}, ...this.heads)), this.body);
-    this.count = make("p", { class: "quiet", role: "status" });
-    this.more = make("button", { type: "button", click: () => this.showMore() }, "");
-    const csv = make("button", { type: "button", click: () => this.save() }, "Save as CSV");
-    const frame = make("div", { class: "wide", tabindex: 0, role: "region", "aria-label": table.title }, grid);
-    host.append(this.filter.element, frame, make("div", { class: "below" }, this.count, this.more, csv));
-    this.show();
+  /** The fields of the file that a cell holds. */
+  function field(row, place) {
+    const cell = row.cells[place];
+    return cell.dataset.v ?? heads[place].dataset.v ?? cell.textContent;
   }
 
-  /** Ends of intervals stand beside their values. */
-  bounds() {
-    return new Set(this.table.columns.flatMap((column) => column.interval ?? []));
+  function show() {
+    const words = search.value.toLowerCase().split(/\s+/).filter(Boolean);
+    const isFound = (row) => words.every((word) => row.textContent.toLowerCase().includes(word));
+    rows.forEach((row) => { row.hidden = !isFound(row); });
+    count.textContent = `${rows.filter((row) => !row.hidden).length} of ${rows.length} rows`;
   }
 
-  head(column) {
-    const arrow = make("span", { "aria-hidden": "true", class: "arrow" });
-    const button = make("button", { type: "button", title: column.name, click: () => this.sortBy(column) }, column.title, arrow);
-    return make("th", { scope: "col", class: column.isNumber ? null : "word" }, button);
+  /** Numbers by their digits, words by the alphabet, better ones first; rows without a value come last. */
+  function sortBy(head, place) {
+    const isDown = head.hasAttribute("aria-sort") ? head.getAttribute("aria-sort") === "ascending" : "down" in head.dataset;
+    heads.forEach((other) => other.removeAttribute("aria-sort"));
+    head.setAttribute("aria-sort", isDown ? "descending" : "ascending");
+    const isWord = head.classList.contains("word");
+    const keys = new Map(rows.map((row) => [row, isWord ? field(row, place) : parseFloat(field(row, place))]));
+    const isAbsent = (key) => key === "" || Number.isNaN(key);
+    const order = (a, b) => (isWord ? a.localeCompare(b, "en", { numeric: true }) : a - b) * (isDown ? -1 : 1);
+    const compare = (a, b) => isAbsent(a) - isAbsent(b) || (isAbsent(a) ? 0 : order(a, b));
+    rows.sort((a, b) => compare(keys.get(a), keys.get(b)) || a.dataset.row - b.dataset.row);
+    body.append(...rows);
   }
 
-  /** What is better comes first. */
-  sortBy(column) {
-    const down = this.sorted?.column === column ? !this.sorted.down : column.better === "more";
-    this.sorted = { column, down };
-    this.show();
+  /** The rows that are shown, in their order, with the columns and the fields of the file. */
+  function csv() {
+    const quoted = (value) => (/[",\n\r]/.test(value) ? `"${value.replaceAll('"', '""')}"` : value);
+    const line = (row) => {
+      const fields = [];
+      heads.forEach((head, place) => {
+        const held = head.dataset.held.split(" ");
+        const value = field(row, place);
+        const values = held.length > 1 ? value.split(" ") : [value];
+        held.forEach((column, number) => { fields[column] = quoted(values[number] ?? ""); });
+      });
+      return fields.join();
+    };
+    return [table.dataset.columns, ...rows.filter((row) => !row.hidden).map(line)].join("\n") + "\n";
   }
 
-  showMore() {
-    this.n += 10 * PAGE;
-    this.show();
-  }
-
-  rows() {
-    const rows = this.filter.rows();
-    if (!this.sorted) return rows;
-    const { column, down } = this.sorted;
-    const value = column.isNumber ? (row) => column.value(row) : (row) => column.levels.codes[row];
-    return rows.sort((a, b) => column.isAbsent(a) - column.isAbsent(b) || (column.isAbsent(a) ? 0 : down ? value(b) - value(a) : value(a) - value(b)) || a - b);
-  }
-
-  show() {
-    const shown = this.rows();
-    const cell = (column, row) => make("td", { class: column.isNumber ? null : "word" }, column.isAbsent(row) ? "" : this.table.bounded(column, row));
-    this.body.replaceChildren(...shown.slice(0, this.n).map((row) => make("tr", { "data-row": row }, ...this.columns.map((column) => cell(column, row)))));
-    this.heads.forEach((head, number) => {
-      const order = this.columns[number] === this.sorted?.column ? (this.sorted.down ? "descending" : "ascending") : null;
-      order ? head.setAttribute("aria-sort", order) : head.removeAttribute("aria-sort");
-      head.querySelector(".arrow").textContent = { ascending: "▲", descending: "▼" }[order] || "";
-    });
-    const n = Math.min(this.n, shown.length);
-    this.count.textContent = n < shown.length ? `${n} of ${shown.length} rows` : `${shown.length} of ${this.table.n} rows`;
-    this.more.textContent = `Show ${Math.min(10 * PAGE, shown.length - n)} more`;
-    this.more.hidden = n === shown.length;
-  }
-
-  /** The rows that are shown, in their order, with all columns. */
-  csv() {
-    const quoted = (value) => (/[",\n]/.test(value) ? `"${value.replaceAll('"', '""')}"` : value);
-    const line = (row) => this.table.columns.map((column) => quoted(String(column.value(row) ?? ""))).join();
-    return [this.table.columns.map((column) => column.name).join(), ...this.rows().map(line)].join("\n") + "\n";
-  }
-
-  save() {
-    const link = make("a", { href: URL.createObjectURL(new Blob([this.csv()], { type: "text/csv" })), download: this.table.file });
+  function save() {
+    const link = make("a", { href: URL.createObjectURL(new Blob([csv()], { type: "text/csv" })), download: table.dataset.table });
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 1000);
   }
+
+  heads.forEach((head, place) => head.replaceChildren(make("button", { type: "button", click: () => sortBy(head, place) }, ...head.childNodes)));
+  const label = make("label", { class: "search" }, "Rows with ", search);
+  table.parentNode.after(make("div", { class: "below" }, count, label, make("button", { type: "button", click: save }, "Save as CSV")));
+  show();
 }
+
+document.querySelectorAll("table[data-table]").forEach(sortable);

@@ -1,0 +1,82 @@
+//! The section "What to choose": the Pareto fronts of the table that offers choices.
+
+use crate::report::advice::{Asked, Offer, Offers};
+use crate::report::drawing::escape;
+use crate::report::study_folder::Found;
+use crate::report::swept::Setting;
+use crate::table::{Role, Value};
+
+/// Rows of a front that are listed.
+const MAX_ROWS: usize = 200;
+
+/// Returns a table for each cost: in each condition, the choices that are better than all that cost as much or less. Empty if no table
+/// offers choices.
+pub(super) fn choices_html(found: &Found) -> String {
+    let Ok(offers) = Offers::of(found.tables, &Asked::default()) else {
+        return String::new();
+    };
+    let (table, value) = (offers.table, offers.value);
+    if table.n_rows < 2 {
+        return String::new();
+    }
+    let costs = Setting::of_roles(table, &[Role::Cost]);
+    let costs = costs.filter(|one| one.is_number() && one.data.varies(0..table.n_rows));
+    let others = costs.filter(|one| one.column.name != offers.cost.name);
+    let others = others.map(|one| Offers::of_columns(table, value, one.column));
+    let others: String = others
+        .map(|offers| {
+            format!(
+                "<details><summary>For the least {}</summary>{}</details>",
+                escape(&offers.cost.words),
+                front_html(&offers)
+            )
+        })
+        .collect();
+    format!(
+        "<p class=\"quiet\">The Pareto front of “{}”: each row reaches its {} for the least {}. Each condition of the world has a front of its own. \
+         <code>bubbletouch advise</code> selects a row by a value or a budget.</p>{}{others}",
+        escape(table.title),
+        escape(&value.words),
+        escape(&offers.cost.words),
+        front_html(&offers)
+    )
+}
+
+fn front_html(offers: &Offers) -> String {
+    let conditions = offers.by_condition();
+    let has_conditions = conditions.len() > 1;
+    let fronts: Vec<Offer> = conditions
+        .iter()
+        .flat_map(|of_one| offers.front(of_one))
+        .collect();
+    let row = |offer: &Offer| {
+        let condition = match has_conditions {
+            true => format!("<td class=word>{}</td>", escape(&offers.condition(offer))),
+            false => String::new(),
+        };
+        format!(
+            "<tr>{condition}<td>{}</td><td>{}</td><td class=word>{}</td></tr>\n",
+            escape(&offers.table.bounded(offers.value, offer.row)),
+            escape(&offers.cost.value_words(&Value::Number(offer.cost))),
+            escape(&offers.setting(offer))
+        )
+    };
+    let rows: String = fronts.iter().take(MAX_ROWS).map(row).collect();
+    let condition = match has_conditions {
+        true => "<th scope=\"col\" class=\"word\">condition</th>",
+        false => "",
+    };
+    let more = match fronts.len() > MAX_ROWS {
+        true => format!(
+            "<p class=\"quiet\">The first {MAX_ROWS} of {} rows.</p>",
+            fronts.len()
+        ),
+        false => String::new(),
+    };
+    format!(
+        "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"Pareto front: {value} and {cost}\"><table><thead><tr>{condition}<th scope=\"col\">{value}</th>\
+         <th scope=\"col\">{cost}</th><th scope=\"col\" class=\"word\">choice</th></tr></thead><tbody>\n{rows}</tbody></table></div>{more}",
+        value = escape(&offers.value.words),
+        cost = escape(&offers.cost.words),
+    )
+}

@@ -1,0 +1,165 @@
+//! Tables of a page: HTML in which each cell shows a rounded value with its unit and holds the value of the file.
+
+use crate::report::drawing::escape;
+use crate::table::{Better, Column, Data, Role, Table};
+
+/// Rows of a table that does not fit into the page.
+const N_FIRST_ROWS: usize = 100;
+
+/// A table as HTML.
+pub(super) struct TableHtml {
+    pub html: String,
+    /// Rows of the table that the HTML contains.
+    pub n_rows: usize,
+}
+
+/// A column of the HTML.
+struct Shown<'a> {
+    column: &'a Column,
+    is_number: bool,
+    /// Places of the columns of the file whose fields a cell holds: its own, and those of the ends of its interval.
+    held: Vec<usize>,
+    /// Whether any of these columns has several values.
+    varies: bool,
+}
+
+/// Returns a table as HTML of at most `most_letters` bytes; if all rows are longer, the first rows.
+pub(super) fn table_html(table: &Table, most_letters: usize) -> TableHtml {
+    let fields = fields(table);
+    let shown = shown(table);
+    let mut rows = String::new();
+    let mut first_rows = 0;
+    let mut n_rows = 0;
+    for (row, fields) in fields.iter().enumerate() {
+        if row == N_FIRST_ROWS {
+            first_rows = rows.len();
+        }
+        let cells = shown.iter().map(|one| one.cell(table, row, fields));
+        rows += &format!("<tr data-row={row}>{}</tr>\n", cells.collect::<String>());
+        n_rows += 1;
+        if rows.len() > most_letters && row >= N_FIRST_ROWS {
+            rows.truncate(first_rows);
+            n_rows = N_FIRST_ROWS;
+            break;
+        }
+    }
+    let names = table.columns.iter().map(|column| &column.name[..]);
+    let names = escape(&names.collect::<Vec<_>>().join(","));
+    let heads: String = shown.iter().map(|one| one.head(fields.first())).collect();
+    let (file, title) = (escape(table.file), escape(table.title));
+    let html = format!(
+        "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"{title}\"><table data-table=\"{file}\" data-columns=\"{names}\">\
+         <caption class=\"unseen\">{title}</caption><thead><tr>{heads}</tr></thead><tbody>\n{rows}</tbody></table></div>"
+    );
+    TableHtml { html, n_rows }
+}
+
+/// Returns the fields of the table's file, row by row; of a table without a file, its values as a file has them.
+fn fields(table: &Table) -> Vec<Vec<String>> {
+    if table.csv.is_empty() {
+        let field = |data: &Data, row| {
+            let value = data.value(row);
+            value.map_or_else(String::new, |value| value.to_string())
+        };
+        let row = |row| table.data.iter().map(|data| field(data, row)).collect();
+        return (0..table.n_rows).map(row).collect();
+    }
+    let mut reader = csv::Reader::from_reader(&table.csv[..]);
+    let rows = reader.records().filter_map(Result::ok);
+    rows.map(|row| row.iter().map(str::to_owned).collect())
+        .collect()
+}
+
+/// Returns the columns of the HTML: those of the file without the ends of intervals, which stand in the cells of their values.
+fn shown(table: &Table) -> Vec<Shown<'_>> {
+    let ends = |column: &Column| -> Vec<usize> {
+        let ends = column.interval.iter().flatten();
+        ends.filter_map(|name| table.place(name)).collect()
+    };
+    let all_ends: Vec<usize> = table.columns.iter().flat_map(ends).collect();
+    let places = (0..table.columns.len()).filter(|place| !all_ends.contains(place));
+    let shown = places.map(|place| {
+        let column = &table.columns[place];
+        let held = [vec![place], ends(column)].concat();
+        let varies = |&place: &usize| table.data[place].varies(0..table.n_rows);
+        Shown {
+            column,
+            is_number: matches!(table.data[place], Data::Numbers(_)),
+            varies: held.iter().any(varies),
+            held,
+        }
+    });
+    shown.collect()
+}
+
+impl Shown<'_> {
+    /// Returns the head of a column; `data-v` holds the fields of its cells where they are the same in all rows. Tooltips of charts list the
+    /// columns that have `data-setting` or `data-found`, which stands before the value.
+    fn head(&self, first: Option<&Vec<String>>) -> String {
+        let column = self.column;
+        let name = match column.words.chars().count() {
+            1 => format!("{} = ", escape(&column.words)),
+            _ => format!("{} ", escape(&column.words)),
+        };
+        let mut data = match column.role {
+            Role::Choice | Role::Condition | Role::Subject if self.varies => {
+                let name = if self.is_number { &name[..] } else { "" };
+                format!(" data-setting=\"{name}\"")
+            }
+            Role::Value(_) | Role::Cost | Role::Outcome => format!(" data-found=\"{name}\""),
+            _ => String::new(),
+        };
+        if column.role == Role::Value(Better::More) {
+            data += " data-down";
+        }
+        if let (Some(first), false) = (first, self.varies) {
+            data += &format!(" data-v=\"{}\"", escape(&self.joined(first)));
+        }
+        let held: Vec<String> = self.held.iter().map(usize::to_string).collect();
+        format!(
+            "<th scope=\"col\"{} data-held=\"{}\"{data} title=\"{}\">{}</th>",
+            self.class(),
+            held.join(" "),
+            escape(&column.name),
+            escape(&column.title())
+        )
+    }
+
+    /// Returns a cell; `data-v` holds the fields of the file where these differ from the text and vary.
+    fn cell(&self, table: &Table, row: usize, fields: &[String]) -> String {
+        let said = with_interval(table, self.column, row);
+        let values = self.joined(fields);
+        let is_plain = |letter: char| letter.is_ascii_alphanumeric() || "._-+".contains(letter);
+        let value = match &values[..] {
+            values if values == said || !self.varies => String::new(),
+            plain if !plain.is_empty() && plain.chars().all(is_plain) => {
+                format!(" data-v={plain}")
+            }
+            values => format!(" data-v=\"{}\"", escape(values)),
+        };
+        format!("<td{}{value}>{}</td>", self.class(), escape(&said))
+    }
+
+    /// Returns the fields that a cell holds, with spaces between them: several are numbers, which contain none.
+    fn joined(&self, fields: &[String]) -> String {
+        let values = self.held.iter().map(|&place| &fields[place][..]);
+        values.collect::<Vec<_>>().join(" ")
+    }
+
+    fn class(&self) -> &'static str {
+        if self.is_number {
+            ""
+        } else {
+            " class=\"word\""
+        }
+    }
+}
+
+/// Returns a value with its unit and its interval, `0.93 [0.9, 0.95]`; empty if the value is absent.
+fn with_interval(table: &Table, column: &Column, row: usize) -> String {
+    let said = table.words(&column.name, row);
+    match table.interval(column, row) {
+        Some([low, high]) => format!("{said} [{}, {}]", column.tick(low), column.tick(high)),
+        None => said,
+    }
+}
