@@ -13,6 +13,60 @@
 //! | [`calibration`] | recorded frames → the parameters of the signal chain that makes such frames |
 //! | [`sensing`] | frames → compressed measurements, and back |
 //! | [`features`] | frames → features that do not change with place, turn or pressure |
+//!
+//! # A touch
+//!
+//! ```
+//! use bubbletouch_sim::contact::{Workspace, press_to_depth};
+//! use bubbletouch_sim::objects::Catalogue;
+//! use bubbletouch_sim::random::Seed;
+//! use bubbletouch_sim::signal::{Chain, Noise, NoiseUnit, Scratch, SignalStep};
+//! use bubbletouch_sim::world::{Grid, Patch, Placement, RestPoses, Spread, Taxel, touches};
+//!
+//! // A mug of real size, as spheres that are within half a millimetre of its surface.
+//! let mug = Catalogue::builtin()?.object("mug")?.build(0.5e-3)?;
+//!
+//! // A patch of 32 × 32 taxels, 4 mm apart.
+//! let taxel = Taxel { radius: 2e-3, stiffness: 100.0, damping: 0.0, stroke: 5e-3 };
+//! let patch = Patch::grid(Grid { nx: 32, ny: 32, pitch: 4e-3 }, taxel)?;
+//!
+//! // One touch: the mug stands upright below the middle of the patch, which goes 3 mm past first contact.
+//! let zero = || Spread::Values(vec![0.0]);
+//! let placement = Placement {
+//!     rest: RestPoses::AsModelled,
+//!     offset_x: zero(),
+//!     offset_y: zero(),
+//!     yaw: zero(),
+//!     tilt_x: zero(),
+//!     tilt_y: zero(),
+//!     depth: Spread::Values(vec![3e-3]),
+//!     per_object: None,
+//! };
+//! let rests = placement.rest.of(&mug.model);
+//! let seed = Seed::new(2018);
+//! let touch = touches(&placement, &rests, &seed)?.remove(0);
+//! let pose = touch.patch_from_object(&rests[touch.rest]);
+//! let mut workspace = Workspace::new();
+//! let contact = press_to_depth(&patch, &[mug.model], &[pose], touch.depth, &mut workspace);
+//! assert!(contact.is_some_and(|contact| contact.n_saturated == 0));
+//! let mut frame = workspace.deflections().to_vec();
+//! let deepest = frame.iter().fold(0.0_f64, |a, &b| a.max(b));
+//! assert!((deepest - 3e-3).abs() < 1e-12);
+//!
+//! // The electronics: noise of 5 % of full scale, then smoothing.
+//! let noise = Noise { std: 0.05, unit: NoiseUnit::FullScale };
+//! let steps = [SignalStep::Noise(noise), SignalStep::Smoothing { width: 4e-3 }];
+//! Chain::new(&steps, &patch)?.apply(&mut frame, None, &seed.named("noise"), &mut Scratch::default());
+//! # Ok::<(), bubbletouch_sim::Error>(())
+//! ```
+//!
+//! # Words
+//!
+//! - A **taxel** is one sensing element: a sphere on a spring and damper that slides along one axis.
+//! - A **patch** is a rigid substrate with taxels; a **frame** is what they all report at one instant.
+//! - An **object** is a union of rigid spheres, or a triangle mesh.
+//! - A **touch** is one contact: a pose of the object, and a depth past first contact.
+//! - A **measurement** is a compressed frame, `y = Φx`.
 #![warn(missing_docs)]
 #![warn(clippy::missing_errors_doc)]
 #![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]

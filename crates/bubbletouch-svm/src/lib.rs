@@ -1,18 +1,67 @@
-//! Soft-margin support vector machines for many classes: parameters and training.
+//! Soft-margin support vector machines for [`linfa`]: LIBSVM's problem and answers, from shared kernel matrices.
 //!
-//! A binary one decides by the sign of `f(x) = Σ_i y_i a_i K(x_i, x) − ρ`, where the multipliers minimise
-//! `½ Σ_ij a_i a_j y_i y_j K(x_i, x_j) − Σ_i a_i` over `0 ≤ a_i ≤ C`, `Σ_i y_i a_i = 0`. Many classes have many binary problems
-//! ([`Multiclass`]), which share what they can:
+//! ```
+//! use bubbletouch_svm::kernel::{Gamma, Kernel};
+//! use bubbletouch_svm::SvmParams;
+//! use linfa::dataset::DatasetBase;
+//! use linfa::traits::{Fit, Predict};
+//! use ndarray::{Array1, Array2};
 //!
-//! 1. **Rows** are checked, sorted by class and taken about their centre, in single or double precision (`gram::sorted`, `gram::extent`).
-//! 2. **Kernel values** `K(x_i, x_j)` between two classes are made once for all problems, of matrix products of the rows (`gram`, `linalg`).
-//! 3. **Each problem** is solved by pairs of variables (`smo`): `β_i = y_i a_i`, and a β is optimal when no variable that can be raised has
-//!    a larger `y_i − (Kβ)_i` than one that can be lowered. Where pairs go on for long, by the linear equations of the free variables
-//!    (`active_set`); where classes lie apart, on the rows near the margin alone (`screening`).
-//! 4. **Along C and over folds** each solution starts from the last ([`cross_validation`]).
+//! // Three classes on a circle, forty rows each.
+//! let features = Array2::from_shape_fn((120, 2), |(row, column)| {
+//!     let angle = 2.1 * (row % 3) as f64 + 0.4 * (row as f64).sin();
+//!     if column == 0 { angle.cos() } else { angle.sin() }
+//! });
+//! let data = DatasetBase::new(features, Array1::from_iter((0..120).map(|row| row % 3)));
+//!
+//! let kernel = Kernel::Rbf { gamma: Gamma::Scale };
+//! let model = SvmParams { kernel, c: 10.0, ..SvmParams::default() }.fit(&data)?;
+//! assert_eq!(model.predict(&data.records), data.targets);
+//! # Ok::<(), bubbletouch_svm::Error>(())
+//! ```
+//!
+//! # Words
+//!
+//! - A **data set** is linfa's: features (n_rows × m, `f32` or `f64`) and one label (a `usize`) for each row.
+//! - A **binary problem** separates the rows of a positive class from those of a negative class, or of all others ([`Multiclass`]).
+//! - A **decision value** is what a binary problem gives a row: above 0 for the positive class.
+//! - **C** is the cost of a unit of margin violation; **γ** is the width parameter of a kernel.
+//!
+//! # How it works
+//!
+//! A binary problem decides by the sign of `f(x) = Σ_i y_i a_i K(x_i, x) − ρ`. The multipliers minimise
+//! `½ Σ_ij a_i a_j y_i y_j K(x_i, x_j) − Σ_i a_i` over `0 ≤ a_i ≤ C`, `Σ_i y_i a_i = 0`.
+//!
+//! 1. **Rows** are checked, sorted by class and centred, in single or double precision (`gram::sorted`, `gram::extent`).
+//! 2. **Kernel values** `K(x_i, x_j)` between two classes are computed once for all problems, by matrix products of the rows (`gram`, `linalg`).
+//! 3. **Each problem** is solved by sequential minimal optimisation (`smo`). With `β_i = y_i a_i`, a solution is optimal when no variable that can
+//!    be raised has a larger `y_i − (Kβ)_i` than one that can be lowered. Long runs end by the linear equations of the free variables
+//!    (`active_set`); well separated classes are solved on the rows near the margin (`screening`).
+//! 4. **Along C and over folds**, each solution starts from the previous one ([`cross_validation`]).
 //! 5. **Prediction** is one matrix product for all problems, and the vote of their signs ([`predict`]).
 //!
-//! The linear case without any kernel matrix is [`linear_svm`](crate::linear_svm).
+//! # Which solver trains which SVM
+//!
+//! | parameters | solver | stops when | memory |
+//! |---|---|---|---|
+//! | [`SvmParams`], any kernel, rows ≥ 1,000, C · K ≤ 1e5, tolerance ≥ 1e-4 | SMO on kernel values in `f32` | KKT violation ≤ `tolerance` in decision values, or 10 million iterations (100 a row if more) | n² · 4 bytes, or the latest rows within `memory_bytes` |
+//! | [`SvmParams`], any kernel, otherwise | the same in `f64` | the same | n² · 8 bytes, or as above |
+//! | [`linear_svm::LinearSvmParams`] | dual coordinate descent, one-vs-rest, regularised bias (LIBLINEAR's problem) | spread of projected gradients ≤ `tolerance`, or `max_passes` | n · m |
+//!
+//! The module [`classifiers`] has classifiers of other kinds which repeat exactly, with their reasons to differ from linfa's.
+//!
+//! # Sources
+//!
+//! - Fan, Chen, Lin, *Working set selection using second order information for training support vector machines*, JMLR 2005.
+//! - DeCoste, Wagstaff, *Alpha seeding for support vector machines*, KDD 2000.
+//! - Hsieh et al., *A dual coordinate descent method for large-scale linear SVM*, ICML 2008.
+//! - Joachims, *Making large-scale SVM learning practical*, Advances in Kernel Methods 1999.
+//! - Scheinberg, *An efficient implementation of an active set method for SVMs*, JMLR 2006.
+//! - Wen et al., *Improving efficiency of SVM k-fold cross-validation by alpha seeding*, AAAI 2017.
+//! - Goto, van de Geijn, *Anatomy of high-performance matrix multiplication*, ACM TOMS 2008.
+#![warn(missing_docs)]
+#![warn(clippy::missing_errors_doc)]
+#![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
 
 pub(crate) mod active_set;
 pub mod classifiers;
@@ -26,6 +75,7 @@ pub mod kernel;
 pub(crate) mod linalg;
 pub mod linear_model;
 pub mod linear_svm;
+pub mod precision;
 pub mod predict;
 pub mod scaling;
 pub(crate) mod screening;
@@ -36,6 +86,7 @@ pub(crate) mod training;
 
 use std::borrow::Cow;
 
+use linfa::DatasetBase;
 use linfa::traits::Fit;
 use ndarray::{Array1, Array2, ArrayView1};
 use serde::{Deserialize, Serialize};
@@ -46,6 +97,7 @@ use crate::gram::extent::Extent;
 use crate::gram::sorted::Sorted;
 use crate::kernel::{Kernel, KernelFunction};
 use crate::linalg::scalar::Scalar;
+use crate::precision::Precision;
 use crate::predict::decision::DecisionFunctions;
 use crate::predict::svm_model::{Decision, SvmModel};
 use crate::training::Goal;
@@ -282,10 +334,10 @@ impl SvmParams {
     }
 }
 
-impl Fit<Array2<f64>, Array1<usize>, Error> for SvmParams {
+impl<F: Precision> Fit<Array2<F>, Array1<usize>, Error> for SvmParams {
     type Object = SvmModel;
 
-    fn fit(&self, dataset: &Dataset) -> Result<SvmModel> {
-        self.train(dataset)
+    fn fit(&self, dataset: &DatasetBase<Array2<F>, Array1<usize>>) -> Result<SvmModel> {
+        self.train(&F::double(dataset))
     }
 }

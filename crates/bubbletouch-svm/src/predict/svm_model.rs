@@ -14,6 +14,7 @@ use crate::Result;
 use crate::dataset::check_width;
 use crate::gram::sorted::Sorted;
 use crate::linalg::scalar::Scalar;
+use crate::precision::Precision;
 use crate::predict::decision::DecisionFunctions;
 use crate::predict::voting::Voting;
 use crate::training::Trained;
@@ -117,14 +118,16 @@ impl SvmModel {
     }
 }
 
-impl<D: Data<Elem = f64>> PredictInplace<ArrayBase<D, Ix2>, Array1<usize>> for SvmModel {
+impl<F: Precision, D: Data<Elem = F>> PredictInplace<ArrayBase<D, Ix2>, Array1<usize>>
+    for SvmModel
+{
     /// Writes the predicted labels into `targets`.
     ///
     /// # Panics
     /// If `features` has another number of columns than in training or a value that is not finite, or `targets`
     /// another length: linfa's trait has no way to return an error. [`SvmModel::labels`] has.
     fn predict_inplace(&self, features: &ArrayBase<D, Ix2>, targets: &mut Array1<usize>) {
-        match self.labels(features.view()) {
+        match self.labels(F::double_features(features).view()) {
             Ok(labels) => targets.assign(&labels),
             Err(error) => panic!("{error}"),
         }
