@@ -245,7 +245,16 @@ fn cost_words(one: &ColumnDifferences) -> String {
     let mut ratios: Vec<f64> = one.rows.iter().map(|row| row.second / row.first).collect();
     let [middle, least, most] = [0.5, 0.0, 1.0].map(|q| short_number(quantile(&mut ratios, q)));
     let words = &one.column.words;
-    format!("{words}: median {middle} times that of the first run, {least} to {most} times.")
+    let n_changed = one.rows.iter().filter(|row| row.difference != 0.0).count();
+    // Ratios are rounded: a small change would be no change.
+    let small = match n_changed > 0 && [&middle, &least, &most].iter().all(|ratio| *ratio == "1") {
+        true => format!(
+            " {n_changed} of {} settings differ by less than that says.",
+            one.rows.len()
+        ),
+        false => String::new(),
+    };
+    format!("{words}: median {middle} times that of the first run, {least} to {most} times.{small}")
 }
 
 /// How many settings are better and worse, and how many of these by more than chance explains.

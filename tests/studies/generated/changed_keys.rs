@@ -1,30 +1,49 @@
 //! Law: a changed key changes some byte of the results, or is refused.
 
 use super::generator::{GeneratedStudy, Generator};
-use super::outcome::{Tables, run, without_times};
+use super::outcome::{Row, rows, run};
 use bubbletouch::study::all_strengths;
 use bubbletouch::study::progress::Silent;
+use bubbletouch::study::table::TrialScore;
+use bubbletouch::table::Columns;
 
 /// Studies in which a key is tried before it counts as one without effect: a small study may give the same answers by chance.
 const MAX_STUDIES: u64 = 12;
 
-/// Returns the tables of a study, and the bits of the numbers that the classifier of the first configuration learns from; `None` if the study is refused.
-fn results(study: &GeneratedStudy) -> Option<(Tables, Vec<u64>)> {
+/// What a study found: scores and answers, without the columns that repeat settings.
+#[derive(PartialEq)]
+struct Results {
+    scores: Vec<Row>,
+    /// `confusion.csv`
+    answers: Vec<u8>,
+    /// Bits of the numbers that the classifier of the first configuration learns from, and the rows that train it.
+    learned: Vec<u64>,
+}
+
+/// Returns what a study found; `None` if it is refused.
+fn results(study: &GeneratedStudy) -> Option<Results> {
     let loaded = study.load().ok()?;
-    let tables = without_times(run(&loaded).ok()?);
+    let tables = run(&loaded).ok()?;
+    let mut scores = rows(&tables["accuracy.csv"]);
+    let columns = TrialScore::columns();
+    for row in &mut scores {
+        row.retain(|name, _| columns.iter().any(|column| column.name == name[..]));
+        row.remove("c_used");
+    }
     let set = loaded.first().features((0, 0), &Silent).ok()?;
     let values = set.data.records.iter().map(|value| value.to_bits());
-    Some((
-        tables,
-        values
-            .chain(set.split.train.iter().map(|&row| row as u64))
-            .collect(),
-    ))
+    let train = set.split.train.iter().map(|&row| row as u64);
+    Some(Results {
+        scores,
+        answers: tables["confusion.csv"].clone(),
+        learned: values.chain(train).collect(),
+    })
 }
 
 /// Whether another value of `key` is refused or changes results in one of several studies.
 fn has_effect(key: &str, steps: &[&str]) -> bool {
-    (0..MAX_STUDIES).any(|number| {
+    let mut is_refused = true;
+    let has_changed = (0..MAX_STUDIES).any(|number| {
         let mut generator = Generator::new(key, number);
         let mut values = generator.values(key);
         assert!(values.len() >= 2, "{key} has values: {values:?}");
@@ -47,10 +66,13 @@ fn has_effect(key: &str, steps: &[&str]) -> bool {
         let Some(before) = results(&study) else {
             return false;
         };
-        values
-            .into_iter()
-            .any(|value| results(&study.with(key, value)).is_none_or(|after| before != after))
-    })
+        values.into_iter().any(|value| {
+            let after = results(&study.with(key, value));
+            is_refused &= after.is_none();
+            after.is_some_and(|after| before != after)
+        })
+    });
+    has_changed || is_refused
 }
 
 #[test]

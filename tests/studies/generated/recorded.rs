@@ -36,6 +36,21 @@ fn of_human_touches(study: &GeneratedStudy) -> GeneratedStudy {
         .with("human_touch.duration_s", 2.5)
 }
 
+/// The study with touches that move while a frame of theirs is read.
+fn scanned(study: &GeneratedStudy, scan_time: Value) -> GeneratedStudy {
+    let steps = study.get("signal.steps").and_then(Value::as_array);
+    let mut steps = steps.cloned().unwrap_or_default();
+    if !steps.contains(&"scan".into()) {
+        steps.insert(0, "scan".into());
+    }
+    study
+        .with("signal.steps", steps)
+        .with("signal.scan_time_ms", scan_time)
+        .with("touches.frames", 3)
+        .with("touches.speed_mm_per_s", 20.0)
+        .with("touches.depth_mm", 1.5)
+}
+
 /// The study of the touches in a folder, by the tables that were written beside them.
 fn of_folder(study: &GeneratedStudy, folder: &Path) -> GeneratedStudy {
     let mut study = study.clone();
@@ -84,9 +99,12 @@ fn recorded_touches_give_the_tables_of_the_simulated_ones() {
     for number in 0..n_studies() {
         let mut generator = Generator::new("recorded touches", number);
         let is_human = number % 5 == 4;
+        let scan_time = generator.values("signal.scan_time_ms").swap_remove(0);
         let touched = |study: &GeneratedStudy| match is_human {
             true => of_human_touches(study),
             // A taxel that is pushed by exactly its stroke is not saturated, which its reading does not tell from one that is pushed further.
+            // The press goes on while a frame is read.
+            false if number % 5 == 3 => scanned(study, scan_time.clone()),
             false if study.get("touches.depth_mm") == study.get("skin.stroke_mm") => {
                 study.with("touches.depth_mm", 1.5)
             }
