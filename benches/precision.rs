@@ -3,12 +3,12 @@
 //! `cargo bench --bench precision` prints a table; with `-- --write`, it also goes to `results/whole_body/precision.csv`, and as a chart
 //! to `precision.svg` beside it.
 //!
-//! The same kernel in both: `kinds::speed_accuracy::flat_press`.
+//! The same kernel in both: `flat_press.rs`.
 
 use bubbletouch::files::{CsvFile, write_bytes};
-use bubbletouch::kinds::speed_accuracy::flat_press::{press_f32, press_f64};
 use bubbletouch::random::Seed;
 use clock::seconds;
+use flat_press::{press_f32, press_f64};
 use precision_chart::draw;
 use rand::Rng;
 use serde::Serialize;
@@ -17,6 +17,7 @@ use std::path::Path;
 use std::time::Duration;
 
 mod clock;
+mod flat_press;
 mod precision_chart;
 
 const PITCH: f64 = 2e-3;

@@ -224,7 +224,7 @@ pub fn toml_of(json: &str) -> PyResult<String> {
 
 /// What the results in a folder advise, as JSON: at least so good, or at most so dear. Raises ValueError.
 #[pyfunction]
-#[pyo3(signature = (results, reach, budget, value, cost, table, given, worst))]
+#[pyo3(signature = (results, reach, budget, value, cost, table, given, worst, limits))]
 #[expect(clippy::too_many_arguments, reason = "named in Python")]
 pub fn advise(
     results: PathBuf,
@@ -235,11 +235,13 @@ pub fn advise(
     table: Option<String>,
     given: Vec<String>,
     worst: bool,
+    limits: Vec<(String, f64)>,
 ) -> PyResult<String> {
     guarded(|| {
         let wish = match (reach, budget) {
             (Some(reach), None) => Wish::Value(reach),
             (None, Some(most)) => Wish::Budget(most),
+            (None, None) if !limits.is_empty() => Wish::Best,
             _ => {
                 let given = "both or neither of what is needed and a budget";
                 return Err(bad_input(
@@ -255,6 +257,7 @@ pub fn advise(
             value,
             cost,
             given,
+            limits,
         };
         let said = Offers::of(&tables, &asked)
             .map_err(|error| error.under(format!("{}: ", results.display())))

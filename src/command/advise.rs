@@ -6,10 +6,13 @@ use bubbletouch::report::advice_answers::{Answer, answers, answers_json};
 use bubbletouch::{Result, kinds};
 use std::path::PathBuf;
 
-/// Say which setting is the cheapest that is accurate enough, or the most accurate that is cheap enough.
+/// List the cheapest configuration that meets all requirements, or the best one
 ///
-/// Noise, sensor errors and whatever else the world sets are conditions, not choices: each condition of a study is answered for, or
-/// those that are given, or the worst.
+/// All requirements are filters of one Pareto front of value and cost. With --accuracy or --reach the answer is the cheapest configuration
+/// that is good enough; without them it is the best one that the limits (--budget, --max-…) allow.
+///
+/// Noise, sensor errors and other properties of the world are conditions, not choices: there is an answer for each condition of a study,
+/// for those that are given, or for the worst.
 ///
 /// It reads the results of a study of any kind: the first table whose rows are choices with a value and a cost. Of a study that recognises
 /// objects this is the table of all configurations, with the times of the classifier alone. Accuracies are those of simulated touches,
@@ -17,7 +20,7 @@ use std::path::PathBuf;
 #[derive(clap::Args)]
 pub struct Args {
     /// A folder of results
-    #[arg(default_value = "results/speed_accuracy")]
+    #[arg(default_value = "results/quickstart")]
     results: PathBuf,
     #[command(flatten)]
     wish: WishArgs,
@@ -46,17 +49,34 @@ pub struct Args {
 }
 
 #[derive(clap::Args)]
-#[group(required = true, multiple = false)]
+#[group(required = true, multiple = true)]
 struct WishArgs {
     /// The share of right decisions that is needed, such as 0.9
     #[arg(long, value_name = "SHARE")]
     accuracy: Option<f64>,
     /// The value that is needed, in the unit of its column: at least so much, or at most where less is better
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "N",
+        allow_negative_numbers = true,
+        conflicts_with = "accuracy"
+    )]
     reach: Option<f64>,
-    /// How much it may cost, in the unit of its column: microseconds a decision, seconds to train, taxels, measurements a decision …
+    /// The largest --cost, in the unit of its column: microseconds a decision, seconds to train, taxels, measurements …
     #[arg(long, value_name = "N")]
     budget: Option<f64>,
+    /// The most measurements of a decision
+    #[arg(long, value_name = "N")]
+    max_measurements: Option<f64>,
+    /// The most taxels
+    #[arg(long, value_name = "N")]
+    max_taxels: Option<f64>,
+    /// The longest time of a decision, milliseconds
+    #[arg(long, value_name = "MS")]
+    max_answer_ms: Option<f64>,
+    /// The longest time to train, seconds
+    #[arg(long, value_name = "S")]
+    max_training_s: Option<f64>,
 }
 
 /// Refuses an option by a name that it has no more.
@@ -75,6 +95,7 @@ pub fn advise(args: &Args) -> Result<()> {
         },
         cost: args.cost.clone(),
         given: args.given.clone(),
+        limits: args.limits(),
     };
     let offers = Offers::of(&tables, &asked).map_err(|error| error.under(place))?;
     let answers = answers(&offers, args.wish(), args.worst)?;
@@ -91,8 +112,27 @@ impl Args {
     fn wish(&self) -> Wish {
         match (self.wish.accuracy.or(self.wish.reach), self.wish.budget) {
             (Some(value), _) => Wish::Value(value),
-            (None, most) => Wish::Budget(most.unwrap_or(f64::NAN)),
+            (None, Some(most)) => Wish::Budget(most),
+            (None, None) => Wish::Best,
         }
+    }
+
+    /// Returns the limits of columns of costs, in the units of the columns.
+    fn limits(&self) -> Vec<(String, f64)> {
+        let wish = &self.wish;
+        // Beside a value, the budget is one more filter.
+        let has_value = wish.accuracy.or(wish.reach).is_some();
+        let cost = self.cost.as_deref().unwrap_or("decision_time");
+        let limits = [
+            (cost, wish.budget.filter(|_| has_value)),
+            ("measurements", wish.max_measurements),
+            ("taxels", wish.max_taxels),
+            ("decision_time", wish.max_answer_ms.map(|ms| 1e3 * ms)),
+            ("training_time", wish.max_training_s),
+        ];
+        let given = limits.into_iter();
+        let given = given.filter_map(|(name, most)| Some((name.to_owned(), most?)));
+        given.collect()
     }
 
     fn in_words(&self, offers: &Offers, Answer { condition, advice }: &Answer) -> String {

@@ -52,8 +52,8 @@ enum Command {
     ///
     /// A table of its file says of which kind it is: [recognition] (which object is touched), [reconstruction] (how exactly frames are
     /// reconstructed from measurements), [object_detail] (how detailed models of objects must be), [breaking_points] (at which noise,
-    /// pitch ... recognition fails), [whole_body] (what a body of millions of taxels costs), [stability] (at which settings contact
-    /// methods fail) or [speed_accuracy] (what accuracy costs in time).
+    /// pitch ... recognition fails), [whole_body] (what a body of millions of taxels costs) or [stability] (at which settings contact
+    /// methods fail).
     Run(run::Args),
     /// Put the shards of a study together, and write its tables, charts and report
     Merge(merge::Args),

@@ -15,7 +15,6 @@ pub mod object_detail;
 pub mod recognition;
 pub mod reconstruction;
 mod source;
-pub mod speed_accuracy;
 pub mod stability;
 mod verified;
 pub mod whole_body;
@@ -30,7 +29,9 @@ use groups::{found_and_cost, grouped};
 use crate::error::Result;
 use crate::files::{OwnedFiles, RUN, with_folder};
 use crate::report::csv_tables::FAILURES_FILE;
+use crate::study::check::Check;
 use crate::table::Table;
+use crate::toml_numbers::with_line;
 use crate::toml_text;
 use std::path::Path;
 
@@ -46,7 +47,6 @@ struct Entry {
 const KINDS: &[Entry] = &[
     entry::<breaking_points::BreakingPointsStudy>(),
     entry::<object_detail::ObjectDetailStudy>(),
-    entry::<speed_accuracy::SpeedAccuracyStudy>(),
     entry::<reconstruction::ReconstructionStudy>(),
     entry::<stability::StabilityPlan>(),
     entry::<whole_body::WholeBodyPlan>(),
@@ -75,6 +75,7 @@ pub fn about(text: &str) -> Option<About> {
 /// # Errors
 /// Those of its [`Kind::load`].
 pub fn load(source: &Source) -> Result<Box<dyn AnyStudy>> {
+    check_removed(&source.place, &source.text)?;
     let entry = find(&source.text).unwrap_or(&RECOGNITION);
     with_folder(source.folder.clone(), || (entry.load)(source))
 }
@@ -94,7 +95,8 @@ pub fn check_folder(study: &str, folder: &Path) -> Result<()> {
 /// # Errors
 /// A folder without a study; a table that cannot be read, or has other columns.
 pub fn read_tables(folder: &Path) -> Result<(About, Vec<Table>)> {
-    let text = Source::of_results(folder)?.text;
+    let Source { place, text, .. } = Source::of_results(folder)?;
+    check_removed(&place, &text)?;
     let entry = find(&text).unwrap_or(&RECOGNITION);
     Ok((entry.about, (entry.read)(folder)?))
 }
@@ -106,6 +108,26 @@ pub fn read_tables(folder: &Path) -> Result<(About, Vec<Table>)> {
 pub fn read_failures(folder: &Path) -> Result<Option<Table>> {
     let found = loaded::FAILURES.read_if_there(folder)?;
     Ok(found.filter(|failures| failures.n_rows > 0))
+}
+
+/// Tables of studies of a kind that exists no more, and what takes its place.
+const REMOVED: [(&str, &str); 1] = [(
+    "speed_accuracy",
+    "a recognition study (pareto.csv: accuracy and its time), [object_detail] (error and time of models of objects) or [stability] \
+     (engines and time steps)",
+)];
+
+/// Refuses a study of a kind that exists no more.
+fn check_removed(place: &str, text: &str) -> Result<()> {
+    let table = toml_text::table(text).unwrap_or_default();
+    match REMOVED.iter().find(|(key, _)| table.contains_key(*key)) {
+        Some((key, instead)) => {
+            let check = Check { place };
+            let error = check.error(key, "a kind of study that exists no more", instead);
+            Err(with_line(place, text, error))
+        }
+        None => Ok(()),
+    }
 }
 
 /// Text that is not TOML is told so by whoever reads the study.

@@ -51,6 +51,8 @@ pub struct Asked {
     pub cost: Option<String>,
     /// Conditions: `noise=0.05`.
     pub given: Vec<String>,
+    /// The largest values that columns of costs may have, by their names: rows above one of them are left out.
+    pub limits: Vec<(String, f64)>,
 }
 
 /// What is wished for.
@@ -60,6 +62,8 @@ pub enum Wish {
     Value(f64),
     /// The best value for at most so much, positive.
     Budget(f64),
+    /// The best value, whatever it costs.
+    Best,
 }
 
 /// A choice: a row of the table, what it gives, and what it costs.
@@ -126,7 +130,46 @@ impl<'a> Offers<'a> {
         let mut given = asked.given.iter();
         let rows: Vec<usize> = given.try_fold(rows, |rows, text| given_rows(table, rows, text))?;
         found.rows.retain(|row| rows.binary_search(row).is_ok());
+        for (name, most) in &asked.limits {
+            found.limit(name, *most)?;
+        }
         Ok(found)
+    }
+
+    /// Removes the rows whose cost in a column, given by its name, is above a limit or not known.
+    ///
+    /// # Errors
+    /// No such column of costs; a limit that is not a positive number or that no row keeps.
+    fn limit(&mut self, name: &str, most: f64) -> Result<()> {
+        let columns = COST.columns(self.table, Some(name));
+        let known = COST.columns(self.table, None).into_iter();
+        refuse_none(
+            &columns,
+            ("limit of", name),
+            known.map(|column| &column.name[..]).collect(),
+        )?;
+        let column = columns[0];
+        let of = |row: &usize| self.table.number(&column.name, *row);
+        let refuse = |allowed: String| {
+            let place = format!("limit of {}", column.words);
+            Error::input(place, column.phrase(&Value::Number(most)), allowed)
+        };
+        if !(most > 0.0 && most.is_finite()) {
+            return Err(refuse("a positive number".to_owned()));
+        }
+        let kept: Vec<usize> = self
+            .rows
+            .iter()
+            .copied()
+            .filter(|row| of(row) <= most)
+            .collect();
+        if kept.is_empty() {
+            let least = self.rows.iter().map(of).fold(f64::INFINITY, f64::min);
+            let least = column.phrase(&Value::Number(least));
+            return Err(refuse(format!("the smallest here is {least}")));
+        }
+        self.rows = kept;
+        Ok(())
     }
 
     /// Of all rows of a table whose value and cost are known.
@@ -190,6 +233,7 @@ impl<'a> Offers<'a> {
         let (column, wanted, place) = match wish {
             Wish::Value(wanted) => (self.value, wanted, "wish"),
             Wish::Budget(most) => (self.cost, most, "budget"),
+            Wish::Best => (self.cost, f64::INFINITY, "budget"),
         };
         let given = column.phrase(&Value::Number(wanted));
         let refuse = |allowed: String| Error::input(place, &given, allowed);
@@ -200,6 +244,7 @@ impl<'a> Offers<'a> {
             }
             Wish::Value(wanted) => (wanted.is_finite(), "a number"),
             Wish::Budget(most) => (most > 0.0 && most.is_finite(), "a positive number"),
+            Wish::Best => (true, ""),
         };
         if !is_in_range {
             return Err(refuse(range.to_owned()));
@@ -215,11 +260,14 @@ impl<'a> Offers<'a> {
                 .iter()
                 .position(|offer| self.is_enough(offer.value, wanted)),
             Wish::Budget(most) => front.iter().rposition(|offer| offer.cost <= most),
+            Wish::Best => Some(front.len() - 1),
         };
         let Some(place) = place else {
             return Err(refuse(match wish {
                 Wish::Value(_) => format!("the best here is {}", self.in_words(best)),
-                Wish::Budget(_) => format!("the cheapest here is {}", self.in_words(cheapest)),
+                Wish::Budget(_) | Wish::Best => {
+                    format!("the cheapest here is {}", self.in_words(cheapest))
+                }
             }));
         };
         let certain = match wish {

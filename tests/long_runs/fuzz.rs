@@ -6,7 +6,6 @@ use bubbletouch::kinds;
 use bubbletouch::kinds::breaking_points::BreakingPointsSpec;
 use bubbletouch::kinds::object_detail::{ObjectDetailPlan, ObjectDetailStudySpec};
 use bubbletouch::kinds::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
-use bubbletouch::kinds::speed_accuracy::SpeedAccuracyStudySpec;
 use bubbletouch::kinds::stability::{StabilityPlan, StabilityStudySpec};
 use bubbletouch::kinds::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
 use bubbletouch::mesh::{LengthUnit, MeshFormat};
@@ -120,7 +119,6 @@ fn read_study(input: &[u8]) -> Result<()> {
             ObjectDetailPlan::new(PLACE, spec).map(drop)
         }
         Some("breaking_points") => BreakingPointsSpec::parse(PLACE, text).map(drop),
-        Some("speed_accuracy") => SpeedAccuracyStudySpec::parse(PLACE, text).map(drop),
         Some("reconstruction") => {
             let spec = ReconstructionStudySpec::parse(PLACE, text)?;
             ReconstructionPlan::new(PLACE, spec).map(drop)

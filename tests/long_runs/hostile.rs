@@ -9,7 +9,6 @@ use crate::kinds::Kind;
 use bubbletouch::kinds::breaking_points::BreakingPointsSpec;
 use bubbletouch::kinds::object_detail::ObjectDetailStudySpec;
 use bubbletouch::kinds::reconstruction::ReconstructionStudySpec;
-use bubbletouch::kinds::speed_accuracy::SpeedAccuracyStudySpec;
 use bubbletouch::kinds::stability::StabilityStudySpec;
 use bubbletouch::kinds::whole_body::WholeBodyStudySpec;
 use bubbletouch::scene::SceneSpec;
@@ -113,11 +112,6 @@ fn files() -> Vec<File> {
             "breaking_points",
             Kind::BREAKING_POINTS,
             reader::<BreakingPointsSpec>,
-        ),
-        kind(
-            "speed_accuracy",
-            Kind::SPEED_ACCURACY,
-            reader::<SpeedAccuracyStudySpec>,
         ),
         File {
             name: "scene",

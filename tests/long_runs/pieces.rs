@@ -368,7 +368,6 @@ through_all_faults! {
     a_study_of_a_whole_body_goes_through_all_faults: WHOLE_BODY;
     a_study_of_stability_goes_through_all_faults: STABILITY;
     a_study_of_breaking_points_goes_through_all_faults: BREAKING_POINTS;
-    a_study_of_speed_against_accuracy_goes_through_all_faults: SPEED_ACCURACY;
 }
 
 #[test]
@@ -479,24 +478,6 @@ fn counts_that_no_memory_holds_are_refused_before_it_is_taken_in_studies_of_ever
             "test_touches = 6",
             "test_touches",
             "object_detail.recognition.test_touches",
-        ),
-        (
-            Kind::SPEED_ACCURACY,
-            "\ntouches = 3",
-            "\ntouches",
-            "speed_accuracy.contact.touches",
-        ),
-        (
-            Kind::SPEED_ACCURACY,
-            "stepped_touches = 1",
-            "stepped_touches",
-            "speed_accuracy.contact.stepped_touches",
-        ),
-        (
-            Kind::SPEED_ACCURACY,
-            "training_touches = 10",
-            "training_touches",
-            "speed_accuracy.recognition.training_touches",
         ),
         (Kind::WHOLE_BODY, "steps = 10", "steps", "whole_body.steps"),
         (

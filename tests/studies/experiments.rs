@@ -4,7 +4,6 @@ use bubbletouch::kinds;
 use bubbletouch::kinds::breaking_points::{BreakingPointsPlan, BreakingPointsSpec};
 use bubbletouch::kinds::object_detail::{ObjectDetailPlan, ObjectDetailStudySpec};
 use bubbletouch::kinds::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
-use bubbletouch::kinds::speed_accuracy::{SpeedAccuracyPlan, SpeedAccuracyStudySpec};
 use bubbletouch::kinds::stability::{StabilityPlan, StabilityStudySpec};
 use bubbletouch::kinds::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
 use bubbletouch::random::Seed;
@@ -85,15 +84,6 @@ fn every_experiment_can_run() {
             assert!(!spec.question.is_empty() && !spec.expected.is_empty());
             let plan = BreakingPointsPlan::new(&place, spec).unwrap();
             assert!(plan.ways.len() > 1, "{place} compares something");
-            continue;
-        }
-        if table == Some("speed_accuracy") {
-            let spec = SpeedAccuracyStudySpec::parse(&place, &text).unwrap();
-            assert!(!spec.question.is_empty() && !spec.expected.is_empty());
-            let plan = SpeedAccuracyPlan::new(&place, path.parent().unwrap(), spec).unwrap();
-            let parts = plan.parts();
-            let has_all = parts.contact.is_some() && parts.recognition.is_some();
-            assert!(has_all, "{place}");
             continue;
         }
         if table == Some("stability") {

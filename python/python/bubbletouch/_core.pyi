@@ -824,6 +824,7 @@ def advise(
     table: str | None,
     given: list[str],
     worst: bool,
+    limits: list[tuple[str, float]],
 ) -> str:
     """What the results in a folder advise, as JSON: at least so good, or at most so dear. Raises ValueError."""
 

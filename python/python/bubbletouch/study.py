@@ -155,12 +155,14 @@ def advise(
     table: str | None = None,
     given: Mapping[str, Any] | None = None,
     worst: bool = False,
+    limits: Mapping[str, float] | None = None,
 ) -> dict[str, Any]:
     """Which setting of a study to take, as `bubbletouch advise --json` says: the cheapest that is good enough, or the best that is cheap enough.
 
     results: a Study, or a folder of results. One of accuracy (a share), reach (of another value, in its unit) and budget (the most that it may
     cost, in the unit of its column). value, cost, table: columns and a table's file, if not the usual ones. given: conditions, such as
-    {"noise": 0.05}. worst: one answer for all conditions.
+    {"noise": 0.05}. worst: one answer for all conditions. limits: the largest values of columns of costs, such as {"measurements": 64,
+    "decision_time": 500}; with limits alone, the answer is the best that they allow.
 
     A dict: table, value, cost, and answers, each with a condition and choice, certain and next_up (rows by column, or None), or refused.
     Raises ValueError where no choice is, and where there are no results; OSError for files that cannot be read.
@@ -171,7 +173,7 @@ def advise(
         reach, value = accuracy, "accuracy"
     folder = results.folder if isinstance(results, Study) else Path(results)
     conditions = [f"{name}={of}" for name, of in (given or {}).items()]
-    said: dict[str, Any] = json.loads(_core.advise(folder, reach, budget, value, cost, table, conditions, worst))
+    said: dict[str, Any] = json.loads(_core.advise(folder, reach, budget, value, cost, table, conditions, worst, list((limits or {}).items())))
     return said
 
 

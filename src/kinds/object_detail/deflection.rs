@@ -10,11 +10,10 @@ use crate::random::Seed;
 use crate::study::simulation::draw_touches;
 use crate::study::taxel_array::TaxelArray;
 use crate::world::Placement;
-use glam::DVec3;
 
 /// How far a model's deflections are from the exact ones, mm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(in crate::kinds) struct DeflectionError {
+pub(super) struct DeflectionError {
     /// |δ − δ*|, mean over taxels that either touches.
     pub mean_mm: f64,
     /// 95th percentile over the same.
@@ -32,7 +31,7 @@ impl DeflectionError {
 }
 
 /// All digits of a length in millimetres.
-pub(in crate::kinds) fn in_mm(metres: f64) -> f64 {
+pub(super) fn in_mm(metres: f64) -> f64 {
     1e3 * metres
 }
 
@@ -41,7 +40,7 @@ fn mean(errors: &[f64]) -> f64 {
 }
 
 /// How an object was touched exactly, and what was read.
-pub(in crate::kinds) struct Truth {
+pub(super) struct Truth {
     array: TaxelArray,
     /// Touches that met it.
     pub readings: Vec<Reading>,
@@ -52,7 +51,7 @@ pub(in crate::kinds) struct Truth {
 }
 
 /// One touch, and what exact contact says of it.
-pub(in crate::kinds) struct Reading {
+pub(super) struct Reading {
     patch_from_object: Pose,
     /// Past first contact, metres.
     pub depth: f64,
@@ -102,13 +101,6 @@ impl Truth {
             });
         }
         Ok(truth)
-    }
-
-    /// Takes other deflections for right: those that `feel` says of each touch, by the object's pose under the pressed patch.
-    pub fn feel_instead(&mut self, feel: impl Fn(&Pose) -> Vec<f64>) {
-        for reading in &mut self.readings {
-            reading.deflections = feel(&reading.pressed());
-        }
     }
 
     /// Of a model read where the object was, the patch drawn back by `offset` metres.
@@ -187,11 +179,6 @@ impl Truth {
 }
 
 impl Reading {
-    /// `patch_from_object` where the patch was read: as if it had not travelled and the object had come.
-    pub fn pressed(&self) -> Pose {
-        Pose::from_translation(-self.travel * DVec3::Z).compose(&self.patch_from_object)
-    }
-
     /// |δ − δ*| of each taxel that either touches; `felt` is δ, n_taxels, metres.
     pub fn errors<'a>(&'a self, felt: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
         let pairs = felt.iter().zip(&self.deflections);

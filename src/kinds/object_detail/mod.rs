@@ -25,7 +25,6 @@ mod study;
 mod summary;
 mod variants;
 
-pub(in crate::kinds) use deflection::{DeflectionError, Reading, Truth, in_mm};
 pub use plan::ObjectDetailPlan;
 pub use spec::{DetailMethod, DetailRecognitionSpec, ObjectDetailSpec, ObjectDetailStudySpec};
 pub use study::{DetailRows, ObjectDetailStudy};

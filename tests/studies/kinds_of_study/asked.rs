@@ -7,7 +7,7 @@ use bubbletouch::table::Table;
 use std::fs;
 
 /// Kinds whose tables have choices with a value and a cost, and a cost and a value to ask for.
-const OFFERING: [(Kind, &str, &str, &str); 6] = [
+const OFFERING: [(Kind, &str, &str, &str); 5] = [
     (Kind::RECOGNITION, "cells.csv", "accuracy", "measurements"),
     (Kind::AXES, "cells.csv", "accuracy", "decision_time"),
     (Kind::RECONSTRUCTION, "pareto.csv", "error", "us_per_frame"),
@@ -22,12 +22,6 @@ const OFFERING: [(Kind, &str, &str, &str); 6] = [
         "recognition.csv",
         "accuracy",
         "bytes_per_taxel",
-    ),
-    (
-        Kind::SPEED_ACCURACY,
-        "pareto.csv",
-        "accuracy",
-        "training_time",
     ),
 ];
 
@@ -228,93 +222,6 @@ fn studies_of_two_kinds_have_nothing_to_compare() {
 }
 
 #[test]
-fn the_advisor_answers_from_what_was_measured_and_says_what_is_nearest() {
-    let case = Case::new();
-    let cell = "pitch_mm,n_taxels,tolerance_mm,ensemble,ratio,measurements,classifier";
-    let score = "n_objects,n_training,n_test,accuracy,accuracy_low,accuracy_high,n_capped";
-    let times = "sense_us,project_us,classify_us,decision_us,fit_s";
-    let chain = |m: usize, accuracy: &str, decision_us: f64| {
-        let ratio = 256 / m;
-        format!(
-            "8.0,256,1.0,block_average,{ratio},{m},linear_svm,4,96,48,{accuracy},0,1,1,1,{decision_us},0.1\n"
-        )
-    };
-    let rows = chain(4, "0.6,0.55,0.65", 10.0)
-        + &chain(16, "0.9,0.87,0.93", 50.0)
-        + &chain(64, "0.97,0.95,0.98", 200.0);
-    fs::create_dir(case.path("results")).unwrap();
-    case.file("results/study.toml", "[speed_accuracy]\n");
-    case.file("results/recognition.csv", format!("{cell},{score}\n"));
-    case.file(
-        "results/recognition_timing.csv",
-        format!("{cell},{times}\n"),
-    );
-    case.file(
-        "results/pareto.csv",
-        format!("{cell},{score},{times}\n{rows}"),
-    );
-    let (said, _) = case.succeeds(&["advise", "results", "--accuracy", "0.9"]);
-    assert!(said.starts_with("compression 16:1\n"), "{said}");
-    assert!(
-        said.contains("0.870 to 0.930") && said.contains("time of a decision 50 µs"),
-        "{said}"
-    );
-    assert!(
-        said.contains("gains 0.070 and costs 150 µs more (4.0 times as much)"),
-        "{said}"
-    );
-    assert!(
-        said.contains("With the whole interval good enough: accuracy 0.970"),
-        "{said}"
-    );
-    let (said, _) = case.succeeds(&["advise", "results", "--budget", "49", "--json"]);
-    let advice: serde_json::Value = serde_json::from_str(&said).unwrap();
-    assert_eq!(advice["cost"], "decision_us");
-    let answer = &advice["answers"][0];
-    assert_eq!(answer["choice"]["measurements"], 4.0);
-    assert_eq!(answer["next_up"]["decision_us"], 50.0);
-    for (arguments, wanted) in [
-        (
-            &["advise", "results", "--accuracy", "0.99"][..],
-            "the best here is accuracy 0.970",
-        ),
-        (
-            &["advise", "results", "--budget", "5"],
-            "the cheapest here is accuracy 0.600",
-        ),
-        (
-            &["advise", "results", "--budget", "5", "--cost", "taxels"],
-            "taxels 256",
-        ),
-        (
-            &["advise", "results", "--budget", "5", "--given", "noise=0"],
-            "made in one condition",
-        ),
-        (&["advise", "results", "--accuracy", "1.5"], "at most 1"),
-        (
-            &["advise", "nowhere", "--accuracy", "0.5"],
-            "nowhere/study.toml",
-        ),
-        (&["advise", "results"], "--accuracy"),
-    ] {
-        let output = case.run(arguments);
-        let error = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {error}");
-        assert!(error.contains(wanted), "{arguments:?}: {error}");
-    }
-    for (columns, said) in [
-        ("a,b", "line 1: column \"a\""),
-        ("chart,cost_us", "line 1: column \"chart\""),
-    ] {
-        case.file("results/pareto.csv", format!("{columns}\n1,2\n"));
-        let output = case.run(&["advise", "results", "--accuracy", "0.5"]);
-        let error = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{error}");
-        assert!(error.contains(said), "{error}");
-    }
-}
-
-#[test]
 fn the_advisor_reads_a_study_that_recognises_objects() {
     let case = Case::new();
     case.file(
@@ -326,6 +233,66 @@ fn the_advisor_reads_a_study_that_recognises_objects() {
     case.succeeds(&["run", "study.toml", "--out", "results"]);
     let (said, _) = case.succeeds(&["advise", "results", "--budget", "1e9"]);
     assert!(said.contains("Nothing here is better"), "{said}");
+    // Every requirement is a filter of the same front.
+    let all = |more: &[&str]| {
+        let (said, _) = case.succeeds(&[&["advise", "results", "--json"], more].concat());
+        let advice: serde_json::Value = serde_json::from_str(&said).unwrap();
+        advice["answers"][0]["choice"]["measurements"].as_f64()
+    };
+    assert_eq!(all(&["--max-measurements", "8"]), Some(8.0));
+    assert_eq!(
+        all(&["--max-measurements", "31", "--accuracy", "0.1"]),
+        Some(8.0)
+    );
+    let (m, taxels) = ("measurements", ["--max-taxels", "64"]);
+    assert_eq!(
+        all(&[
+            &taxels[..],
+            &[
+                "--max-answer-ms",
+                "1e6",
+                "--max-training-s",
+                "1e6",
+                "--reach",
+                "0.01",
+                "--cost",
+                m
+            ]
+        ]
+        .concat()),
+        Some(8.0)
+    );
+    for (arguments, wanted) in [
+        (
+            &["--max-measurements", "7"][..],
+            "measurements a decision 7; the smallest here is measurements a decision 8",
+        ),
+        (
+            &["--accuracy", "0.1", "--budget", "7", "--cost", m],
+            "the smallest here is measurements a decision 8",
+        ),
+        (&["--max-taxels", "-1"], "a positive number"),
+        (&["--accuracy", "1.5"], "at most 1"),
+        (&[], "--accuracy"),
+        (
+            &["--accuracy", "0.5", "--reach", "0.5"],
+            "cannot be used with",
+        ),
+    ] {
+        let output = case.run(&[&["advise", "results"], arguments].concat());
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {error}");
+        assert!(error.contains(wanted), "{arguments:?}: {error}");
+    }
+    case.file("old/study.toml", "question = \"?\"\n[speed_accuracy]\n");
+    for arguments in [
+        &["run", "old/study.toml"][..],
+        &["advise", "old", "--accuracy", "0.5"],
+    ] {
+        let error = refused(&case, arguments);
+        let wanted = "key speed_accuracy: a kind of study that exists no more; a recognition study";
+        assert!(error.contains(wanted), "{error}");
+    }
 }
 
 #[test]

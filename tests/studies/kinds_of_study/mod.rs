@@ -4,6 +4,5 @@ mod asked;
 mod breaking_points;
 mod object_detail;
 mod reconstruction;
-mod speed_accuracy;
 mod stability;
 mod whole_body;

@@ -78,38 +78,3 @@ kernel!(
     16,
     "Presses spheres in singles, sixteen taxels at once."
 );
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn both_are_the_formula() {
-        let places: Vec<f64> = (0..32).map(|k| 2e-3 * (f64::from(k) - 15.5)).collect();
-        let singles: Vec<f32> = places.iter().map(|&place| place as f32).collect();
-        let spheres = [
-            [3e-3, -1e-3, 0.02, 0.022],
-            [-8e-3, 5e-3, 0.007, 0.01],
-            [0.0, 0.0, 0.05, 0.04],
-        ];
-        let (mut exact, mut rounded) = (vec![1.0; 32 * 32], vec![1.0; 32 * 32]);
-        press_f64(&spheres, &places, &mut exact);
-        press_f32(&spheres, &singles, &mut rounded);
-        let mut n_touched = 0;
-        for (taxel, (exact, rounded)) in exact.iter().zip(&rounded).enumerate() {
-            let (x, y) = (places[taxel % 32], places[taxel / 32]);
-            let needed = spheres.iter().map(|[cx, cy, h, s]| {
-                let left = s * s - (cx - x).powi(2) - (cy - y).powi(2);
-                if left > 0.0 { left.sqrt() - h } else { 0.0 }
-            });
-            let needed = needed.fold(0.0, f64::max);
-            n_touched += usize::from(needed > 0.0);
-            assert!((exact - needed).abs() < 1e-16, "{exact} {needed}");
-            assert!(
-                (f64::from(*rounded) - needed).abs() < 1e-7,
-                "{rounded} {needed}"
-            );
-        }
-        assert!(n_touched > 30, "{n_touched}");
-    }
-}
