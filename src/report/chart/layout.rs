@@ -1,10 +1,10 @@
 //! Pixels of a chart: heading above, panels below it side by side and row by row, ticks and titles around them.
 
+use super::legend::{Heading, LEFT, LegendEntry, RIGHT};
 use super::scale::{Scale, Tick, thin};
 use super::view::View;
 use crate::report::colours::{GRID, INK, MUTED};
 use crate::report::drawing::{Align, Area, Drawing, Stroke, TextStyle};
-use crate::report::legend::{Heading, LEFT, LegendEntry, RIGHT};
 use crate::report::text_width::{shorten, text_width, wrap};
 
 /// Letters of tick labels.

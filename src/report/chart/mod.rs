@@ -6,6 +6,7 @@
 
 mod front;
 mod layout;
+mod legend;
 mod marks;
 mod rules;
 mod scale;

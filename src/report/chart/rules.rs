@@ -1,9 +1,9 @@
 //! Lines across a chart: chance, limits, published values.
 
+use super::legend::LegendEntry;
 use super::view::View;
 use crate::report::colours::{INK, MUTED, PAPER};
 use crate::report::drawing::{Area, Drawing, Point, Stroke};
-use crate::report::legend::LegendEntry;
 use crate::table::{Along, At, Rule};
 
 /// How rules are told apart, in their order.

@@ -1,12 +1,12 @@
 //! Tiles: a field at each x and y, filled by an outcome or a number.
 
 use super::layout::{Layout, TICK};
+use super::legend::LegendEntry;
 use super::rules;
 use super::view::{Place, View};
 use crate::error::Result;
 use crate::report::colours::{INK, LINES, PAPER, Rgb, text_on, tint};
 use crate::report::drawing::{Align, Area, Drawing, Stroke, TextStyle};
-use crate::report::legend::LegendEntry;
 use crate::report::swept::Setting;
 use crate::report::text_width::text_width;
 use crate::table::{Data, Role, Scale, Value};

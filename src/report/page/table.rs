@@ -25,16 +25,17 @@ struct Shown<'a> {
 
 /// Returns a table as HTML of at most `most_letters` bytes; if all rows are longer, the first rows.
 pub(super) fn table_html(table: &Table, most_letters: usize) -> TableHtml {
-    let fields = fields(table);
+    let mut fields = fields(table).enumerate().peekable();
+    let first = fields.peek().map(|(_, fields)| fields.clone());
     let shown = shown(table);
     let mut rows = String::new();
     let mut first_rows = 0;
     let mut n_rows = 0;
-    for (row, fields) in fields.iter().enumerate() {
+    for (row, fields) in fields {
         if row == N_FIRST_ROWS {
             first_rows = rows.len();
         }
-        let cells = shown.iter().map(|one| one.cell(table, row, fields));
+        let cells = shown.iter().map(|one| one.cell(table, row, &fields));
         rows += &format!("<tr data-row={row}>{}</tr>\n", cells.collect::<String>());
         n_rows += 1;
         if rows.len() > most_letters && row >= N_FIRST_ROWS {
@@ -45,7 +46,7 @@ pub(super) fn table_html(table: &Table, most_letters: usize) -> TableHtml {
     }
     let names = table.columns.iter().map(|column| &column.name[..]);
     let names = escape(&names.collect::<Vec<_>>().join(","));
-    let heads: String = shown.iter().map(|one| one.head(fields.first())).collect();
+    let heads: String = shown.iter().map(|one| one.head(first.as_ref())).collect();
     let (file, title) = (escape(table.file), escape(table.title));
     let html = format!(
         "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"{title}\"><table data-table=\"{file}\" data-columns=\"{names}\">\
@@ -55,19 +56,18 @@ pub(super) fn table_html(table: &Table, most_letters: usize) -> TableHtml {
 }
 
 /// Returns the fields of the table's file, row by row; of a table without a file, its values as a file has them.
-fn fields(table: &Table) -> Vec<Vec<String>> {
+fn fields(table: &Table) -> Box<dyn Iterator<Item = Vec<String>> + '_> {
     if table.csv.is_empty() {
         let field = |data: &Data, row| {
             let value = data.value(row);
             value.map_or_else(String::new, |value| value.to_string())
         };
-        let row = |row| table.data.iter().map(|data| field(data, row)).collect();
-        return (0..table.n_rows).map(row).collect();
+        let row = move |row| table.data.iter().map(|data| field(data, row)).collect();
+        return Box::new((0..table.n_rows).map(row));
     }
-    let mut reader = csv::Reader::from_reader(&table.csv[..]);
-    let rows = reader.records().filter_map(Result::ok);
-    rows.map(|row| row.iter().map(str::to_owned).collect())
-        .collect()
+    let rows = csv::Reader::from_reader(&table.csv[..]).into_records();
+    let rows = rows.filter_map(Result::ok);
+    Box::new(rows.map(|row| row.iter().map(str::to_owned).collect()))
 }
 
 /// Returns the columns of the HTML: those of the file without the ends of intervals, which stand in the cells of their values.
