@@ -11,14 +11,12 @@ use bubbletouch::study::journal::{Identity, JOURNAL_FILE, Journal};
 use bubbletouch::study::pieces::{
     NamedPiece, Part, PieceManner, PieceRows, PieceStudy, PiecesLeft, PiecesRun,
 };
-use bubbletouch::study::progress::{Progress, Silent};
-use bubbletouch::study::time_left::Piece;
+use bubbletouch::study::progress::Silent;
 use bubbletouch::study::{Plan, StudySpec, draw_touches, load_objects};
 use bubbletouch::table::Table;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
-use std::sync::Mutex;
 use std::time::Instant;
 
 const N_PIECES: usize = 10_000;
@@ -52,7 +50,7 @@ impl PieceStudy for Nothing {
     type Rows = Rows;
 
     fn pieces(&self) -> Vec<NamedPiece> {
-        let piece = |n| NamedPiece::new(name(n), n, Piece::of_stage(0, 1.0));
+        let piece = |n| NamedPiece::new(name(n), n);
         (0..N_PIECES).map(piece).collect()
     }
 
@@ -109,20 +107,6 @@ n_neighbours = 1
 features = ["raw", "unit_norm"]
 test_fraction = 0.5
 "#;
-
-/// Adds up what work says that it took.
-#[derive(Default)]
-struct Worked(Mutex<f64>);
-
-impl Progress for Worked {
-    fn stage(&self, _name: &str, _total: u64) {}
-    fn advance(&self, _n: u64) {}
-    fn finish(&self, _message: &str) {}
-
-    fn worked(&self, _piece: &Piece, took_s: f64) {
-        *self.0.lock().expect("no thread panics") += took_s;
-    }
-}
 
 /// Lines up what was measured: microseconds each.
 fn say(what: &str, seconds: f64, n: usize) {
@@ -183,15 +167,9 @@ fn time_cells(folder: &Path) -> Result<()> {
     println!("{n_items} work items");
     say("a cell, planned", start.elapsed().as_secs_f64(), n_cells);
     for what in ["done and kept", "read and tabulated"] {
-        let (seconds, worked) = time_run(folder, &study)?;
         say(
-            &format!("a cell, {what}: touch, measure, learn"),
-            worked,
-            n_cells,
-        );
-        say(
-            &format!("a cell, {what}: the engine"),
-            seconds - worked,
+            &format!("a cell, {what}"),
+            time_run(folder, &study)?,
             n_cells,
         );
     }
@@ -206,17 +184,16 @@ fn time_cells(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Seconds of a run on this thread, and those that its work says it took.
-fn time_run(folder: &Path, study: &RecognitionStudy) -> Result<(f64, f64)> {
+/// Returns the seconds of a run on this thread.
+fn time_run(folder: &Path, study: &RecognitionStudy) -> Result<f64> {
     let start = Instant::now();
     let journal = journal(folder, "cells")?;
-    let worked = Worked::default();
     let manner = PieceManner {
         journal: &journal,
         fail_fast: false,
         retries: true,
         part: Part::All,
-        progress: &worked,
+        progress: &Silent,
     };
     let pieces = study.pieces();
     let (rows, failures) = PiecesRun::new(study, &pieces, &manner).run()?;
@@ -224,8 +201,7 @@ fn time_run(folder: &Path, study: &RecognitionStudy) -> Result<(f64, f64)> {
     let outcome = study.outcome(rows)?;
     journal.sync()?;
     assert_eq!(outcome.summary.len(), study.n_cells());
-    let worked = *worked.0.lock().expect("no thread panics");
-    Ok((start.elapsed().as_secs_f64(), worked))
+    Ok(start.elapsed().as_secs_f64())
 }
 
 fn main() -> Result<()> {

@@ -67,7 +67,7 @@ enum Command {
     Compare(compare::Args),
     /// Check the files of a folder of results, and run a few of its work items again, compared byte by byte
     Verify(verify::Args),
-    /// Say what a study of any kind would do: configurations, touches, memory and time, without running it
+    /// Print the configurations, touches and memory of a study without running it
     Plan(plan::Args),
     /// Say which setting is the cheapest that is accurate enough, or the most accurate that is cheap enough
     Advise(advise::Args),

@@ -1,9 +1,19 @@
-//! `bubbletouch plan`: what a study would do, without doing it.
+//! `bubbletouch plan`: the size of a study, without a run of it.
 
 use super::memory_limit::MemoryLimit;
 use super::streams::say;
 use super::study_args::StudyArgs;
-use bubbletouch::Result;
+use bubbletouch::kinds::AnyStudy;
+use bubbletouch::report::run_clock::RunClock;
+
+use bubbletouch::study::pieces::PieceManner;
+use bubbletouch::study::progress::Progress;
+use bubbletouch::{Error, Result};
+use bubbletouch_sim::spelling::duration;
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -11,10 +21,133 @@ pub struct Args {
     study: StudyArgs,
     #[command(flatten)]
     memory: MemoryLimit,
+    /// Run the study for some seconds, keep nothing, and estimate the time of the whole run
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = "2",
+        value_parser = seconds
+    )]
+    time: Option<f64>,
 }
 
-pub fn plan(Args { study, memory }: &Args) -> Result<()> {
+/// Parses a positive number of seconds, at most a day.
+fn seconds(text: &str) -> std::result::Result<f64, String> {
+    let parsed = text.parse().ok();
+    let within = parsed.filter(|&seconds: &f64| seconds > 0.0 && seconds <= 86_400.0);
+    within.ok_or_else(|| "seconds, more than 0 and at most 86400".to_owned())
+}
+
+pub fn plan(
+    Args {
+        study,
+        memory,
+        time,
+    }: &Args,
+) -> Result<()> {
     let loaded = study.load(&study.default_results()?, memory.bytes()?)?;
     say(format_args!("{}: {}", study.name()?, loaded.plan()?))?;
-    study.mixed_touches()?.map_or(Ok(()), say)
+    if let Some(mixed) = study.mixed_touches()? {
+        say(mixed)?;
+    }
+    match time {
+        None => Ok(()),
+        Some(seconds) => say(format_args!("  time     {}", sample(loaded, *seconds)?)),
+    }
+}
+
+/// Runs the beginning of a study for `seconds`, keeps nothing, and returns what it did in words. The run goes on until the process ends.
+///
+/// # Errors
+/// Those of the work items that ran.
+fn sample(study: Box<dyn AnyStudy>, seconds: f64) -> Result<String> {
+    let sample = Arc::new(Sample::default());
+    let (sender, ended) = mpsc::channel();
+    let progress = sample.clone();
+    thread::spawn(move || {
+        let outcome = study.run(&PieceManner::whole(progress.as_ref()));
+        // Nobody listens any more once the sample is over.
+        let _ = sender.send(outcome.map(drop));
+    });
+    match ended.recv_timeout(Duration::from_secs_f64(seconds)) {
+        Ok(outcome) => outcome?,
+        Err(RecvTimeoutError::Timeout) => {}
+        Err(RecvTimeoutError::Disconnected) => {
+            return Err(Error::input(
+                "--time",
+                "a sample",
+                "a study that does not panic",
+            ));
+        }
+    }
+    Ok(sample.counts().describe(Instant::now(), seconds))
+}
+
+/// Listener that counts the work items, and the steps of the current stage.
+#[derive(Default)]
+struct Sample(Mutex<Counts>);
+
+#[derive(Default)]
+struct Counts {
+    clock: Option<RunClock>,
+    stage: String,
+    n_steps: u64,
+    n_done: u64,
+}
+
+impl Sample {
+    fn counts(&self) -> MutexGuard<'_, Counts> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Progress for Sample {
+    fn stage(&self, name: &str, total: u64) {
+        let mut counts = self.counts();
+        (counts.stage, counts.n_steps, counts.n_done) = (name.to_owned(), total, 0);
+    }
+
+    fn advance(&self, n: u64) {
+        self.counts().n_done += n;
+    }
+
+    fn expect(&self, n_items: usize) {
+        self.counts().clock = Some(RunClock::start(n_items));
+    }
+
+    fn item_finished(&self) {
+        if let Some(clock) = &mut self.counts().clock {
+            clock.item_finished();
+        }
+    }
+
+    fn finish(&self, _message: &str) {}
+}
+
+impl Counts {
+    /// Returns the estimated time of the whole run and the sample behind it, in words.
+    fn describe(&self, now: Instant, seconds: f64) -> String {
+        let estimate = self.clock.as_ref().and_then(|clock| {
+            let (n_finished, n_items) = clock.counts();
+            let (elapsed_s, left_s) = (clock.elapsed_s(now), clock.left_s(now)?);
+            let total = duration((elapsed_s + left_s).max(1.0));
+            Some(format!(
+                "about {total} ({n_finished} of {n_items} work items took {elapsed_s:.1} s)"
+            ))
+        });
+        estimate.unwrap_or_else(|| {
+            let Self {
+                stage,
+                n_steps,
+                n_done,
+                ..
+            } = self;
+            let longer = 10.0 * seconds;
+            format!(
+                "no work item finished in {seconds} s ({stage}: {n_done} of {n_steps}); --time={longer} samples longer"
+            )
+        })
+    }
 }

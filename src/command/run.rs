@@ -25,9 +25,6 @@ pub struct Args {
     /// Do only part I of N of the work, for one of N processes or machines; `bubbletouch merge` puts them together
     #[arg(long, value_name = "I/N", conflicts_with = "chart_format")]
     shard: Option<Shard>,
-    /// End as if killed when so many work items are kept: to try what is left of a run
-    #[arg(long, value_name = "N", hide = true, default_value_t = 0)]
-    abort_after: usize,
     /// Run anew, unless the run before was interrupted
     #[arg(long, hide = true)]
     demonstration: bool,
@@ -46,7 +43,6 @@ pub fn run(args: &Args) -> Result<()> {
         let going_on = format!("going on: {n_before} of {n_all} work items were finished before");
         progress.finish(&going_on);
     }
-    journal.abort_after(args.abort_after);
     let outcome = study.run(&PieceManner {
         journal: &journal,
         fail_fast: args.fail_fast,

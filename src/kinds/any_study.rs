@@ -11,7 +11,7 @@ use crate::table::Table;
 use std::path::Path;
 
 /// A study that is loaded and checked.
-pub trait AnyStudy {
+pub trait AnyStudy: Send {
     /// What its results depend on.
     fn identity(&self) -> &Identity;
 

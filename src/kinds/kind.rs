@@ -98,7 +98,7 @@ impl<R: Columns> AnyFile for File<R> {
 pub type Files = &'static [&'static dyn AnyFile];
 
 /// A kind of study. The engine does all else: it runs, keeps, resumes, deals out, merges, plans, verifies and reports it.
-pub trait Kind: PieceStudy + Findings + Sized + Sync + 'static {
+pub trait Kind: Send + PieceStudy + Findings + Sized + Sync + 'static {
     /// Which it is.
     const ABOUT: About;
 

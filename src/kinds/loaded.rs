@@ -101,10 +101,8 @@ impl<K: Kind> AnyStudy for Loaded<K> {
     fn plan(&self) -> Result<String> {
         let scale = self.kind.scale();
         let n_threads = threads_within(&scale, self.memory)?;
-        let manner = PieceManner::whole(&Silent);
-        let work = PiecesRun::new(&self.kind, &self.pieces, &manner).workload();
-        let estimate = scale.estimate(self.pieces.len(), &work, n_threads);
-        Ok(format!("{}\n{estimate}", self.facts.question))
+        let lines = scale.describe(self.pieces.len(), n_threads);
+        Ok(format!("{}\n{lines}", self.facts.question))
     }
 
     fn n_left(&self, part: Part, journal: &Journal) -> usize {
@@ -118,7 +116,6 @@ impl<K: Kind> AnyStudy for Loaded<K> {
     fn run(&self, manner: &PieceManner) -> Result<Outcome> {
         let (finished, mut tables) = within_memory(&self.kind.scale(), self.memory, || {
             let pieces = PiecesRun::new(&self.kind, &self.pieces, manner);
-            manner.progress.expect(&pieces.workload());
             let (rows, failures) = pieces.run()?;
             Ok((failures, self.kind.tables(rows)?))
         })?;

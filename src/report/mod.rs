@@ -28,7 +28,7 @@ pub mod pressure_map;
 pub mod progress;
 pub mod recognition;
 pub mod recording;
-mod run_clock;
+pub mod run_clock;
 pub mod scene_files;
 pub mod scene_summary;
 pub(crate) mod shaded_view;

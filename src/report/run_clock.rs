@@ -1,47 +1,51 @@
-//! How long a run has gone on, and how long it still takes.
+//! Elapsed and remaining time of a run, from the number of its finished work items.
 
-use crate::study::time_left::{Piece, TimeLeft};
 use std::time::Instant;
 
-/// Starts when a run says what it will do.
-#[derive(Debug)]
-pub(super) struct RunClock {
+/// Clock of a run, started when the run announces its work items.
+#[derive(Clone, Debug)]
+pub struct RunClock {
     start: Instant,
-    /// When work was last told of.
-    told: Instant,
-    left: TimeLeft,
+    n_items: usize,
+    n_finished: usize,
 }
 
-/// Of the time in which nothing was told, the share that is left at least: what takes longer than planned is not over yet.
-const OVERDUE: f64 = 0.2;
-
 impl RunClock {
-    /// See [`Progress::expect`](crate::study::progress::Progress::expect).
-    pub fn expect(work: &[Piece]) -> Self {
-        let now = Instant::now();
+    /// Starts the clock of a run with `n_items` work items.
+    pub fn start(n_items: usize) -> Self {
         Self {
-            start: now,
-            told: now,
-            left: TimeLeft::new(work, rayon::current_num_threads()),
+            start: Instant::now(),
+            n_items,
+            n_finished: 0,
         }
     }
 
-    /// See [`Progress::worked`](crate::study::progress::Progress::worked).
-    pub fn worked(&mut self, piece: &Piece, took_s: f64) {
-        self.told = Instant::now();
-        self.left.worked(piece, took_s);
+    /// Counts a finished work item.
+    pub fn item_finished(&mut self) {
+        self.n_finished += 1;
     }
 
-    /// Seconds since the run said what it will do.
+    /// Returns the numbers of finished and of all work items.
+    pub fn counts(&self) -> (usize, usize) {
+        (self.n_finished, self.n_items)
+    }
+
+    /// Seconds since the start, at the instant `now`.
     pub fn elapsed_s(&self, now: Instant) -> f64 {
         now.duration_since(self.start).as_secs_f64()
     }
 
-    /// Seconds until it ends: what was left when work was last told of runs down from then on.
-    pub fn left_s(&self, now: Instant) -> f64 {
-        let silent_s = now.duration_since(self.told).as_secs_f64();
-        let left_s = self.left.left_s();
-        (left_s - silent_s).max(OVERDUE * silent_s).min(left_s)
+    /// Returns the estimated seconds until the last work item is finished, if each pending one takes as long as the finished ones did on
+    /// average; `None` while nothing is known.
+    pub fn left_s(&self, now: Instant) -> Option<f64> {
+        let n_pending = self.n_items.saturating_sub(self.n_finished);
+        match (n_pending, self.n_finished) {
+            (0, _) => Some(0.0),
+            (_, 0) => None,
+            (n_pending, n_finished) => {
+                Some(self.elapsed_s(now) * n_pending as f64 / n_finished as f64)
+            }
+        }
     }
 }
 
@@ -51,24 +55,15 @@ mod tests {
     use std::time::Duration;
 
     #[test]
-    fn what_is_left_runs_down_while_nothing_is_told_but_not_to_nothing() {
-        let half = Piece::one_by_one(0, 10.0);
-        let start = Instant::now();
-        let after = |seconds: u64| start + Duration::from_secs(seconds);
-        let mut running = RunClock {
-            start,
-            told: start,
-            left: TimeLeft::new(&[half, half], rayon::current_num_threads()),
-        };
-        let left_s = |running: &RunClock, seconds| running.left_s(after(seconds));
-        assert_eq!(left_s(&running, 0), 20.0);
-        assert_eq!(left_s(&running, 8), 12.0);
-        assert_eq!(left_s(&running, 30), 30.0 * OVERDUE);
-        running.told = after(30);
-        running.left.worked(&half, half.spent_s(30.0));
-        let told_s = left_s(&running, 30);
-        assert!(told_s > 20.0, "{told_s}");
-        assert_eq!(left_s(&running, 35), told_s - 5.0);
-        assert_eq!(running.elapsed_s(after(35)), 35.0);
+    fn pending_items_are_assumed_to_take_as_long_as_finished_ones() {
+        let mut clock = RunClock::start(4);
+        let after = |clock: &RunClock, seconds| clock.start + Duration::from_secs(seconds);
+        assert_eq!(clock.left_s(after(&clock, 3)), None);
+        clock.item_finished();
+        assert_eq!(clock.left_s(after(&clock, 5)), Some(15.0));
+        (0..3).for_each(|_| clock.item_finished());
+        assert_eq!(clock.left_s(after(&clock, 7)), Some(0.0));
+        assert_eq!(clock.elapsed_s(after(&clock, 7)), 7.0);
+        assert_eq!(RunClock::start(0).left_s(clock.start), Some(0.0));
     }
 }

@@ -19,9 +19,6 @@ use ndarray::ArrayViewMut2;
 use rand::Rng;
 use rayon::prelude::*;
 
-/// Seconds to bring a hand to the skin once, and of a moving one to make its spheres.
-const PLACE_HAND_S: f64 = 6e-5;
-
 /// Human touches, kind by kind.
 #[derive(Clone, Debug)]
 pub struct HumanTouches {
@@ -136,10 +133,6 @@ impl TouchSet for HumanTouches {
 
     fn samples(&self, plan: &Plan, _sweep: &Sweep) -> Result<Samples> {
         human_samples(plan, self)
-    }
-
-    fn place_s(&self) -> f64 {
-        PLACE_HAND_S * self.touches.len() as f64
     }
 
     fn settings(&self) -> Vec<(String, String)> {

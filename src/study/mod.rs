@@ -65,7 +65,6 @@ pub mod table;
 pub(crate) mod tabulate;
 pub mod taxel_array;
 mod tilted_copies;
-pub mod time_left;
 mod touch_files;
 pub(crate) mod touch_set;
 mod training;

@@ -614,10 +614,6 @@ impl TouchSet for RecordedFrames {
         })
     }
 
-    fn place_s(&self) -> f64 {
-        0.0
-    }
-
     fn settings(&self) -> Vec<(String, String)> {
         let row = |name: &str, value: String| (name.to_owned(), value);
         let names = self.class_names();

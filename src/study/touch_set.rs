@@ -91,9 +91,6 @@ pub trait TouchSet: Sync {
         0
     }
 
-    /// About how long one core takes to bring what touches to an array, once each touch; seconds, right within a factor of three.
-    fn place_s(&self) -> f64;
-
     /// What a report says about them: name and value.
     fn settings(&self) -> Vec<(String, String)>;
 }
@@ -146,16 +143,6 @@ impl TouchSet for Vec<TouchedObject> {
         let touches = self.iter().flat_map(|t| &t.touches);
         let limit = saturation_limit(stroke);
         touches.filter(|touch| touch.depth > limit).count()
-    }
-
-    fn place_s(&self) -> f64 {
-        self.iter()
-            .map(|t| {
-                let model = &t.object.model;
-                let seconds = 5e-9 * model.n_spheres() as f64 + 2.5e-8 * model.n_triangles() as f64;
-                seconds * t.touches.len() as f64
-            })
-            .sum()
     }
 
     fn settings(&self) -> Vec<(String, String)> {

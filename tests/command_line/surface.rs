@@ -36,7 +36,7 @@ fn line<'a>(said: &'a str, first: &str) -> Vec<&'a str> {
 }
 
 #[test]
-fn a_plan_says_cells_touches_memory_and_time_and_writes_nothing() {
+fn a_plan_prints_items_touches_and_memory_and_writes_nothing() {
     let case = Case::new();
     case.file("study.toml", STUDY);
     let (said, error) = case.succeeds(&["plan", "study.toml", "--threads", "2"]);
@@ -51,12 +51,30 @@ fn a_plan_says_cells_touches_memory_and_time_and_writes_nothing() {
         line(&said, "items"),
         ["items", "38,", "of", "12", "configurations"]
     );
-    assert_eq!(line(&said, "memory").last(), Some(&"MiB"));
-    assert!(
-        line(&said, "time").join(" ").contains("on 2 threads"),
-        "{said}"
-    );
+    assert_eq!(line(&said, "memory")[3..], ["MiB", "on", "2", "threads"]);
+    assert!(!said.contains("time"), "{said}");
     assert_eq!(error, "");
+    assert_eq!(case.names(), ["study.toml"]);
+}
+
+#[test]
+fn a_plan_estimates_the_time_from_a_sample_and_writes_nothing() {
+    let case = Case::new();
+    case.file("study.toml", STUDY);
+    let sampled = |option| {
+        let (said, _) = case.succeeds(&["plan", "study.toml", option]);
+        line(&said, "time").join(" ")
+    };
+    // 38 work items take less than a minute, and cannot all take less than a microsecond.
+    let whole = sampled("--time=60");
+    assert!(whole.contains("(38 of 38 work items took "), "{whole}");
+    let begun = sampled("--time=0.000001");
+    assert!(begun.contains("no work item finished in "), "{begun}");
+    assert!(begun.contains("--time=0.00001 samples longer"), "{begun}");
+    for wrong in ["--time=0", "--time=nan", "--time=-1", "--time=long"] {
+        let output = case.run(&["plan", "study.toml", wrong]);
+        assert_eq!(output.status.code(), Some(2), "{wrong}");
+    }
     assert_eq!(case.names(), ["study.toml"]);
 }
 

@@ -19,8 +19,7 @@ struct Faults {
     case: Case,
 }
 
-/// No stage goes beyond its total; from the first piece on a run says how long it will take, and at its end nothing of what was
-/// planned is left.
+/// Asserts that no stage goes beyond its total, and that no time is left at the end.
 fn assert_progress_ends(said: &str) {
     let events = said.lines().map(|line| serde_json::from_str(line).unwrap());
     let progress = events.filter(|event: &serde_json::Value| event["event"] == "progress");
@@ -29,12 +28,9 @@ fn assert_progress_ends(said: &str) {
     for event in &progress {
         assert!(of(event, "done") <= of(event, "total"), "{event}");
     }
-    let left: Vec<f64> = progress
-        .iter()
-        .map(|event| event["run_left_s"].as_f64().expect("seconds left"))
-        .collect();
-    // A study of stability takes no millisecond here.
-    assert!(left.len() > 1 && left[0] >= 0.0, "{left:?}");
+    let left = progress.iter().map(|event| event["run_left_s"].as_f64());
+    let left: Vec<f64> = left.flatten().collect();
+    assert!(left.iter().all(|&seconds| seconds >= 0.0), "{left:?}");
     assert_eq!(left.last(), Some(&0.0), "{left:?}");
 }
 
@@ -57,11 +53,11 @@ fn a_study_of_every_kind_is_planned_and_its_plan_counts_its_pieces() {
             "{said}{error}"
         );
         assert!(!case.path("results").exists(), "a plan writes nothing");
-        for word in ["objects", "touches", "memory", "time"] {
+        for word in ["objects", "touches", "memory"] {
             assert!(!planned(&said, word).is_empty(), "{said}");
         }
         assert!(
-            planned(&said, "time").join(" ").contains("on 1 thread ("),
+            planned(&said, "memory").join(" ").ends_with("on 1 thread"),
             "{said}"
         );
         case.succeeds(&["run", "study.toml", "--out", "whole"]);
@@ -105,7 +101,7 @@ impl Faults {
         }
     }
 
-    /// Kills at work items until there were enough, each of a run that went on from the last.
+    /// Kills runs after some work items until there were enough kills; each run goes on from the last.
     fn is_killed_at_work_items_and_does_none_twice(&self) {
         let mut rng = ChaCha8Rng::seed_from_u64(8);
         let n_pieces = self.n_pieces();
@@ -117,21 +113,20 @@ impl Faults {
             let mut n_left = n_pieces;
             while n_left > 0 {
                 let n = rng.gen_range(1..=n_left.min(1 + n_pieces / 4));
-                let kill = n.to_string();
-                let run = [
-                    "run",
-                    "study.toml",
-                    "--out",
-                    &folder,
-                    "--abort-after",
-                    &kill,
-                ];
-                let output = self.case.run(&run);
-                assert!(!output.status.success(), "{}", said(&output));
-                n_left -= n;
+                let run = ["run", "study.toml", "--out", &folder];
+                let mut run = start(&self.case, &run);
+                // A short run may end before it is killed.
+                while pieces(&journal).len() < n_pieces - n_left + n
+                    && run.try_wait().unwrap().is_none()
+                {
+                    sleep(Duration::from_millis(1));
+                }
+                run.kill().unwrap();
+                run.wait().unwrap();
                 n_kills += 1;
-                // What several threads finish at the same time is kept one after the other.
-                assert_eq!(pieces(&journal).len(), n_pieces - n_left);
+                let n_left_now = n_pieces - pieces(&journal).len();
+                assert!(n_left_now < n_left, "a run keeps what it finished");
+                n_left = n_left_now;
             }
             let (_, error) = self.case.succeeds(&["run", "study.toml", "--out", &folder]);
             let all = format!("going on: {n_pieces} of {n_pieces} ");

@@ -18,7 +18,6 @@ use crate::study::spec::ObjectsSpec;
 use crate::study::summary::{grouped_tests, summarise};
 use crate::study::sweep::Sweep;
 use crate::study::tabulate::share_columns;
-use crate::study::time_left::Piece;
 use crate::table::{File, Table};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -54,8 +53,6 @@ const TIMING: File<(WayCell, TrialTime)> =
 
 /// Objects that are not counted before they are loaded are as many as this, for estimates.
 const N_OBJECTS: usize = 30;
-/// Processor-seconds to press, read and project one taxel in a trial, about.
-const SECONDS_PER_READING: f64 = 1e-7;
 
 impl BreakingPointsStudy {
     /// All values of all ways.
@@ -93,11 +90,9 @@ impl PieceStudy for BreakingPointsStudy {
     fn pieces(&self) -> Vec<NamedPiece> {
         let pieces = self.values().enumerate();
         let pieces = pieces.map(|(group, value)| {
-            let n_read = (N_OBJECTS * n_read(value.1) * self.plan.spec.trials) as f64;
-            let work = Piece::of_stage(0, SECONDS_PER_READING * n_read);
             // The study at this value is all that it depends on.
             let specs: Vec<_> = value.1.plans().map(|plan| &plan.spec).collect();
-            NamedPiece::new(name(&value), group, work).made_of(specs)
+            NamedPiece::new(name(&value), group).made_of(specs)
         });
         pieces.collect()
     }

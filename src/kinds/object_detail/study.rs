@@ -14,7 +14,6 @@ use crate::kinds::model_recognition::check_apart;
 use crate::kinds::{About, Facts, Files, Kind, Source};
 use crate::study::object_files::NamedMesh;
 use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft, Scale};
-use crate::study::time_left::Piece;
 use crate::study::{load_named_meshes, objects_content};
 use crate::table::{File, Table};
 use rayon::prelude::*;
@@ -36,12 +35,6 @@ pub type DetailRows = (
     Vec<(DetailCell, DetailTime)>,
     Vec<DetailRecognition>,
 );
-
-/// Seconds for an object's models, a metre of the side of a square as large as its surface (the median of 37 scans of the YCB set); to time
-/// them; for a classifier.
-const MODELS_S_PER_M: f64 = 170.0;
-const TIME_S: f64 = 0.3;
-const RECOGNISE_S: f64 = 0.5;
 
 /// Tables.
 const DETAIL: File<(DetailCell, DetailScore)> =
@@ -71,16 +64,14 @@ impl PieceStudy for ObjectDetailStudy {
     /// Of each object its models and their times; then each level and classifier, which all need all objects.
     fn pieces(&self) -> Vec<NamedPiece> {
         let mut pieces = Vec::new();
-        for (group, NamedMesh { name, mesh, .. }) in self.meshes.iter().enumerate() {
-            let mut add = |name, work| pieces.push(NamedPiece::new(name, group, work));
-            // To pack a larger surface takes longer.
-            let models = Piece::of_stage(0, MODELS_S_PER_M * mesh.area().sqrt());
-            add(format!("models of {name}"), models);
-            add(format!("times of {name}"), Piece::one_by_one(1, TIME_S));
+        for (group, NamedMesh { name, .. }) in self.meshes.iter().enumerate() {
+            let mut add = |name| pieces.push(NamedPiece::new(name, group));
+            add(format!("models of {name}"));
+            add(format!("times of {name}"));
         }
-        let (group, work) = (self.meshes.len(), Piece::of_stage(2, RECOGNISE_S));
+        let group = self.meshes.len();
         let learned = Learned::all(&self.plan).into_iter();
-        pieces.extend(learned.map(|learned| NamedPiece::new(learned.name(), group, work)));
+        pieces.extend(learned.map(|learned| NamedPiece::new(learned.name(), group)));
         pieces
     }
 

@@ -1,15 +1,13 @@
 //! Makes the touches of an array once, measures each group once a trial, evaluates every family that is left.
 
-use super::cost::measure_s;
 use super::rows::{CellRow, RecognitionRows, TouchRow};
-use super::study::{MEASURE, RecognitionStudy, in_frames};
+use super::study::{RecognitionStudy, in_frames};
 use crate::error::Result;
 use crate::study::evaluation::Trial;
 use crate::study::frames::Frames;
 use crate::study::measurement::Measurements;
 use crate::study::pieces::PiecesLeft;
 use crate::study::progress::{Progress, Silent};
-use crate::study::time_left::Piece;
 use rayon::prelude::*;
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
@@ -30,7 +28,7 @@ impl RecognitionStudy {
             part.touched.prepare();
         }
         let mut jobs = self.jobs_left(left);
-        // Most frames first: what learns from them takes longest, and how much longer than planned is then known early.
+        // Most frames first: the items that learn from them take longest.
         jobs.sort_by_key(|(touches, _)| {
             let (part, array, n_frames) = self.made_on(*touches);
             (part, array, Reverse(n_frames))
@@ -52,10 +50,7 @@ impl RecognitionStudy {
     }
 
     /// Touches that are made or that families need that are left, with what is measured of them.
-    pub(super) fn jobs_left(
-        &self,
-        left: &PiecesLeft<RecognitionRows>,
-    ) -> Vec<(usize, Vec<Job<'_>>)> {
+    fn jobs_left(&self, left: &PiecesLeft<RecognitionRows>) -> Vec<(usize, Vec<Job<'_>>)> {
         let touches = 0..self.touch_sets.len();
         let jobs = touches.map(|touches| (touches, self.jobs(left, touches)));
         let is_left = |(touches, jobs): &(usize, Vec<Job>)| {
@@ -122,10 +117,8 @@ impl RecognitionStudy {
             touched = left.progress;
         }
         let make = || {
-            left.during(&self.touch_work(on), || {
-                let on = (array, n_frames);
-                part.touched.simulate(on, &self.place, touched)
-            })
+            let on = (array, n_frames);
+            part.touched.simulate(on, &self.place, touched)
         };
         let Some(frames) = left.prepare(&need, make)? else {
             return Ok(());
@@ -155,19 +148,11 @@ impl Job<'_> {
         families.map(|&family| self.study.family_item(self.trial, family))
     }
 
-    /// What it is planned to take, but for the families.
-    pub fn work(&self) -> Piece {
-        let (part, group) = self.study.group(self.group);
-        let measured = (part.sweep.labels.len(), self.n_measurements);
-        Piece::of_stage(MEASURE, measure_s(&part.plan, group, measured))
-    }
-
     /// Measures, then evaluates the families.
     fn run(&self, left: &PiecesLeft<RecognitionRows>, frames: &Frames) -> Result<()> {
         let need: Vec<usize> = self.items().collect();
         let measured = left.prepare(&need, || self.measure(frames))?;
         let cpu_s = measured.as_ref().map_or(0.0, |measured| measured.cpu_s);
-        left.progress.worked(&self.work(), cpu_s);
         let Some(measured) = measured else {
             return Ok(());
         };

@@ -1,6 +1,5 @@
 //! Studies that recognise objects, in work items: a family of cells in a trial each, and the touches of each array.
 
-mod cost;
 mod kind;
 mod limits;
 mod load;

@@ -1,8 +1,6 @@
 //! A study that recognises objects: its work items, and the tables of what they found.
 
-use super::cost::{fit_s, touch_s};
 use super::load::TouchInputs;
-use super::measuring::Job;
 use super::rows::{RecognitionRows, TouchRow};
 use crate::error::{Error, Result};
 use crate::report::recognition::tables_of;
@@ -21,17 +19,11 @@ use crate::study::sweep::{Group, StudyPart, Sweep};
 use crate::study::table::{Cell, StageTime, Tables};
 use crate::study::tabulate::tabulate;
 use crate::study::taxel_array::TaxelArray;
-use crate::study::time_left::Piece;
 use crate::study::touch_set::TouchSet;
 use crate::table::Table;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ops::Range;
 use std::sync::Arc;
-
-/// Stages, for the time left; each classifier has its own.
-const TOUCH: u8 = 0;
-pub(super) const MEASURE: u8 = 1;
-const LEARN: u8 = 2;
 
 /// A recognition study that is laid out.
 pub struct RecognitionStudy {
@@ -264,23 +256,6 @@ impl RecognitionStudy {
         (part, &part.plan.arrays[group.array], group.frames)
     }
 
-    pub(super) fn touch_work(&self, touches: usize) -> Piece {
-        let (part, array, n_frames) = self.on(touches);
-        let on = (part.sweep.labels.len(), n_frames);
-        let planned_s = touch_s(array, part.touched.as_ref(), on);
-        Piece::one_by_one(TOUCH, planned_s / rayon::current_num_threads() as f64)
-    }
-
-    fn learn_work(&self, number: usize) -> Piece {
-        let (part, family) = self.family(number);
-        let group = self.group(self.families[number].group).1;
-        let n_readings = group.n_readings(&part.plan);
-        let n_objects = part.touched.class_names().len();
-        let of = (n_objects as f64, part.sweep.labels.len() as f64);
-        let fits = Group::fits(family).map(|cells| fit_s(&part.plan, (&cells[0], n_readings), of));
-        Piece::of_stage(LEARN + family[0].classifier as u8, fits.sum())
-    }
-
     /// What it took to make and to measure touches.
     fn stages(&self, rows: &[TouchRow]) -> Vec<StageTime> {
         let mut stages = Vec::new();
@@ -373,37 +348,25 @@ impl PieceStudy for RecognitionStudy {
         let families = 0..self.families.len();
         let of_family = |family| {
             let (part, cells) = self.family(family);
-            let name = family_name(&part.plan, cells);
-            (name, self.learn_work(family))
+            family_name(&part.plan, cells)
         };
-        let families: Vec<(String, Piece)> = families.map(of_family).collect();
+        let families: Vec<String> = families.map(of_family).collect();
         let mut pieces = Vec::with_capacity(self.n_trials() * families.len());
         for trial in 0..self.n_trials() {
-            for (family, (name, work)) in self.families.iter().zip(&families) {
+            for (family, name) in self.families.iter().zip(&families) {
                 let group = trial * self.groups.len() + family.group;
                 let name = format!("{name}, trial {trial}");
-                pieces.push(NamedPiece::new(name, group, *work));
+                pieces.push(NamedPiece::new(name, group));
             }
         }
         for touches in &self.touch_sets {
-            // What it takes is told while all that needs the touches waits for them.
-            let work = Piece::one_by_one(TOUCH, 0.0);
-            pieces.push(NamedPiece::new(touches.name.clone(), touches.group, work));
+            pieces.push(NamedPiece::new(touches.name.clone(), touches.group));
         }
         pieces
     }
 
     fn measure(&self, left: &PiecesLeft<RecognitionRows>) -> Result<()> {
         self.measure_all(left)
-    }
-
-    fn shared_work(&self, left: &PiecesLeft<RecognitionRows>) -> Vec<Piece> {
-        let mut work = Vec::new();
-        for (touches, jobs) in self.jobs_left(left) {
-            work.push(self.touch_work(touches));
-            work.extend(jobs.iter().map(Job::work));
-        }
-        work
     }
 
     fn place(&self, number: usize, (rows, touch_rows): &mut RecognitionRows) {

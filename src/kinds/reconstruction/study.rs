@@ -14,7 +14,6 @@ use crate::kinds::{About, Facts, Files, Kind, Source, found_and_cost};
 use crate::random::Seed;
 use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft, Scale, Shared};
 use crate::study::progress::Progress;
-use crate::study::time_left::Piece;
 use crate::study::{TouchedObject, draw_touches, load_objects, objects_content};
 use crate::table::{File, Table};
 use std::collections::BTreeMap;
@@ -48,10 +47,6 @@ const PARETO: File<(ReconstructionCell, ReconstructionPareto)> = File::new(
 )
 .summary()
 .of_times();
-
-/// Stages of a run, and seconds by the clock of one of their work items, about: most of the time is that of cells.
-const STATISTICS: (u8, f64) = (0, 0.1);
-const CELL: (u8, f64) = (1, 0.3);
 
 impl Kind for ReconstructionStudy {
     const ABOUT: About = About {
@@ -113,15 +108,12 @@ impl PieceStudy for ReconstructionStudy {
     fn pieces(&self) -> Vec<NamedPiece> {
         let mut pieces = Vec::new();
         for (group, cells) in on_measured(&self.plan.cells()).enumerate() {
-            let mut add = |name: String, (stage, wall_s): (u8, f64)| {
-                let work = Piece::one_by_one(stage, wall_s);
-                pieces.push(NamedPiece::new(name, group, work));
-            };
+            let mut add = |name| pieces.push(NamedPiece::new(name, group));
             for &basis in &self.plan.dictionaries {
-                add(cells[0].isometry_name(basis), STATISTICS);
+                add(cells[0].isometry_name(basis));
             }
             for cell in cells {
-                add(cell.name(), CELL);
+                add(cell.name());
             }
         }
         pieces

@@ -1,6 +1,5 @@
 //! Runs a study of stability, and makes its tables.
 
-use super::LEAST_STEPS;
 use super::cell::{Outcome, measure};
 use super::peers::peer_rows;
 use super::plan::StabilityPlan;
@@ -12,7 +11,6 @@ use crate::error::Result;
 use crate::kinds::{About, Facts, Files, Kind, Source, found_and_cost, grouped};
 use crate::study::millimetres;
 use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft, Scale};
-use crate::study::time_left::Piece;
 use crate::table::{File, Table};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
@@ -87,7 +85,7 @@ impl PieceStudy for StabilityPlan {
             let settings = settings.trim_start_matches("StabilityCell ");
             let stroke_mm = millimetres(taxel.stroke);
             let name = format!("{settings} and a stroke of {stroke_mm} mm");
-            NamedPiece::new(name, group, Piece::of_stage(0, planned_s(cell)))
+            NamedPiece::new(name, group)
         });
         pieces.collect()
     }
@@ -117,13 +115,6 @@ impl PieceStudy for StabilityPlan {
         let joints = JOINTS.of(&joints(&rows))?;
         Ok(vec![cells.noted(sources), summary, timing, joints])
     }
-}
-
-/// Seconds of a thread, about, if nothing takes longer than it must.
-fn planned_s(cell: &StabilityCell) -> f64 {
-    // An engine takes microseconds for a taxel, iteration and step, what is written for taxels a hundredth of one.
-    let per_step_s = cell.solver_iterations.map_or(1e-8, |n| 1e-6 * n as f64);
-    per_step_s * cell.n_taxels() as f64 * (0.5 / cell.dt_s).max(LEAST_STEPS)
 }
 
 /// A row a scene, method and number of iterations, in the order of first occurrence.

@@ -15,7 +15,6 @@ use crate::geometry::Pose;
 use crate::kinds::{About, Facts, Files, Kind, Source};
 use crate::objects::SphereUnion;
 use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft, Scale, Shared};
-use crate::study::time_left::Piece;
 use crate::study::{MM, file_content};
 use crate::table::{File, Table};
 use crate::whole_body::CoveredRobot;
@@ -40,15 +39,6 @@ const STEPS: File<(BodyCase, BodyTouch, StepTime)> = File::new(
 )
 .summary()
 .of_times();
-
-/// Stages of a run.
-const LEARN: u8 = 0;
-const PLAY: u8 = 1;
-const CLIMB: u8 = 2;
-
-/// Seconds by the clock, about: of a touch that is learned from or tested, and of a step of a scene or a rung.
-const TOUCH_S: f64 = 1e-3;
-const STEP_S: f64 = 5e-4;
 
 impl Kind for WholeBodyPlan {
     const ABOUT: About = About {
@@ -103,20 +93,17 @@ impl PieceStudy for WholeBodyPlan {
 
     /// Compressions and scenes need all that is learned; rungs need nothing.
     fn pieces(&self) -> Vec<NamedPiece> {
-        let learn_s = TOUCH_S * self.recognition().n_touches() as f64;
-        let learn = Piece::one_by_one(LEARN, learn_s / self.compressions.len() as f64);
-        let [play, climb] =
-            [PLAY, CLIMB].map(|stage| Piece::one_by_one(stage, STEP_S * self.n_steps() as f64));
         let compressions = self
             .compressions
             .iter()
-            .map(|(name, _)| NamedPiece::new(format!("learn from {name}"), 0, learn));
-        let scenes = self.scenes.iter().map(|scene| {
-            NamedPiece::new(format!("scene {}", scene.spec.name), 0, play).made_of(scene)
-        });
+            .map(|(name, _)| NamedPiece::new(format!("learn from {name}"), 0));
+        let scenes = self
+            .scenes
+            .iter()
+            .map(|scene| NamedPiece::new(format!("scene {}", scene.spec.name), 0).made_of(scene));
         let rungs = self.rungs().into_iter().enumerate().map(|(number, rung)| {
             let name = format!("ladder of {:?}, {}", rung.series, rung.name).to_lowercase();
-            NamedPiece::new(name, number + 1, climb).made_of(rung)
+            NamedPiece::new(name, number + 1).made_of(rung)
         });
         compressions.chain(scenes).chain(rungs).collect()
     }

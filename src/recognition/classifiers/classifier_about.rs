@@ -28,10 +28,6 @@ pub struct ClassifierAbout {
     pub has_depth: bool,
     /// The kernel of a kernel SVM: several C are then solved together, and kernel values are held.
     pub kernel: Option<fn(&Classifier) -> Kernel>,
-    /// About how many seconds training takes, by training rows, features and classes; of a kernel SVM its solver says.
-    pub train_s: fn(f64, f64, f64) -> f64,
-    /// The same of a test row.
-    pub test_s: fn(f64, f64, f64) -> f64,
     /// Trains on scaled rows, with a C where it has one, and draws from the seed.
     pub train: Train,
 }
@@ -39,11 +35,8 @@ pub struct ClassifierAbout {
 /// What trains a classifier without a kernel.
 pub type Train = fn(&Classifier, &Dataset, f64, &Seed) -> Result<Arc<dyn ClassModel>>;
 
-/// Seconds of a multiply-add of a product of matrices.
-pub(crate) const PRODUCT_S: f64 = 4e-11;
-
 impl ClassifierAbout {
-    /// One without parameters that looks at each number once to train, and at each once a class to test.
+    /// Describes a classifier without parameters.
     pub(crate) const fn new(words: &'static str, train: Train) -> Self {
         Self {
             words,
@@ -54,8 +47,6 @@ impl ClassifierAbout {
             has_trees: false,
             has_depth: false,
             kernel: None,
-            train_s: |n_train, m, _| 2e-8 * n_train * m,
-            test_s: |_, m, n_classes| n_classes * n_classes * (PRODUCT_S * m + 5e-9),
             train,
         }
     }
@@ -66,7 +57,6 @@ impl ClassifierAbout {
             has_c: true,
             has_gamma: true,
             kernel: Some(kernel),
-            test_s: |n_train, m, n_classes| n_train * PRODUCT_S * (m + n_classes + 25.0),
             ..Self::new(words, |classifier, scaled, c, seed| {
                 classifier.train_kernel_free(scaled, c, seed)
             })

@@ -2,13 +2,12 @@
 
 use std::sync::Arc;
 
-use crate::recognition::classifiers::classifier_about::{ClassifierAbout, PRODUCT_S};
+use crate::recognition::classifiers::classifier_about::ClassifierAbout;
 
 pub use bubbletouch_svm::classifiers::k_nearest::KNearest;
 
 pub(crate) const ABOUT: ClassifierAbout = ClassifierAbout {
     has_neighbours: true,
-    test_s: |n_train, m, _| n_train * (6e-9 + PRODUCT_S * m),
     ..ClassifierAbout::new("k nearest neighbours", |classifier, scaled, _, _| {
         Ok(Arc::new(KNearest::train(scaled, classifier.n_neighbours)?))
     })

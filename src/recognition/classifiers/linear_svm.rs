@@ -1,12 +1,11 @@
 //! Linear soft-margin SVMs; see [`svm`](crate::recognition::svm), and [`bubbletouch_svm::linear_svm`] for coordinate descent.
 
-use crate::recognition::classifiers::classifier_about::{ClassifierAbout, PRODUCT_S};
+use crate::recognition::classifiers::classifier_about::ClassifierAbout;
 use crate::recognition::svm::kernel::Kernel;
 
 pub use bubbletouch_svm::linear_svm::{Convergence, LinearSvm, LinearSvmParams, MAX_PASSES};
 
 pub(crate) const ABOUT: ClassifierAbout = ClassifierAbout {
     has_gamma: false,
-    test_s: |_, m, n_classes| n_classes * n_classes * (PRODUCT_S * m + 5e-9),
     ..ClassifierAbout::svm("linear SVM", |_| Kernel::Linear)
 };

@@ -8,7 +8,6 @@ pub use bubbletouch_svm::classifiers::logistic_regression::{Logistic, LogisticPa
 
 pub(crate) const ABOUT: ClassifierAbout = ClassifierAbout {
     has_c: true,
-    train_s: |n_train, m, n_classes| 8e-8 * n_train * n_classes * (m + 40.0),
     ..ClassifierAbout::new("logistic regression", |classifier, scaled, c, _| {
         let params = LogisticParams {
             c,

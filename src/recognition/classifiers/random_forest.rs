@@ -9,7 +9,6 @@ pub use bubbletouch_svm::classifiers::random_forest::RandomForest;
 pub(crate) const ABOUT: ClassifierAbout = ClassifierAbout {
     has_trees: true,
     has_depth: true,
-    train_s: |n_train, m, _| 3e-5 * n_train * m.sqrt(),
     ..ClassifierAbout::new("random forest", |classifier, scaled, _, seed| {
         let (n_trees, depth) = (classifier.n_trees, classifier.max_depth);
         let forest = RandomForest::train(scaled, n_trees, depth, &seed.named("forest"))?;

@@ -9,7 +9,6 @@ use serde_json::value::RawValue;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{LazyLock, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
@@ -31,8 +30,6 @@ pub struct Journal {
     /// What its lines said when it was opened; its header is taken out.
     before: Decoded,
     writer: Mutex<Option<Writer>>,
-    /// Records after which the process ends; 0: it does not.
-    aborts_after: AtomicUsize,
 }
 
 #[derive(Debug)]
@@ -134,16 +131,7 @@ impl Journal {
         };
         let line = encode(self.before.first, key, record).map_err(io::Error::from);
         let kept = line.and_then(|(checksum, line)| writer.append(&line).map(|()| checksum));
-        let checksum = kept.map_err(|e| Error::io(&self.path, "write", e))?;
-        if self.aborts_after.load(Relaxed) > 0 && self.aborts_after.fetch_sub(1, Relaxed) == 1 {
-            std::process::abort();
-        }
-        Ok(checksum)
-    }
-
-    /// Ends the process, as a kill does, when so many more records are kept: to try what is left of it.
-    pub fn abort_after(&self, n_records: usize) {
-        self.aborts_after.store(n_records, Relaxed);
+        kept.map_err(|e| Error::io(&self.path, "write", e))
     }
 
     /// Adds what another journal of the same study holds and this one did not hold when it was opened. If a work item failed in one journal and

@@ -5,10 +5,8 @@ use super::{NamedPiece, PieceManner};
 use crate::error::Result;
 use crate::study::attempt::attempt;
 use crate::study::progress::Progress;
-use crate::study::time_left::Piece;
 use std::collections::BTreeMap;
 use std::sync::Mutex;
-use std::time::Instant;
 
 /// The pieces that are left to a run, for whoever measures them: by their number among all pieces.
 pub struct PiecesLeft<'a, R> {
@@ -35,11 +33,6 @@ impl<'a, R: PieceRows> PiecesLeft<'a, R> {
             is_left,
             results: Mutex::default(),
         }
-    }
-
-    /// What each piece is planned to take.
-    pub(super) fn work(&self) -> impl Iterator<Item = Piece> + '_ {
-        self.left().map(|number| self.pieces[number].work)
     }
 
     /// How many there are.
@@ -71,18 +64,8 @@ impl<'a, R: PieceRows> PiecesLeft<'a, R> {
         if !self.is_left[number] {
             return Ok(());
         }
-        let work = &self.pieces[number].work;
-        let result = self.during(work, || attempt(self.manner.fail_fast, measure))?;
+        let result = attempt(self.manner.fail_fast, measure)?;
         self.keep(number, result)
-    }
-
-    /// Does some of what the study [shares](super::PieceStudy::shared_work), and tells how long it took.
-    pub fn during<T>(&self, work: &Piece, make: impl FnOnce() -> T) -> T {
-        let start = Instant::now();
-        let made = make();
-        let wall_s = start.elapsed().as_secs_f64();
-        self.progress.worked(work, work.spent_s(wall_s));
-        made
     }
 
     /// What several pieces need first; if it cannot be had, all of them fail of it.
@@ -119,6 +102,7 @@ impl<'a, R: PieceRows> PiecesLeft<'a, R> {
         let mut results = results.unwrap_or_else(|poisoned| poisoned.into_inner());
         results.insert(number, result);
         self.progress.advance(1);
+        self.progress.item_finished();
         Ok(())
     }
 

@@ -18,7 +18,6 @@ pub use scale::Scale;
 pub use shared::Shared;
 
 use super::content_hash::short_hash;
-use super::time_left::Piece;
 
 /// Hexadecimal digits of what a piece depends on. Fewer: two of one name may be taken for each other.
 const CONTENT_DIGITS: usize = 16;
@@ -34,18 +33,15 @@ pub struct NamedPiece {
     /// Number of its group, from 0 without gaps: pieces of a group share what has to be made before them, so that one shard does all of
     /// them as long as there is a group for every shard.
     pub group: usize,
-    /// What it is planned to take.
-    pub work: Piece,
 }
 
 impl NamedPiece {
     /// A piece whose name says all that it depends on.
-    pub fn new(name: String, group: usize, work: Piece) -> Self {
+    pub fn new(name: String, group: usize) -> Self {
         Self {
             name,
             content: String::new(),
             group,
-            work,
         }
     }
 

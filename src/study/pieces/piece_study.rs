@@ -8,7 +8,6 @@ use crate::row;
 use crate::study::journal::Journal;
 use crate::study::progress::Progress;
 use crate::study::shard::Shard;
-use crate::study::time_left::Piece;
 use crate::table::Table;
 use std::collections::BTreeSet;
 
@@ -24,11 +23,6 @@ pub trait PieceStudy {
     /// # Errors
     /// Those of [`PiecesLeft::finish`]; what no piece can do without.
     fn measure(&self, left: &PiecesLeft<Self::Rows>) -> Result<()>;
-
-    /// What has to be made first for pieces that are left, for the time left: told of by [`PiecesLeft::during`].
-    fn shared_work(&self, _left: &PiecesLeft<Self::Rows>) -> Vec<Piece> {
-        Vec::new()
-    }
 
     /// Gives the rows of a piece, by its number, what its place among all pieces decides, such as numbers of cells: rows that the journal has
     /// may be of a study with other axes.
@@ -126,16 +120,6 @@ impl<'a, S: PieceStudy> PiecesRun<'a, S> {
         self.left.n()
     }
 
-    /// What it will do: for [`Progress::expect`]. What a journal has is not done again.
-    pub fn workload(&self) -> Vec<Piece> {
-        let mut work = match self.left.n() {
-            0 => Vec::new(),
-            _ => self.study.shared_work(&self.left),
-        };
-        work.extend(self.left.work());
-        work
-    }
-
     /// Does what the journal has not yet: rows of all pieces that did not fail, now or before, in the order of pieces, and those that failed.
     /// The rows but for times are the same as if all were done at once.
     ///
@@ -143,6 +127,7 @@ impl<'a, S: PieceStudy> PiecesRun<'a, S> {
     /// The journal cannot be written; what a piece fails of, if the first to fail ends the run; what no piece can do without.
     pub fn run(self) -> Result<(S::Rows, Vec<PieceFailure>)> {
         let Self { study, left, .. } = self;
+        left.progress.expect(left.n());
         if left.n() > 0 {
             study.measure(&left)?;
         }

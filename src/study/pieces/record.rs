@@ -39,7 +39,6 @@ mod tests {
     use super::*;
     use crate::study::journal::{Identity, JOURNAL_FILE, Journal};
     use crate::study::pieces::{NamedPiece, any_number};
-    use crate::study::time_left::Piece;
     use rand::{Rng, SeedableRng};
     use rand_chacha::ChaCha8Rng;
     use serde::Deserialize;
@@ -95,7 +94,7 @@ mod tests {
         let path = folder.path().join(JOURNAL_FILE);
         let identity = Identity::new("a = 1".to_owned(), Default::default(), &[]);
         let journal = Journal::open(&path, &identity).unwrap();
-        let piece = |name: &str| NamedPiece::new(name.to_owned(), 0, Piece::of_stage(0, 1.0));
+        let piece = |name: &str| NamedPiece::new(name.to_owned(), 0);
         let keep =
             |name: &str, result: PieceResult<Rows>| journal.keep(&piece(name).key(), &result);
         keep("one", Ok(rows.clone())).unwrap();

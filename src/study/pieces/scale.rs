@@ -1,8 +1,7 @@
 //! How large a study of pieces is, told before it runs.
 
-use crate::spelling::{counted, duration};
+use crate::spelling::counted;
 use crate::study::memory::Bytes;
-use crate::study::time_left::Piece;
 
 /// Bytes of the program, its objects and the pictures that it draws at the end, about.
 const PROGRAM_BYTES: f64 = 2e8;
@@ -35,21 +34,17 @@ impl Scale {
         within.next()
     }
 
-    /// A study of so many work items as `bubbletouch plan` tells it, in lines: its scale, and how long all of its work, shared work included,
-    /// is planned to take with so many threads. Mostly right within a factor of 3 on a usual machine.
-    pub fn estimate(&self, n_items: usize, work: &[Piece], n_threads: usize) -> String {
-        let wall_s = work.iter().map(|piece| piece.planned_s).sum::<f64>() / n_threads as f64;
+    /// Returns the lines of `bubbletouch plan` about a study of `n_items` work items that runs on `n_threads` threads.
+    pub fn describe(&self, n_items: usize, n_threads: usize) -> String {
         let (objects, touches) = (&self.objects, &self.touches);
         let configurations = counted(self.n_configurations, "configuration");
         let bytes = Bytes(self.bytes_at_once(n_threads));
-        let time = duration(wall_s.max(1.0));
         let threads = counted(n_threads, "thread");
         [
             format!("  objects  {objects}"),
             format!("  touches  {touches}"),
             format!("  items    {n_items}, of {configurations}"),
-            format!("  memory   about {bytes}"),
-            format!("  time     about {time} on {threads} (mostly right within a factor of 3)"),
+            format!("  memory   about {bytes} on {threads}"),
         ]
         .join("\n")
     }

@@ -10,7 +10,6 @@ use ndarray::{ArrayView1, ArrayView2, ArrayViewMut2};
 use rand::Rng;
 
 pub(super) const ABOUT: EnsembleAbout = EnsembleAbout {
-    taxel_s: |m, _| 1e-10 * m,
     ..EnsembleAbout::new("circulant", |(ny, nx), m, seed| {
         Box::new(Circulant::new(m, ny * nx, &seed.named("circulant")))
     })

@@ -35,7 +35,6 @@ pub(super) const fn about(words: &'static str, draw: Draw) -> EnsembleAbout {
     EnsembleAbout {
         // As it is drawn, and as it is kept.
         bytes: |m, n| 16.0 * n * m,
-        taxel_s: |m, _| 5.8e-11 * m,
         ..EnsembleAbout::new(words, draw)
     }
 }

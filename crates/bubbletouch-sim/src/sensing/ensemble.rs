@@ -34,8 +34,6 @@ pub struct EnsembleAbout {
     pub needs_rows: bool,
     /// Bytes that a map from n taxels to m measurements takes, by m and n.
     pub bytes: fn(f64, f64) -> f64,
-    /// About how many seconds it takes for one taxel of a frame among many, by m and n.
-    pub taxel_s: fn(f64, f64) -> f64,
     /// Where a map comes from.
     pub source: Source,
 }
@@ -49,7 +47,6 @@ impl EnsembleAbout {
             is_whole_frame: false,
             needs_rows: false,
             bytes: |_, n| 16.0 * n,
-            taxel_s: |_, _| 5e-10,
             source: Source::Drawn(draw),
         }
     }

@@ -19,7 +19,6 @@ pub(super) const ABOUT: EnsembleAbout = EnsembleAbout {
     needs_rows: false,
     bytes: |m, n| 16.0 * n * m,
     // About what it takes to find them, spread over the frames that are measured.
-    taxel_s: |m, _| 5e-10 * m,
     source: Source::Learned(learn),
 };
 

@@ -30,7 +30,6 @@ pub(super) struct ScrambledHadamard {
 }
 
 pub(super) const ABOUT: EnsembleAbout = EnsembleAbout {
-    taxel_s: |_, _| 2e-9,
     ..EnsembleAbout::new("SBHE", |(ny, nx), m, seed| {
         Box::new(ScrambledHadamard::new(
             m,

@@ -34,7 +34,6 @@ struct Row {
 pub(super) const ABOUT: EnsembleAbout = EnsembleAbout {
     // m rows of √n entries each.
     bytes: |m, n| 16.0 * n.sqrt() * m,
-    taxel_s: |m, n| 2.7e-10 * m / n.sqrt(),
     ..EnsembleAbout::new("sparse", |(ny, nx), m, seed| {
         Box::new(VerySparse::new(m, ny * nx, &seed.named("sparse")))
     })

@@ -84,7 +84,6 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
         Ok(Box::new(ZerosByNumber { key, std }))
     }),
     is_random_by_reading: true,
-    taxel_s: |n_frames| 1.7e-8 / n_frames as f64,
     ..ErrorAbout::new(
         "drift",
         &[Strength::share(

@@ -71,7 +71,6 @@ impl Hysteresis {
 
 pub(super) const ABOUT: ErrorAbout = ErrorAbout {
     remembers: true,
-    taxel_s: |_| 1.4e-8,
     ..ErrorAbout::new(
         "hysteresis",
         &[Strength {

@@ -131,7 +131,6 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 pub(super) const ABOUT: ErrorAbout = ErrorAbout {
     needs_places: true,
-    taxel_s: |_| 2e-7,
     ..ErrorAbout::new(
         "matrix_readout",
         &[Strength::share(

@@ -21,7 +21,6 @@ const N_SOURCES: usize = 20;
 
 pub(super) const ABOUT: ErrorAbout = ErrorAbout {
     is_random_by_reading: true,
-    taxel_s: |_| 4e-8,
     ..ErrorAbout::new(
         "pink_noise",
         &[Strength::share(

@@ -48,7 +48,6 @@ impl Quantisation {
 }
 
 pub(super) const ABOUT: ErrorAbout = ErrorAbout {
-    taxel_s: |_| 3e-9,
     by_taxel: Some(|&[bits, _], full_scale, _| {
         Ok(Box::new(Quantisation::new(bits as u32, [0.0, full_scale])?))
     }),

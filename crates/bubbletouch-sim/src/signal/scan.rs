@@ -55,7 +55,6 @@ const MS: f64 = 1e-3;
 
 pub(super) const ABOUT: ErrorAbout = ErrorAbout {
     needs_motion: true,
-    taxel_s: |_| 5e-9,
     ..ErrorAbout::new(
         "scan",
         &[Strength {

@@ -51,8 +51,6 @@ pub struct ErrorAbout {
     pub needs_motion: bool,
     /// Whether the error depends on where the taxels are: on their neighbours, or on rows and columns.
     pub needs_places: bool,
-    /// About how many seconds it takes for one taxel of one frame, of so many frames a touch.
-    pub taxel_s: fn(usize) -> f64,
     /// Checks strengths of which at least one is not zero, and prepares what they do.
     pub prepare: Prepare,
     /// Prepares the error for a [`BodyReadout`](super::BodyReadout); `None` if it depends on other taxels or on other frames.
@@ -123,7 +121,6 @@ impl ErrorAbout {
             remembers: false,
             needs_motion: false,
             needs_places: false,
-            taxel_s: |_| 3e-10,
             prepare,
             by_taxel: None,
         }
