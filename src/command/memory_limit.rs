@@ -5,8 +5,7 @@ use bubbletouch::{Error, Result};
 
 #[derive(clap::Args)]
 pub struct MemoryLimit {
-    /// Most memory to take, in GiB: less is done at once, frames are read from disk, or the study is refused [default: what the
-    /// machine has]
+    /// Limit memory in GiB: fewer threads work, or the study is refused [default: what the machine has]
     #[arg(long, value_name = "GIB")]
     memory_gib: Option<f64>,
 }

@@ -17,7 +17,7 @@ pub fn threads_within(scale: &Scale, ceiling: Option<u64>) -> Result<usize> {
             "memory",
             format!("a ceiling of {:.2} GiB", ceiling as f64 / GIB),
             format!(
-                "at least {:.2} GiB for this study: fewer touches, taxels or measurements take less",
+                "at least {:.2} GiB for this study; fewer touches, frames, taxels or measurements take less",
                 scale.least_bytes() / GIB
             ),
         )

@@ -13,7 +13,7 @@
 
 use super::arrays::{KeyValue, read_class_labels, read_group_keys, read_matrix, read_rows};
 use super::evaluation::learned_rows;
-use super::frames::{FramePlace, Frames};
+use super::frames::Frames;
 use super::measurement::{Measurements, measure_group};
 use super::npy::{write_integers, write_npy};
 use super::progress::Progress;
@@ -132,7 +132,7 @@ impl StudyPart {
         progress.stage(&format!("{stage} {}", array.describe()), n_touches);
         let on = (array, group.frames);
         let touched = self.touched.as_ref();
-        let frames = touched.simulate(on, &FramePlace::Memory, progress)?;
+        let frames = touched.simulate(on, progress);
         self.measure(group, &frames, (trial, n_measurements))
     }
 

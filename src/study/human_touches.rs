@@ -1,6 +1,6 @@
 //! Human touches of a study: drawn once, recorded on each array.
 
-use super::frames::{FramePlace, Frames};
+use super::frames::Frames;
 use super::human_samples::human_samples;
 use super::measurement::{TouchToRead, touches_to_read};
 use super::plan::Plan;
@@ -106,21 +106,16 @@ impl TouchSet for HumanTouches {
             .collect()
     }
 
-    fn simulate(
-        &self,
-        (array, n_frames): (&TaxelArray, usize),
-        place: &FramePlace,
-        progress: &dyn Progress,
-    ) -> Result<Frames> {
+    fn simulate(&self, (array, n_frames): (&TaxelArray, usize), progress: &dyn Progress) -> Frames {
         let skin = self.spec.skin(array);
         let skin = skin.expect("the plan has checked that it fits");
         let interval = self.spec.interval();
-        let mut frames = Frames::new((array.n_taxels(), n_frames), place)?;
+        let mut frames = Frames::new((array.n_taxels(), n_frames));
         let record = |touch: &_, workspace: &mut _, rows: ArrayViewMut2<f32>| {
             record_touch(&skin, touch, interval, rows, workspace)
         };
-        frames.make(&self.touches, Workspace::new, record, progress)?;
-        Ok(frames)
+        frames.make(&self.touches, Workspace::new, record, progress);
+        frames
     }
 
     fn to_read(&self, _speed: f64, _n_frames: usize, seed: &Seed) -> Vec<TouchToRead> {

@@ -79,7 +79,7 @@ pub use content_hash::sha256;
 pub(crate) use content_hash::short_hash;
 pub use evaluation::CONFIDENCE;
 pub use feature_files::{FEATURE_FILES, FeatureSet, read_features};
-pub use frames::{FrameFacts, FramePlace, Frames};
+pub use frames::{FrameFacts, Frames};
 pub use human_touches::{HumanTouches, RecordedTouch, record_touch};
 pub use npy::{write_integers, write_npy, write_texts};
 pub use object_files::{

@@ -7,7 +7,7 @@ use super::arrays::{
     ClassLabels, ElementKind, FileArray, FrameShape, KeyValue, group_keys, read_class_values,
     read_group_values,
 };
-use super::frames::{FramePlace, Frames};
+use super::frames::Frames;
 use super::measurement::{TouchToRead, touches_to_read};
 use super::memory::check_memory;
 use super::object_files::file_content;
@@ -537,14 +537,9 @@ impl TouchSet for RecordedFrames {
         (of_taxels.iter().filter(|&&is| is).count(), self.n_taxels)
     }
 
-    fn simulate(
-        &self,
-        (array, n_frames): (&TaxelArray, usize),
-        place: &FramePlace,
-        progress: &dyn Progress,
-    ) -> Result<Frames> {
+    fn simulate(&self, (array, n_frames): (&TaxelArray, usize), progress: &dyn Progress) -> Frames {
         let stroke = array.taxel().stroke;
-        let mut frames = Frames::new((array.n_values(), n_frames), place)?;
+        let mut frames = Frames::new((array.n_values(), n_frames));
         let touches: Vec<usize> = (0..self.order.len()).collect();
         let copy = |&touch: &usize, _: &mut (), mut rows: ArrayViewMut2<f32>| {
             for (frame, row) in rows.outer_iter_mut().enumerate() {
@@ -560,8 +555,8 @@ impl TouchSet for RecordedFrames {
                 pushes.any(|(reading, _)| reading >= self.saturation),
             )
         };
-        frames.make(&touches, || (), copy, progress)?;
-        Ok(frames)
+        frames.make(&touches, || (), copy, progress);
+        frames
     }
 
     /// Touches at the study's speed or rate, each after another one that is drawn at random: as pressed objects, or as the keys say.

@@ -1,7 +1,7 @@
 //! Touches of an array: made once, shared by all cells.
 
 use super::array_press::ArrayWorkspace;
-use super::frames::{FramePlace, Frames};
+use super::frames::Frames;
 use super::progress::Progress;
 use super::taxel_array::TaxelArray;
 use super::touch_set::TouchSet;
@@ -64,8 +64,7 @@ pub fn simulate_array(
     n_frames: usize,
     progress: &dyn Progress,
 ) -> Frames {
-    let frames = touched.simulate((array, n_frames), &FramePlace::Memory, progress);
-    frames.expect("memory takes all frames")
+    touched.simulate((array, n_frames), progress)
 }
 
 /// Presses one array on every object, touch by touch; the same bytes at any number of threads.
@@ -75,10 +74,9 @@ pub fn simulate_array(
 pub(super) fn press_objects(
     touched: &[TouchedObject],
     (array, n_frames): (&TaxelArray, usize),
-    place: &FramePlace,
     progress: &dyn Progress,
-) -> Result<Frames> {
-    let mut frames = Frames::new((array.n_values(), n_frames), place)?;
+) -> Frames {
+    let mut frames = Frames::new((array.n_values(), n_frames));
     for TouchedObject {
         object,
         rests,
@@ -100,7 +98,7 @@ pub(super) fn press_objects(
                 let reads_any = |count: fn(Contact) -> usize| last.is_some_and(|c| count(c) > 0);
                 (!reads_any(|c| c.n_touched), reads_any(|c| c.n_saturated))
             };
-        frames.make(touches, ArrayWorkspace::default, press, progress)?;
+        frames.make(touches, ArrayWorkspace::default, press, progress);
     }
-    Ok(frames)
+    frames
 }

@@ -19,7 +19,6 @@
 use super::array_press::{ArrayPress, ArrayWorkspace};
 use super::axis::Axis;
 use super::feature_files::find;
-use super::frames::FramePlace;
 use super::human_touches::HumanTouches;
 use super::npy::{NpyFile, write_integers};
 use super::plan::{Plan, as_written, millimetres};
@@ -314,11 +313,11 @@ pub fn write_human_touches(
     let labels = touches.labels();
     let n_frames = human.n_frames();
     progress.stage(&format!("touch {}", array.describe()), labels.len() as u64);
-    let made = touches.simulate((array, n_frames), &FramePlace::Memory, progress)?;
+    let made = touches.simulate((array, n_frames), progress);
     let mut frames = FrameFiles::create(folder, (array, n_frames), labels.len(), false)?;
     let mut row = vec![0.0; array.n_values()];
     for number in 0..labels.len() * n_frames {
-        made.read(number, &mut row)?;
+        made.read(number, &mut row);
         let row: Vec<f32> = row.iter().map(|&value| value as f32).collect();
         frames.push(&row)?;
     }

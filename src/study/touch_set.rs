@@ -1,6 +1,6 @@
 //! What a recognition study asks of its touches: of pressed objects, of human touches, or of recorded frames.
 
-use super::frames::{FramePlace, Frames};
+use super::frames::Frames;
 use super::measurement::{TouchToRead, touches_to_read};
 use super::plan::Plan;
 use super::pose_groups::KeepTogether;
@@ -66,15 +66,7 @@ pub trait TouchSet: Sync {
     fn prepare(&self) {}
 
     /// Makes all touches on an array, F frames each; the same bytes at any number of threads.
-    ///
-    /// # Errors
-    /// The file of frames cannot be written.
-    fn simulate(
-        &self,
-        on: (&TaxelArray, usize),
-        place: &FramePlace,
-        progress: &dyn Progress,
-    ) -> Result<Frames>;
+    fn simulate(&self, on: (&TaxelArray, usize), progress: &dyn Progress) -> Frames;
 
     /// How each touch is read in a trial, F frames each, whose randomness is drawn from `seed`: pressed objects at a speed (m/s, 0 at rest), each after
     /// another touch that is drawn at random.
@@ -114,13 +106,8 @@ impl TouchSet for Vec<TouchedObject> {
         self.par_iter().for_each(|t| t.object.model.prepare());
     }
 
-    fn simulate(
-        &self,
-        on: (&TaxelArray, usize),
-        place: &FramePlace,
-        progress: &dyn Progress,
-    ) -> Result<Frames> {
-        press_objects(self, on, place, progress)
+    fn simulate(&self, on: (&TaxelArray, usize), progress: &dyn Progress) -> Frames {
+        press_objects(self, on, progress)
     }
 
     fn to_read(&self, speed: f64, n_frames: usize, seed: &Seed) -> Vec<TouchToRead> {

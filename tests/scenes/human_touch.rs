@@ -7,9 +7,7 @@ use bubbletouch::objects::{FingerPose, Model};
 use bubbletouch::random::Seed;
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::table::Tables;
-use bubbletouch::study::{
-    FramePlace, HumanTouches, Plan, StudySpec, Sweep, TouchSet, record_touch,
-};
+use bubbletouch::study::{HumanTouches, Plan, StudySpec, Sweep, TouchSet, record_touch};
 use bubbletouch::world::{
     HandState, HumanTouch, Layout, Patch, TOUCH_KINDS, Taxel, Taxels, TouchKind, TouchRanges,
 };
@@ -410,8 +408,8 @@ fn touches_are_balanced_and_alone_the_same() {
     let human = plan.spec.human_touch.as_ref().unwrap();
     let array = &plan.arrays[0];
     let skin = human.skin(array).unwrap();
-    let frames = touches.simulate((array, human.n_frames()), &FramePlace::Memory, &Silent);
-    let deflection = frames.unwrap().to_array().unwrap();
+    let frames = touches.simulate((array, human.n_frames()), &Silent);
+    let deflection = frames.to_array();
     assert_eq!(deflection.dim(), (240 * 49, 1024));
     let mut workspace = Workspace::new();
     for number in [3, 100, 205] {

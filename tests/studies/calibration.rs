@@ -41,7 +41,7 @@ depth_mm = { uniform = [1.0, 4.5] }
 static TOUCHED: LazyLock<Array2<f64>> = LazyLock::new(|| {
     let study = Study::new(STUDY);
     let frames = simulate_array(&study.touched, &study.plan.arrays[0], 1, &Silent);
-    let frames = frames.to_array().unwrap();
+    let frames = frames.to_array();
     let n = frames.len() / (SIDE * SIDE);
     let frames = frames.into_shape_with_order((n, SIDE * SIDE)).unwrap();
     let order: Vec<usize> = (0..n).map(|k| k * 367 % n).collect();

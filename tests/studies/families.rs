@@ -15,7 +15,6 @@ use bubbletouch::signal::{Chain, Noise, NoiseUnit, Scratch, SignalStep};
 use bubbletouch::study::table::{Cell, Tables, TrialScore};
 use ndarray::{Array1, Array2, Axis};
 use std::collections::BTreeMap;
-use std::path::Path;
 
 const STUDY: &str = r#"
 question = "What is a touch read by?"
@@ -302,9 +301,7 @@ fn frames_take_memory_in_proportion() {
     let bytes = |frames: usize| {
         let text = with(&format!("frames = {frames}"), "");
         let many = text.replace("per_object = 32", "per_object = 60000");
-        recognition_scale(&Study::new(&many).of_items(), None, Path::new(""))
-            .0
-            .bytes
+        recognition_scale(&Study::new(&many).of_items()).bytes
     };
     let frames = 4.0 * 6.0 * 60_000.0 * 256.0;
     assert!(bytes(4) - bytes(1) >= 3.0 * frames);

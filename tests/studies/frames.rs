@@ -43,7 +43,7 @@ fn every_frame_is_its_touch_pressed_alone() {
     let study = Study::new(STUDY);
     let array = &study.plan.arrays[0];
     let frames = simulate_array(&study.touched, array, 1, &Silent);
-    let deflection = frames.to_array().unwrap();
+    let deflection = frames.to_array();
     let mut row = 0;
     let (mut n_missed, mut n_saturated) = (0, 0);
     for object in &study.touched {
@@ -81,7 +81,7 @@ fn frames_without_a_deflection_are_counted_and_none_is_of_a_deep_touch() {
         }
         let array = &study.plan.arrays[0];
         let frames = simulate_array(&study.touched, array, 3, &Silent);
-        let deflection = frames.to_array().unwrap();
+        let deflection = frames.to_array();
         let empty = deflection.outer_iter().skip(2).step_by(3);
         let n_empty = empty.filter(|row| row.iter().all(|&d| d == 0.0)).count();
         assert_eq!(frames.facts.n_missed, n_empty);
@@ -126,7 +126,7 @@ fn missed_and_saturated_touches_are_counted_as_the_equations_say() {
     let array = &study.plan.arrays[0];
     let stroke = array.taxel().stroke;
     let frames = simulate_array(&study.touched, array, 1, &Silent);
-    let deflection = frames.to_array().unwrap();
+    let deflection = frames.to_array();
     let touches = study
         .touched
         .iter()
@@ -368,7 +368,7 @@ fn a_damper_pushes_back_on_taxels_that_move_and_not_on_saturated_ones() {
     let study = Study::new(&text);
     let array = &study.plan.arrays[0];
     let frames = simulate_array(&study.touched, array, 1, &Silent);
-    let frames = frames.to_array().unwrap();
+    let frames = frames.to_array();
     let samples = sample_frames(&study.plan, &study.sweep, &study.touched).unwrap();
     assert_eq!(samples.shown.frames.len(), study.touched.len());
     let per_object = study.touched[0].touches.len();

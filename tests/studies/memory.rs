@@ -3,8 +3,6 @@
 use crate::command::Case;
 use crate::study::Study;
 use bubbletouch::kinds::recognition::recognition_scale;
-use bubbletouch::study::FramePlace;
-use bubbletouch::study::progress::Silent;
 use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -73,25 +71,6 @@ train_touches = 30
 solver_memory_gib = 0.01
 "#;
 
-#[test]
-fn frames_in_a_file_and_one_item_at_a_time_give_the_same_tables() {
-    let study = Study::new(SMALL);
-    let usual = study.run();
-    let folder = tempfile::tempdir().unwrap();
-    for n_threads in [1, 3] {
-        let mut items = study.of_items();
-        items.place = FramePlace::File(folder.path().join("results"));
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads);
-        let run = || items.run(&Silent).unwrap();
-        let outcome = pool.build().unwrap().install(run);
-        assert_eq!(outcome.accuracy, usual.accuracy);
-        assert_eq!(outcome.confusion, usual.confusion);
-        assert_eq!(outcome.limits, usual.limits);
-    }
-    let left = fs::read_dir(folder.path().join("results")).unwrap();
-    assert_eq!(left.count(), 0, "frames are gone with the run");
-}
-
 /// The least ceiling of a study, as its refusal says it.
 fn least_gib(case: &Case, study: &str) -> String {
     let output = case.run(&["plan", study, "--memory-gib", "0.01"]);
@@ -109,7 +88,7 @@ fn a_study_stays_below_its_ceiling_and_finds_the_same() {
     case.file("large.toml", LARGE);
     let least = least_gib(&case, "large.toml");
     let ceiling = least.parse::<f64>().unwrap() * f64::from(1 << 30);
-    assert!(ceiling < 0.4e9, "{least} GiB");
+    assert!(ceiling < 0.6e9, "{least} GiB");
     case.succeeds(&["run", "large.toml", "--out", "free", "--quiet"]);
     let out = [
         "run",
@@ -140,19 +119,15 @@ fn peak(folder: &Path) -> Option<u64> {
 #[test]
 fn a_ceiling_too_low_is_refused_with_what_it_takes() {
     let study = Study::new(SMALL).of_items();
-    let folder = Path::new("results");
-    let (free, place) = recognition_scale(&study, None, folder);
-    assert_eq!(place, FramePlace::Memory);
+    let free = recognition_scale(&study);
     let n_threads = rayon::current_num_threads();
     let (mut most, mut n_before) = (free.least_bytes(), n_threads);
     while free.n_at_once(most) != Some(n_threads) {
         most *= 1.01;
     }
-    // The lower the ceiling, the less is done at once, and frames do not stay in memory.
+    // The lower the ceiling, the less is done at once.
     for share in [0.99, 0.97, 0.95] {
-        let (scale, place) = recognition_scale(&study, Some((share * most) as u64), folder);
-        assert_eq!(place, FramePlace::File(folder.to_owned()));
-        let n = scale.n_at_once(share * most).unwrap_or(0);
+        let n = free.n_at_once(share * most).unwrap_or(0);
         assert!(n <= n_before, "{n} items at once at {share}");
         n_before = n;
     }

@@ -59,7 +59,7 @@ fn scores(study: &RecognitionStudy) -> Vec<TrialScore> {
 fn simulated() -> (Study, Vec<usize>, Array4<f32>) {
     let study = Study::new(&format!("{HEAD}{SKIN}taxels = 8\n{OBJECTS}{REST}"));
     let frames = simulate_array(&study.touched, &study.plan.arrays[0], 2, &Silent);
-    let frames = frames.to_array().unwrap().mapv(|metres| metres as f32);
+    let frames = frames.to_array().mapv(|metres| metres as f32);
     let labels = study.sweep.labels.to_vec();
     let frames = frames
         .into_shape_with_order((labels.len(), 2, 8, 8))

@@ -193,7 +193,7 @@ fn an_object_is_touched_the_same_whatever_else_is_in_the_set() {
             let silent = &bubbletouch::study::progress::Silent;
             let frames = |touched| {
                 let frames = simulate_array(touched, patch, 1, silent);
-                frames.to_array().unwrap()
+                frames.to_array()
             };
             let (few_frames, many_frames) = (frames(&few.touched), frames(&many.touched));
             for (label, object) in few.touched.iter().enumerate() {

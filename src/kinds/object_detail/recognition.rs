@@ -100,7 +100,7 @@ impl<'a> Sensor<'a> {
             touched[0].object = object(variant);
             let frames = simulate_array(&touched, &self.plan.array, 1, &Silent);
             Ok(Felt {
-                measurements: self.projection.measure(frames.to_array()?.view()),
+                measurements: self.projection.measure(frames.to_array().view()),
                 own_contact_error_mm: made.truth.error_past_own_contact(&variant.model).mean_mm,
             })
         });

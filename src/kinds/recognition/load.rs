@@ -61,7 +61,7 @@ pub fn load_study(source: &Source) -> Result<RecognitionStudy> {
     let plans = read_plans(source)?;
     let (packings, place) = (source.packings.as_deref(), &source.place);
     let mut study = RecognitionStudy::load(place, plans, packings, source.memory)?;
-    (study.scale, study.place) = recognition_scale(&study, source.memory, &source.results);
+    study.scale = recognition_scale(&study);
     Ok(study)
 }
 

@@ -118,7 +118,7 @@ impl RecognitionStudy {
         }
         let make = || {
             let on = (array, n_frames);
-            part.touched.simulate(on, &self.place, touched)
+            Ok(part.touched.simulate(on, touched))
         };
         let Some(frames) = left.prepare(&need, make)? else {
             return Ok(());

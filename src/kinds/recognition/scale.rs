@@ -3,14 +3,13 @@
 use super::study::RecognitionStudy;
 use crate::recognition::svm::{Multiclass, Solver};
 use crate::sensing::N_COMPONENTS;
-use crate::study::frames::{FramePlace, made_at_once, most_bytes};
+use crate::study::frames::most_bytes;
 use crate::study::measurement::{UNTOUCHED, WITH_COPIES};
 use crate::study::memory::solver_memory;
 use crate::study::pieces::Scale;
 use crate::study::plan::Plan;
 use crate::study::sweep::{Group, StudyPart};
 use crate::study::table::Cell;
-use std::path::Path;
 
 /// Bytes of a cell in a trial: its rows in all tables.
 const CELL_BYTES: f64 = 4e3;
@@ -21,13 +20,8 @@ const TEST_BYTES: f64 = 20.0;
 /// Bytes of a score, and of its share in what is fused.
 const SCORE_BYTES: f64 = 16.0;
 
-/// How large a study is, and where the frames of an array are so that it stays below `ceiling` bytes (`None`: no ceiling): in memory if
-/// they fit there beside the work of all threads, else in a file in `folder`.
-pub fn recognition_scale(
-    study: &RecognitionStudy,
-    ceiling: Option<u64>,
-    folder: &Path,
-) -> (Scale, FramePlace) {
+/// Returns the size of a study.
+pub fn recognition_scale(study: &RecognitionStudy) -> Scale {
     type Placed<'a> = (&'a StudyPart, &'a Group);
     let n_values = |(part, group): Placed| part.plan.arrays[group.array].n_values();
     let n_frames = |(part, group): Placed| (part.sweep.labels.len() * group.frames) as f64;
@@ -53,15 +47,10 @@ pub fn recognition_scale(
             |family: &[Cell]| family_bytes(&part.plan, &family[0], n_test, (n_classes, n_read));
         largest(group.families().map(bytes))
     };
-    let in_memory = largest(groups().map(|g| n_frames(g) * (most_bytes(n_values(g)) + 16) as f64));
-    // Where each frame is, and what is held before it is put there.
-    let in_file = largest(groups().map(|g| {
-        let n_made = (made_at_once(g.1.frames) * g.1.frames) as f64;
-        8.0 * n_frames(g) + n_made * most_bytes(n_values(g)) as f64
-    }));
+    let frames = largest(groups().map(|g| n_frames(g) * (most_bytes(n_values(g)) + 16) as f64));
     let first = study.first();
     let n_touches = first.sweep.labels.len();
-    let scale = |frames: f64| Scale {
+    Scale {
         objects: first.touched.class_names().len().to_string(),
         touches: match study.n_arrays() {
             1 => format!("{n_touches} on one array"),
@@ -71,12 +60,6 @@ pub fn recognition_scale(
         bytes: frames + CELL_BYTES * (study.n_cells() * first.plan.spec.trials) as f64,
         // A thread that waits for others begins another group.
         item_bytes: 2.0 * largest(groups().map(measured)) + largest(groups().map(learned)),
-    };
-    let free = scale(in_memory);
-    let ceiling = ceiling.map_or(f64::INFINITY, |bytes| bytes as f64);
-    match free.n_at_once(ceiling) == Some(rayon::current_num_threads()) {
-        true => (free, FramePlace::Memory),
-        false => (scale(in_file), FramePlace::File(folder.to_owned())),
     }
 }
 

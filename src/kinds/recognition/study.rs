@@ -7,7 +7,6 @@ use crate::report::recognition::tables_of;
 use crate::study::Samples;
 use crate::study::axes::AxisValues;
 use crate::study::cell_content::family_name;
-use crate::study::frames::FramePlace;
 use crate::study::object_files::objects_content;
 use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft, Scale, Shared, run_whole};
 use crate::study::plan::{Plan, millimetres};
@@ -29,8 +28,6 @@ use std::sync::Arc;
 pub struct RecognitionStudy {
     /// One for each combination of the study's own axes; one alone where it has none.
     parts: Vec<StudyPart>,
-    /// Where the frames of an array are while its cells read them.
-    pub place: FramePlace,
     /// How large it is.
     pub(super) scale: Scale,
     /// A few touches for the eye, once something showed them.
@@ -70,7 +67,7 @@ pub(super) struct Family {
 }
 
 impl RecognitionStudy {
-    /// Lays out a plan and its touches, whose frames are held in memory.
+    /// Lays out a plan and its touches.
     ///
     /// # Errors
     /// Objects or touches that are too few, or are shown without being there.
@@ -87,7 +84,6 @@ impl RecognitionStudy {
     ) -> Result<Self> {
         let mut study = Self {
             parts: Vec::with_capacity(variants.len()),
-            place: FramePlace::Memory,
             scale: Scale::default(),
             samples: Shared::default(),
             touch_sets: Vec::new(),

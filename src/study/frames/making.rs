@@ -1,7 +1,6 @@
 //! Frames made on all threads, and put down in their order.
 
 use super::{FrameFacts, Frames};
-use crate::error::Result;
 use crate::study::progress::Progress;
 use bubbletouch_sim::frame_coding::encode;
 use ndarray::{Array2, ArrayViewMut2};
@@ -19,23 +18,20 @@ fn block(n_frames: usize) -> usize {
 }
 
 /// Touches of F frames whose frames are held before they are put down.
-pub fn made_at_once(n_frames: usize) -> usize {
+fn made_at_once(n_frames: usize) -> usize {
     block(n_frames) * BLOCKS_A_THREAD * rayon::current_num_threads()
 }
 
 impl Frames {
     /// Makes the frames of some touches, each thread in a workspace of its own; the same bytes at any number of threads. `press` writes a touch
     /// into its F frames (F × n_values), and says whether it met nothing, and whether it saturated a taxel when it was deepest.
-    ///
-    /// # Errors
-    /// The file of frames cannot be written.
     pub fn make<T: Sync, W>(
         &mut self,
         touches: &[T],
         workspace: impl Fn() -> W + Sync,
         press: impl Fn(&T, &mut W, ArrayViewMut2<f32>) -> (bool, bool) + Sync,
         progress: &dyn Progress,
-    ) -> Result<()> {
+    ) {
         let shape = (self.facts.n_frames, self.n_values);
         for touches in touches.chunks(made_at_once(shape.0)) {
             let blocks = touches.par_chunks(block(shape.0));
@@ -59,9 +55,8 @@ impl Frames {
                 self.facts.n_missed += facts.n_missed;
                 self.facts.n_saturated += facts.n_saturated;
                 self.facts.cpu_s += facts.cpu_s;
-                self.put(frames)?;
+                self.put(frames);
             }
         }
-        Ok(())
     }
 }

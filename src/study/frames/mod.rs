@@ -1,11 +1,10 @@
-//! The frames of an array's touches: made once, read by every cell; kept in memory or, where they are too large for it, in a temporary file.
+//! The frames of an array's touches: made once, read by every cell, and kept in memory.
 
 mod kept;
 mod making;
 
 pub(crate) use bubbletouch_sim::frame_coding::most_bytes;
-pub use kept::{FramePlace, Frames};
-pub(crate) use making::made_at_once;
+pub use kept::Frames;
 
 /// What happened while frames were made.
 #[derive(Clone, Debug, Default, PartialEq)]

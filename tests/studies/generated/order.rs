@@ -2,7 +2,6 @@
 
 use super::generator::{GeneratedStudy, Generator, n_studies};
 use super::outcome::{rows, run, sorted_without};
-use bubbletouch::study::FramePlace;
 use bubbletouch::study::progress::Silent;
 use toml::Value;
 
@@ -40,8 +39,8 @@ fn frames_by_object(study: &GeneratedStudy) -> Vec<(String, Vec<f64>)> {
     let loaded = study.load().unwrap();
     let part = loaded.first();
     let on = (&part.plan.arrays[0], 1);
-    let frames = part.touched.simulate(on, &FramePlace::Memory, &Silent);
-    let frames = frames.unwrap().to_array().unwrap();
+    let frames = part.touched.simulate(on, &Silent);
+    let frames = frames.to_array();
     let mut by_object = Vec::new();
     for (label, name) in part.touched.class_names().into_iter().enumerate() {
         let touches = part.touched.labels();
