@@ -200,7 +200,7 @@ fn a_draped_patch_covers_a_region_of_the_outer_surface_and_says_how_many_taxels_
         ),
         ("triangles = [3, 1]", "triangles that end before they begin"),
         ("triangles = [3, 99]", "triangle 32"),
-        ("link = \"tip\"", "unknown field `link`"),
+        ("link = \"tip\"", "mesh and region.link"),
     ] {
         let region = format!(", region = {{ {region} }}");
         assert!(said(&region).contains(given), "{}", said(&region));
