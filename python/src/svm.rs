@@ -93,7 +93,7 @@ fn trained<T: Send + 'static>(
 
 fn data_of(features: &Bound<PyAny>, labels: &Bound<PyAny>) -> PyResult<Dataset> {
     let labels = Array1::from(whole("labels", labels)?);
-    dataset(rows_of(features)?, labels).map_err(exception)
+    dataset(rows_of(features)?, labels).map_err(|error| exception(error.into()))
 }
 
 /// The kernel and C of a call, as Python names them.
@@ -167,7 +167,7 @@ impl KernelSvm {
     ) -> PyResult<Self> {
         guarded(|| {
             let asked = params.extract::<Asked>()?.params()?;
-            let (model, data) = trained(features, labels, move |rows| asked.train(rows))?;
+            let (model, data) = trained(features, labels, move |rows| Ok(asked.train(rows)?))?;
             let asked = params.copy()?.unbind();
             Ok(Self { model, asked, data })
         })
@@ -180,7 +180,7 @@ impl KernelSvm {
         features: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray1<i64>>> {
         guarded(|| {
-            let label = |rows: ArrayView2<f64>| self.model.labels(rows);
+            let label = |rows: ArrayView2<f64>| Ok(self.model.labels(rows)?);
             let labels = predicted(features, |rows| in_parts(rows, label))?;
             Ok(to_integers(py, labels.iter().flatten()))
         })
@@ -193,7 +193,7 @@ impl KernelSvm {
         features: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         guarded(|| {
-            let value = |rows: ArrayView2<f64>| self.model.decision_values(rows);
+            let value = |rows: ArrayView2<f64>| Ok(self.model.decision_values(rows)?);
             let values = predicted(features, |rows| in_parts(rows, value))?;
             let views: Vec<ArrayView2<f64>> = values.iter().map(|part| part.view()).collect();
             let values = concatenate(Axis(0), &views).expect("parts have the same columns");
@@ -271,7 +271,9 @@ impl LinearModel {
                 max_passes,
             };
             let seeded = Seed::new(seed);
-            let (svm, data) = trained(features, labels, move |rows| params.train(rows, &seeded))?;
+            let (svm, data) = trained(features, labels, move |rows| {
+                Ok(params.train(rows, &seeded)?)
+            })?;
             let asked = (c, tolerance, max_passes, seed);
             Ok(Self { svm, asked, data })
         })
@@ -284,7 +286,7 @@ impl LinearModel {
         features: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray1<i64>>> {
         guarded(|| {
-            let labels = predicted(features, |rows| self.svm.labels(rows.view()))?;
+            let labels = predicted(features, |rows| Ok(self.svm.labels(rows.view())?))?;
             Ok(to_integers(py, &labels))
         })
     }
@@ -296,7 +298,7 @@ impl LinearModel {
         features: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         guarded(|| {
-            let scores = predicted(features, |rows| self.svm.scores(rows.view()))?;
+            let scores = predicted(features, |rows| Ok(self.svm.scores(rows.view())?))?;
             Ok(scores.into_pyarray(py))
         })
     }
@@ -370,7 +372,7 @@ pub fn choose_svm<'py>(
         };
         let candidates = Candidates { c, gamma_scales };
         let chosen = aside(py, move |_| choose(&params, &data, &folds, &candidates))?;
-        let chosen = chosen.map_err(exception)?;
+        let chosen = chosen.map_err(|error| exception(error.into()))?;
         let said = PyDict::new(py);
         let tried = chosen
             .tried

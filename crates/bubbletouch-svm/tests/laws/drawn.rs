@@ -6,15 +6,21 @@ use ndarray::{Array1, Array2};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
+use sha2::{Digest, Sha256};
 
-/// Random numbers of a seed.
-pub fn rng(seed: u64) -> ChaCha8Rng {
-    ChaCha8Rng::seed_from_u64(seed)
+/// Random numbers by name: the ChaCha8 stream whose key is the SHA-256 of a seed and words. The laws' bars on rounding were measured on these rows.
+pub fn rng(seed: u64, words: &[&str]) -> ChaCha8Rng {
+    let start: [u8; 32] = Sha256::digest(seed.to_le_bytes()).into();
+    let key = words.iter().fold(start, |key, word| {
+        let hash = Sha256::new().chain_update(key).chain_update(b"word");
+        hash.chain_update(word.as_bytes()).finalize().into()
+    });
+    ChaCha8Rng::from_seed(key)
 }
 
 /// Clusters around the corners of a simplex, `apart` standard deviations from the middle: so many rows of each class.
 pub fn clusters(counts: &[usize], apart: f64, seed: u64) -> Dataset {
-    let mut rng = rng(seed);
+    let mut rng = rng(seed, &["clusters"]);
     let labels: Vec<usize> = (0..*counts.iter().max().unwrap())
         .flat_map(|turn| (0..counts.len()).filter(move |&class| turn < counts[class]))
         .collect();

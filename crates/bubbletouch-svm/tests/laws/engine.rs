@@ -41,13 +41,14 @@ fn params(kernel: Kernel, c: f64, tolerance: f64) -> SvmParams {
 /// Normal clouds of `counts` rows in `m` features of unit spread, a class each, whose centres lie `apart` times a normal
 /// vector from the origin; the rows of all classes are mixed.
 fn clouds(counts: &[usize], m: usize, apart: f64, seed: u64) -> Dataset {
-    let mut rng = rng(seed);
+    let mut draws = rng(seed, &["centres"]);
     let centres = Array2::from_shape_fn((counts.len(), m), |_| {
-        apart * rng.sample::<f64, _>(StandardNormal)
+        apart * draws.sample::<f64, _>(StandardNormal)
     });
     let mut labels: Vec<usize> = (0..counts.len())
         .flat_map(|class| std::iter::repeat_n(class, counts[class]))
         .collect();
+    let mut rng = rng(seed, &["rows"]);
     for last in (1..labels.len()).rev() {
         labels.swap(last, rng.gen_range(0..=last));
     }
@@ -233,7 +234,7 @@ fn wide_rows_that_span_no_dimension_are_solved_too() {
 /// Four classes of 300 rows: f32 at the usual tolerance.
 fn large() -> (Dataset, Array2<f64>) {
     let data = clouds(&[300, 300, 300, 300], 8, 0.7, 3);
-    let mut rng = rng(4);
+    let mut rng = rng(4, &[]);
     let probes = Array2::from_shape_fn((800, 8), |_| 1.3 * rng.sample::<f64, _>(StandardNormal));
     (data, probes)
 }
@@ -644,23 +645,20 @@ fn accuracies(params: SvmParams, data: &Dataset, folds: &[Split], chosen: &Chose
     chosen.tried.iter().map(|t| of(t.c, t.gamma)).collect()
 }
 
+// One-vs-rest is compared where classes are larger (`choice`): with four rows against 168 most classes have the constant decision value −1, and
+// rounding decides between equal values (labels change between tolerances of 1e-8 and 1e-10).
 #[test]
 fn of_43_small_classes_the_choice_on_one_matrix_is_that_of_training_one_by_one() {
     let data = clouds(&[8; 43], 12, 0.8, 16);
     let folds = folds(&data.targets, 2);
     for kernel in [Kernel::Linear, RBF] {
-        for multiclass in [Multiclass::OneVsOne, Multiclass::OneVsRest] {
-            let params = SvmParams {
-                multiclass,
-                ..params(kernel, 1.0, 1e-6)
-            };
-            let chosen = choose(&params, &data, &folds, &candidates()).unwrap();
-            let tried: Vec<f64> = chosen.tried.iter().map(|tried| tried.accuracy).collect();
-            let expected = accuracies(params, &data, &folds, &chosen);
-            assert_eq!(tried, expected, "{kernel:?} {multiclass:?}");
-            let best = tried.iter().copied().fold(0.0, f64::max);
-            assert!(best > 0.3 && chosen.best.accuracy == best);
-        }
+        let params = params(kernel, 1.0, 1e-6);
+        let chosen = choose(&params, &data, &folds, &candidates()).unwrap();
+        let tried: Vec<f64> = chosen.tried.iter().map(|tried| tried.accuracy).collect();
+        let expected = accuracies(params, &data, &folds, &chosen);
+        assert_eq!(tried, expected, "{kernel:?}");
+        let best = tried.iter().copied().fold(0.0, f64::max);
+        assert!(best > 0.3 && chosen.best.accuracy == best);
     }
 }
 
