@@ -144,10 +144,12 @@ impl Counts {
                 n_done,
                 ..
             } = self;
-            let longer = 10.0 * seconds;
-            format!(
-                "no work item finished in {seconds} s ({stage}: {n_done} of {n_steps}); --time={longer} samples longer"
-            )
+            let longer = (10.0 * seconds).ceil();
+            let during = match stage.is_empty() {
+                true => String::new(),
+                false => format!(" ({stage}: {n_done} of {n_steps})"),
+            };
+            format!("no work item finished in {seconds} s{during}; --time={longer} samples longer")
         })
     }
 }
