@@ -5,7 +5,7 @@
 
 use crate::report::swept::Setting;
 use crate::table::{Column, Role, Table, Value};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// Columns whose numbers name configurations, which other runs number otherwise.
 const CONFIGURATION_NUMBERS: [&str; 2] = ["cell", "best_cell"];
@@ -76,6 +76,7 @@ type Configurations = HashMap<u64, String>;
 
 fn configurations(tables: &[Table]) -> Configurations {
     let mut known = Configurations::new();
+    let mut named = HashSet::new();
     for table in tables {
         let Some((column, numbers)) = table.column("cell") else {
             continue;
@@ -86,11 +87,17 @@ fn configurations(tables: &[Table]) -> Configurations {
             let columns = Setting::of_roles(table, &KEY_ROLES);
             let columns: Vec<Setting> = columns.filter(|one| one.column.name != "trial").collect();
             for row in 0..table.n_rows {
+                let number = numbers.key(row);
+                if known.contains_key(&number) {
+                    continue;
+                }
                 let said = columns.iter();
                 let said = said.filter_map(|one| entry(*one, row, &Configurations::new()));
-                known
-                    .entry(numbers.key(row))
-                    .or_insert_with(|| said.collect());
+                let said: String = said.collect();
+                // A second number of the same settings is a number that was changed.
+                if named.insert(said.clone()) {
+                    known.insert(number, said);
+                }
             }
         }
     }
