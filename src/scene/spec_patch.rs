@@ -135,7 +135,7 @@ pub enum LayoutSpec {
         pitch_mm: f64,
         /// The part that carries taxels; the whole outer surface when left out.
         #[serde(default, skip_serializing_if = "Option::is_none")]
-        region: Option<RegionSpec>,
+        region: Option<Box<RegionSpec>>,
     },
 }
 

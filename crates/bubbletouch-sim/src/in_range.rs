@@ -3,6 +3,9 @@
 use crate::error::{Error, Result};
 
 /// A finite number above zero, in a unit.
+///
+/// # Errors
+/// The value is infinite, NaN or not above zero.
 pub fn positive(place: &str, value: f64, unit: &str) -> Result<f64> {
     if value.is_finite() && value > 0.0 {
         return Ok(value);
@@ -15,6 +18,9 @@ pub fn positive(place: &str, value: f64, unit: &str) -> Result<f64> {
 }
 
 /// A finite number that is not below zero, in a unit; empty without one.
+///
+/// # Errors
+/// The value is infinite, NaN or below zero.
 pub fn not_negative(place: &str, value: f64, unit: &str) -> Result<f64> {
     if value.is_finite() && value >= 0.0 {
         return Ok(value);
@@ -28,6 +34,9 @@ pub fn not_negative(place: &str, value: f64, unit: &str) -> Result<f64> {
 }
 
 /// A number from 0 to 1.
+///
+/// # Errors
+/// The value is outside 0 to 1, or NaN.
 pub fn fraction(place: &str, value: f64) -> Result<f64> {
     if (0.0..=1.0).contains(&value) {
         return Ok(value);

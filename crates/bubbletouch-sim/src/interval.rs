@@ -41,7 +41,7 @@ impl Interval {
     ///
     /// `confidence` is the coverage, such as 0.95. The rows are taken as independent: touches of one object in
     /// neighbouring poses are not quite, so the interval is rather too narrow than too wide. Of rows that are held out in
-    /// groups it is [of the groups](super::grouped::interval_of_groups).
+    /// groups, the interval is over groups instead.
     ///
     /// # Errors
     /// No rows, more correct than rows, or a confidence outside 0..1.

@@ -29,6 +29,9 @@ pub fn line_of(record: &csv::StringRecord) -> u64 {
 }
 
 /// The error is another number of fields in a row at `place`.
+///
+/// # Errors
+/// The record has another number of fields.
 pub fn check_width(place: &str, record: &csv::StringRecord, width: usize) -> Result<()> {
     if record.len() == width {
         return Ok(());
@@ -41,6 +44,9 @@ pub fn check_width(place: &str, record: &csv::StringRecord, width: usize) -> Res
 }
 
 /// The finite number that a field of a row at `place` is; `allowed` says what of.
+///
+/// # Errors
+/// The field is no finite number.
 pub fn finite(place: &str, column: &str, field: &str, allowed: &str) -> Result<f64> {
     match field.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
@@ -68,6 +74,9 @@ pub struct NumberTable {
 
 impl NumberTable {
     /// Reads all; errors begin with `place`, the file's name, and give line and column. `allowed`: what such a file has.
+    ///
+    /// # Errors
+    /// The file is no table of finite numbers.
     pub fn read(place: &str, source: impl Read, allowed: &str) -> Result<Self> {
         let not_text = |error| unreadable(place, error, allowed);
         let mut reader = rows_of(source);

@@ -23,6 +23,9 @@ pub fn duration(seconds: f64) -> String {
 }
 
 /// The place of a name among `names`; the error offers those it resembles.
+///
+/// # Errors
+/// The name is not among those known; the error names the nearest.
 pub fn known<'a>(
     place: impl ToString,
     name: &str,

@@ -1,6 +1,6 @@
 //! Bounds of the numbers in a TOML file, whatever the key: all are finite, and none is far beyond what its unit measures on a robot.
 //!
-//! The end of a key names its unit (`stroke_mm`). A number without a unit is bounded by [`MAX_PLAIN`]. The check runs when a file is read,
+//! The end of a key names its unit (`stroke_mm`). A number without a unit is bounded by `MAX_PLAIN`. The check runs when a file is read,
 //! before its keys are known; checks of single keys are narrower.
 
 use crate::error::{Error, Result};

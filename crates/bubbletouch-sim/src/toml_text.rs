@@ -12,6 +12,9 @@ use toml_parser::lexer::TokenKind;
 const MOST_OPEN: usize = 200;
 
 /// What a text says; the error names `place` (the file), line and column.
+///
+/// # Errors
+/// The text is no TOML, or has an unknown, missing or mistyped key, or a number out of bounds.
 pub fn read<T: DeserializeOwned>(place: &str, text: &str) -> Result<T> {
     check_brackets(place, text)?;
     check_numbers(place, text)?;
@@ -19,6 +22,9 @@ pub fn read<T: DeserializeOwned>(place: &str, text: &str) -> Result<T> {
 }
 
 /// Refuses whole numbers that a type may take and no table has, so that it could not be written, and numbers [out of bounds](check_bounds).
+///
+/// # Errors
+/// The text is no TOML, or a number in it is out of bounds.
 pub fn check_numbers(place: &str, text: &str) -> Result<()> {
     let read = text.parse::<toml::Table>();
     read.map_err(|error| Error::toml(place, text, &error))?;
@@ -42,6 +48,9 @@ pub fn line_of(text: &str, byte: usize) -> usize {
 }
 
 /// Refuses text that is no TOML and would need a deep stack to say so.
+///
+/// # Errors
+/// More brackets are open at once than the reader may nest.
 pub fn check_brackets(place: &str, text: &str) -> Result<()> {
     // Square, and curly: in broken text either may be closed by the other, or not.
     let mut open = [0_usize; 2];

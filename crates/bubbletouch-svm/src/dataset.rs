@@ -36,6 +36,9 @@ pub fn rows(data: &Dataset, indices: &[usize]) -> Result<Dataset> {
 }
 
 /// Refuses empty features and any that is NaN or infinite, naming its row and column.
+///
+/// # Errors
+/// Empty features, or a NaN or infinite one.
 pub fn check_features(features: ArrayView2<f64>) -> Result<()> {
     let (n_rows, n_columns) = features.dim();
     if n_rows == 0 || n_columns == 0 {
@@ -78,6 +81,9 @@ pub fn all_finite(values: &[f64]) -> bool {
 }
 
 /// Refuses labels that are not one per row.
+///
+/// # Errors
+/// Another number of labels than rows.
 pub fn check_labels(n_rows: usize, labels: ArrayView1<usize>) -> Result<()> {
     if labels.len() == n_rows {
         return Ok(());
@@ -90,6 +96,9 @@ pub fn check_labels(n_rows: usize, labels: ArrayView1<usize>) -> Result<()> {
 }
 
 /// Refuses features of another width than the model was trained on, and any that is NaN or infinite.
+///
+/// # Errors
+/// Another number of columns than `width`, or a NaN or infinite feature.
 pub fn check_width<D: Data<Elem = f64>>(features: &ArrayBase<D, Ix2>, width: usize) -> Result<()> {
     if features.ncols() != width {
         return Err(Error::input(

@@ -139,7 +139,7 @@ pub enum Solver {
     #[default]
     Smo,
     /// Dual coordinate descent: linear kernel and one-vs-rest, with a regularised bias (LIBLINEAR's problem); see
-    /// [`linear_svm`](crate::linear_svm).
+    /// [`linear_svm`].
     CoordinateDescent,
 }
 

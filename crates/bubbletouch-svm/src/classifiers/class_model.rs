@@ -1,8 +1,4 @@
 //! What every trained classifier but the kernel SVM is asked: one score per class.
-//!
-//! To add a classifier: a file with its parameters and a model that implements [`ClassModel`], a
-//! [`ClassifierKind`](crate::recognition::ClassifierKind), and an arm in
-//! [`Classifier::train`](crate::classifiers::classifier::Classifier::train).
 
 use std::fmt::Debug;
 
