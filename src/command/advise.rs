@@ -52,7 +52,7 @@ pub struct Args {
 #[group(required = true, multiple = true)]
 struct WishArgs {
     /// The share of right decisions that is needed, such as 0.9
-    #[arg(long, value_name = "SHARE")]
+    #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
     accuracy: Option<f64>,
     /// The value that is needed, in the unit of its column: at least so much, or at most where less is better
     #[arg(
@@ -63,19 +63,19 @@ struct WishArgs {
     )]
     reach: Option<f64>,
     /// The largest --cost, in the unit of its column: microseconds a decision, seconds to train, taxels, measurements …
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     budget: Option<f64>,
     /// The most measurements of a decision
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     max_measurements: Option<f64>,
     /// The most taxels
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     max_taxels: Option<f64>,
     /// The longest time of a decision, milliseconds
-    #[arg(long, value_name = "MS")]
+    #[arg(long, value_name = "MS", allow_negative_numbers = true)]
     max_answer_ms: Option<f64>,
     /// The longest time to train, seconds
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
     max_training_s: Option<f64>,
 }
 

@@ -172,7 +172,7 @@ fn one_thread_is_not_called_threads() {
     case.file("study.toml", STUDY);
     let (said, _) = case.succeeds(&["plan", "study.toml", "--threads", "1"]);
     assert!(
-        line(&said, "time").join(" ").contains("on 1 thread ("),
+        line(&said, "memory").join(" ").ends_with("on 1 thread"),
         "{said}"
     );
 }

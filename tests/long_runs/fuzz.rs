@@ -355,7 +355,7 @@ fn meshes_in_stl() {
 
 #[test]
 fn robots() {
-    let mut seeds = files("tests/robots", "urdf", 20_000);
+    let mut seeds = files("crates/bubbletouch-sim/tests/robots", "urdf", 20_000);
     seeds.extend(files("objects/robots", "urdf", 20_000));
     Target {
         name: "urdf",

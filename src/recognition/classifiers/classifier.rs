@@ -326,8 +326,12 @@ where
 /// Our own errors as they are; another crate's as bad input to its classifier.
 fn own_or_wrapped(error: impl std::error::Error + 'static) -> Error {
     let error: Box<dyn std::error::Error> = Box::new(error);
-    match error.downcast::<Error>() {
-        Ok(own) => *own,
+    let error = match error.downcast::<Error>() {
+        Ok(own) => return *own,
+        Err(error) => error,
+    };
+    match error.downcast::<bubbletouch_svm::Error>() {
+        Ok(of_svm) => (*of_svm).into(),
         Err(other) => Error::input("classifier", other, "see its documentation"),
     }
 }

@@ -284,6 +284,7 @@ fn the_advisor_reads_a_study_that_recognises_objects() {
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {error}");
         assert!(error.contains(wanted), "{arguments:?}: {error}");
     }
+    fs::create_dir(case.path("old")).unwrap();
     case.file("old/study.toml", "question = \"?\"\n[speed_accuracy]\n");
     for arguments in [
         &["run", "old/study.toml"][..],
