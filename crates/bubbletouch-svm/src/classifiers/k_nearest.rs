@@ -10,8 +10,7 @@
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis};
 
 use crate::classifiers::class_model::{ClassModel, log_vote_shares};
-use crate::dataset::checked_classes;
-use crate::dataset::{Dataset, check_width, positions};
+use crate::dataset::{Dataset, check_width, checked_classes, positions};
 use crate::{Error, Result};
 
 /// Rows whose distances to all training rows are computed at once. More leave the processor's cache, fewer make the

@@ -11,8 +11,7 @@ use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis, s};
 
 use crate::classifiers::class_model::{ClassModel, log_priors};
 use crate::classifiers::lbfgs::minimise;
-use crate::dataset::checked_classes;
-use crate::dataset::{Dataset, positions};
+use crate::dataset::{Dataset, checked_classes, positions};
 use crate::linear_model::LinearModel;
 use crate::{Error, Result};
 

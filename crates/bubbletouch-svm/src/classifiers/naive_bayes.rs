@@ -8,8 +8,7 @@ use linfa_bayes::{GaussianNb, NaiveBayes as _};
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2};
 
 use crate::classifiers::class_model::{ClassModel, log_priors};
-use crate::dataset::checked_classes;
-use crate::dataset::{Dataset, check_width};
+use crate::dataset::{Dataset, check_width, checked_classes};
 use crate::{Error, Result};
 
 /// Share of the largest feature's variance that is added to every variance: scikit-learn's default.

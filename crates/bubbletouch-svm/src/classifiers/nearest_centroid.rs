@@ -6,8 +6,7 @@
 
 use crate::Result;
 use crate::classifiers::class_model::ClassModel;
-use crate::dataset::checked_classes;
-use crate::dataset::{Dataset, check_width};
+use crate::dataset::{Dataset, check_width, checked_classes};
 use ndarray::{Array2, ArrayView2, Axis};
 
 /// The mean of each class.

@@ -10,8 +10,7 @@ use rand::Rng;
 use crate::classifiers::class_model::{ClassModel, log_vote_shares};
 use crate::classifiers::ranked::Ranked;
 use crate::classifiers::tree::{Growth, Tree, check_depth};
-use crate::dataset::checked_classes;
-use crate::dataset::{Dataset, check_width, positions};
+use crate::dataset::{Dataset, check_width, checked_classes, positions};
 use crate::streams::Streams;
 use crate::{Error, Result};
 
