@@ -150,13 +150,18 @@
 // They panic where nobody reads any more.
 #![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
 
+pub mod engine;
 pub mod file_path;
 pub mod guide;
+pub mod inputs;
 pub mod kinds;
+pub mod learning;
 pub mod recognition;
 pub mod report;
 pub mod scene;
 pub mod shell_line;
+pub mod statistics;
+pub mod studies;
 pub mod study;
 mod study_file;
 pub mod table;

@@ -29,7 +29,7 @@ macro_rules! study_file {
             #[serde(default)]
             pub expected: String,
             /// Root of all randomness.
-            #[serde(default = "crate::study::default_seed")]
+            #[serde(default = "crate::studies::recognition::spec::study::default_seed")]
             pub seed: u64,
             $($(#[$of_field])* pub $field: $type,)*
         }

@@ -3,7 +3,7 @@
 
 use crate::error::{Error, Result};
 use crate::report::swept::{Setting, Swept};
-use crate::study::column_name;
+use crate::table::column_name;
 use crate::table::{Better, Column, Role, Scale, Table, Value, front};
 use std::collections::HashSet;
 

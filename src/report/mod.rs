@@ -26,7 +26,6 @@ pub(crate) mod picture;
 pub(crate) mod picture_axes;
 pub mod pressure_map;
 pub mod progress;
-pub mod recognition;
 pub mod recording;
 pub mod run_clock;
 pub mod scene_files;

@@ -6,16 +6,15 @@
 //! {"event":"message","text":"going on: 96 of 240 work items were finished before"}
 //! ```
 
+use crate::engine::progress::Progress;
 use crate::report::run_clock::RunClock;
 use crate::spelling::duration;
-use crate::study::progress::Progress;
 use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use serde_json::json;
-use std::fmt;
 use std::io::{IsTerminal, Write};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
-use std::thread;
 use std::time::{Duration, Instant};
+use std::{fmt, thread};
 
 /// Interval between two reports on a stage, also if nothing advances. Longer: a program waits longer for news; shorter: more lines.
 const INTERVAL: Duration = Duration::from_millis(200);

@@ -9,13 +9,27 @@ use crate::report::picture_axes::{Side, draw_colour_bar, draw_map_axis};
 use crate::report::recording::cells::{Cells, whole_pixels};
 use crate::report::recording::pixels::paint;
 use crate::report::text_width::shorten;
-use crate::study::Snapshots;
+use crate::signal::Quantity;
 use crate::world::Grid;
+use ndarray::Array2;
 
 /// Cells of a frame that are shown each way, at most; larger frames are shown by the largest value of blocks.
 const MOST_CELLS: usize = 128;
 /// Frames side by side, at most.
 const MOST_COLUMNS: usize = 4;
+
+/// Touches on one scale of colours.
+#[derive(Clone, Debug)]
+pub struct Snapshots {
+    /// Names and frames (ny × nx, row = y ascending), metres or newtons.
+    pub frames: Vec<(String, Array2<f64>)>,
+    /// Millimetres between taxels.
+    pub pitch_mm: f64,
+    /// What the frames hold.
+    pub quantity: Quantity,
+    /// What was pressed how, and the noise.
+    pub caption: String,
+}
 
 /// Draws named frames, four a row, with a common colour bar and the caption below; two picture elements a pixel.
 ///

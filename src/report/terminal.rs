@@ -299,6 +299,6 @@ fn letters(text: &str) -> usize {
 }
 
 /// A text broken at spaces (not at U+00A0) into lines of at most `width` letters, with a line end after each.
-pub(super) fn paragraph(text: &str, width: usize) -> String {
+pub(crate) fn paragraph(text: &str, width: usize) -> String {
     break_lines(text, |line| letters(line) <= width).join("\n") + "\n"
 }

@@ -8,8 +8,8 @@ use super::plan_object::Movement;
 use super::simulation::Simulation;
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
+use crate::inputs::check::positive;
 use crate::spelling::known;
-use crate::study::positive;
 use crate::world::{Interpolation, JointTrajectory};
 use ndarray::Array2;
 

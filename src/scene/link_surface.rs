@@ -5,8 +5,8 @@
 use super::plan_robot::PlannedRobot;
 use super::reader::Reader;
 use crate::error::{Error, Result};
+use crate::inputs::object_files::read_mesh;
 use crate::mesh::{SizeLimits, TriangleMesh};
-use crate::study::read_mesh;
 use crate::world::{Link, LinkGeometry, LinkShape, ShapeRole};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};

@@ -6,8 +6,8 @@ use super::reader::MM;
 use super::robot_state::RobotState;
 use crate::error::Result;
 use crate::geometry::Pose;
+use crate::inputs::check::Check;
 use crate::objects::{Model, Sphere};
-use crate::study::Check;
 
 /// Objects overlap at most by this share of the smaller one's radius, however coarse their spheres are.
 const MAX_SHARE: f64 = 0.5;

@@ -8,10 +8,12 @@ use super::reader::{MM, Reader};
 use super::spec::{FreeSpec, ObjectSpec};
 use crate::error::Result;
 use crate::geometry::Pose;
+use crate::inputs::check::positive;
+use crate::inputs::object_files::{load_catalogue, load_mesh, load_spheres};
+use crate::inputs::objects_spec::{ModelSpec, ObjectsSpec};
 use crate::mesh::SizeLimits;
 use crate::objects::{Catalogue, Model};
 use crate::spelling::nearest_names;
-use crate::study::{ModelSpec, ObjectsSpec, load_catalogue, load_mesh, load_spheres, positive};
 use crate::world::Motion;
 use glam::DVec3;
 

@@ -8,9 +8,10 @@ use super::reader::{MM, Reader};
 use super::spec::{LayoutSpec, ObjectSpec, PatchSpec, RegionSpec};
 use crate::error::Result;
 use crate::geometry::Aabb;
+use crate::inputs::check::positive;
+use crate::inputs::object_files::read_mesh;
 use crate::mesh::{MeshFormat, SizeLimits, obj_group};
 use crate::random::Seed;
-use crate::study::{positive, read_mesh};
 use crate::world::{DrapeRegion, Grid, Layout, Patch, Shears};
 use std::path::Path;
 

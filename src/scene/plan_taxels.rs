@@ -4,9 +4,9 @@ use super::numbers::Numbers;
 use super::reader::{MM, Reader};
 use super::spec::PatchSpec;
 use crate::error::{Error, Result};
+use crate::inputs::check::{not_negative, positive};
 use crate::numbers_csv::NumberTable;
 use crate::spelling::nearest_names;
-use crate::study::{not_negative, positive};
 use crate::world::{PerTaxel, Shear, Shears, Taxel, Taxels};
 
 /// Stiffness of taxels of which nothing is said, N/m.

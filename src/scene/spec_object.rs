@@ -3,8 +3,8 @@
 use super::numbers::Numbers;
 use super::spec::{MotionSpec, PoseSpec};
 use crate::file_path::FilePath;
+use crate::inputs::objects_spec::ModelSpec;
 use crate::mesh::LengthUnit;
-use crate::study::ModelSpec;
 use serde::{Deserialize, Serialize};
 
 /// `[[objects]]`: what is touched.

@@ -201,3 +201,11 @@ impl<A: Columns, B: Columns, C: Columns> Columns for (A, B, C) {
         [A::columns(), B::columns(), C::columns()].concat()
     }
 }
+
+/// A column as people may write it: `noise` stands for `noise_std`.
+pub fn column_name(key: &str) -> &str {
+    match key {
+        "noise" => "noise_std",
+        other => other,
+    }
+}

@@ -16,7 +16,7 @@ mod rows;
 mod table;
 
 pub use chart::{Along, At, ChartSpec, Mark, Rule, Shown};
-pub use column::{Better, Column, Columns, Role, Scale};
+pub use column::{Better, Column, Columns, Role, Scale, column_name};
 pub use file::File;
 pub use front::front;
 pub use numbers::{short_number, time_words};

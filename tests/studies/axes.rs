@@ -4,7 +4,7 @@ use crate::command::Case;
 use crate::study::{self, Study};
 use bubbletouch::kinds::recognition::RecognitionStudy;
 use bubbletouch::report::folder::{table_files, write_files};
-use bubbletouch::report::recognition::{read_tables, tables_of};
+use bubbletouch::studies::recognition::charts::{read_tables, tables_of};
 use bubbletouch::study::pieces::PieceStudy;
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::table::{Tables, TrialScore};

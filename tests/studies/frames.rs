@@ -369,7 +369,7 @@ fn a_damper_pushes_back_on_taxels_that_move_and_not_on_saturated_ones() {
     let array = &study.plan.arrays[0];
     let frames = simulate_array(&study.touched, array, 1, &Silent);
     let frames = frames.to_array();
-    let samples = sample_frames(&study.plan, &study.sweep, &study.touched).unwrap();
+    let samples = sample_frames(&study.plan, &study.sweep.groups, &study.touched).unwrap();
     assert_eq!(samples.shown.frames.len(), study.touched.len());
     let per_object = study.touched[0].touches.len();
     let (mut n_moving, mut n_saturated) = (0, 0);

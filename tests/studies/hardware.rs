@@ -4,8 +4,8 @@ use crate::command::Case;
 use crate::study::{Study, trials_of};
 use bubbletouch::contact::{Workspace, press_to_depth};
 use bubbletouch::random::Seed;
-use bubbletouch::report::recognition::{charts, tables_of};
 use bubbletouch::signal::{Chain, Recording, Scratch, SensorError};
+use bubbletouch::studies::recognition::charts::{charts, tables_of};
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::{Plan, StudySpec, sample_frames};
 use rand::Rng;
@@ -252,7 +252,7 @@ fn every_strength_gets_its_chart_and_every_imperfection_its_picture() {
         "accuracy_by_adc_bits",
     ];
     assert_eq!(names, expected);
-    let samples = sample_frames(&study.plan, &study.sweep, &study.touched).unwrap();
+    let samples = sample_frames(&study.plan, &study.sweep.groups, &study.touched).unwrap();
     let names: Vec<&str> = samples
         .shown
         .frames

@@ -2,7 +2,7 @@
 
 use crate::study::{Study, laid_out};
 use bubbletouch::recognition::features::{Cut, Features, ImageFeatures, Workspace};
-use bubbletouch::report::recognition::tables_of;
+use bubbletouch::studies::recognition::charts::tables_of;
 use bubbletouch::study::FeatureSet;
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::{Plan, StudySpec};

@@ -217,7 +217,7 @@ fn the_noise_on_a_touch_does_not_depend_on_the_other_objects() {
     let text = NARROW.replace("ENSEMBLE", "identity") + "[report]\nsamples = [\"power_drill\"]\n";
     let sample = |text: &str| {
         let study = Study::new(text);
-        let samples = sample_frames(&study.plan, &study.sweep, &study.touched).unwrap();
+        let samples = sample_frames(&study.plan, &study.sweep.groups, &study.touched).unwrap();
         samples.shown.frames[0].clone()
     };
     let (name, frame) = sample(&text);

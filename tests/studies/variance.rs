@@ -2,7 +2,7 @@
 
 use crate::study::Study;
 use bubbletouch::report::folder::{table_files, write_files};
-use bubbletouch::report::recognition::{read_tables, tables_of};
+use bubbletouch::studies::recognition::charts::{read_tables, tables_of};
 use bubbletouch::study::table::{Cell, PStatus, Source, Tables, TrialScore, Variance};
 use bubbletouch::study::{Plan, StudySpec};
 use std::path::Path;

@@ -1,5 +1,6 @@
 //! What moved between two folders of results: sentences, a table, and a page.
 
+use crate::engine::provenance::PROGRAM;
 use crate::error::Result;
 use crate::quantile::quantile;
 use crate::report::differences::{ColumnDifferences, Difference, Moved};
@@ -9,8 +10,7 @@ use crate::report::rank_agreement::RankAgreement;
 use crate::report::study_folder::{Found, MOST_CHARTS, page_of};
 use crate::report::terminal::{paragraph, table_text};
 use crate::spelling::counted;
-use crate::study::provenance::PROGRAM;
-use crate::study::table::PStatus;
+use crate::statistics::p_status::PStatus;
 use crate::table::{
     Along, At, Better, ChartSpec, File, Mark, Role, Rule, Shown, Table, short_number,
 };

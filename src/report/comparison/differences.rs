@@ -5,13 +5,12 @@
 //! chance explains the difference. Of values with intervals it does not if the two are apart.
 
 use crate::error::{Error, Result};
-use crate::recognition::statistics::comparison::TrialSize;
-use crate::recognition::statistics::many_tests::holm_of_some;
 use crate::report::swept::Setting;
 use crate::row;
-use crate::study::CONFIDENCE;
-use crate::study::repeats::{Paired, Repeat};
-use crate::study::table::PStatus;
+use crate::statistics::comparison::TrialSize;
+use crate::statistics::many_tests::holm_of_some;
+use crate::statistics::p_status::{CONFIDENCE, PStatus};
+use crate::statistics::repeats::{Paired, Repeat};
 use crate::table::{Better, Column, Role, Table};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeSet, HashMap, HashSet};

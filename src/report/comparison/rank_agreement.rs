@@ -5,13 +5,11 @@
 //! k-NN has no C) is a value, too. Compression ratios of two tables are the same if one nominal ratio r gives both numbers of measurements,
 //! m = n / r rounded, as on arrays that do not divide by r.
 
-use crate::recognition::statistics::interval::Interval;
-use crate::recognition::statistics::rank_correlation::{
-    ENOUGH_SETTINGS, kendall, kendall_interval,
-};
 use crate::report::swept::Setting;
-use crate::study::CONFIDENCE;
+use crate::statistics::p_status::CONFIDENCE;
+use crate::statistics::rank_correlation::{ENOUGH_SETTINGS, kendall, kendall_interval};
 use crate::table::{Column, Role, Table, Value, short_number};
+use bubbletouch_sim::interval::Interval;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// What is ranked.

@@ -11,7 +11,7 @@ const MAX_ROWS: usize = 200;
 
 /// Returns a table for each cost: in each condition, the choices that are better than all that cost as much or less. Empty if no table
 /// offers choices.
-pub(super) fn choices_html(found: &Found) -> String {
+pub(crate) fn choices_html(found: &Found) -> String {
     let Ok(offers) = Offers::of(found.tables, &Asked::default()) else {
         return String::new();
     };

@@ -42,7 +42,7 @@ impl Section {
 }
 
 /// Returns a page of sections with the HTML of its foot; sections without a body are left out.
-pub(super) fn html(about: &StudyAbout, sections: &[Section], foot: &str) -> String {
+pub(crate) fn html(about: &StudyAbout, sections: &[Section], foot: &str) -> String {
     let sections = sections.iter().filter(|section| !section.body.is_empty());
     let paragraph = |class: &str, before: &str, text: &str| match text {
         "" => String::new(),
@@ -77,7 +77,7 @@ pub(crate) fn definition(name: &str, value: &str) -> String {
 }
 
 /// The first sentence large, the others as a list; empty if there is none.
-pub(super) fn sentences_html(sentences: &[String]) -> String {
+pub(crate) fn sentences_html(sentences: &[String]) -> String {
     let Some((first, others)) = sentences.split_first() else {
         return String::new();
     };
@@ -91,7 +91,7 @@ pub(super) fn sentences_html(sentences: &[String]) -> String {
 }
 
 /// A sentence as HTML whose lines do not break between a number and its unit or its sign.
-pub(super) fn unbroken(text: &str) -> String {
+pub(crate) fn unbroken(text: &str) -> String {
     let parts = [" mm", " %", " = ", " ms"];
     parts.iter().fold(escape(text), |text, part| {
         text.replace(part, &part.replace(' ', "\u{a0}"))

@@ -14,6 +14,6 @@ mod touches;
 
 pub use about::StudyAbout;
 pub use frame::Section;
-pub(super) use frame::definition;
-pub(super) use study::{Beside, page as study_page};
-pub(super) use touches::touches_html;
+pub(crate) use frame::definition;
+pub(crate) use study::{Beside, page as study_page};
+pub(crate) use touches::touches_html;

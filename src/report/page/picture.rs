@@ -3,7 +3,7 @@
 use crate::report::drawing::escape;
 
 /// The element of a PNG file, with its width and height in pixels; the title is for those who cannot see it.
-pub(super) fn png_element(png: &[u8], (width, height): (usize, usize), title: &str) -> String {
+pub(crate) fn png_element(png: &[u8], (width, height): (usize, usize), title: &str) -> String {
     let (data, title) = (base64(png), escape(title));
     format!(
         r#"<img src="data:image/png;base64,{data}" width="{width}" height="{height}" alt="{title}">"#
@@ -11,7 +11,7 @@ pub(super) fn png_element(png: &[u8], (width, height): (usize, usize), title: &s
 }
 
 /// Returns an `<svg>` or `<img>` element in its frame, which has the given attributes.
-pub(super) fn figure(attributes: &str, element: &str, title: &str) -> String {
+pub(crate) fn figure(attributes: &str, element: &str, title: &str) -> String {
     let title = escape(title);
     format!("<figure {attributes} tabindex=\"0\" aria-label=\"{title}\">{element}</figure>")
 }

@@ -1,13 +1,13 @@
 //! Where the results come from, for the page.
 
 use super::frame::definition;
+use crate::engine::provenance::Manifest;
 use crate::report::drawing::escape;
 use crate::spelling::counted;
-use crate::study::provenance::Manifest;
 use std::collections::BTreeMap;
 
 /// Program, machine, times, and hashes.
-pub(super) fn provenance_html(manifest: &Manifest) -> String {
+pub(crate) fn provenance_html(manifest: &Manifest) -> String {
     let Manifest { program, cpu, .. } = manifest;
     let [cores, threads] = [(manifest.cores, "core"), (manifest.threads, "thread")]
         .map(|(number, one)| counted(number, one));

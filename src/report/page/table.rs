@@ -7,7 +7,7 @@ use crate::table::{Better, Column, Data, Role, Table};
 const N_FIRST_ROWS: usize = 100;
 
 /// A table as HTML.
-pub(super) struct TableHtml {
+pub(crate) struct TableHtml {
     pub html: String,
     /// Rows of the table that the HTML contains.
     pub n_rows: usize,
@@ -24,7 +24,7 @@ struct Shown<'a> {
 }
 
 /// Returns a table as HTML of at most `most_letters` bytes; if all rows are longer, the first rows.
-pub(super) fn table_html(table: &Table, most_letters: usize) -> TableHtml {
+pub(crate) fn table_html(table: &Table, most_letters: usize) -> TableHtml {
     let mut fields = fields(table).enumerate().peekable();
     let first = fields.peek().map(|(_, fields)| fields.clone());
     let shown = shown(table);

@@ -6,7 +6,7 @@ use crate::report::drawing::escape;
 use crate::report::heat_map::{ColourScale, block_sentence, check_frame, largest_of_blocks};
 use crate::report::page::picture::png_element;
 use crate::report::picture::Picture;
-use crate::study::Snapshots;
+use crate::report::snapshots::Snapshots;
 use crate::table::short_number;
 use ndarray::Array2;
 

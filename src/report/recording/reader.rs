@@ -2,8 +2,8 @@
 
 use super::header::{Element, Member, RecordingHeader};
 use crate::error::{Error, Result};
+use crate::inputs::npy::{check_npy_header, read_npy_header};
 use crate::signal::Quantity;
-use crate::study::npy::{check_npy_header, read_npy_header};
 use glam::DVec3;
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};

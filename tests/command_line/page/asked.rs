@@ -4,7 +4,7 @@ use crate::browser::shown::{Shown, html, show};
 use crate::browser::{ARROW_RIGHT, Browser};
 use crate::report_synthetic::{about, noise_cells, quickstart_cells, tables};
 use bubbletouch::report::advice::{Asked, Offers};
-use bubbletouch::report::recognition::tables_of;
+use bubbletouch::studies::recognition::charts::tables_of;
 use std::thread::sleep;
 use std::time::Duration;
 

@@ -3,7 +3,7 @@
 use crate::report_synthetic::{cell, noise_cells, tables};
 use bubbletouch::recognition::ClassifierKind;
 use bubbletouch::report::chart::draw;
-use bubbletouch::report::recognition::{charts, tables_of};
+use bubbletouch::studies::recognition::charts::{charts, tables_of};
 use bubbletouch::study::table::Cell;
 use bubbletouch::table::{ChartSpec, Table};
 

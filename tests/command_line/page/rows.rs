@@ -7,7 +7,7 @@ use crate::report_synthetic::{
 use bubbletouch::recognition::ClassifierKind;
 use bubbletouch::report::chart::{draw, omitted, places};
 use bubbletouch::report::entries::entries;
-use bubbletouch::report::recognition::{answers, charts, read_tables, tables_of, words};
+use bubbletouch::studies::recognition::charts::{answers, charts, read_tables, tables_of, words};
 use bubbletouch::study::table::{Cell, Limit};
 use bubbletouch::table::{ChartSpec, Mark, Table};
 

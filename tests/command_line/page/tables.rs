@@ -5,9 +5,9 @@ use crate::report_synthetic::{
     write_tables,
 };
 use bubbletouch::report::page::StudyAbout;
-use bubbletouch::report::recognition::{read_tables, tables_of};
 use bubbletouch::report::study_folder::{ChartFormat, MOST_CHARTS};
 use bubbletouch::sensing::Ensemble;
+use bubbletouch::studies::recognition::charts::{read_tables, tables_of};
 use bubbletouch::study::table::{Cell, Comparison, PStatus, Tables};
 use std::collections::BTreeMap;
 use std::fs;

@@ -5,7 +5,7 @@ use crate::report_synthetic::{
     ReportPage, about, add_headlines, cell, many_cells, noise_cells, quickstart_cells, tables,
 };
 use bubbletouch::report::page::StudyAbout;
-use bubbletouch::report::recognition::{answers, tables_of, words};
+use bubbletouch::studies::recognition::charts::{answers, tables_of, words};
 use bubbletouch::study::table::{Cell, Limit, Tables};
 
 fn words_of(made: &Tables, width: usize) -> String {

@@ -2,7 +2,7 @@
 
 use super::generator::{Generator, n_studies};
 use bubbletouch::report::chart::{Place, draw, omitted, places};
-use bubbletouch::report::recognition::{charts, tables_of};
+use bubbletouch::studies::recognition::charts::{charts, tables_of};
 use bubbletouch::study::progress::Silent;
 use bubbletouch::table::{ChartSpec, Mark, Table, Value};
 use rand::Rng;

@@ -2,7 +2,7 @@
 
 use bubbletouch::kinds::recognition::RecognitionStudy;
 use bubbletouch::report::folder::table_files;
-use bubbletouch::report::recognition::tables_of;
+use bubbletouch::studies::recognition::charts::tables_of;
 use bubbletouch::study::progress::Silent;
 use std::collections::BTreeMap;
 

@@ -1,0 +1,93 @@
+//! Old results, kept beside the new.
+
+use crate::engine::journal::journal_file::{JOURNAL_FILE, lock};
+use crate::error::{Error, Result};
+use crate::files::{MANIFEST_FILE, OwnedFiles, RUN, input_within};
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+
+/// Renames a folder of results to the first free of `NAME.1`, `NAME.2` …; its new name, or `None` where there is none. If `folder` is a
+/// symbolic link, the folder that it leads to is renamed, and the link remains.
+///
+/// # Errors
+/// If the folder holds files but is none of results, or holds a file that this command reads; a run is still writing to it; it cannot be
+/// renamed.
+pub fn set_aside(folder: &Path) -> Result<Option<PathBuf>> {
+    check_set_aside(folder)?;
+    if !folder.exists() {
+        return Ok(None);
+    }
+    let is_link = fs::symlink_metadata(folder).is_ok_and(|meta| meta.is_symlink());
+    let folder = &match is_link || folder.file_name().is_none() {
+        true => folder
+            .canonicalize()
+            .map_err(|e| Error::io(folder, "read", e))?,
+        false => folder.to_owned(),
+    };
+    let journal = folder.join(JOURNAL_FILE);
+    let held = File::open(&journal);
+    if let Ok(file) = &held {
+        lock(&journal, file)?;
+    }
+    let name = folder.file_name().unwrap_or_default().to_string_lossy();
+    let free = (1..)
+        .map(|k| folder.with_file_name(format!("{name}.{k}")))
+        .find(|path| !path.exists());
+    let free = free.expect("there is no last number");
+    fs::rename(folder, &free).map_err(|e| Error::io(folder, "rename", e))?;
+    if is_link {
+        // The link leads to the new folder.
+        fs::create_dir(folder).map_err(|e| Error::io(folder, "create folder", e))?;
+    }
+    Ok(Some(free))
+}
+
+/// Checks that a folder can be renamed: it is absent, empty, or of results, and holds no file that this command reads.
+///
+/// # Errors
+/// If it is anything else.
+pub fn check_set_aside(folder: &Path) -> Result<()> {
+    if !folder.exists() {
+        return Ok(());
+    }
+    if !folder.is_dir() {
+        let allowed = "a folder, or a path where one can be made";
+        return Err(Error::input(folder.display(), "a file", allowed));
+    }
+    let given = match input_within(folder) {
+        Some(input) => Some(format!(
+            "holds {}, which this command reads",
+            input.display()
+        )),
+        None if is_foreign(folder)? => Some("is no folder of results".to_owned()),
+        None => None,
+    };
+    given.map_or(Ok(()), |given| {
+        let allowed = "a folder that bubbletouch run wrote; nothing was renamed";
+        Err(Error::input(folder.display(), given, allowed))
+    })
+}
+
+/// Whether a folder holds files, but neither a manifest of a run nor a journal.
+fn is_foreign(folder: &Path) -> Result<bool> {
+    let mut entries = fs::read_dir(folder).map_err(|e| Error::io(folder, "read", e))?;
+    if entries.next().is_none() {
+        return Ok(false);
+    }
+    OwnedFiles::read(folder, RUN)?;
+    if [MANIFEST_FILE, JOURNAL_FILE]
+        .iter()
+        .any(|name| folder.join(name).exists())
+    {
+        return Ok(false);
+    }
+    let mut entries = fs::read_dir(folder).map_err(|e| Error::io(folder, "read", e))?;
+    // The journals of shards.
+    Ok(!entries.any(|entry| {
+        entry.is_ok_and(|entry| {
+            let name = entry.file_name();
+            let name = name.to_string_lossy();
+            name.starts_with("journal.") && name.ends_with(".jsonl")
+        })
+    }))
+}

@@ -1,0 +1,13 @@
+//! The engine of all studies: axes, work items, the journal, shards, progress and provenance.
+//!
+//! The engine runs the [work items](work_items) of a study and knows nothing of what they measure. It keeps each finished item in the
+//! [journal](journal), so that an interrupted run continues, and divides items among [shards](shard).
+
+pub(crate) mod attempt;
+pub mod axes;
+pub mod axis;
+pub mod journal;
+pub mod progress;
+pub mod provenance;
+pub mod shard;
+pub mod work_items;

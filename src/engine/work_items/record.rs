@@ -1,0 +1,120 @@
+//! What a journal keeps of a piece.
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+/// Rows of a study's tables, and what else its tables are made of. A journal has them as JSON: numbers that may be infinite say
+/// `#[serde(with = "any_number")]`.
+pub trait PieceRows: Default + Serialize + DeserializeOwned + Send {
+    /// Puts the rows of the next piece behind those that are there.
+    fn append(&mut self, next: Self);
+}
+
+impl<R: Serialize + DeserializeOwned + Send> PieceRows for Vec<R> {
+    fn append(&mut self, next: Self) {
+        self.extend(next);
+    }
+}
+
+impl<A: PieceRows, B: PieceRows> PieceRows for (A, B) {
+    fn append(&mut self, next: Self) {
+        self.0.append(next.0);
+        self.1.append(next.1);
+    }
+}
+
+impl<A: PieceRows, B: PieceRows, C: PieceRows> PieceRows for (A, B, C) {
+    fn append(&mut self, next: Self) {
+        self.0.append(next.0);
+        self.1.append(next.1);
+        self.2.append(next.2);
+    }
+}
+
+/// What came of a piece: rows, or what went wrong.
+pub type PieceResult<R> = std::result::Result<R, String>;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::journal::identity::Identity;
+    use crate::engine::journal::journal_file::{JOURNAL_FILE, Journal};
+    use crate::engine::work_items::{NamedPiece, any_number};
+    use rand::{Rng, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+    use serde::Deserialize;
+
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    struct Row {
+        what: String,
+        number: Option<f64>,
+        #[serde(with = "any_number")]
+        other: Option<f64>,
+    }
+
+    #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+    struct Rows {
+        rows: Vec<(Row, Row)>,
+    }
+
+    impl PieceRows for Rows {
+        fn append(&mut self, next: Self) {
+            self.rows.extend(next.rows);
+        }
+    }
+
+    fn row(what: &str, number: Option<f64>, other: Option<f64>) -> Row {
+        let what = what.to_owned();
+        Row {
+            what,
+            number,
+            other,
+        }
+    }
+
+    #[test]
+    fn rows_come_back_to_the_bit_infinite_and_absent_numbers_too() {
+        let mut rng = ChaCha8Rng::seed_from_u64(3);
+        let mut drawn = || loop {
+            let number = f64::from_bits(rng.r#gen());
+            if number.is_finite() {
+                return number;
+            }
+        };
+        let text = "a\n\"b\" = '''c'''\\";
+        let pair = |_| (row(text, Some(drawn()), Some(drawn())), row("", None, None));
+        let mut rows = Rows {
+            rows: (0..500).map(pair).collect(),
+        };
+        let odd = [-0.0, f64::INFINITY, f64::NEG_INFINITY, 5e-324, f64::NAN];
+        for number in odd {
+            rows.rows
+                .push((row("", None, Some(number)), row("", None, None)));
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(JOURNAL_FILE);
+        let identity = Identity::new("a = 1".to_owned(), Default::default(), &[]);
+        let journal = Journal::open(&path, &identity).unwrap();
+        let piece = |name: &str| NamedPiece::new(name.to_owned(), 0);
+        let keep =
+            |name: &str, result: PieceResult<Rows>| journal.keep(&piece(name).key(), &result);
+        keep("one", Ok(rows.clone())).unwrap();
+        keep("two", Err("no\nroom".to_owned())).unwrap();
+        drop(journal);
+        let journal = Journal::open(&path, &identity).unwrap();
+        let in_journal =
+            |piece: NamedPiece| -> Option<PieceResult<Rows>> { journal.get(&piece.key()) };
+        let back = in_journal(piece("one")).unwrap().unwrap();
+        assert_eq!(back.rows[..500], rows.rows[..500]);
+        let bits = |rows: &Rows| -> Vec<Option<u64>> {
+            let numbers = rows.rows.iter().map(|(row, _)| row.other);
+            numbers.map(|number| number.map(f64::to_bits)).collect()
+        };
+        assert_eq!(bits(&back), bits(&rows));
+        let failed = in_journal(piece("two"));
+        assert_eq!(failed, Some(Err("no\nroom".to_owned())));
+        assert_eq!(in_journal(piece("three")), None);
+        let of_more = piece("one").made_of("more");
+        assert_eq!(in_journal(of_more), None);
+    }
+}

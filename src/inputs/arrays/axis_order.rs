@@ -1,0 +1,385 @@
+//! The axes of recorded frames: which is the touch, which the time, which the place on the skin.
+//!
+//! An order is a letter for each axis of the file: `n` touches, `t` frames of a touch, `y` rows, `x` columns, and `c`: the values of a taxel beside `y`
+//! and `x`, the taxels of a skin without rows and columns otherwise. Several axes `c` without `y` and `x` are taxels together.
+
+use crate::error::{Error, Result};
+use crate::inputs::units::{MOST_FRAMES, MOST_SIDE};
+use ndarray::{Array2, ArrayD};
+
+/// Longer side over shorter side of a grid from which on two other axes than rows and columns are as likely. Larger reads time for taxels
+/// unasked; smaller asks for the order of more arrays.
+const MAX_ASPECT: usize = 6;
+/// Values of a taxel that a short last axis may be: three forces.
+const MAX_VALUES: usize = 3;
+
+/// The axes of frames as a study gives them.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct FrameAxes<'a> {
+    /// A letter for each axis; `None`: the order that the number of axes stands for.
+    pub order: Option<&'a str>,
+    /// Rows and columns of the axis `c`.
+    pub grid: Option<[usize; 2]>,
+    /// Values of a taxel.
+    pub n_values: usize,
+    /// What sets the order, for errors: a key or an option.
+    pub key: &'a str,
+}
+
+/// The lengths of frames, and how they lie in the file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrameShape {
+    /// Touches.
+    pub n_touches: usize,
+    /// F, frames of a touch.
+    pub n_frames: usize,
+    /// Rows; 1 without a grid.
+    pub rows: usize,
+    /// Columns; all taxels without a grid.
+    pub columns: usize,
+    /// Whether taxels have rows and columns.
+    pub has_grid: bool,
+    /// Values of a taxel.
+    n_values: usize,
+    /// The axes of the file in the order n, t, c, y, x.
+    axes: Vec<usize>,
+    /// The letters of the axes of the file.
+    order: String,
+}
+
+impl FrameShape {
+    /// Numbers of a frame.
+    pub fn n_frame_values(&self) -> usize {
+        self.n_values * self.rows * self.columns
+    }
+
+    /// Returns the order and the lengths of an array beside this one, of shape `shape`, that has `n_values` of each taxel instead of one: they are
+    /// the axis c before those of the place.
+    pub fn beside(&self, shape: &[usize], n_values: usize) -> (String, Vec<usize>) {
+        let (mut order, mut shape) = (self.order.clone(), shape.to_owned());
+        let has_rows = order.contains('y');
+        match order.find('c').filter(|_| has_rows) {
+            Some(axis) => shape[axis] = n_values,
+            None => {
+                let place = order.find(['c', 'y', 'x']).unwrap_or(order.len());
+                order.insert(place, 'c');
+                shape.insert(place, n_values);
+            }
+        }
+        (order, shape)
+    }
+
+    /// Returns one number of each taxel, row by row, shape (rows · columns), of an array with the axes that taxels have in a file of frames of
+    /// the shape `frames`, or of rows × columns, or of a list. The error is the shape that was expected.
+    pub fn arrange_taxels(
+        &self,
+        numbers: ArrayD<f64>,
+        frames: &[usize],
+    ) -> std::result::Result<Vec<f64>, Vec<usize>> {
+        let n_taxels = self.rows * self.columns;
+        // One axis c of the file counts values of a taxel.
+        let of_values = match self.order.contains('y') {
+            true => self
+                .order
+                .match_indices('c')
+                .map(|(axis, _)| axis)
+                .collect(),
+            false if self.n_values > 1 => self.order.find('c').into_iter().collect(),
+            false => Vec::new(),
+        };
+        let is_of_taxels = |axis: &usize| {
+            let letter = self.order.as_bytes()[*axis];
+            !matches!(letter, b'n' | b't') && !of_values.contains(axis)
+        };
+        let of_taxels: Vec<usize> = (0..frames.len()).filter(is_of_taxels).collect();
+        let expected: Vec<usize> = of_taxels.iter().map(|&axis| frames[axis]).collect();
+        if numbers.shape() == expected {
+            let place = |axis: &usize| of_taxels.iter().position(|own| own == axis);
+            let axes: Vec<usize> = self.axes.iter().filter_map(place).collect();
+            return Ok(numbers.permuted_axes(axes).iter().copied().collect());
+        }
+        let is_list = numbers.len() == n_taxels
+            && numbers.shape().iter().filter(|&&length| length > 1).count() <= 1;
+        match is_list || numbers.shape() == [self.rows, self.columns] {
+            true => Ok(numbers.iter().copied().collect()),
+            false => Err(expected),
+        }
+    }
+
+    /// Returns frames as rows, shape (n · F, values · rows · columns), of the numbers of a file.
+    ///
+    /// # Panics
+    /// If the numbers have other axes than the shape.
+    pub fn arrange(&self, numbers: ArrayD<f64>) -> Array2<f64> {
+        let numbers = numbers.permuted_axes(self.axes.clone());
+        let numbers = match numbers.is_standard_layout() {
+            true => numbers,
+            false => numbers.as_standard_layout().into_owned(),
+        };
+        let shape = (self.n_touches * self.n_frames, self.n_frame_values());
+        let rows = numbers.into_shape_with_order(shape);
+        rows.expect("as many numbers as the axes say")
+    }
+}
+
+/// Reads the axes of an array of frames.
+///
+/// # Errors
+/// If the order does not fit the array, or none is given and the array can be read in two ways.
+pub fn frame_shape(place: &str, shape: &[usize], axes: FrameAxes) -> Result<FrameShape> {
+    let lengths = shape.iter().map(usize::to_string).collect::<Vec<_>>();
+    let given = format!("an array of shape [{}]", lengths.join(", "));
+    let key = axes.key;
+    let order = match axes.order {
+        Some(order) => checked_order(order, key)?,
+        None => {
+            let usual = match (shape.len(), axes.n_values, axes.grid) {
+                (2, 1, _) => "nc",
+                (3, 1, Some(_)) => "ntc",
+                (3, 1, None) => "nyx",
+                (4, 1, None) => "ntyx",
+                (4, 2.., None) => "ncyx",
+                (5, 2.., None) => "ntcyx",
+                _ => {
+                    let allowed = format!(
+                        "n × rows × columns, n × F × rows × columns or n × taxels, or {key} with a letter for each axis: \
+                         n touches, t frames of a touch, y rows, x columns, c values of a taxel or taxels without rows and columns"
+                    );
+                    return Err(Error::input(place, given, allowed));
+                }
+            };
+            if axes.n_values == 1
+                && axes.grid.is_none()
+                && let Some(other) = other_order(shape)
+            {
+                let read = |order: &str| {
+                    let letters = order
+                        .chars()
+                        .map(String::from)
+                        .collect::<Vec<_>>()
+                        .join(" ");
+                    format!("{} (\"{letters}\")", words(shape, order))
+                };
+                let given = format!("{given}, which may be {} or {}", read(usual), read(other));
+                return Err(Error::input(
+                    place,
+                    given,
+                    format!("{key}, which says which"),
+                ));
+            }
+            usual.to_owned()
+        }
+    };
+    if order.len() != shape.len() {
+        let allowed = format!("{} axes, as {key} = \"{order}\" names", order.len());
+        return Err(Error::input(place, given, allowed));
+    }
+    let axes_of = |letter: char| {
+        let all = order.chars().enumerate();
+        all.filter_map(move |(axis, own)| (own == letter).then_some(axis))
+    };
+    let length = |letter: char| axes_of(letter).map(|axis| shape[axis]).product::<usize>();
+    let has_rows = order.contains('y');
+    let of_values = match has_rows {
+        true => length('c'),
+        false if axes.n_values == 1 => 1,
+        false => axes_of('c').next().map_or(1, |axis| shape[axis]),
+    };
+    if of_values != axes.n_values {
+        let given = format!("{given} with {of_values} values a taxel");
+        let allowed = match axes.n_values {
+            1 => "1 (three with skin.sensed = \"shear\")".to_owned(),
+            n => format!("{n}, as skin.sensed says"),
+        };
+        return Err(Error::input(place, given, allowed));
+    }
+    let n_taxels = length('c') / if has_rows { 1 } else { of_values };
+    let (rows, columns) = match (has_rows, axes.grid) {
+        (true, None) => (length('y'), length('x')),
+        (false, None) => (1, n_taxels),
+        (false, Some([rows, columns])) if rows.checked_mul(columns) == Some(n_taxels) => {
+            (rows, columns)
+        }
+        (_, Some([rows, columns])) => {
+            let given = format!("{rows} × {columns} taxels");
+            let allowed = match has_rows {
+                true => "no such key: the frames have rows and columns of their own".to_owned(),
+                false => format!("rows and columns of the {n_taxels} taxels of {place}"),
+            };
+            let key = key.replace("order", "grid");
+            return Err(Error::input(key, given, allowed));
+        }
+    };
+    let found = FrameShape {
+        n_touches: length('n'),
+        n_frames: length('t'),
+        rows,
+        columns,
+        has_grid: has_rows || axes.grid.is_some(),
+        n_values: axes.n_values,
+        axes: "ntcyx".chars().flat_map(axes_of).collect(),
+        order: order.clone(),
+    };
+    let is_side = |side| (1..=MOST_SIDE).contains(&side);
+    let is_allowed = found.n_touches > 0
+        && (1..=MOST_FRAMES).contains(&found.n_frames)
+        && is_side(found.rows)
+        && (is_side(found.columns) || (!found.has_grid && found.columns <= MOST_SIDE * MOST_SIDE));
+    match is_allowed && found.columns > 0 {
+        true => Ok(found),
+        false => {
+            let allowed = format!(
+                "n × rows × columns or n × F × rows × columns, 1 to {MOST_FRAMES} frames of 1 to {MOST_SIDE} rows and columns"
+            );
+            Err(Error::input(place, given, allowed))
+        }
+    }
+}
+
+/// The letters of an order without what parts them.
+fn checked_order(order: &str, key: &str) -> Result<String> {
+    let parts = [' ', ',', '×', '-', '*'];
+    let letters: String = order
+        .chars()
+        .filter(|letter| !parts.contains(letter))
+        .collect();
+    let count = |letter: char| letters.matches(letter).count();
+    let has_rows = [count('y'), count('x')] == [1, 1];
+    let is_order = letters.chars().all(|letter| "ntcyx".contains(letter))
+        && count('n') == 1
+        && count('t') <= 1
+        && match has_rows {
+            true => count('c') <= 1,
+            false => count('y') + count('x') == 0 && count('c') >= 1,
+        };
+    match is_order {
+        true => Ok(letters),
+        false => {
+            let allowed = "a letter for each axis: n touches (once), t frames of a touch, and y rows with x columns (beside them c: the values of a \
+                           taxel) or c taxels without rows and columns";
+            Err(Error::input(key, format!("{order:?}"), allowed))
+        }
+    }
+}
+
+/// The order that is as likely as the usual one, if there is one.
+fn other_order(shape: &[usize]) -> Option<&'static str> {
+    let is_strip = |a: usize, b: usize| a.max(b) > MAX_ASPECT * a.min(b);
+    match *shape {
+        [_, a, b] if a.min(b) > 1 && is_strip(a, b) => Some(if a > b { "ntc" } else { "nct" }),
+        [_, 1, _, _] => None,
+        [_, a, b, c] if c <= MAX_VALUES && c < a.min(b) => Some("nyxc"),
+        [_, a, b, c] if a == b && b != c || is_strip(b, c) => Some("nyxt"),
+        _ => None,
+    }
+}
+
+/// What an array is in an order.
+fn words(shape: &[usize], order: &str) -> String {
+    let length = |letter: char| order.find(letter).map(|axis| shape[axis]);
+    let of = |letter: char| length(letter).unwrap_or(1);
+    let taxels = match length('y') {
+        Some(rows) => format!("{rows} × {} taxels", of('x')),
+        None => format!("{} taxels", of('c')),
+    };
+    let values = match (length('y'), length('c')) {
+        (Some(_), Some(n)) => format!(" of {n} values"),
+        _ => String::new(),
+    };
+    let frames = length('t').map_or(String::new(), |n| format!("{n} frames of "));
+    format!("{} touches of {frames}{taxels}{values}", of('n'))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(shape: &[usize], order: Option<&str>) -> std::result::Result<[usize; 4], String> {
+        let axes = FrameAxes {
+            order,
+            n_values: 1,
+            key: "key recorded.order",
+            ..FrameAxes::default()
+        };
+        let found = frame_shape("frames.npy", shape, axes);
+        let found = found.map_err(|error| error.to_string())?;
+        Ok([found.n_touches, found.n_frames, found.rows, found.columns])
+    }
+
+    #[test]
+    fn usual_orders_are_read_and_arrays_that_may_be_two_things_are_not() {
+        assert_eq!(read(&[160, 8, 8], None), Ok([160, 1, 8, 8]));
+        assert_eq!(read(&[1100, 28, 50], None), Ok([1100, 1, 28, 50]));
+        assert_eq!(read(&[36, 2, 8, 8], None), Ok([36, 2, 8, 8]));
+        assert_eq!(read(&[36, 49, 32, 32], None), Ok([36, 49, 32, 32]));
+        assert_eq!(read(&[36, 1, 8, 8], None), Ok([36, 1, 8, 8]));
+        assert_eq!(read(&[36, 1, 64], None), Ok([36, 1, 1, 64]));
+        assert_eq!(read(&[36, 24], None), Ok([36, 1, 1, 24]));
+        for (shape, both) in [
+            (
+                &[160, 8, 8, 1][..],
+                [
+                    "160 touches of 8 frames of 8 × 1 taxels (\"n t y x\")",
+                    "8 × 8 taxels of 1 values (\"n y x c\")",
+                ],
+            ),
+            (&[50, 64, 32, 1], ["64 frames of 32 × 1", "64 × 32 taxels"]),
+            (
+                &[50, 39, 2, 250],
+                ["39 frames of 2 × 250", "250 frames of 39 × 2"],
+            ),
+            (
+                &[50, 16, 16, 40],
+                ["16 frames of 16 × 40", "40 frames of 16 × 16"],
+            ),
+            (
+                &[50, 16, 12, 3],
+                ["16 frames of 12 × 3", "16 × 12 taxels of 3"],
+            ),
+            (
+                &[50, 24, 250],
+                ["24 × 250 taxels", "250 frames of 24 taxels (\"n c t\")"],
+            ),
+        ] {
+            let said = read(shape, None).unwrap_err();
+            for one in both.iter().chain(&["key recorded.order"]) {
+                assert!(said.contains(one), "{said} does not say {one}");
+            }
+        }
+    }
+
+    #[test]
+    fn named_axes_are_moved_to_where_they_belong() {
+        assert_eq!(read(&[160, 8, 9, 1], Some("n y x c")), Ok([160, 1, 8, 9]));
+        assert_eq!(
+            read(&[39, 2, 250, 50], Some("c c t n")),
+            Ok([50, 250, 1, 78])
+        );
+        assert_eq!(read(&[8, 9, 160], Some("yxn")), Ok([160, 1, 8, 9]));
+        for wrong in ["n y", "y x", "n q", "n t t c", "n y x y", ""] {
+            assert!(
+                read(&[160, 8, 8], Some(wrong))
+                    .unwrap_err()
+                    .contains("key recorded.order")
+            );
+        }
+        assert!(
+            read(&[160, 8, 8], Some("n t y x"))
+                .unwrap_err()
+                .contains("4 axes")
+        );
+        let axes = FrameAxes {
+            order: Some("x n y"),
+            n_values: 1,
+            ..FrameAxes::default()
+        };
+        let numbers =
+            ArrayD::from_shape_fn(vec![2, 4, 3], |i| (100 * i[1] + 10 * i[2] + i[0]) as f64);
+        let rows = frame_shape("", &[2, 4, 3], axes).unwrap().arrange(numbers);
+        assert_eq!(rows.dim(), (4, 6));
+        assert_eq!(
+            rows.row(3).to_vec(),
+            [300.0, 301.0, 310.0, 311.0, 320.0, 321.0]
+        );
+    }
+}

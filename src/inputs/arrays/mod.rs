@@ -1,0 +1,215 @@
+//! Arrays in files: `.npy`, members of `.npz`, and `.csv`, with elements of every type that NumPy writes for numbers and texts.
+//!
+//! A `.npz` archive is read by the name of the array that is looked for (`frames`, `labels` …), or its only member is taken. A `.csv` file is a
+//! table of rows and columns. Elements are converted to f64 (integers exactly up to 2⁵³), or kept as texts.
+
+pub(crate) mod axis_order;
+pub(crate) mod csv_table;
+pub(crate) mod element_type;
+pub(crate) mod npy_file;
+pub(crate) mod whole_numbers;
+
+pub use crate::inputs::arrays::axis_order::{FrameAxes, FrameShape, frame_shape};
+pub use crate::inputs::arrays::whole_numbers::{
+    ClassLabels, KeyValue, group_keys, read_class_labels, read_class_values, read_group_keys,
+    read_group_values, read_rows,
+};
+
+use crate::error::{Error, Result};
+use ndarray::{Array2, ArrayD, IxDyn};
+use std::fs::File;
+use std::io::{BufReader, Read};
+use std::path::Path;
+
+/// What the elements of a file are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ElementKind {
+    /// Floating-point numbers with this spacing relative to their size.
+    Float(f64),
+    /// Integers.
+    Integer,
+    /// False and true.
+    Truth,
+    /// Texts.
+    Text,
+}
+
+/// The elements of a file in row-major order.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Elements {
+    /// Numbers; false is 0, true is 1.
+    Numbers(Vec<f64>),
+    /// Texts without their padding.
+    Texts(Vec<String>),
+}
+
+/// An array as it stands in a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FileArray {
+    /// The name of the file, and of its member if it is an archive, for errors.
+    pub place: String,
+    /// Lengths of the axes.
+    pub shape: Vec<usize>,
+    /// What the elements are.
+    pub kind: ElementKind,
+    /// The elements in row-major order.
+    pub elements: Elements,
+}
+
+/// How a file is read.
+#[derive(Clone, Copy, PartialEq)]
+enum Format {
+    Npy,
+    Npz,
+    Csv,
+}
+
+const ALLOWED: &str = "an array of numbers in a .npy, .npz or .csv file";
+
+impl FileArray {
+    /// Reads the array `name` of a file; the name selects a member of an archive.
+    ///
+    /// # Errors
+    /// If there is no such file, or it contains no such array, or an array of something else than numbers and texts.
+    pub fn read(path: &Path, name: &str) -> Result<Self> {
+        let file = open(path)?;
+        match format_of(path)? {
+            Format::Npy => {
+                let place = path.display().to_string();
+                let length = file.metadata().map_err(|e| Error::io(path, "read", e))?;
+                npy_file::read(&place, &mut BufReader::new(file), length.len())
+            }
+            Format::Npz => with_member(path, name, npy_file::read),
+            Format::Csv => csv_table::read(path),
+        }
+    }
+
+    /// Returns the lengths of the axes of the array `name` of a file, of which a `.npy` file is read no further than its header.
+    ///
+    /// # Errors
+    /// If there is no such file, or it contains no such array.
+    pub fn shape_of(path: &Path, name: &str) -> Result<Vec<usize>> {
+        let file = open(path)?;
+        let shape =
+            |place: &str, reader: &mut dyn Read, _| Ok(npy_file::read_header(place, reader)?.shape);
+        match format_of(path)? {
+            Format::Npy => shape(&path.display().to_string(), &mut BufReader::new(file), 0),
+            Format::Npz => with_member(path, name, shape),
+            Format::Csv => Ok(csv_table::read(path)?.shape),
+        }
+    }
+
+    /// Returns the numbers, with the lengths of their axes.
+    ///
+    /// # Errors
+    /// If the elements are texts.
+    pub fn into_numbers(self) -> Result<ArrayD<f64>> {
+        match self.elements {
+            Elements::Numbers(numbers) => {
+                let numbers = ArrayD::from_shape_vec(IxDyn(&self.shape), numbers);
+                Ok(numbers.expect("one element for each place"))
+            }
+            Elements::Texts(_) => Err(Error::input(self.place, "texts", "numbers")),
+        }
+    }
+}
+
+/// Reads a matrix of any type of number or truth value.
+///
+/// # Errors
+/// If there is no such file, or it contains no matrix of numbers.
+pub fn read_matrix(path: &Path, name: &str) -> Result<Array2<f64>> {
+    const ALLOWED: &str = "n × m of float64, float32, float16, int8 to int64, uint8 to uint64 or bool, in a .npy, .npz or .csv file";
+    let array = FileArray::read(path, name)?;
+    let [rows, columns] = array.shape[..] else {
+        let given = format!("an array of shape {:?}", array.shape);
+        return Err(Error::input(array.place, given, ALLOWED));
+    };
+    match array.elements {
+        Elements::Texts(_) => Err(Error::input(array.place, "texts", ALLOWED)),
+        Elements::Numbers(numbers) => {
+            let matrix = Array2::from_shape_vec((rows, columns), numbers);
+            Ok(matrix.expect("one element for each place"))
+        }
+    }
+}
+
+/// Whether a `.npz` archive contains the array `name` beside others; `false` for other files.
+pub fn is_member(path: &Path, name: &str) -> bool {
+    let is_archive = || matches!(format_of(path), Ok(Format::Npz));
+    is_archive()
+        && crate::files::open(path)
+            .ok()
+            .and_then(|file| zip::ZipArchive::new(BufReader::new(file)).ok())
+            .is_some_and(|archive| {
+                archive
+                    .file_names()
+                    .any(|member| member == format!("{name}.npy"))
+            })
+}
+
+fn open(path: &Path) -> Result<File> {
+    let refuse = |why: String| {
+        let given = format!("cannot be read ({why})");
+        Error::input(path.display(), given, ALLOWED)
+    };
+    let file = crate::files::open(path).map_err(|error| refuse(error.to_string()))?;
+    match file.metadata().is_ok_and(|about| about.is_dir()) {
+        true => Err(refuse("it is a folder".to_owned())),
+        false => Ok(file),
+    }
+}
+
+/// The format by how the file begins, and of texts by the ending of its name.
+fn format_of(path: &Path) -> Result<Format> {
+    let mut start = [0; 6];
+    let mut file = open(path)?;
+    let mut n_read = 0;
+    while let Ok(n @ 1..) = file.read(&mut start[n_read..]) {
+        n_read += n;
+    }
+    let ending = path
+        .extension()
+        .map(|ending| ending.to_string_lossy().to_lowercase());
+    match (&start[..n_read], ending.as_deref()) {
+        (b"\x93NUMPY", _) => Ok(Format::Npy),
+        ([b'P', b'K', 3, 4, ..], _) => Ok(Format::Npz),
+        (_, Some("csv" | "tsv" | "txt")) => Ok(Format::Csv),
+        _ => Err(Error::input(
+            path.display(),
+            "a file that begins neither as a .npy nor as a .npz file",
+            ALLOWED,
+        )),
+    }
+}
+
+/// Reads a member of an archive by `read`, which is given the place, the bytes and their number.
+fn with_member<T>(
+    path: &Path,
+    name: &str,
+    read: impl FnOnce(&str, &mut dyn Read, u64) -> Result<T>,
+) -> Result<T> {
+    let refuse = |given: String, allowed: String| Error::input(path.display(), given, allowed);
+    let broken = |_| refuse("a damaged archive".to_owned(), ALLOWED.to_owned());
+    let mut archive = zip::ZipArchive::new(BufReader::new(open(path)?)).map_err(broken)?;
+    let members: Vec<String> = archive.file_names().map(str::to_owned).collect();
+    let wanted = format!("{name}.npy");
+    let member = match members.iter().find(|member| **member == wanted) {
+        Some(member) => member,
+        None if members.len() == 1 => &members[0],
+        None => {
+            let names = members.iter().map(|member| member.trim_end_matches(".npy"));
+            let names: Vec<&str> = names.collect();
+            let given = format!("arrays {}", names.join(", "));
+            return Err(refuse(given, format!("an array `{name}`, or a single one")));
+        }
+    };
+    let mut entry = archive.by_name(member).map_err(broken)?;
+    let place = format!(
+        "{}, array `{}`",
+        path.display(),
+        member.trim_end_matches(".npy")
+    );
+    let length = entry.size();
+    read(&place, &mut entry, length)
+}

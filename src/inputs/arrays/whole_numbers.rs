@@ -1,0 +1,238 @@
+//! Classes, groups and rows out of arrays: whole numbers, texts, or one column for each class.
+
+use crate::error::{Error, Result};
+use crate::inputs::arrays::{ElementKind, Elements, FileArray};
+use std::collections::{BTreeSet, HashMap};
+use std::path::Path;
+
+/// Integers beyond it are not told apart in f64.
+const MAX_INTEGER: f64 = 9_007_199_254_740_992.0;
+
+/// A value that names a class or a group.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum KeyValue {
+    /// A whole number.
+    Integer(i64),
+    /// A text.
+    Text(String),
+}
+
+/// The class of every touch or row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ClassLabels {
+    /// The class of every touch, from 0.
+    pub labels: Vec<usize>,
+    /// The value that stands for each class in the file: integers rising, texts in the order of their first touch.
+    pub classes: Vec<KeyValue>,
+}
+
+impl ClassLabels {
+    /// Numbers the classes of some values.
+    pub fn new(values: &[KeyValue]) -> Self {
+        let classes = distinct(values);
+        let number: HashMap<&KeyValue, usize> = classes.iter().zip(0..).collect();
+        Self {
+            labels: values.iter().map(|value| number[value]).collect(),
+            classes,
+        }
+    }
+}
+
+/// Integers once each, rising; texts once each, as they come.
+fn distinct(values: &[KeyValue]) -> Vec<KeyValue> {
+    let all = values.iter().cloned();
+    match values.first() {
+        Some(KeyValue::Integer(_)) => all.collect::<BTreeSet<_>>().into_iter().collect(),
+        _ => {
+            let mut known = std::collections::HashSet::new();
+            all.filter(|value| known.insert(value.clone())).collect()
+        }
+    }
+}
+
+/// Reads one value for each of `n` touches: whole numbers of any type, texts, n × 1 of them, or a column of 0 and 1 for each class.
+///
+/// # Errors
+/// If there is no such file, or it contains something else, or one position has no class.
+pub fn read_class_values(path: &Path, name: &str, n: usize) -> Result<Vec<KeyValue>> {
+    let array = one_hot(with_rows(FileArray::read(path, name)?, path, n))?;
+    values(
+        array,
+        "one class for each touch: int8 to int64, uint8 to uint64, whole floats, bool or texts, or a column of 0 and 1 for each class",
+    )
+}
+
+/// Reads the class of each of `n_rows` rows of features: as [`read_class_values`], integers from 0 on.
+///
+/// # Errors
+/// As [`read_class_values`]; no labels; an integer below 0, by its position.
+pub fn read_class_labels(path: &Path, name: &str, n_rows: usize) -> Result<ClassLabels> {
+    let values = read_class_values(path, name, n_rows)?;
+    if values.is_empty() {
+        return Err(Error::input(path.display(), "no labels", "at least one"));
+    }
+    not_below_zero(path, &values)?;
+    Ok(ClassLabels::new(&values))
+}
+
+/// Reads one group for each of `n` touches: integers of any type from 0 on, or texts.
+///
+/// # Errors
+/// If there is no such file, or it contains something else; an integer below 0 or beyond 2⁵³, by its position.
+pub fn read_group_values(path: &Path, name: &str, n: usize) -> Result<Vec<KeyValue>> {
+    const ALLOWED: &str = "one dimension of int8 to int64, uint8 to uint64, bool or texts";
+    let array = with_rows(FileArray::read(path, name)?, path, n);
+    if let ElementKind::Float(_) = array.kind {
+        return Err(Error::input(
+            array.place,
+            "elements of another type",
+            ALLOWED,
+        ));
+    }
+    let values = values(array, ALLOWED)?;
+    not_below_zero(path, &values)?;
+    Ok(values)
+}
+
+/// The same as numbers: integers as they are, texts numbered as they come.
+///
+/// # Errors
+/// As [`read_group_values`].
+pub fn read_group_keys(path: &Path, name: &str, n: usize) -> Result<Vec<usize>> {
+    Ok(group_keys(&read_group_values(path, name, n)?))
+}
+
+/// Numbers of groups: integers as they are, texts numbered as they come.
+pub fn group_keys(values: &[KeyValue]) -> Vec<usize> {
+    let mut numbers = HashMap::new();
+    let keys = values.iter().map(|value| match value {
+        KeyValue::Integer(number) => *number as usize,
+        KeyValue::Text(text) => {
+            let next = numbers.len();
+            *numbers.entry(text).or_insert(next)
+        }
+    });
+    keys.collect()
+}
+
+/// Reads numbers of rows, or a mask: a bool for each row.
+///
+/// # Errors
+/// If there is no such file, or it contains something else; a row that is not there, by its position; a mask of another number of rows.
+pub fn read_rows(path: &Path, name: &str, n_rows: usize) -> Result<Vec<usize>> {
+    const ALLOWED: &str =
+        "one dimension of int8 to int64 or uint8 to uint64, or a bool for each row of features";
+    let array = FileArray::read(path, name)?;
+    let (place, kind) = (array.place.clone(), array.kind);
+    if !matches!(kind, ElementKind::Integer | ElementKind::Truth) {
+        return Err(Error::input(place, "elements of another type", ALLOWED));
+    }
+    let values = values(array, ALLOWED)?;
+    let numbers = values.iter().map(|value| match value {
+        KeyValue::Integer(number) => *number,
+        KeyValue::Text(_) => -1,
+    });
+    let mut rows: Vec<i64> = numbers.collect();
+    if kind == ElementKind::Truth {
+        if rows.len() != n_rows {
+            let given = format!("a mask of {} rows", rows.len());
+            let allowed = format!("one of {n_rows}, as there are rows of features");
+            return Err(Error::input(place, given, allowed));
+        }
+        rows = (0..n_rows as i64)
+            .filter(|&row| rows[row as usize] > 0)
+            .collect();
+    }
+    if rows.is_empty() {
+        return Err(Error::input(place, "no rows", "at least one"));
+    }
+    let is_wrong = |row: &i64| !(0..n_rows as i64).contains(row);
+    if let Some(position) = rows.iter().position(is_wrong) {
+        let place = format!("{place}, position {position}");
+        let last = n_rows.saturating_sub(1);
+        let allowed = format!("0 to {last}, as there are {n_rows} rows of features");
+        return Err(Error::input(place, rows[position], allowed));
+    }
+    Ok(rows.into_iter().map(|row| row as usize).collect())
+}
+
+fn not_below_zero(path: &Path, values: &[KeyValue]) -> Result<()> {
+    let below = |value: &KeyValue| matches!(value, KeyValue::Integer(number) if *number < 0);
+    match values.iter().position(below) {
+        None => Ok(()),
+        Some(position) => {
+            let KeyValue::Integer(number) = &values[position] else {
+                return Ok(());
+            };
+            let place = format!("{}, position {position}", path.display());
+            Err(Error::input(place, number, "zero or more, up to 2^53"))
+        }
+    }
+}
+
+/// The array without the line of names that a table of texts has above its `n` rows.
+fn with_rows(mut array: FileArray, path: &Path, n: usize) -> FileArray {
+    let is_table = path.extension().is_some_and(|ending| {
+        ["csv", "tsv", "txt"]
+            .iter()
+            .any(|table| ending.eq_ignore_ascii_case(table))
+    });
+    if is_table
+        && array.shape[0] == n + 1
+        && let Elements::Texts(texts) = &mut array.elements
+    {
+        texts.drain(..array.shape[1]);
+        array.shape[0] -= 1;
+    }
+    array
+}
+
+/// The numbers of the columns that are 1, of an array with a column for each class.
+fn one_hot(mut array: FileArray) -> Result<FileArray> {
+    let ([n, n_classes], Elements::Numbers(numbers)) = (&array.shape[..], &array.elements) else {
+        return Ok(array);
+    };
+    let (n, n_classes) = (*n, *n_classes);
+    if n == 1 || n_classes < 2 {
+        return Ok(array);
+    }
+    let mut columns = Vec::with_capacity(n);
+    for (row, values) in numbers.chunks_exact(n_classes).enumerate() {
+        let mut ones = (0..n_classes).filter(|&column| values[column] == 1.0);
+        let (one, other) = (ones.next(), ones.next());
+        let n_zeros = values.iter().filter(|&&value| value == 0.0).count();
+        let (Some(one), None, true) = (one, other, n_zeros + 1 == n_classes) else {
+            let place = format!("{}, row {row}", array.place);
+            let given = format!("{n_classes} columns that are not one 1 among 0");
+            let allowed = "one label for each touch, or a column of 0 and 1 for each class";
+            return Err(Error::input(place, given, allowed));
+        };
+        columns.push(one as f64);
+    }
+    (array.shape, array.kind) = (vec![n], ElementKind::Integer);
+    array.elements = Elements::Numbers(columns);
+    Ok(array)
+}
+
+/// The values of an array of one dimension, or of one column or row.
+fn values(array: FileArray, allowed: &str) -> Result<Vec<KeyValue>> {
+    if array.shape.iter().filter(|&&length| length != 1).count() > 1 || array.shape.is_empty() {
+        let given = format!("an array of shape {:?}", array.shape);
+        return Err(Error::input(array.place, given, allowed));
+    }
+    let numbers = match array.elements {
+        Elements::Texts(texts) => return Ok(texts.into_iter().map(KeyValue::Text).collect()),
+        Elements::Numbers(numbers) => numbers,
+    };
+    let is_wrong = |number: &f64| number.fract() != 0.0 || number.abs() > MAX_INTEGER;
+    match numbers.iter().position(is_wrong) {
+        None => Ok(numbers
+            .into_iter()
+            .map(|number| KeyValue::Integer(number as i64))
+            .collect()),
+        Some(position) => {
+            let place = format!("{}, position {position}", array.place);
+            Err(Error::input(place, numbers[position], allowed))
+        }
+    }
+}

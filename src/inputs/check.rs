@@ -1,0 +1,294 @@
+//! Checks of single keys: each error names the file and the key, what was given and what is allowed.
+
+use crate::error::{Error, Result};
+use crate::inputs::memory::{check_memory, machine_memory};
+use crate::inputs::toml_value::{number, value_at};
+use crate::inputs::units::{MM, MOST_FRAMES, MOST_SIDE, millimetres};
+use crate::world::MOST_TOUCHES;
+use serde::Serialize;
+use std::borrow::Cow;
+
+/// The smallest positive number of a key. Squares and reciprocals of smaller ones come close to what f64 can hold; none is measured in any unit.
+pub const MIN_POSITIVE: f64 = 1e-12;
+
+pub fn positive(value: f64) -> bool {
+    value.is_finite() && value >= MIN_POSITIVE
+}
+
+pub fn not_negative(value: f64) -> bool {
+    value == 0.0 || positive(value)
+}
+
+/// Values of one axis, at most: more is a slip, and each would be compared with all others.
+pub const MOST_VALUES: usize = 10_000;
+
+/// What a key may count, at most: what is counted is in memory at once, or takes for ever.
+const MOST_COUNTED: usize = 100_000_000;
+
+/// Readings of a training touch, at most: all are in memory at once, and of so many another adds nothing.
+const MOST_READINGS: usize = 100;
+
+/// Configurations of a study, at most: all are laid out before the first runs.
+const MOST_CONFIGURATIONS: f64 = 1e6;
+
+/// What the numbers of a key may be.
+#[derive(Clone, Copy)]
+pub enum Range {
+    /// Above zero.
+    Positive,
+    /// Zero or above.
+    NotNegative,
+    /// Any but infinite ones.
+    Finite,
+    /// Of one, ends included.
+    Fraction,
+    /// Of one, ends excluded.
+    Part,
+    /// From one on.
+    AtLeastOne,
+    /// Whole numbers from one to another.
+    Count(usize, usize),
+    /// Those that something allows, and which these are, in words.
+    Of(fn(f64) -> bool, &'static str),
+    /// Words, or numbers that something else checks.
+    Any,
+}
+
+impl Range {
+    /// Whether a number is allowed, and which are, in words.
+    fn allows(self, value: f64) -> (bool, Cow<'static, str>) {
+        let (is_allowed, words) = match self {
+            Self::Positive => (positive(value), "a positive number, at least 1e-12"),
+            Self::NotNegative => (
+                not_negative(value),
+                "zero or a positive number, at least 1e-12",
+            ),
+            Self::Finite => (value.is_finite(), "a finite number"),
+            Self::Fraction => ((0.0..=1.0).contains(&value), "a fraction, 0 to 1"),
+            Self::Part => (value > 0.0 && value < 1.0, "between 0 and 1"),
+            Self::AtLeastOne => (value.is_finite() && value >= 1.0, "a number of at least 1"),
+            Self::Count(least, most) => {
+                let is_allowed = (least as f64..=most as f64).contains(&value);
+                let words = format!("at least {least} and at most {most}");
+                return (is_allowed, words.into());
+            }
+            Self::Of(is_allowed, words) => (is_allowed(value), words),
+            Self::Any => (true, "any value"),
+        };
+        (is_allowed, words.into())
+    }
+}
+
+/// From 1 to what memory holds.
+/// Copies of a touch, at most: more than tell a classifier anything new.
+const MOST_COPIES: usize = 1000;
+/// Far above it a tilt adds no plane.
+const TILT: Range = Range::Of(|deg| deg > 0.0 && deg <= 45.0, "above 0, at most 45");
+/// A slide of a kilometre has far fewer steps than it passes taxels; the square of 1e160 mm is infinite.
+const SLIDE: Range = Range::Of(|mm| (0.0..=1e6).contains(&mm), "0 to 1000000");
+pub const COUNT: Range = Range::Count(1, MOST_COUNTED);
+
+/// How far spheres may be from a surface, mm. Below a nanometre rounding of coordinates is as large.
+pub const SURFACE_ERROR: Range = Range::Of(|mm| mm >= 1e-6, "at least 1e-6 mm");
+/// Noise, as a share of the full scale: at the bound nothing of the signal is left, and squares of features still fit into f32.
+pub const NOISE: Range = Range::Of(
+    |share| not_negative(share) && share <= 1000.0,
+    "0, or 1e-12 to 1000",
+);
+/// C: at the bounds no margin, or no slack, is left.
+const PENALTY: Range = Range::Of(|c| positive(c) && c <= 1e12, "above 0, 1e-12 to 1e12");
+/// γ: at the upper bound a kernel of degree 20 over 10,000 features stays finite in f64.
+const GAMMA: Range = Range::Of(|c| positive(c) && c <= 1e9, "above 0, 1e-12 to 1e9");
+/// c₀ of the polynomial kernel, which the degree raises to the power of 20 at most.
+const COEF0: Range = Range::Of(|c| (0.0..=1e6).contains(&c), "0 to 1e6");
+
+/// So many touches an object.
+pub const TOUCHES: Range = Range::Count(1, MOST_TOUCHES);
+
+/// The keys of the tables that kinds of study share, and what their numbers may be. A list has values, and none twice.
+const KEYS: [(&str, Range); 59] = [
+    ("objects.surface_error_mm", SURFACE_ERROR),
+    ("objects.close_holes_mm", Range::Positive),
+    ("objects.names", Range::Any),
+    ("skin.pitch_mm", Range::Positive),
+    ("skin.size_mm", Range::Positive),
+    ("skin.taxels", Range::Count(1, MOST_SIDE)),
+    ("skin.curvature_radius_mm", Range::Positive),
+    ("skin.friction", Range::NotNegative),
+    ("skin.shear_stiffness_n_per_m", Range::Positive),
+    ("skin.taxel_radius_mm", Range::Positive),
+    ("skin.stroke_mm", Range::Positive),
+    ("skin.stiffness_n_per_m", Range::Positive),
+    ("skin.damping_n_s_per_m", Range::NotNegative),
+    ("touches.per_object", TOUCHES),
+    ("touches.slide_mm", SLIDE),
+    ("touches.slide_deg", Range::Finite),
+    ("touches.frames", Range::Count(1, MOST_FRAMES)),
+    ("touches.speed_mm_per_s", Range::NotNegative),
+    ("human_touch.kinds", Range::Any),
+    ("human_touch.per_kind", TOUCHES),
+    ("human_touch.arm_radius_mm", Range::Positive),
+    ("human_touch.frames_hz", Range::Positive),
+    ("human_touch.duration_s", Range::Positive),
+    ("signal.noise_std_full_scale", NOISE),
+    ("signal.noise_std_mm", Range::NotNegative),
+    ("signal.noise_std_n", Range::NotNegative),
+    ("signal.smoothing_mm", Range::NotNegative),
+    ("signal.tested_on", Range::Any),
+    ("sensing.ensemble", Range::Any),
+    ("sensing.ratio", Range::AtLeastOne),
+    ("sensing.measurements", COUNT),
+    ("recognition.features", Range::Any),
+    ("recognition.foremost_full_scale", Range::Positive),
+    ("recognition.tilted_copies", Range::Count(0, MOST_COPIES)),
+    ("recognition.tilted_copies_deg", TILT),
+    ("recognition.over_time", Range::Any),
+    ("recognition.classifier", Range::Any),
+    ("recognition.c", PENALTY),
+    ("recognition.choose_c", PENALTY),
+    ("recognition.gamma", GAMMA),
+    ("recognition.choose_gamma", GAMMA),
+    ("recognition.choose_folds", Range::Count(2, MOST_COUNTED)),
+    ("recognition.choose_touches", COUNT),
+    (
+        "recognition.training_readings",
+        Range::Count(1, MOST_READINGS),
+    ),
+    ("recognition.degree", Range::Count(1, 20)),
+    ("recognition.coef0", COEF0),
+    ("recognition.n_neighbours", COUNT),
+    ("recognition.n_trees", COUNT),
+    ("recognition.max_depth", COUNT),
+    ("recognition.solver_memory_gib", Range::Positive),
+    ("recognition.train_touches", COUNT),
+    ("recognition.mislabelled_fraction", Range::Fraction),
+    ("recognition.class_imbalance", Range::AtLeastOne),
+    ("recognition.fused_touches", COUNT),
+    ("recognition.next_touch", Range::Any),
+    ("recognition.test_fraction", Range::Part),
+    ("recognition.folds", Range::Count(2, MOST_COUNTED)),
+    ("recognition.keep_together_mm", Range::Positive),
+    ("recognition.keep_together_deg", Range::Positive),
+];
+
+/// Checks of one file's keys.
+pub struct Check<'a> {
+    /// The study's file.
+    pub place: &'a str,
+}
+
+impl Check<'_> {
+    pub fn error(&self, key: &str, given: impl ToString, allowed: impl ToString) -> Error {
+        Error::input(format!("{}, key {key}", self.place), given, allowed)
+    }
+
+    /// The keys of a table that kinds of study share; which of them it gives.
+    pub fn table(&self, name: &str, table: &impl Serialize) -> Result<toml::Table> {
+        let key = |path: &'static str| path.strip_prefix(name)?.strip_prefix('.');
+        let keys = KEYS
+            .into_iter()
+            .filter_map(|(path, range)| Some((key(path)?, range)));
+        self.keys(name, table, keys)
+    }
+
+    /// Keys of a table, with points between those of tables in it: each number in its range, each list with values and none twice.
+    pub fn keys<'k>(
+        &self,
+        name: &str,
+        table: &impl Serialize,
+        keys: impl IntoIterator<Item = (&'k str, Range)>,
+    ) -> Result<toml::Table> {
+        let table = toml::Table::try_from(table).expect("every field of a study has a TOML form");
+        for (key, range) in keys {
+            let Some(value) = value_at(&table, key) else {
+                continue;
+            };
+            let path = &format!("{name}.{key}");
+            let one = std::slice::from_ref(value);
+            let values = value.as_array().map_or(one, |values| &values[..]);
+            let words: Vec<&str> = values.iter().filter_map(|value| value.as_str()).collect();
+            let numbers: Vec<f64> = values.iter().filter_map(number).collect();
+            match words.is_empty() {
+                false => self.list(path, words).map(drop)?,
+                // Two that tables show alike would be taken for one.
+                true if path.ends_with("_mm") => {
+                    let shown = numbers.iter().map(|&mm| millimetres(mm * MM));
+                    self.list(path, shown.collect()).map(drop)?;
+                }
+                true => self.list(path, numbers.clone()).map(drop)?,
+            }
+            for number in numbers {
+                if let (false, allowed) = range.allows(number) {
+                    return Err(self.error(path, number, allowed));
+                }
+            }
+        }
+        Ok(table)
+    }
+
+    pub fn value(
+        &self,
+        key: &str,
+        value: f64,
+        is_allowed: fn(f64) -> bool,
+        allowed: &str,
+    ) -> Result<f64> {
+        if is_allowed(value) {
+            return Ok(value);
+        }
+        Err(self.error(key, value, allowed))
+    }
+
+    /// From 1 to so many.
+    pub fn count(&self, key: &str, count: usize, most: usize) -> Result<usize> {
+        match count {
+            0 => Err(self.error(key, 0, "at least 1")),
+            count if count <= most => Ok(count),
+            count => Err(self.error(key, count, format!("at most {most}"))),
+        }
+    }
+
+    /// So many configurations, the product of all axes, can be laid out.
+    pub fn configurations(&self, n: f64) -> Result<()> {
+        if n <= MOST_CONFIGURATIONS {
+            return Ok(());
+        }
+        // Beyond that, not every digit is known.
+        let given = if n < 1e15 {
+            format!("{n:.0} configurations")
+        } else {
+            format!("{n:.1e} configurations")
+        };
+        let allowed = format!(
+            "at most {MOST_CONFIGURATIONS}, all combinations of the values of its axes: fewer values, or several studies"
+        );
+        Err(Error::input(self.place, given, allowed))
+    }
+
+    /// So many bytes are within the machine's memory; what takes them is said in words.
+    pub fn memory(&self, key: &str, given: impl ToString, bytes: f64, what: &str) -> Result<()> {
+        check_memory(bytes, machine_memory(), what)
+            .map_err(|allowed| self.error(key, given, allowed))
+    }
+
+    /// An axis has values, and none twice: a repeated value would only repeat cells.
+    pub fn list<T: Clone + PartialEq + std::fmt::Debug>(
+        &self,
+        key: &str,
+        values: Vec<T>,
+    ) -> Result<Vec<T>> {
+        if values.is_empty() {
+            return Err(self.error(key, "an empty list", "at least one value"));
+        }
+        if values.len() > MOST_VALUES {
+            let allowed = format!("at most {MOST_VALUES} values");
+            return Err(self.error(key, format!("{} values", values.len()), allowed));
+        }
+        for (index, value) in values.iter().enumerate() {
+            if values[..index].contains(value) {
+                return Err(self.error(key, format!("{value:?} twice"), "each value once"));
+            }
+        }
+        Ok(values)
+    }
+}

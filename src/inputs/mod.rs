@@ -1,0 +1,14 @@
+//! Inputs that studies and scenes share: objects, arrays of numbers, values of keys and their checks.
+
+pub mod arrays;
+pub(crate) mod check;
+pub mod content_hash;
+pub(crate) mod defaults;
+pub mod memory;
+pub mod npy;
+pub mod object_files;
+pub mod objects_spec;
+pub mod packings;
+pub mod sensor_errors;
+pub(crate) mod toml_value;
+pub(crate) mod units;

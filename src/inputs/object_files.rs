@@ -1,0 +1,391 @@
+//! Objects from where a study finds them: built-in sets, TOML files, folders of meshes.
+
+use crate::error::{Error, Result};
+use crate::files::SetName;
+use crate::geometry::Aabb;
+use crate::inputs::content_hash::sha256;
+use crate::inputs::objects_spec::{ModelSpec, ObjectsSpec};
+use crate::inputs::packings::pack_within;
+use crate::inputs::units::millimetres;
+use crate::mesh::{
+    LengthUnit, MeshFile, MeshFormat, Orientation, SizeLimits, Surface, TriangleMesh, Welded,
+};
+use crate::note::note;
+use crate::objects::{
+    Catalogue, Entry, MeshModel, Object, Sphere, SphereUnion, read_spheres, vertex_spheres,
+};
+use crate::packing::{Body, packing_error};
+use rayon::prelude::*;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Display;
+use std::fs::File;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+
+/// Points of a mesh at which the error of vertex spheres is measured. Larger: slower; smaller: the largest error may be missed.
+const N_ERROR_POINTS: usize = 2000;
+
+/// A mesh of a study.
+#[derive(Clone, Debug)]
+pub struct NamedMesh {
+    /// Its file's name without the ending.
+    pub name: String,
+    /// Its file, for errors.
+    pub place: String,
+    /// The mesh, metres.
+    pub mesh: TriangleMesh,
+}
+
+/// Builds the objects of a study: sets first, in their order, then meshes by file name. Packed meshes are looked for and
+/// kept in the folder `packings`, if one is given.
+///
+/// # Errors
+/// The error names a set, name or file that is not there, an object that two sources share, a mesh that cannot be packed,
+/// or an empty selection.
+pub fn load_objects(spec: &ObjectsSpec, packings: Option<&Path>) -> Result<Vec<Object>> {
+    let tolerance = spec.surface_error();
+    let mut objects = Vec::new();
+    for set in &spec.sets {
+        let entries = set_entries(set, spec.names.as_deref())?;
+        let built = entries.par_iter().map(|entry| entry.build(tolerance));
+        objects.extend(built.collect::<Result<Vec<_>>>()?);
+    }
+    if let Some(folder) = &spec.meshes {
+        objects.extend(load_meshes(folder, spec, packings)?);
+    }
+    check_names(objects.iter().map(|object| object.name.as_str()), spec)?;
+    Ok(objects)
+}
+
+/// The objects of a TOML file ([its keys](crate::guide::own_objects)), in a set of the file's name.
+///
+/// # Errors
+/// A file that cannot be read; those of [`Catalogue::parse`].
+pub fn load_catalogue(path: &Path) -> Result<Catalogue> {
+    let place = path.display().to_string();
+    let text = crate::files::read_to_string(path).map_err(|e| {
+        let given = format!("cannot be read ({e})");
+        Error::input(&place, given, "a TOML file of objects")
+    })?;
+    Catalogue::parse(&place, &place, &text)
+}
+
+/// SHA-256 of what each object of a study is made from, by its name: of a mesh its file, of a solid its parts.
+///
+/// # Errors
+/// As of [`load_objects`].
+pub fn objects_content(spec: &ObjectsSpec) -> Result<BTreeMap<String, String>> {
+    let mut content = BTreeMap::new();
+    for set in &spec.sets {
+        for entry in set_entries(set, spec.names.as_deref())? {
+            content.insert(entry.name, sha256(format!("{:?}", entry.solid)));
+        }
+    }
+    if let Some(folder) = &spec.meshes {
+        for path in mesh_paths(folder, spec)? {
+            content.insert(stem(&path), file_content(&path)?);
+        }
+    }
+    Ok(content)
+}
+
+/// SHA-256 of a file.
+///
+/// # Errors
+/// It cannot be read.
+pub fn file_content(path: &Path) -> Result<String> {
+    let bytes = crate::files::read(path).map_err(|e| Error::io(path, "read", e))?;
+    Ok(sha256(bytes))
+}
+
+/// What a PLY, OBJ or STL file holds, in metres; without a unit its numbers are metres, and must be such as `sizes` allow.
+///
+/// # Errors
+/// A file that cannot be read, of no known ending, or without such a mesh.
+pub fn read_mesh_file(
+    path: &Path,
+    unit: Option<LengthUnit>,
+    sizes: &SizeLimits,
+) -> Result<MeshFile> {
+    let format = MeshFormat::of(path)?;
+    check_regular(path)?;
+    let place = path.display().to_string();
+    let mesh = format.read(&place, unit.unwrap_or_default(), open(path, "a mesh")?)?;
+    if unit.is_none() {
+        let vertices = mesh.vertices().iter();
+        let points = vertices.map(|&point| Aabb {
+            min: point,
+            max: point,
+        });
+        if let Some(bounds) = Aabb::around(points) {
+            sizes.check(&place, bounds.size())?;
+        }
+    }
+    Ok(mesh)
+}
+
+/// The spheres of a CSV file with columns x, y, z, r; without a unit its numbers are metres, and must be such as `sizes` allow.
+///
+/// # Errors
+/// A file that cannot be read or holds no such spheres.
+pub fn load_spheres(
+    path: &Path,
+    unit: Option<LengthUnit>,
+    sizes: &SizeLimits,
+) -> Result<SphereUnion> {
+    let place = path.display().to_string();
+    let union = read_spheres(&place, open(path, "a CSV of spheres")?)?;
+    if unit.is_none() {
+        sizes.check(&place, union.bounds().size())?;
+    }
+    let metres = unit.unwrap_or_default().metres();
+    let scaled = |sphere: &Sphere| Sphere {
+        center: metres * sphere.center,
+        radius: metres * sphere.radius,
+    };
+    let spheres = SphereUnion::new(union.spheres().iter().map(scaled).collect());
+    spheres.map_err(|error| error.under(format!("{place}: ")))
+}
+
+fn open(path: &Path, allowed: &str) -> Result<BufReader<File>> {
+    let file = crate::files::open(path).map_err(|error| {
+        let given = format!("cannot be opened ({error})");
+        Error::input(path.display(), given, allowed)
+    })?;
+    Ok(BufReader::new(file))
+}
+
+/// An error if a mesh is a folder, or a pipe or a device, from which nothing may ever come.
+fn check_regular(path: &Path) -> Result<()> {
+    let given = match std::fs::metadata(path) {
+        Ok(meta) if meta.is_dir() => "a folder",
+        Ok(meta) if !meta.is_file() => "a pipe, a socket or a device",
+        // Opening it says what is wrong with others.
+        _ => return Ok(()),
+    };
+    let allowed = "a .ply, .obj or .stl file";
+    Err(Error::input(path.display(), given, allowed))
+}
+
+/// A mesh file as an object, as a study's objects say; its name is the file's without the ending. Packings are looked for and kept in the folder
+/// `packings`, if one is given. Vertex spheres that are far from the mesh are reported on standard error.
+///
+/// # Errors
+/// A file that cannot be read, or is of another size than can be felt; a mesh that cannot be what it is to become.
+pub fn load_mesh(path: &Path, spec: &ObjectsSpec, packings: Option<&Path>) -> Result<Object> {
+    let built = build_mesh(path, spec, packings)?;
+    note_vertex_spheres(std::slice::from_ref(&built), spec);
+    Ok(built.object)
+}
+
+/// An object that was made from a mesh.
+struct BuiltMesh {
+    object: Object,
+    /// How far vertex spheres are from the mesh, metres; `None` of other models, and of files without faces.
+    vertex_error: Option<f64>,
+}
+
+fn build_mesh(path: &Path, spec: &ObjectsSpec, packings: Option<&Path>) -> Result<BuiltMesh> {
+    let place = path.display().to_string();
+    let mesh = read_mesh_file(path, spec.unit, &spec.sizes())?;
+    let closed = |file| outward_mesh(file, &place, spec.close_holes()).map(|(mesh, _)| mesh);
+    let mut vertex_error = None;
+    let model = match spec.model.unwrap_or_default() {
+        ModelSpec::VertexSpheres => {
+            let spheres = vertex_spheres(&place, mesh.vertices())?;
+            if spec.pitch.is_some() {
+                vertex_error = vertex_sphere_error(mesh, &spheres);
+            }
+            spheres.into()
+        }
+        ModelSpec::Mesh => MeshModel::new(closed(mesh)?).into(),
+        ModelSpec::Packed => {
+            let surface = Surface::new(closed(mesh)?);
+            let packed = pack_within(&place, &surface, spec.surface_error(), packings)?;
+            packed.spheres.into()
+        }
+    };
+    Ok(BuiltMesh {
+        object: Object::of_one_part(stem(path), model),
+        vertex_error,
+    })
+}
+
+/// The largest distance found between the surfaces of a mesh and of spheres around its vertices, metres; `None` if the file has no
+/// faces, or faces that are not convex.
+fn vertex_sphere_error(file: MeshFile, spheres: &SphereUnion) -> Option<f64> {
+    let (mesh, _) = file.into_mesh("").ok()?.turned_outwards();
+    let is_closed = Welded::new(&mesh).n_unbalanced() == 0;
+    let body = if is_closed { Body::Solid } else { Body::Sheet };
+    let error = packing_error(&Surface::new(mesh), body, spheres, N_ERROR_POINTS);
+    Some(error.protrusion.max.max(error.gap.max))
+}
+
+/// Reports on standard error, in one line, how far vertex spheres are from their meshes, if that is more than half a pitch.
+fn note_vertex_spheres(built: &[BuiltMesh], spec: &ObjectsSpec) {
+    let Some(pitch) = spec.pitch else { return };
+    let errors = built
+        .iter()
+        .filter_map(|b| Some((b.vertex_error?, &b.object.name)));
+    let far: Vec<_> = errors.filter(|(error, _)| *error > 0.5 * pitch).collect();
+    let Some((largest, name)) = far.iter().max_by(|(a, _), (b, _)| a.total_cmp(b)) else {
+        return;
+    };
+    let meshes = match built.len() {
+        1 => String::new(),
+        n => format!(" in {} of {n} meshes", far.len()),
+    };
+    note(format_args!(
+        "vertex spheres are up to {:.2} mm from the surface ({name}), more than half the pitch of {} mm{meshes}; \
+         model = \"mesh\" touches meshes exactly",
+        1e3 * largest,
+        millimetres(pitch)
+    ));
+}
+
+/// Reads the triangles of a mesh file with its closed parts turned outwards, and which way they face. Holes up to `close_holes`
+/// metres wide are closed first. Both changes are reported on standard error.
+///
+/// # Errors
+/// If [`read_mesh_file`] fails, a face is not convex, or the width is negative.
+pub fn read_mesh(
+    path: &Path,
+    unit: Option<LengthUnit>,
+    sizes: &SizeLimits,
+    close_holes: Option<f64>,
+) -> Result<(TriangleMesh, Orientation)> {
+    let place = path.display().to_string();
+    outward_mesh(read_mesh_file(path, unit, sizes)?, &place, close_holes)
+}
+
+/// The triangles of a file, as [`read_mesh`] returns them.
+fn outward_mesh(
+    file: MeshFile,
+    place: &str,
+    close_holes: Option<f64>,
+) -> Result<(TriangleMesh, Orientation)> {
+    let note = |text: &dyn Display| note(format_args!("{place}: {text}"));
+    let (mut mesh, mut orientation) = file.into_mesh(place)?.turned_outwards();
+    if orientation.is_turned() {
+        note(&orientation);
+    }
+    if let Some(widest) = close_holes {
+        let closed = mesh.with_holes_closed(widest)?;
+        if !closed.widths.is_empty() {
+            note(&closed);
+        }
+        (mesh, orientation) = closed.mesh.turned_outwards();
+        if orientation.is_turned() {
+            note(&orientation);
+        }
+    }
+    Ok((mesh, orientation))
+}
+
+/// The meshes of a study as triangles, by file name.
+///
+/// # Errors
+/// A mesh that cannot be read.
+pub fn load_named_meshes(folder: &Path, spec: &ObjectsSpec) -> Result<Vec<NamedMesh>> {
+    let paths = mesh_paths(folder, spec)?;
+    let meshes = paths.par_iter().map(|path| {
+        let place = path.display().to_string();
+        let (mesh, _) = read_mesh(path, spec.unit, &spec.sizes(), spec.close_holes())?;
+        Ok(NamedMesh {
+            name: stem(path),
+            place,
+            mesh,
+        })
+    });
+    let meshes = meshes.collect::<Result<Vec<_>>>()?;
+    check_names(meshes.iter().map(|mesh| mesh.name.as_str()), spec)?;
+    Ok(meshes)
+}
+
+/// The wanted objects of a set, built-in or of a TOML file, as solids.
+pub(crate) fn set_entries(set: &SetName, names: Option<&[String]>) -> Result<Vec<Entry>> {
+    let mut entries: Vec<Entry> = match set {
+        SetName::File(path) => load_catalogue(path)?.entries().to_vec(),
+        SetName::BuiltIn(name) => {
+            let builtin = Catalogue::builtin()?;
+            builtin.set(name)?.into_iter().cloned().collect()
+        }
+    };
+    entries.retain(|entry| is_wanted(&entry.name, names));
+    Ok(entries)
+}
+
+fn load_meshes(folder: &Path, spec: &ObjectsSpec, packings: Option<&Path>) -> Result<Vec<Object>> {
+    if spec.close_holes_mm.is_some() && spec.model.unwrap_or_default() == ModelSpec::VertexSpheres {
+        let given = "a study whose meshes become spheres around their vertices";
+        let allowed = "it only with model = \"packed\" or \"mesh\"";
+        return Err(Error::input("key objects.close_holes_mm", given, allowed));
+    }
+    let paths = mesh_paths(folder, spec)?;
+    let meshes = paths
+        .par_iter()
+        .map(|path| build_mesh(path, spec, packings));
+    let meshes = meshes.collect::<Result<Vec<_>>>()?;
+    note_vertex_spheres(&meshes, spec);
+    Ok(meshes.into_iter().map(|built| built.object).collect())
+}
+
+fn stem(path: &Path) -> String {
+    let stem = path.file_stem().unwrap_or_default();
+    stem.to_string_lossy().into_owned()
+}
+
+/// The files of a folder that are meshes and wanted, by name.
+fn mesh_paths(folder: &Path, spec: &ObjectsSpec) -> Result<Vec<PathBuf>> {
+    let listing = std::fs::read_dir(folder).map_err(|e| {
+        let given = format!("cannot be read ({e})");
+        Error::input(folder.display(), given, "a folder of meshes")
+    })?;
+    let paths = listing.map(|entry| entry.map(|entry| entry.path()));
+    let paths = paths.collect::<std::io::Result<Vec<_>>>();
+    let mut paths = paths.map_err(|e| Error::io(folder, "read", e))?;
+    paths.retain(|path| MeshFormat::of(path).is_ok());
+    let n_meshes = paths.len();
+    paths.retain(|path| is_wanted(&stem(path), spec.names.as_deref()));
+    let (given, allowed) = match (paths.len(), n_meshes) {
+        (0, 0) => (
+            "no meshes".to_owned(),
+            "at least two .ply, .obj or .stl files",
+        ),
+        (0, n) => (
+            format!("{n} meshes, none of them named in objects.names"),
+            "no objects.names in the study, or names of these files without their endings",
+        ),
+        _ => {
+            paths.sort();
+            paths.iter().try_for_each(|path| check_regular(path))?;
+            return Ok(paths);
+        }
+    };
+    Err(Error::input(folder.display(), given, allowed))
+}
+
+fn is_wanted(name: &str, names: Option<&[String]>) -> bool {
+    names.is_none_or(|names| names.iter().any(|wanted| wanted == name))
+}
+
+fn check_names<'a>(names: impl Iterator<Item = &'a str>, spec: &ObjectsSpec) -> Result<()> {
+    let mut seen = BTreeSet::new();
+    let key = "key objects";
+    for name in names {
+        if !seen.insert(name) {
+            let given = format!("two objects named {name}");
+            let allowed = "each name once over all sets and meshes";
+            return Err(Error::input(key, given, allowed));
+        }
+    }
+    let mut wanted = spec.names.iter().flatten();
+    if let Some(name) = wanted.find(|name| !seen.contains(name.as_str())) {
+        let allowed = "a name in the sets and meshes (bubbletouch objects lists them)";
+        return Err(Error::input("key objects.names", name, allowed));
+    }
+    match seen.is_empty() {
+        true => Err(Error::input(key, "no objects", "at least two")),
+        false => Ok(()),
+    }
+}

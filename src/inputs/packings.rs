@@ -1,0 +1,108 @@
+//! Meshes as spheres within a tolerance, kept in a folder beside the results: one CSV file each, named by what it was made from.
+//!
+//! The last line of a file, 80 bytes, is its seal: `# bubbletouch <method>, crc32 <of all bytes before the line>`. One that is cut, changed or
+//! of another version is packed again, and so said in one line on standard error.
+
+use crate::error::{Error, Result};
+use crate::files::write_bytes;
+use crate::inputs::content_hash::{bytes_of_mesh, bytes_of_numbers, sha256};
+use crate::mesh::{Surface, TriangleMesh};
+use crate::note::note;
+use crate::objects::{SphereUnion, read_spheres, write_spheres};
+use crate::packing::{Body, error_of_file, pack_mesh, slow_packing};
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+/// Changes whenever [`pack_mesh`] gives other spheres for the same mesh.
+const METHOD: &str = "packing 4";
+
+/// Bytes of a seal, its end of line included.
+const SEAL: usize = 80;
+
+/// Spheres that stand for a mesh, and where they are from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Packed {
+    /// The spheres.
+    pub spheres: SphereUnion,
+    /// Whether they were in the folder already.
+    pub was_kept: bool,
+}
+
+/// Packs a closed mesh within `tolerance` (metres), or finds what was packed before in `folder` (made if it is missing;
+/// nothing is kept without one).
+///
+/// # Errors
+/// What the mesh lacks, after `place`; a folder that cannot be written.
+pub fn pack_within(
+    place: &str,
+    surface: &Surface,
+    tolerance: f64,
+    folder: Option<&Path>,
+) -> Result<Packed> {
+    let path = folder.map(|folder| packing_path(folder, surface.mesh(), tolerance));
+    if let Some(spheres) = path.as_deref().map(kept).transpose()?.flatten() {
+        let was_kept = true;
+        return Ok(Packed { spheres, was_kept });
+    }
+    if let Some(slow) = slow_packing(surface, Body::Solid, tolerance) {
+        note(format_args!("{place}: {slow}"));
+    }
+    let packing = pack_mesh(surface, Body::Solid, tolerance).map_err(|error| {
+        let advice = "a study closes small holes with objects.close_holes_mm; open meshes can be touched with model = \"mesh\", free ones with model = \"vertex_spheres\"";
+        error_of_file(error, place, advice)
+    })?;
+    if let (Some(folder), Some(path)) = (folder, path) {
+        let mut bytes = Vec::new();
+        write_spheres(&packing.spheres, &mut bytes).expect("memory takes all");
+        bytes.extend(seal(&bytes).into_bytes());
+        fs::create_dir_all(folder).map_err(|e| Error::io(folder, "create folder", e))?;
+        write_bytes(&path, &bytes)?;
+    }
+    Ok(Packed {
+        spheres: packing.spheres,
+        was_kept: false,
+    })
+}
+
+/// Where the packing of a mesh within a tolerance (metres) is kept.
+pub fn packing_path(folder: &Path, mesh: &TriangleMesh, tolerance: f64) -> PathBuf {
+    let made_from = [
+        format!("{METHOD}{:?}", Body::Solid).into_bytes(),
+        bytes_of_numbers([tolerance]),
+        bytes_of_mesh(mesh),
+    ];
+    folder.join(format!("{}.csv", sha256(made_from.concat())))
+}
+
+/// The spheres of a whole file.
+fn kept(path: &Path) -> Result<Option<SphereUnion>> {
+    match fs::metadata(path) {
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+        // Opening a pipe would wait for who writes to it.
+        Ok(meta) if !meta.is_file() => {
+            let allowed = "a folder of packings alone";
+            return Err(Error::input(path.display(), "not a file", allowed));
+        }
+        _ => {}
+    }
+    let bytes = fs::read(path).map_err(|e| Error::io(path, "read", e))?;
+    let (rows, said) = bytes.split_at(bytes.len().saturating_sub(SEAL));
+    let spheres = read_spheres(&path.display().to_string(), rows);
+    match spheres {
+        Ok(spheres) if said == seal(rows).as_bytes() => Ok(Some(spheres)),
+        _ => {
+            note(format_args!(
+                "{} is damaged, or of another version: it is made again",
+                path.display()
+            ));
+            Ok(None)
+        }
+    }
+}
+
+fn seal(rows: &[u8]) -> String {
+    let crc = crc32fast::hash(rows);
+    let said = format!("# bubbletouch {METHOD}, crc32 {crc:08x}");
+    format!("{said:<width$}\n", width = SEAL - 1)
+}

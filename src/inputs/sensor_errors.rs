@@ -1,0 +1,126 @@
+//! Sensor errors as a study has them: their strengths, and which skin tests.
+
+use crate::random::Seed;
+use crate::signal::{MOST_STRENGTHS, SENSOR_ERRORS, SensorError, SignalStep, Strength};
+use crate::table::{Column, Role, Scale};
+use serde::{Deserialize, Serialize};
+use std::sync::LazyLock;
+
+/// The skin that tells whether a classifier has learned.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TestedOn {
+    /// The skin that trained it: what is peculiar to the skin may be learned.
+    #[default]
+    SameSkin,
+    /// Another of the same make, each trial a new one: gains, drift and faults are drawn anew.
+    AnotherSkin,
+}
+
+/// Strengths of all sensor errors together.
+const N_STRENGTHS: usize = {
+    let (mut n, mut place) = (0, 0);
+    while place < SENSOR_ERRORS.len() {
+        n += SENSOR_ERRORS[place].about().strengths.len();
+        place += 1;
+    }
+    n
+};
+
+/// Every strength of every sensor error, in the order in which tables show them: the material first, the electronics last.
+pub fn all_strengths() -> impl Iterator<Item = (SensorError, &'static Strength)> {
+    let errors = SENSOR_ERRORS.iter();
+    errors.flat_map(|error| {
+        let strengths = error.about().strengths.iter();
+        strengths.map(|strength| (*error, strength))
+    })
+}
+
+/// Their columns, in that order.
+pub fn strength_columns() -> &'static [Column] {
+    static COLUMNS: LazyLock<Vec<Column>> = LazyLock::new(|| {
+        let column = |(_, strength): (SensorError, &'static Strength)| {
+            let scale = match strength.unit {
+                "%" => Scale::Share,
+                _ => Scale::Linear,
+            };
+            let (key, words, unit) = (strength.key, strength.words, strength.unit);
+            let column = Column::new(key, Role::Condition, words, unit, scale);
+            column.named(strength.names).optional()
+        };
+        all_strengths().map(column).collect()
+    });
+    &COLUMNS
+}
+
+/// A value for each strength, in the unit of its key; `None` for those that a study does not have.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Strengths([Option<f64>; N_STRENGTHS]);
+
+impl Strengths {
+    /// The strength of a key; `None` if the study does not have it.
+    pub fn of(&self, key: &str) -> Option<f64> {
+        let mut all = all_strengths().zip(self.0);
+        all.find_map(|((_, strength), value)| value.filter(|_| strength.key == key))
+    }
+
+    /// These with another value for the strength of a key.
+    pub fn with(mut self, key: &str, value: Option<f64>) -> Self {
+        let place = all_strengths().position(|(_, strength)| strength.key == key);
+        if let Some(place) = place {
+            self.0[place] = value;
+        }
+        self
+    }
+
+    /// Those that the study has.
+    pub fn given(&self) -> impl Iterator<Item = (SensorError, &'static Strength, f64)> {
+        let all = all_strengths().zip(self.0);
+        all.filter_map(|((error, strength), value)| Some((error, strength, value?)))
+    }
+
+    /// Those that are not zero.
+    pub fn present(&self) -> impl Iterator<Item = (SensorError, &'static Strength, f64)> {
+        self.given().filter(|(_, _, value)| *value != 0.0)
+    }
+
+    /// The step of an error at these strengths.
+    pub(crate) fn step(&self, error: SensorError, skin: &Seed) -> SignalStep {
+        let mut strengths = [0.0; MOST_STRENGTHS];
+        for (to, strength) in strengths.iter_mut().zip(error.about().strengths) {
+            *to = self.of(strength.key).unwrap_or(0.0);
+        }
+        error.step(&strengths, *skin)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_strength_is_found_by_its_key_and_zero_is_none_of_it() {
+        let all: Vec<_> = all_strengths().collect();
+        assert_eq!(all.len(), N_STRENGTHS);
+        for (error, strength) in all {
+            let strengths = Strengths::default().with(strength.key, Some(0.5));
+            assert_eq!(strengths.of(strength.key), Some(0.5));
+            let present: Vec<_> = strengths.present().map(|(e, s, v)| (e, s.key, v)).collect();
+            assert_eq!(present, [(error, strength.key, 0.5)]);
+            let none = strengths.with(strength.key, Some(0.0));
+            assert_eq!((none.present().count(), none.given().count()), (0, 1));
+        }
+    }
+
+    #[test]
+    fn strengths_are_told_with_their_units() {
+        for (key, value, words) in [
+            ("gain_std", 0.07, "gain mismatch 7 %"),
+            ("adc_bits", 8.0, "converter 8 bits"),
+            ("scan_time_ms", 12.5, "scan time 12.5 ms"),
+        ] {
+            let column = strength_columns().iter().find(|c| c.name == key).unwrap();
+            assert_eq!(column.phrase(&value.into()), words);
+        }
+    }
+}

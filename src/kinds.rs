@@ -1,0 +1,13 @@
+//! The kinds of study under their first path, `bubbletouch::kinds`: [`studies`](crate::studies).
+
+pub use crate::studies::*;
+
+/// Studies that recognise objects.
+pub mod recognition {
+    pub use crate::studies::recognition::study::{
+        RecognitionRows, RecognitionStudy, recognition_scale, touch_content,
+    };
+    pub use crate::studies::{
+        load_recognition_study as load_study, recognition_plans as read_plans,
+    };
+}

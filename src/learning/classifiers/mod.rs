@@ -1,0 +1,26 @@
+//! The classifiers that a study can sweep, each trained and asked the same way.
+
+use serde::{Deserialize, Serialize};
+
+#[macro_use]
+pub(crate) mod classifier_about;
+pub mod classifier;
+pub mod parameters;
+pub mod trained_classifier;
+
+pub use crate::learning::classifiers::classifier_about::{ClassifierAbout, Train};
+pub use bubbletouch_svm::classifiers::class_model;
+pub use bubbletouch_svm::linear_model;
+
+// Everything that a study may say of a classifier follows from its line here and from the file that it names.
+classifiers! {
+    LinearSvm linear_svm "Soft-margin SVM, linear kernel.";
+    RbfSvm rbf_svm "Soft-margin SVM, Gaussian kernel `exp(−γ|x − z|²)`.";
+    LaplacianSvm laplacian_svm "Soft-margin SVM, Laplacian kernel `exp(−γ|x − z|₁)`.";
+    PolynomialSvm polynomial_svm "Soft-margin SVM, polynomial kernel `(γ x·z + c₀)^d`.";
+    LogisticRegression logistic_regression "Multinomial [logistic regression](logistic_regression).";
+    KNearest k_nearest "[k nearest neighbours](k_nearest).";
+    NearestCentroid nearest_centroid "The class whose mean is nearest: [nearest centroid](nearest_centroid).";
+    NaiveBayes naive_bayes "Gaussian [naive Bayes](naive_bayes).";
+    RandomForest random_forest "A [random forest](random_forest).";
+}

@@ -1,0 +1,13 @@
+//! Soft-margin SVM of a polynomial kernel; see [`svm`](bubbletouch_svm).
+
+use crate::learning::classifiers::classifier_about::ClassifierAbout;
+use bubbletouch_svm::kernel::Kernel;
+
+pub(crate) const ABOUT: ClassifierAbout = ClassifierAbout {
+    has_degree: true,
+    ..ClassifierAbout::svm("polynomial SVM", |classifier| Kernel::Polynomial {
+        gamma: classifier.gamma,
+        coef0: classifier.coef0,
+        degree: classifier.degree,
+    })
+};

@@ -1,0 +1,425 @@
+//! Is one cell of a study better than another? A paired comparison over trials.
+
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+use crate::statistics::mean_squares::MeanSquares;
+use crate::{Error, Result};
+use bubbletouch_sim::interval::{Interval, check_confidence};
+use ndarray::ArrayView2;
+
+/// The difference between two cells' scores over the same trials.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Comparison {
+    /// Mean of `a − b`.
+    pub mean_difference: f64,
+    /// Confidence interval of the mean difference.
+    pub interval: Interval,
+    /// Two-sided p-value of 'no difference'.
+    pub p_value: f64,
+    /// The number of trials.
+    pub n_trials: usize,
+}
+
+/// How a trial splits the touches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TrialSize {
+    /// Training rows of a trial.
+    pub n_train: usize,
+    /// Test rows of a trial.
+    pub n_test: usize,
+}
+
+/// Compares the scores (accuracy or macro-F1) of two cells, trial by trial; `None` for fewer than two trials.
+///
+/// The corrected resampled t-test (Nadeau & Bengio, *Inference for the generalization error*, Machine Learning 52,
+/// 2003): with J trials and differences d_j of sample variance s²,
+///
+/// `t = mean(d) / sqrt((1/J + n_test/n_train) s²)` with J − 1 degrees of freedom.
+///
+/// If trials differ in their numbers of rows, as splits by unequal groups do, n_test/n_train is the mean over trials. `sizes` holds one size a trial,
+/// or one for all.
+///
+/// Trials split the same touches again and again, so their scores are not independent: the plain paired t-test (1/J
+/// alone) finds differences that are not there. Scores are multiples of about 1/n_test, so s² is taken no smaller than
+/// the variance of such rounding, `1/(12 n_test²)`: equal differences in a few trials do not make certainty.
+///
+/// # Errors
+/// Another number of scores in `a` than in `b`, a score that is not finite, no training or no test rows, or a
+/// confidence outside 0..1.
+pub fn compare(
+    a: &[f64],
+    b: &[f64],
+    sizes: &[TrialSize],
+    confidence: f64,
+) -> Result<Option<Comparison>> {
+    check(a, b, sizes)?;
+    check_confidence(confidence)?;
+    let n_trials = a.len();
+    if n_trials < 2 {
+        return Ok(None);
+    }
+    let n = n_trials as f64;
+    let differences: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
+    let mean = differences.iter().sum::<f64>() / n;
+    let squares: f64 = differences.iter().map(|d| (d - mean) * (d - mean)).sum();
+    let variance = (squares / (n - 1.0)).max(rounding(sizes));
+    let estimate = Estimate {
+        mean,
+        variance: (1.0 / n + overlap(sizes)) * variance,
+        freedom: n - 1.0,
+    };
+    estimate.test(n_trials, confidence).map(Some)
+}
+
+/// The same for trials that combine every one of S splits (rows of `a` and `b`) with every one of P projections (columns);
+/// `None` for fewer than two of either.
+///
+/// With the mean squares of the differences by splits, projections and the rest, the variance of their mean is
+///
+/// `(1/S + n_test/n_train) MS_splits / P  +  max(0, MS_projections − MS_rest) / (S P)`
+///
+/// so that the answer holds for other splits and for other projections; its degrees of freedom are Satterthwaite's.
+///
+/// # Errors
+/// Another number of scores in `a` than in `b`, a score that is not finite, no training or no test rows, or a
+/// confidence outside 0..1.
+pub fn compare_crossed(
+    a: ArrayView2<f64>,
+    b: ArrayView2<f64>,
+    sizes: &[TrialSize],
+    confidence: f64,
+) -> Result<Option<Comparison>> {
+    let in_a_row = |scores: ArrayView2<f64>| scores.iter().copied().collect::<Vec<_>>();
+    check(&in_a_row(a), &in_a_row(b), sizes)?;
+    check_confidence(confidence)?;
+    if a.dim() != b.dim() || a.nrows() < 2 || a.ncols() < 2 {
+        return Ok(None);
+    }
+    let differences = &a - &b;
+    let squares = MeanSquares::of(differences.view())?;
+    let (n_splits, n_projections) = (a.nrows() as f64, a.ncols() as f64);
+    let n_trials = n_splits * n_projections;
+    let of_splits =
+        (1.0 / n_splits + overlap(sizes)) * (squares.rows / n_projections).max(rounding(sizes));
+    let of_projections = (squares.columns - squares.rest) / n_trials;
+    let mut estimate = Estimate {
+        mean: squares.mean,
+        variance: of_splits,
+        freedom: n_splits - 1.0,
+    };
+    if of_projections > 0.0 {
+        let part = |variance: f64, freedom: f64| variance * variance / freedom;
+        estimate.variance += of_projections;
+        let parts = part(of_splits, n_splits - 1.0)
+            + part(squares.columns / n_trials, n_projections - 1.0)
+            + part(squares.rest / n_trials, squares.rest_freedom() as f64);
+        // No fewer than those of the smaller number of draws.
+        let fewest = (n_splits - 1.0).min(n_projections - 1.0);
+        estimate.freedom = part(estimate.variance, parts).max(fewest);
+    }
+    estimate.test(a.len(), confidence).map(Some)
+}
+
+/// How far from none, in standard deviations between trials, a difference is that practically every trial agrees about.
+const AGREED: f64 = 3.0;
+/// Trials that a study may be asked for.
+const MOST_TRIALS: usize = 1000;
+
+/// The fewest trials (of crossed ones: splits) that can tell anything: with them [`compare`] finds even a difference significant of three
+/// times the standard deviation between trials, one that practically every trial agrees about,
+///
+/// `t(J − 1) · sqrt(1/J + n_test/n_train) ≤ 3`
+///
+/// with Student's two-sided quantile t. With three training rows for each test row, these are 4: three trials would need 3.5 standard
+/// deviations, two 11.6. `None` where 1,000 trials are not enough, because the test rows are more than twice the training rows.
+///
+/// # Errors
+/// No training or no test rows, or a confidence outside 0..1.
+pub fn trials_needed(sizes: &[TrialSize], confidence: f64) -> Result<Option<usize>> {
+    check(&[], &[], sizes)?;
+    check_confidence(confidence)?;
+    let is_enough = |n_trials: usize| -> Result<bool> {
+        let n = n_trials as f64;
+        let quantile = student(n - 1.0)?.inverse_cdf(0.5 + 0.5 * confidence);
+        Ok(quantile * (1.0 / n + overlap(sizes)).sqrt() <= AGREED)
+    };
+    // What the most are too few for, fewer are too.
+    if !is_enough(MOST_TRIALS)? {
+        return Ok(None);
+    }
+    for n_trials in 2..MOST_TRIALS {
+        if is_enough(n_trials)? {
+            return Ok(Some(n_trials));
+        }
+    }
+    Ok(Some(MOST_TRIALS))
+}
+
+/// Returns the mean of n_test / n_train: what trials that share their touches add to the variance of their mean.
+fn overlap(sizes: &[TrialSize]) -> f64 {
+    mean_of(sizes, |size| size.n_test as f64 / size.n_train as f64)
+}
+
+/// Returns the mean variance of rounding to multiples of 1 / n_test.
+fn rounding(sizes: &[TrialSize]) -> f64 {
+    mean_of(sizes, |size| {
+        let n_test = size.n_test as f64;
+        1.0 / (12.0 * n_test * n_test)
+    })
+}
+
+/// Returns the mean of a value over trials; of equal values that value, without rounding.
+fn mean_of(sizes: &[TrialSize], value: impl Fn(&TrialSize) -> f64) -> f64 {
+    let first = value(&sizes[0]);
+    let above: f64 = sizes.iter().map(|size| value(size) - first).sum();
+    first + above / sizes.len() as f64
+}
+
+/// A mean difference, its variance, and the degrees of freedom of that.
+struct Estimate {
+    mean: f64,
+    variance: f64,
+    freedom: f64,
+}
+
+impl Estimate {
+    fn test(&self, n_trials: usize, confidence: f64) -> Result<Comparison> {
+        let (mean, error) = (self.mean, self.variance.sqrt());
+        let student = student(self.freedom)?;
+        let half_width = student.inverse_cdf(0.5 + 0.5 * confidence) * error;
+        Ok(Comparison {
+            mean_difference: mean,
+            interval: Interval {
+                low: mean - half_width,
+                high: mean + half_width,
+            },
+            p_value: (2.0 * student.sf((mean / error).abs())).min(1.0),
+            n_trials,
+        })
+    }
+}
+
+fn student(freedom: f64) -> Result<StudentsT> {
+    StudentsT::new(0.0, 1.0, freedom)
+        .map_err(|error| Error::input("comparison", error, "at least two trials are needed"))
+}
+
+fn check(a: &[f64], b: &[f64], sizes: &[TrialSize]) -> Result<()> {
+    if a.len() != b.len() {
+        return Err(Error::input(
+            "comparison",
+            format!("{} and {} trials", a.len(), b.len()),
+            "the same trials of both are needed",
+        ));
+    }
+    if let Some(score) = a.iter().chain(b).find(|score| !score.is_finite()) {
+        return Err(Error::input(
+            "comparison",
+            score,
+            "finite scores are needed",
+        ));
+    }
+    let is_empty = |size: &&TrialSize| size.n_train == 0 || size.n_test == 0;
+    let given = match sizes.iter().find(is_empty) {
+        Some(size) => format!("{} training and {} test rows", size.n_train, size.n_test),
+        None if sizes.is_empty() => "no sizes of trials".to_owned(),
+        None => return Ok(()),
+    };
+    let allowed = "at least one of each is needed";
+    Err(Error::input("comparison", given, allowed))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::standard_errors::{assert_at_most, of_share};
+    use ndarray::{Array2, array};
+    use rand_distr::{Distribution, StandardNormal};
+
+    const SIZE: TrialSize = TrialSize {
+        n_train: 300,
+        n_test: 100,
+    };
+
+    #[test]
+    fn the_comparison_is_the_formula_evaluated_with_scipy() {
+        // SciPy 1.17.1's Student t in the formula above. The plain paired t-test (ttest_rel) says p = 0.034.
+        let a = [0.91, 0.93, 0.90, 0.94, 0.92];
+        let b = [0.88, 0.92, 0.89, 0.90, 0.91];
+        let comparison = compare(&a, &b, &[SIZE], 0.95).unwrap().unwrap();
+        assert!((comparison.mean_difference - 0.02).abs() < 1e-15);
+        assert!((comparison.interval.low + 0.008675001744240358).abs() < 1e-9);
+        assert!((comparison.interval.high - 0.04867500174424035).abs() < 1e-9);
+        assert!((comparison.p_value - 0.12487982574290779).abs() < 1e-9);
+        assert_eq!(comparison.n_trials, 5);
+    }
+
+    #[test]
+    fn too_few_trials_are_those_that_miss_three_standard_deviations() {
+        // Differences of mean 0.3 and standard deviation 0.1, far above rounding.
+        let of_trials = |n: usize, size| {
+            let step = 0.1 * ((n - 1) as f64 / n as f64).sqrt();
+            let mut a: Vec<f64> = (0..n)
+                .map(|k| 0.3 + if k % 2 == 0 { step } else { -step })
+                .collect();
+            if n % 2 == 1 {
+                // An odd one in the middle, and the others further out.
+                let wider = 0.1;
+                a = (0..n).map(|k| 0.3 + wider * [1.0, -1.0][k % 2]).collect();
+                a[n - 1] = 0.3;
+            }
+            let test = compare(&a, &vec![0.0; n], &[size], 0.95).unwrap().unwrap();
+            test.p_value < 0.05
+        };
+        for (n_train, needed) in [(100, 6), (300, 4), (1000, 3)] {
+            let size = TrialSize {
+                n_train,
+                n_test: 100,
+            };
+            assert_eq!(trials_needed(&[size], 0.95).unwrap(), Some(needed));
+            assert!(of_trials(needed, size), "{needed} of {n_train}");
+            assert!(!of_trials(needed - 1, size), "one less of {n_train}");
+        }
+        let size = TrialSize {
+            n_train: 100,
+            n_test: 300,
+        };
+        assert_eq!(trials_needed(&[size], 0.95).unwrap(), None);
+    }
+
+    #[test]
+    fn swapping_the_cells_swaps_the_sign_alone() {
+        let (a, b) = ([0.5, 0.7, 0.6], [0.4, 0.7, 0.3]);
+        let forth = compare(&a, &b, &[SIZE], 0.9).unwrap().unwrap();
+        let back = compare(&b, &a, &[SIZE], 0.9).unwrap().unwrap();
+        assert_eq!(forth.mean_difference, -back.mean_difference);
+        assert_eq!(forth.interval.low, -back.interval.high);
+        assert_eq!(forth.p_value, back.p_value);
+    }
+
+    #[test]
+    fn the_crossed_comparison_is_the_formula_evaluated_with_scipy() {
+        // SciPy 1.17.1's Student t in the formula above.
+        let a = array![
+            [0.80, 0.82, 0.78],
+            [0.84, 0.88, 0.83],
+            [0.75, 0.79, 0.77],
+            [0.81, 0.80, 0.79]
+        ];
+        let b = array![
+            [0.78, 0.81, 0.74],
+            [0.85, 0.84, 0.80],
+            [0.72, 0.77, 0.71],
+            [0.80, 0.79, 0.74]
+        ];
+        let crossed = compare_crossed(a.view(), b.view(), &[SIZE], 0.95)
+            .unwrap()
+            .unwrap();
+        for (found, expected) in [
+            (crossed.mean_difference, 0.025833333333333337),
+            (crossed.interval.low, -0.013794941044046539),
+            (crossed.interval.high, 0.06546160771071322),
+            (crossed.p_value, 0.11465901183764156),
+        ] {
+            assert!((found - expected).abs() < 1e-9, "{found} is not {expected}");
+        }
+        assert_eq!(crossed.n_trials, 12);
+    }
+
+    #[test]
+    fn crossed_trials_that_differ_by_nothing_are_told_apart_as_seldom_as_it_should() {
+        // Few test rows for many training rows, so that the overlap is nothing.
+        let size = TrialSize {
+            n_train: 1_000_000,
+            n_test: 100,
+        };
+        let mut rng = crate::random::Seed::new(6).rng();
+        for [split, projection, rest] in [[0.02, 0.02, 0.01], [0.02, 0.0, 0.01], [0.0, 0.02, 0.01]]
+        {
+            let mut normal = |std: f64| -> f64 {
+                let x: f64 = StandardNormal.sample(&mut rng);
+                std * x
+            };
+            let n = 2000;
+            let alarms = (0..n).filter(|_| {
+                let splits: Vec<f64> = (0..6).map(|_| normal(split)).collect();
+                let projections: Vec<f64> = (0..5).map(|_| normal(projection)).collect();
+                let differences = Array2::from_shape_fn((6, 5), |(s, p)| {
+                    splits[s] + projections[p] + normal(rest)
+                });
+                let none = Array2::zeros((6, 5));
+                let test = compare_crossed(differences.view(), none.view(), &[size], 0.95);
+                test.unwrap().unwrap().p_value < 0.05
+            });
+            let share = alarms.count() as f64 / n as f64;
+            let what = format!("{split}, {projection}");
+            assert_at_most(&what, share, 0.05, of_share(0.05, n));
+            // Degrees of freedom are no fewer than those of the smaller number of draws, which is on the safe side.
+            assert!(share > 0.01, "{what}: {share}");
+        }
+    }
+
+    #[test]
+    fn equal_scores_are_no_difference_and_equal_differences_no_certainty() {
+        let same = compare(&[0.9; 3], &[0.9; 3], &[SIZE], 0.95)
+            .unwrap()
+            .unwrap();
+        assert_eq!((same.mean_difference, same.p_value), (0.0, 1.0));
+        assert!(same.interval.low < 0.0 && same.interval.high > 0.0);
+        let constant = compare(&[0.9; 3], &[0.8; 3], &[SIZE], 0.95)
+            .unwrap()
+            .unwrap();
+        assert!(constant.p_value > 0.0 && constant.p_value < 0.01);
+    }
+
+    #[test]
+    fn trials_of_unequal_sizes_overlap_by_the_mean_of_their_ratios() {
+        let size = |n_train, n_test| TrialSize { n_train, n_test };
+        let (a, b) = ([0.9, 0.8, 0.85, 0.95], [0.8, 0.75, 0.85, 0.85]);
+        let test = |sizes: &[TrialSize]| compare(&a, &b, sizes, 0.95).unwrap().unwrap();
+        // Ratios of 1/9, 1, 1/4 and 1/4.
+        let unequal = [
+            size(900, 100),
+            size(500, 500),
+            size(800, 200),
+            size(800, 200),
+        ];
+        let ratio = (1.0 / 9.0 + 1.0 + 0.25 + 0.25) / 4.0;
+        // Student's t of SciPy 1.17.1: t = mean / sqrt((1/4 + ratio) s²), far above rounding.
+        let differences = [0.1, 0.05, 0.0, 0.1];
+        let mean = differences.iter().sum::<f64>() / 4.0;
+        let squares: f64 = differences.iter().map(|d| (d - mean) * (d - mean)).sum();
+        let error = ((0.25 + ratio) * squares / 3.0).sqrt();
+        let found = test(&unequal);
+        let half = 3.182_446_305_284_263 * error; // t.ppf(0.975, 3)
+        assert!(
+            (found.interval.high - mean - half).abs() < 1e-9,
+            "{found:?}"
+        );
+        // Whichever trial is the first.
+        let mut turned = unequal;
+        turned.reverse();
+        assert!((test(&turned).p_value - found.p_value).abs() < 1e-12);
+        // Equal sizes are one size.
+        assert_eq!(test(&[SIZE; 4]), test(&[SIZE]));
+        assert!(compare(&a, &b, &[], 0.95).is_err());
+    }
+
+    #[test]
+    fn one_trial_tells_nothing() {
+        assert_eq!(compare(&[0.9], &[0.8], &[SIZE], 0.95).unwrap(), None);
+        assert_eq!(compare(&[], &[], &[SIZE], 0.95).unwrap(), None);
+    }
+
+    #[test]
+    fn unpaired_or_broken_scores_are_refused() {
+        assert!(compare(&[0.9, 0.8], &[0.8], &[SIZE], 0.95).is_err());
+        assert!(compare(&[0.9, f64::NAN], &[0.8, 0.8], &[SIZE], 0.95).is_err());
+        assert!(compare(&[0.9, 0.8], &[0.8, 0.8], &[SIZE], 95.0).is_err());
+        let none = TrialSize {
+            n_train: 0,
+            n_test: 1,
+        };
+        assert!(compare(&[0.9, 0.8], &[0.8, 0.8], &[none], 0.95).is_err());
+    }
+}

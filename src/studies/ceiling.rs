@@ -1,0 +1,45 @@
+//! Work within a ceiling of memory.
+
+use crate::engine::work_items::scale::Scale;
+use crate::error::{Error, Result};
+use crate::inputs::memory::GIB;
+
+/// Threads on which the work items of a study stay within so many bytes; all of them where there is no ceiling.
+///
+/// # Errors
+/// Not even one item at a time does.
+pub fn threads_within(scale: &Scale, ceiling: Option<u64>) -> Result<usize> {
+    let Some(ceiling) = ceiling else {
+        return Ok(rayon::current_num_threads());
+    };
+    scale.n_at_once(ceiling as f64).ok_or_else(|| {
+        Error::input(
+            "memory",
+            format!("a ceiling of {:.2} GiB", ceiling as f64 / GIB),
+            format!(
+                "at least {:.2} GiB for this study; fewer touches, frames, taxels or measurements take less",
+                scale.least_bytes() / GIB
+            ),
+        )
+    })
+}
+
+/// Does something on as many threads as there is memory for; what comes of it is the same on any number.
+///
+/// # Errors
+/// Those of [`threads_within`]; those of the work.
+pub fn within_memory<T: Send>(
+    scale: &Scale,
+    ceiling: Option<u64>,
+    work: impl FnOnce() -> Result<T> + Send,
+) -> Result<T> {
+    let n_threads = threads_within(scale, ceiling)?;
+    if n_threads == rayon::current_num_threads() {
+        return work();
+    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads);
+    let pool = pool
+        .build()
+        .map_err(|error| Error::input("threads", error, "a number that the system can start"))?;
+    pool.install(work)
+}

@@ -1,0 +1,249 @@
+//! A study of a kind, for those who do not know which.
+
+use crate::engine::journal::identity::Identity;
+use crate::engine::journal::journal_file::Journal;
+use crate::engine::progress::{Progress, Silent};
+use crate::engine::provenance::{Manifest, PROGRAM, REPORT};
+use crate::engine::work_items::NamedPiece;
+use crate::engine::work_items::study_runner::{Part, PieceFailure, PieceManner, PiecesRun};
+use crate::error::Result;
+use crate::files::{DataFolder, MANIFEST_FILE, OwnedFiles, RUN};
+use crate::inputs::content_hash::sha256;
+use crate::report::csv_tables::FAILURES_FILE;
+use crate::report::folder::{NamedFile, table_files, write_files};
+use crate::report::page::StudyAbout;
+use crate::report::study_folder::{Beyond, ChartFormat, Found, files_with};
+use crate::studies::any_study::{AnyStudy, Outcome};
+use crate::studies::ceiling::{threads_within, within_memory};
+use crate::studies::kind::{Facts, Kind};
+use crate::studies::source::Source;
+use crate::studies::verified::same_rows;
+use crate::table::{File, Table};
+use crate::toml_numbers::with_line;
+use std::path::Path;
+
+/// Work items that failed.
+pub(super) const FAILURES: File<PieceFailure> =
+    File::new(FAILURES_FILE, "What failed, and why", "");
+
+/// A study that is read and checked, and what its results depend on.
+pub struct Loaded<K> {
+    pub(super) kind: K,
+    facts: Facts,
+    identity: Identity,
+    pub(super) pieces: Vec<NamedPiece>,
+    /// Most bytes to hold.
+    memory: Option<u64>,
+}
+
+impl<K: Kind> Loaded<K> {
+    /// Reads and checks a study.
+    ///
+    /// # Errors
+    /// Those of [`Kind::load`].
+    pub fn load(source: &Source) -> Result<Self> {
+        let kind = K::load(source);
+        let kind = kind.map_err(|error| with_line(&source.place, &source.text, error))?;
+        threads_within(&kind.scale(), source.memory)?;
+        let facts = kind.facts()?;
+        let (toml, content) = (facts.toml.clone(), facts.content.clone());
+        Ok(Self {
+            identity: Identity::new(toml, content, K::ABOUT.may_change),
+            pieces: kind.pieces(),
+            memory: source.memory,
+            facts,
+            kind,
+        })
+    }
+
+    /// Returns the number of work items that a run does; with `retries` also those that failed.
+    fn n_to_run(&self, part: Part, journal: &Journal, retries: bool) -> usize {
+        let manner = PieceManner {
+            journal,
+            part,
+            retries,
+            ..PieceManner::whole(&Silent)
+        };
+        PiecesRun::new(&self.kind, &self.pieces, &manner).n_left()
+    }
+
+    /// Charts, pictures and page, for a folder, with what is known of its run: nothing is written yet.
+    fn files_of(&self, of_run: StudyAbout, tables: &[Table]) -> Result<Vec<NamedFile>> {
+        let wall_s = of_run.manifest.as_ref().and_then(Manifest::wall_s);
+        let about = StudyAbout {
+            question: self.facts.question.clone(),
+            expected: self.facts.expected.clone(),
+            wall_s: wall_s.unwrap_or(f64::NAN),
+            program: PROGRAM.to_owned(),
+            ..of_run
+        };
+        let found = Found {
+            tables,
+            charts: &self.kind.charts(tables),
+            answers: &self.kind.answers(tables),
+        };
+        files_with(&about, &found, || {
+            Ok(Beyond {
+                pictures: self.kind.pictures(tables)?,
+                sections: self.kind.sections(tables)?,
+            })
+        })
+    }
+}
+
+impl<K: Kind> AnyStudy for Loaded<K> {
+    fn identity(&self) -> &Identity {
+        &self.identity
+    }
+
+    fn n_all(&self) -> usize {
+        self.pieces.len()
+    }
+
+    fn plan(&self) -> Result<String> {
+        let scale = self.kind.scale();
+        let n_threads = threads_within(&scale, self.memory)?;
+        let lines = scale.describe(self.pieces.len(), n_threads);
+        Ok(format!("{}\n{lines}", self.facts.question))
+    }
+
+    fn n_left(&self, part: Part, journal: &Journal) -> usize {
+        self.n_to_run(part, journal, false)
+    }
+
+    fn n_without_success(&self, part: Part, journal: &Journal) -> usize {
+        self.n_to_run(part, journal, true)
+    }
+
+    fn run(&self, manner: &PieceManner) -> Result<Outcome> {
+        let (finished, mut tables) = within_memory(&self.kind.scale(), self.memory, || {
+            let pieces = PiecesRun::new(&self.kind, &self.pieces, manner);
+            let (rows, failures) = pieces.run()?;
+            Ok((failures, self.kind.tables(rows)?))
+        })?;
+        tables.push(FAILURES.of(&finished)?);
+        let n_failed = finished.len();
+        Ok(Outcome { tables, n_failed })
+    }
+
+    fn write(
+        &self,
+        dir: &Path,
+        outcome: &Outcome,
+        run: Manifest,
+        chart_format: ChartFormat,
+    ) -> Result<()> {
+        let hashes = |repeats: bool| {
+            let tables = outcome.tables.iter();
+            let files = tables.filter(|t| t.repeats == repeats && !t.csv.is_empty());
+            let hashes = files.map(|table| (table.file.to_owned(), sha256(&table.csv)));
+            hashes.collect()
+        };
+        let words = |&(columns, method): &(&str, &str)| (columns.to_owned(), method.to_owned());
+        let manifest = Manifest {
+            seed: self.facts.seed,
+            n_cells: self.pieces.len(),
+            n_trials: 1,
+            n_failed: outcome.n_failed,
+            tables_sha256: hashes(true),
+            times_sha256: hashes(false),
+            methods: self.facts.methods.iter().map(words).collect(),
+            ..run
+        };
+        let of_run = StudyAbout {
+            name: manifest.study.clone(),
+            command: manifest.command.clone(),
+            manifest: Some(manifest.clone()),
+            chart_format,
+            ..StudyAbout::default()
+        };
+        let page = self.files_of(of_run, &outcome.tables)?;
+        let mut files = table_files(&outcome.tables);
+        files.push(("study.toml".to_owned(), self.facts.toml.clone().into()));
+        write_results(dir, manifest, files, page)
+    }
+
+    fn words(&self, outcome: &Outcome, width: usize) -> String {
+        let found = self.kind.summary(&outcome.tables, width);
+        format!("{}\n\n{found}", self.facts.question)
+    }
+
+    fn verify(
+        &self,
+        folder: &Path,
+        n: usize,
+        draw: u64,
+        progress: &dyn Progress,
+    ) -> Result<String> {
+        let chosen = self.drawn(folder, (n, draw))?;
+        let manner = PieceManner {
+            part: Part::Only(&chosen),
+            ..PieceManner::whole(progress)
+        };
+        let again = within_memory(&self.kind.scale(), self.memory, || {
+            let run = PiecesRun::new(&self.kind, &self.pieces, &manner);
+            self.kind.tables(run.run()?.0)
+        })?;
+        progress.finish("");
+        let is_whole = chosen.len() == self.pieces.len();
+        let n_rows = same_rows(folder, &again, is_whole)?;
+        Ok(format!(
+            "{} of {} work items ran again, and {n_rows} rows without times are the same bytes",
+            chosen.len(),
+            self.pieces.len(),
+        ))
+    }
+
+    fn report(&self, folder: &Path, about: StudyAbout) -> Result<()> {
+        let mut tables = self.kind.read_tables(folder)?;
+        tables.extend(FAILURES.read_if_there(folder)?);
+        let manifest = about.manifest.clone();
+        let page = self.files_of(about, &tables)?;
+        if let Some(manifest) = manifest {
+            return write_results(folder, manifest, Vec::new(), page);
+        }
+        let names = page.iter().map(|(name, _)| name.as_str());
+        DataFolder::claim_with(folder, REPORT, names, is_drawn)?.write_manifest()?;
+        write_files(folder, page).map(drop)
+    }
+}
+
+/// Whether bytes are a picture, or a page or a chart of this program: of a folder whose manifest is lost.
+fn is_drawn(bytes: &[u8]) -> bool {
+    let holds = |mark: &str| {
+        bytes
+            .windows(mark.len())
+            .any(|part| part == mark.as_bytes())
+    };
+    bytes.starts_with(b"\x89PNG") || holds("bubbletouch") || holds("Generated by kuva")
+}
+
+/// Writes files of a run, and charts and page, which the manifest lists. The manifest is written first, so that a run that is killed while it
+/// writes owns what it wrote.
+fn write_results(
+    folder: &Path,
+    mut manifest: Manifest,
+    of_run: Vec<NamedFile>,
+    page: Vec<NamedFile>,
+) -> Result<()> {
+    let owned = OwnedFiles::read(folder, RUN)?;
+    let names = of_run.iter().chain(&page).map(|(name, _)| name.as_str());
+    owned.check(names)?;
+    let before = Manifest::read(folder)?.unwrap_or_default();
+    let mut listed = before.files_sha256.unwrap_or_default();
+    listed.extend(before.tables_sha256);
+    listed.extend(before.times_sha256);
+    // Files that the results no longer have remain in the folder, and remain the program's.
+    listed.retain(|name, _| folder.join(name).exists());
+    listed.retain(|name, _| !manifest.tables_sha256.contains_key(name));
+    listed.retain(|name, _| !manifest.times_sha256.contains_key(name));
+    listed.extend(
+        page.iter()
+            .map(|(name, bytes)| (name.clone(), sha256(bytes))),
+    );
+    manifest.files_sha256 = Some(listed);
+    let mut files = vec![(MANIFEST_FILE.to_owned(), manifest.to_json().into())];
+    files.extend(of_run);
+    files.extend(page);
+    write_files(folder, files).map(drop)
+}

@@ -1,0 +1,45 @@
+//! Classifiers that learn from touches of models and are tested on touches of the objects themselves.
+//!
+//! Every object has the same number of touches; the leading ones train, the others test.
+
+use crate::error::{Error, Result};
+use crate::learning::classifiers::trained_classifier::TrainedClassifier;
+use crate::statistics::p_status::CONFIDENCE;
+use bubbletouch_sim::interval::Interval;
+use bubbletouch_svm::dataset::{Dataset, dataset};
+use ndarray::{Array1, ArrayView2, Axis, concatenate, s};
+use std::ops::Range;
+
+/// An error, of a place, unless there are so many objects that one can be taken for another.
+pub(super) fn check_apart(place: &str, n_objects: usize) -> Result<()> {
+    match n_objects {
+        0 | 1 => {
+            let given = format!("{n_objects} objects to recognise");
+            Err(Error::input(place, given, "at least 2 to tell apart"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Some touches of every object (n_touches × m of each), with the object's number as their label.
+pub(super) fn touches_of<'a>(
+    objects: impl Iterator<Item = ArrayView2<'a, f64>>,
+    touches: Range<usize>,
+) -> Result<Dataset> {
+    let chosen: Vec<_> = objects
+        .map(|rows| rows.slice_move(s![touches.clone(), ..]))
+        .collect();
+    let features = concatenate(Axis(0), &chosen).expect("every object has as many columns");
+    let labels = (0..chosen.len()).flat_map(|label| std::iter::repeat_n(label, touches.len()));
+    Ok(dataset(features, Array1::from_iter(labels))?)
+}
+
+/// The share of a classifier's right answers to some touches, 0 to 1, with its 95 % Wilson interval.
+pub(super) fn accuracy(classifier: &TrainedClassifier, test: &Dataset) -> Result<(f64, Interval)> {
+    let answers = classifier.labels(test.records.view())?;
+    let pairs = answers.iter().zip(&test.targets);
+    let n_right = pairs.filter(|(answer, truth)| answer == truth).count();
+    let n_test = test.targets.len();
+    let interval = Interval::wilson(n_right, n_test, CONFIDENCE)?;
+    Ok((n_right as f64 / n_test as f64, interval))
+}

@@ -1,0 +1,153 @@
+//! What is charted and said: what spheres buy, what they cost, and what an object's errors cost a classifier that has learned from it.
+
+use crate::studies::kind::Findings;
+use crate::studies::object_detail::study::{ObjectDetailStudy, RECOGNITION};
+use crate::studies::object_detail::variants::within;
+use crate::table::{ChartSpec, Table, short_number};
+
+/// What runs along an axis: a part of the chart's name, words of its title, and a column.
+type Named = (&'static str, &'static str, &'static str);
+
+/// What is bought.
+const FELT: [Named; 2] = [
+    (
+        "deflection_error",
+        "Error of what the skin feels",
+        "error_median_mm",
+    ),
+    (
+        "deflection_error_after_offset",
+        "Error of what the skin feels after the best constant offset",
+        "error_after_offset_median_mm",
+    ),
+];
+const SURFACE: [Named; 2] = [
+    (
+        "surface_error",
+        "Mean distance between spheres and mesh",
+        "surface_error_median_mm",
+    ),
+    (
+        "surface_error_max",
+        "Largest distance between spheres and mesh",
+        "surface_error_max_median_mm",
+    ),
+];
+
+/// What it costs.
+const SPHERES: Named = ("spheres", "number of spheres", "n_spheres_median");
+const TIME: Named = ("time", "time of a touch", "us_per_touch_median");
+
+/// What was learned, by the error of what was learned from.
+const LEARNED: [Named; 2] = [
+    (
+        "recognition",
+        "Accuracy on the exact meshes by the error of the models that were learned from",
+        "accuracy_on_mesh",
+    ),
+    (
+        "recognition_of_models",
+        "Accuracy on the models themselves by their error",
+        "accuracy_on_itself",
+    ),
+];
+
+impl Findings for ObjectDetailStudy {
+    /// Errors by what they cost; with what was learned, if anything was.
+    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
+        let by_cost = [(FELT, SPHERES), (FELT, TIME), (SURFACE, SPHERES)];
+        let errors = by_cost.into_iter().flat_map(|(errors, (by, of, x))| {
+            errors.map(|(name, words, y)| {
+                let (name, title) = (format!("{name}_by_{by}"), format!("{words} by {of}"));
+                ChartSpec {
+                    note: "Medians over objects with their quartiles.".to_owned(),
+                    lines: vec!["method".to_owned()],
+                    ..tables[3].chart(name, title, (y, x))
+                }
+            })
+        });
+        let by_error = |learned: &Table| {
+            LEARNED.map(|(name, title, y)| ChartSpec {
+                lines: vec!["method".to_owned()],
+                panels: Some("classifier".to_owned()),
+                ..learned.chart(
+                    format!("{name}_by_deflection_error"),
+                    title,
+                    (y, "error_own_contact_median_mm"),
+                )
+            })
+        };
+        let learned = learned(tables).into_iter().flat_map(by_error);
+        errors.chain(learned).collect()
+    }
+
+    /// The most exact model; the cheapest of each method that is within half a millimetre; what learning from a model costs.
+    fn answers(&self, tables: &[Table]) -> Vec<String> {
+        let costs = &tables[3];
+        let rows = 0..costs.n_rows;
+        let models: Vec<usize> = rows
+            .filter(|&row| costs.number("n_spheres_median", row) > 0.0)
+            .collect();
+        let best = least(costs, models.iter().copied(), "error_median_mm");
+        let best = best.map(|said| format!("The most exact model of spheres is {said}"));
+        let fewest = OF_SPHERES.into_iter().filter_map(|method| {
+            let small = models.iter().copied().filter(|&row| {
+                let error = costs.number("error_median_mm", row);
+                costs.word("method", row) == method && error <= SMALL_MM
+            });
+            let said = least(costs, small, "n_spheres_median")?;
+            Some(format!("Fewest spheres within {SMALL_MM} mm by {said}"))
+        });
+        let misled = learned(tables).and_then(misled_most);
+        best.into_iter().chain(fewest).chain(misled).collect()
+    }
+}
+
+/// What classifiers learned, if any did.
+fn learned(tables: &[Table]) -> Option<&Table> {
+    tables.iter().find(|table| table.file == RECOGNITION.name())
+}
+
+/// Models that are spheres.
+const OF_SPHERES: [&str; 4] = [
+    "packing",
+    "vertex_spheres",
+    "decimated_vertex_spheres",
+    "medial_spheres",
+];
+
+/// The classifier that seems to be better than it is by most, in words; none where none does.
+fn misled_most(learned: &Table) -> Option<String> {
+    let shares = |row: usize| {
+        ["accuracy_on_mesh", "accuracy_on_itself"].map(|share| learned.number(share, row))
+    };
+    let by = |row: usize| shares(row)[1] - shares(row)[0];
+    let most = (0..learned.n_rows).max_by(|&a, &b| by(a).total_cmp(&by(b)));
+    let row = most.filter(|&row| by(row) > 0.0)?;
+    let ([on_mesh, on_itself], model) = (shares(row), model_words(learned, row));
+    Some(format!(
+        "A classifier that learned from {model} recognises {on_mesh:.3} of the touches of exact meshes, and {on_itself:.3} by its own test."
+    ))
+}
+
+/// What stands for meshes: `packing within 0.5 mm`.
+fn model_words(table: &Table, row: usize) -> String {
+    let tolerance_mm = Some(table.number("tolerance_mm", row)).filter(|mm| !mm.is_nan());
+    table.words("method", row) + &within(tolerance_mm)
+}
+
+/// A small error, mm.
+const SMALL_MM: f64 = 0.5;
+
+/// The model that has the least of something, in words.
+fn least(costs: &Table, models: impl Iterator<Item = usize>, of: &str) -> Option<String> {
+    let number = |column: &str, row: usize| costs.number(column, row);
+    let row = models.min_by(|&a, &b| number(of, a).total_cmp(&number(of, b)))?;
+    Some(format!(
+        "{}: {} mm error with {:.0} spheres, {:.0} µs a touch.",
+        model_words(costs, row),
+        short_number(number("error_median_mm", row)),
+        number("n_spheres_median", row),
+        number("us_per_touch_median", row)
+    ))
+}

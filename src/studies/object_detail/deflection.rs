@@ -1,0 +1,218 @@
+//! What the skin feels of a model, beside what it feels of the mesh itself.
+
+use crate::contact::{Workspace, first_contact, press_to_depth, press_to_travel};
+use crate::error::Result;
+use crate::geometry::Pose;
+use crate::objects::{Model, Object};
+use crate::quantile::quantile;
+use crate::random::Seed;
+use crate::studies::median_time::median_s;
+use crate::studies::recognition::plan::taxel_array::TaxelArray;
+use crate::studies::recognition::touches::drawn_touches::draw_touches;
+use crate::world::Placement;
+
+/// How far a model's deflections are from the exact ones, mm.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct DeflectionError {
+    /// |δ − δ*|, mean over taxels that either touches.
+    pub mean_mm: f64,
+    /// 95th percentile over the same.
+    pub p95_mm: f64,
+}
+
+impl DeflectionError {
+    /// Of the errors of single taxels, metres; 0 of none.
+    pub fn of(mut errors: Vec<f64>) -> Self {
+        Self {
+            mean_mm: in_mm(mean(&errors)),
+            p95_mm: in_mm(quantile(&mut errors, 0.95)),
+        }
+    }
+}
+
+/// All digits of a length in millimetres.
+pub(super) fn in_mm(metres: f64) -> f64 {
+    1e3 * metres
+}
+
+fn mean(errors: &[f64]) -> f64 {
+    errors.iter().fold(0.0, |sum, error| sum + error) / errors.len().max(1) as f64
+}
+
+/// How an object was touched exactly, and what was read.
+pub(super) struct Truth {
+    array: TaxelArray,
+    /// Touches that met it.
+    pub readings: Vec<Reading>,
+    /// Touches that met nothing.
+    pub n_missed: usize,
+    /// Taxels that were touched, all touches.
+    pub n_touched: usize,
+}
+
+/// One touch, and what exact contact says of it.
+pub(super) struct Reading {
+    patch_from_object: Pose,
+    /// Past first contact, metres.
+    pub depth: f64,
+    travel: f64,
+    deflections: Vec<f64>,
+}
+
+/// Offsets that are tried before the best of them is refined. Fewer: the search may end in a lesser valley.
+const N_OFFSETS: usize = 48;
+/// Halvings (about) of the interval around the best of them.
+const N_STEPS: usize = 30;
+/// Each touch is timed so often.
+const N_REPEATS: usize = 3;
+
+impl Truth {
+    /// Touches an exact model as every study would touch an object of this name.
+    pub fn new(
+        (name, exact): (&str, Model),
+        array: &TaxelArray,
+        placement: &Placement,
+        seed: &Seed,
+    ) -> Result<Self> {
+        let object = Object::of_one_part(name, exact);
+        let touched = draw_touches(vec![object], placement, seed)?.swap_remove(0);
+        let object = std::slice::from_ref(&touched.object.model);
+        let mut workspace = Workspace::new();
+        let mut truth = Self {
+            array: array.clone(),
+            readings: Vec::new(),
+            n_missed: 0,
+            n_touched: 0,
+        };
+        for touch in &touched.touches {
+            let pose = touch.patch_from_object(&touched.rests[touch.rest]);
+            let contact =
+                press_to_depth(array.patch(), object, &[pose], touch.depth, &mut workspace);
+            let Some(contact) = contact else {
+                truth.n_missed += 1;
+                continue;
+            };
+            truth.n_touched += contact.n_touched;
+            truth.readings.push(Reading {
+                patch_from_object: pose,
+                depth: touch.depth,
+                travel: contact.travel,
+                deflections: workspace.deflections().to_vec(),
+            });
+        }
+        Ok(truth)
+    }
+
+    /// Of a model read where the object was, the patch drawn back by `offset` metres.
+    pub fn error(&self, model: &Model, offset: f64) -> DeflectionError {
+        DeflectionError::of(self.errors(model, offset))
+    }
+
+    /// Mean error of a model that is touched as far past its own first contact as the object past its: what a study feels that
+    /// has no other model of the object.
+    pub fn error_past_own_contact(&self, model: &Model) -> DeflectionError {
+        let (patch, object) = (self.array.patch(), std::slice::from_ref(model));
+        DeflectionError::of(self.errors_of(|pose, reading, workspace| {
+            press_to_depth(patch, object, pose, reading.depth, workspace);
+        }))
+    }
+
+    /// The constant offset, metres, with which the error is least: 0 or better.
+    pub fn best_offset(&self, model: &Model) -> f64 {
+        let cost = |offset| mean(&self.errors(model, offset));
+        let Some((low, high)) = self.offset_range(model) else {
+            return 0.0;
+        };
+        let step = (high - low) / (N_OFFSETS - 1) as f64;
+        let tried = (0..N_OFFSETS).map(|k| low + k as f64 * step);
+        let costs = tried.map(|offset| (offset, cost(offset)));
+        let least = |best: (f64, f64), next: (f64, f64)| if next.1 < best.1 { next } else { best };
+        let start = costs.fold((0.0, cost(0.0)), least);
+        let refined = golden_section(start.0 - step, start.0 + step, cost);
+        least(start, (refined, cost(refined))).0
+    }
+
+    /// Median time of a touch to its depth on one thread, seconds; 0 if nothing was met.
+    pub fn seconds_per_touch(&self, model: &Model) -> f64 {
+        let (patch, object) = (self.array.patch(), std::slice::from_ref(model));
+        let mut workspace = Workspace::new();
+        let mut press = |reading: &Reading| {
+            let pose = [reading.patch_from_object];
+            press_to_depth(patch, object, &pose, reading.depth, &mut workspace);
+        };
+        // Once before it counts: the workspace grows, and the model comes into the processor's memory.
+        self.readings.iter().for_each(&mut press);
+        median_s((0..N_REPEATS).flat_map(|_| &self.readings), press)
+    }
+
+    /// |δ − δ*| of each taxel that either touches, all touches, the patch drawn back.
+    fn errors(&self, model: &Model, offset: f64) -> Vec<f64> {
+        let (patch, object) = (self.array.patch(), std::slice::from_ref(model));
+        self.errors_of(|pose, reading, workspace| {
+            press_to_travel(patch, object, pose, reading.travel - offset, workspace);
+        })
+    }
+
+    /// The same of what is pressed in some way.
+    fn errors_of(&self, press: impl Fn(&[Pose], &Reading, &mut Workspace)) -> Vec<f64> {
+        let mut workspace = Workspace::new();
+        let mut errors = Vec::new();
+        for reading in &self.readings {
+            press(&[reading.patch_from_object], reading, &mut workspace);
+            errors.extend(reading.errors(workspace.deflections()));
+        }
+        errors
+    }
+
+    /// Offsets beyond these leave every touch either without contact or deeper than the mesh's everywhere.
+    fn offset_range(&self, model: &Model) -> Option<(f64, f64)> {
+        let (patch, object) = (self.array.patch(), std::slice::from_ref(model));
+        let mut workspace = Workspace::new();
+        let ahead = self.readings.iter().filter_map(|reading| {
+            let pose = [reading.patch_from_object];
+            let first = first_contact(patch, object, &pose, &mut workspace)?;
+            let ahead = reading.travel - reading.depth - first;
+            Some((ahead - reading.depth, ahead + reading.depth))
+        });
+        ahead.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+    }
+}
+
+impl Reading {
+    /// |δ − δ*| of each taxel that either touches; `felt` is δ, n_taxels, metres.
+    pub fn errors<'a>(&'a self, felt: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+        let pairs = felt.iter().zip(&self.deflections);
+        let touched = pairs.filter(|(model, mesh)| **model > 0.0 || **mesh > 0.0);
+        touched.map(|(model, mesh)| (model - mesh).abs())
+    }
+}
+
+/// Where a function with one valley between two places is least, about.
+fn golden_section(mut low: f64, mut high: f64, cost: impl Fn(f64) -> f64) -> f64 {
+    let ratio = 0.5 * (5_f64.sqrt() - 1.0);
+    let (mut left, mut right) = (high - ratio * (high - low), low + ratio * (high - low));
+    let (mut left_cost, mut right_cost) = (cost(left), cost(right));
+    for _ in 0..N_STEPS {
+        if left_cost <= right_cost {
+            (high, right, right_cost) = (right, left, left_cost);
+            left = high - ratio * (high - low);
+            left_cost = cost(left);
+        } else {
+            (low, left, left_cost) = (left, right, right_cost);
+            right = low + ratio * (high - low);
+            right_cost = cost(right);
+        }
+    }
+    0.5 * (low + high)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn golden_section_finds_the_bottom_of_a_valley() {
+        let found = golden_section(-1.0, 2.0, |x| (x - 0.7).abs());
+        assert!((found - 0.7).abs() < 1e-5, "{found}");
+    }
+}

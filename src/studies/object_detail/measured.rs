@@ -1,0 +1,104 @@
+//! An object's models: how near each is to its mesh, by its surface and by what the skin feels, and what a touch of it takes.
+
+use crate::error::Result;
+use crate::inputs::object_files::NamedMesh;
+use crate::mesh::Surface;
+use crate::packing::{Body, packing_error};
+use crate::random::Seed;
+use crate::studies::object_detail::deflection::{Truth, in_mm};
+use crate::studies::object_detail::plan::ObjectDetailPlan;
+use crate::studies::object_detail::rows::{DetailCell, DetailScore, DetailTime};
+use crate::studies::object_detail::spec::DetailMethod;
+use crate::studies::object_detail::study::ObjectDetailStudy;
+use crate::studies::object_detail::variants::{Variant, variants};
+
+/// An object and its models.
+pub(super) struct Measured<'a> {
+    pub mesh: &'a NamedMesh,
+    surface: Surface,
+    pub truth: Truth,
+    /// The first of them is the mesh itself.
+    pub variants: Vec<Variant>,
+}
+
+impl<'a> Measured<'a> {
+    pub fn new(study: &ObjectDetailStudy, mesh: &'a NamedMesh) -> Result<Self> {
+        let plan = &study.plan;
+        let surface = Surface::new(mesh.mesh.clone());
+        let variants = variants(plan, &mesh.place, &surface, study.packings.as_deref())?;
+        let exact = (&mesh.name[..], variants[0].model.clone());
+        let seed = Seed::new(plan.spec.seed);
+        Ok(Self {
+            truth: Truth::new(exact, &plan.array, &plan.placement, &seed)?,
+            mesh,
+            surface,
+            variants,
+        })
+    }
+
+    /// A row a model.
+    fn rows<T>(&self, row: impl Fn(&Variant) -> T) -> Vec<(DetailCell, T)> {
+        let cell = |variant: &Variant| DetailCell {
+            object: self.mesh.name.clone(),
+            method: variant.level.0,
+            tolerance_mm: variant.level.1,
+            n_spheres: variant.model.n_spheres(),
+        };
+        let variants = self.variants.iter();
+        variants
+            .map(|variant| (cell(variant), row(variant)))
+            .collect()
+    }
+
+    pub fn models(&self, plan: &ObjectDetailPlan) -> Vec<(DetailCell, DetailScore)> {
+        let n_points = plan.spec.object_detail.surface_points;
+        self.rows(|variant| self.score(variant, n_points))
+    }
+
+    pub fn times(&self) -> Vec<(DetailCell, DetailTime)> {
+        self.rows(|variant| DetailTime {
+            us_per_touch: 1e6 * self.truth.seconds_per_touch(&variant.model),
+            prepare_s: variant.prepare_s,
+            was_kept: variant.was_kept,
+        })
+    }
+
+    /// How near a model is to its mesh, seen from so many points of it.
+    fn score(&self, variant: &Variant, n_points: usize) -> DetailScore {
+        let (surface, truth) = (&self.surface, &self.truth);
+        let model = &variant.model;
+        // An open surface has no inside that could hide a part of it.
+        let body = match surface.is_closed() {
+            true => Body::Solid,
+            false => Body::Sheet,
+        };
+        let (protrusion, gap) = model.spheres().map_or_else(Default::default, |spheres| {
+            let apart = packing_error(surface, body, spheres, n_points);
+            (apart.protrusion, apart.gap)
+        });
+        let error = truth.error(model, 0.0);
+        let offset = match variant.level.0 {
+            DetailMethod::Mesh => 0.0,
+            _ => truth.best_offset(model),
+        };
+        let after = truth.error(model, offset);
+        DetailScore {
+            surface_error_mm: in_mm(protrusion.mean + gap.mean),
+            protrusion_mean_mm: in_mm(protrusion.mean),
+            protrusion_p95_mm: in_mm(protrusion.p95),
+            protrusion_max_mm: in_mm(protrusion.max),
+            gap_mean_mm: in_mm(gap.mean),
+            gap_p95_mm: in_mm(gap.p95),
+            gap_max_mm: in_mm(gap.max),
+            n_touches: truth.readings.len(),
+            n_missed: truth.n_missed,
+            n_taxels: truth.n_touched,
+            error_mm: error.mean_mm,
+            error_p95_mm: error.p95_mm,
+            offset_mm: in_mm(offset),
+            error_after_offset_mm: after.mean_mm,
+            error_after_offset_p95_mm: after.p95_mm,
+            error_own_contact_mm: truth.error_past_own_contact(model).mean_mm,
+        }
+    }
+}

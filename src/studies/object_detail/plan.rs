@@ -1,0 +1,105 @@
+//! A study of object detail that can run: every key checked, every unit SI.
+
+use crate::error::Result;
+use crate::inputs::check::{Check, Range, SURFACE_ERROR, TOUCHES};
+use crate::studies::object_detail::spec::{
+    DetailMethod, DetailRecognitionSpec, ObjectDetailStudySpec,
+};
+use crate::studies::recognition::plan::taxel_array::TaxelArray;
+use crate::world::Placement;
+use std::path::PathBuf;
+
+/// Settings of a study of object detail, ready to run.
+#[derive(Clone, Debug)]
+pub struct ObjectDetailPlan {
+    /// As it was written.
+    pub spec: ObjectDetailStudySpec,
+    /// The folder of meshes.
+    pub meshes: PathBuf,
+    /// The array.
+    pub array: TaxelArray,
+    /// How touches are drawn.
+    pub placement: Placement,
+}
+
+/// Points of a mesh, at most: all are in memory at once.
+const MOST_POINTS: usize = 10_000_000;
+
+/// What the numbers of `[object_detail]` may be.
+const KEYS: [(&str, Range); 7] = [
+    ("tolerances_mm", SURFACE_ERROR),
+    ("methods", Range::Any),
+    ("surface_points", Range::Count(1, MOST_POINTS)),
+    ("recognition.measurements", TOUCHES),
+    ("recognition.training_touches", TOUCHES),
+    ("recognition.test_touches", TOUCHES),
+    ("recognition.classifiers", Range::Any),
+];
+
+impl ObjectDetailPlan {
+    /// Checks a study.
+    ///
+    /// # Errors
+    /// The error names `place` (the file) and the first key that is out of its range.
+    pub fn new(place: &str, mut spec: ObjectDetailStudySpec) -> Result<Self> {
+        let check = Check { place };
+        check.objects(&spec.objects)?;
+        let meshes = match &spec.objects.meshes {
+            Some(folder) if spec.objects.sets.is_empty() => folder.to_path_buf(),
+            _ => {
+                let allowed = "meshes alone (or --objects FOLDER): solids have no exact contact";
+                return Err(check.error("objects", "sets of solids", allowed));
+            }
+        };
+        if spec.objects.model.is_some() {
+            let allowed = "no such key: object_detail.methods says what the meshes become";
+            return Err(check.error("objects.model", "a model", allowed));
+        }
+        let array = check.one_array(&spec.skin, "one pitch and one size")?;
+        spec.objects.settle_sizes(std::slice::from_ref(&array));
+        if spec.objects.surface_error_mm.is_some() {
+            let allowed = "no such key: object_detail.tolerances_mm says how far spheres may be from the meshes";
+            return Err(check.error("objects.surface_error_mm", "a surface error", allowed));
+        }
+        let placement = check.placement(&spec.touches)?;
+        let wanted = &spec.object_detail;
+        check.keys("object_detail", wanted, KEYS)?;
+        if wanted.methods.contains(&DetailMethod::Mesh) {
+            let allowed = "packing, vertex_spheres, decimated_vertex_spheres, medial_spheres: the mesh is what they are compared with";
+            return Err(check.error("object_detail.methods", "mesh", allowed));
+        }
+        let recognition = wanted.recognition.as_ref();
+        recognition.map_or(Ok(()), |wanted| check_recognition(&check, wanted, &array))?;
+        Ok(Self {
+            meshes,
+            array,
+            placement,
+            spec,
+        })
+    }
+
+    /// What learns from the models, if anything does.
+    pub fn recognition(&self) -> Option<&DetailRecognitionSpec> {
+        self.spec.object_detail.recognition.as_ref()
+    }
+}
+
+fn check_recognition(
+    check: &Check,
+    wanted: &DetailRecognitionSpec,
+    array: &TaxelArray,
+) -> Result<()> {
+    let key = |name: &str| format!("object_detail.recognition.{name}");
+    check.drawn(&key("ensemble"), [wanted.ensemble])?;
+    let n_measurements = wanted.measurements;
+    let n_taxels = array.n_taxels();
+    if n_measurements > n_taxels {
+        let allowed = format!("at most {n_taxels}, the taxels of the array");
+        return Err(check.error(&key("measurements"), n_measurements, allowed));
+    }
+    let n_touches = wanted.n_touches();
+    // Of two objects, the fewest; with more it takes more.
+    let bytes = 16.0 * n_touches as f64 * n_measurements as f64;
+    let what = "the measurements of all touches";
+    check.memory(&key("training_touches"), n_touches, bytes, what)
+}

@@ -1,0 +1,146 @@
+//! What an object's errors do to recognition: classifiers that learn from models and are tested on the meshes themselves.
+//!
+//! Every model of an object is touched as a study touches that has no other: in the same places, as far past its own first
+//! contact.
+
+use crate::engine::progress::Silent;
+use crate::error::Result;
+use crate::learning::classifiers::ClassifierKind;
+use crate::learning::classifiers::classifier::Classifier;
+use crate::objects::Object;
+use crate::quantile::quantile;
+use crate::random::Seed;
+use crate::sensing::Projection;
+use crate::studies::model_recognition::{accuracy, touches_of};
+use crate::studies::object_detail::measured::Measured;
+use crate::studies::object_detail::plan::ObjectDetailPlan;
+use crate::studies::object_detail::rows::DetailRecognition;
+use crate::studies::object_detail::spec::DetailRecognitionSpec;
+use crate::studies::object_detail::variants::{Level, Variant, levels, within};
+use crate::studies::recognition::frames::simulation::simulate_array;
+use crate::studies::recognition::touches::drawn_touches::draw_touches;
+use crate::world::Placement;
+use ndarray::Array2;
+use std::ops::Range;
+
+/// A classifier that learns from one level of models.
+pub(super) struct Learned {
+    /// Of the level.
+    number: usize,
+    level: Level,
+    classifier: ClassifierKind,
+}
+
+impl Learned {
+    /// Level by level, of each every classifier; none if nothing learns.
+    pub fn all(plan: &ObjectDetailPlan) -> Vec<Self> {
+        let kinds = plan.recognition().map_or(&[][..], |spec| &spec.classifiers);
+        let of_level = |(number, level)| {
+            kinds.iter().map(move |&classifier| Self {
+                number,
+                level,
+                classifier,
+            })
+        };
+        let levels = levels(plan).into_iter().enumerate();
+        levels.flat_map(of_level).collect()
+    }
+
+    /// What it is called as a work item.
+    pub fn name(&self) -> String {
+        let (method, tolerance_mm) = self.level;
+        format!(
+            "{:?} from {method:?}{}",
+            self.classifier,
+            within(tolerance_mm)
+        )
+    }
+}
+
+/// Makes measurements of models, for learning.
+pub(super) struct Sensor<'a> {
+    plan: &'a ObjectDetailPlan,
+    spec: &'a DetailRecognitionSpec,
+    projection: Projection,
+    seed: Seed,
+}
+
+/// What was felt of a model.
+pub(super) struct Felt {
+    /// n_touches × m.
+    measurements: Array2<f64>,
+    /// Mean deflection error past its own contact.
+    own_contact_error_mm: f64,
+}
+
+impl<'a> Sensor<'a> {
+    /// For a study in which something learns.
+    pub fn new(plan: &'a ObjectDetailPlan, spec: &'a DetailRecognitionSpec) -> Result<Self> {
+        let seed = Seed::new(plan.spec.seed);
+        let grid = plan.array.shape();
+        let stream = seed.named("object detail recognition");
+        Ok(Self {
+            plan,
+            spec,
+            projection: Projection::new(spec.ensemble, grid, spec.measurements, &stream)?,
+            seed,
+        })
+    }
+
+    /// What is felt of each model of an object, in their order; the first is the mesh itself, and all are touched in the same places of
+    /// its rest poses.
+    pub fn measure(&self, made: &Measured) -> Result<Vec<Felt>> {
+        let object =
+            |variant: &Variant| Object::of_one_part(&made.mesh.name, variant.model.clone());
+        let placement = Placement {
+            per_object: Some(self.spec.n_touches()),
+            ..self.plan.placement.clone()
+        };
+        let mut touched = draw_touches(vec![object(&made.variants[0])], &placement, &self.seed)?;
+        let measured = made.variants.iter().map(|variant| {
+            touched[0].object = object(variant);
+            let frames = simulate_array(&touched, &self.plan.array, 1, &Silent);
+            Ok(Felt {
+                measurements: self.projection.measure(frames.to_array().view()),
+                own_contact_error_mm: made.truth.error_past_own_contact(&variant.model).mean_mm,
+            })
+        });
+        measured.collect()
+    }
+
+    /// What a classifier learns from a level, from what was felt of the models of each object.
+    pub fn row(&self, objects: &[Vec<Felt>], learned: &Learned) -> Result<DetailRecognition> {
+        let (number, n_training) = (learned.number, self.spec.training_touches);
+        let of_level = |number: usize, touches: Range<usize>| {
+            let objects = objects.iter();
+            touches_of(
+                objects.map(|felt| felt[number].measurements.view()),
+                touches,
+            )
+        };
+        let training = of_level(number, 0..n_training)?;
+        let classifier = Classifier::new(learned.classifier).train(&training, &self.seed)?;
+        let test = of_level(0, n_training..self.spec.n_touches())?;
+        let (accuracy_on_mesh, on_mesh) = accuracy(&classifier, &test)?;
+        let of_itself = of_level(number, n_training..self.spec.n_touches())?;
+        let (accuracy_on_itself, on_itself) = accuracy(&classifier, &of_itself)?;
+        let errors = objects.iter().map(|felt| felt[number].own_contact_error_mm);
+        Ok(DetailRecognition {
+            method: learned.level.0,
+            tolerance_mm: learned.level.1,
+            classifier: learned.classifier,
+            n_objects: objects.len(),
+            n_training: training.targets.len(),
+            n_test: test.targets.len(),
+            n_measurements: self.projection.n_measurements(),
+            error_own_contact_median_mm: quantile(&mut errors.collect::<Vec<_>>(), 0.5),
+            accuracy_on_mesh,
+            accuracy_on_mesh_low: on_mesh.low,
+            accuracy_on_mesh_high: on_mesh.high,
+            accuracy_on_itself,
+            accuracy_on_itself_low: on_itself.low,
+            accuracy_on_itself_high: on_itself.high,
+            n_capped: classifier.n_capped(),
+        })
+    }
+}

@@ -1,0 +1,223 @@
+//! A study of object detail: models of every mesh, their errors on all threads, then their times on one.
+
+use crate::engine::work_items::NamedPiece;
+use crate::engine::work_items::pending::PiecesLeft;
+use crate::engine::work_items::scale::Scale;
+use crate::engine::work_items::study_runner::PieceStudy;
+use crate::error::Result;
+use crate::inputs::object_files::{NamedMesh, load_named_meshes, objects_content};
+use crate::studies::kind::{About, Facts, Files, Kind};
+use crate::studies::model_recognition::check_apart;
+use crate::studies::object_detail::measured::Measured;
+use crate::studies::object_detail::plan::ObjectDetailPlan;
+use crate::studies::object_detail::recognition::{Learned, Sensor};
+use crate::studies::object_detail::rows::{
+    DetailCell, DetailRecognition, DetailScore, DetailSummary, DetailTime, LevelTime,
+};
+use crate::studies::object_detail::spec::ObjectDetailStudySpec;
+use crate::studies::object_detail::summary::{costs, summary};
+use crate::studies::object_detail::variants::levels;
+use crate::studies::source::Source;
+use crate::table::{File, Table};
+use rayon::prelude::*;
+use std::path::PathBuf;
+
+/// A study of object detail and its meshes.
+pub struct ObjectDetailStudy {
+    /// What to run.
+    pub plan: ObjectDetailPlan,
+    /// Each is an object.
+    pub meshes: Vec<NamedMesh>,
+    /// Where packings are looked for and kept, if anywhere.
+    pub packings: Option<PathBuf>,
+}
+
+/// What work items of the study found: how near models are, what they cost, and what was learned from them.
+pub type DetailRows = (
+    Vec<(DetailCell, DetailScore)>,
+    Vec<(DetailCell, DetailTime)>,
+    Vec<DetailRecognition>,
+);
+
+/// Tables.
+const DETAIL: File<(DetailCell, DetailScore)> =
+    File::new("object_detail.csv", "Models of each object", "");
+const SUMMARY: File<DetailSummary> = File::new(
+    "object_detail_summary.csv",
+    "Models over all objects",
+    "Medians and quartiles over objects; deflection errors are means over touched taxels of |deflection − that of the exact mesh|, after \
+     offset with the best constant depth taken off.",
+)
+.summary();
+const TIMING: File<(DetailCell, DetailTime)> =
+    File::new("timing.csv", "Time of a touch of each model", "").of_times();
+const COST: File<(DetailSummary, LevelTime)> =
+    File::new("object_detail_cost.csv", "What errors cost", "")
+        .of_times()
+        .summary();
+pub(super) const RECOGNITION: File<DetailRecognition> = File::new(
+    "object_detail_recognition.csv",
+    "Classifiers that learned from models",
+    "",
+);
+
+impl PieceStudy for ObjectDetailStudy {
+    type Rows = DetailRows;
+
+    /// Of each object its models and their times; then each level and classifier, which all need all objects.
+    fn pieces(&self) -> Vec<NamedPiece> {
+        let mut pieces = Vec::new();
+        for (group, NamedMesh { name, .. }) in self.meshes.iter().enumerate() {
+            let mut add = |name| pieces.push(NamedPiece::new(name, group));
+            add(format!("models of {name}"));
+            add(format!("times of {name}"));
+        }
+        let group = self.meshes.len();
+        let learned = Learned::all(&self.plan).into_iter();
+        pieces.extend(learned.map(|learned| NamedPiece::new(learned.name(), group)));
+        pieces
+    }
+
+    fn measure(&self, left: &PiecesLeft<DetailRows>) -> Result<()> {
+        let learned = left.of(models_item(self.meshes.len()), Learned::all(&self.plan));
+        let learners: Vec<usize> = learned.iter().map(|(number, _)| *number).collect();
+        let spec = self.plan.recognition().filter(|_| !learned.is_empty());
+        let sensor = spec.map(|spec| Sensor::new(&self.plan, spec)).transpose()?;
+        let is_needed = |object: &usize| {
+            !learned.is_empty() || left.has(models_item(*object)) || left.has(times_item(*object))
+        };
+        let needed: Vec<usize> = (0..self.meshes.len()).filter(is_needed).collect();
+        left.progress.stage("models", needed.len() as u64);
+        let made = needed.into_par_iter().map(|object| {
+            let Some(made) = self.object(object, &learners, left)? else {
+                return Ok(None);
+            };
+            let felt = match &sensor {
+                Some(sensor) => left.prepare(&learners, || sensor.measure(&made))?,
+                None => None,
+            };
+            Ok(Some((object, made, felt)))
+        });
+        let made = made.collect::<Result<Vec<_>>>()?;
+        left.progress.stage("time touches", made.len() as u64);
+        for (object, made, _) in made.iter().flatten() {
+            left.finish(times_item(*object), || {
+                Ok((Vec::new(), made.times(), Vec::new()))
+            })?;
+        }
+        let felt = made.into_iter().map(|made| made?.2);
+        let (Some(sensor), Some(felt)) = (sensor, felt.collect::<Option<Vec<_>>>()) else {
+            return Ok(());
+        };
+        left.progress.stage("recognise", learned.len() as u64);
+        learned.par_iter().try_for_each(|(number, learned)| {
+            left.finish(*number, || {
+                let row = sensor.row(&felt, learned)?;
+                Ok((Vec::new(), Vec::new(), vec![row]))
+            })
+        })
+    }
+
+    fn tables(&self, (detail, timing, recognition): DetailRows) -> Result<Vec<Table>> {
+        let summary = summary(&detail);
+        let costs = costs(&summary, &timing);
+        let mut tables = vec![
+            DETAIL.of(&detail)?,
+            SUMMARY.of(&summary)?,
+            TIMING.of(&timing)?,
+            COST.of(&costs)?,
+        ];
+        if self.plan.recognition().is_some() {
+            tables.push(RECOGNITION.of(&recognition)?);
+        }
+        Ok(tables)
+    }
+}
+
+/// The number of an object's models as a work item; of one more than the last object, that of the first classifier.
+fn models_item(object: usize) -> usize {
+    2 * object
+}
+
+/// The number of their times.
+fn times_item(object: usize) -> usize {
+    models_item(object) + 1
+}
+
+impl ObjectDetailStudy {
+    /// Makes an object's models and keeps how near they are; if they cannot be made, all fails that needs them, `learners` too.
+    fn object(
+        &self,
+        object: usize,
+        learners: &[usize],
+        left: &PiecesLeft<DetailRows>,
+    ) -> Result<Option<Measured<'_>>> {
+        let (mesh, mut made) = (&self.meshes[object], None);
+        left.finish(models_item(object), || {
+            let object = made.insert(Measured::new(self, mesh)?);
+            Ok((object.models(&self.plan), Vec::new(), Vec::new()))
+        })?;
+        let needed = [&[times_item(object)], learners].concat();
+        // Where it is not made, its rows are there from a run before.
+        left.prepare(&needed, || {
+            made.map_or_else(|| Measured::new(self, mesh), Ok)
+        })
+    }
+}
+
+impl Kind for ObjectDetailStudy {
+    const ABOUT: About = About {
+        table: "object_detail",
+        words: "a study of how detailed objects are",
+        may_change: &[
+            "question",
+            "expected",
+            "object_detail.recognition.classifiers",
+        ],
+    };
+    const FILES: Files = &[&DETAIL, &SUMMARY, &TIMING, &COST];
+    const FILES_OF_PARTS: Files = &[&RECOGNITION];
+
+    fn load(source: &Source) -> Result<Self> {
+        let mut spec = ObjectDetailStudySpec::parse(&source.place, &source.text)?;
+        spec.seed = source.seed(spec.seed);
+        source.replace_objects(&mut spec.objects);
+        let plan = ObjectDetailPlan::new(&source.place, spec)?;
+        let meshes = load_named_meshes(&plan.meshes, &plan.spec.objects)?;
+        if plan.recognition().is_some() {
+            check_apart(&source.place, meshes.len())?;
+        }
+        Ok(Self {
+            meshes,
+            packings: source.packings.clone(),
+            plan,
+        })
+    }
+
+    fn facts(&self) -> Result<Facts> {
+        let spec = &self.plan.spec;
+        Ok(Facts::of(spec, objects_content(&spec.objects)?))
+    }
+
+    fn scale(&self) -> Scale {
+        let n_objects = self.meshes.len();
+        let n_levels = levels(&self.plan).len();
+        let per_object = self.plan.placement.per_object.unwrap_or(1);
+        let learned = self.plan.recognition();
+        let n_learned = learned.map_or(0, |learned| learned.n_touches());
+        let n_classifiers = learned.map_or(0, |learned| learned.classifiers.len());
+        let n_taxels = self.plan.array.n_taxels();
+        let n_measurements = learned.map_or(0, |learned| learned.measurements);
+        Scale {
+            objects: format!("{n_objects} meshes, in {n_levels} models each"),
+            touches: match n_learned {
+                0 => format!("{per_object} of each model"),
+                n => format!("{per_object} of each model, {n} of each for recognition"),
+            },
+            n_configurations: n_levels * (n_objects + n_classifiers),
+            bytes: 8.0 * (n_objects * n_learned * n_levels * n_measurements) as f64,
+            // Frames as they were, and as they are read.
+            item_bytes: 12.0 * (n_learned * n_taxels) as f64,
+        }
+    }
+}

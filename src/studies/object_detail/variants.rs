@@ -1,0 +1,139 @@
+//! What stands for a mesh: the models that are compared.
+
+use crate::error::Result;
+use crate::geometry::distinct_places;
+use crate::inputs::packings::pack_within;
+use crate::inputs::units::MM;
+use crate::mesh::Surface;
+use crate::objects::{MeshModel, Model, vertex_spheres};
+use crate::packing::medial_spheres;
+use crate::studies::object_detail::plan::ObjectDetailPlan;
+use crate::studies::object_detail::spec::DetailMethod;
+use glam::DVec3;
+use std::path::Path;
+use std::time::Instant;
+
+/// What stands for a mesh, and within how many millimetres (as written) the packing that it is, or has as many spheres as.
+pub(super) type Level = (DetailMethod, Option<f64>);
+
+/// Within so many millimetres, in words; none where there are none.
+pub(super) fn within(tolerance_mm: Option<f64>) -> String {
+    tolerance_mm.map_or(String::new(), |mm| format!(" within {mm} mm"))
+}
+
+/// A model of a mesh.
+pub(super) struct Variant {
+    pub level: Level,
+    pub model: Model,
+    /// Seconds that making it took.
+    pub prepare_s: f64,
+    /// Whether it was kept from before.
+    pub was_kept: bool,
+}
+
+/// All models of a mesh, in the order of [`levels`]: the mesh itself first. The error names `place`, the mesh's file.
+pub(super) fn variants(
+    plan: &ObjectDetailPlan,
+    place: &str,
+    surface: &Surface,
+    packings: Option<&Path>,
+) -> Result<Vec<Variant>> {
+    let mesh = surface.mesh();
+    let pack = |mm: f64| pack_within(place, surface, mm * MM, packings);
+    // The level of the last packing, and its spheres.
+    let mut packed = (None, 0);
+    let mut found = Vec::new();
+    for (method, tolerance_mm) in levels(plan) {
+        let mm = tolerance_mm.unwrap_or_default();
+        if method != DetailMethod::Packing && packed.0 != tolerance_mm {
+            packed = (tolerance_mm, pack(mm)?.spheres.spheres().len());
+        }
+        let start = Instant::now();
+        let (model, was_kept): (Model, bool) = match method {
+            DetailMethod::Mesh => (MeshModel::new(mesh.clone()).into(), false),
+            DetailMethod::VertexSpheres => (vertex_spheres(place, mesh.vertices())?.into(), false),
+            DetailMethod::Packing => {
+                let made = pack(mm)?;
+                packed = (tolerance_mm, made.spheres.spheres().len());
+                (made.spheres.into(), made.was_kept)
+            }
+            DetailMethod::DecimatedVertexSpheres => {
+                let chosen = evenly_chosen(mesh.vertices(), packed.1);
+                (vertex_spheres(place, &chosen)?.into(), false)
+            }
+            DetailMethod::MedialSpheres => (medial_spheres(surface, packed.1)?.into(), false),
+        };
+        found.push(Variant {
+            level: (method, tolerance_mm),
+            model,
+            prepare_s: start.elapsed().as_secs_f64(),
+            was_kept,
+        });
+    }
+    Ok(found)
+}
+
+/// Those of the models of every mesh: the mesh itself, then methods without tolerances, then tolerance by tolerance.
+pub(super) fn levels(plan: &ObjectDetailPlan) -> Vec<Level> {
+    let wanted = &plan.spec.object_detail;
+    let is_wanted = |method: &DetailMethod| wanted.methods.contains(method);
+    let vertices = Some(DetailMethod::VertexSpheres).filter(is_wanted);
+    let mut levels = vec![(DetailMethod::Mesh, None)];
+    levels.extend(vertices.map(|method| (method, None)));
+    for &mm in &wanted.tolerances_mm {
+        let methods = [
+            DetailMethod::Packing,
+            DetailMethod::DecimatedVertexSpheres,
+            DetailMethod::MedialSpheres,
+        ];
+        let methods = methods.into_iter().filter(is_wanted);
+        levels.extend(methods.map(|method| (method, Some(mm))));
+    }
+    levels
+}
+
+/// `n` of the places of `vertices` (all, if there are fewer; never fewer than two), each the farthest from those before it,
+/// from the first vertex on.
+fn evenly_chosen(vertices: &[DVec3], n: usize) -> Vec<DVec3> {
+    let places = distinct_places(vertices);
+    if n >= places.len() {
+        return places;
+    }
+    let mut chosen = vec![places[0]];
+    let mut distances = vec![f64::INFINITY; places.len()];
+    while chosen.len() < n.max(2) {
+        let last = chosen[chosen.len() - 1];
+        let mut farthest = 0;
+        for (index, place) in places.iter().enumerate() {
+            distances[index] = distances[index].min(place.distance_squared(last));
+            if distances[index] > distances[farthest] {
+                farthest = index;
+            }
+        }
+        chosen.push(places[farthest]);
+    }
+    chosen
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn evenly_chosen_vertices_are_different_places_and_fewer_are_the_first_of_more() {
+        let grid = (0..400).map(|i| DVec3::new(f64::from(i % 20), f64::from(i / 20), 0.0));
+        let mut vertices: Vec<DVec3> = grid.collect();
+        vertices.extend(vertices.clone());
+        let some = evenly_chosen(&vertices, 25);
+        let more = evenly_chosen(&vertices, 100);
+        assert_eq!(some[..], more[..25]);
+        let least_apart = |chosen: &[DVec3]| {
+            let pairs = chosen.iter().enumerate();
+            let apart = pairs.flat_map(|(i, a)| chosen[..i].iter().map(|b| a.distance(*b)));
+            apart.fold(f64::INFINITY, f64::min)
+        };
+        assert!(least_apart(&some) >= 3.0 && least_apart(&more) >= 1.4);
+        assert_eq!(evenly_chosen(&vertices, 1000).len(), 400);
+        assert_eq!(evenly_chosen(&vertices, 1).len(), 2);
+    }
+}

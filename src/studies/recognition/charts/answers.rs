@@ -1,0 +1,162 @@
+//! What a study of recognition found, in sentences made from its tables.
+
+use crate::report::advice::{Offer, Offers, Wish};
+use crate::report::csv_tables::{LIMITS_FILE, MISSED_TOUCHES};
+use crate::report::study_folder::words_of;
+use crate::report::swept::{Setting, Swept, without};
+use crate::report::terminal::paragraph;
+use crate::studies::recognition::charts::filled;
+use crate::studies::recognition::charts::tables::CELLS;
+use crate::table::{Table, Value, short_number};
+
+/// Values that a sentence lists, and conditions that have sentences, at most.
+const MOST_LISTED: usize = 8;
+
+/// What is best in each condition and within its interval the least to measure, what each setting does by itself, and what was left out.
+pub fn answers(tables: &[Table]) -> Vec<String> {
+    let Some(cells) = filled(tables, CELLS) else {
+        return vec!["No cell has been computed.".to_owned()];
+    };
+    let mut sentences = bests(cells).unwrap_or_default();
+    sentences.extend(missed(tables));
+    sentences.extend(effects(cells).unwrap_or_default());
+    sentences.extend(remarks(tables));
+    sentences
+}
+
+/// What a run prints at its end: all cells, the answers, and what is beside what was published and confused most often.
+pub fn words(tables: &[Table], width: usize) -> String {
+    let shown = [CELLS, "published.csv", "confused.csv", "variance.csv"];
+    let shown = shown.into_iter().filter_map(|file| filled(tables, file));
+    let missed = missed(tables);
+    let mut answers = answers(tables);
+    answers.retain(|answer| Some(answer) != missed.as_ref());
+    let words = words_of(&shown.collect::<Vec<_>>(), &answers, width);
+    // The last lines are those that are read.
+    words
+        + &missed.map_or_else(String::new, |missed| {
+            format!("\n{}", paragraph(&missed, width))
+        })
+}
+
+/// How many touches met nothing; `None` if all met something.
+fn missed(tables: &[Table]) -> Option<String> {
+    let limits = filled(tables, LIMITS_FILE)?;
+    let row = (0..limits.n_rows).find(|&row| limits.word("what", row) == MISSED_TOUCHES)?;
+    let (count, of) = (limits.number("count", row), limits.number("of", row));
+    let share = short_number(100.0 * count / of);
+    let meaning = limits.word("meaning", row);
+    (count > 0.0).then(|| format!("{count} of {of} {MISSED_TOUCHES} ({share} %): {meaning}."))
+}
+
+/// The best of each condition, of the first ones if these are very many.
+fn bests(cells: &Table) -> Option<Vec<String>> {
+    let (accuracy, _) = cells.column("accuracy")?;
+    let (measurements, _) = cells.column("measurements_per_decision")?;
+    let offers = Offers::of_columns(cells, accuracy, measurements);
+    let conditions = offers.by_condition();
+    let listed = conditions.iter().take(MOST_LISTED);
+    let mut sentences: Vec<String> = listed
+        .filter_map(|choices| best(&offers, choices))
+        .flatten()
+        .collect();
+    if conditions.len() > MOST_LISTED {
+        let n = conditions.len() - MOST_LISTED;
+        sentences.push(format!(
+            "The best of {n} more conditions are in the tables."
+        ));
+    }
+    Some(sentences)
+}
+
+/// Of a condition the best, and the least to measure within its interval.
+fn best(offers: &Offers, choices: &[Offer]) -> Option<Vec<String>> {
+    let best = *offers.front(choices).last()?;
+    let accuracy = |offer: &Offer| offers.table.bounded(offers.value, offer.row);
+    if offers.table.n_rows == 1 {
+        return Some(vec![format!("Accuracy {}.", accuracy(&best))]);
+    }
+    let (with, colon) = match &offers.condition(&best)[..] {
+        "" => (String::new(), ""),
+        words => (format!(" with {words}"), ":"),
+    };
+    let said = |offer: &Offer| match &offers.choices(offer)[..] {
+        "" => accuracy(offer),
+        words => format!("{} at {words}", accuracy(offer)),
+    };
+    let mut sentences = vec![format!("Best accuracy{with}{colon} {}.", said(&best))];
+    let (_, measured) = offers.table.column(&offers.cost.name)?;
+    if measured.varies(0..offers.table.n_rows) {
+        let ends = offers.table.interval(offers.value, best.row);
+        let enough = Wish::Value(ends.map_or(best.value, |[low, _]| low));
+        sentences.push(match offers.advise(choices, enough) {
+            Ok(advice) if advice.choice != best => format!(
+                "Within the interval of the best{with}, with the fewest measurements: {}.",
+                said(&advice.choice)
+            ),
+            _ => format!("No cell with fewer measurements reaches the interval of the best{with}."),
+        });
+    }
+    Some(sentences)
+}
+
+/// Mean accuracy at each value of each setting, over those combinations of the others that have all of its values.
+fn effects(cells: &Table) -> Option<Vec<String>> {
+    let rows: Vec<usize> = (0..cells.n_rows).collect();
+    let swept = Swept::of(cells, &rows);
+    let accuracy = cells.numbers("accuracy")?;
+    let effect = |setting: &Setting| {
+        let levels = setting.levels(&rows);
+        let alike = swept.groups(&without(&swept.free, setting), &rows);
+        let complete = alike.iter().filter(|rows| rows.len() == levels.len());
+        let n_complete = complete.clone().count();
+        let complete: Vec<usize> = complete.flatten().copied().collect();
+        let said = |&level: &usize| {
+            let is_at = |row: &&usize| setting.data.key(**row) == setting.data.key(level);
+            let sum: f64 = complete
+                .iter()
+                .filter(is_at)
+                .map(|&row| accuracy[row])
+                .sum();
+            format!("{:.2} ({})", sum / n_complete as f64, setting.label(level))
+        };
+        let said: Vec<String> = levels.iter().map(said).collect();
+        let name = &setting.column.words;
+        (n_complete > 0).then(|| match &said[..] {
+            [first, .., last] if said.len() > MOST_LISTED => {
+                let n = said.len();
+                format!("Mean accuracy by {name}, {n} values: from {first} to {last}.")
+            }
+            _ => format!("Mean accuracy by {name}: {}.", said.join(", ")),
+        })
+    };
+    Some(swept.free.iter().filter_map(effect).collect())
+}
+
+/// What was left out, what stopped at a limit, and how many trials a p-value needs where there are too few.
+fn remarks(tables: &[Table]) -> Vec<String> {
+    let numbers = |file: &str, column: &str| -> &[f64] {
+        let numbers = filled(tables, file).and_then(|table| table.numbers(column));
+        numbers.unwrap_or_default()
+    };
+    let n_left_out = numbers("accuracy.csv", "n_left_out").iter();
+    let n_left_out = n_left_out.copied().fold(0.0, f64::max);
+    let n_capped: f64 = numbers(CELLS, "n_capped").iter().sum();
+    let too_few = Value::from("too_few_trials");
+    let is_short = |row| {
+        filled(tables, "comparison.csv").is_some_and(|t| t.has_setting("p_status", row, &too_few))
+    };
+    let n_needed = numbers("comparison.csv", "n_trials_needed").iter();
+    let mut n_needed = n_needed.enumerate();
+    let n_needed = n_needed.find(|(row, n)| n.is_finite() && is_short(*row));
+    let said = [
+        (n_left_out > 0.0).then(|| format!(
+            "Up to {n_left_out} test touches of a trial fill no whole group of fused touches and are left out."
+        )),
+        (n_capped > 0.0).then(|| format!(
+            "{n_capped} binary SVMs stopped at the iteration cap: their cells may do better with more iterations or a smaller C."
+        )),
+        n_needed.map(|(_, n)| format!("No p-values where trials are too few: {n} are needed.")),
+    ];
+    said.into_iter().flatten().collect()
+}

@@ -1,0 +1,19 @@
+//! What a study of recognition shows of its tables: charts, sentences, and what its page has beside those of any study.
+
+pub(crate) mod answers;
+pub(crate) mod charts;
+pub(crate) mod sections;
+pub(crate) mod tables;
+
+use crate::table::Table;
+
+pub use crate::studies::recognition::charts::answers::{answers, words};
+pub use crate::studies::recognition::charts::charts::charts;
+pub use crate::studies::recognition::charts::sections::sections;
+pub use crate::studies::recognition::charts::tables::{CELLS, TABLE_NAMES, read_tables, tables_of};
+
+/// A table that has rows, by its file.
+fn filled<'a>(tables: &'a [Table], file: &str) -> Option<&'a Table> {
+    let mut tables = tables.iter();
+    tables.find(|table| table.file == file && table.n_rows > 0)
+}

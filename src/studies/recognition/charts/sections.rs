@@ -1,0 +1,65 @@
+//! What the page of a study of recognition has beside that of any study: sample touches, settings, and how often limits were reached.
+
+use crate::error::Result;
+use crate::report::csv_tables::LIMITS_FILE;
+use crate::report::drawing::escape;
+use crate::report::page::{Section, definition, touches_html};
+use crate::report::snapshots::Snapshots;
+use crate::report::swept::Swept;
+use crate::studies::recognition::charts::filled;
+use crate::studies::recognition::charts::tables::CELLS;
+use crate::table::{Table, short_number};
+
+/// Sample touches, settings, limits.
+///
+/// # Errors
+/// A sample touch that nobody can draw.
+pub fn sections(
+    settings: &[(String, String)],
+    gallery: &[Snapshots],
+    tables: &[Table],
+) -> Result<Vec<Section>> {
+    let touches: String = gallery.iter().map(touches_html).collect::<Result<_>>()?;
+    Ok(vec![
+        Section::new("touches", "Sample touches", touches),
+        Section::new("settings", "Settings", settings_html(settings, tables)),
+        Section::new("limits", "Limits", limits_html(tables)),
+    ])
+}
+
+/// What a study says of itself, then every setting with its values.
+fn settings_html(settings: &[(String, String)], tables: &[Table]) -> String {
+    let settings = settings.iter();
+    let mut html: String = settings
+        .map(|(name, value)| definition(&escape(name), value))
+        .collect();
+    if let Some(cells) = filled(tables, CELLS) {
+        let rows: Vec<usize> = (0..cells.n_rows).collect();
+        let Swept { free, fixed, .. } = Swept::of(cells, &rows);
+        let free = free
+            .iter()
+            .map(|one| (one, " <span class=\"tag\">swept</span>"));
+        for (setting, mark) in free.chain(fixed.iter().map(|one| (one, ""))) {
+            let values = setting.levels(&rows).into_iter();
+            let values: Vec<String> = values.map(|row| setting.label(row)).collect();
+            let name = escape(&setting.column.words) + mark;
+            html += &definition(&name, &values.join(", "));
+        }
+    }
+    format!("<dl>{html}</dl>")
+}
+
+/// Limits of the model and of the solver that were reached.
+fn limits_html(tables: &[Table]) -> String {
+    let Some(table) = filled(tables, LIMITS_FILE) else {
+        return String::new();
+    };
+    let item = |row: usize| {
+        let (count, of) = (table.number("count", row), table.number("of", row));
+        let share = short_number(100.0 * count / of.max(1.0));
+        let [what, meaning] = ["what", "meaning"].map(|name| escape(table.word(name, row)));
+        format!("<li><b>{count} of {of}</b> {what} ({share} %). {meaning}</li>")
+    };
+    let items: String = (0..table.n_rows).map(item).collect();
+    format!("<ul>{items}</ul>")
+}

@@ -1,0 +1,282 @@
+//! The tables of a study of recognition, and one of all that is known of each cell.
+
+use crate::error::Result;
+use crate::learning::classifiers::ClassifierKind;
+use crate::report::csv_tables::LIMITS_FILE;
+use crate::statistics::bootstrap::coverage_of_95;
+use crate::statistics::grouped::FEW_GROUPS;
+use crate::statistics::p_status::CONFIDENCE;
+use crate::studies::recognition::rows::cell::Cell;
+use crate::studies::recognition::rows::table_rows::{
+    CellScore, Comparison, Confused, Confusion, Limit, Pareto, Published, StageTime, Tables,
+    TrialScore, TrialTime, Variance,
+};
+use crate::studies::recognition::spec::study::StudySpec;
+use crate::table::{Better, Column, Columns, Data, File, Role, Scale, Table};
+use serde::Serialize;
+use std::collections::HashMap;
+use std::path::Path;
+
+/// The table of all that is known of each cell; it has no file.
+pub const CELLS: &str = "cells.csv";
+
+const ACCURACY: File<(Cell, TrialScore)> = File::new(
+    "accuracy.csv",
+    "Every trial",
+    "Intervals are 95 % Wilson intervals of the test decisions of the trial.",
+);
+const SUMMARY: File<(Cell, CellScore)> = File::new(
+    "summary.csv",
+    "Cells over their trials",
+    "Means over trials.",
+)
+.summary();
+/// What the intervals of `summary.csv` are over where no groups are held out: without folds, and with folds.
+pub(crate) const OVER_TRIAL: &str =
+    "Intervals are 95 % Wilson intervals at the test decisions of one trial.";
+pub(crate) const OVER_FOLDS: &str =
+    "Intervals are 95 % Wilson intervals at the test decisions of all folds, each touch once.";
+const CONFUSION: File<Confusion> =
+    File::new("confusion.csv", "What was taken for what", "").summary();
+const COMPARISON: File<Comparison> = File::new(
+    "comparison.csv",
+    "Cells against the best of their condition",
+    "A t-test paired over trials, corrected for their overlap; the p-value of Holm is corrected for the number of cells too.",
+)
+.summary();
+const TIMING: File<(Cell, TrialTime)> =
+    File::new("timing.csv", "Times of every trial", "").of_times();
+const PARETO: File<(Cell, Pareto)> =
+    File::new("pareto.csv", "Accuracy and its cost", "").of_times();
+const STAGES: File<StageTime> = File::new("stages.csv", "Times of the stages", "").of_times();
+const CONFUSED: File<Confused> = File::new(
+    "confused.csv",
+    "Most often confused",
+    "The pairs of objects that the best cell confuses most often, all trials together.",
+)
+.summary();
+const PUBLISHED: File<(Cell, Published)> = File::new(
+    "published.csv",
+    "Beside what was published",
+    "Ours: the most accurate of the cells that have the settings of the claim, in each condition that these were measured in.",
+)
+.summary();
+const VARIANCE: File<Variance> =
+    File::new("variance.csv", "What makes trials differ", "").summary();
+const LIMITS: File<Limit> = File::new(LIMITS_FILE, "How often limits were reached", "").summary();
+
+/// Names of all table files of a recognition study.
+pub const TABLE_NAMES: [&str; 11] = [
+    ACCURACY.name(),
+    SUMMARY.name(),
+    CONFUSION.name(),
+    COMPARISON.name(),
+    TIMING.name(),
+    PARETO.name(),
+    STAGES.name(),
+    CONFUSED.name(),
+    PUBLISHED.name(),
+    VARIANCE.name(),
+    LIMITS.name(),
+];
+
+/// Every table of a run, in the order of their files; then [`CELLS`].
+///
+/// # Errors
+/// A row that has no form in a file.
+pub fn tables_of(tables: &Tables) -> Result<Vec<Table>> {
+    let first = tables.accuracy.first();
+    let axes = first.map_or_else(Vec::new, |(cell, _)| cell.variant.values.to_vec());
+    let axes = axes.into_iter().map(|axis| axis.column.clone().optional());
+    From::Rows(tables).all(axes.collect(), tables.has_folds)
+}
+
+/// The same of the files of a folder.
+///
+/// # Errors
+/// A table that cannot be read, by its file, line and column.
+pub fn read_tables(folder: &Path) -> Result<Vec<Table>> {
+    let study = folder.join("study.toml");
+    let text = crate::files::read_to_string(&study).unwrap_or_default();
+    let study = StudySpec::parse(&study.display().to_string(), &text);
+    let has_folds = study
+        .as_ref()
+        .is_ok_and(|study| study.recognition.folds.is_some());
+    let axes = study.map_or_else(|_| Vec::new(), |study| study.axis_columns());
+    let axes = axes.into_iter().map(Column::optional).collect();
+    From::Folder(folder).all(axes, has_folds)
+}
+
+/// Where rows come from.
+enum From<'a> {
+    Rows(&'a Tables),
+    Folder(&'a Path),
+}
+
+impl From<'_> {
+    /// Those of cells have the columns of the axes that the study names itself.
+    fn all(&self, axes: Vec<Column>, has_folds: bool) -> Result<Vec<Table>> {
+        let mut tables = vec![
+            self.table(&ACCURACY, |tables| &tables.accuracy, &axes)?,
+            self.table(&SUMMARY, |tables| &tables.summary, &axes)?,
+            self.table(&CONFUSION, |tables| &tables.confusion, &[])?,
+            self.table(&COMPARISON, |tables| &tables.comparison, &[])?,
+            self.table(&TIMING, |tables| &tables.timing, &axes)?,
+            self.table(&PARETO, |tables| &tables.pareto, &axes)?,
+            self.table(&STAGES, |tables| &tables.stages, &[])?,
+            self.table(&CONFUSED, |tables| &tables.confused, &[])?,
+            self.table(&PUBLISHED, |tables| &tables.published, &axes)?,
+        ];
+        let has_variance = match self {
+            Self::Rows(tables) => !tables.variance.is_empty(),
+            Self::Folder(folder) => folder.join(VARIANCE.name()).exists(),
+        };
+        if has_variance {
+            tables.push(self.table(&VARIANCE, |tables| &tables.variance, &[])?);
+        }
+        tables.push(self.table(&LIMITS, |tables| &tables.limits, &[])?);
+        tables.iter_mut().for_each(say);
+        for table in &mut tables {
+            if table.file == SUMMARY.name() {
+                table.note += " ";
+                table.note += if has_folds { OVER_FOLDS } else { OVER_TRIAL };
+            }
+            if let Some(note) = note_of_groups(table) {
+                table.note = note;
+            }
+            if let Some(note) = note_of_few_trials(table) {
+                table.note += &note;
+            }
+        }
+        let cells = cells_of(&tables);
+        tables.extend(cells);
+        Ok(tables)
+    }
+
+    fn table<R: Columns + Serialize>(
+        &self,
+        file: &File<R>,
+        rows: fn(&Tables) -> &Vec<R>,
+        axes: &[Column],
+    ) -> Result<Table> {
+        let mut columns = R::columns();
+        let behind = Cell::columns().len().min(columns.len());
+        columns.splice(behind..behind, axes.iter().cloned());
+        match self {
+            Self::Rows(tables) => file.of_columns(columns, rows(tables)),
+            Self::Folder(folder) => file.read_columns(columns, folder),
+        }
+    }
+}
+
+/// What only the rows tell: the unit of noise, and what C is where it is absent.
+fn say(table: &mut Table) {
+    let unit = match (table.n_rows > 0).then(|| table.word("noise_unit", 0)) {
+        Some("mm") => "mm",
+        Some("n") => "N",
+        _ => "",
+    };
+    let has_c = |row| {
+        let kind = toml::Value::from(table.word("classifier", row)).try_into();
+        kind.is_ok_and(ClassifierKind::has_c)
+    };
+    // A classifier that has one chooses it.
+    let is_chosen = |row| !table.number("c", row).is_nan() || has_c(row);
+    let is_chosen = (0..table.n_rows).all(is_chosen);
+    for column in &mut table.columns {
+        match &column.name[..] {
+            "noise_std" if !unit.is_empty() => {
+                (column.unit, column.scale) = (unit.into(), Scale::Linear);
+            }
+            "c" if !is_chosen => column.names = &[],
+            _ => {}
+        }
+    }
+}
+
+/// What intervals of accuracies are where whole groups are held out; none where single rows are.
+pub(crate) fn note_of_groups(table: &Table) -> Option<String> {
+    let n_groups = table.numbers("n_groups")?;
+    let least = n_groups.iter().copied().fold(f64::INFINITY, f64::min);
+    let few = match least < FEW_GROUPS as f64 {
+        true => format!("; some come from {least}: fewer than {FEW_GROUPS} groups say little"),
+        false => format!(", at least {least}"),
+    };
+    Some(format!(
+        "Intervals are 95 % intervals from the groups that are held out, not from single test decisions{few}."
+    ))
+}
+
+/// How often the bootstrap's intervals truly hold the mean where that is not 95 times in a hundred.
+fn note_of_few_trials(table: &Table) -> Option<String> {
+    let low = table.numbers("bootstrap_low")?;
+    let n_trials = table.numbers("n_trials")?.iter().zip(low);
+    let n_trials = n_trials.filter(|(_, low)| low.is_finite());
+    let fewest = n_trials.map(|(&n, _)| n as usize).min()?;
+    let coverage = coverage_of_95(fewest).filter(|&coverage| coverage < CONFIDENCE)?;
+    let percent = (100.0 * coverage).round();
+    Some(format!(
+        " Bootstrap intervals are nominally of 95 %, about {percent} % with {fewest} trials."
+    ))
+}
+
+/// The share that guessing recognises, a column of [`CELLS`] where cells differ in it.
+pub(crate) const CHANCE: &str = "chance";
+
+/// Returns 1 / the number of objects that each cell tells apart, if cells differ in it and each has its confusion matrix.
+fn chance_of_cells(summary: &Table, confusion: &Table) -> Option<(Column, Data)> {
+    let mut n_objects: HashMap<u64, usize> = HashMap::new();
+    for rows in confusion.groups(&["cell", "object"], 0..confusion.n_rows) {
+        let cell = confusion.number("cell", rows[0]);
+        *n_objects.entry(cell.to_bits()).or_default() += 1;
+    }
+    let chance = (0..summary.n_rows).map(|row| {
+        let n_objects = n_objects.get(&summary.number("cell", row).to_bits());
+        n_objects.map(|&n| 1.0 / n as f64)
+    });
+    let chance = Data::Numbers(chance.collect::<Option<_>>()?);
+    let role = Role::Value(Better::Neither);
+    let column = Column::new(CHANCE, role, "chance", "", Scale::Share);
+    chance.varies(0..summary.n_rows).then_some((column, chance))
+}
+
+/// Each cell with its distance to the best of its condition and with what it costs.
+fn cells_of(tables: &[Table]) -> Option<Table> {
+    let of = |file: &str| tables.iter().find(|table| table.file == file);
+    let summary = of(SUMMARY.name())?;
+    let found = |table: &Table, column| summary.look_up(table, "cell", column);
+    let (comparison, pareto) = (of(COMPARISON.name())?, of(PARETO.name())?);
+    let product = |name: &'static str, words: &'static str, factors: &[&str]| {
+        let numbers = |row| factors.iter().map(move |name| summary.number(name, row));
+        let products = (0..summary.n_rows).map(|row| numbers(row).product());
+        let column = Column::new(name, Role::Cost, words, "", Scale::Log);
+        Some((column, Data::Numbers(products.collect())))
+    };
+    let more = [
+        found(comparison, "difference").map(|(column, data)| {
+            let column = Column {
+                role: Role::Value(Better::Neither),
+                interval: None,
+                ..column
+            };
+            (column, data)
+        }),
+        found(comparison, "p_holm"),
+        found(comparison, "p_status"),
+        found(pareto, "fit_s"),
+        found(pareto, "predict_us_per_decision"),
+        product(
+            "measurements_per_decision",
+            "measurements a decision",
+            &["measurements", "frames", "fused_touches"],
+        ),
+        product("taxels", "taxels", &["nx", "ny"]),
+        chance_of_cells(summary, of(CONFUSION.name())?),
+    ];
+    let note = "All that is known of each cell, from summary.csv, comparison.csv and pareto.csv. Costs of time are of this machine.";
+    Some(
+        summary
+            .with((CELLS, "All cells"), more.into_iter().flatten())
+            .noted(note),
+    )
+}

@@ -1,0 +1,325 @@
+//! What one cell of a study learns from, as files: so that any program can train on exactly those rows.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `features.npy` | n × m, f64: the measurements of every touch, before scaling; with several readings of training touches the first of every touch, then the second … |
+//! | `labels.npy` | n, i64: the object's number (of mislabelled training touches another's) |
+//! | `train.npy` | i64: the rows that the trial trains on, in its order; a prefix is a smaller training set |
+//! | `test.npy` | i64: the rows that it tests, ascending |
+//! | `groups.npy` | n, i64: the group of every row, where the study has groups of touches that are never on both sides of a split |
+//! | `objects.csv` | one row an object: number, name |
+//! | `cell.toml` | the settings of the cell and the trial |
+//! | `manifest.json` | the files of the folder; only files that it lists are ever replaced |
+
+use crate::engine::progress::Progress;
+use crate::error::{Error, Result};
+use crate::files::{CsvFile, DataFolder, write_bytes};
+use crate::inputs::arrays::read_matrix;
+use crate::inputs::arrays::whole_numbers::{
+    KeyValue, read_class_labels, read_group_keys, read_rows,
+};
+use crate::inputs::npy::{write_integers, write_npy};
+use crate::studies::recognition::frames::kept::Frames;
+use crate::studies::recognition::measurements::measurement::{Measurements, measure_group};
+use crate::studies::recognition::plan::group::Group;
+use crate::studies::recognition::rows::cell::Cell;
+use crate::studies::recognition::spec::study::RecognitionSpec;
+use crate::studies::recognition::sweep::sweep::{StudyPart, Sweep};
+use crate::studies::recognition::training::trial::learned_rows;
+use bubbletouch_svm::dataset::{Dataset, dataset, rows};
+use bubbletouch_svm::split::Split;
+use ndarray::{Array1, Axis};
+use serde::Serialize;
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+/// Names of the files that [`StudyPart::write_features`] may write.
+pub const FEATURE_FILES: [&str; 7] = [
+    "features.npy",
+    "labels.npy",
+    "train.npy",
+    "test.npy",
+    "groups.npy",
+    "objects.csv",
+    "cell.toml",
+];
+
+/// Labelled measurements and the rows that one trial trains on and tests.
+#[derive(Clone, Debug)]
+pub struct FeatureSet {
+    /// n_touches × m, before scaling; the object of every touch, by its number.
+    pub data: Dataset,
+    /// The trial's rows.
+    pub split: Split,
+    /// The group of every row, if no group is on both sides of the split.
+    pub groups: Option<Array1<usize>>,
+    /// The value in the file of labels that stands for each class.
+    pub classes: Vec<KeyValue>,
+}
+
+#[derive(Serialize)]
+struct ObjectRow<'a> {
+    label: usize,
+    object: &'a str,
+}
+
+/// `cell.toml`.
+#[derive(Serialize)]
+struct Settings<'a> {
+    question: &'a str,
+    seed: u64,
+    trial: usize,
+    n_train: usize,
+    n_test: usize,
+    cell: &'a Cell,
+    recognition: &'a RecognitionSpec,
+}
+
+impl StudyPart {
+    /// Makes the measurements of one cell in one trial: the numbers that a run gives its classifier.
+    ///
+    /// # Errors
+    /// A cell or a trial that the study does not have; what a signal step or a projection refuses.
+    pub fn features(
+        &self,
+        (cell, trial): (usize, usize),
+        progress: &dyn Progress,
+    ) -> Result<FeatureSet> {
+        let (plan, sweep) = (&self.plan, &self.sweep);
+        let (group, cell) = find(sweep, cell)?;
+        let split = sweep.split(plan, cell, trial)?;
+        // As the run does it: nested measurements are the leading ones of the largest m.
+        let n_projected = match group.ensemble.is_prefix_nested() {
+            true => group.projected()[0],
+            false => cell.measurements,
+        };
+        let of = (group, n_projected);
+        let measured = self.measured(of, trial, ("touch", progress))?;
+        let labels = sweep.learned_labels(plan, (cell, trial), &split)?;
+        let (trained, trained_labels) = learned_rows(&measured, cell, &split.train, &labels);
+        // All readings of all touches, then copies of those that train.
+        let touches: Vec<usize> = (0..labels.len()).collect();
+        let read = measured.readings(&touches);
+        let n_trained = measured.readings(&split.train).len();
+        let (trained, copies) = trained.split_at(n_trained);
+        let of_read = read.iter().map(|row| labels[row % labels.len()]);
+        let of_copies = trained_labels.iter().skip(n_trained).copied();
+        let rows = [&read[..], copies].concat();
+        let copied = split.train.iter().cycle().take(copies.len()).copied();
+        let touched = read.iter().map(|row| row % labels.len()).chain(copied);
+        let touched: Vec<usize> = touched.collect();
+        let groups = sweep.group_keys.as_ref();
+        let n_classes = self.touched.classes().len() as i64;
+        Ok(FeatureSet {
+            classes: (0..n_classes).map(KeyValue::Integer).collect(),
+            groups: groups.map(|groups| groups.select(Axis(0), &touched)),
+            data: dataset(
+                measured.features(cell, &rows),
+                of_read.chain(of_copies).collect(),
+            )?,
+            split: Split {
+                train: [trained, &Vec::from_iter(read.len()..rows.len())].concat(),
+                test: split.test,
+            },
+        })
+    }
+
+    /// Makes the touches of a group, held in memory, and reads and measures them in a trial.
+    pub(crate) fn measured(
+        &self,
+        (group, n_measurements): (&Group, usize),
+        trial: usize,
+        (stage, progress): (&str, &dyn Progress),
+    ) -> Result<Measurements> {
+        let array = &self.plan.arrays[group.array];
+        let n_touches = self.sweep.labels.len() as u64;
+        progress.stage(&format!("{stage} {}", array.describe()), n_touches);
+        let on = (array, group.frames);
+        let touched = self.touched.as_ref();
+        let frames = touched.simulate(on, progress);
+        self.measure(group, &frames, (trial, n_measurements))
+    }
+
+    /// Reads and measures the frames of a group in a trial. Runs and exports share this path: what is learned for measurements is learned from the
+    /// training touches of the whole split, however few of them a cell learns from.
+    pub(crate) fn measure(
+        &self,
+        group: &Group,
+        frames: &Frames,
+        (trial, n_measurements): (usize, usize),
+    ) -> Result<Measurements> {
+        let inputs = group.inputs(&self.plan, &self.sweep);
+        let touches = (self.touched.as_ref() as _, frames);
+        measure_group(&inputs, touches, trial, (n_measurements, None))
+    }
+
+    /// Writes the measurements of one cell in one trial into a folder that exists, claimed for [`FEATURE_FILES`].
+    ///
+    /// # Errors
+    /// As [`features`](Self::features); a file that cannot be written.
+    pub fn write_features(
+        &self,
+        (folder, claimed): (&Path, &DataFolder),
+        (cell, trial): (usize, usize),
+        progress: &dyn Progress,
+    ) -> Result<FeatureSet> {
+        let spec = &self.plan.spec;
+        let set = self.features((cell, trial), progress)?;
+        let Split { train, test } = &set.split;
+        claimed.write_manifest()?;
+        write_npy(&folder.join("features.npy"), &set.data.records)?;
+        write_integers(&folder.join("labels.npy"), set.data.targets.to_vec())?;
+        write_integers(&folder.join("train.npy"), train.clone())?;
+        write_integers(&folder.join("test.npy"), test.clone())?;
+        if let Some(groups) = &set.groups {
+            write_integers(&folder.join("groups.npy"), groups.to_vec())?;
+        }
+        let mut objects = CsvFile::create(&folder.join("objects.csv"))?;
+        for (label, object) in self.touched.class_names().into_iter().enumerate() {
+            objects.row(ObjectRow { label, object })?;
+        }
+        objects.commit()?;
+        let settings = Settings {
+            question: &spec.question,
+            seed: spec.seed,
+            trial,
+            n_train: train.len(),
+            n_test: test.len(),
+            cell: find(&self.sweep, cell)?.1,
+            recognition: &spec.recognition,
+        };
+        let text = toml::to_string(&settings).expect("every setting of a cell has a TOML form");
+        write_bytes(&folder.join("cell.toml"), text.as_bytes())?;
+        Ok(set)
+    }
+}
+
+/// Reads a folder that [`StudyPart::write_features`] or another program wrote; only the four arrays are needed, each as `.npy`, `.npz` or `.csv`, or all
+/// in `features.npz`. Features may be of any type of number or bool; labels whole numbers, texts or n × classes of 0 and 1; rows of any type of
+/// integer, or a mask: a bool for each row of features.
+///
+/// # Errors
+/// A file that is missing, has another number of dimensions or another type of elements than the table above says; a NaN
+/// or infinite feature (named by row and column); labels that are not one a row, or below 0; training or test rows
+/// that are none, beyond the features, or named twice (in one list or in both).
+pub fn read_features(folder: &Path) -> Result<FeatureSet> {
+    let file = |name: &str| array_file(folder, name);
+    let features = read_matrix(&file("features"), "features")?;
+    let n_rows = features.nrows();
+    let labels = read_class_labels(&file("labels"), "labels", n_rows)?;
+    let split = Split {
+        train: read_rows(&file("train"), "train", n_rows)?,
+        test: read_rows(&file("test"), "test", n_rows)?,
+    };
+    check_split(folder, &split, n_rows)?;
+    let features = features.as_standard_layout().into_owned();
+    let data = dataset(features, Array1::from(labels.labels));
+    let data = data.map_err(|error| Error::from(error).under(format!("{}: ", folder.display())))?;
+    Ok(FeatureSet {
+        data,
+        split,
+        groups: None,
+        classes: labels.classes,
+    })
+}
+
+/// The file of an array in a folder: `.npy`, or else `.npz`, `.csv` or the archive `features.npz`.
+fn array_file(folder: &Path, name: &str) -> PathBuf {
+    let usual = folder.join(format!("{name}.npy"));
+    let others = [
+        format!("{name}.npz"),
+        format!("{name}.csv"),
+        "features.npz".to_owned(),
+    ];
+    let mut others = others.into_iter().map(|other| folder.join(other));
+    match usual.exists() {
+        true => usual,
+        false => others.find(|other| other.exists()).unwrap_or(usual),
+    }
+}
+
+impl FeatureSet {
+    /// The same with the group of every row out of a file: whole numbers from 0 on, of any type of integer, or texts.
+    ///
+    /// # Errors
+    /// No such file, or one of another type; another number of groups than rows; a group with rows on both sides of the split.
+    pub fn with_groups(self, path: &Path) -> Result<Self> {
+        let n_rows = self.data.records.nrows();
+        let groups = Array1::from(read_group_keys(path, "groups", n_rows)?);
+        let refused = |given: String, allowed: String| {
+            let place = path.display();
+            Err(Error::input(place, given, allowed))
+        };
+        if groups.len() != n_rows {
+            let given = format!("{} groups", groups.len());
+            return refused(given, format!("{n_rows}, one for each row of features"));
+        }
+        let Split { train, test } = &self.split;
+        let trained: HashMap<usize, usize> = train.iter().map(|&row| (groups[row], row)).collect();
+        let both = test
+            .iter()
+            .find_map(|&row| Some((row, trained.get(&groups[row])?)));
+        if let Some((tested, learned)) = both {
+            let group = groups[tested];
+            let given =
+                format!("group {group} of row {learned} in train.npy and row {tested} in test.npy");
+            let allowed = "groups that train.npy and test.npy leave whole on one side (as GroupShuffleSplit and GroupKFold of scikit-learn do)";
+            return refused(given, allowed.to_owned());
+        }
+        Ok(Self {
+            groups: Some(groups),
+            ..self
+        })
+    }
+
+    /// The training rows, or the first `n` of them.
+    ///
+    /// # Errors
+    /// No rows, or more than the split trains on.
+    pub fn training(&self, n: Option<usize>) -> Result<Dataset> {
+        let train = &self.split.train;
+        let n = n.unwrap_or(train.len());
+        if n == 0 || n > train.len() {
+            let allowed = format!("1 to {}, the training rows of the split", train.len());
+            return Err(Error::input("training rows", n, allowed));
+        }
+        Ok(rows(&self.data, &train[..n])?)
+    }
+
+    /// The test rows.
+    ///
+    /// # Errors
+    /// No rows.
+    pub fn test(&self) -> Result<Dataset> {
+        Ok(rows(&self.data, &self.split.test)?)
+    }
+}
+
+/// Refuses a row that is named twice: a tested row must not have been trained on, and none may count twice.
+fn check_split(folder: &Path, split: &Split, n_rows: usize) -> Result<()> {
+    let mut named_in = vec![None; n_rows];
+    for (file, rows) in [("train.npy", &split.train), ("test.npy", &split.test)] {
+        for &row in rows {
+            if let Some(earlier) = named_in[row].replace(file) {
+                let given = match earlier == file {
+                    true => format!("row {row} twice"),
+                    false => format!("row {row}, which {earlier} names too"),
+                };
+                let allowed = "every row at most once, to train on or to test";
+                return Err(Error::input(folder.join(file).display(), given, allowed));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A cell by its number, and its group.
+pub(crate) fn find(sweep: &Sweep, number: usize) -> Result<(&Group, &Cell)> {
+    let groups = sweep.groups.iter();
+    let mut cells = groups.flat_map(|group| group.cells.iter().map(move |cell| (group, cell)));
+    let found = cells.find(|(_, cell)| cell.cell == number);
+    found.ok_or_else(|| {
+        let allowed = format!("0 to {}, the cells of the study", sweep.n_cells() - 1);
+        Error::input("cell", number, allowed)
+    })
+}

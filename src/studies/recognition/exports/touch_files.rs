@@ -1,0 +1,462 @@
+//! A study's touches as files, for people who train elsewhere: NumPy arrays and CSV, streamed.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `frames.npy` | n × ny × nx (1 × n_taxels of layouts without rows), f32, metres of deflection, without noise; or as a cell reads them; of touches of F frames n × F × ny × nx |
+//! | `shear.npy` | with `skin.sensed = "shear"` n × 2 × ny × nx (n × F × 2 × ny × nx), f32: the forces across the axis of each taxel, along x and y of its frame, newtons |
+//! | `labels.npy` | n, i64: the object's number |
+//! | `poses.npy` | n × 7, f64: the object in the patch frame when it is read: x, y, z in metres, quaternion x, y, z, w |
+//! | `depths.npy` | n, f64: metres past first contact |
+//! | `taxels.npy` | n_taxels × 6, f64, of layouts that are no grid: rest centres (metres) and axes in the patch frame |
+//! | `touches.csv` | one row a touch: object, resting pose, offset, yaw, tilts, depth, taxels touched and saturated |
+//! | `recorded.toml` | `[recorded]` and `[skin]` of a study that learns from these files what the study of the touches learns; not of frames as a cell reads them |
+//! | `objects.csv` | one row an object: number, name, spheres (0 of a mesh), touches |
+//!
+//! Deflections are what the press gives: no noise, no smoothing, none of the sensor errors of `[signal]`. Frames as a cell reads them
+//! ([`ReadFrames`]) have all of these, in metres or, with the step `force`, in newtons; only `frames.npy` differs. With
+//! `skin.sensed = "shear"` a cell reads three forces: `frames.npy` then has 3 × ny × nx newtons a frame, and there is no `shear.npy`.
+
+use crate::engine::axis::Axis;
+use crate::engine::progress::Progress;
+use crate::error::Result;
+use crate::files::{CsvFile, write_bytes};
+use crate::inputs::npy::{NpyFile, write_integers};
+use crate::inputs::units::millimetres;
+use crate::objects::Object;
+use crate::random::Seed;
+use crate::sensing::Ensemble;
+use crate::studies::recognition::exports::feature_files::find;
+use crate::studies::recognition::frames::array_press::{ArrayPress, ArrayWorkspace};
+use crate::studies::recognition::frames::human_touches::HumanTouches;
+use crate::studies::recognition::frames::touch_set::TouchSet;
+use crate::studies::recognition::plan::group::Group;
+use crate::studies::recognition::plan::plan::{Plan, as_written};
+use crate::studies::recognition::plan::sensed::Sensed;
+use crate::studies::recognition::plan::taxel_array::TaxelArray;
+use crate::studies::recognition::spec::human::HumanTouchSpec;
+use crate::studies::recognition::spec::recorded::{PreviousTouch, RecordedSpec};
+use crate::studies::recognition::spec::scene::SkinSpec;
+use crate::studies::recognition::spec::signal::StepSpec;
+use crate::studies::recognition::sweep::sweep::StudyPart;
+use crate::studies::recognition::touches::drawn_touches::touch_stream;
+use crate::world::{ArrayLayout, RestPose, Touch, TouchSource};
+use ndarray::Array2;
+use rayon::prelude::*;
+use serde::Serialize;
+use std::path::Path;
+
+/// Frames simulated before they are written: all of them that are held in memory at once.
+const BLOCK: usize = 256;
+
+#[derive(Serialize)]
+struct TouchRow<'a> {
+    touch: usize,
+    label: usize,
+    object: &'a str,
+    rest: usize,
+    offset_x_mm: f64,
+    offset_y_mm: f64,
+    yaw_deg: f64,
+    tilt_x_deg: f64,
+    tilt_y_deg: f64,
+    depth_mm: f64,
+    n_touched: usize,
+    n_saturated: usize,
+}
+
+#[derive(Serialize)]
+struct ObjectRow<'a> {
+    label: usize,
+    object: &'a str,
+    n_spheres: usize,
+    n_touches: usize,
+}
+
+/// One touch as it goes into the files.
+struct Reading<'a> {
+    row: TouchRow<'a>,
+    /// Its F frames, one after the other.
+    frames: Vec<f32>,
+    /// Translation and quaternion.
+    pose: [f64; 7],
+    /// Metres past first contact.
+    depth: f64,
+}
+
+/// The deepest frame of every touch as a cell reads it in one trial: what its measurements are made of.
+pub struct ReadFrames {
+    /// The cell's array, by its number in the plan.
+    pub array: usize,
+    /// n_touches · F rows of n_taxels; the deepest frame of a touch is the last of its F.
+    values: Array2<f64>,
+    n_frames: usize,
+    /// Whether the values are newtons; else metres.
+    pub is_force: bool,
+}
+
+impl ReadFrames {
+    /// Simulates and reads all touches; held in memory at once.
+    ///
+    /// # Errors
+    /// A cell or a trial that the study does not have; what a signal step refuses.
+    pub fn of_cell(
+        part: &StudyPart,
+        (cell, trial): (usize, usize),
+        progress: &dyn Progress,
+    ) -> Result<Self> {
+        let (group, cell) = find(&part.sweep, cell)?;
+        part.sweep.split(&part.plan, cell, trial)?;
+        // What the identity measures are the frames themselves.
+        let identity = Group {
+            ensemble: Ensemble::Identity,
+            ..group.clone()
+        };
+        let of = (&identity, part.plan.arrays[group.array].n_values());
+        let read = part.measured(of, trial, ("read", progress))?;
+        Ok(Self {
+            array: group.array,
+            values: read.values,
+            n_frames: group.frames,
+            is_force: *part.plan.arrays[group.array].sensed() != Sensed::Deflection
+                || part.plan.spec.signal.steps.contains(&StepSpec::Force),
+        })
+    }
+
+    fn frame(&self, touch: usize) -> Vec<f32> {
+        let deepest = self.values.row((touch + 1) * self.n_frames - 1);
+        deepest.iter().map(|&value| value as f32).collect()
+    }
+}
+
+/// Names of the files that touches may be written to, in the folder of an array.
+pub const TOUCH_FILES: [&str; 9] = [
+    FRAMES,
+    SHEAR,
+    "labels.npy",
+    "poses.npy",
+    "depths.npy",
+    "taxels.npy",
+    "touches.csv",
+    "objects.csv",
+    "recorded.toml",
+];
+const FRAMES: &str = "frames.npy";
+const SHEAR: &str = "shear.npy";
+
+/// Returns the quantities and units of the arrays of frames, channel by channel, as JSON, by the names of their files. `is_force` is known of frames
+/// as a cell reads them, which are one array.
+pub fn touch_units(
+    array: &TaxelArray,
+    is_force: Option<bool>,
+) -> Vec<(&'static str, serde_json::Value)> {
+    let first = match is_force {
+        Some(true) => ("force", "N"),
+        _ => ("deflection", "m"),
+    };
+    let across = [("shear force along x", "N"), ("shear force along y", "N")];
+    let across = &across[..array.sensed().n_channels() - 1];
+    let facts = |channels: &[(&str, &str)]| {
+        let (quantities, units): (Vec<&str>, Vec<&str>) = channels.iter().copied().unzip();
+        serde_json::json!({"quantity": quantities, "unit": units})
+    };
+    match (across, is_force) {
+        ([], _) => vec![(FRAMES, facts(&[first]))],
+        (_, None) => vec![(FRAMES, facts(&[first])), (SHEAR, facts(across))],
+        (_, Some(_)) => vec![(FRAMES, facts(&[&[first], across].concat()))],
+    }
+}
+
+/// The files of frames: one for each quantity, or one of what a cell reads.
+struct FrameFiles {
+    frames: NpyFile,
+    shear: Option<NpyFile>,
+    /// Values of a frame that the array reads, and those of them that `frames` takes.
+    n_values: usize,
+    n_first: usize,
+}
+
+impl FrameFiles {
+    fn create(
+        folder: &Path,
+        (array, n_frames): (&TaxelArray, usize),
+        n_touches: usize,
+        is_read: bool,
+    ) -> Result<Self> {
+        let file = |name: &str, n_channels| {
+            let (_, shape) = frames_shape(array, n_frames, n_channels);
+            let shape = [&[n_touches][..], &shape].concat();
+            NpyFile::create(&folder.join(name), "<f4", &shape)
+        };
+        let n_channels = array.sensed().n_channels();
+        let n_first = if is_read { n_channels } else { 1 };
+        let shear = (n_first < n_channels).then(|| file(SHEAR, n_channels - n_first));
+        Ok(Self {
+            frames: file(FRAMES, n_first)?,
+            shear: shear.transpose()?,
+            n_values: array.n_values(),
+            n_first: n_first * array.n_taxels(),
+        })
+    }
+
+    /// Adds whole frames, each of all its channels.
+    fn push(&mut self, frames: &[f32]) -> Result<()> {
+        for frame in frames.chunks(self.n_values) {
+            let (first, across) = frame.split_at(self.n_first);
+            self.frames
+                .push(first.iter().map(|value| value.to_le_bytes()))?;
+            if let Some(shear) = &mut self.shear {
+                shear.push(across.iter().map(|value| value.to_le_bytes()))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn commit(self) -> Result<()> {
+        let mut files = [Some(self.frames), self.shear].into_iter().flatten();
+        files.try_for_each(NpyFile::commit)
+    }
+}
+
+/// Simulates all touches of an array, F frames each, drawn a block at a time, and writes them into a folder that exists, with the deepest frames as
+/// they were `read` if these are given; returns how many.
+///
+/// # Errors
+/// What [`TouchSource::new`] refuses; a file that cannot be written.
+pub fn write_touches(
+    folder: &Path,
+    objects: &[Object],
+    plan: &Plan,
+    (array, n_frames): (&TaxelArray, usize),
+    read: Option<&ReadFrames>,
+    progress: &dyn Progress,
+) -> Result<usize> {
+    let (placement, seed) = (&plan.placement, &Seed::new(plan.spec.seed));
+    let n_frames = if read.is_some() { 1 } else { n_frames };
+    let rests = objects.par_iter();
+    let rests: Vec<_> = rests.map(|o| placement.rest.of(&o.model)).collect();
+    let sources = objects.iter().zip(&rests);
+    let sources =
+        sources.map(|(o, rests)| TouchSource::new(placement, rests, &touch_stream(seed, o)));
+    let sources = sources.collect::<Result<Vec<_>>>()?;
+    let n_touches = sources.iter().map(TouchSource::n_touches).sum();
+    progress.stage(&format!("touch {}", array.describe()), n_touches as u64);
+    let file = |name: &str, descr, shape: &[usize]| {
+        let shape = [&[n_touches], shape].concat();
+        NpyFile::create(&folder.join(name), descr, &shape)
+    };
+    let mut frames = FrameFiles::create(folder, (array, n_frames), n_touches, read.is_some())?;
+    let mut labels = file("labels.npy", "<i8", &[])?;
+    let mut poses = file("poses.npy", "<f8", &[7])?;
+    let mut depths = file("depths.npy", "<f8", &[])?;
+    let mut n_before = 0;
+    let mut table = CsvFile::create(&folder.join("touches.csv"))?;
+    let mut rows = CsvFile::create(&folder.join("objects.csv"))?;
+    for (label, ((object, rests), source)) in objects.iter().zip(&rests).zip(&sources).enumerate() {
+        rows.row(ObjectRow {
+            label,
+            object: &object.name,
+            n_spheres: object.model.n_spheres(),
+            n_touches: source.n_touches(),
+        })?;
+        let press = array.press(&object.model);
+        for first in (0..source.n_touches()).step_by(BLOCK) {
+            let block = first..source.n_touches().min(first + BLOCK);
+            let read_one = |workspace: &mut ArrayWorkspace, number| {
+                let named = (n_before + number, label, object.name.as_str());
+                let touch = (&source.touch(number), n_frames);
+                pressed((&press, rests), named, touch, workspace)
+            };
+            let readings = block.clone().into_par_iter();
+            let readings = readings.map_init(ArrayWorkspace::default, read_one);
+            let readings: Vec<_> = readings.collect();
+            for reading in readings {
+                labels.push([(label as i64).to_le_bytes()])?;
+                poses.push(reading.pose.map(f64::to_le_bytes))?;
+                depths.push([reading.depth.to_le_bytes()])?;
+                let of_touch = read.map_or(reading.frames, |read| read.frame(reading.row.touch));
+                frames.push(&of_touch)?;
+                table.row(reading.row)?;
+            }
+            progress.advance(block.len() as u64);
+        }
+        n_before += source.n_touches();
+    }
+    frames.commit()?;
+    for file in [labels, poses, depths] {
+        file.commit()?;
+    }
+    write_taxels(folder, array)?;
+    table.commit()?;
+    rows.commit()?;
+    if read.is_none() {
+        let recorded = RecordedSpec {
+            depths: Some("depths.npy".into()),
+            speed_mm_per_s: plan.spec.touches.speed_mm_per_s,
+            ..recorded(
+                array,
+                n_frames,
+                objects.iter().map(|object| object.name.clone()),
+            )
+        };
+        write_recorded(folder, recorded, (&plan.spec.skin, array))?;
+    }
+    Ok(n_touches)
+}
+
+/// Simulates all human touches on an array, and writes their frames (n × F × ny × nx) and labels into a folder that exists; returns how many.
+///
+/// # Errors
+/// What [`HumanTouches::draw`] refuses; a file that cannot be written.
+pub fn write_human_touches(
+    folder: &Path,
+    human: &HumanTouchSpec,
+    plan: &Plan,
+    array: &TaxelArray,
+    progress: &dyn Progress,
+) -> Result<usize> {
+    let touches = HumanTouches::draw(human, &Seed::new(plan.spec.seed))?;
+    let labels = touches.labels();
+    let n_frames = human.n_frames();
+    progress.stage(&format!("touch {}", array.describe()), labels.len() as u64);
+    let made = touches.simulate((array, n_frames), progress);
+    let mut frames = FrameFiles::create(folder, (array, n_frames), labels.len(), false)?;
+    let mut row = vec![0.0; array.n_values()];
+    for number in 0..labels.len() * n_frames {
+        made.read(number, &mut row);
+        let row: Vec<f32> = row.iter().map(|&value| value as f32).collect();
+        frames.push(&row)?;
+    }
+    frames.commit()?;
+    write_integers(&folder.join("labels.npy"), labels.to_vec())?;
+    let mut rows = CsvFile::create(&folder.join("objects.csv"))?;
+    for (label, (object, n_touches)) in touches.classes().into_iter().enumerate() {
+        rows.row(ObjectRow {
+            label,
+            object,
+            n_spheres: 0,
+            n_touches,
+        })?;
+    }
+    rows.commit()?;
+    let names = touches.class_names().into_iter().map(str::to_owned);
+    let recorded = RecordedSpec {
+        frame_interval_s: Some(human.interval()),
+        previous_touch: PreviousTouch::None,
+        ..recorded(array, n_frames, names)
+    };
+    write_recorded(folder, recorded, (&plan.spec.skin, array))?;
+    Ok(labels.len())
+}
+
+/// The letters of the axes of frames of some channels, and the lengths of those of a touch.
+fn frames_shape(array: &TaxelArray, n_frames: usize, n_channels: usize) -> (String, Vec<usize>) {
+    let (ny, nx) = array.shape();
+    let axes = [("t", n_frames), ("c", n_channels), ("y", ny), ("x", nx)];
+    let is_written = |(letter, length): &(&str, usize)| "yx".contains(letter) || *length > 1;
+    let (letters, shape): (Vec<&str>, Vec<usize>) = axes.into_iter().filter(is_written).unzip();
+    (format!("n {}", letters.join(" ")), shape)
+}
+
+/// `[recorded]` of the frames of an array in the folder of the file.
+fn recorded(
+    array: &TaxelArray,
+    n_frames: usize,
+    names: impl Iterator<Item = String>,
+) -> RecordedSpec {
+    RecordedSpec {
+        frames: FRAMES.into(),
+        shear: (array.sensed().n_channels() > 1).then(|| SHEAR.into()),
+        labels: "labels.npy".into(),
+        order: Some(frames_shape(array, n_frames, 1).0),
+        names: Some(names.collect()),
+        full_scale: Some(array.taxel().stroke),
+        ..RecordedSpec::default()
+    }
+}
+
+/// Writes `recorded.toml`: the tables of a study that learns from these files.
+fn write_recorded(
+    folder: &Path,
+    recorded: RecordedSpec,
+    (skin, array): (&SkinSpec, &TaxelArray),
+) -> Result<()> {
+    #[derive(Serialize)]
+    struct Tables {
+        recorded: RecordedSpec,
+        skin: SkinSpec,
+    }
+    let is_grid = array.layout() == ArrayLayout::Grid;
+    let units = match recorded.shear {
+        Some(_) => {
+            "# frames.npy has deflections in metres, shear.npy the forces along x and y of each taxel in newtons."
+        }
+        None => "# frames.npy has deflections in metres.",
+    };
+    let tables = Tables {
+        recorded,
+        skin: SkinSpec {
+            pitch_mm: Axis::One(millimetres(array.pitch())),
+            size_mm: None,
+            taxels: (!is_grid).then_some(Axis::One(array.grid().nx)),
+            ..skin.clone()
+        },
+    };
+    let tables = toml::to_string(&tables).expect("every key has a TOML form");
+    let text = format!(
+        "# In place of [objects], [touches], [human_touch] and [skin] of the study that made these touches; --objects is this folder.\n{units}\n\n{tables}"
+    );
+    write_bytes(&folder.join("recorded.toml"), text.as_bytes())
+}
+
+/// Where the taxels of a layout are that is no grid, and their axes.
+fn write_taxels(folder: &Path, array: &TaxelArray) -> Result<()> {
+    if array.layout() == ArrayLayout::Grid {
+        return Ok(());
+    }
+    let layout = array.patch().layout();
+    let (centers, axes) = (layout.centers(), layout.axes());
+    let mut file = NpyFile::create(&folder.join("taxels.npy"), "<f8", &[centers.len(), 6])?;
+    for (center, axis) in centers.iter().zip(axes) {
+        let numbers = center.to_array().into_iter().chain(axis.to_array());
+        file.push(numbers.map(f64::to_le_bytes))?;
+    }
+    file.commit()
+}
+
+/// Presses a touch, of which the number, the label and the name of its object are known.
+fn pressed<'a>(
+    (press, rests): (&ArrayPress, &[RestPose]),
+    (number, label, object): (usize, usize, &'a str),
+    (touch, n_frames): (&Touch, usize),
+    workspace: &mut ArrayWorkspace,
+) -> Reading<'a> {
+    let pose = touch.patch_from_object(&rests[touch.rest]);
+    let mut frames = Vec::new();
+    let mut contact = None;
+    for frame in 1..=n_frames {
+        let part = frame as f64 / n_frames as f64;
+        contact = press.touch(pose, (touch.depth, part), workspace);
+        frames.extend(press.values(workspace).map(|value| value as f32));
+    }
+    let pose = press.end(pose, contact);
+    let (t, q) = (pose.translation, pose.rotation);
+    Reading {
+        row: TouchRow {
+            touch: number,
+            label,
+            object,
+            rest: touch.rest,
+            offset_x_mm: as_written(1e3 * touch.offset[0]),
+            offset_y_mm: as_written(1e3 * touch.offset[1]),
+            yaw_deg: as_written(touch.yaw.to_degrees()),
+            tilt_x_deg: as_written(touch.tilt[0].to_degrees()),
+            tilt_y_deg: as_written(touch.tilt[1].to_degrees()),
+            depth_mm: as_written(1e3 * touch.depth),
+            n_touched: contact.map_or(0, |c| c.n_touched),
+            n_saturated: contact.map_or(0, |c| c.n_saturated),
+        },
+        frames,
+        pose: [t.x, t.y, t.z, q.x, q.y, q.z, q.w],
+        depth: touch.depth,
+    }
+}

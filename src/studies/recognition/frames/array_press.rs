@@ -1,0 +1,77 @@
+//! An array that is brought to one object, pressed against it and drawn along it.
+
+use crate::contact::{Approach, Contact, FrictionState, Workspace, press_to_depth};
+use crate::geometry::Pose;
+use crate::objects::Model;
+use crate::studies::recognition::plan::sensed::Sensed;
+use crate::studies::recognition::plan::taxel_array::TaxelArray;
+use crate::world::Shears;
+use glam::{DVec2, DVec3};
+
+/// What a thread touches in.
+#[derive(Debug, Default)]
+pub struct ArrayWorkspace {
+    press: Workspace,
+    /// Of the array that it touches with.
+    friction: Option<FrictionState>,
+}
+
+/// An array and one object.
+pub struct ArrayPress<'a> {
+    array: &'a TaxelArray,
+    object: [Model; 1],
+}
+
+impl TaxelArray {
+    /// Brings it to one object.
+    pub fn press<'a>(&'a self, object: &Model) -> ArrayPress<'a> {
+        ArrayPress {
+            array: self,
+            object: [object.clone()],
+        }
+    }
+}
+
+impl ArrayPress<'_> {
+    /// Touches to a depth (metres) past first contact, and then along as the array slides, or a leading part of this way; `None` where the way misses the
+    /// object.
+    pub fn touch(
+        &self,
+        pose: Pose,
+        (depth, part): (f64, f64),
+        workspace: &mut ArrayWorkspace,
+    ) -> Option<Contact> {
+        let (patch, slide) = (self.array.patch(), self.array.slide());
+        let way = part * (depth + slide.length());
+        let ArrayWorkspace { press, friction } = workspace;
+        if let Sensed::Shear(shear) = *self.array.sensed() {
+            let at_rest = || FrictionState::at_rest(patch, Shears::Equal(shear));
+            friction.get_or_insert_with(|| at_rest().expect("checked shear springs"));
+        } else if slide == DVec2::ZERO {
+            return press_to_depth(patch, &self.object, &[pose], way, press);
+        }
+        let slid = (way - depth).max(0.0) * slide.normalize_or_zero();
+        let motion = (way.min(depth), slid.extend(0.0));
+        let approach = Approach::new(patch, DVec3::Z).expect("an axis has length one");
+        approach.press_and_slide(&self.object, &[pose], motion, friction.as_mut(), press)
+    }
+
+    /// Where the object is at the end of a touch from a pose: in the patch frame.
+    pub fn end(&self, mut pose: Pose, contact: Option<Contact>) -> Pose {
+        if let Some(contact) = contact {
+            pose.translation -= self.array.slide().extend(contact.travel);
+        }
+        pose
+    }
+
+    /// What the array reads of the last touch, channel by channel: [`n_values`](TaxelArray::n_values), metres of deflection, then newtons of
+    /// shear.
+    pub fn values<'w>(&self, workspace: &'w ArrayWorkspace) -> impl Iterator<Item = f64> + 'w {
+        let forces = workspace.friction.as_ref();
+        let forces = forces.map_or(&[][..], FrictionState::force3);
+        let across = [|force: &DVec3| force.x, |force: &DVec3| force.y];
+        let across = across.into_iter();
+        let across = across.flat_map(move |along| forces.iter().map(along));
+        workspace.press.deflections().iter().copied().chain(across)
+    }
+}

@@ -1,0 +1,71 @@
+//! Sample touches for the eye: human touches as film strips.
+
+use crate::contact::Workspace;
+use crate::error::{Error, Result};
+use crate::inputs::units::millimetres;
+use crate::report::snapshots::Snapshots;
+use crate::signal::Quantity;
+use crate::studies::recognition::frames::human_touches::{HumanTouches, record_touch};
+use crate::studies::recognition::frames::samples::{Samples, named_samples};
+use crate::studies::recognition::frames::touch_set::TouchSet;
+use crate::studies::recognition::plan::plan::Plan;
+use crate::studies::recognition::plan::taxel_array::TaxelArray;
+use ndarray::Array2;
+use rayon::prelude::*;
+
+/// Frames of a strip: a row of the picture.
+const N_FRAMES: usize = 4;
+
+/// Touches of which the firmest is shown: the flat hand rather than a fingertip.
+const N_LOOKED_AT: usize = 10;
+
+/// Of the kinds that the study names for its picture (else of all), the firmest of the first touches, at four instants evenly between
+/// those when its first and its last taxel are touched; on the study's finest array, without noise.
+pub fn human_samples(plan: &Plan, touches: &HumanTouches) -> Result<Samples> {
+    let n_taxels = |array: &&TaxelArray| array.n_taxels();
+    // The first of several.
+    let array = plan.arrays.iter().rev().max_by_key(n_taxels);
+    let no_cells = || Error::input("study", "no cells", "at least one value an axis");
+    let array = array.ok_or_else(no_cells)?;
+    let grid = array.grid();
+    let skin = touches.spec.skin(array)?;
+    let interval = touches.spec.interval();
+    let mut frames = Vec::new();
+    let chosen = named_samples(plan, &touches.class_names())?;
+    for label in chosen.unwrap_or_else(|| (0..touches.spec.kinds.len()).collect()) {
+        let first = touches.of(label).par_iter().take(N_LOOKED_AT);
+        let recorded = first.map_init(Workspace::new, |room, touch| {
+            let mut rows = Array2::zeros((touches.spec.n_frames(), grid.n_taxels()));
+            record_touch(&skin, touch, interval, rows.view_mut(), room);
+            rows
+        });
+        let recorded = recorded.collect::<Vec<_>>().into_iter();
+        let firmest = recorded.max_by(|a, b| a.sum().total_cmp(&b.sum()));
+        let Some(rows) = firmest else { continue };
+        let is_touched = |frame: &usize| rows.row(*frame).iter().any(|&d| d > 0.0);
+        let touched: Vec<usize> = (0..rows.nrows()).filter(is_touched).collect();
+        let (Some(&first), Some(&last)) = (touched.first(), touched.last()) else {
+            continue;
+        };
+        for part in 0..N_FRAMES {
+            let frame = first + (part * (last - first) + N_FRAMES / 2) / (N_FRAMES - 1);
+            let seconds = (frame - first) as f64 * interval;
+            let name = format!("{} {seconds:.2} s", touches.spec.kinds[label].name());
+            let row = rows.row(frame).mapv(f64::from);
+            let frame = row.into_shape_with_order((grid.ny, grid.nx));
+            let frame = frame.expect("one value a taxel");
+            frames.push((name, frame));
+        }
+    }
+    let pitch_mm = millimetres(grid.pitch);
+    let shown = Snapshots {
+        frames,
+        pitch_mm,
+        quantity: Quantity::Deflection,
+        caption: format!(
+            "One touch of each kind by a hand on {} × {} taxels at {pitch_mm} mm around a forearm (x around it, y along it), no noise",
+            grid.nx, grid.ny
+        ),
+    };
+    Ok(Samples { shown, each: None })
+}

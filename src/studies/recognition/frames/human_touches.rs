@@ -1,0 +1,146 @@
+//! Human touches of a study: drawn once, recorded on each array.
+
+use crate::contact::{Workspace, press_with_contacts};
+use crate::engine::progress::Progress;
+use crate::error::{Error, Result};
+use crate::objects::{Hand, Model};
+use crate::random::Seed;
+use crate::studies::recognition::frames::human_samples::human_samples;
+use crate::studies::recognition::frames::kept::Frames;
+use crate::studies::recognition::frames::reading::{TouchToRead, touches_to_read};
+use crate::studies::recognition::frames::samples::Samples;
+use crate::studies::recognition::frames::touch_set::TouchSet;
+use crate::studies::recognition::plan::group::Group;
+use crate::studies::recognition::plan::plan::Plan;
+use crate::studies::recognition::plan::taxel_array::TaxelArray;
+use crate::studies::recognition::spec::human::HumanTouchSpec;
+use crate::world::{HumanTouch, Patch, TouchRanges};
+use ndarray::ArrayViewMut2;
+use rand::Rng;
+use rayon::prelude::*;
+
+/// Human touches, kind by kind.
+#[derive(Clone, Debug)]
+pub struct HumanTouches {
+    /// What they are and how they are recorded.
+    pub spec: HumanTouchSpec,
+    /// As many a kind.
+    pub touches: Vec<RecordedTouch>,
+}
+
+/// A touch and when it is recorded.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordedTouch {
+    /// The touch.
+    pub touch: HumanTouch,
+    /// When the hand begins to move, seconds after the first frame.
+    pub onset: f64,
+}
+
+impl HumanTouches {
+    /// Draws every touch of a plan from a stream of its own.
+    ///
+    /// # Errors
+    /// A touch that is longer than a recording.
+    pub fn draw(spec: &HumanTouchSpec, seed: &Seed) -> Result<Self> {
+        let seed = seed.named("human touches");
+        let kinds = spec.kinds.iter();
+        let all = kinds.flat_map(|&kind| (0..spec.per_kind as u64).map(move |k| (kind, k)));
+        let all: Vec<_> = all.collect();
+        let touches = all.into_par_iter().map(|(kind, number)| {
+            let seed = seed.named(kind.name()).numbered(number);
+            let ranges = TouchRanges::usual(kind);
+            let touch = HumanTouch::draw(kind, &ranges, spec.surface(), &seed)?;
+            let spare = spec.duration() - touch.duration();
+            if spare < 0.0 {
+                let given = format!("{} s", spec.duration());
+                let allowed = format!("more: a {} of {:.2} s", kind.name(), touch.duration());
+                return Err(Error::input("key human_touch.duration_s", given, allowed));
+            }
+            let onset = seed.named("onset").rng().gen_range(0.0..=spare);
+            Ok(RecordedTouch { touch, onset })
+        });
+        Ok(Self {
+            spec: spec.clone(),
+            touches: touches.collect::<Result<_>>()?,
+        })
+    }
+
+    /// The touches of a kind, by its label.
+    pub fn of(&self, label: usize) -> &[RecordedTouch] {
+        &self.touches[label * self.spec.per_kind..][..self.spec.per_kind]
+    }
+}
+
+/// Records a touch into its frames, n_frames × n_taxels metres: whether it met nothing, and whether it saturated a taxel.
+pub fn record_touch(
+    skin: &Patch,
+    touch: &RecordedTouch,
+    interval: f64,
+    mut rows: ArrayViewMut2<f32>,
+    workspace: &mut Workspace,
+) -> (bool, bool) {
+    let (mut n_touched, mut n_saturated) = (0, 0);
+    // Most hands only move, and keep their spheres.
+    let mut shape: Option<(Hand, [Model; 1])> = None;
+    for (frame, row) in rows.outer_iter_mut().enumerate() {
+        let state = touch.touch.at(frame as f64 * interval - touch.onset);
+        let known = shape.take().filter(|(hand, _)| *hand == state.hand);
+        let (_, hand) =
+            shape.insert(known.unwrap_or_else(|| (state.hand, [state.spheres().into()])));
+        let contact = press_with_contacts(skin, hand, &[state.patch_from_hand], workspace);
+        n_touched += contact.n_touched;
+        n_saturated += contact.n_saturated;
+        for (to, &from) in row.into_iter().zip(workspace.deflections()) {
+            *to = from as f32;
+        }
+    }
+    (n_touched == 0, n_saturated > 0)
+}
+
+impl TouchSet for HumanTouches {
+    fn classes(&self) -> Vec<(&str, usize)> {
+        let kinds = self.spec.kinds.iter();
+        kinds
+            .map(|kind| (kind.name(), self.spec.per_kind))
+            .collect()
+    }
+
+    fn simulate(&self, (array, n_frames): (&TaxelArray, usize), progress: &dyn Progress) -> Frames {
+        let skin = self.spec.skin(array);
+        let skin = skin.expect("the plan has checked that it fits");
+        let interval = self.spec.interval();
+        let mut frames = Frames::new((array.n_taxels(), n_frames));
+        let record = |touch: &_, workspace: &mut _, rows: ArrayViewMut2<f32>| {
+            record_touch(&skin, touch, interval, rows, workspace)
+        };
+        frames.make(&self.touches, Workspace::new, record, progress);
+        frames
+    }
+
+    fn to_read(&self, _speed: f64, _n_frames: usize, seed: &Seed) -> Vec<TouchToRead> {
+        let mut touches = touches_to_read(self.classes(), seed);
+        for touch in &mut touches {
+            touch.interval = Some(self.spec.interval());
+        }
+        touches
+    }
+
+    fn samples(&self, plan: &Plan, _groups: &[Group]) -> Result<Samples> {
+        human_samples(plan, self)
+    }
+
+    fn settings(&self) -> Vec<(String, String)> {
+        let row = |name: &str, value: String| (name.to_owned(), value);
+        let names = self.class_names();
+        let hz = 1.0 / self.spec.interval();
+        let kinds = format!("{}: {}", names.len(), names.join(", "));
+        let frames = format!("{} at {hz:.0} Hz", self.spec.n_frames());
+        let arm = format!("{:.0} mm across", 2e3 * self.spec.surface());
+        vec![
+            row("Kinds of touch", kinds),
+            row("Frames a touch", frames),
+            row("Arm", arm),
+        ]
+    }
+}

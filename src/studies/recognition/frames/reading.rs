@@ -1,0 +1,247 @@
+//! Frames → signal → measurements of single touches.
+
+use crate::error::Result;
+use crate::random::Seed;
+use crate::sensing::Projection;
+use crate::signal::{Chain, Recording, Scratch};
+use crate::studies::recognition::frames::kept::Frames;
+use crate::studies::recognition::plan::sensed::of_channel;
+use crate::world::Taxel;
+use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis};
+use rayon::prelude::*;
+use std::time::Instant;
+
+/// Frames measured together: one matrix product. Fixed, so that results do not depend on the number of threads.
+const BLOCK: usize = 128;
+
+/// What a reading is made with, the same for all frames.
+#[derive(Clone, Copy)]
+pub struct Reading<'a> {
+    /// The signal of each channel, of each skin that touches are made with.
+    pub chains: &'a [Vec<Chain>],
+    /// The ensemble's matrix.
+    pub projection: &'a Projection,
+    /// The taxels that were pressed.
+    pub taxel: Taxel,
+    /// Approach speed at the moment of reading, m/s.
+    pub speed: f64,
+}
+
+/// A touch to read.
+#[derive(Clone, Copy, Debug)]
+pub struct TouchToRead {
+    /// Its number: its frames are those from `number · F` on.
+    pub number: usize,
+    /// Its name: what its own randomness is drawn from.
+    pub seed: Seed,
+    /// Seconds between its frames; `None` when the press waits at each.
+    pub interval: Option<f64>,
+    /// The number of the touch that came before it; `None` for a fresh skin.
+    pub before: Option<usize>,
+    /// The number of its skin among the reading's chains.
+    pub skin: usize,
+}
+
+/// All touches of some classes, named by their class and their number within it; each at rest while it is read, on a fresh skin.
+pub fn touches_to_read<'a>(
+    classes: impl IntoIterator<Item = (&'a str, usize)>,
+    seed: &Seed,
+) -> Vec<TouchToRead> {
+    let mut touches = Vec::new();
+    for (name, n_touches) in classes {
+        let class = seed.named(name);
+        for touch in 0..n_touches as u64 {
+            touches.push(TouchToRead {
+                number: touches.len(),
+                seed: class.numbered(touch),
+                interval: None,
+                before: None,
+                skin: 0,
+            });
+        }
+    }
+    touches
+}
+
+/// Reads touches. With the measurements (n_touches · F) × m come processor-seconds.
+///
+/// # Errors
+/// Frames that are in a file cannot be read.
+pub fn measure(
+    reading: Reading,
+    frames: &Frames,
+    touches: &[TouchToRead],
+) -> Result<(Array2<f64>, f64)> {
+    let (n_touches, n_frames) = (touches.len(), frames.facts.n_frames);
+    let block = (BLOCK / n_frames.max(1)).max(1);
+    let n_measurements = reading.projection.n_measurements();
+    let mut values = Array2::zeros((n_touches * n_frames, n_measurements));
+    let cpu_s = values
+        .axis_chunks_iter_mut(Axis(0), block * n_frames.max(1))
+        .into_par_iter()
+        .zip(touches.par_chunks(block))
+        .map_init(Working::default, |working, (out, touches)| {
+            let start = Instant::now();
+            measure_block(reading, frames, touches, working, out)?;
+            Ok(start.elapsed().as_secs_f64())
+        })
+        .collect::<Result<Vec<_>>>()?
+        .iter()
+        .sum();
+    Ok((values, cpu_s))
+}
+
+/// What a thread works in, for one block after the other.
+#[derive(Debug, Default)]
+struct Working {
+    /// Frames of a block.
+    frames: Vec<f64>,
+    /// Those of a channel of a touch, behind two that may have come before it.
+    with_history: Vec<f64>,
+    /// A frame of the touch before.
+    deepest: Vec<f64>,
+    rates: Vec<f64>,
+    scratch: Scratch,
+}
+
+/// Reads some touches, F frames each.
+fn measure_block(
+    reading: Reading,
+    kept: &Frames,
+    touches: &[TouchToRead],
+    working: &mut Working,
+    out: ArrayViewMut2<f64>,
+) -> Result<()> {
+    let (n_frames, n_values) = (kept.facts.n_frames, kept.n_values);
+    let mut frames = std::mem::take(&mut working.frames);
+    // Whatever is there of another block is read over.
+    frames.resize(touches.len() * n_frames * n_values, 0.0);
+    let of_touches = frames.chunks_exact_mut(n_frames * n_values);
+    for (touch, frames) in touches.iter().zip(of_touches) {
+        for (frame, row) in frames.chunks_exact_mut(n_values).enumerate() {
+            kept.read(touch.number * n_frames + frame, row);
+        }
+        let before = touch.before.filter(|_| remembers(&reading, touch));
+        if let Some(before) = before {
+            working.deepest.resize(n_values, 0.0);
+            kept.read((before + 1) * n_frames - 1, &mut working.deepest);
+        }
+        let touch = TouchToRead { before, ..*touch };
+        match (before, &reading.chains[touch.skin][..]) {
+            (None, [chain]) => {
+                let rates = rates_of(frames, &reading.taxel, reading.speed, &mut working.rates);
+                let recording = recording(frames, (rates, 0), &touch);
+                chain.apply_recording(recording, &touch.seed, &mut working.scratch);
+            }
+            (_, chains) => {
+                for channel in 0..chains.len() {
+                    read_channel(&reading, (&touch, channel), frames, working);
+                }
+            }
+        }
+    }
+    let shape = (touches.len() * n_frames, n_values);
+    let read = ArrayView2::from_shape(shape, &frames).expect("whole frames");
+    reading.projection.measure_into(read, out);
+    working.frames = frames;
+    Ok(())
+}
+
+fn recording<'a>(
+    frames: &'a mut [f64],
+    (rates, n_before): (Option<&'a [f64]>, usize),
+    touch: &TouchToRead,
+) -> Recording<'a> {
+    Recording {
+        frames,
+        rates,
+        n_before,
+        interval: touch.interval,
+        time: None,
+    }
+}
+
+/// Whether what came before a touch changes what is read of it.
+fn remembers(reading: &Reading, touch: &TouchToRead) -> bool {
+    reading.chains[touch.skin].iter().any(Chain::remembers)
+}
+
+/// Reads one channel of a touch's frames, in place.
+fn read_channel(
+    reading: &Reading,
+    (touch, channel): (&TouchToRead, usize),
+    frames: &mut [f64],
+    working: &mut Working,
+) {
+    let chains = &reading.chains[touch.skin];
+    let n_taxels = chains[channel].n_taxels();
+    let taxels = channel * n_taxels..(channel + 1) * n_taxels;
+    let Working {
+        with_history,
+        deepest,
+        rates,
+        scratch,
+        ..
+    } = working;
+    with_history.clear();
+    if touch.before.is_some() {
+        // The deepest frame of the touch before, and the skin let go.
+        with_history.extend_from_slice(&deepest[taxels.clone()]);
+        with_history.resize(2 * n_taxels, 0.0);
+    }
+    let n_before = with_history.len() / n_taxels;
+    let n_values = chains.len() * n_taxels;
+    for frame in frames.chunks_exact(n_values) {
+        with_history.extend_from_slice(&frame[taxels.clone()]);
+    }
+    let rates = rates_of(with_history, &reading.taxel, reading.speed, rates);
+    let recording = recording(with_history, (rates, n_before), touch);
+    let named = of_channel(&touch.seed, channel);
+    chains[channel].apply_recording(recording, &named, scratch);
+    let read = with_history[n_before * n_taxels..].chunks_exact(n_taxels);
+    for (frame, read) in frames.chunks_exact_mut(n_values).zip(read) {
+        frame[taxels.clone()].copy_from_slice(read);
+    }
+}
+
+/// δ̇ of every taxel: the approach speed (m/s) where the object pushes a taxel that can still move; `None` at rest.
+pub fn rates_of<'a>(
+    frame: &[f64],
+    taxel: &Taxel,
+    speed: f64,
+    rates: &'a mut Vec<f64>,
+) -> Option<&'a [f64]> {
+    if speed == 0.0 {
+        return None;
+    }
+    // Frames are kept in f32, where a saturated taxel holds the rounded stroke, which may be the smaller one.
+    let stroke = taxel.stroke as f32;
+    let moves = |deflection: f64| deflection > 0.0 && (deflection as f32) < stroke;
+    rates.clear();
+    rates.extend(frame.iter().map(|&d| if moves(d) { speed } else { 0.0 }));
+    Some(rates)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_damper_feels_taxels_that_move_and_none_that_is_free_or_saturated() {
+        // 5 mm is smaller in f32 than in f64, 3 mm is larger.
+        for stroke in [5e-3, 3e-3] {
+            let taxel = Taxel {
+                radius: 1e-3,
+                stiffness: 100.0,
+                damping: 1.0,
+                stroke,
+            };
+            let kept = |d: f64| f64::from(d as f32);
+            let frame = [0.0, kept(1e-3), kept(stroke), stroke];
+            let mut rates = Vec::new();
+            let given = rates_of(&frame, &taxel, 0.01, &mut rates);
+            assert_eq!(given, Some(&[0.0, 0.01, 0.0, 0.0][..]), "stroke {stroke}");
+            assert_eq!(rates_of(&frame, &taxel, 0.0, &mut rates), None);
+        }
+    }
+}

@@ -1,0 +1,641 @@
+//! Recorded frames of a study: read once, in the place of touches that are simulated.
+//!
+//! A reading v stands for the deflection `(v − zero) / (full_scale − zero)` of a stroke, so that noise and sensor errors that a study adds, which
+//! are shares of the full scale, mean the same as on a simulated skin. Readings of forces across the axes of taxels are newtons.
+
+use crate::calibration::plateau;
+use crate::contact::saturation_limit;
+use crate::engine::progress::Progress;
+use crate::error::{Error, Result};
+use crate::inputs::arrays::axis_order::FrameShape;
+use crate::inputs::arrays::whole_numbers::{
+    ClassLabels, KeyValue, group_keys, read_class_values, read_group_values,
+};
+use crate::inputs::arrays::{ElementKind, FileArray};
+use crate::inputs::memory::check_memory;
+use crate::inputs::object_files::file_content;
+use crate::learning::data::split::Side;
+use crate::random::Seed;
+use crate::report::snapshots::Snapshots;
+use crate::signal::Quantity;
+use crate::studies::recognition::frames::kept::Frames;
+use crate::studies::recognition::frames::reading::{TouchToRead, touches_to_read};
+use crate::studies::recognition::frames::samples::{Samples, spread_samples};
+use crate::studies::recognition::frames::touch_set::TouchSet;
+use crate::studies::recognition::plan::group::Group;
+use crate::studies::recognition::plan::plan::Plan;
+use crate::studies::recognition::plan::taxel_array::TaxelArray;
+use crate::studies::recognition::spec::recorded::{PreviousTouch, RecordedSpec, ZeroSpec};
+use ndarray::{Array1, Array2, ArrayView1, ArrayViewMut2, Axis, concatenate};
+use rand::Rng;
+use std::collections::{BTreeMap, HashSet};
+use std::path::Path;
+
+/// Share of its readings that a taxel lacks (NaN) from which on it is masked. Larger refuses recordings with a taxel that failed now and
+/// then; smaller masks a taxel for a few lost readings.
+const MASKED: f64 = 0.1;
+
+/// Touches that a skin has read.
+#[derive(Clone, Debug)]
+pub struct RecordedFrames {
+    /// Where they are from.
+    pub spec: RecordedSpec,
+    /// Of the classes, by their labels.
+    names: Vec<String>,
+    /// What the randomness of each class is drawn from.
+    streams: Vec<String>,
+    /// Touches of each class.
+    counts: Vec<usize>,
+    /// Frames as they were read, of the touches that train (or all), and of the given test set.
+    readings: [Array2<f64>; 2],
+    /// The place of each touch among those of both, class by class.
+    order: Vec<usize>,
+    /// Whether each value of a frame is masked.
+    is_masked: Vec<bool>,
+    /// What each taxel reads that nothing touches; 0 of a masked one.
+    zeros: Vec<f64>,
+    /// The reading of a taxel at its stroke.
+    full_scale: f64,
+    /// The reading from which on a taxel is saturated.
+    saturation: f64,
+    /// F, frames a touch.
+    n_frames: usize,
+    /// Taxels; a frame may have more values.
+    n_taxels: usize,
+    /// Of each touch, in the same order.
+    groups: Option<Array1<usize>>,
+    /// On which side of a given split each touch is.
+    sides: Option<Vec<Side>>,
+    /// Metres that each touch was pressed.
+    depths: Option<Vec<f64>>,
+}
+
+/// Frames of a file and what they are.
+struct FramesOfFile {
+    shape: FrameShape,
+    readings: Array2<f64>,
+    kind: ElementKind,
+    place: String,
+    /// The file of the forces across, if they have one of their own.
+    shear_place: Option<String>,
+}
+
+impl RecordedFrames {
+    /// Reads the files, unless the frames take more bytes than `ceiling` (`None`: no limit).
+    ///
+    /// # Errors
+    /// A file that cannot be read, or does not fit the others; a reading that is infinite, or NaN though its taxel is not masked.
+    pub fn read(spec: &RecordedSpec, ceiling: Option<u64>) -> Result<Self> {
+        spec.check_files()?;
+        let train = spec.read_frames("frames", ceiling)?;
+        let test = match spec.has_test_set() {
+            true => Some(spec.read_frames("frames_test", ceiling)?),
+            false => None,
+        };
+        let files: Vec<&FramesOfFile> = [Some(&train), test.as_ref()]
+            .into_iter()
+            .flatten()
+            .collect();
+        if let Some(test) = &test {
+            let axes = |shape: &FrameShape| [shape.n_frames, shape.rows, shape.columns];
+            if axes(&test.shape) != axes(&train.shape) {
+                let [given, allowed] = [&test.shape, &train.shape].map(|shape| {
+                    let [n_frames, rows, columns] = axes(shape);
+                    format!("touches of {n_frames} frames of {rows} × {columns} taxels")
+                });
+                let allowed = format!("{allowed}, as {} has", train.place);
+                return Err(Error::input(&test.place, given, allowed));
+            }
+        }
+        let n_train = train.shape.n_touches;
+        let n_test = test.as_ref().map_or(0, |test| test.shape.n_touches);
+        let labels = spec.class_labels([n_train, n_test])?;
+        let (names, streams, counts) = spec.classes(&labels)?;
+        let mut order: Vec<usize> = (0..n_train + n_test).collect();
+        order.sort_by_key(|&touch| labels.labels[touch]);
+        let groups = spec.group_keys([n_train, n_test])?;
+        let groups = groups.map(|groups| order.iter().map(|&touch| groups[touch]).collect());
+        let side = |&touch: &usize| match touch < n_train {
+            true => Side::Train,
+            false => Side::Test,
+        };
+        let sides = test
+            .as_ref()
+            .map(|_| order.iter().map(side).collect::<Vec<_>>());
+        if let Some(sides) = &sides {
+            spec.check_test_set(&names, &order, sides, &labels)?;
+        }
+        let depths = spec.read_depths(n_train + n_test)?;
+        let depths = depths.map(|depths| order.iter().map(|&touch| depths[touch]).collect());
+        let n_taxels = train.shape.rows * train.shape.columns;
+        let is_masked = masked(&files, n_taxels)?;
+        let zeros = spec.checked_zeros(&train.shape, &is_masked)?;
+        let (full_scale, saturation) = spec.full_scale_of(&files, &zeros, depths.is_some())?;
+        let n_frames = train.shape.n_frames;
+        let none = Array2::zeros((0, train.readings.ncols()));
+        Ok(Self {
+            spec: spec.clone(),
+            names,
+            streams,
+            counts,
+            order,
+            is_masked,
+            zeros,
+            full_scale,
+            saturation,
+            n_frames,
+            n_taxels,
+            groups,
+            sides,
+            depths,
+            readings: [train.readings, test.map_or(none, |test| test.readings)],
+        })
+    }
+
+    /// The readings of a frame of a touch.
+    fn frame(&self, touch: usize, frame: usize) -> ArrayView1<'_, f64> {
+        let row = self.order[touch] * self.n_frames + frame;
+        let [train, test] = &self.readings;
+        match row.checked_sub(train.nrows()) {
+            None => train.row(row),
+            Some(row) => test.row(row),
+        }
+    }
+
+    /// A frame of a touch: metres of deflection, and newtons of forces across.
+    fn values(&self, (touch, frame): (usize, usize), stroke: f64) -> Array1<f64> {
+        let readings = self.frame(touch, frame);
+        let values = readings.iter().zip(&self.is_masked).enumerate();
+        let values = values.map(
+            |(place, (&reading, &is_masked))| match place < self.n_taxels {
+                _ if is_masked => 0.0,
+                true => {
+                    let zero = self.zeros[place];
+                    (reading - zero) / (self.full_scale - zero) * stroke
+                }
+                false => reading,
+            },
+        );
+        values.collect()
+    }
+
+    /// Readings of a touch along the axes of its taxels and what the taxels read that nothing touches, without those that are masked.
+    fn pushes(&self, touch: usize) -> impl Iterator<Item = (f64, f64)> + '_ {
+        let frames = (0..self.n_frames).flat_map(move |frame| {
+            let readings = self.frame(touch, frame).into_iter().zip(&self.is_masked);
+            readings.zip(&self.zeros)
+        });
+        frames.filter_map(|((&reading, &is_masked), &zero)| (!is_masked).then_some((reading, zero)))
+    }
+}
+
+impl RecordedSpec {
+    /// SHA-256 of each file, by its path.
+    ///
+    /// # Errors
+    /// One that cannot be read.
+    pub fn content(&self) -> Result<BTreeMap<String, String>> {
+        let files = self.files().into_iter();
+        let content = files.map(|path| Ok((path.display().to_string(), file_content(path)?)));
+        content.collect()
+    }
+
+    fn read_frames(&self, name: &str, ceiling: Option<u64>) -> Result<FramesOfFile> {
+        let path = self.file_of(name).unwrap_or(&self.frames);
+        let shape = self.shape_of(name)?;
+        let shear = self.shear_shape(name, &shape)?;
+        let n = shape.n_touches;
+        let of_shear = shear.as_ref().map_or(0, FrameShape::n_frame_values);
+        let n_values = shape.n_frame_values() + of_shear;
+        // Twice in f64 where the axes are moved or files are joined.
+        let bytes = 16.0 * (n * shape.n_frames) as f64 * n_values as f64;
+        check_memory(bytes, ceiling, "frames")
+            .map_err(|allowed| Error::input(path.display(), format!("{n} touches"), allowed))?;
+        let array = FileArray::read(path, name)?;
+        let (place, kind) = (array.place.clone(), array.kind);
+        let mut readings = shape.arrange(array.into_numbers()?);
+        let mut shear_place = None;
+        if let (Some((path, name)), Some(shape)) = (self.shear_of(name), shear) {
+            let array = FileArray::read(path, name)?;
+            shear_place = Some(array.place.clone());
+            let across = shape.arrange(array.into_numbers()?);
+            readings = concatenate![Axis(1), readings, across];
+        }
+        Ok(FramesOfFile {
+            readings,
+            shape,
+            kind,
+            place,
+            shear_place,
+        })
+    }
+
+    /// The classes of all touches, those of the test set last.
+    fn class_labels(&self, n: [usize; 2]) -> Result<ClassLabels> {
+        let mut values = Vec::new();
+        for (name, n) in ["labels", "labels_test"].into_iter().zip(n) {
+            let Some(path) = self.file_of(name).filter(|_| n > 0) else {
+                continue;
+            };
+            let own = read_class_values(path, name, n)?;
+            one_each(path, (own.len(), n), &self.frames)?;
+            let is_text = |value: &KeyValue| matches!(value, KeyValue::Text(_));
+            if let (Some(first), Some(other)) = (own.first(), values.first())
+                && is_text(first) != is_text(other)
+            {
+                let allowed = format!("texts or numbers, as {}", self.labels.display());
+                let given = "numbers in one file and texts in the other";
+                return Err(Error::input(path.display(), given, allowed));
+            }
+            values.extend(own);
+        }
+        let labels = ClassLabels::new(&values);
+        let (Some(names), Some(KeyValue::Text(_))) = (&self.names, values.first()) else {
+            return Ok(labels);
+        };
+        // Texts are numbered as the names are.
+        let known: Vec<KeyValue> = names.iter().cloned().map(KeyValue::Text).collect();
+        let number = |value: &KeyValue| known.iter().position(|name| name == value);
+        match values.iter().map(number).collect::<Option<Vec<_>>>() {
+            Some(numbers) => Ok(ClassLabels {
+                labels: numbers,
+                classes: known,
+            }),
+            // Other words for the classes, in the order of their first touches.
+            None => Ok(labels),
+        }
+    }
+
+    /// Names of the classes, what their randomness is drawn from, and how many touches each has.
+    fn classes(&self, labels: &ClassLabels) -> Result<(Vec<String>, Vec<String>, Vec<usize>)> {
+        let n_classes = labels.classes.len();
+        let mut counts = vec![0; n_classes];
+        for &label in &labels.labels {
+            counts[label] += 1;
+        }
+        let file = self.file_of("labels").unwrap_or(&self.labels);
+        if let Some(label) = counts.iter().position(|&count| count == 0) {
+            let given = format!("no touch of class {}", name_of(&labels.classes[label]));
+            return Err(Error::input(file.display(), given, "touches of each class"));
+        }
+        let (names, streams): (Vec<String>, Vec<String>) = match &self.names {
+            None => {
+                let classes = labels.classes.iter().enumerate();
+                let names = classes.map(|(number, class)| match class {
+                    KeyValue::Integer(value) => {
+                        (format!("class {value}"), format!("class {number}"))
+                    }
+                    KeyValue::Text(text) => (text.clone(), text.clone()),
+                });
+                names.unzip()
+            }
+            Some(names) if names.len() == n_classes => (names.clone(), names.clone()),
+            Some(names) => {
+                let given = format!("{} names", names.len());
+                let allowed = format!("{n_classes}, one a class of {}", file.display());
+                return Err(Error::input("key recorded.names", given, allowed));
+            }
+        };
+        if let Some(name) = (1..names.len()).find(|&k| names[..k].contains(&names[k])) {
+            let given = format!("{:?} twice", names[name]);
+            return Err(Error::input("key recorded.names", given, "each name once"));
+        }
+        Ok((names, streams, counts))
+    }
+
+    /// The group of every touch, those of the test set last.
+    fn group_keys(&self, [n_train, n_test]: [usize; 2]) -> Result<Option<Vec<usize>>> {
+        let read = |name: &str, n: usize| -> Result<Option<Vec<KeyValue>>> {
+            match self.file_of(name) {
+                None => Ok(None),
+                Some(path) => {
+                    let groups = read_group_values(path, name, n)?;
+                    one_each(path, (groups.len(), n), &self.frames)?;
+                    Ok(Some(groups))
+                }
+            }
+        };
+        let (train, test) = (read("groups", n_train)?, read("groups_test", n_test)?);
+        if n_test == 0 {
+            return Ok(train.map(|groups| group_keys(&groups)));
+        }
+        match (train, test) {
+            (None, None) => Ok(None),
+            (Some(_), None) => {
+                let allowed = "the groups of the test set beside groups, or neither of them";
+                Err(Error::input(
+                    "key recorded.groups_test",
+                    "no such key",
+                    allowed,
+                ))
+            }
+            (None, Some(test)) => {
+                // Training touches are groups of their own.
+                let keys = group_keys(&test);
+                let first = keys.iter().max().map_or(0, |last| last + 1);
+                Ok(Some((first..first + n_train).chain(keys).collect()))
+            }
+            (Some(train), Some(test)) => {
+                let known: HashSet<&KeyValue> = train.iter().collect();
+                if let Some(both) = test.iter().find(|group| known.contains(group)) {
+                    let given = format!("group {} in both sets", name_of(both));
+                    let allowed = "groups that either train or test";
+                    return Err(Error::input("key recorded.groups_test", given, allowed));
+                }
+                Ok(Some(group_keys(&[train, test].concat())))
+            }
+        }
+    }
+
+    /// Refuses a class that only trains or is only tested.
+    fn check_test_set(
+        &self,
+        names: &[String],
+        order: &[usize],
+        sides: &[Side],
+        labels: &ClassLabels,
+    ) -> Result<()> {
+        for (label, name) in names.iter().enumerate() {
+            for (side, key) in [(Side::Train, "frames"), (Side::Test, "frames_test")] {
+                let mut touches = order.iter().zip(sides);
+                if !touches.any(|(&touch, own)| *own == side && labels.labels[touch] == label) {
+                    let given = format!("no touch of {name}");
+                    let allowed =
+                        "touches of each class among those that train and in the test set";
+                    return Err(Error::input(format!("key recorded.{key}"), given, allowed));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn read_depths(&self, n: usize) -> Result<Option<Vec<f64>>> {
+        let Some(path) = &self.depths else {
+            return Ok(None);
+        };
+        let depths = FileArray::read(path, "depths")?.into_numbers()?;
+        one_each(path, (depths.len(), n), &self.frames)?;
+        match depths
+            .iter()
+            .position(|depth| !(depth.is_finite() && *depth > 0.0))
+        {
+            None => Ok(Some(depths.into_iter().collect())),
+            Some(touch) => {
+                let place = format!("{}, position {touch}", path.display());
+                let given = depths.iter().nth(touch).copied().unwrap_or(f64::NAN);
+                Err(Error::input(place, given, "a positive number of metres"))
+            }
+        }
+    }
+
+    /// What each taxel reads that nothing touches; 0 of a masked one.
+    fn checked_zeros(&self, shape: &FrameShape, is_masked: &[bool]) -> Result<Vec<f64>> {
+        let mut zeros = self.zeros(shape)?;
+        for (taxel, zero) in zeros.iter_mut().enumerate() {
+            if is_masked[taxel] {
+                *zero = 0.0;
+            } else if !zero.is_finite()
+                && let ZeroSpec::Each(path) = &self.zero
+            {
+                let place = format!("{}, taxel {taxel}", path.display());
+                let allowed = "a finite number (only a taxel that is masked may be without one)";
+                return Err(Error::input(place, *zero, allowed));
+            }
+        }
+        Ok(zeros)
+    }
+
+    /// The reading of a taxel at its full scale, and that from which on it is saturated: at or above a full scale that is given, or at a largest
+    /// reading that many frames share (of touches whose depths are known, that may be their depth).
+    fn full_scale_of(
+        &self,
+        files: &[&FramesOfFile],
+        zeros: &[f64],
+        are_depths_known: bool,
+    ) -> Result<(f64, f64)> {
+        let frames = || files.iter().flat_map(|file| file.readings.outer_iter());
+        let pushes = || frames().map(|frame| frame.into_iter().take(zeros.len()).copied());
+        let largest = pushes().flatten().filter(|reading| !reading.is_nan());
+        let largest = largest.fold(f64::NEG_INFINITY, f64::max);
+        let full_scale = self.full_scale.unwrap_or(largest);
+        let highest = zeros.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        if highest >= full_scale {
+            return Err(match &self.zero {
+                ZeroSpec::One(zero) => {
+                    let given = format!("no reading above recorded.zero, {zero}");
+                    Error::input(self.frames.display(), given, "touches")
+                }
+                ZeroSpec::Each(path) => {
+                    let taxel = zeros.iter().position(|&zero| zero == highest);
+                    let place = format!("{}, taxel {}", path.display(), taxel.unwrap_or(0));
+                    let allowed = match self.full_scale {
+                        Some(full_scale) => format!("below recorded.full_scale, {full_scale}"),
+                        None => format!(
+                            "below the largest reading, {largest}, which stands for the full scale"
+                        ),
+                    };
+                    Error::input(place, highest, allowed)
+                }
+            });
+        }
+        let spacing = match files[0].kind {
+            ElementKind::Float(spacing) => spacing,
+            _ => 0.0,
+        };
+        let given = self.full_scale.map(|full| full - spacing * full.abs());
+        let shared = match are_depths_known {
+            true => None,
+            false => plateau(pushes).filter(|&level| level > highest),
+        };
+        let saturation = given
+            .unwrap_or(f64::INFINITY)
+            .min(shared.unwrap_or(f64::INFINITY));
+        Ok((full_scale, saturation))
+    }
+}
+
+/// Refuses another number of values than touches.
+fn one_each(path: &Path, (n_given, n): (usize, usize), frames: &Path) -> Result<()> {
+    let given = format!("{n_given} numbers");
+    let allowed = format!("{n}, one a touch of {}", frames.display());
+    match n_given == n {
+        true => Ok(()),
+        false => Err(Error::input(path.display(), given, allowed)),
+    }
+}
+
+fn name_of(value: &KeyValue) -> String {
+    match value {
+        KeyValue::Integer(number) => number.to_string(),
+        KeyValue::Text(text) => text.clone(),
+    }
+}
+
+/// Whether each value of a frame is NaN in so many frames that its taxel is masked.
+fn masked(files: &[&FramesOfFile], n_taxels: usize) -> Result<Vec<bool>> {
+    let n_values = files[0].readings.ncols();
+    let n_frames: usize = files.iter().map(|file| file.readings.nrows()).sum();
+    let mut n_missing = vec![0_usize; n_values];
+    for file in files {
+        for frame in file.readings.outer_iter() {
+            for (n, reading) in n_missing.iter_mut().zip(frame) {
+                *n += usize::from(reading.is_nan());
+            }
+        }
+    }
+    let of_taxel = |place: usize| n_missing.iter().skip(place % n_taxels).step_by(n_taxels);
+    let most = |place: usize| of_taxel(place).copied().max().unwrap_or(0);
+    let is_masked = (0..n_values).map(|place| most(place) as f64 >= MASKED * n_frames as f64);
+    let is_masked: Vec<bool> = (0..n_values)
+        .zip(is_masked)
+        .map(|(place, is_masked)| is_masked && most(place) > 0)
+        .collect();
+    for file in files {
+        for ((row, place), &reading) in file.readings.indexed_iter() {
+            if reading.is_finite() || is_masked[place] {
+                continue;
+            }
+            let taxel = place % n_taxels;
+            let own = file.shear_place.as_ref().filter(|_| place >= n_taxels);
+            let own = own.unwrap_or(&file.place);
+            let at = format!("{own}, frame {row}, taxel {taxel}");
+            let allowed = match reading.is_nan() {
+                true => format!(
+                    "a finite number (a taxel that is NaN in at least {:.0} % of the frames is masked; this one is in {} of {n_frames})",
+                    100.0 * MASKED,
+                    most(place)
+                ),
+                false => "a finite number".to_owned(),
+            };
+            return Err(Error::input(at, reading, allowed));
+        }
+    }
+    match is_masked.iter().all(|&is_masked| is_masked) {
+        true => Err(Error::input(
+            &files[0].place,
+            "no taxel with readings",
+            "numbers",
+        )),
+        false => Ok(is_masked),
+    }
+}
+
+impl TouchSet for RecordedFrames {
+    fn classes(&self) -> Vec<(&str, usize)> {
+        let names = self.names.iter().map(String::as_str);
+        names.zip(self.counts.iter().copied()).collect()
+    }
+
+    fn own_groups(&self) -> Option<Array1<usize>> {
+        self.groups.clone()
+    }
+
+    fn given_sides(&self) -> Option<&[Side]> {
+        self.sides.as_deref()
+    }
+
+    fn n_masked(&self) -> (usize, usize) {
+        let of_taxels = &self.is_masked[..self.n_taxels];
+        (of_taxels.iter().filter(|&&is| is).count(), self.n_taxels)
+    }
+
+    fn simulate(&self, (array, n_frames): (&TaxelArray, usize), progress: &dyn Progress) -> Frames {
+        let stroke = array.taxel().stroke;
+        let mut frames = Frames::new((array.n_values(), n_frames));
+        let touches: Vec<usize> = (0..self.order.len()).collect();
+        let copy = |&touch: &usize, _: &mut (), mut rows: ArrayViewMut2<f32>| {
+            for (frame, row) in rows.outer_iter_mut().enumerate() {
+                let values = self.values((touch, frame), stroke);
+                for (to, from) in row.into_iter().zip(values) {
+                    *to = from as f32;
+                }
+            }
+            let mut pushes = self.pushes(touch);
+            let is_missed = !self.pushes(touch).any(|(reading, zero)| reading > zero);
+            (
+                is_missed,
+                pushes.any(|(reading, _)| reading >= self.saturation),
+            )
+        };
+        frames.make(&touches, || (), copy, progress);
+        frames
+    }
+
+    /// Touches at the study's speed or rate, each after another one that is drawn at random: as pressed objects, or as the keys say.
+    fn to_read(&self, speed: f64, n_frames: usize, seed: &Seed) -> Vec<TouchToRead> {
+        let streams = self.streams.iter().map(String::as_str);
+        let mut touches = touches_to_read(streams.zip(self.counts.iter().copied()), seed);
+        let n_touches = touches.len();
+        for (number, touch) in touches.iter_mut().enumerate() {
+            let depth = self.depths.as_ref().map(|depths| depths[number]);
+            let depth = depth.filter(|_| speed > 0.0);
+            let at_speed = depth.map(|depth| depth / (n_frames as f64 * speed));
+            touch.interval = self.spec.frame_interval_s.or(at_speed);
+            if self.spec.previous_touch == PreviousTouch::Random {
+                let mut rng = touch.seed.named("before").rng();
+                touch.before = Some(rng.gen_range(0..n_touches));
+            }
+        }
+        touches
+    }
+
+    fn n_deeper_than(&self, stroke: f64) -> usize {
+        let limit = saturation_limit(stroke);
+        let depths = self.depths.iter().flatten();
+        depths.filter(|&&depth| depth > limit).count()
+    }
+
+    /// The last frame of the first touch of each class.
+    fn samples(&self, plan: &Plan, _groups: &[Group]) -> Result<Samples> {
+        let array = &plan.arrays[0];
+        let (cells, stroke) = (array.picture_cells(), array.taxel().stroke);
+        let mut first = 0;
+        let frames = self.classes().into_iter().map(|(name, count)| {
+            let values = self.values((first, self.n_frames - 1), stroke);
+            first += count;
+            let frame = cells.mapv(|taxel| taxel.map_or(0.0, |taxel| values[taxel]));
+            (name.replace('_', " "), frame)
+        });
+        let frames: Vec<(String, Array2<f64>)> = frames.collect();
+        let set = |frames| Snapshots {
+            frames,
+            pitch_mm: array.picture_pitch_mm(),
+            quantity: Quantity::Deflection,
+            caption: format!("One recorded touch each on {}", array.describe_taxels()),
+        };
+        let chosen = spread_samples(plan, &self.class_names())?;
+        let shown = chosen.into_iter().map(|label| frames[label].clone());
+        Ok(Samples {
+            shown: set(shown.collect()),
+            each: Some(set(frames)),
+        })
+    }
+
+    fn settings(&self) -> Vec<(String, String)> {
+        let row = |name: &str, value: String| (name.to_owned(), value);
+        let names = self.class_names();
+        let mut rows = vec![
+            row(
+                "Recorded classes",
+                format!("{}: {}", names.len(), names.join(", ")),
+            ),
+            row("Frames a touch", self.n_frames.to_string()),
+            row("Recorded in", self.spec.frames.display().to_string()),
+        ];
+        let masked = self.is_masked[..self.n_taxels].iter().enumerate();
+        let masked = masked
+            .filter(|&(_, &is)| is)
+            .map(|(taxel, _)| taxel.to_string());
+        let masked: Vec<String> = masked.collect();
+        if !masked.is_empty() {
+            let taxels = format!(
+                "{} of {}: {}",
+                masked.len(),
+                self.n_taxels,
+                masked.join(", ")
+            );
+            rows.push(row("Masked taxels, from 0", taxels));
+        }
+        rows
+    }
+}

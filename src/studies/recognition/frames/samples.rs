@@ -1,0 +1,212 @@
+//! Sample touches for the eye: what the array feels of a few objects, noise included.
+
+use crate::engine::progress::Silent;
+use crate::error::{Error, Result};
+use crate::inputs::sensor_errors::strength_columns;
+use crate::random::Seed;
+use crate::report::snapshots::Snapshots;
+use crate::sensing::{Ensemble, Projection};
+use crate::signal::{Chain, SensorError, SignalStep, Strength};
+use crate::studies::recognition::frames::reading::{Reading, measure, touches_to_read};
+use crate::studies::recognition::frames::simulation::simulate_array;
+use crate::studies::recognition::frames::touch_set::TouchSet;
+use crate::studies::recognition::plan::group::Group;
+use crate::studies::recognition::plan::plan::Plan;
+use crate::studies::recognition::plan::taxel_array::skin;
+use crate::studies::recognition::spec::signal::{CombineSpec, StepSpec};
+use crate::studies::recognition::touches::drawn_touches::TouchedObject;
+use ndarray::{Array2, ArrayView1};
+
+/// How many objects a picture of samples shows when the study names none.
+const N_SAMPLES: usize = 4;
+
+/// First touches of a study's objects.
+#[derive(Clone, Debug)]
+pub struct Samples {
+    /// What its picture shows.
+    pub shown: Snapshots,
+    /// One touch of each object; none where touches are of a hand.
+    pub each: Option<Snapshots>,
+}
+
+/// The first touch of the objects that the study names for its picture (else of four spread over its list), read with its
+/// finest array at its highest noise, before smoothing; in a study of one imperfection at a time, the first touch of the first
+/// of them, read with each imperfection at its last value. A skin that remembers was touched by the last of them before. Beside them the
+/// first touch of every object, at the highest noise.
+///
+/// # Errors
+/// What a signal step refuses.
+pub fn sample_frames(plan: &Plan, groups: &[Group], touched: &[TouchedObject]) -> Result<Samples> {
+    let group = loudest_group(plan, groups)
+        .ok_or_else(|| Error::input("study", "no cells", "at least one value an axis"))?;
+    let on = &plan.arrays[group.array];
+    let names: Vec<&str> = touched.iter().map(|t| t.object.name.as_str()).collect();
+    let chosen = spread_samples(plan, &names)?;
+    let before = chosen.last().copied().unwrap_or(0);
+    let name = |label: usize| names[label].replace('_', " ");
+    let array = on.describe_taxels();
+    let quantity = chains(plan, group)?[0].quantity();
+    let noise = match group.condition.noise {
+        0.0 => "no noise".to_owned(),
+        level => format!("noise of {}", plan.describe_noise(level)),
+    };
+    let each = read(plan, group, (touched, before))?;
+    let set = |frames, caption| Snapshots {
+        frames,
+        pitch_mm: on.picture_pitch_mm(),
+        quantity,
+        caption,
+    };
+    let each = set(
+        (0..names.len()).map(name).zip(each).collect(),
+        format!("One touch each on {array}, {noise}"),
+    );
+    let groups = imperfect_groups(plan, groups, group.array);
+    let shown = match chosen.first() {
+        Some(&first) if !groups.is_empty() => {
+            // One taxel of a large gain would take the colours of all others.
+            let full_scale = quantity.full_scale(on.taxel());
+            let shown = groups.into_iter().map(|(words, group)| {
+                let frame = read(plan, group, (touched, before))?.swap_remove(first);
+                Ok((words, frame.mapv_into(|value| value.min(full_scale))))
+            });
+            let remembers =
+                |step: &StepSpec| matches!(step, StepSpec::Error(error) if error.about().remembers);
+            let after = match plan.spec.signal.steps.iter().any(remembers) {
+                true => format!(", after one of the {},", name(before)),
+                false => String::new(),
+            };
+            let first = name(first);
+            let caption =
+                format!("A touch of the {first}{after} on {array}; colours end at the full scale");
+            set(shown.collect::<Result<_>>()?, caption)
+        }
+        _ => {
+            let frames = chosen.iter().map(|&label| each.frames[label].clone());
+            set(frames.collect(), each.caption.clone())
+        }
+    };
+    let each = Some(each);
+    Ok(Samples { shown, each })
+}
+
+/// What an array of a group reads of each object's first touch along the axes of its taxels, ny × nx; a skin that remembers was touched by one of them before.
+fn read(
+    plan: &Plan,
+    group: &Group,
+    (touched, before): (&[TouchedObject], usize),
+) -> Result<Vec<Array2<f64>>> {
+    let array = &plan.arrays[group.array];
+    let seed = Seed::new(plan.spec.seed);
+    let first = |t: &TouchedObject| TouchedObject {
+        touches: t.touches[..1].to_vec(),
+        ..t.clone()
+    };
+    let firsts: Vec<TouchedObject> = touched.iter().map(first).collect();
+    let frames = simulate_array(&firsts, array, 1, &Silent);
+    let mut touches = touches_to_read(firsts.classes(), &seed.named("signal").numbered(0));
+    for touch in &mut touches {
+        touch.before = Some(before);
+    }
+    let reading = Reading {
+        chains: &[chains(plan, group)?],
+        projection: &Projection::new(
+            Ensemble::Identity,
+            array.frame_shape(),
+            array.n_values(),
+            &seed,
+        )?,
+        taxel: *array.taxel(),
+        speed: plan.speed,
+    };
+    let (values, _) = measure(reading, &frames, &touches)?;
+    let cells = array.picture_cells();
+    let frame = |row: ArrayView1<f64>| cells.mapv(|taxel| taxel.map_or(0.0, |taxel| row[taxel]));
+    Ok(values.outer_iter().map(frame).collect())
+}
+
+/// The signal of each channel but for smoothing, which hides what it is there to hide.
+fn chains(plan: &Plan, group: &Group) -> Result<Vec<Chain>> {
+    let array = &plan.arrays[group.array];
+    let skin = skin(&Seed::new(plan.spec.seed), array);
+    array.chains(&skin, |skin| {
+        let mut steps = group.signal(plan).steps(skin);
+        steps.retain(|step| !matches!(step, SignalStep::Smoothing { .. }));
+        steps
+    })
+}
+
+/// In a study of one sensor error at a time: the first group of an array, then for each error the group that has it at
+/// its last value, with what to call them. A scan is left out: it does not change a touch that is read once.
+fn imperfect_groups<'a>(
+    plan: &Plan,
+    groups: &'a [Group],
+    array: usize,
+) -> Vec<(String, &'a Group)> {
+    let signal = &plan.spec.signal;
+    if signal.combine != CombineSpec::OneAtATime {
+        return Vec::new();
+    }
+    let groups = || groups.iter().filter(|group| group.array == array);
+    let mut chosen = Vec::new();
+    for (key, _, axis) in signal.axes.given() {
+        let Some(column) = strength_columns().iter().find(|c| c.name == *key) else {
+            continue;
+        };
+        let values = axis.values();
+        let last = *values.last().unwrap_or(&0.0);
+        let shows = |(error, own, value): (SensorError, &Strength, f64)| {
+            own.key == *key && value == last && !error.about().needs_motion
+        };
+        let has_it = |group: &&Group| group.condition.strengths.given().any(shows);
+        if let Some(group) = groups().find(has_it)
+            && values.len() > 1
+        {
+            chosen.push((column.phrase(&last.into()), group));
+        }
+    }
+    if let (Some(first), false) = (groups().next(), chosen.is_empty()) {
+        let condition = &first.condition;
+        let is_ideal = condition.noise == 0.0 && condition.strengths.present().count() == 0;
+        let words = if is_ideal { "ideal" } else { "first values" };
+        chosen.insert(0, (words.to_owned(), first));
+    }
+    chosen
+}
+
+/// The group with the most taxels and, among those, the most noise.
+fn loudest_group<'a>(plan: &Plan, groups: &'a [Group]) -> Option<&'a Group> {
+    let n_taxels = |group: &Group| plan.arrays[group.array].n_taxels();
+    groups.iter().max_by(|a, b| {
+        let by_size = n_taxels(a).cmp(&n_taxels(b));
+        by_size.then(a.condition.noise.total_cmp(&b.condition.noise))
+    })
+}
+
+/// The same, or four that are spread over the list.
+///
+/// # Errors
+/// Those of [`named_samples`].
+pub(crate) fn spread_samples(plan: &Plan, classes: &[&str]) -> Result<Vec<usize>> {
+    let n = N_SAMPLES.min(classes.len());
+    let spread = || (0..n).map(|k| k * classes.len() / n).collect();
+    Ok(named_samples(plan, classes)?.unwrap_or_else(spread))
+}
+
+/// Labels of those that the study names for its picture; `None` where it names none.
+///
+/// # Errors
+/// A name of none of these classes.
+pub(crate) fn named_samples(plan: &Plan, classes: &[&str]) -> Result<Option<Vec<usize>>> {
+    let label = |name: &String| {
+        let found = classes.iter().position(|class| class == name);
+        found.ok_or_else(|| {
+            let allowed = format!("of what the study tells apart: {}", classes.join(", "));
+            Error::input("key report.samples", name, allowed)
+        })
+    };
+    let names = plan.spec.report.samples.as_ref();
+    names
+        .map(|names| names.iter().map(label).collect())
+        .transpose()
+}

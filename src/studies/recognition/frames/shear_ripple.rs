@@ -1,0 +1,137 @@
+//! How uneven a flat face of packed spheres feels to a skin that reads shear.
+//!
+//! On an exact flat face every taxel reads the same shear. Spheres bulge by up to half the surface error, so their contact normals tilt
+//! and the readings of shear ripple, which a classifier can learn.
+
+use crate::error::Result;
+use crate::geometry::Pose;
+use crate::inputs::units::MM;
+use crate::mesh::TriangleMesh;
+use crate::note::note;
+use crate::objects::{MeshModel, Model, Object, Part, Shape, Solid};
+use crate::studies::recognition::frames::array_press::ArrayWorkspace;
+use crate::studies::recognition::plan::plan::Plan;
+use crate::studies::recognition::plan::sensed::Sensed;
+use crate::studies::recognition::plan::taxel_array::TaxelArray;
+use crate::world::Spread;
+use glam::DVec3;
+
+/// Edges of the box that is pressed, metres: as large as the objects of the built-in sets.
+const BOX: DVec3 = DVec3::new(0.04, 0.04, 0.02);
+
+/// Mean and standard deviation of a shear reading along x over the taxels under a flat face of packed spheres, less its exact value;
+/// newtons.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShearRipple {
+    /// Mean over the taxels.
+    pub mean: f64,
+    /// Standard deviation over the taxels.
+    pub std: f64,
+}
+
+impl ShearRipple {
+    /// Presses a box, packed within `surface_error` (metres), on an array that reads shear, to a depth (metres), and slides as the array
+    /// does. `None` if the array reads no shear, or no taxel lies under the face.
+    ///
+    /// # Errors
+    /// If the box cannot be packed within that error.
+    pub fn measure(array: &TaxelArray, surface_error: f64, depth: f64) -> Result<Option<Self>> {
+        if !matches!(array.sensed(), Sensed::Shear(_)) {
+            return Ok(None);
+        }
+        let shape = Shape::Box {
+            size: BOX,
+            rounding: 0.0,
+        };
+        let solid = Solid::new(vec![Part::new(shape, Pose::IDENTITY)?])?;
+        let Some(packed) = shear_along_x(array, &solid.pack(surface_error)?.into(), depth) else {
+            return Ok(None);
+        };
+        let Some(exact) = shear_along_x(array, &exact_box()?, depth) else {
+            return Ok(None);
+        };
+        let margin = array.taxel().radius + array.slide().length();
+        let half = 0.5 * BOX.truncate() - margin;
+        let centers = array.patch().layout().centers().iter();
+        let readings = centers.zip(packed.iter().zip(&exact));
+        let under = readings.filter(|(center, _)| center.truncate().abs().cmple(half).all());
+        let errors: Vec<f64> = under.map(|(_, (packed, exact))| packed - exact).collect();
+        if errors.is_empty() {
+            return Ok(None);
+        }
+        let count = errors.len() as f64;
+        let mean = errors.iter().sum::<f64>() / count;
+        let square = errors
+            .iter()
+            .map(|error| (error - mean).powi(2))
+            .sum::<f64>();
+        Ok(Some(Self {
+            mean,
+            std: (square / count).sqrt(),
+        }))
+    }
+}
+
+/// The shear along x that each taxel reads of an object, newtons; `None` if nothing is met.
+fn shear_along_x(array: &TaxelArray, object: &Model, depth: f64) -> Option<Vec<f64>> {
+    let mut workspace = ArrayWorkspace::default();
+    let pose = Pose::from_translation(DVec3::new(0.0, 0.0, 0.1));
+    let press = array.press(object);
+    press.touch(pose, (depth, 1.0), &mut workspace)?;
+    let n = array.patch().n_taxels();
+    Some(press.values(&workspace).skip(n).take(n).collect())
+}
+
+/// The box as triangles.
+fn exact_box() -> Result<Model> {
+    let sign = |corner: u32, bit: u32| if corner & bit == 0 { -0.5 } else { 0.5 };
+    let corner = |c| BOX * DVec3::new(sign(c, 1), sign(c, 2), sign(c, 4));
+    let quads = [
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+    ];
+    let triangles = quads
+        .into_iter()
+        .flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]);
+    let mesh = TriangleMesh::new("box", (0..8).map(corner).collect(), triangles.collect())?;
+    Ok(MeshModel::new(mesh).into())
+}
+
+/// Reports on standard error how much shear readings ripple, if a study reads shear of packed objects; returns whether it did.
+///
+/// # Errors
+/// Those of [`ShearRipple::measure`].
+pub(crate) fn note_shear_ripple(plan: &Plan, objects: &[Object]) -> Result<bool> {
+    let packed = objects
+        .iter()
+        .filter(|object| object.model.n_spheres() > 1)
+        .count();
+    let spec = &plan.spec.objects;
+    if packed == 0 {
+        return Ok(false);
+    }
+    let depth = match &plan.placement.depth {
+        Spread::Values(values) => values.iter().copied().fold(0.0, f64::max),
+        Spread::Uniform { high, .. } => *high,
+    };
+    for array in &plan.arrays {
+        let Some(ripple) = ShearRipple::measure(array, spec.surface_error(), depth)? else {
+            continue;
+        };
+        note(format_args!(
+            "{packed} of {} objects are spheres within {} mm: on a flat face a taxel of the {} mm array reads {:.3} ± {:.3} N of shear \
+             that no exact face has; meshes with model = \"mesh\" have none",
+            objects.len(),
+            spec.surface_error() / MM,
+            crate::inputs::units::millimetres(array.pitch()),
+            ripple.mean,
+            ripple.std
+        ));
+        return Ok(true);
+    }
+    Ok(false)
+}

@@ -1,0 +1,57 @@
+//! Touches of an array: made once, shared by all cells.
+
+use crate::contact::Contact;
+use crate::engine::progress::Progress;
+use crate::studies::recognition::frames::array_press::ArrayWorkspace;
+use crate::studies::recognition::frames::kept::Frames;
+use crate::studies::recognition::frames::touch_set::TouchSet;
+use crate::studies::recognition::plan::taxel_array::TaxelArray;
+use crate::studies::recognition::touches::drawn_touches::TouchedObject;
+use crate::world::Touch;
+use ndarray::ArrayViewMut2;
+
+/// Makes all touches on an array and keeps the frames in memory.
+pub fn simulate_array(
+    touched: &dyn TouchSet,
+    array: &TaxelArray,
+    n_frames: usize,
+    progress: &dyn Progress,
+) -> Frames {
+    touched.simulate((array, n_frames), progress)
+}
+
+/// Presses one array on every object, touch by touch; the same bytes at any number of threads.
+///
+/// A touch to a depth d is read at `n_frames` ≥ 1 depths, d/F, 2d/F … d, or at as many places of its way where it slides, too: each is a touch
+/// of its own, since a taxel at rest does not remember how it came there.
+pub(crate) fn press_objects(
+    touched: &[TouchedObject],
+    (array, n_frames): (&TaxelArray, usize),
+    progress: &dyn Progress,
+) -> Frames {
+    let mut frames = Frames::new((array.n_values(), n_frames));
+    for TouchedObject {
+        object,
+        rests,
+        touches,
+    } in touched
+    {
+        let press = array.press(&object.model);
+        let press =
+            |touch: &Touch, workspace: &mut ArrayWorkspace, mut rows: ArrayViewMut2<f32>| {
+                let pose = touch.patch_from_object(&rests[touch.rest]);
+                let mut last = None;
+                for (frame, row) in rows.outer_iter_mut().enumerate() {
+                    let part = (frame + 1) as f64 / n_frames as f64;
+                    last = press.touch(pose, (touch.depth, part), workspace);
+                    for (to, from) in row.into_iter().zip(press.values(workspace)) {
+                        *to = from as f32;
+                    }
+                }
+                let reads_any = |count: fn(Contact) -> usize| last.is_some_and(|c| count(c) > 0);
+                (!reads_any(|c| c.n_touched), reads_any(|c| c.n_saturated))
+            };
+        frames.make(touches, ArrayWorkspace::default, press, progress);
+    }
+    frames
+}

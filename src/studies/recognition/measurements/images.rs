@@ -1,0 +1,206 @@
+//! Features of images: from measurements of a trial by way of an estimate of the frame.
+
+use crate::error::Result;
+use crate::random::Seed;
+use crate::sensing::{Ensemble, ImageEstimate, ImagePrior, Projection, Readings};
+use crate::studies::recognition::measurements::tilted_copies::TiltedCopies;
+use crate::studies::recognition::plan::taxel_array::TaxelArray;
+use crate::studies::recognition::rows::image_features::FeaturesOfImages;
+use crate::studies::recognition::sweep::learned_frames::{LEARNED_FRAMES, WITH_COPIES};
+use bubbletouch_sim::features::{Chart, Cut, ImageFeatures, Workspace, tilt_frame};
+use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis, s};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Frames estimated together: one matrix product. Fixed, so that results do not depend on the number of threads.
+const BLOCK: usize = 64;
+
+/// Images of the frames of a group, from so many measurements as its cells have.
+#[derive(Clone, Debug)]
+pub struct Images {
+    /// Rows and columns.
+    shape: (usize, usize),
+    /// Where taxels are no pixels.
+    chart: Option<Chart>,
+    full_scale: f64,
+    /// By m.
+    estimates: Vec<(usize, ImageEstimate)>,
+}
+
+impl Images {
+    /// For these projections of an array, its full scale (a reading's unit), and what they are learned from.
+    ///
+    /// # Errors
+    /// What an estimate refuses.
+    pub fn new(
+        projections: &[Projection],
+        (array, full_scale): (&TaxelArray, f64),
+        readings: Readings,
+        seed: &Seed,
+    ) -> Result<Self> {
+        let is_whole = |projection: &Projection| projection.ensemble() == Ensemble::Identity;
+        let (chart, n_training) = (array.chart(), readings.training.nrows());
+        // Copies are moved by rows and columns.
+        let n_frames = match (&chart, n_training < LEARNED_FRAMES) {
+            (Some(_), _) => n_training,
+            (None, true) => WITH_COPIES,
+            (None, false) => LEARNED_FRAMES,
+        };
+        let prior = match projections.iter().all(is_whole) {
+            true => None,
+            false => {
+                let shape = array.frame_shape();
+                Some(ImagePrior::learned(shape, readings, n_frames, seed)?)
+            }
+        };
+        let estimates = projections.iter().map(|projection| {
+            let estimate = match prior.as_ref().filter(|_| !is_whole(projection)) {
+                None => ImageEstimate::of_frames(readings.untouched),
+                Some(prior) => ImageEstimate::new(projection, prior)?,
+            };
+            Ok((projection.n_measurements(), estimate))
+        });
+        Ok(Self {
+            shape: array.image().0,
+            chart,
+            full_scale,
+            estimates: estimates.collect::<Result<_>>()?,
+        })
+    }
+
+    /// Whether it makes images of so many measurements.
+    pub fn is_of(&self, measurements: usize) -> bool {
+        self.estimates.iter().any(|(m, _)| *m == measurements)
+    }
+
+    /// Features of all frames of measurements: for each that is wanted n_touches × F·k, k numbers a frame, and below them as many of each copy, touch by
+    /// touch. An image is estimated once for all that is wanted of it, and cells that learn from the same share them.
+    ///
+    /// # Panics
+    /// An m that it was not made for.
+    pub fn features(
+        &self,
+        (values, n_frames): (ArrayView2<f64>, usize),
+        wanted: &[FeaturesOfImages],
+        copies: Option<&TiltedCopies>,
+    ) -> Vec<Array2<f64>> {
+        let n_touches = values.nrows() / n_frames.max(1);
+        let n_rows = n_touches + copies.map_or(0, |copies| copies.slopes.len());
+        let empty =
+            |w: &FeaturesOfImages| Array2::zeros((n_rows, n_frames * w.join.n_values(self.shape)));
+        let mut all: Vec<Array2<f64>> = wanted.iter().map(empty).collect();
+        for (m, estimate) in &self.estimates {
+            let of_m = wanted.iter().zip(&mut all);
+            let of_m = of_m.filter(|(w, _)| w.measurements == *m);
+            let (features, rows): (Vec<_>, Vec<_>) = of_m
+                .map(|(w, rows)| (self.prepared(w, estimate), rows.view_mut()))
+                .unzip();
+            let parts = rows.into_iter().map(|r| r.split_at(Axis(0), n_touches));
+            let (rows, of_copies): (Vec<_>, Vec<_>) = parts.unzip();
+            let blocks = blocks(rows, n_touches, 1).into_par_iter();
+            blocks.for_each_init(Workspace::default, |workspace, (touches, mut rows)| {
+                let frames = touches.start * n_frames..touches.end * n_frames;
+                let images = self.images(estimate, values.slice(s![frames, ..*m]));
+                for (row, images) in images.axis_chunks_iter(Axis(0), n_frames).enumerate() {
+                    write(&features, images, workspace, (&mut rows, row));
+                }
+            });
+            let Some(copies) = copies else {
+                continue;
+            };
+            let level = self.level(estimate);
+            let (touches, n_copies) = (&copies.touches, copies.n_copies);
+            let blocks = self::blocks(of_copies, touches.len(), n_copies).into_par_iter();
+            blocks.for_each_init(Workspace::default, |workspace, (places, mut rows)| {
+                let first = places.start * n_copies;
+                let frames = touches[places].iter();
+                let frames = frames.flat_map(|touch| touch * n_frames..(touch + 1) * n_frames);
+                let measured = values.select(Axis(0), &frames.collect::<Vec<usize>>());
+                let images = self.images(estimate, measured.slice(s![.., ..*m]));
+                for (place, images) in images.axis_chunks_iter(Axis(0), n_frames).enumerate() {
+                    for copy in 0..n_copies {
+                        let row = place * n_copies + copy;
+                        let tilted = self.tilted(images, copies.slopes[first + row], level);
+                        write(&features, tilted.view(), workspace, (&mut rows, row));
+                    }
+                }
+            });
+        }
+        all
+    }
+
+    /// Of frames of measurements.
+    fn images(&self, estimate: &ImageEstimate, measured: ArrayView2<f64>) -> Array2<f64> {
+        let frames = estimate.images(measured);
+        match &self.chart {
+            Some(chart) => chart.images(frames.view()),
+            None => frames,
+        }
+    }
+
+    /// The images of a touch (F × n), tilted.
+    fn tilted(&self, images: ArrayView2<f64>, slope: (f64, f64), level: f64) -> Array2<f64> {
+        let mut tilted = Array2::zeros(images.raw_dim());
+        for (image, mut out) in images.outer_iter().zip(tilted.outer_iter_mut()) {
+            let image = image.as_standard_layout();
+            let image = image.as_slice().expect("rows are whole");
+            let out = out.as_slice_mut().expect("rows are whole");
+            tilt_frame(image, self.shape.1, slope, level, out);
+        }
+        tilted
+    }
+
+    fn prepared(&self, wanted: &FeaturesOfImages, estimate: &ImageEstimate) -> ImageFeatures {
+        let foremost = wanted.foremost.map(|share| share * self.full_scale);
+        let level = self.level(estimate);
+        let cut = Cut { level, foremost };
+        ImageFeatures::new(wanted.join, self.shape, self.full_scale, cut)
+    }
+
+    /// What is above it is a contact.
+    fn level(&self, estimate: &ImageEstimate) -> f64 {
+        noise_level(estimate.noise_std(), self.shape.0 * self.shape.1)
+    }
+}
+
+/// Rows of all that is wanted, so many of each touch, in blocks of some touches: which, and their rows.
+fn blocks(
+    mut rows: Vec<ArrayViewMut2<f64>>,
+    n_touches: usize,
+    n_rows: usize,
+) -> Vec<(Range<usize>, Vec<ArrayViewMut2<f64>>)> {
+    let mut blocks = Vec::new();
+    for start in (0..n_touches).step_by(BLOCK) {
+        let n = BLOCK.min(n_touches - start);
+        let cut = rows.into_iter().map(|r| r.split_at(Axis(0), n * n_rows));
+        let (own, rest): (Vec<_>, Vec<_>) = cut.unzip();
+        rows = rest;
+        blocks.push((start..start + n, own));
+    }
+    blocks
+}
+
+/// Writes all features of the images of a touch (F × n) into a row of each.
+fn write(
+    features: &[ImageFeatures],
+    images: ArrayView2<f64>,
+    workspace: &mut Workspace,
+    (rows, row): (&mut [ArrayViewMut2<f64>], usize),
+) {
+    for (features, rows) in features.iter().zip(rows) {
+        let k = rows.ncols() / images.nrows();
+        let mut row = rows.row_mut(row);
+        let row = row.as_slice_mut().expect("rows are whole");
+        for (out, image) in row.chunks_exact_mut(k).zip(images.outer_iter()) {
+            let image = image.as_standard_layout();
+            features.write(image.as_slice().expect("rows are whole"), workspace, out);
+        }
+    }
+}
+
+/// The largest that noise of standard deviation σ is expected to be on n taxels, σ √(2 ln n): what is above it is a contact. Lower, and taxels
+/// that nothing touches count; higher, and the rim of a contact does not. (Donoho and Johnstone 1994, Biometrika 81, 425: the universal
+/// threshold.)
+fn noise_level(noise_std: f64, n_taxels: usize) -> f64 {
+    noise_std * (2.0 * (n_taxels as f64).ln()).sqrt()
+}

@@ -1,0 +1,285 @@
+//! Frames → signal → measurements, for one condition of the signal, ensemble and trial.
+
+use crate::error::Result;
+use crate::inputs::sensor_errors::TestedOn;
+use crate::random::Seed;
+use crate::sensing::{Ensemble, Projection, Readings};
+use crate::signal::Scratch;
+use crate::studies::recognition::frames::kept::Frames;
+use crate::studies::recognition::frames::reading::{Reading, TouchToRead, measure};
+use crate::studies::recognition::frames::touch_set::TouchSet;
+use crate::studies::recognition::measurements::images::Images;
+use crate::studies::recognition::measurements::measurement_inputs::MeasurementInputs;
+use crate::studies::recognition::measurements::tilted_copies::TiltedCopies;
+use crate::studies::recognition::plan::taxel_array::skin;
+use crate::studies::recognition::plan::trials::projection_of;
+use crate::studies::recognition::rows::cell::Cell;
+use crate::studies::recognition::rows::image_features::FeaturesOfImages;
+use crate::studies::recognition::sweep::learned_frames::learned_touches;
+use ndarray::{Array1, Array2, ArrayViewMut2, s};
+use std::sync::Arc;
+
+/// Measurements of all touches of a group of cells. Where each is read several times, the first readings of all touches come first, then the second ones
+/// of all: reading r of a touch has the number r · n_touches + touch.
+#[derive(Clone, Debug)]
+pub struct Measurements {
+    /// (n_readings · n_touches · F) × m: the frames of a touch follow each other, the deepest last.
+    pub values: Array2<f64>,
+    /// How many touches there are.
+    pub n_touches: usize,
+    /// F, frames a touch.
+    pub n_frames: usize,
+    /// Φ1 (m): what a frame of ones measures.
+    pub of_ones: Array1<f64>,
+    /// Φ, and how images are made of measurements.
+    pub sensed: Arc<SensedBy>,
+    /// Features of images, n_touches × F·k each; below them those of tilted copies.
+    pub of_images: Vec<(FeaturesOfImages, Array2<f64>)>,
+    /// What was copied.
+    pub copies: Option<TiltedCopies>,
+    /// Processor-seconds, summed over threads.
+    pub cpu_s: f64,
+}
+
+/// What measures a group in a trial, with all that is learned of training touches for it.
+#[derive(Clone, Debug)]
+pub struct SensedBy {
+    /// The ensemble's matrix.
+    pub projection: Projection,
+    /// Images of what is measured, where any cell's features are of images.
+    pub images: Option<Images>,
+}
+
+impl Measurements {
+    /// The numbers of all readings of some touches: the first of each, in their order, then the second of each.
+    pub fn readings(&self, touches: &[usize]) -> Vec<usize> {
+        let n_read = self.values.nrows() / (self.n_touches * self.n_frames);
+        let readings = (0..n_read).map(|reading| reading * self.n_touches);
+        let numbers = readings.flat_map(|first| touches.iter().map(move |touch| first + touch));
+        numbers.collect()
+    }
+
+    /// What a cell learns from these touches (by number): n × F·m, the leading m measurements of each frame, made into
+    /// the cell's features; or what the cell makes of them over time.
+    pub fn features(&self, cell: &Cell, touches: &[usize]) -> Array2<f64> {
+        let mut rows = Array2::zeros((touches.len(), cell.n_features()));
+        let Some(over_time) = cell.over_time else {
+            self.read_into(cell, touches, rows.view_mut());
+            return rows;
+        };
+        // One touch at a time, since all frames of all touches may be many.
+        let m = cell.n_frame_features();
+        let mut frames = Array2::zeros((1, self.n_frames * m));
+        for (row, touch) in rows.outer_iter_mut().zip(touches) {
+            self.read_into(cell, &[*touch], frames.view_mut());
+            let frames = frames.view().into_shape_with_order((self.n_frames, m));
+            over_time.write(frames.expect("F frames of m"), row);
+        }
+        rows
+    }
+
+    /// What a cell learns from beside these training touches: the numbers of their tilted copies, which follow those of all readings. The
+    /// first copy of each touch, then the second of each.
+    pub fn copies(&self, cell: &Cell, train: &[usize]) -> Vec<usize> {
+        let (Some(copies), Some(n_copies)) = (&self.copies, cell.tilted_copies) else {
+            return Vec::new();
+        };
+        let n_read = self.values.nrows() / self.n_frames.max(1);
+        let rows = copies.rows(train, n_copies);
+        rows.map(|row| n_read + row).collect()
+    }
+
+    /// All frames of some touches one after the other, as the cell's kind of features: n × F·m.
+    fn read_into(&self, cell: &Cell, touches: &[usize], mut rows: ArrayViewMut2<f64>) {
+        let m = cell.measurements;
+        if let Some(wanted) = cell.of_images() {
+            let mut made = self.of_images.iter();
+            let made = made.find(|(known, _)| *known == wanted);
+            let (_, made) = made.expect("features of all cells of the group");
+            for (mut row, touch) in rows.outer_iter_mut().zip(touches) {
+                row.assign(&made.row(*touch));
+            }
+            return;
+        }
+        for (mut row, touch) in rows.outer_iter_mut().zip(touches) {
+            for (frame, mut part) in row.exact_chunks_mut(m).into_iter().enumerate() {
+                let place = touch * self.n_frames + frame;
+                part.assign(&self.values.slice(s![place, ..m]));
+            }
+        }
+        let of_ones = self.of_ones.slice(s![..m]);
+        cell.features.apply(rows, of_ones);
+    }
+}
+
+/// Reads and projects all frames of a group in one trial, to a number of measurements among those of the inputs. Φ and all that is learned for
+/// features is the trial's own, or `sensed` by another.
+///
+/// # Errors
+/// What a signal step or the projection refuses.
+pub fn measure_group(
+    inputs: &MeasurementInputs,
+    (touched, frames): (&dyn TouchSet, &Frames),
+    trial: usize,
+    (n_measurements, sensed): (usize, Option<&Arc<SensedBy>>),
+) -> Result<Measurements> {
+    let array = inputs.array;
+    let seed = Seed::new(inputs.seed);
+    let skins = skins(inputs, trial as u64);
+    let chains = |skin| array.chains(skin, |skin| inputs.signal.steps(skin));
+    let chains = skins.iter().map(chains).collect::<Result<Vec<_>>>()?;
+    let signal = seed.named("signal").numbered(trial as u64);
+    let n_frames = frames.facts.n_frames;
+    let mut touches = touched.to_read(inputs.speed, n_frames, &signal);
+    if skins.len() > 1 {
+        for &touch in &inputs.split(trial).test {
+            touches[touch].skin = skins.len() - 1;
+        }
+    }
+    let n_touches = touches.len();
+    for reading in 1..inputs.n_readings {
+        touches.extend_from_within(..n_touches);
+        for touch in &mut touches[reading * n_touches..] {
+            touch.seed = touch.seed.named("reading").numbered(reading as u64);
+        }
+    }
+    let whole = Projection::new(
+        Ensemble::Identity,
+        array.frame_shape(),
+        array.n_values(),
+        &seed,
+    )?;
+    let reading = Reading {
+        chains: &chains,
+        projection: &whole,
+        taxel: *array.taxel(),
+        speed: inputs.speed,
+    };
+    let sensed = match sensed {
+        Some(sensed) => Arc::clone(sensed),
+        None => {
+            let read = (reading, frames, &touches[..]);
+            Arc::new(sensed_by(inputs, read, trial, n_measurements)?)
+        }
+    };
+    let reading = Reading {
+        projection: &sensed.projection,
+        ..reading
+    };
+    let (values, cpu_s) = measure(reading, frames, &touches)?;
+    let mut copies = None;
+    let of_images = match &sensed.images {
+        None => Vec::new(),
+        Some(images) => {
+            let train = (&inputs.split(trial).train[..], touched.classes().len());
+            copies = tilted_copies(inputs, train, chains[0][0].full_scale(), trial);
+            let mut wanted = inputs.of_images.clone();
+            wanted.retain(|one| images.is_of(one.measurements));
+            let made = images.features((values.view(), n_frames), &wanted, copies.as_ref());
+            wanted.into_iter().zip(made).collect()
+        }
+    };
+    let ones = Array2::ones((1, array.n_values()));
+    Ok(Measurements {
+        values,
+        n_touches,
+        n_frames,
+        of_ones: sensed.projection.measure(ones.view()).row(0).to_owned(),
+        sensed,
+        of_images,
+        copies,
+        cpu_s,
+    })
+}
+
+/// Copies of training touches, of n classes, for cells that learn from some: full scale is what a taxel reads at its stroke.
+fn tilted_copies(
+    inputs: &MeasurementInputs,
+    train: (&[usize], usize),
+    full_scale: f64,
+    trial: usize,
+) -> Option<TiltedCopies> {
+    let copies = inputs.copies?;
+    let array = inputs.array;
+    let steepest = copies.tilt.tan();
+    let a_pixel = steepest * array.image().1 / array.taxel().stroke * full_scale;
+    let seed = Seed::new(inputs.seed).named("tilted copies");
+    let seed = seed.numbered(trial as u64);
+    Some(TiltedCopies::of(copies, train, a_pixel, &seed))
+}
+
+/// Draws Φ in a trial, or learns it, and what makes images of measurements, from training touches.
+fn sensed_by(
+    inputs: &MeasurementInputs,
+    (whole, frames, touches): (Reading, &Frames, &[TouchToRead]),
+    trial: usize,
+    n_measurements: usize,
+) -> Result<SensedBy> {
+    let array = inputs.array;
+    let shape = array.frame_shape();
+    let drawn = projection_of(inputs.projections_per_split, trial) as u64;
+    let drawn = Seed::new(inputs.seed).named("projection").numbered(drawn);
+    if !inputs.learns() {
+        let projection = Projection::new(inputs.ensemble, shape, n_measurements, &drawn)?;
+        return Ok(SensedBy {
+            projection,
+            images: None,
+        });
+    }
+    // Of whole touches, so many that their frames are enough; the split has one of each object in turn.
+    let n_touches = learned_touches(frames.facts.n_frames);
+    let learned = inputs.split(trial).train.iter().take(n_touches);
+    let learned: Vec<TouchToRead> = learned.map(|&touch| touches[touch]).collect();
+    let (training, _) = measure(whole, frames, &learned)?;
+    let learn = |m| Projection::learned(inputs.ensemble, shape, m, (training.view(), &drawn));
+    let projection = learn(n_measurements)?;
+    let mut images = None;
+    if !inputs.of_images.is_empty() {
+        let untouched = untouched(whole, trial, inputs.seed);
+        let readings = Readings {
+            training: training.view(),
+            untouched: untouched.view(),
+        };
+        let is_served =
+            |m: &usize| projection.ensemble().is_prefix_nested() || *m == n_measurements;
+        let counts = inputs.counts_of_images().into_iter().filter(is_served);
+        let projections = counts.map(|m| match m == n_measurements {
+            true => Ok(projection.clone()),
+            false => learn(m),
+        });
+        let projections = projections.collect::<Result<Vec<_>>>()?;
+        let full_scale = whole.chains[0][0].full_scale();
+        images = Some(Images::new(
+            &projections,
+            (array, full_scale),
+            readings,
+            &drawn,
+        )?);
+    }
+    Ok(SensedBy { projection, images })
+}
+
+/// Readings of the untouched skin: noise along a component is known to √(2 / 256) = 9 %.
+pub const UNTOUCHED: usize = 256;
+
+/// What the skin of training touches reads when nothing touches it (readings × n).
+fn untouched(whole: Reading, trial: usize, seed: u64) -> Array2<f64> {
+    let seed = Seed::new(seed).named("untouched").numbered(trial as u64);
+    let mut readings = Array2::zeros((UNTOUCHED, whole.projection.n_taxels()));
+    let mut scratch = Scratch::default();
+    for (number, mut row) in readings.outer_iter_mut().enumerate() {
+        let frame = row.as_slice_mut().expect("rows are whole");
+        let named = seed.numbered(number as u64);
+        whole.chains[0][0].apply(frame, None, &named, &mut scratch);
+    }
+    readings
+}
+
+/// The skin of training touches, and that of test touches if it is another.
+fn skins(inputs: &MeasurementInputs, trial: u64) -> Vec<Seed> {
+    let first = skin(&Seed::new(inputs.seed), inputs.array);
+    match inputs.tested_on {
+        TestedOn::SameSkin => vec![first],
+        TestedOn::AnotherSkin => vec![first, first.named("another").numbered(trial)],
+    }
+}

@@ -1,0 +1,176 @@
+//! What the measurements of a group of cells are made of, beside the frames of its touches.
+//!
+//! [`measure_group`](crate::studies::recognition::measurements::measurement::measure_group) takes these inputs and no plan, so it cannot read a value of a study that is not among them. Groups
+//! whose inputs have the same [key](MeasurementInputs::key) share their measurements. The key is made of the derived `Debug` form of all fields: a field
+//! that is added is part of the key.
+
+use crate::inputs::sensor_errors::TestedOn;
+use crate::random::Seed;
+use crate::sensing::Ensemble;
+use crate::signal::{Noise, NoiseUnit, SignalStep};
+use crate::studies::recognition::plan::group::Group;
+use crate::studies::recognition::plan::plan::Plan;
+use crate::studies::recognition::plan::signal::Condition;
+use crate::studies::recognition::plan::taxel_array::TaxelArray;
+use crate::studies::recognition::rows::image_features::FeaturesOfImages;
+use crate::studies::recognition::spec::signal::StepSpec;
+use crate::studies::recognition::sweep::splits::Splits;
+use crate::studies::recognition::sweep::sweep::Sweep;
+use bubbletouch_svm::split::Split;
+
+/// Inputs of the measurements of a group of cells.
+#[derive(Clone, Debug)]
+pub struct MeasurementInputs<'a> {
+    /// The array that is pressed.
+    pub array: &'a TaxelArray,
+    /// Root of all randomness.
+    pub seed: u64,
+    /// Number of projections that each split is measured with; `None`: each trial has a projection of its own.
+    pub projections_per_split: Option<usize>,
+    /// Approach speed at the moment of reading, m/s.
+    pub speed: f64,
+    /// What happens to the signal.
+    pub signal: SignalInputs<'a>,
+    /// The skin that test touches are made with.
+    pub tested_on: TestedOn,
+    /// How measurements are made.
+    pub ensemble: Ensemble,
+    /// Numbers of measurements that projections are made for, each at most once, ascending.
+    pub projected: Vec<usize>,
+    /// Number of readings of each touch.
+    pub n_readings: usize,
+    /// Features of images that are made of the measurements.
+    pub of_images: Vec<FeaturesOfImages>,
+    /// Tilted copies of training touches, if any.
+    pub copies: Option<CopyInputs>,
+    /// The splits of all trials, if the measurements depend on them: where something is learned from training touches, or test touches are made with
+    /// another skin.
+    pub splits: Option<Splits<'a>>,
+}
+
+/// Inputs of the steps of a signal.
+#[derive(Clone, Copy, Debug)]
+pub struct SignalInputs<'a> {
+    /// The steps, in their order.
+    pub steps: &'a [StepSpec],
+    /// Unit of the noise.
+    pub noise_unit: NoiseUnit,
+    /// How strong each step is.
+    pub condition: Condition,
+}
+
+/// Inputs of tilted copies.
+#[derive(Clone, Copy, Debug)]
+pub struct CopyInputs {
+    /// Copies of each touch, at least 1.
+    pub n_copies: usize,
+    /// Training touches of each class that are copied, in drawing order; `None`: all.
+    pub n_touches: Option<usize>,
+    /// Most that a copy is tilted, radians.
+    pub tilt: f64,
+}
+
+impl MeasurementInputs<'_> {
+    /// Returns a text that is equal for equal inputs only.
+    pub fn key(&self) -> String {
+        format!("{self:?}")
+    }
+
+    /// Returns the split of a trial.
+    ///
+    /// # Panics
+    /// If the inputs have no splits, because nothing that is measured depends on them.
+    pub fn split(&self, trial: usize) -> &Split {
+        let splits = self.splits.as_ref();
+        &splits.expect("measurements that depend on splits").all[trial]
+    }
+
+    /// Whether anything is learned from training touches before they are measured.
+    pub fn learns(&self) -> bool {
+        self.ensemble.is_learned() || !self.of_images.is_empty()
+    }
+
+    /// Returns the numbers of measurements that images are made of, each once, ascending.
+    pub fn counts_of_images(&self) -> Vec<usize> {
+        counts(&self.of_images)
+    }
+}
+
+fn counts(of_images: &[FeaturesOfImages]) -> Vec<usize> {
+    let mut counts: Vec<usize> = of_images.iter().map(|one| one.measurements).collect();
+    counts.sort_unstable();
+    counts.dedup();
+    counts
+}
+
+impl SignalInputs<'_> {
+    /// Returns the steps of a skin.
+    pub fn steps(&self, skin: &Seed) -> Vec<SignalStep> {
+        let condition = &self.condition;
+        let step = |&step: &StepSpec| match step {
+            StepSpec::Force => SignalStep::Force,
+            StepSpec::Noise => SignalStep::Noise(Noise {
+                std: condition.noise,
+                unit: self.noise_unit,
+            }),
+            StepSpec::Smoothing => SignalStep::Smoothing {
+                width: condition.smoothing,
+            },
+            StepSpec::Error(error) => condition.strengths.step(error, skin),
+        };
+        self.steps.iter().map(step).collect()
+    }
+}
+
+impl Group {
+    /// Returns the inputs of the group's signal.
+    pub fn signal<'a>(&self, plan: &'a Plan) -> SignalInputs<'a> {
+        SignalInputs {
+            steps: &plan.spec.signal.steps,
+            noise_unit: plan.noise_unit,
+            condition: self.condition,
+        }
+    }
+
+    /// Returns the inputs of the group's measurements.
+    pub fn inputs<'a>(&self, plan: &'a Plan, sweep: &'a Sweep) -> MeasurementInputs<'a> {
+        let depends = self.learns() || self.tested_on != TestedOn::SameSkin;
+        MeasurementInputs {
+            array: &plan.arrays[self.array],
+            seed: plan.spec.seed,
+            projections_per_split: plan.spec.projections_per_split,
+            speed: plan.speed,
+            signal: self.signal(plan),
+            tested_on: self.tested_on,
+            ensemble: self.ensemble,
+            projected: self.projected(),
+            n_readings: self.n_readings(plan),
+            of_images: self.features_of_images(),
+            copies: self.copies(plan),
+            splits: depends.then(|| sweep.drawn_splits()),
+        }
+    }
+
+    /// Whether anything is learned from training touches before they are measured.
+    pub fn learns(&self) -> bool {
+        self.ensemble.is_learned() || self.cells.iter().any(|cell| cell.of_images().is_some())
+    }
+
+    /// Returns the numbers of measurements that images are made of, each once, ascending.
+    pub fn counts_of_images(&self) -> Vec<usize> {
+        counts(&self.features_of_images())
+    }
+
+    /// Returns what copies the cells of the group learn from: as many as the one that learns from most.
+    fn copies(&self, plan: &Plan) -> Option<CopyInputs> {
+        let recognition = &plan.spec.recognition;
+        let copied = self.cells.iter();
+        let copied = copied.filter(|cell| cell.tilted_copies.is_some_and(|n| n > 0));
+        let n_touches = copied.clone().map(|cell| cell.train_touches).max();
+        Some(CopyInputs {
+            n_copies: copied.filter_map(|cell| cell.tilted_copies).max()?,
+            n_touches: n_touches.filter(|_| recognition.train_touches.is_some()),
+            tilt: recognition.copies_tilt(),
+        })
+    }
+}

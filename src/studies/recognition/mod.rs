@@ -1,0 +1,31 @@
+//! Studies that recognise objects.
+//!
+//! Data flow one way, a folder a stage; a stage imports only from stages above it in this table.
+//!
+//! | stage | in → out |
+//! |---|---|
+//! | [`rows`] | the rows of all result tables |
+//! | [`spec`] | TOML → keys as they are written |
+//! | [`plan`] | keys → checked values in SI units, arrays of taxels |
+//! | [`touches`] | placements → drawn touches |
+//! | [`frames`] | touches → deflections of all taxels, and what the signal makes of them |
+//! | [`sweep`] | touches → splits and configurations |
+//! | [`measurements`] | frames → measurements and features |
+//! | [`training`] | features → classifiers and scores |
+//! | [`tables`] | scores → rows of tables |
+//! | [`exports`] | frames and features → arrays in files |
+//! | [`charts`] | tables → charts, answers, sections of the page |
+//! | [`study`] | the whole, in work items |
+
+pub mod charts;
+pub mod exports;
+pub mod frames;
+pub mod measurements;
+pub mod plan;
+pub mod rows;
+pub mod spec;
+pub mod study;
+pub mod sweep;
+pub mod tables;
+pub mod touches;
+pub mod training;

@@ -1,0 +1,95 @@
+//! Which kind of touch: the checks of `[human_touch]`, and what its keys are in SI units.
+
+use crate::error::Result;
+use crate::inputs::check::Check;
+use crate::inputs::objects_spec::ObjectsSpec;
+use crate::inputs::units::{MM, MOST_FRAMES, millimetres};
+use crate::studies::recognition::plan::taxel_array::TaxelArray;
+use crate::studies::recognition::spec::human::HumanTouchSpec;
+use crate::studies::recognition::spec::scene::TouchesSpec;
+use crate::studies::recognition::spec::study::StudySpec;
+use crate::world::{Layout, Patch, Taxels};
+
+impl HumanTouchSpec {
+    /// From the axis of the arm to the outside of its skin, metres.
+    pub fn surface(&self) -> f64 {
+        self.arm_radius_mm * MM
+    }
+
+    /// Seconds between frames.
+    pub fn interval(&self) -> f64 {
+        1.0 / self.frames_hz
+    }
+
+    /// F, frames a touch.
+    pub fn n_frames(&self) -> usize {
+        (self.duration_s * self.frames_hz).round() as usize + 1
+    }
+
+    /// Seconds from the first frame to the last.
+    pub fn duration(&self) -> f64 {
+        (self.n_frames() - 1) as f64 * self.interval()
+    }
+
+    /// An array bent around the arm: rows are rings, columns run along it, the middle is at +x.
+    ///
+    /// # Errors
+    /// An array that does not fit around the arm.
+    pub fn skin(&self, array: &TaxelArray) -> Result<Patch> {
+        let taxel = *array.taxel();
+        let layout = Layout::bent_grid(array.grid(), self.surface() - taxel.radius)?;
+        Patch::new("forearm", layout, Taxels::Equal(taxel))
+    }
+}
+
+impl Check<'_> {
+    /// What a study has instead of objects, if it has; and nothing that only objects have.
+    pub fn human_touch(&self, spec: &StudySpec, arrays: &[TaxelArray]) -> Result<()> {
+        let Some(human) = &spec.human_touch else {
+            if spec.places_objects() && spec.touches == TouchesSpec::default() {
+                let allowed = "a table [touches]: how the objects are touched";
+                return Err(self.error("touches", "no such table", allowed));
+            }
+            return Ok(());
+        };
+        if spec.objects != ObjectsSpec::default() || spec.touches != TouchesSpec::default() {
+            let allowed = "it alone: it is what touches, and how";
+            return Err(self.error("human_touch", "beside [objects] or [touches]", allowed));
+        }
+        if spec.recognition.keep_together.is_some() {
+            let allowed = "no such key: human touches have no groups";
+            return Err(self.error("recognition.keep_together", "given", allowed));
+        }
+        if spec.skin.damping_n_s_per_m != 0.0 {
+            let allowed = "0: the skin of human touches has no damper";
+            let given = spec.skin.damping_n_s_per_m;
+            return Err(self.error("skin.damping_n_s_per_m", given, allowed));
+        }
+        self.table("human_touch", human)?;
+        self.grids(&spec.skin)?;
+        let n_frames = (human.duration_s * human.frames_hz).round() + 1.0;
+        if !(2.0..=MOST_FRAMES as f64).contains(&n_frames) {
+            let allowed = format!("2 to {MOST_FRAMES} frames in duration_s at frames_hz");
+            return Err(self.error("human_touch", format!("{n_frames} frames a touch"), allowed));
+        }
+        let mut arrays = arrays.iter();
+        arrays.try_for_each(|array| self.fits_around(human, array))
+    }
+
+    /// An array leaves a gap of a pitch at least on the arm's other side, and no layout rounds its rows and columns.
+    fn fits_around(&self, human: &HumanTouchSpec, array: &TaxelArray) -> Result<()> {
+        let grid = array.grid();
+        let radius = human.surface() - array.taxel().radius;
+        let around = std::f64::consts::TAU * radius;
+        let width = grid.nx as f64 * grid.pitch;
+        if radius > 0.0 && width <= around && human.skin(array)?.n_taxels() == grid.n_taxels() {
+            return Ok(());
+        }
+        let (pitch_mm, width_mm) = (millimetres(grid.pitch), width / MM);
+        let columns = format!("{} columns at {pitch_mm} mm", grid.nx);
+        let given = format!("{columns}, {width_mm:.1} mm together");
+        let around_mm = around.max(0.0) / MM;
+        let allowed = format!("at most {around_mm:.1} mm, once around the taxels' rest centres");
+        Err(self.error("skin", given, allowed))
+    }
+}

@@ -1,0 +1,360 @@
+//! From frames to objects, and which touches train and which test: the checks of `[sensing]` and `[recognition]`.
+
+use crate::engine::axis::Axis;
+use crate::error::Result;
+use crate::inputs::check::Check;
+use crate::inputs::units::MM;
+use crate::learning::classifiers::classifier::Classifier;
+use crate::learning::classifiers::parameters::PARAMETERS;
+use crate::learning::data::over_time::OverTime;
+use crate::learning::evaluation::next_touch::NextTouch;
+use crate::sensing::Ensemble;
+use crate::studies::recognition::plan::pose_groups::KeepTogether;
+use crate::studies::recognition::plan::taxel_array::TaxelArray;
+use crate::studies::recognition::spec::pose_split::PoseSplit;
+use crate::studies::recognition::spec::study::{RecognitionSpec, SensingSpec, StudySpec};
+use crate::world::RestPoses;
+use bubbletouch_sim::features::Features;
+
+/// Most that a copy is tilted about each axis where a study does not say, degrees. More, and images lose what was not touched; less, and
+/// they are of tilts that were learned.
+const DEFAULT_TILT_DEG: f64 = 5.0;
+
+/// Keys of which a study has one at most.
+const ONE_OF: [[&str; 2]; 3] = [
+    ["c", "choose_c"],
+    ["gamma", "choose_gamma"],
+    ["test_fraction", "folds"],
+];
+
+/// Keys that belong beside one of others.
+const BESIDE: [(&str, &[&str]); 5] = [
+    ("choose_folds", &["choose_c", "choose_gamma", "next_touch"]),
+    ("choose_touches", &["choose_c", "choose_gamma"]),
+    ("tilted_copies_deg", &["tilted_copies"]),
+    ("keep_together_mm", &["keep_together"]),
+    ("keep_together_deg", &["keep_together"]),
+];
+
+impl Check<'_> {
+    /// A ratio or measurements, no more than any array has taxels.
+    pub fn sensing(&self, sensing: &SensingSpec, arrays: &[TaxelArray]) -> Result<()> {
+        self.table("sensing", sensing)?;
+        if sensing.ratio.is_some() && sensing.measurements.is_some() {
+            return Err(self.error("sensing", "both ratio and measurements", "one of them"));
+        }
+        let ratios = sensing.ratio.iter().flat_map(Axis::values);
+        let ratios = ratios.map(|ratio| ("sensing.ratio", ratio));
+        let counts = sensing.measurements.iter().flat_map(Axis::values);
+        let counts = counts.map(|m| ("sensing.measurements", m as f64));
+        let smallest = arrays.iter().map(TaxelArray::n_values).min().unwrap_or(0);
+        if let Some((key, given)) = ratios.chain(counts).find(|(_, n)| *n > smallest as f64) {
+            let allowed = format!("at most {smallest}, the numbers of the smallest frame");
+            return Err(self.error(key, given, allowed));
+        }
+        let mut ensembles = sensing.ensemble.values().into_iter();
+        let of_rows = ensembles.find(|ensemble| ensemble.about().needs_rows);
+        let no_rows = arrays.iter().find(|array| array.sides().is_none());
+        if let (Some(ensemble), Some(array)) = (of_rows, no_rows) {
+            let layout = match array.is_placed() {
+                true => format!("a {}", array.layout().words()),
+                false => "taxels without a layout".to_owned(),
+            };
+            let given = format!("{} of {layout}", ensemble.about().words);
+            let allowed = "ensembles that need no rows and columns";
+            return Err(self.error("sensing.ensemble", given, allowed));
+        }
+        Ok(())
+    }
+
+    /// Ensembles of a kind of study that has no frames to learn one from.
+    pub fn drawn(&self, key: &str, ensembles: impl IntoIterator<Item = Ensemble>) -> Result<()> {
+        let mut ensembles = ensembles.into_iter();
+        match ensembles.find(|ensemble| ensemble.is_learned()) {
+            None => Ok(()),
+            Some(learned) => {
+                let given = learned.about().words;
+                let allowed = "ensembles that are drawn: studies that recognise objects from touches alone learn one";
+                Err(self.error(key, given, allowed))
+            }
+        }
+    }
+
+    /// The keys of `[recognition]`: each in its range, none that contradicts another, none that nothing has a use for.
+    pub fn recognition(&self, recognition: &RecognitionSpec) -> Result<()> {
+        let given = self.table("recognition", recognition)?;
+        for [first, second] in ONE_OF {
+            if given.contains_key(first) && given.contains_key(second) {
+                let both = format!("both {first} and {second}");
+                return Err(self.error("recognition", both, "one of them"));
+            }
+        }
+        self.parameters(recognition, &given)?;
+        for (key, others) in BESIDE {
+            if let Some(value) = given.get(key)
+                && !others.iter().any(|other| given.contains_key(*other))
+            {
+                let allowed = format!("no such key without recognition.{}", others.join(" or "));
+                return Err(self.error(&format!("recognition.{key}"), value, allowed));
+            }
+        }
+        // With folds there may be no rows of the rarest objects for them.
+        let is_open = recognition.choose_c.is_some() || recognition.choose_gamma.is_some();
+        let folded = match (is_open, recognition.is_informed()) {
+            (true, _) => Some(("choose_c or choose_gamma", "a given c and gamma")),
+            (_, true) => Some(("next_touch = \"most_informative\"", "another next_touch")),
+            _ => None,
+        };
+        if let (Some((key, other)), Some(_)) = (folded, &recognition.class_imbalance) {
+            let allowed = format!("{other}: folds need touches of every object");
+            let given = format!("given beside {key}");
+            return Err(self.error("recognition.class_imbalance", given, allowed));
+        }
+        Ok(())
+    }
+
+    /// Each hyper-parameter that is not as by default has a classifier that uses it, and the solver can train every SVM.
+    fn parameters(&self, recognition: &RecognitionSpec, given: &toml::Table) -> Result<()> {
+        let usual: toml::Table = RecognitionSpec::usual();
+        let kinds = recognition.classifier.values();
+        for parameter in &PARAMETERS {
+            let is_set =
+                |key: &&&str| given.contains_key(**key) && given.get(**key) != usual.get(**key);
+            let key = parameter.keys.iter().find(is_set);
+            let is_used = kinds.iter().any(|&kind| (parameter.is_used)(kind));
+            if let (Some(key), false) = (key, is_used) {
+                let given = format!("{}, but no classifier of the study uses it", given[*key]);
+                let users = parameter.users();
+                let allowed = format!("{users} among recognition.classifier, or no such key");
+                return Err(self.error(&format!("recognition.{key}"), given, allowed));
+            }
+        }
+        for kind in kinds {
+            let classifier = Classifier {
+                solver: recognition.solver,
+                multiclass: recognition.multiclass,
+                ..Classifier::new(kind)
+            };
+            let place = format!("{}, key recognition.", self.place);
+            classifier
+                .check_solver()
+                .map_err(|error| error.under(place))?;
+        }
+        Ok(())
+    }
+
+    /// Features of images: of one value a taxel.
+    pub fn images(&self, recognition: &RecognitionSpec, arrays: &[TaxelArray]) -> Result<()> {
+        let mut features = recognition.features.values().into_iter();
+        let Some(features) = features.find(|features| features.of_image().is_some()) else {
+            let foremost = recognition.foremost_full_scale.is_some();
+            let of_images = [
+                ("recognition.foremost_full_scale", foremost),
+                (
+                    "recognition.tilted_copies",
+                    recognition.tilted_copies.is_some(),
+                ),
+            ];
+            return match of_images.into_iter().find(|(_, is_given)| *is_given) {
+                None => Ok(()),
+                Some((key, _)) => {
+                    let given = "given, but no features of the study are of images";
+                    Err(self.error(key, given, "features of images, or no such key"))
+                }
+            };
+        };
+        if arrays.iter().any(|array| !array.is_placed()) {
+            let given = format!("{} of taxels without a layout", String::from(features));
+            let allowed = "features of measurements (raw, centred, unit_norm, centred_unit_norm): \
+                           those of images need rows and columns (recorded.grid or recorded.order names them)";
+            return Err(self.error("recognition.features", given, allowed));
+        }
+        match arrays.iter().find(|array| array.sensed().n_channels() > 1) {
+            None => Ok(()),
+            Some(_) => {
+                let given = format!("{} of shear", String::from(features));
+                let allowed = "features of measurements (raw, centred, unit_norm, centred_unit_norm): \
+                               those of images need one value a taxel";
+                Err(self.error("recognition.features", given, allowed))
+            }
+        }
+    }
+
+    /// What is made of a touch's frames: no more of them than there are.
+    pub fn over_time(&self, recognition: &RecognitionSpec, frames: &[usize]) -> Result<()> {
+        let fewest = frames.iter().copied().min().unwrap_or(0);
+        let values = Axis::of(&recognition.over_time);
+        if let ([Some(OverTime::Deepest)], true) = (&values[..], frames.iter().all(|&f| f == 1)) {
+            let given = "\"deepest\", but every touch is one frame";
+            let allowed = "touches.frames of 2 or more beside it, or no such key";
+            return Err(self.error("recognition.over_time", given, allowed));
+        }
+        for value in recognition.over_time.iter().flat_map(Axis::values) {
+            if let OverTime::Stacked(k) = value
+                && k > fewest
+            {
+                let allowed = format!("at most {fewest}, the frames of a touch");
+                return Err(self.error("recognition.over_time", String::from(value), allowed));
+            }
+        }
+        Ok(())
+    }
+
+    /// A split by poses: nothing beside it that splits otherwise.
+    pub fn split(&self, spec: &StudySpec) -> Result<()> {
+        let recognition = &spec.recognition;
+        if recognition.split == PoseSplit::Random {
+            return Ok(());
+        }
+        // Beside an axis it says what the random split of that axis holds out.
+        let is_axis = spec.axes.has("recognition.split");
+        let given = [
+            ("keep_together", recognition.keep_together.is_some()),
+            ("folds", recognition.folds.is_some()),
+            (
+                "test_fraction",
+                recognition.test_fraction.is_some() && !is_axis,
+            ),
+        ];
+        if let Some((key, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
+            let given = format!("given beside split = {:?}", recognition.split.name());
+            let allowed = "no such key: the split says what is held out";
+            return Err(self.error(&format!("recognition.{key}"), given, allowed));
+        }
+        if !spec.places_objects() {
+            let given = recognition.split.name();
+            let allowed = "\"random\": only touches that a study places have a known pose";
+            return Err(self.error("recognition.split", given, allowed));
+        }
+        Ok(())
+    }
+
+    /// A next touch that is chosen: where there is one, in a pose that can be commanded whatever the object.
+    pub fn next_touch(&self, spec: &StudySpec) -> Result<()> {
+        let recognition = &spec.recognition;
+        let Some(chosen) = recognition.chosen_next().next() else {
+            return Ok(());
+        };
+        let (given, allowed) = if !spec.places_objects() {
+            let allowed = "only touches that a study places have a known pose";
+            (String::new(), format!("\"random\": {allowed}"))
+        } else if spec.touches.rest != RestPoses::AsModelled {
+            let allowed = "how an unknown object lies cannot be commanded";
+            let given = " beside touches.rest = \"stable\"";
+            (
+                given.to_owned(),
+                format!("rest = \"as_modelled\", or \"random\": {allowed}"),
+            )
+        } else if recognition.fused_touches.values().iter().all(|&k| k == 1) {
+            let given = " beside recognition.fused_touches = 1";
+            let allowed = "a fused_touches of 2 or more, or \"random\": one touch has no next";
+            (given.to_owned(), allowed.to_owned())
+        } else {
+            return Ok(());
+        };
+        let name = toml::Value::try_from(chosen).expect("every choice has a TOML form");
+        Err(self.error("recognition.next_touch", format!("{name}{given}"), allowed))
+    }
+
+    /// Folds that trials come out even with.
+    pub fn folds(&self, spec: &StudySpec) -> Result<()> {
+        match spec.recognition.folds {
+            Some(k) if !spec.trials.is_multiple_of(k) => {
+                let allowed = format!("a multiple of recognition.folds = {k}");
+                Err(self.error("trials", spec.trials, allowed))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+impl SensingSpec {
+    /// The axis of m on an array of `n_taxels`, each at least 1: all taxels where nothing is asked.
+    pub fn measurements_on(&self, n_taxels: usize) -> Vec<usize> {
+        let of_ratio = |ratio: f64| ((n_taxels as f64 / ratio).round() as usize).max(1);
+        match (&self.ratio, &self.measurements) {
+            (Some(ratios), _) => ratios.values().into_iter().map(of_ratio).collect(),
+            (None, Some(counts)) => counts.values(),
+            (None, None) => vec![n_taxels],
+        }
+    }
+}
+
+impl RecognitionSpec {
+    /// A table `[recognition]` in which every key has its default.
+    fn usual() -> toml::Table {
+        let usual: Self = toml::from_str("classifier = []").expect("all other keys have defaults");
+        toml::Table::try_from(usual).expect("every field of a study has a TOML form")
+    }
+
+    /// The fraction of touches held out for testing, where there are no folds.
+    pub fn test_share(&self) -> f64 {
+        self.test_fraction.unwrap_or(0.25)
+    }
+
+    /// How far behind the foremost point these features see: those of measurements the whole scale.
+    pub fn foremost(&self, features: Features) -> Vec<Option<f64>> {
+        match features.of_image() {
+            Some(_) => Axis::of(&self.foremost_full_scale),
+            None => vec![self.foremost_full_scale.as_ref().map(|_| 1.0)],
+        }
+    }
+
+    /// Copies of training touches: none for features of measurements.
+    pub fn copies(&self, features: Features) -> Vec<Option<usize>> {
+        match features.of_image() {
+            Some(_) => Axis::of(&self.tilted_copies),
+            None => vec![self.tilted_copies.as_ref().map(|_| 0)],
+        }
+    }
+
+    /// How the touches after the first of k are chosen: of one there are none, and all choices are the same.
+    pub fn next_touches(&self, k: usize) -> Vec<Option<NextTouch>> {
+        match (k, &self.next_touch) {
+            (1, Some(_)) => vec![Some(NextTouch::Random)],
+            _ => Axis::of(&self.next_touch),
+        }
+    }
+
+    /// The choices among them that are not random.
+    pub fn chosen_next(&self) -> impl Iterator<Item = NextTouch> {
+        let all = self.next_touch.iter().flat_map(Axis::values);
+        all.filter(|next| *next != NextTouch::Random)
+    }
+
+    /// Whether any goes by answers to training touches.
+    pub fn is_informed(&self) -> bool {
+        let mut chosen = self.chosen_next();
+        chosen.any(|next| next == NextTouch::MostInformative)
+    }
+
+    /// Most that a copy is tilted, radians.
+    pub fn copies_tilt(&self) -> f64 {
+        self.tilted_copies_deg
+            .unwrap_or(DEFAULT_TILT_DEG)
+            .to_radians()
+    }
+
+    /// Folds of the cross-validation that chooses C and γ.
+    pub fn n_choice_folds(&self) -> usize {
+        self.choose_folds.unwrap_or(5)
+    }
+
+    /// What stays on one side of a split, and how near is together where values are drawn.
+    pub fn kept_together(&self) -> Option<KeepTogether> {
+        Some(KeepTogether {
+            kind: self.keep_together.or(self.split.group())?,
+            metres: self.keep_together_mm.map(|mm| MM * mm),
+            radians: self.keep_together_deg.map(f64::to_radians),
+        })
+    }
+
+    /// The C axis, for classifiers that have one; `None` is a C chosen by cross-validation.
+    pub fn penalties(&self) -> Vec<Option<f64>> {
+        match (&self.c, &self.choose_c) {
+            (_, Some(_)) => vec![None],
+            (None, None) => vec![Some(1.0)],
+            (axis, None) => Axis::of(axis),
+        }
+    }
+}

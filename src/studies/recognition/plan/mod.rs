@@ -1,0 +1,14 @@
+//! A recognition study that can run: checked keys in SI units.
+
+pub mod group;
+pub(crate) mod human;
+pub(crate) mod learning;
+pub mod plan;
+pub mod pose_groups;
+pub(crate) mod recorded;
+pub(crate) mod scene;
+pub mod sensed;
+pub(crate) mod shear;
+pub mod signal;
+pub mod taxel_array;
+pub mod trials;

@@ -1,0 +1,172 @@
+//! A study that can run: every key of its [`StudySpec`] checked, every unit SI.
+//!
+//! The checks of `plan.rs`, `plan_scene.rs` (arrays, taxels, placement), `plan_shear.rs`, `plan_signal.rs`, `plan_learning.rs`, `plan_human.rs` and
+//! `plan_recorded.rs` convert millimetres, degrees and fractions into metres, radians and absolute values. Other stages get SI units.
+
+use crate::engine::axes::AxisValues;
+use crate::error::Result;
+use crate::inputs::check::Check;
+use crate::inputs::units::MM;
+use crate::sensing::Ensemble;
+use crate::signal::NoiseUnit;
+use crate::studies::recognition::plan::pose_groups::KeepTogether;
+use crate::studies::recognition::plan::taxel_array::TaxelArray;
+use crate::studies::recognition::spec::recorded::RecordedSpec;
+use crate::studies::recognition::spec::scene::{SpreadSpec, TouchesSpec};
+use crate::studies::recognition::spec::study::StudySpec;
+use crate::world::Placement;
+use std::collections::HashSet;
+
+/// Trials of a study, at most: each has its split in memory before the first runs.
+pub(crate) const MOST_TRIALS: usize = 100_000;
+
+/// A converted number as a person wrote it: 30, not 29.999999999999996. Numbers that are no decimal of nine places stay as they are.
+pub fn as_written(value: f64) -> f64 {
+    let decimal = (value * 1e9).round() / 1e9;
+    match (decimal - value).abs() <= 4.0 * f64::EPSILON * value.abs() {
+        true => decimal,
+        false => value,
+    }
+}
+
+/// A study, ready to run: its axes and settings as they are written, and what these are in SI units.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// As it was written.
+    pub spec: StudySpec,
+    /// One array per value of the resolution axis and the size axis.
+    pub arrays: Vec<TaxelArray>,
+    /// How touches are drawn; of nothing in a study of human touches.
+    pub placement: Placement,
+    /// Approach speed at the moment of reading, m/s.
+    pub speed: f64,
+    /// What the noise axis is measured in.
+    pub noise_unit: NoiseUnit,
+    /// The axis of frames a touch.
+    pub frames: Vec<usize>,
+    /// What stays on one side of a split.
+    pub keep_together: Option<KeepTogether>,
+}
+
+impl Plan {
+    /// Checks a study.
+    ///
+    /// # Errors
+    /// The error names `place` (the file) and the first key that is out of its range.
+    pub fn new(place: &str, mut spec: StudySpec) -> Result<Self> {
+        let check = Check { place };
+        check.count("trials", spec.trials, MOST_TRIALS)?;
+        check.layout(&spec)?;
+        check.shear(&spec)?;
+        if let Some(recorded) = &mut spec.recorded {
+            recorded.settle_values(&spec.skin);
+        }
+        let arrays = match &spec.recorded {
+            Some(recorded) => check.recorded(recorded, &spec)?,
+            None => check.touching_arrays(&spec.skin, &spec.touches)?,
+        };
+        check.human_touch(&spec, &arrays)?;
+        let placement = match spec.places_objects() {
+            false => check.placed(&TouchesSpec {
+                depth_mm: SpreadSpec::One(1.0),
+                ..TouchesSpec::default()
+            })?,
+            true => {
+                check.objects(&spec.objects)?;
+                spec.objects.settle_surface_error(&arrays);
+                check.placed(&spec.touches)?
+            }
+        };
+        let (noise_unit, _) = check.noise(&spec.signal, spec.skin.sensed)?;
+        let of_recorded = spec.recorded.as_ref().map(RecordedSpec::as_touches);
+        let touches = of_recorded.transpose()?;
+        let touches = touches.as_ref().unwrap_or(&spec.touches);
+        check.sensor_errors(&spec.signal, touches)?;
+        let speed = match &spec.recorded {
+            Some(recorded) => recorded.speed_mm_per_s * MM,
+            None => spec.touches.speed_mm_per_s * MM,
+        };
+        check.steps(&spec.signal)?;
+        check.tested_on(&spec.signal)?;
+        check.sensing(&spec.sensing, &arrays)?;
+        let frames = match (&spec.human_touch, &spec.recorded) {
+            (Some(human), _) => vec![human.n_frames()],
+            (_, Some(_)) => touches.frames.values(),
+            _ => spec.touches.frames.values(),
+        };
+        check.recognition(&spec.recognition)?;
+        check.images(&spec.recognition, &arrays)?;
+        check.over_time(&spec.recognition, &frames)?;
+        check.split(&spec)?;
+        check.next_touch(&spec)?;
+        check.folds(&spec)?;
+        check.repeats(&spec)?;
+        let plan = Self {
+            speed,
+            keep_together: spec.recognition.kept_together(),
+            arrays,
+            placement,
+            noise_unit,
+            frames,
+            spec,
+        };
+        check.configurations(plan.n_cells())?;
+        Ok(plan)
+    }
+
+    /// A plan for each combination of a study's own axes, the first alone where it has none; each says the whole study.
+    ///
+    /// # Errors
+    /// Those of [`Plan::new`], which name the axis.
+    pub fn variants(place: &str, spec: StudySpec) -> Result<Vec<(AxisValues, Self)>> {
+        if spec.axes.is_empty() {
+            return Ok(vec![(AxisValues::default(), Self::new(place, spec)?)]);
+        }
+        let check = Check { place };
+        check.configurations(spec.axes.n_combinations())?;
+        let (axes, columns) = (spec.axes.clone(), spec.axis_columns());
+        let variants = axes.variants(place, &spec)?.into_iter().enumerate();
+        let plans = variants.map(|(number, (values, study))| {
+            let study = StudySpec {
+                axes: axes.clone(),
+                ..study
+            };
+            let plan = Self::new(place, study);
+            let plan = plan.map_err(|error| axes.refused(place, &values, &error.to_string()))?;
+            Ok((AxisValues::new(number, &columns, &values), plan))
+        });
+        let plans = plans.collect::<Result<Vec<_>>>()?;
+        check.configurations(plans.iter().map(|(_, plan)| plan.n_cells()).sum())?;
+        Ok(plans)
+    }
+
+    /// How many cells the study has at most, counted without laying any out: values that name the same m twice, or a C for a classifier
+    /// that has none, make no further cells.
+    pub fn n_cells(&self) -> f64 {
+        let lengths = self.spec.axis_lengths().map(|(_, n)| n as f64);
+        self.spec.signal.n_conditions() * lengths.product::<f64>()
+    }
+
+    /// The m axis on an array; a ratio axis can name the same m twice on a small one.
+    pub(crate) fn measurement_counts(&self, array: &TaxelArray, ensemble: Ensemble) -> Vec<usize> {
+        let n_values = array.n_values();
+        if ensemble.about().is_whole_frame {
+            return vec![n_values];
+        }
+        let mut named = HashSet::new();
+        let mut counts = self.spec.sensing.measurements_on(n_values);
+        counts.retain(|&m| named.insert(m));
+        counts
+    }
+}
+
+impl Plan {
+    /// A noise level in words: `5 % of full scale`.
+    pub fn describe_noise(&self, level: f64) -> String {
+        match self.noise_unit {
+            NoiseUnit::FullScale => format!("{} % of full scale", (level * 1e8).round() / 1e6),
+            NoiseUnit::Mm => format!("{level} mm"),
+            NoiseUnit::N => format!("{level} N"),
+        }
+    }
+}

@@ -1,0 +1,159 @@
+//! Which touches stay on one side of a split: those that share listed values, and those near each other where values are drawn.
+//!
+//! Listed values: touches with the same values on the grouping axes are a group, whatever their object.
+//!
+//! Values that are spread uniformly: touches of an object are neighbours if they share the listed grouping axes and differ by less than the
+//! stated distance on *each* drawn one (a yaw of 359° is 2° from one of 1°). A group is everything that neighbours connect (single
+//! linkage), so a touch of another group is at least that distance away on some axis. Touches of different objects are never neighbours:
+//! they carry different labels.
+
+use crate::error::{Error, Result};
+use crate::studies::recognition::spec::study::GroupSpec;
+use crate::world::{Touch, TouchAxis};
+use ndarray::Array1;
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+/// What stays together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct KeepTogether {
+    /// The axes that make a group.
+    pub kind: GroupSpec,
+    /// Drawn offsets and depths nearer than this are neighbours, metres, positive.
+    pub metres: Option<f64>,
+    /// Drawn yaws and tilts nearer than this are neighbours, radians, positive.
+    pub radians: Option<f64>,
+}
+
+impl GroupSpec {
+    /// The axes that it is of.
+    fn axes(self) -> &'static [TouchAxis] {
+        use TouchAxis::{Depth, OffsetX, OffsetY, Rest, TiltX, TiltY, Yaw};
+        match self {
+            Self::Pose => &[Rest, OffsetX, OffsetY, Yaw, TiltX, TiltY],
+            Self::Offset => &[OffsetX, OffsetY],
+            Self::Yaw => &[Yaw],
+            Self::Tilt => &[TiltX, TiltY],
+            Self::Rest => &[Rest],
+            Self::Depth => &[Depth],
+        }
+    }
+}
+
+impl KeepTogether {
+    /// Below what distance values of a drawn axis are neighbours.
+    fn distance(&self, axis: TouchAxis) -> Result<f64> {
+        let (distance, key) = match axis {
+            TouchAxis::Yaw | TouchAxis::TiltX | TouchAxis::TiltY => {
+                (self.radians, "recognition.keep_together_deg")
+            }
+            _ => (self.metres, "recognition.keep_together_mm"),
+        };
+        distance.ok_or_else(|| {
+            let given = format!("left out, and {} is spread uniformly", axis.name());
+            let allowed = "the distance below which touches are kept together (or listed values)";
+            Error::input(format!("key {key}"), given, allowed)
+        })
+    }
+
+    /// One group number a touch.
+    ///
+    /// # Errors
+    /// A drawn axis without a distance.
+    pub fn groups(&self, touched: &[&[Touch]]) -> Result<Array1<usize>> {
+        let mut numbers = BTreeMap::new();
+        let mut keys = Vec::new();
+        for (object, touched) in touched.iter().enumerate() {
+            let touches = *touched;
+            let drawn = self.drawn(touches)?;
+            // Without drawn axes a group is of all objects.
+            let of_object = (!drawn.is_empty()).then_some(object);
+            let listed = touches.iter().map(|touch| self.listed(touch));
+            let listed: Vec<Vec<usize>> = listed.collect();
+            for (first, listed) in connected(touches, &listed, &drawn).iter().zip(&listed) {
+                let next = numbers.len();
+                let key = (of_object, of_object.map(|_| *first), listed.clone());
+                keys.push(*numbers.entry(key).or_insert(next));
+            }
+        }
+        Ok(keys.into())
+    }
+
+    /// The axes whose values are drawn, with their distances.
+    fn drawn(&self, touches: &[Touch]) -> Result<Vec<(TouchAxis, f64)>> {
+        let is_drawn = |axis: &&TouchAxis| {
+            let mut indices = touches.iter().map(|touch| touch.indices[**axis as usize]);
+            indices.any(|index| index.is_none())
+        };
+        let axes = self.kind.axes().iter().filter(is_drawn);
+        axes.map(|&axis| Ok((axis, self.distance(axis)?))).collect()
+    }
+
+    /// The indices of the values on the other axes.
+    fn listed(&self, touch: &Touch) -> Vec<usize> {
+        let axes = self.kind.axes().iter();
+        let indices = axes.map(|&axis| touch.indices[axis as usize]);
+        indices.flatten().collect()
+    }
+}
+
+/// For each touch the first of those that neighbours connect it with.
+fn connected(touches: &[Touch], listed: &[Vec<usize>], drawn: &[(TouchAxis, f64)]) -> Vec<usize> {
+    let mut first: Vec<usize> = (0..touches.len()).collect();
+    let Some(&(along, distance)) = drawn.first() else {
+        return first;
+    };
+    // Sorted along one axis, only touches within its distance are compared; a yaw comes once more a turn later.
+    let mut order: Vec<(f64, usize)> = Vec::new();
+    for (number, touch) in touches.iter().enumerate() {
+        let value = touch.value(along);
+        let turned = value.rem_euclid(TAU);
+        match along {
+            TouchAxis::Yaw if turned < distance => {
+                order.extend([(turned, number), (turned + TAU, number)]);
+            }
+            TouchAxis::Yaw => order.push((turned, number)),
+            _ => order.push((value, number)),
+        }
+    }
+    order.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for (place, &(low, a)) in order.iter().enumerate() {
+        let near = order[place + 1..].iter();
+        for &(_, b) in near.take_while(|(high, _)| high - low < distance) {
+            if listed[a] == listed[b] && are_neighbours(&touches[a], &touches[b], drawn) {
+                join(&mut first, a, b);
+            }
+        }
+    }
+    (0..touches.len())
+        .map(|number| root(&mut first, number))
+        .collect()
+}
+
+fn are_neighbours(a: &Touch, b: &Touch, drawn: &[(TouchAxis, f64)]) -> bool {
+    let apart = |axis: TouchAxis| {
+        let apart = (a.value(axis) - b.value(axis)).abs();
+        match axis {
+            TouchAxis::Yaw => {
+                let turned = apart.rem_euclid(TAU);
+                turned.min(TAU - turned)
+            }
+            _ => apart,
+        }
+    };
+    drawn.iter().all(|&(axis, distance)| apart(axis) < distance)
+}
+
+/// The first of a touch's group; shortens the way there.
+fn root(first: &mut [usize], mut number: usize) -> usize {
+    while first[number] != number {
+        first[number] = first[first[number]];
+        number = first[number];
+    }
+    number
+}
+
+fn join(first: &mut [usize], a: usize, b: usize) {
+    let (a, b) = (root(first, a), root(first, b));
+    first[a.max(b)] = a.min(b);
+}

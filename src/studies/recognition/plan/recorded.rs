@@ -1,0 +1,194 @@
+//! Recorded frames: the checks of `[recorded]`, and the array that read them.
+
+use crate::engine::axis::Axis;
+use crate::error::{Error, Result};
+use crate::inputs::check::{Check, not_negative, positive};
+use crate::inputs::objects_spec::ObjectsSpec;
+use crate::inputs::units::MM;
+use crate::studies::recognition::plan::taxel_array::TaxelArray;
+use crate::studies::recognition::spec::recorded::{RecordedSpec, ZeroSpec};
+use crate::studies::recognition::spec::scene::{SensedSpec, SkinSpec, TouchesSpec};
+use crate::studies::recognition::spec::signal::StepSpec;
+use crate::studies::recognition::spec::study::StudySpec;
+use crate::world::{ArrayLayout, Grid};
+use glam::DVec2;
+
+impl RecordedSpec {
+    /// Notes how many values a taxel of the skin reads.
+    pub(crate) fn settle_values(&mut self, skin: &SkinSpec) {
+        self.n_values = match skin.sensed.unwrap_or_default() {
+            SensedSpec::Shear => 3,
+            SensedSpec::Deflection | SensedSpec::Force => 1,
+        };
+    }
+
+    /// How touches are read that are recorded, as a study of pressed objects says it: their frames, and whether time goes on between them.
+    ///
+    /// # Errors
+    /// Those of [`shape_of`](Self::shape_of).
+    pub(crate) fn as_touches(&self) -> Result<TouchesSpec> {
+        let moves =
+            self.frame_interval_s.is_some() || self.speed_mm_per_s > 0.0 && self.depths.is_some();
+        Ok(TouchesSpec {
+            frames: Axis::One(self.shape_of("frames")?.n_frames),
+            speed_mm_per_s: if moves { 1.0 } else { 0.0 },
+            ..TouchesSpec::default()
+        })
+    }
+}
+
+impl Check<'_> {
+    /// The array that read what a study has recorded; it has nothing beside it that makes touches.
+    pub fn recorded(&self, recorded: &RecordedSpec, spec: &StudySpec) -> Result<Vec<TaxelArray>> {
+        let StudySpec {
+            objects, touches, ..
+        } = spec;
+        if *objects != ObjectsSpec::default()
+            || *touches != TouchesSpec::default()
+            || spec.human_touch.is_some()
+        {
+            let given = "beside [objects], [touches] or [human_touch]";
+            let allowed = "it alone: it is what the skin has read";
+            return Err(self.error("recorded", given, allowed));
+        }
+        if spec.recognition.keep_together.is_some() {
+            let allowed = "no such key: recorded.groups says what stays together";
+            return Err(self.error("recognition.keep_together", "given", allowed));
+        }
+        let (key, allowed) = ("recorded.zero", "a finite number");
+        let zero = match recorded.zero {
+            ZeroSpec::One(zero) => self.value(key, zero, f64::is_finite, allowed)?,
+            // The zeros of the file are compared with the full scale when the frames are read.
+            ZeroSpec::Each(_) => f64::NEG_INFINITY,
+        };
+        if let Some(full_scale) = recorded.full_scale
+            && !(full_scale.is_finite() && full_scale > zero)
+        {
+            let allowed = match zero.is_finite() {
+                true => format!("a number above recorded.zero, {zero}"),
+                false => allowed.to_owned(),
+            };
+            return Err(self.error("recorded.full_scale", full_scale, allowed));
+        }
+        self.of_time(recorded, spec)?;
+        let place = |error: Error| error.under(format!("{}, ", self.place));
+        recorded.check_files().map_err(place)?;
+        if recorded.has_test_set() {
+            let recognition = &spec.recognition;
+            let given = [
+                ("recognition.folds", recognition.folds.is_some()),
+                (
+                    "recognition.test_fraction",
+                    recognition.test_fraction.is_some(),
+                ),
+            ];
+            if let Some((key, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
+                let allowed = "no such key: recorded.frames_test is the test set";
+                return Err(self.error(key, "given", allowed));
+            }
+        }
+        let array = self.array_of(recorded, &spec.skin)?;
+        if !array.is_placed() {
+            let needs_places = |step: &&StepSpec| match step {
+                StepSpec::Smoothing => {
+                    let widths = spec.signal.axes.of("smoothing_mm").into_iter();
+                    widths.flat_map(Axis::values).any(|width| width > 0.0)
+                }
+                StepSpec::Error(error) => error.about().needs_places,
+                StepSpec::Force | StepSpec::Noise => false,
+            };
+            if let Some(step) = spec.signal.steps.iter().find(needs_places) {
+                let given = format!("\"{}\" of taxels without a layout", step.word());
+                let allowed = "steps of each taxel by itself (recorded.grid or recorded.order names rows and columns)";
+                return Err(self.error("signal.steps", given, allowed));
+            }
+        }
+        Ok(vec![array])
+    }
+
+    /// Speeds and times between frames.
+    fn of_time(&self, recorded: &RecordedSpec, spec: &StudySpec) -> Result<()> {
+        self.value(
+            "recorded.speed_mm_per_s",
+            recorded.speed_mm_per_s,
+            not_negative,
+            "a number of mm/s, zero or more",
+        )?;
+        if spec.skin.damping_n_s_per_m == 0.0
+            && recorded.speed_mm_per_s > 0.0
+            && recorded.depths.is_none()
+        {
+            let allowed = "recorded.depths beside it (its time between frames), or a damper (skin.damping_n_s_per_m)";
+            return Err(self.error("recorded.speed_mm_per_s", recorded.speed_mm_per_s, allowed));
+        }
+        if recorded.speed_mm_per_s > 0.0 && recorded.n_values > 1 {
+            let allowed = "0 where skin.sensed is shear";
+            return Err(self.error("recorded.speed_mm_per_s", recorded.speed_mm_per_s, allowed));
+        }
+        let Some(interval) = recorded.frame_interval_s else {
+            return Ok(());
+        };
+        self.value(
+            "recorded.frame_interval_s",
+            interval,
+            positive,
+            "a positive number of seconds",
+        )?;
+        match recorded.speed_mm_per_s > 0.0 && recorded.depths.is_some() {
+            true => {
+                let allowed = "no such key: recorded.depths and recorded.speed_mm_per_s say how much time goes on between frames";
+                Err(self.error("recorded.frame_interval_s", interval, allowed))
+            }
+            false => Ok(()),
+        }
+    }
+
+    fn array_of(&self, recorded: &RecordedSpec, skin: &SkinSpec) -> Result<TaxelArray> {
+        self.table("skin", skin)?;
+        let shape = recorded.shape_of("frames")?;
+        if skin.layout.unwrap_or_default() != ArrayLayout::Grid {
+            let mut arrays = self.touching_arrays(skin, &TouchesSpec::default())?;
+            let n_taxels = shape.rows * shape.columns;
+            let (Some(array), 0) = (arrays.pop(), arrays.len()) else {
+                return Err(self.error(
+                    "skin",
+                    "several arrays",
+                    "one, of the skin that read the frames",
+                ));
+            };
+            if array.n_taxels() != n_taxels {
+                let given = format!("{} taxels", array.n_taxels());
+                let allowed = format!("{n_taxels}, as {} has", recorded.frames.display());
+                return Err(self.error("skin.layout", given, allowed));
+            }
+            return Ok(array);
+        }
+        let given = [
+            ("skin.taxels", skin.taxels.is_some()),
+            ("skin.size_mm", skin.size_mm.is_some()),
+        ];
+        if let Some((key, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
+            let allowed = "no such key: rows and columns are those of the recorded frames";
+            return Err(self.error(key, "given", allowed));
+        }
+        let pitches = skin.pitch_mm.values();
+        let [pitch_mm] = pitches[..] else {
+            let given = format!("{} pitches", pitches.len());
+            return Err(self.error("skin.pitch_mm", given, "one, of the skin that read them"));
+        };
+        let grid = Grid {
+            nx: shape.columns,
+            ny: shape.rows,
+            pitch: pitch_mm * MM,
+        };
+        let taxel = skin.taxel(pitch_mm);
+        grid.check()?;
+        taxel.check()?;
+        let array = TaxelArray::new(ArrayLayout::Grid, (grid, taxel), 0.0)?;
+        let array = array.reading(skin.sensed(), DVec2::ZERO)?;
+        Ok(match shape.has_grid {
+            true => array,
+            false => array.without_places(),
+        })
+    }
+}

@@ -1,0 +1,251 @@
+//! What touches what: the checks of `[objects]`, `[skin]` and `[touches]`.
+
+use crate::engine::axis::Axis;
+use crate::error::Result;
+use crate::inputs::check::{Check, MOST_VALUES, positive};
+use crate::inputs::objects_spec::ObjectsSpec;
+use crate::inputs::units::{MM, MOST_SIDE};
+use crate::mesh::SizeLimits;
+use crate::studies::recognition::plan::taxel_array::TaxelArray;
+use crate::studies::recognition::spec::scene::{RangeSpec, SkinSpec, SpreadSpec, TouchesSpec};
+use crate::studies::recognition::spec::study::StudySpec;
+use crate::world::{Grid, Placement, Spread, Taxel, TouchAxis};
+
+/// The least distance between taxels of all arrays, metres.
+fn finest_pitch(arrays: &[TaxelArray]) -> f64 {
+    let pitches = arrays.iter().map(TaxelArray::pitch);
+    pitches.fold(f64::INFINITY, f64::min)
+}
+
+impl ObjectsSpec {
+    /// Sets the defaults that depend on the arrays: the model of meshes and how far spheres may be from surfaces.
+    pub(crate) fn settle_surface_error(&mut self, arrays: &[TaxelArray]) {
+        if self.meshes.is_some() {
+            // Written down, so that a study tells which model it was run with.
+            self.model.get_or_insert_default();
+        }
+        let finest = finest_pitch(arrays);
+        let model = self.model.unwrap_or_default();
+        let default = || model.default_surface_error_mm(finest / MM);
+        self.pitch = Some(finest);
+        self.surface_error_mm = Some(self.surface_error_mm.unwrap_or_else(default));
+        self.settle_sizes(arrays);
+    }
+
+    /// Says how large objects may be whose files have no unit.
+    pub(crate) fn settle_sizes(&mut self, arrays: &[TaxelArray]) {
+        let feels = |array: &TaxelArray| {
+            let grid = array.grid();
+            let n = grid.nx.max(grid.ny);
+            (n as f64 * grid.pitch, array.taxel().radius)
+        };
+        self.sizes = Some(SizeLimits::of_arrays(arrays.iter().map(feels)));
+    }
+}
+
+impl SkinSpec {
+    /// Each taxel of an array with this pitch.
+    pub(crate) fn taxel(&self, pitch_mm: f64) -> Taxel {
+        Taxel {
+            radius: self.taxel_radius_mm.unwrap_or(0.5 * pitch_mm) * MM,
+            stiffness: self.stiffness_n_per_m,
+            damping: self.damping_n_s_per_m,
+            stroke: self.stroke_mm * MM,
+        }
+    }
+}
+
+impl Check<'_> {
+    pub fn objects(&self, objects: &ObjectsSpec) -> Result<()> {
+        let given = self.table("objects", objects)?;
+        if objects.meshes.is_some() {
+            return Ok(());
+        }
+        let of_meshes = ["model", "unit", "close_holes_mm"];
+        if let Some(key) = of_meshes.iter().find(|key| given.contains_key(**key)) {
+            let key = format!("objects.{key}");
+            let allowed =
+                "it only beside meshes = \"FOLDER\": solids are spheres within surface_error_mm";
+            return Err(self.error(&key, "given without meshes", allowed));
+        }
+        if objects.sets.is_empty() {
+            let allowed = "sets = [...] or meshes = \"FOLDER\" (or --objects FOLDER)";
+            return Err(self.error("objects", "neither sets nor meshes", allowed));
+        }
+        Ok(())
+    }
+
+    /// What layouts need, and what some of them cannot have.
+    pub fn layout(&self, spec: &StudySpec) -> Result<()> {
+        let SkinSpec {
+            layout,
+            curvature_radius_mm: radius,
+            ..
+        } = spec.skin;
+        let layout = layout.unwrap_or_default();
+        let (key, given, allowed) = match radius {
+            None if layout.is_curved() => (
+                "skin.layout",
+                layout.words().to_owned(),
+                "skin.curvature_radius_mm beside a cylinder or a cap",
+            ),
+            Some(radius) if !layout.is_curved() && !spec.axes.has("skin.layout") => (
+                "skin.curvature_radius_mm",
+                radius.to_string(),
+                "no such key: the layout is flat",
+            ),
+            Some(_) if layout.is_curved() && spec.touches.speed_mm_per_s > 0.0 => (
+                "touches.speed_mm_per_s",
+                spec.touches.speed_mm_per_s.to_string(),
+                "0: taxels of a curved layout move at speeds of their own",
+            ),
+            _ => return Ok(()),
+        };
+        Err(self.error(key, given, allowed))
+    }
+
+    pub(crate) fn arrays(&self, skin: &SkinSpec) -> Result<Vec<TaxelArray>> {
+        self.table("skin", skin)?;
+        let pitches = skin.pitch_mm.values();
+        let refuse = |given| Err(self.error("skin", given, "one of them"));
+        let n_sizes = match (&skin.size_mm, &skin.taxels) {
+            (Some(sizes), None) => sizes.values().len(),
+            (None, Some(counts)) => counts.values().len(),
+            (None, None) => return refuse("neither size_mm nor taxels"),
+            _ => return refuse("both size_mm and taxels"),
+        };
+        self.configurations(pitches.len() as f64 * n_sizes as f64)?;
+        let layout = skin.layout.unwrap_or_default();
+        let radius = skin.curvature_radius_mm.unwrap_or(0.0) * MM;
+        let mut arrays = Vec::new();
+        for pitch_mm in pitches {
+            let taxel = skin.taxel(pitch_mm);
+            for n in self.taxels_a_side(skin, pitch_mm)? {
+                let grid = Grid {
+                    nx: n,
+                    ny: n,
+                    pitch: pitch_mm * MM,
+                };
+                grid.check()?;
+                taxel.check()?;
+                let array = TaxelArray::new(layout, (grid, taxel), radius);
+                let place = || format!("{}, key skin.curvature_radius_mm, ", self.place);
+                arrays.push(array.map_err(|error| error.under(place()))?);
+            }
+        }
+        Ok(arrays)
+    }
+
+    /// The arrays of a study that has square grids alone.
+    pub fn grids(&self, skin: &SkinSpec) -> Result<Vec<TaxelArray>> {
+        let only = |key: &str, what: &str| {
+            let allowed = format!("no such key: only studies of recognition have {what}");
+            Err(self.error(key, "given", allowed))
+        };
+        if skin.layout.is_some() || skin.curvature_radius_mm.is_some() {
+            return only("skin.layout", "other layouts than grids");
+        }
+        if skin.sensed.is_some()
+            || skin.friction.is_some()
+            || skin.shear_stiffness_n_per_m.is_some()
+        {
+            return only("skin.sensed", "skins that read shear");
+        }
+        self.arrays(skin)
+    }
+
+    /// The array of a study that has no axis of arrays; `allowed` says so.
+    pub fn one_array(&self, skin: &SkinSpec, allowed: &str) -> Result<TaxelArray> {
+        let mut arrays = self.grids(skin)?;
+        match (arrays.pop(), arrays.len()) {
+            (Some(array), 0) => Ok(array),
+            (_, n) => Err(self.error("skin", format!("{} arrays", n + 1), allowed)),
+        }
+    }
+
+    fn taxels_a_side(&self, skin: &SkinSpec, pitch_mm: f64) -> Result<Vec<usize>> {
+        let side = |size_mm: f64| {
+            let n = (size_mm / pitch_mm).round();
+            let given = format!("{size_mm} mm at a pitch of {pitch_mm} mm");
+            match (n * pitch_mm - size_mm).abs() > 1e-6 * pitch_mm || n < 1.0 {
+                true => Err(self.error("skin.size_mm", given, "a whole number of pitches")),
+                false => self.count("skin.size_mm", n as usize, MOST_SIDE),
+            }
+        };
+        match (&skin.size_mm, &skin.taxels) {
+            (Some(sizes), _) => sizes.values().into_iter().map(side).collect(),
+            (_, counts) => Ok(counts.iter().flat_map(Axis::values).collect()),
+        }
+    }
+
+    /// Where touches are of a study whose touches are one frame each, and do not slide.
+    pub fn placement(&self, touches: &TouchesSpec) -> Result<Placement> {
+        let of_recognition = [
+            ("slide_mm", touches.slide_mm.is_some()),
+            ("slide_deg", touches.slide_deg.is_some()),
+            ("frames", touches.frames.values() != [1]),
+        ];
+        if let Some((key, _)) = of_recognition.into_iter().find(|(_, is_given)| *is_given) {
+            let allowed = "no such key: only studies of recognition and of breaking points use it";
+            return Err(self.error(&format!("touches.{key}"), "given", allowed));
+        }
+        self.placed(touches)
+    }
+
+    /// Where touches are.
+    pub fn placed(&self, touches: &TouchesSpec) -> Result<Placement> {
+        self.table("touches", touches)?;
+        let degree = std::f64::consts::PI / 180.0;
+        let spread = |axis: TouchAxis, spread, (ending, unit)| {
+            let key = format!("touches.{}_{ending}", axis.name());
+            self.spread((axis, &key), spread, unit)
+        };
+        let (mm, degree) = (("mm", MM), ("deg", degree));
+        Ok(Placement {
+            rest: touches.rest,
+            offset_x: spread(TouchAxis::OffsetX, &touches.offset_x_mm, mm)?,
+            offset_y: spread(TouchAxis::OffsetY, &touches.offset_y_mm, mm)?,
+            yaw: spread(TouchAxis::Yaw, &touches.yaw_deg, degree)?,
+            tilt_x: spread(TouchAxis::TiltX, &touches.tilt_x_deg, degree)?,
+            tilt_y: spread(TouchAxis::TiltY, &touches.tilt_y_deg, degree)?,
+            depth: spread(TouchAxis::Depth, &touches.depth_mm, mm)?,
+            per_object: touches.per_object,
+        })
+    }
+
+    /// Converts the values of an axis to SI units. Depths are positive, all others finite. Values that are the same pose are one value.
+    fn spread(
+        &self,
+        (axis, key): (TouchAxis, &str),
+        spread: &SpreadSpec,
+        unit: f64,
+    ) -> Result<Spread> {
+        let (is_allowed, allowed): (fn(f64) -> bool, _) = match key {
+            "touches.depth_mm" => (positive, "positive numbers of millimetres"),
+            _ => (f64::is_finite, "finite numbers"),
+        };
+        let values = match *spread {
+            SpreadSpec::Range(RangeSpec::Uniform(low, high)) => vec![low, high],
+            SpreadSpec::Range(RangeSpec::Grid(first, last, count)) => {
+                self.count(key, count, MOST_VALUES)?;
+                let step = (last - first) / (count - 1).max(1) as f64;
+                (0..count).map(|k| first + k as f64 * step).collect()
+            }
+            SpreadSpec::List(ref values) => values.clone(),
+            SpreadSpec::One(value) => vec![value],
+        };
+        for &value in &values {
+            self.value(key, value, is_allowed, allowed)?;
+        }
+        if let SpreadSpec::Range(RangeSpec::Uniform(low, high)) = *spread {
+            if low >= high {
+                let given = format!("uniform from {low} to {high}");
+                return Err(self.error(key, given, "low below high"));
+            }
+            let (low, high) = (low * unit, high * unit);
+            return Ok(Spread::Uniform { low, high });
+        }
+        let values = self.list(key, values)?;
+        Ok(axis.listed(values.iter().map(|v| v * unit).collect()))
+    }
+}

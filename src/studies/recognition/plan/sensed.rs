@@ -1,0 +1,73 @@
+//! What the taxels of an array read of a touch.
+
+use crate::error::Result;
+use crate::random::Seed;
+use crate::signal::{Chain, SignalStep};
+use crate::studies::recognition::plan::taxel_array::TaxelArray;
+use crate::world::Shear;
+
+/// What a taxel reads.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Sensed {
+    /// How far it is pushed in: metres, until a step of the signal makes it a force.
+    #[default]
+    Deflection,
+    /// The force along its axis, newtons.
+    Force,
+    /// The forces along and across its axis, newtons, with these shear springs at the tips: three channels, of which the second and the third are
+    /// along x and y of the taxel's [frame](crate::world::Layout::frame).
+    Shear(Shear),
+}
+
+impl Sensed {
+    /// Numbers that a taxel reads.
+    pub fn n_channels(&self) -> usize {
+        match self {
+            Self::Deflection | Self::Force => 1,
+            Self::Shear(_) => 3,
+        }
+    }
+
+    /// What people call it.
+    pub fn words(&self) -> &'static str {
+        match self {
+            Self::Deflection => "deflection",
+            Self::Force => "force",
+            Self::Shear(_) => "force and shear",
+        }
+    }
+}
+
+impl TaxelArray {
+    /// The signal of each channel, with the steps that a skin of some name has: channels are read by converters of their own, so each has a name, and
+    /// noise, of its own; the first has that of the skin.
+    ///
+    /// # Errors
+    /// Those of [`Chain::new`].
+    pub fn chains(
+        &self,
+        skin: &Seed,
+        steps: impl Fn(&Seed) -> Vec<SignalStep>,
+    ) -> Result<Vec<Chain>> {
+        let channels = 0..self.sensed().n_channels();
+        let chain = |channel| {
+            let mut steps = steps(&of_channel(skin, channel));
+            if *self.sensed() != Sensed::Deflection {
+                steps.insert(0, SignalStep::Force);
+            }
+            match channel {
+                0 => Chain::new(&steps, self.patch()),
+                _ => Chain::of_shear(&steps, self.patch()),
+            }
+        };
+        channels.map(chain).collect()
+    }
+}
+
+/// The name of a channel of something that has a name.
+pub(crate) fn of_channel(named: &Seed, channel: usize) -> Seed {
+    match channel {
+        0 => *named,
+        _ => named.named("channel").numbered(channel as u64),
+    }
+}

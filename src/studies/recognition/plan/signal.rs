@@ -1,0 +1,202 @@
+//! The checks of `[signal]`, and the conditions that its axes make.
+
+use crate::engine::axis::Axis;
+use crate::error::Result;
+use crate::inputs::check::{Check, Range};
+use crate::inputs::sensor_errors::{Strengths, all_strengths};
+use crate::inputs::units::MM;
+use crate::signal::{NoiseUnit, SENSOR_ERRORS, Strength};
+use crate::studies::recognition::plan::plan::Plan;
+use crate::studies::recognition::spec::scene::{SensedSpec, TouchesSpec};
+use crate::studies::recognition::spec::signal::{
+    CombineSpec, NOISES, SignalAxis, SignalSpec, StepSpec,
+};
+
+/// One value for each axis of the signal.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Condition {
+    /// Noise standard deviation, in the plan's unit.
+    pub noise: f64,
+    /// Standard deviation of the smoothing, metres.
+    pub smoothing: f64,
+    /// What the skin and its reader do.
+    pub strengths: Strengths,
+}
+
+impl Check<'_> {
+    /// What the noise is measured in, and its axis, on taxels that read so.
+    pub fn noise(
+        &self,
+        signal: &SignalSpec,
+        sensed: Option<SensedSpec>,
+    ) -> Result<(NoiseUnit, Vec<f64>)> {
+        self.table("signal", signal)?;
+        let axis = |(key, unit)| Some((key, unit, signal.axes.of(key)?));
+        let mut given = NOISES.into_iter().filter_map(axis);
+        let Some((name, unit, axis)) = given.next() else {
+            return Ok((NoiseUnit::FullScale, vec![0.0]));
+        };
+        let key = format!("signal.{name}");
+        if let Some((second, ..)) = given.next() {
+            let (second, given) = (format!("signal.{second}"), format!("given beside {key}"));
+            return Err(self.error(&second, given, "one unit of noise a study"));
+        }
+        let place = |wanted| signal.steps.iter().position(|step| *step == wanted);
+        let force = place(StepSpec::Force);
+        let is_read = sensed.unwrap_or_default() != SensedSpec::Deflection;
+        let of_force = is_read || force.is_some() && force < place(StepSpec::Noise);
+        let (given, allowed) = match (unit, of_force) {
+            (NoiseUnit::Mm, true) => (
+                "millimetres of noise on a force",
+                "noise_std_n or noise_std_full_scale, or noise before force in signal.steps",
+            ),
+            (NoiseUnit::N, false) => (
+                "newtons of noise on a deflection",
+                "noise_std_mm or noise_std_full_scale, or force before noise in signal.steps",
+            ),
+            _ => return Ok((unit, axis.values())),
+        };
+        Err(self.error(&key, given, allowed))
+    }
+
+    /// The strengths of sensor errors, and that the press moves while frames are read where one shows only then.
+    pub fn sensor_errors(&self, signal: &SignalSpec, touches: &TouchesSpec) -> Result<()> {
+        let range = |strength: &Strength| Range::Of(strength.is_allowed, strength.allowed);
+        let ranges = all_strengths().map(|(_, strength)| (strength.key, range(strength)));
+        self.keys("signal", signal, ranges)?;
+        let largest = |strength: &Strength| {
+            let axis = signal.axes.of(strength.key).into_iter();
+            axis.flat_map(Axis::values).fold(0.0, f64::max)
+        };
+        for error in SENSOR_ERRORS {
+            let about = error.about();
+            if let [first, second] = about.strengths
+                && largest(first) + largest(second) > 1.0
+            {
+                let (least, most) = (largest(first), largest(second));
+                let given = format!("up to {most}, with up to {least} of {}", first.words);
+                return Err(self.error(&key(second), given, "at most 1 together"));
+            }
+            if about.needs_motion && about.strengths.iter().any(|s| largest(s) > 0.0) {
+                self.moves(&key(&about.strengths[0]), touches)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The press moves while frames are read.
+    fn moves(&self, key: &str, touches: &TouchesSpec) -> Result<()> {
+        if touches.frames.values().iter().all(|&frames| frames < 2) {
+            let given = "given, but every touch is read once, at rest";
+            return Err(self.error(key, given, "touches.frames of 2 or more beside it"));
+        }
+        if touches.speed_mm_per_s == 0.0 {
+            let given = "given, but the press waits while it is read";
+            return Err(self.error(key, given, "a touches.speed_mm_per_s above 0 beside it"));
+        }
+        Ok(())
+    }
+
+    /// Test skins: another one shows only if something belongs to a skin.
+    pub fn tested_on(&self, signal: &SignalSpec) -> Result<()> {
+        let is_of_skin =
+            |step: &StepSpec| matches!(step, StepSpec::Error(error) if error.about().is_of_skin);
+        if signal.tested_on.is_none() || signal.steps.iter().any(is_of_skin) {
+            return Ok(());
+        }
+        let all = SENSOR_ERRORS.iter().map(|error| error.about());
+        let of_skin: Vec<&str> = all.filter(|e| e.is_of_skin).map(|e| e.step).collect();
+        let given = "given for skins without a difference";
+        let allowed = format!("{} among signal.steps beside it", of_skin.join(" or "));
+        Err(self.error("signal.tested_on", given, allowed))
+    }
+
+    /// Each step at most once, and none whose axis is set but which is not listed, nor the other way round if it does
+    /// nothing without: it would be silently ignored.
+    pub fn steps(&self, signal: &SignalSpec) -> Result<()> {
+        const KEY: &str = "signal.steps";
+        if !signal.steps.is_empty() {
+            self.list(KEY, signal.steps.iter().map(|step| step.word()).collect())?;
+        }
+        let mut set = signal.axes.given().map(|(_, step, _)| step);
+        if let Some(step) = set.find(|step| !signal.steps.contains(step)) {
+            let word = step.word();
+            let allowed = format!("\"{word}\" among the steps, since its axis is set");
+            return Err(self.error(KEY, format!("no \"{word}\""), allowed));
+        }
+        for step in &signal.steps {
+            let mut given = signal.axes.given();
+            if let StepSpec::Error(error) = step
+                && !given.any(|(_, given, _)| given == step)
+            {
+                let keys: Vec<String> = error.about().strengths.iter().map(key).collect();
+                let given = format!("\"{}\" without a strength", step.word());
+                let allowed = format!("{} beside it", keys.join(" or "));
+                return Err(self.error(KEY, given, allowed));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn key(strength: &Strength) -> String {
+    format!("signal.{}", strength.key)
+}
+
+impl SignalSpec {
+    /// How many conditions there are.
+    pub(crate) fn n_conditions(&self) -> f64 {
+        let axes = self.axes.given();
+        let lengths = axes.map(|(.., axis)| axis.values().len() as f64);
+        match self.combine {
+            CombineSpec::All => lengths.product(),
+            CombineSpec::OneAtATime => 1.0 + lengths.map(|n| n - 1.0).sum::<f64>(),
+        }
+    }
+}
+
+impl Plan {
+    /// Every condition of the signal that the study asks for: all combinations of its axes, or each axis alone.
+    pub fn conditions(&self) -> Vec<Condition> {
+        let signal = &self.spec.signal;
+        let first = |condition: Condition, (key, step, axis): &SignalAxis| {
+            condition.with((key, *step), axis.values()[0])
+        };
+        let first = signal.axes.given().fold(Condition::default(), first);
+        let mut conditions = vec![first];
+        for (key, step, axis) in signal.axes.given() {
+            let values = axis.values();
+            let with = |condition: Condition, values: &[f64]| -> Vec<Condition> {
+                let with = |value: &f64| condition.with((key, *step), *value);
+                values.iter().map(with).collect()
+            };
+            match signal.combine {
+                CombineSpec::OneAtATime => conditions.extend(with(first, &values[1..])),
+                // The first axis changes slowest.
+                CombineSpec::All => {
+                    let all = conditions.into_iter();
+                    conditions = all.flat_map(|condition| with(condition, &values)).collect();
+                }
+            }
+        }
+        conditions
+    }
+}
+
+impl Condition {
+    /// Whether two readings of one touch differ.
+    pub fn is_random_by_reading(&self) -> bool {
+        let mut present = self.strengths.present();
+        self.noise > 0.0 || present.any(|(error, ..)| error.about().is_random_by_reading)
+    }
+
+    /// The same with another value on an axis.
+    fn with(mut self, (key, step): (&str, StepSpec), value: f64) -> Self {
+        match step {
+            StepSpec::Noise => self.noise = value,
+            StepSpec::Smoothing => self.smoothing = value * MM,
+            _ => self.strengths = self.strengths.with(key, Some(value)),
+        }
+        self
+    }
+}

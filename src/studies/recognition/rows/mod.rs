@@ -1,0 +1,6 @@
+//! The rows of the result tables of a recognition study.
+
+pub mod cell;
+pub mod conditions;
+pub mod image_features;
+pub mod table_rows;

@@ -1,0 +1,75 @@
+//! How often limits of the model were reached.
+
+use crate::report::csv_tables::MISSED_TOUCHES;
+use crate::studies::recognition::rows::cell::Cell;
+use crate::studies::recognition::rows::table_rows::{Limit, TrialScore};
+use crate::studies::recognition::study::rows::TouchRow;
+use crate::studies::recognition::study::study::RecognitionStudy;
+
+impl RecognitionStudy {
+    /// Of touches on all arrays, and of fits.
+    pub(crate) fn limits(&self, fits: &[(Cell, TrialScore)], rows: &[TouchRow]) -> Vec<Limit> {
+        // The deepest frame is the same however many come before it.
+        let is_counted = |row: &&TouchRow| {
+            let (part, _, n_frames) = self.on(row.on);
+            row.is_made && n_frames == part.plan.frames[0]
+        };
+        let made: Vec<&TouchRow> = rows.iter().filter(is_counted).collect();
+        let sum = |count: fn(&TouchRow) -> usize| made.iter().map(|row| count(row)).sum();
+        let n_touches = sum(|row| row.n_touches);
+        let deeper = made.iter().map(|row| {
+            let (part, array, _) = self.on(row.on);
+            part.touched.n_deeper_than(array.taxel().stroke)
+        });
+        let n_deeper: usize = deeper.sum();
+        let n_capped = fits.iter().filter(|(_, score)| score.n_capped > 0).count();
+        let spec = &self.first().plan.spec;
+        let missed = match (&spec.human_touch, &spec.recorded) {
+            (Some(_), _) => {
+                "the hand was beyond the array or between its taxels; their frames hold no contact"
+            }
+            (_, Some(_)) => "no taxel reads more than recorded.zero",
+            _ => "no part of the object was over the array; their frames hold no contact",
+        };
+        let limit = |what: &str, (count, of): (usize, usize), meaning: &str| Limit {
+            what: what.to_owned(),
+            count: count as u64,
+            of: of as u64,
+            meaning: meaning.to_owned(),
+        };
+        let mut limits = vec![
+            limit(MISSED_TOUCHES, (sum(|row| row.n_missed), n_touches), missed),
+            limit(
+                "touches with a saturated taxel",
+                (sum(|row| row.n_saturated), n_touches),
+                match &spec.recorded {
+                    None => {
+                        "a taxel was at its stroke, where it cannot tell how much further the object pushes"
+                    }
+                    Some(_) => {
+                        "a taxel read its full scale, or a largest reading that many frames share: it cannot tell how much further the object pushes"
+                    }
+                },
+            ),
+            limit(
+                "fits stopped at the solver's iteration cap",
+                (n_capped, fits.len()),
+                "at least one of their SVMs is short of its tolerance",
+            ),
+            limit(
+                "touches deeper than the stroke",
+                (n_deeper, n_touches),
+                "the patch went on past the depth at which its first taxel was at its stroke: more taxels are saturated, the deeper the more",
+            ),
+        ];
+        if n_deeper == 0 {
+            limits.pop();
+        }
+        let n_masked = self.first().touched.n_masked();
+        if n_masked.0 > 0 {
+            let meaning = "they are missing (NaN) in at least 10 % of the frames and read recorded.zero in all";
+            limits.push(limit("taxels that are masked", n_masked, meaning));
+        }
+        limits
+    }
+}

@@ -1,0 +1,193 @@
+//! A recognition study from its text: objects that are built once and touches that are drawn once for all combinations that share them.
+
+use crate::engine::axes::AxisValues;
+use crate::error::{Error, Result};
+use crate::files::with_folder;
+use crate::inputs::memory::check_memory;
+use crate::inputs::object_files::load_objects;
+use crate::inputs::objects_spec::ObjectsSpec;
+use crate::note::note;
+use crate::random::Seed;
+use crate::studies::recognition::frames::human_touches::HumanTouches;
+use crate::studies::recognition::frames::recorded_frames::RecordedFrames;
+use crate::studies::recognition::frames::shear_ripple::note_shear_ripple;
+use crate::studies::recognition::frames::touch_set::TouchSet;
+use crate::studies::recognition::plan::plan::Plan;
+use crate::studies::recognition::spec::human::HumanTouchSpec;
+use crate::studies::recognition::spec::recorded::RecordedSpec;
+use crate::studies::recognition::spec::study::StudySpec;
+use crate::studies::recognition::study::scale::recognition_scale;
+use crate::studies::recognition::study::study::RecognitionStudy;
+use crate::studies::recognition::touches::drawn_touches::draw_touches;
+use crate::studies::source::Source;
+use crate::world::Placement;
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Reads and checks a study: a plan for each combination of its own axes.
+///
+/// # Errors
+/// A key that is not known or out of its range.
+pub fn read_plans(source: &Source) -> Result<Vec<(AxisValues, Plan)>> {
+    let parse = || StudySpec::parse(&source.place, &source.text);
+    // --objects says where the files of the study are.
+    let folder = source.objects.is_none().then(|| source.folder.clone());
+    let mut spec = with_folder(folder.clone(), parse)?;
+    if let Some(seed) = source.seed
+        && spec.axes.0.iter().any(|axis| axis.key == "seed")
+    {
+        let allowed = "no such option: the seed is an axis of the study";
+        return Err(Error::input("--seed", seed, allowed));
+    }
+    spec.seed = source.seed(spec.seed);
+    match &mut spec.recorded {
+        Some(recorded) => source.replace_recorded(recorded),
+        None => source.replace_objects(&mut spec.objects),
+    }
+    // Values on axes may be paths, too.
+    with_folder(folder, || Plan::variants(&source.place, spec))
+}
+
+/// Reads and checks a study, builds its objects and draws its touches, unless these take more memory than there is.
+///
+/// # Errors
+/// Those of [`read_plans`]; an object that cannot be read; touches that memory cannot hold.
+pub fn load_study(source: &Source) -> Result<RecognitionStudy> {
+    let plans = read_plans(source)?;
+    let (packings, place) = (source.packings.as_deref(), &source.place);
+    let mut study = RecognitionStudy::load(place, plans, packings, source.memory)?;
+    study.scale = recognition_scale(&study);
+    Ok(study)
+}
+
+impl RecognitionStudy {
+    /// Builds the objects of [plans](Plan::variants) and draws their touches, unless these take more bytes than `ceiling` (`None`: no
+    /// limit). Objects that are packed are kept in `packings`.
+    ///
+    /// # Errors
+    /// An object that cannot be built; too many touches; those of [`of_variants`](Self::of_variants), after `place` (the file).
+    pub fn load(
+        place: &str,
+        plans: Vec<(AxisValues, Plan)>,
+        packings: Option<&Path>,
+        ceiling: Option<u64>,
+    ) -> Result<Self> {
+        let (mut objects, mut has_noted) = (HashMap::new(), false);
+        let mut drawn: HashMap<String, Arc<dyn TouchSet + Send>> = HashMap::new();
+        let mut variants = Vec::with_capacity(plans.len());
+        for (variant, plan) in plans {
+            let inputs = TouchInputs::of(&plan);
+            let (content, seed) = (inputs.key(), Seed::new(inputs.seed));
+            let touched: Arc<dyn TouchSet + Send> = if let Some(known) = drawn.get(&content) {
+                known.clone()
+            } else if let Some(human) = inputs.human_touch {
+                check_touches(&plan, human.kinds.len(), ceiling)?;
+                Arc::new(HumanTouches::draw(human, &seed)?)
+            } else if let Some(recorded) = inputs.recorded {
+                Arc::new(RecordedFrames::read(recorded, ceiling)?)
+            } else {
+                let known = objects.entry(format!("{:?}", inputs.objects));
+                let objects = match known {
+                    Entry::Occupied(known) => known.into_mut(),
+                    Entry::Vacant(new) => new.insert(load_objects(inputs.objects, packings)?),
+                };
+                if !has_noted {
+                    has_noted = note_shear_ripple(&plan, objects)?;
+                }
+                check_touches(&plan, objects.len(), ceiling)?;
+                let n_touches = inputs.placement.n_touches() * objects.len() as f64;
+                if let Some(slow) = slow_splits(n_touches, plan.spec.trials) {
+                    note(format_args!("{place}: {slow}"));
+                }
+                let drawn = draw_touches(objects.clone(), inputs.placement, &seed);
+                Arc::new(drawn.map_err(|error| error.under(format!("{place}, ")))?)
+            };
+            drawn.insert(content, touched.clone());
+            variants.push((variant, plan, touched));
+        }
+        Self::of_variants(variants).map_err(|error| error.under(format!("{place}, ")))
+    }
+}
+
+/// Number of touches times trials from which on [`slow_splits`] returns a sentence: some seconds of splitting. Larger: a command is silent for
+/// longer; smaller: short waits are announced.
+const MANY_SPLITS: f64 = 7e7;
+
+/// Returns a sentence if a command waits while it splits touches, before it begins.
+fn slow_splits(n_touches: f64, n_trials: usize) -> Option<String> {
+    (n_touches * n_trials as f64 >= MANY_SPLITS)
+        .then(|| format!("splitting {n_touches} touches in {n_trials} trials"))
+}
+
+/// Everything of a plan that its touches are drawn from, beside the array and the files of its objects. Plans with equal inputs share their touches.
+#[derive(Debug)]
+pub(crate) struct TouchInputs<'a> {
+    objects: &'a ObjectsSpec,
+    placement: &'a Placement,
+    human_touch: Option<&'a HumanTouchSpec>,
+    recorded: Option<&'a RecordedSpec>,
+    seed: u64,
+}
+
+impl<'a> TouchInputs<'a> {
+    /// Returns the inputs of a plan's touches.
+    pub fn of(plan: &'a Plan) -> Self {
+        let spec = &plan.spec;
+        Self {
+            objects: &spec.objects,
+            placement: &plan.placement,
+            human_touch: spec.human_touch.as_ref(),
+            recorded: spec.recorded.as_ref(),
+            seed: spec.seed,
+        }
+    }
+
+    /// Returns a text that is equal for equal inputs only.
+    pub fn key(&self) -> String {
+        format!("{self:?}")
+    }
+}
+
+/// Returns a text that is equal for plans with the same touches, beside the array and the files of their objects.
+pub fn touch_content(plan: &Plan) -> String {
+    TouchInputs::of(plan).key()
+}
+
+/// Bytes of a touch: where it is, its label, how it is read.
+const TOUCH_BYTES: f64 = 400.0;
+
+/// Bytes of a touch in the split of a trial.
+const SPLIT_BYTES: f64 = 8.0;
+
+/// An error unless the touches of a study of so many classes, with a split a trial, are within `ceiling` bytes (`None`: no ceiling).
+/// To be asked before any is drawn.
+///
+/// # Errors
+/// They take more; the error names the key that says how many they are.
+fn check_touches(plan: &Plan, n_classes: usize, ceiling: Option<u64>) -> Result<()> {
+    let (key, n_each) = match &plan.spec.human_touch {
+        Some(human) => ("human_touch.per_kind", human.per_kind as f64),
+        None => ("touches.per_object", plan.placement.n_touches()),
+    };
+    let n_touches = n_each * n_classes as f64;
+    let bytes = n_touches * (TOUCH_BYTES + SPLIT_BYTES * plan.spec.trials as f64);
+    let what = format!("{n_touches} touches and their splits");
+    check_memory(bytes, ceiling, &what)
+        .map_err(|allowed| Error::input(format!("key {key}"), n_each, allowed))
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::studies::recognition::study::load::slow_splits;
+
+    #[test]
+    fn many_touches_in_many_trials_are_announced() {
+        assert_eq!(
+            slow_splits(6e5, 1000).as_deref(),
+            Some("splitting 600000 touches in 1000 trials")
+        );
+        assert_eq!(slow_splits(37_152.0, 4), None);
+    }
+}

@@ -1,0 +1,197 @@
+//! Makes the touches of an array once, measures each group once a trial, evaluates every family that is left.
+
+use crate::engine::progress::{Progress, Silent};
+use crate::engine::work_items::pending::PiecesLeft;
+use crate::error::Result;
+use crate::studies::recognition::frames::kept::Frames;
+use crate::studies::recognition::measurements::measurement::Measurements;
+use crate::studies::recognition::study::rows::{CellRow, RecognitionRows, TouchRow};
+use crate::studies::recognition::study::study::{RecognitionStudy, in_frames};
+use crate::studies::recognition::training::trial::Trial;
+use rayon::prelude::*;
+use std::cmp::Reverse;
+use std::collections::BTreeMap;
+
+/// What is measured once in a trial, and those of the families that learn from it that are left.
+pub(crate) struct Job<'a> {
+    study: &'a RecognitionStudy,
+    /// The first of the groups that are measured together.
+    group: usize,
+    trial: usize,
+    n_measurements: usize,
+    families: Vec<usize>,
+}
+
+impl RecognitionStudy {
+    pub(crate) fn measure_all(&self, left: &PiecesLeft<RecognitionRows>) -> Result<()> {
+        for part in self.parts() {
+            part.touched.prepare();
+        }
+        let mut jobs = self.jobs_left(left);
+        // Most frames first: the items that learn from them take longest.
+        jobs.sort_by_key(|(touches, _)| {
+            let (part, array, n_frames) = self.made_on(*touches);
+            (part, array, Reverse(n_frames))
+        });
+        if self.has_axes() {
+            // A line for the touches of each combination would hide the others.
+            let n_items =
+                |(_, jobs): &(usize, Vec<Job>)| 1 + jobs.iter().flat_map(Job::items).count();
+            let n_items: usize = jobs.iter().map(n_items).sum();
+            left.progress.stage("work items", n_items as u64);
+        }
+        jobs.into_iter()
+            .try_for_each(|(touches, jobs)| self.on_touches(left, touches, jobs))
+    }
+
+    /// Whether the study has axes of its own.
+    fn has_axes(&self) -> bool {
+        self.parts().len() > 1
+    }
+
+    /// Touches that are made or that families need that are left, with what is measured of them.
+    fn jobs_left(&self, left: &PiecesLeft<RecognitionRows>) -> Vec<(usize, Vec<Job<'_>>)> {
+        let touches = 0..self.touch_sets.len();
+        let jobs = touches.map(|touches| (touches, self.jobs(left, touches)));
+        let is_left = |(touches, jobs): &(usize, Vec<Job>)| {
+            !jobs.is_empty() || left.has(self.touches_item(*touches))
+        };
+        jobs.filter(is_left).collect()
+    }
+
+    /// What is measured of some touches for families that are left. A group of prefixes is measured once and serves all cells; else each m
+    /// serves its own.
+    fn jobs(&self, left: &PiecesLeft<RecognitionRows>, touches: usize) -> Vec<Job<'_>> {
+        let mut alike: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for (number, family) in self.families.iter().enumerate() {
+            let group = &self.groups[family.group];
+            if group.touches == touches {
+                alike.entry(group.measured_as).or_default().push(number);
+            }
+        }
+        let mut jobs = Vec::new();
+        for trial in 0..self.n_trials() {
+            for (&group, families) in &alike {
+                let measured = self.group(group).1;
+                let is_nested = measured.ensemble.is_prefix_nested();
+                for n_measurements in measured.projected() {
+                    let is_served = |&family: &usize| {
+                        (is_nested || self.family(family).1[0].measurements == n_measurements)
+                            && left.has(self.family_item(trial, family))
+                    };
+                    let families: Vec<usize> = families.iter().copied().filter(is_served).collect();
+                    if !families.is_empty() {
+                        jobs.push(Job {
+                            study: self,
+                            group,
+                            trial,
+                            n_measurements,
+                            families,
+                        });
+                    }
+                }
+            }
+        }
+        jobs
+    }
+
+    /// Does what is left of some touches.
+    fn on_touches(
+        &self,
+        left: &PiecesLeft<RecognitionRows>,
+        on: usize,
+        jobs: Vec<Job>,
+    ) -> Result<()> {
+        let touches = self.touches_item(on);
+        let (part, array, n_frames) = self.on(on);
+        let mut need: Vec<usize> = jobs.iter().flat_map(Job::items).collect();
+        let n_families = need.len();
+        need.push(touches);
+        let stage = |name: &str, total: usize| {
+            let stage = in_frames(&format!("{name} {}", array.describe()), n_frames);
+            left.progress.stage(&stage, total as u64);
+        };
+        let mut touched: &dyn Progress = &Silent;
+        if !self.has_axes() {
+            stage("touch", part.sweep.labels.len());
+            touched = left.progress;
+        }
+        let make = || {
+            let on = (array, n_frames);
+            Ok(part.touched.simulate(on, touched))
+        };
+        let Some(frames) = left.prepare(&need, make)? else {
+            return Ok(());
+        };
+        if !self.has_axes() {
+            stage("recognise", n_families + 1);
+        }
+        left.finish(touches, || {
+            let row = TouchRow {
+                is_made: true,
+                n_touches: part.sweep.labels.len(),
+                n_missed: frames.facts.n_missed,
+                n_saturated: frames.facts.n_saturated,
+                cpu_s: frames.facts.cpu_s,
+                on: 0,
+            };
+            Ok((Vec::new(), vec![row]))
+        })?;
+        jobs.par_iter().try_for_each(|job| job.run(left, &frames))
+    }
+}
+
+impl Job<'_> {
+    /// The numbers of its work items.
+    fn items(&self) -> impl Iterator<Item = usize> + '_ {
+        let families = self.families.iter();
+        families.map(|&family| self.study.family_item(self.trial, family))
+    }
+
+    /// Measures, then evaluates the families.
+    fn run(&self, left: &PiecesLeft<RecognitionRows>, frames: &Frames) -> Result<()> {
+        let need: Vec<usize> = self.items().collect();
+        let measured = left.prepare(&need, || self.measure(frames))?;
+        let cpu_s = measured.as_ref().map_or(0.0, |measured| measured.cpu_s);
+        let Some(measured) = measured else {
+            return Ok(());
+        };
+        let families = self.families.par_iter().zip(&need).enumerate();
+        families.try_for_each(|(place, (&family, &item))| {
+            left.finish(item, || {
+                // It is told once.
+                let touches = (place == 0).then(|| TouchRow {
+                    n_touches: self.study.group(self.group).0.sweep.labels.len(),
+                    cpu_s,
+                    ..TouchRow::default()
+                });
+                Ok((
+                    self.evaluate(family, &measured)?,
+                    touches.into_iter().collect(),
+                ))
+            })
+        })
+    }
+
+    fn measure(&self, frames: &Frames) -> Result<Measurements> {
+        let (part, group) = self.study.group(self.group);
+        part.measure(group, frames, (self.trial, self.n_measurements))
+    }
+
+    fn evaluate(&self, family: usize, measurements: &Measurements) -> Result<Vec<CellRow>> {
+        let (part, cells) = self.study.family(family);
+        let trial = Trial {
+            plan: &part.plan,
+            sweep: &part.sweep,
+            measurements,
+            tested: measurements,
+            number: self.trial,
+        };
+        let evaluations = trial.evaluate(cells)?.into_iter();
+        let rows = evaluations.map(|evaluation| CellRow {
+            at: (0, 0),
+            evaluation,
+        });
+        Ok(rows.collect())
+    }
+}

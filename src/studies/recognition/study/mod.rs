@@ -1,0 +1,14 @@
+//! Studies that recognise objects, in work items: a family of cells in a trial each, and the touches of each array.
+
+pub(crate) mod kind;
+pub(crate) mod limits;
+pub(crate) mod load;
+pub(crate) mod measuring;
+pub(crate) mod rows;
+pub(crate) mod scale;
+pub(crate) mod study;
+
+pub use crate::studies::recognition::study::load::{load_study, read_plans, touch_content};
+pub use crate::studies::recognition::study::rows::RecognitionRows;
+pub use crate::studies::recognition::study::scale::recognition_scale;
+pub use crate::studies::recognition::study::study::RecognitionStudy;

@@ -1,0 +1,119 @@
+//! How much of a recognition study is held at once: frames, measurements, the rows and matrices of training.
+
+use crate::engine::work_items::scale::Scale;
+use crate::sensing::N_COMPONENTS;
+use crate::studies::recognition::measurements::measurement::UNTOUCHED;
+use crate::studies::recognition::plan::group::Group;
+use crate::studies::recognition::plan::plan::Plan;
+use crate::studies::recognition::rows::cell::Cell;
+use crate::studies::recognition::study::study::RecognitionStudy;
+use crate::studies::recognition::sweep::learned_frames::WITH_COPIES;
+use crate::studies::recognition::sweep::sweep::StudyPart;
+use crate::studies::recognition::training::training::solver_memory;
+use bubbletouch_sim::frame_coding::most_bytes;
+use bubbletouch_svm::{Multiclass, Solver};
+
+/// Bytes of a cell in a trial: its rows in all tables.
+const CELL_BYTES: f64 = 4e3;
+/// Copies of training rows, bytes a number: as they are, scaled, sorted by class, and as support vectors.
+const TRAINING_BYTES: f64 = 32.0;
+/// Copies of test rows, bytes a number: as they are, scaled, and as the kernel reads them.
+const TEST_BYTES: f64 = 20.0;
+/// Bytes of a score, and of its share in what is fused.
+const SCORE_BYTES: f64 = 16.0;
+
+/// Returns the size of a study.
+pub fn recognition_scale(study: &RecognitionStudy) -> Scale {
+    type Placed<'a> = (&'a StudyPart, &'a Group);
+    let n_values = |(part, group): Placed| part.plan.arrays[group.array].n_values();
+    let n_frames = |(part, group): Placed| (part.sweep.labels.len() * group.frames) as f64;
+    let m = |group: &Group| group.projected().into_iter().max().unwrap_or(0) as f64;
+    let n_read = |on: Placed| n_frames(on) * on.1.n_readings(&on.0.plan) as f64;
+    let measured = |on: Placed| {
+        let matrix = on.1.ensemble.about().bytes;
+        let of_images = on.1.features_of_images().into_iter();
+        let shape = on.0.plan.arrays[on.1.array].frame_shape();
+        let numbers: usize = of_images.map(|one| one.join.n_values(shape)).sum();
+        let learned = learned_bytes(on.1, n_values(on) as f64) + 8.0 * n_read(on) * numbers as f64;
+        8.0 * n_read(on) * m(on.1) + matrix(m(on.1), n_values(on) as f64) + learned
+    };
+    let groups = || {
+        let parts = study.parts().iter();
+        parts.flat_map(|part| part.sweep.groups.iter().map(move |group| (part, group)))
+    };
+    let learned = |(part, group): Placed| {
+        let n_test = part.sweep.splits.iter().map(|split| split.test.len());
+        let (n_test, n_classes) = (n_test.max().unwrap_or(0), part.touched.class_names().len());
+        let n_read = n_classes * group.n_readings(&part.plan);
+        let bytes =
+            |family: &[Cell]| family_bytes(&part.plan, &family[0], n_test, (n_classes, n_read));
+        largest(group.families().map(bytes))
+    };
+    let frames = largest(groups().map(|g| n_frames(g) * (most_bytes(n_values(g)) + 16) as f64));
+    let first = study.first();
+    let n_touches = first.sweep.labels.len();
+    Scale {
+        objects: first.touched.class_names().len().to_string(),
+        touches: match study.n_arrays() {
+            1 => format!("{n_touches} on one array"),
+            n => format!("{n_touches} on each of {n} arrays"),
+        },
+        n_configurations: study.n_cells(),
+        bytes: frames + CELL_BYTES * (study.n_cells() * first.plan.spec.trials) as f64,
+        // A thread that waits for others begins another group.
+        item_bytes: 2.0 * largest(groups().map(measured)) + largest(groups().map(learned)),
+    }
+}
+
+/// Frames that something is learned from before touches are measured, n values each, as they are read and about their mean; and what is learned.
+fn learned_bytes(group: &Group, n: f64) -> f64 {
+    let frames = (2 * WITH_COPIES + UNTOUCHED) as f64;
+    let estimates: f64 = group.counts_of_images().iter().map(|&m| m as f64).sum();
+    match group.learns() {
+        true => 8.0 * n * (frames + estimates + 3.0 * N_COMPONENTS as f64),
+        false => 0.0,
+    }
+}
+
+/// Rows that a family learns from and is tested on, the scores of these, and the kernel values of its solver.
+/// `n_read`: readings of a touch of each class.
+fn family_bytes(
+    plan: &Plan,
+    cell: &Cell,
+    n_test: usize,
+    (n_classes, n_read): (usize, usize),
+) -> f64 {
+    let learned = &plan.spec.recognition;
+    let fuses = learned.fused_touches.values().iter().any(|&k| k > 1);
+    let n_scores = match (cell.classifier.has_c(), learned.multiclass) {
+        // Some rows at a time, unless scores are fused.
+        (true, _) if !fuses => 0,
+        (true, Multiclass::OneVsOne) => n_classes * (n_classes - 1) / 2,
+        _ => n_classes,
+    };
+    let n_copied = n_classes * cell.tilted_copies.unwrap_or(0);
+    let n_train = (cell.train_touches * (n_read + n_copied)) as f64;
+    let (m, n_test) = (cell.n_features() as f64, n_test as f64);
+    let of_all = 8.0 * n_train * n_train;
+    let is_kernel_svm = cell.classifier.about().kernel.is_some();
+    let kernel_values = match (learned.solver, learned.multiclass) {
+        _ if !is_kernel_svm => 0.0,
+        (Solver::CoordinateDescent, _) => 0.0,
+        // At most as many as the solver is allowed.
+        _ => of_all.min(solver_memory(learned.solver_memory_gib) as f64),
+    };
+    // Folds beside what was learned from all rows; of each object's test poses what every object is answered there.
+    let (n_copies, n_tables) = match learned.is_informed() {
+        false => (1.0, 0),
+        true => (2.0, rayon::current_num_threads() * n_classes),
+    };
+    TRAINING_BYTES * n_copies * n_train * m
+        + 8.0 * n_test * n_tables as f64
+        + TEST_BYTES * n_test * m
+        + SCORE_BYTES * n_test * n_scores as f64
+        + kernel_values
+}
+
+fn largest(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(0.0, f64::max)
+}

@@ -1,0 +1,420 @@
+//! A study that recognises objects: its work items, and the tables of what they found.
+
+use crate::engine::axes::AxisValues;
+use crate::engine::progress::Progress;
+use crate::engine::work_items::NamedPiece;
+use crate::engine::work_items::pending::PiecesLeft;
+use crate::engine::work_items::scale::Scale;
+use crate::engine::work_items::shared::Shared;
+use crate::engine::work_items::study_runner::{PieceStudy, run_whole};
+use crate::error::{Error, Result};
+use crate::inputs::content_hash::short_hash;
+use crate::inputs::object_files::objects_content;
+use crate::inputs::objects_spec::ObjectsSpec;
+use crate::inputs::units::millimetres;
+use crate::studies::recognition::charts::tables::tables_of;
+use crate::studies::recognition::frames::samples::Samples;
+use crate::studies::recognition::frames::touch_set::TouchSet;
+use crate::studies::recognition::plan::group::Group;
+use crate::studies::recognition::plan::plan::Plan;
+use crate::studies::recognition::plan::taxel_array::TaxelArray;
+use crate::studies::recognition::rows::cell::Cell;
+use crate::studies::recognition::rows::table_rows::{StageTime, Tables};
+use crate::studies::recognition::spec::recorded::RecordedSpec;
+use crate::studies::recognition::spec::study::ConfusionMatrices;
+use crate::studies::recognition::study::load::TouchInputs;
+use crate::studies::recognition::study::rows::{RecognitionRows, TouchRow};
+use crate::studies::recognition::sweep::cell_content::family_name;
+use crate::studies::recognition::sweep::sweep::{StudyPart, Sweep};
+use crate::studies::recognition::tables::published::{check_published, compare_with_published};
+use crate::studies::recognition::tables::tabulate::tabulate;
+use crate::table::Table;
+use std::collections::{BTreeMap, HashMap, HashSet};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// A recognition study that is laid out.
+pub struct RecognitionStudy {
+    /// One for each combination of the study's own axes; one alone where it has none.
+    parts: Vec<StudyPart>,
+    /// How large it is.
+    pub(crate) scale: Scale,
+    /// A few touches for the eye, once something showed them.
+    samples: Shared<Samples>,
+    /// All touches that are made, those of the same content once.
+    pub(crate) touch_sets: Vec<Touches>,
+    /// All groups, part by part.
+    pub(crate) groups: Vec<PlacedGroup>,
+    /// All families, group by group.
+    pub(crate) families: Vec<Family>,
+}
+
+/// Touches of an array that are made, with so many frames each.
+pub(crate) struct Touches {
+    /// The first group that reads them.
+    group: usize,
+    /// What they are called as a work item: the same for the same touches of the same study.
+    name: String,
+}
+
+/// A group of a part.
+pub(crate) struct PlacedGroup {
+    /// Its part.
+    pub part: usize,
+    /// Its place in the part's sweep.
+    place: usize,
+    /// Its touches.
+    pub touches: usize,
+    /// The first group that reads and measures the same.
+    pub measured_as: usize,
+}
+
+/// A [family](Group::families) of cells: its group, and which cells of that.
+pub(crate) struct Family {
+    pub group: usize,
+    cells: Range<usize>,
+}
+
+impl RecognitionStudy {
+    /// Lays out a plan and its touches.
+    ///
+    /// # Errors
+    /// Objects or touches that are too few, or are shown without being there.
+    pub fn new(plan: Plan, touched: Box<dyn TouchSet + Send>) -> Result<Self> {
+        Self::of_variants(vec![(AxisValues::default(), plan, touched.into())])
+    }
+
+    /// The same of all combinations of a study's own axes.
+    ///
+    /// # Errors
+    /// Those of [`new`](Self::new).
+    pub fn of_variants(
+        variants: Vec<(AxisValues, Plan, Arc<dyn TouchSet + Send>)>,
+    ) -> Result<Self> {
+        let mut study = Self {
+            parts: Vec::with_capacity(variants.len()),
+            scale: Scale::default(),
+            samples: Shared::default(),
+            touch_sets: Vec::new(),
+            groups: Vec::new(),
+            families: Vec::new(),
+        };
+        let mut n_cells = 0;
+        for (variant, plan, touched) in variants {
+            let mut sweep = Sweep::new(&plan, touched.as_ref())?;
+            sweep.place(n_cells, &variant);
+            n_cells += sweep.n_cells();
+            study.parts.push(StudyPart {
+                plan,
+                touched,
+                sweep,
+            });
+        }
+        let cells: Vec<&Cell> = study.all_cells().collect();
+        let report = &study.first().plan.spec.report;
+        check_published(&report.published, &cells)?;
+        // The matrices tell the chance of a guess in each cell.
+        let n_objects = |part: &StudyPart| part.touched.class_names().len();
+        let n_first = n_objects(study.first());
+        let differ = study.parts.iter().any(|part| n_objects(part) != n_first);
+        if differ && report.confusion == ConfusionMatrices::Best {
+            let allowed = "all, because configurations differ in their number of objects";
+            return Err(Error::input("key report.confusion", "best", allowed));
+        }
+        study.place_groups();
+        Ok(study)
+    }
+
+    /// Lists groups and families, and finds which groups have the same touches and measurements.
+    fn place_groups(&mut self) {
+        let mut known_touches: HashMap<String, usize> = HashMap::new();
+        let mut known_groups: HashMap<String, usize> = HashMap::new();
+        for (part, StudyPart { plan, sweep, .. }) in self.parts.iter().enumerate() {
+            let touched = TouchInputs::of(plan).key();
+            for (place, group) in sweep.groups.iter().enumerate() {
+                let (array, number) = (&plan.arrays[group.array], self.groups.len());
+                let content = format!("{touched} {array:?} {}", group.frames);
+                let name = touches_name(array, group.frames, &content);
+                let touches = *known_touches.entry(content).or_insert_with(|| {
+                    let group = number;
+                    self.touch_sets.push(Touches { group, name });
+                    self.touch_sets.len() - 1
+                });
+                let content = format!("{touches} {}", group.inputs(plan, sweep).key());
+                self.groups.push(PlacedGroup {
+                    part,
+                    place,
+                    touches,
+                    measured_as: *known_groups.entry(content).or_insert(number),
+                });
+                let mut start = 0;
+                self.families.extend(group.families().map(|family| {
+                    let cells = start..start + family.len();
+                    start = cells.end;
+                    Family {
+                        group: number,
+                        cells,
+                    }
+                }));
+            }
+        }
+    }
+
+    /// The first combination of the study's own axes: all of a study without any.
+    pub fn first(&self) -> &StudyPart {
+        &self.parts[0]
+    }
+
+    /// All combinations.
+    pub fn parts(&self) -> &[StudyPart] {
+        &self.parts
+    }
+
+    /// The combination that a cell is of, by its number; the last for a cell that the study does not have.
+    pub fn part_of(&self, cell: usize) -> &StudyPart {
+        let has_it = |part: &&StudyPart| part.sweep.cells().any(|known| known.cell == cell);
+        self.parts
+            .iter()
+            .find(has_it)
+            .unwrap_or_else(|| self.first())
+    }
+
+    /// All cells, in the order of their numbers.
+    pub fn all_cells(&self) -> impl Iterator<Item = &Cell> {
+        self.parts.iter().flat_map(|part| part.sweep.cells())
+    }
+
+    /// How many.
+    pub fn n_cells(&self) -> usize {
+        self.parts.iter().map(|part| part.sweep.n_cells()).sum()
+    }
+
+    /// Arrays on which touches are made.
+    pub fn n_arrays(&self) -> usize {
+        let made = (0..self.touch_sets.len()).map(|touches| self.made_on(touches));
+        let arrays = made.map(|(part, array, _)| (part, array));
+        arrays.collect::<HashSet<_>>().len()
+    }
+
+    /// SHA-256 of what each object is made of, by its name and, where combinations of the study's own axes differ in it, by those.
+    ///
+    /// # Errors
+    /// A file of an object cannot be read.
+    pub fn content(&self) -> Result<BTreeMap<String, String>> {
+        let mut all = BTreeMap::new();
+        let specs = self.parts.iter().map(|part| &part.plan.spec);
+        let mut made_of: Vec<(&ObjectsSpec, &Option<RecordedSpec>)> =
+            specs.map(|spec| (&spec.objects, &spec.recorded)).collect();
+        made_of.dedup();
+        for (objects, recorded) in made_of {
+            let recorded = recorded.as_ref().map(RecordedSpec::content).transpose()?;
+            let content = objects_content(objects)?.into_iter();
+            for (name, hash) in content.chain(recorded.into_iter().flatten()) {
+                let known = all.entry(name.clone()).or_insert_with(|| hash.clone());
+                if *known != hash {
+                    all.insert(format!("{name} of {}", &hash[..12]), hash);
+                }
+            }
+        }
+        Ok(all)
+    }
+
+    /// Trials of each cell.
+    pub(crate) fn n_trials(&self) -> usize {
+        self.first().plan.spec.trials
+    }
+
+    /// A group with its part.
+    pub(crate) fn group(&self, number: usize) -> (&StudyPart, &Group) {
+        let PlacedGroup { part, place, .. } = self.groups[number];
+        let part = &self.parts[part];
+        (part, &part.sweep.groups[place])
+    }
+
+    /// The cells of a family, with their part.
+    pub(crate) fn family(&self, family: usize) -> (&StudyPart, &[Cell]) {
+        let Family { group, cells } = &self.families[family];
+        let (part, group) = self.group(*group);
+        (part, &group.cells[cells.clone()])
+    }
+
+    /// The number of a family in a trial as a work item.
+    pub(crate) fn family_item(&self, trial: usize, family: usize) -> usize {
+        trial * self.families.len() + family
+    }
+
+    /// The number of touches as a work item.
+    pub(crate) fn touches_item(&self, touches: usize) -> usize {
+        self.family_item(self.n_trials(), 0) + touches
+    }
+
+    /// The part and the array, by their numbers, that touches are made on, and their frames.
+    pub(crate) fn made_on(&self, touches: usize) -> (usize, usize, usize) {
+        let group = self.touch_sets[touches].group;
+        let (_, Group { array, frames, .. }) = self.group(group);
+        (self.groups[group].part, *array, *frames)
+    }
+
+    /// What is touched, and on what.
+    pub(crate) fn on(&self, touches: usize) -> (&StudyPart, &TaxelArray, usize) {
+        let (part, group) = self.group(self.touch_sets[touches].group);
+        (part, &part.plan.arrays[group.array], group.frames)
+    }
+
+    /// What it took to make and to measure touches.
+    fn stages(&self, rows: &[TouchRow]) -> Vec<StageTime> {
+        let mut stages = Vec::new();
+        for on in 0..self.touch_sets.len() {
+            let (_, array, n_frames) = self.on(on);
+            let (ny, nx) = array.shape();
+            for (stage, is_made) in [("simulate", true), ("measure", false)] {
+                let rows = rows.iter().filter(|row| row.on == on);
+                let rows: Vec<&TouchRow> = rows.filter(|row| row.is_made == is_made).collect();
+                if rows.is_empty() {
+                    continue;
+                }
+                let n_touches = rows.iter().map(|row| row.n_touches).sum();
+                let cpu_s: f64 = rows.iter().map(|row| row.cpu_s).sum();
+                stages.push(StageTime {
+                    stage: in_frames(stage, n_frames),
+                    pitch_mm: millimetres(array.pitch()),
+                    nx,
+                    ny,
+                    n_touches,
+                    cpu_s,
+                    us_per_touch: 1e6 * cpu_s / n_touches as f64,
+                });
+            }
+        }
+        stages
+    }
+}
+
+/// What touches are called as a work item.
+fn touches_name(array: &TaxelArray, n_frames: usize, content: &str) -> String {
+    let ((ny, nx), content) = (array.shape(), short_hash(content, 12));
+    let pitch = array.pitch();
+    format!("touches of {n_frames} frames on {nx}x{ny} taxels at {pitch} m, {content}")
+}
+
+impl RecognitionStudy {
+    /// Runs all of it at once, keeps nothing, and ends at the first work item that fails.
+    ///
+    /// # Errors
+    /// What an item fails of.
+    pub fn run(&self, progress: &dyn Progress) -> Result<Tables> {
+        self.outcome(run_whole(self, progress)?)
+    }
+
+    /// The tables of all rows, typed.
+    ///
+    /// # Errors
+    /// Those of [`PieceStudy::tables`].
+    pub fn outcome(&self, (cells, touches): RecognitionRows) -> Result<Tables> {
+        let mut tables = Tables::default();
+        let scored = cells.into_iter().map(|row| {
+            let cell = &self.group(row.at.0).1.cells[row.at.1];
+            (cell.clone(), row.evaluation)
+        });
+        let names: Vec<Vec<&str>> = self.parts.iter().map(|p| p.touched.class_names()).collect();
+        let name = |cell: &Cell, label: usize| names[cell.variant.number][label].to_owned();
+        let n_folds = |cell: &Cell| {
+            let spec = &self.parts[cell.variant.number].plan.spec;
+            spec.recognition.folds.unwrap_or(1)
+        };
+        let report = &self.first().plan.spec.report;
+        tabulate(
+            &mut tables,
+            scored.collect(),
+            name,
+            n_folds,
+            report.confusion,
+        )?;
+        tables.published = compare_with_published(&report.published, &tables.summary)?;
+        tables.has_folds = self.first().plan.spec.recognition.folds.is_some();
+        tables.stages = self.stages(&touches);
+        tables.limits = self.limits(&tables.accuracy, &touches);
+        Ok(tables)
+    }
+
+    /// A few touches for the eye, of the first combination of the study's own axes.
+    pub(crate) fn samples(&self) -> Result<&Samples> {
+        let first = self.first();
+        let make = || first.touched.samples(&first.plan, &first.sweep.groups);
+        self.samples.get(make)
+    }
+}
+
+impl PieceStudy for RecognitionStudy {
+    type Rows = RecognitionRows;
+
+    /// Trial by trial all families, group by group; then the touches of each array.
+    fn pieces(&self) -> Vec<NamedPiece> {
+        let families = 0..self.families.len();
+        let of_family = |family| {
+            let (part, cells) = self.family(family);
+            family_name(&part.plan, cells)
+        };
+        let families: Vec<String> = families.map(of_family).collect();
+        let mut pieces = Vec::with_capacity(self.n_trials() * families.len());
+        for trial in 0..self.n_trials() {
+            for (family, name) in self.families.iter().zip(&families) {
+                let group = trial * self.groups.len() + family.group;
+                let name = format!("{name}, trial {trial}");
+                pieces.push(NamedPiece::new(name, group));
+            }
+        }
+        for touches in &self.touch_sets {
+            pieces.push(NamedPiece::new(touches.name.clone(), touches.group));
+        }
+        pieces
+    }
+
+    fn measure(&self, left: &PiecesLeft<RecognitionRows>) -> Result<()> {
+        self.measure_all(left)
+    }
+
+    fn place(&self, number: usize, (rows, touch_rows): &mut RecognitionRows) {
+        let touches = match number.checked_sub(self.touches_item(0)) {
+            Some(touches) => touches,
+            None => {
+                let Family { group, cells } = &self.families[number % self.families.len()];
+                for (row, cell) in rows.iter_mut().zip(cells.clone()) {
+                    row.at = (*group, cell);
+                }
+                self.groups[*group].touches
+            }
+        };
+        for row in touch_rows {
+            row.on = touches;
+        }
+    }
+
+    /// A family by the settings of its first cell.
+    fn words(&self, number: usize, piece: &NamedPiece) -> String {
+        if number >= self.touches_item(0) {
+            return piece.name.clone();
+        }
+        let (trial, family) = (number / self.families.len(), number % self.families.len());
+        let settings = serde_json::to_value(&self.family(family).1[0]).unwrap_or_default();
+        let settings = settings.as_object().into_iter().flatten();
+        let settings = settings.filter(|(_, value)| !value.is_null());
+        let mut words: Vec<String> = settings
+            .map(|(key, value)| format!("{key} = {}", value.to_string().trim_matches('"')))
+            .collect();
+        words.push(format!("trial = {trial}"));
+        words.join(", ")
+    }
+
+    fn tables(&self, rows: RecognitionRows) -> Result<Vec<Table>> {
+        tables_of(&self.outcome(rows)?)
+    }
+}
+
+/// A stage's name, with the number of frames a touch where it is not one.
+pub(crate) fn in_frames(stage: &str, n_frames: usize) -> String {
+    match n_frames {
+        1 => stage.to_owned(),
+        n => format!("{stage}, {n} frames a touch"),
+    }
+}

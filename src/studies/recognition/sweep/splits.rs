@@ -1,0 +1,143 @@
+//! Which touches train and which test, trial by trial, and whether they are enough for what is asked of them.
+
+use crate::engine::axis::Axis;
+use crate::error::{Error, Result};
+use crate::learning::data::split::{
+    Side, given_hold_out, group_hold_out, group_k_fold, stratified_hold_out, stratified_k_fold,
+};
+use crate::random::Seed;
+use crate::studies::recognition::plan::plan::Plan;
+use crate::studies::recognition::spec::pose_split::PoseSplit;
+use crate::world::Touch;
+use bubbletouch_svm::split::Split;
+use ndarray::Array1;
+use std::collections::{HashMap, HashSet};
+use std::fmt;
+
+/// The split of all touches in a trial: the one that is given, or of those that are placed, by their poses, or by groups (`keys`), or of each alone.
+///
+/// # Errors
+/// A pose that is drawn where the split goes by values, or a class that is left without training or test rows.
+pub fn draw_split(
+    plan: &Plan,
+    labels: &Array1<usize>,
+    (poses, keys, given_sides): (&[&Touch], Option<&Array1<usize>>, Option<&[Side]>),
+    trial: usize,
+) -> Result<Split> {
+    let trial = plan.spec.split_of(trial);
+    let labels = labels.view();
+    let recognition = &plan.spec.recognition;
+    let fraction = recognition.test_share();
+    let n_folds = recognition.folds.unwrap_or(1);
+    let seed = Seed::new(plan.spec.seed).named("split");
+    if let Some(sides) = given_sides {
+        // All trials have the one split that is given; fewer training touches are drawn anew in each.
+        let drawn = recognition.train_touches.as_ref().map_or(0, |_| trial);
+        return given_hold_out(labels, sides, &seed.numbered(drawn as u64));
+    }
+    if recognition.split != PoseSplit::Random {
+        let sides = recognition.split.sides(poses, trial)?;
+        return given_hold_out(labels, &sides, &seed.numbered(trial as u64));
+    }
+    let seed = seed.numbered((trial / n_folds) as u64);
+    let mut folds = match (recognition.folds, keys) {
+        (None, None) => return stratified_hold_out(labels, fraction, &seed),
+        (None, Some(keys)) => return group_hold_out(labels, keys.view(), fraction, &seed),
+        (Some(k), None) => stratified_k_fold(labels, k, &seed)?,
+        (Some(k), Some(keys)) => {
+            let folds = group_k_fold(labels, keys.view(), k, &seed);
+            folds.map_err(|error| error.under("key recognition.folds: "))?
+        }
+    };
+    Ok(folds.swap_remove(trial % n_folds))
+}
+
+/// Returns for each split the place of the first one with the same training and test touches, whatever the order of the training touches.
+pub fn first_equal(splits: &[Split]) -> Vec<usize> {
+    let mut known: HashMap<&[usize], Vec<usize>> = HashMap::new();
+    let trained = |place: usize| splits[place].train.iter().collect::<HashSet<_>>();
+    let mut first = Vec::with_capacity(splits.len());
+    for (place, split) in splits.iter().enumerate() {
+        let alike = known.entry(&split.test[..]).or_default();
+        let same = alike
+            .iter()
+            .find(|&&other| trained(other) == trained(place));
+        let same = same.copied();
+        if same.is_none() {
+            alike.push(place);
+        }
+        first.push(same.unwrap_or(place));
+    }
+    first
+}
+
+/// The training-touches axis: what is asked for, or all that the smallest training split has for every object. Every object has test touches
+/// for at least one group in every trial, a training touch for each fold where C or γ is chosen, and one at every imbalance.
+pub fn train_touches(plan: &Plan, splits: &[Split], labels: &Array1<usize>) -> Result<Vec<usize>> {
+    let recognition = &plan.spec.recognition;
+    let at_most = |key: &str, given: f64, most: usize, what: &str| {
+        if given <= most as f64 {
+            return Ok(());
+        }
+        let allowed = format!("at most {most}, {what}");
+        let key = format!("key recognition.{key}");
+        Err(Error::input(key, given, allowed))
+    };
+    let fewest = fewest_per_object(splits.iter().map(|split| &split.train), labels);
+    let asked = Axis::of(&recognition.train_touches).into_iter();
+    let train_touches: Vec<usize> = asked.map(|asked| asked.unwrap_or(fewest)).collect();
+    for &count in &train_touches {
+        let what = "the training touches of every object in every trial";
+        at_most("train_touches", count as f64, fewest, what)?;
+    }
+    let fewest_tested = fewest_per_object(splits.iter().map(|split| &split.test), labels);
+    for k in recognition.fused_touches.values() {
+        let what = "the test touches of every object in every trial";
+        at_most("fused_touches", k as f64, fewest_tested, what)?;
+    }
+    let least = train_touches.iter().min().copied().unwrap_or(0);
+    let chooses = recognition.choose_c.is_some() || recognition.choose_gamma.is_some();
+    if chooses || recognition.is_informed() {
+        let choose_touches = recognition.choose_touches.filter(|_| chooses);
+        let of_folds = least.min(choose_touches.unwrap_or(least));
+        let n_folds = recognition.n_choice_folds() as f64;
+        let what = "the training touches of every object that take part";
+        at_most("choose_folds", n_folds, of_folds, what)?;
+    }
+    for ratio in recognition.class_imbalance.iter().flat_map(Axis::values) {
+        let what = "twice the training touches of every object";
+        at_most("class_imbalance", ratio, 2 * least, what)?;
+    }
+    Ok(train_touches)
+}
+
+/// The touches of the object that has fewest among any of some rows.
+fn fewest_per_object<'a>(
+    sets: impl Iterator<Item = &'a Vec<usize>>,
+    labels: &Array1<usize>,
+) -> usize {
+    let n_objects = labels.iter().max().map_or(0, |last| last + 1);
+    let fewest = sets.map(|rows| {
+        let mut counts = vec![0; n_objects];
+        for &row in rows {
+            counts[labels[row]] += 1;
+        }
+        counts.into_iter().min().unwrap_or(0)
+    });
+    fewest.min().unwrap_or(0)
+}
+
+/// The splits of all trials; the `Debug` form is their hash.
+#[derive(Clone, Copy)]
+pub struct Splits<'a> {
+    /// One split a trial.
+    pub all: &'a [Split],
+    /// SHA-256 of all of them.
+    pub hash: &'a str,
+}
+
+impl fmt::Debug for Splits<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(self.hash)
+    }
+}

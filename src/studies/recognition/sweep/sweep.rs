@@ -1,0 +1,339 @@
+//! The cells of a study, grouped by what they can share.
+//!
+//! ```text
+//! array × frames a touch ── touches simulated once
+//!   └─ condition of the signal × test skin × ensemble (a group), and trial ── frames read and projected once, at the largest m
+//!        └─ m × over time × features × classifier × training rows (a family) ── rows made once
+//!             └─ C ── fit, score test touches
+//!                  └─ fused touches × how they are chosen (a cell) ── decide
+//! ```
+
+use crate::engine::axes::AxisValues;
+use crate::engine::axis::Axis;
+use crate::error::{Error, Result};
+use crate::inputs::content_hash::sha256;
+use crate::inputs::units::millimetres;
+use crate::learning::classifiers::ClassifierKind;
+use crate::learning::data::spoiled::{mislabelled, with_imbalance};
+use crate::learning::evaluation::next_touch::Poses;
+use crate::random::Seed;
+use crate::studies::recognition::frames::samples::named_samples;
+use crate::studies::recognition::frames::touch_set::TouchSet;
+use crate::studies::recognition::plan::group::Group;
+use crate::studies::recognition::plan::plan::Plan;
+use crate::studies::recognition::plan::taxel_array::skin;
+use crate::studies::recognition::rows::cell::Cell;
+use crate::studies::recognition::sweep::learned_frames::learned_touches;
+use crate::studies::recognition::sweep::splits::{Splits, draw_split, first_equal, train_touches};
+use crate::studies::recognition::touches::scaled_poses::scaled_poses;
+use bubbletouch_svm::split::Split;
+use ndarray::Array1;
+use std::sync::{Arc, OnceLock};
+
+/// Loops within loops: the first changes slowest.
+macro_rules! nested {
+    ($name:pat in $values:expr; $($rest:tt)*) => {
+        for $name in $values {
+            $crate::studies::recognition::sweep::sweep::nested!($($rest)*)
+        }
+    };
+    ($body:expr) => {
+        $body
+    };
+}
+
+pub(crate) use nested;
+
+/// Everything that is decided before the first touch is simulated.
+#[derive(Clone, Debug)]
+pub struct Sweep {
+    /// Groups, array by array.
+    pub groups: Vec<Group>,
+    /// One split a trial, of all touches.
+    pub splits: Vec<Split>,
+    /// For each trial the first trial with the same split, itself if there is none before.
+    pub first_equal: Vec<usize>,
+    /// Hash of all splits, once something depends on it.
+    splits_hash: OnceLock<String>,
+    /// The object of every touch, by its number.
+    pub labels: Array1<usize>,
+    /// The group of every touch, when the study keeps groups together.
+    pub group_keys: Option<Array1<usize>>,
+    /// Where every touch is made, when the study chooses by that.
+    pub poses: Option<Poses>,
+}
+
+/// What is run of one combination of a study's own axes.
+pub struct StudyPart {
+    /// What to run.
+    pub plan: Plan,
+    /// What is touched; the same for parts that touch the same.
+    pub touched: Arc<dyn TouchSet + Send>,
+    /// Splits and cells.
+    pub sweep: Sweep,
+}
+
+impl Sweep {
+    /// Lays out splits and cells.
+    ///
+    /// # Errors
+    /// The error says which objects or touches are too few, or shown without being there.
+    pub fn new(plan: &Plan, touched: &dyn TouchSet) -> Result<Self> {
+        let classes = touched.class_names();
+        // Asked before it runs: samples are drawn when it is over.
+        named_samples(plan, &classes)?;
+        let n_classes = classes.len();
+        if n_classes < 2 {
+            let (place, given, allowed) = match (&plan.spec.human_touch, &plan.spec.recorded) {
+                (Some(_), _) => ("key human_touch.kinds", "kind", "kinds"),
+                (_, Some(_)) => ("key recorded.labels", "class", "classes"),
+                _ => ("objects", "object", "objects"),
+            };
+            let given = format!("{n_classes} {given}");
+            let allowed = format!("at least two, since recognition tells {allowed} apart");
+            return Err(Error::input(place, given, allowed));
+        }
+        let labels = touched.labels();
+        let poses = touched.poses();
+        plan.spec.recognition.split.check(&poses)?;
+        let together = plan.keep_together.as_ref();
+        let keys = together.map(|together| touched.group_keys(together));
+        let keys = keys.transpose()?.or_else(|| touched.own_groups());
+        let split = |trial| {
+            let of = (&poses[..], keys.as_ref(), touched.given_sides());
+            draw_split(plan, &labels, of, trial)
+        };
+        let splits = (0..plan.spec.trials).map(split);
+        let splits = splits.collect::<Result<Vec<_>>>()?;
+        let train_touches = train_touches(plan, &splits, &labels)?;
+        let is_chosen = plan.spec.recognition.chosen_next().next().is_some();
+        let mut sweep = Self {
+            groups: Vec::new(),
+            first_equal: first_equal(&splits),
+            splits_hash: OnceLock::new(),
+            splits,
+            labels,
+            group_keys: keys,
+            poses: is_chosen.then(|| scaled_poses(&plan.placement, &poses)),
+        };
+        nested! {
+            array in 0..plan.arrays.len();
+            frames in plan.frames.iter().copied();
+            condition in plan.conditions();
+            tested_on in Axis::of(&plan.spec.signal.tested_on);
+            ensemble in plan.spec.sensing.ensemble.values();
+            {
+                let group = Group {
+                    array,
+                    frames,
+                    condition,
+                    tested_on: tested_on.unwrap_or_default(),
+                    ensemble,
+                    cells: Vec::new(),
+                };
+                sweep.add_group(plan, group, &train_touches)?;
+            }
+        }
+        Ok(sweep)
+    }
+
+    /// Its cells as those of a combination of the study's own axes, numbered from `first` on.
+    pub(crate) fn place(&mut self, first: usize, variant: &AxisValues) {
+        for cell in self.groups.iter_mut().flat_map(|group| &mut group.cells) {
+            cell.cell += first;
+            cell.variant.clone_from(variant);
+        }
+    }
+
+    /// A trial's split, with no more training touches an object than the cell allows, and with its imbalance.
+    ///
+    /// # Errors
+    /// A trial that the study does not have.
+    pub fn split(&self, plan: &Plan, cell: &Cell, trial: usize) -> Result<Split> {
+        if trial >= self.splits.len() {
+            let last = self.splits.len() - 1;
+            let allowed = format!("0 to {last}, the study's trials");
+            return Err(Error::input("trial", trial, allowed));
+        }
+        let split = &self.splits[trial];
+        let split = match plan.spec.recognition.train_touches {
+            None => split.clone(),
+            Some(_) => split.at_most(self.labels.view(), cell.train_touches)?,
+        };
+        match cell.class_imbalance {
+            None => Ok(split),
+            Some(ratio) => with_imbalance(
+                &split,
+                self.labels.view(),
+                ratio,
+                &training_stream(plan, trial),
+            ),
+        }
+    }
+
+    /// Returns the splits of all trials with their hash.
+    pub fn drawn_splits(&self) -> Splits<'_> {
+        let bytes = |rows: &[usize]| -> Vec<u8> {
+            let numbers = [rows.len()].into_iter().chain(rows.iter().copied());
+            numbers.flat_map(|row| (row as u64).to_le_bytes()).collect()
+        };
+        let of_split = |split: &Split| sha256([bytes(&split.train), bytes(&split.test)].concat());
+        let hash = || sha256(self.splits.iter().map(of_split).collect::<String>());
+        Splits {
+            all: &self.splits,
+            hash: self.splits_hash.get_or_init(hash),
+        }
+    }
+
+    /// Returns the number of the first split that has the same touches as a trial's, or `None` if the trial's split is the first.
+    pub fn repeated_split(&self, plan: &Plan, trial: usize) -> Option<usize> {
+        let first = plan.spec.split_of(self.first_equal[trial]);
+        (first != plan.spec.split_of(trial)).then_some(first)
+    }
+
+    /// The group of each of a trial's test touches, where whole groups are held out.
+    pub fn test_groups(&self, plan: &Plan, trial: usize, test: &[usize]) -> Option<Vec<usize>> {
+        let split = plan.spec.recognition.split;
+        match (
+            split.tested_block(plan.spec.split_of(trial)),
+            &self.group_keys,
+        ) {
+            (Some(block), _) => Some(vec![block; test.len()]),
+            (None, Some(keys)) => Some(test.iter().map(|&touch| keys[touch]).collect()),
+            (None, None) => None,
+        }
+    }
+
+    /// The label of every touch as a cell learns it in a trial: some of the split's training touches may have another
+    /// object's.
+    ///
+    /// # Errors
+    /// A fraction that is not from 0 to 1.
+    pub fn learned_labels(
+        &self,
+        plan: &Plan,
+        (cell, trial): (&Cell, usize),
+        split: &Split,
+    ) -> Result<Array1<usize>> {
+        let mut labels = self.labels.clone();
+        if let Some(fraction) = cell.mislabelled_fraction {
+            let right = labels.select(ndarray::Axis(0), &split.train);
+            let wrong = mislabelled(right.view(), fraction, &training_stream(plan, trial))?;
+            for (&row, label) in split.train.iter().zip(wrong) {
+                labels[row] = label;
+            }
+        }
+        Ok(labels)
+    }
+
+    /// All cells, in their order.
+    pub fn cells(&self) -> impl Iterator<Item = &Cell> {
+        self.groups.iter().flat_map(|group| &group.cells)
+    }
+
+    /// How many cells.
+    pub fn n_cells(&self) -> usize {
+        self.groups.iter().map(|group| group.cells.len()).sum()
+    }
+
+    /// A learned ensemble needs more frames of training touches than it makes measurements: so many directions in which they differ about
+    /// their mean.
+    fn check_learned(&self, plan: &Plan, group: &Group) -> Result<()> {
+        if !group.ensemble.is_learned() {
+            return Ok(());
+        }
+        let n_train = self.splits.iter().map(|split| split.train.len());
+        let n_touches = n_train
+            .min()
+            .unwrap_or(0)
+            .min(learned_touches(group.frames));
+        let n_frames = n_touches * group.frames;
+        let counts = plan.measurement_counts(&plan.arrays[group.array], group.ensemble);
+        match counts.into_iter().max() {
+            Some(m) if m >= n_frames => {
+                let key = match plan.spec.sensing.measurements {
+                    Some(_) => "key sensing.measurements",
+                    None => "key sensing.ratio",
+                };
+                let given = format!("{m} {}", group.ensemble.about().words);
+                let most = n_frames.saturating_sub(1);
+                let allowed =
+                    format!("at most {most}, one fewer than the frames of the training touches");
+                Err(Error::input(key, given, allowed))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn add_group(&mut self, plan: &Plan, mut group: Group, train_touches: &[usize]) -> Result<()> {
+        let array = &plan.arrays[group.array];
+        self.check_learned(plan, &group)?;
+        let (ny, nx) = array.shape();
+        if !array.is_plain() {
+            // A step that its layout cannot have is known before anything runs.
+            let skin = skin(&Seed::new(plan.spec.seed), array);
+            array.chains(&skin, |skin| group.signal(plan).steps(skin))?;
+        }
+        let learned = &plan.spec.recognition;
+        let penalties = |classifier: ClassifierKind| match classifier.has_c() {
+            true => learned.penalties(),
+            false => vec![None],
+        };
+        // Counted from the last group on: all cells would be counted once a group.
+        let last = self.groups.last().and_then(|group| group.cells.last());
+        let first = last.map_or(0, |cell| cell.cell + 1);
+        nested! {
+            measurements in plan.measurement_counts(array, group.ensemble);
+            over_time in Axis::of(&learned.over_time);
+            features in learned.features.values();
+            foremost_full_scale in learned.foremost(features);
+            tilted_copies in learned.copies(features);
+            classifier in learned.classifier.values();
+            train_touches in train_touches.iter().copied();
+            class_imbalance in Axis::of(&learned.class_imbalance);
+            mislabelled_fraction in Axis::of(&learned.mislabelled_fraction);
+            c in penalties(classifier);
+            fused_touches in learned.fused_touches.values();
+            next_touch in learned.next_touches(fused_touches);
+            group.cells.push(Cell {
+                cell: first + group.cells.len(),
+                pitch_mm: millimetres(array.pitch()),
+                nx,
+                ny,
+                image_shape: array.image().0,
+                size_mm: millimetres(array.pitch() * array.grid().nx as f64),
+                noise_std: group.condition.noise,
+                noise_unit: plan.noise_unit,
+                smoothing_mm: millimetres(group.condition.smoothing),
+                strengths: group.condition.strengths,
+                tested_on: plan.spec.signal.tested_on.as_ref().map(|_| group.tested_on),
+                ensemble: group.ensemble,
+                measurements,
+                ratio: array.n_values() as f64 / measurements as f64,
+                frames: group.frames,
+                over_time,
+                features,
+                foremost_full_scale,
+                tilted_copies,
+                classifier,
+                c,
+                train_touches,
+                mislabelled_fraction,
+                class_imbalance,
+                fused_touches,
+                next_touch,
+                variant: AxisValues::default(),
+            })
+        }
+        // Of many groups of few cells, room for more would be most of the memory.
+        group.cells.shrink_to_fit();
+        self.groups.push(group);
+        Ok(())
+    }
+}
+
+/// What a trial's training rows are spoiled with.
+fn training_stream(plan: &Plan, trial: usize) -> Seed {
+    let seed = Seed::new(plan.spec.seed).named("training rows");
+    seed.numbered(trial as u64)
+}

@@ -1,0 +1,342 @@
+//! Trials → cells: means, intervals, and every cell against the best one.
+
+use crate::error::Result;
+use crate::statistics::bootstrap::Bootstrap;
+use crate::statistics::grouped::{GroupCount, GroupedTest, interval_of_groups};
+use crate::statistics::many_tests::holm_of_some;
+use crate::statistics::p_status::CONFIDENCE;
+use crate::statistics::repeats::{Paired, Repeat, scores};
+use crate::studies::recognition::rows::cell::Cell;
+use crate::studies::recognition::rows::conditions::{by_condition, most_accurate};
+use crate::studies::recognition::rows::table_rows::{
+    CellScore, Comparison, Confused, Confusion, Pareto, TrialScore, TrialTime,
+};
+use crate::table::front;
+use bubbletouch_sim::interval::{Interval, RowTest};
+use std::collections::BTreeMap;
+
+/// A row of the accuracy table.
+type Row = (Cell, TrialScore);
+
+/// Returns one row per cell from one row per cell and trial; the trials of a cell follow each other. `groups` are the groups that the trials tested,
+/// row by row, if there are any. `n_folds` returns the number of folds of a cell's study, 1 without folds.
+pub fn summarise<C: Clone + PartialEq>(
+    rows: &[(C, TrialScore)],
+    mut groups: &[Vec<GroupCount>],
+    n_folds: impl Fn(&C) -> usize,
+) -> Result<Vec<(C, CellScore)>> {
+    let mut bootstrap = Bootstrap::default();
+    let is_grouped = rows.iter().any(|(_, score)| score.n_groups.is_some());
+    rows.chunk_by(|a, b| a.0 == b.0)
+        .map(|trials| {
+            let scores: Vec<&TrialScore> = trials.iter().map(|(_, score)| score).collect();
+            let here = groups.split_off(..trials.len()).unwrap_or_default();
+            let of_cell = (here, n_folds(&trials[0].0));
+            let mut score = score(&scores, of_cell, &mut bootstrap)?;
+            // Columns are those of all rows: where a cell holds out no groups, each row is one.
+            score.n_groups = score.n_groups.or(is_grouped.then_some(score.n_test));
+            Ok((trials[0].0.clone(), score))
+        })
+        .collect()
+}
+
+/// Returns the tests of trials that hold out groups.
+pub fn grouped_tests<'a>(
+    trials: impl Iterator<Item = (&'a TrialScore, &'a Vec<GroupCount>)>,
+) -> Vec<GroupedTest<'a>> {
+    let tested = trials.filter(|(_, groups)| !groups.is_empty());
+    let tested = tested.map(|(trial, groups)| GroupedTest {
+        n_rows: trial.n_test,
+        n_correct: trial.n_correct,
+        groups,
+    });
+    tested.collect()
+}
+
+/// What the trials of a cell say together.
+fn score(
+    trials: &[&TrialScore],
+    (groups, n_folds): (&[Vec<GroupCount>], usize),
+    bootstrap: &mut Bootstrap,
+) -> Result<CellScore> {
+    let mean = |value: fn(&TrialScore) -> f64| {
+        trials.iter().map(|trial| value(trial)).sum::<f64>() / trials.len() as f64
+    };
+    let accuracy = mean(|t| t.accuracy);
+    let squares: f64 = trials.iter().map(|t| (t.accuracy - accuracy).powi(2)).sum();
+    let n_test = trials.iter().map(|t| t.n_test).min().unwrap_or(0);
+    let tested = grouped_tests(trials.iter().copied().zip(groups));
+    let (interval, n_groups) = match tested.is_empty() {
+        true => {
+            let tests = trials.iter().map(|trial| RowTest {
+                part: trial.split.unwrap_or(trial.trial) % n_folds,
+                n_rows: trial.n_test,
+                n_correct: trial.n_correct,
+            });
+            let tests: Vec<RowTest> = tests.collect();
+            (Interval::wilson_of_tests(&tests, CONFIDENCE)?, None)
+        }
+        false => {
+            let (interval, n_groups) = interval_of_groups(&tested, CONFIDENCE)?;
+            (interval, Some(n_groups))
+        }
+    };
+    let repeats: Vec<Repeat> = trials.iter().map(|trial| trial.repeat(1)).collect();
+    let of_mean = match scores(&repeats) {
+        Some(scores) => bootstrap.mean(scores.view(), CONFIDENCE)?,
+        None => None,
+    };
+    Ok(CellScore {
+        n_trials: trials.len(),
+        n_test,
+        accuracy,
+        accuracy_std: match trials.len() {
+            1 => 0.0,
+            n => (squares / (n - 1) as f64).sqrt(),
+        },
+        accuracy_low: interval.low,
+        accuracy_high: interval.high,
+        n_groups,
+        bootstrap_low: of_mean.map(|interval| interval.low),
+        bootstrap_high: of_mean.map(|interval| interval.high),
+        macro_f1: mean(|t| t.macro_f1),
+        n_capped: trials.iter().map(|t| t.n_capped).sum(),
+    })
+}
+
+fn mean(trials: &[Row], value: fn(&TrialScore) -> f64) -> f64 {
+    trials.iter().map(|(_, t)| value(t)).sum::<f64>() / trials.len() as f64
+}
+
+/// Every cell against the one with the highest mean accuracy in its condition (the first of equals), paired trial by trial.
+pub fn compare_with_best(rows: &[Row]) -> Result<Vec<Comparison>> {
+    let cells: Vec<&[Row]> = rows.chunk_by(|a, b| a.0.cell == b.0.cell).collect();
+    let mut best = vec![0; cells.len()];
+    for alike in by_condition(cells.iter().map(|trials| &trials[0].0))? {
+        let accuracies = alike
+            .iter()
+            .map(|&place| (place, mean(cells[place], |t| t.accuracy)));
+        let best_here = most_accurate(accuracies).expect("a condition has the cell that has it");
+        alike.iter().for_each(|&place| best[place] = best_here);
+    }
+    let pairs = cells.iter().zip(best);
+    let rows = pairs.map(|(trials, best)| against(trials, cells[best]));
+    let mut table = rows.collect::<Result<Vec<Comparison>>>()?;
+    let is_other = |row: &Comparison| row.cell != row.best_cell;
+    let p_values = table
+        .iter()
+        .map(|row| row.p_value.filter(|_| is_other(row)));
+    let corrected = holm_of_some(&p_values.collect::<Vec<_>>());
+    for (row, p_holm) in table.iter_mut().zip(corrected) {
+        row.p_holm = p_holm;
+    }
+    Ok(table)
+}
+
+fn against(trials: &[Row], best: &[Row]) -> Result<Comparison> {
+    // A cell may have failed in some trials.
+    let [ours, theirs] = [trials, best].map(|trials| {
+        let scores = trials.iter();
+        let scores = scores.map(|(cell, score)| score.repeat(cell.fused_touches));
+        scores.collect::<Vec<_>>()
+    });
+    let paired = Paired::of(&ours, &theirs);
+    let (ours, theirs) = match paired.n_trials() {
+        0 => (mean(trials, |t| t.accuracy), mean(best, |t| t.accuracy)),
+        _ => paired.means(),
+    };
+    let tested = paired.tested()?;
+    let tested = tested.expect("every trial of a table has a size");
+    Ok(Comparison {
+        cell: trials[0].0.cell,
+        best_cell: best[0].0.cell,
+        n_trials: paired.n_trials(),
+        difference: ours - theirs,
+        difference_low: tested.interval.map(|interval| interval.low),
+        difference_high: tested.interval.map(|interval| interval.high),
+        p_value: tested.p_value,
+        p_holm: None,
+        p_status: tested.p_status,
+        n_trials_needed: tested.n_needed,
+    })
+}
+
+/// Pairs that a list of confusions shows, at most.
+const MOST_CONFUSED: usize = 15;
+
+/// The pairs of objects that a cell confuses most often, by the share of the touched object's test rows; of equals the one
+/// that the table has first. `fused` is the same cell with the most touches fused, and how many those are.
+///
+/// # Errors
+/// None for counts of a table.
+pub fn most_confused(
+    confusion: &[Confusion],
+    cell: usize,
+    fused: Option<(usize, usize)>,
+) -> Result<Vec<Confused>> {
+    let n_test = rows_of_objects(confusion, cell);
+    let of_fused = fused.map(|(cell, _)| rows_of_objects(confusion, cell));
+    let share_fused = |of: &Confusion| {
+        let ((cell, _), n_test) = (fused?, of_fused.as_ref()?);
+        let mut rows = confusion.iter().filter(|row| row.cell == cell);
+        let same = rows.find(|row| (&row.object, &row.predicted) == (&of.object, &of.predicted));
+        let n_test = *n_test.get(of.object.as_str())?;
+        Some(same.map_or(0, |row| row.count) as f64 / n_test as f64)
+    };
+    let pairs = confusion.iter();
+    let pairs = pairs.filter(|row| row.cell == cell && row.object != row.predicted);
+    let pairs = pairs.map(|row| {
+        let n_test = n_test[row.object.as_str()];
+        let interval = Interval::wilson(row.count, n_test, CONFIDENCE)?;
+        Ok(Confused {
+            cell,
+            object: row.object.clone(),
+            predicted: row.predicted.clone(),
+            count: row.count,
+            n_test,
+            share: row.count as f64 / n_test as f64,
+            share_low: interval.low,
+            share_high: interval.high,
+            most_fused: fused.map(|(_, n_fused)| n_fused),
+            share_fused: share_fused(row),
+        })
+    });
+    let mut pairs = pairs.collect::<Result<Vec<Confused>>>()?;
+    pairs.sort_by(|a, b| b.share.total_cmp(&a.share));
+    pairs.truncate(MOST_CONFUSED);
+    Ok(pairs)
+}
+
+/// Test rows of each object in a cell.
+fn rows_of_objects(confusion: &[Confusion], cell: usize) -> BTreeMap<&str, usize> {
+    let mut n_test = BTreeMap::new();
+    for row in confusion.iter().filter(|row| row.cell == cell) {
+        *n_test.entry(row.object.as_str()).or_default() += row.count;
+    }
+    n_test
+}
+
+/// What the accuracy of every cell costs, and which cells are worth their cost; both tables have the same rows.
+pub fn pareto(rows: &[Row], times: &[(Cell, TrialTime)]) -> Result<Vec<(Cell, Pareto)>> {
+    let same_cell = |a: &(Cell, TrialTime), b: &(Cell, TrialTime)| a.0.cell == b.0.cell;
+    let mut table: Vec<(Cell, Pareto)> = rows
+        .chunk_by(|a, b| a.0.cell == b.0.cell)
+        .zip(times.chunk_by(same_cell))
+        .map(|(trials, times)| {
+            let n_trials = times.len() as f64;
+            let mean_time = |time: fn(&TrialTime) -> f64| {
+                times.iter().map(|(_, t)| time(t)).sum::<f64>() / n_trials
+            };
+            let fit_s = mean_time(|t| t.fit_s);
+            let cell = &trials[0].0;
+            let row = Pareto {
+                accuracy: mean(trials, |t| t.accuracy),
+                fit_s,
+                fit_us_per_touch: 1e6 * fit_s / mean(trials, |t| t.n_train as f64),
+                predict_us_per_decision: cell.fused_touches as f64
+                    * mean_time(|t| t.predict_us_per_touch),
+                on_training_front: false,
+                on_prediction_front: false,
+            };
+            (cell.clone(), row)
+        })
+        .collect();
+    mark_fronts(&mut table)?;
+    Ok(table)
+}
+
+/// Says of each cell whether none of the same condition beats it.
+fn mark_fronts(table: &mut [(Cell, Pareto)]) -> Result<()> {
+    for alike in by_condition(table.iter().map(|(cell, _)| cell))? {
+        let on_front = |cost: fn(&Pareto) -> f64| {
+            let points = alike.iter().map(|&place| &table[place].1);
+            let points = points.map(|row| (cost(row), row.accuracy));
+            front(&points.collect::<Vec<_>>(), |a, b| a > b)
+        };
+        let training = on_front(|row| row.fit_s);
+        let prediction = on_front(|row| row.predict_us_per_decision);
+        for (place, on) in alike.iter().zip(training.into_iter().zip(prediction)) {
+            let row = &mut table[*place].1;
+            (row.on_training_front, row.on_prediction_front) = on;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cell(number: usize, noise_std: f64, (accuracy, fit_s): (f64, f64)) -> (Cell, Pareto) {
+        let cell = Cell {
+            cell: number,
+            noise_std,
+            ..crate::studies::recognition::rows::cell::tests::cell()
+        };
+        let row = Pareto {
+            accuracy,
+            fit_s,
+            fit_us_per_touch: 0.0,
+            predict_us_per_decision: 0.0,
+            on_training_front: false,
+            on_prediction_front: false,
+        };
+        (cell, row)
+    }
+
+    #[test]
+    fn pairs_are_listed_by_their_share_of_the_objects_test_touches_and_hits_are_not() {
+        let row = |cell, object: &str, predicted: &str, count| Confusion {
+            cell,
+            object: object.to_owned(),
+            predicted: predicted.to_owned(),
+            count,
+        };
+        let mut table = vec![
+            row(0, "mug", "bowl", 9), // another cell
+            row(1, "mug", "mug", 6),
+            row(1, "mug", "bowl", 4), // 4 of 10
+            row(1, "bowl", "bowl", 1),
+            row(1, "bowl", "mug", 3), // 3 of 4: fewer, but a larger share
+        ];
+        let found = |table: &[Confusion]| -> Vec<(String, usize, usize, f64)> {
+            let pairs = most_confused(table, 1, None).unwrap().into_iter();
+            pairs
+                .map(|p| (p.object, p.count, p.n_test, p.share))
+                .collect()
+        };
+        let expected = [
+            ("bowl".to_owned(), 3, 4, 0.75),
+            ("mug".to_owned(), 4, 10, 0.4),
+        ];
+        assert_eq!(found(&table), expected);
+        // Of ten decisions on two touches each, one is still wrong; of the bowl's none.
+        table.extend([row(2, "mug", "mug", 9), row(2, "mug", "bowl", 1)]);
+        table.push(row(2, "bowl", "bowl", 5));
+        let fused = most_confused(&table, 1, Some((2, 2))).unwrap();
+        let fused = fused.into_iter().map(|p| (p.most_fused, p.share_fused));
+        let expected = [(Some(2), Some(0.0)), (Some(2), Some(0.1))];
+        assert_eq!(fused.collect::<Vec<_>>(), expected);
+        for other in 0..20 {
+            table.push(row(1, "pear", &format!("apple {other}"), 1));
+        }
+        assert_eq!(found(&table).len(), MOST_CONFUSED);
+        assert!(most_confused(&table, 7, None).unwrap().is_empty());
+    }
+
+    #[test]
+    fn a_cell_is_on_the_front_unless_one_of_the_same_noise_is_no_worse_and_better_in_something() {
+        let mut table = [
+            cell(0, 0.0, (0.9, 1.0)),
+            cell(1, 0.0, (0.9, 2.0)), // as accurate, slower than 0
+            cell(2, 0.0, (0.95, 3.0)),
+            cell(3, 0.0, (0.8, 0.5)),
+            cell(4, 0.0, (0.7, 0.5)),  // as fast as 3, less accurate
+            cell(5, 0.0, (0.95, 3.0)), // the same as 2
+            cell(6, 0.1, (0.1, 9.0)),  // alone with its noise
+        ];
+        mark_fronts(&mut table).unwrap();
+        let on = table.map(|(_, row)| row.on_training_front);
+        assert_eq!(on, [true, false, true, true, false, true, true]);
+    }
+}

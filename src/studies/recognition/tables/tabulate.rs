@@ -1,0 +1,107 @@
+//! Finished cells → tables: by cell, then by trial.
+
+use crate::error::Result;
+use crate::studies::recognition::rows::cell::Cell;
+use crate::studies::recognition::rows::conditions::most_accurate;
+use crate::studies::recognition::rows::table_rows::{Confusion, Tables, TrialScore};
+use crate::studies::recognition::spec::study::ConfusionMatrices;
+use crate::studies::recognition::tables::summary::{
+    compare_with_best, most_confused, pareto, summarise,
+};
+use crate::studies::recognition::tables::variance_table::variances;
+use crate::studies::recognition::training::trial::Evaluation;
+use std::collections::BTreeMap;
+
+/// Fills every table but those of stages and of published numbers; `name` returns the class of a label in a cell, `n_folds` the number of folds of a
+/// cell's study, 1 without folds, and `matrices` lists the cells that keep their confusion matrix.
+pub fn tabulate(
+    tables: &mut Tables,
+    mut scored: Vec<(Cell, Evaluation)>,
+    name: impl Fn(&Cell, usize) -> String,
+    n_folds: impl Fn(&Cell) -> usize,
+    matrices: ConfusionMatrices,
+) -> Result<()> {
+    scored.sort_by_key(|(cell, evaluation)| (cell.cell, evaluation.score.trial));
+    share_columns(
+        scored
+            .iter_mut()
+            .map(|(_, found)| &mut found.score)
+            .collect(),
+    );
+    let mut groups = Vec::new();
+    let mut confusions = BTreeMap::new();
+    for (cell, evaluation) in scored {
+        for &(object, predicted, count) in &evaluation.confusion {
+            let known = confusions.entry((cell.cell, object, predicted));
+            let row = known.or_insert_with(|| Confusion {
+                cell: cell.cell,
+                object: name(&cell, object),
+                predicted: name(&cell, predicted),
+                count: 0,
+            });
+            row.count += count;
+        }
+        groups.push(evaluation.groups);
+        tables.accuracy.push((cell.clone(), evaluation.score));
+        tables.timing.push((cell, evaluation.time));
+    }
+    tables.confusion = confusions.into_values().collect();
+    tables.summary = summarise(&tables.accuracy, &groups, n_folds)?;
+    tables.variance = variances(&tables.accuracy)?;
+    tables.comparison = compare_with_best(&tables.accuracy)?;
+    // What one touch confuses says more than what is left of it once many are fused.
+    let cells = || tables.summary.iter().map(|(cell, _)| cell);
+    let fewest = cells().map(|cell| cell.fused_touches).min().unwrap_or(1);
+    let single = tables.summary.iter();
+    let single = single.filter(|(cell, _)| cell.fused_touches == fewest);
+    let accuracies = single.map(|(cell, score)| (cell.cell, score.accuracy));
+    if let Some(best) = most_accurate(accuracies) {
+        let fused = most_fused(cells(), best);
+        tables.confused = most_confused(&tables.confusion, best, fused)?;
+        if matrices == ConfusionMatrices::Best {
+            let all = tables.summary.iter();
+            let charted = most_accurate(all.map(|(cell, score)| (cell.cell, score.accuracy)));
+            let kept = [Some(best), fused.map(|(cell, _)| cell), charted];
+            tables
+                .confusion
+                .retain(|row| kept.contains(&Some(row.cell)));
+        }
+    }
+    tables.pareto = pareto(&tables.accuracy, &tables.timing)?;
+    Ok(())
+}
+
+/// Gives all rows the columns that any row has. Where a combination of axes holds out no groups, each test row is a group; a split that no earlier trial
+/// has is the same as itself.
+pub fn share_columns(mut scores: Vec<&mut TrialScore>) {
+    let has_groups = scores.iter().any(|score| score.n_groups.is_some());
+    let has_repeats = scores.iter().any(|score| score.distinct_split.is_some());
+    for score in &mut scores {
+        if has_groups {
+            score.n_groups.get_or_insert(score.n_test);
+        }
+        if has_repeats {
+            let split = score.split.unwrap_or(score.trial);
+            score.distinct_split.get_or_insert(split);
+        }
+    }
+}
+
+/// The cell that differs from one in no more than in fusing the most touches, and how many; none where none fuses more.
+fn most_fused<'a>(
+    mut cells: impl Iterator<Item = &'a Cell> + Clone,
+    of: usize,
+) -> Option<(usize, usize)> {
+    let all = cells.clone();
+    let of = cells.find(|cell| cell.cell == of)?;
+    let same = all.filter(|cell| {
+        let alike = Cell {
+            cell: of.cell,
+            fused_touches: of.fused_touches,
+            ..(*cell).clone()
+        };
+        alike == *of && cell.fused_touches > of.fused_touches
+    });
+    let most = same.max_by_key(|cell| cell.fused_touches)?;
+    Some((most.cell, most.fused_touches))
+}

@@ -1,0 +1,46 @@
+//! How much of the spread of each cell's accuracy comes from splits, from projections, and from the rest.
+
+use crate::error::Result;
+use crate::statistics::p_status::CONFIDENCE;
+use crate::statistics::repeats::scores;
+use crate::statistics::variance::{Component, components};
+use crate::studies::recognition::rows::cell::Cell;
+use crate::studies::recognition::rows::table_rows::{Source, TrialScore, Variance};
+
+/// Three rows a cell whose trials combine every split with every projection; none for other cells.
+pub fn variances(rows: &[(Cell, TrialScore)]) -> Result<Vec<Variance>> {
+    let mut table = Vec::new();
+    for trials in rows.chunk_by(|a, b| a.0.cell == b.0.cell) {
+        let trials_of = trials.iter().map(|(_, score)| score.repeat(1));
+        let scores = scores(&trials_of.collect::<Vec<_>>());
+        let Some(scores) = scores.filter(|scores| scores.ncols() > 1 && scores.nrows() > 1) else {
+            continue;
+        };
+        let found = components(scores.view(), CONFIDENCE)?;
+        let parts = [
+            (Source::Split, found.rows),
+            (Source::Projection, found.columns),
+            (Source::Rest, found.rest),
+        ];
+        let total: f64 = parts.iter().map(|(_, part)| part.variance()).sum();
+        let cell = trials[0].0.cell;
+        table.extend(parts.map(|(source, part)| row(cell, source, &part, total)));
+    }
+    Ok(table)
+}
+
+fn row(cell: usize, source: Source, part: &Component, total: f64) -> Variance {
+    Variance {
+        cell,
+        source,
+        n_levels: part.n_levels,
+        degrees_of_freedom: part.degrees_of_freedom,
+        mean_square: part.mean_square,
+        estimate: part.estimate,
+        accuracy_std: part.variance().sqrt(),
+        accuracy_std_low: part.interval.low.sqrt(),
+        accuracy_std_high: part.interval.high.sqrt(),
+        share: (total > 0.0).then(|| part.variance() / total),
+        p_value: part.p_value,
+    }
+}

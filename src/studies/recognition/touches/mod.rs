@@ -1,0 +1,4 @@
+//! Touches drawn from placements.
+
+pub mod drawn_touches;
+pub mod scaled_poses;

@@ -1,0 +1,30 @@
+//! Poses of touches on the axes of a placement that have more than one value.
+
+use crate::learning::evaluation::next_touch::Poses;
+use crate::world::{Placement, Spread, Touch, TouchAxis};
+use ndarray::Array2;
+use std::f64::consts::TAU;
+
+/// The poses of touches, on the axes of a placement that have more than one value.
+pub fn scaled_poses(placement: &Placement, touches: &[&Touch]) -> Poses {
+    let spreads = placement.spreads().into_iter();
+    let ranges = spreads.map(|(axis, spread)| (axis, range(spread)));
+    let axes: Vec<(TouchAxis, f64)> = ranges.filter(|(_, range)| *range > 0.0).collect();
+    let scaled = |(touch, axis): (usize, usize)| touches[touch].value(axes[axis].0) / axes[axis].1;
+    let turn = |&(axis, range): &(TouchAxis, f64)| (axis == TouchAxis::Yaw).then_some(TAU / range);
+    Poses {
+        coordinates: Array2::from_shape_fn((touches.len(), axes.len()), scaled),
+        turns: axes.iter().map(turn).collect(),
+    }
+}
+
+/// The largest value of a spread less the smallest.
+fn range(spread: &Spread) -> f64 {
+    match spread {
+        Spread::Uniform { low, high } => high - low,
+        Spread::Values(values) => {
+            let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            most - values.iter().copied().fold(f64::INFINITY, f64::min)
+        }
+    }
+}

@@ -1,0 +1,228 @@
+//! Training of a family of cells: the same rows and features, one fit for each C.
+
+use crate::error::Result;
+use crate::inputs::memory::GIB;
+use crate::learning::classifiers::ClassifierKind;
+use crate::learning::classifiers::classifier::{Classifier, Cost};
+use crate::learning::classifiers::trained_classifier::TrainedClassifier;
+use crate::learning::data::split::{group_k_fold, stratified_k_fold};
+use crate::random::Seed;
+use crate::studies::recognition::spec::study::RecognitionSpec;
+use bubbletouch_svm::DEFAULT_MEMORY_BYTES;
+use bubbletouch_svm::cross_validation::choice::Candidates;
+use bubbletouch_svm::dataset::{Dataset, rows};
+use bubbletouch_svm::kernel::Gamma;
+use bubbletouch_svm::split::Split;
+use ndarray::{Array1, Axis};
+use std::collections::HashMap;
+use std::time::Instant;
+
+/// The training rows of a family in one trial, and what they are trained with.
+pub struct Training<'a> {
+    /// The study's keys.
+    pub recognition: &'a RecognitionSpec,
+    /// Which classifier.
+    pub kind: ClassifierKind,
+    /// Training rows in drawing order, one of each object in turn: first readings, then further ones, then tilted copies.
+    pub data: Dataset,
+    /// How many of them are first readings: the others take no part in a choice of C or γ.
+    pub n_first: usize,
+    /// The group of each row, when the study keeps groups together.
+    pub group_keys: Option<Array1<usize>>,
+    /// What the folds of a choice are drawn from.
+    pub seed: Seed,
+}
+
+/// A trained classifier and what it was trained with.
+pub struct Fitted {
+    /// The classifier, with its scaling.
+    pub classifier: TrainedClassifier,
+    /// C, of a classifier that has one.
+    pub c: Option<f64>,
+    /// γ, of a classifier that has one.
+    pub gamma: Option<f64>,
+    /// Seconds to choose and to train.
+    pub fit_s: f64,
+}
+
+impl Training<'_> {
+    /// One classifier for each C (`None`: chosen, or a classifier that has none), in their order.
+    ///
+    /// # Errors
+    /// What a fold or a training refuses.
+    pub(crate) fn train_all(&self, penalties: &[Option<f64>]) -> Result<Vec<Fitted>> {
+        let given: Option<Vec<f64>> = penalties.iter().copied().collect();
+        match given {
+            Some(path) if !self.chooses_gamma() => self.train_path(&path),
+            _ => penalties.iter().map(|&c| self.train(c)).collect(),
+        }
+    }
+
+    fn chooses_gamma(&self) -> bool {
+        self.kind.has_gamma() && self.recognition.choose_gamma.is_some()
+    }
+
+    /// For several C that are given: what they share is computed once, and its time told to each in equal parts.
+    fn train_path(&self, path: &[f64]) -> Result<Vec<Fitted>> {
+        let start = Instant::now();
+        let classifier = self.classifier();
+        let trained = classifier.train_path(&self.data, path, &self.seed)?;
+        let gamma = self.gamma()?;
+        let fit_s = start.elapsed().as_secs_f64() / path.len() as f64;
+        let fitted = trained.into_iter().map(|classifier| Fitted {
+            c: classifier.c(),
+            classifier,
+            gamma,
+            fit_s,
+        });
+        Ok(fitted.collect())
+    }
+
+    /// With this C, or one that is chosen, or none; and a γ that may be chosen.
+    fn train(&self, c: Option<f64>) -> Result<Fitted> {
+        let start = Instant::now();
+        let classifier = self.classifier();
+        let (classifier, gamma) = if self.kind.has_c() {
+            let given = c.map(|c| vec![c]).or(self.recognition.choose_c.clone());
+            let candidates = Candidates {
+                c: given.unwrap_or_default(),
+                gamma_scales: self.recognition.choose_gamma.clone().unwrap_or_default(),
+            };
+            let (c, classifier) = self.choose(classifier, &candidates)?;
+            let mut trained = classifier.train_path(&self.data, &[c], &self.seed)?;
+            let gamma = number(classifier.gamma).filter(|_| self.kind.has_gamma());
+            (trained.swap_remove(0), gamma)
+        } else {
+            (classifier.train(&self.data, &self.seed)?, None)
+        };
+        Ok(Fitted {
+            c: classifier.c(),
+            classifier,
+            gamma,
+            fit_s: start.elapsed().as_secs_f64(),
+        })
+    }
+
+    /// Returns the best C, and the classifier with the best γ, of some candidates. Every γ is a multiple of that of the training rows, of which the rows that
+    /// take part in the choice may be few. One candidate is no choice: the result is the same as if it was given.
+    fn choose(&self, classifier: Classifier, candidates: &Candidates) -> Result<(f64, Classifier)> {
+        let unit = self.gamma()?;
+        let classifier = Classifier {
+            gamma: unit.map_or(classifier.gamma, Gamma::Value),
+            ..classifier
+        };
+        if let ([c], [] | [_]) = (&candidates.c[..], &candidates.gamma_scales[..]) {
+            let scale = candidates.gamma_scales.first().copied().unwrap_or(1.0);
+            let gamma = unit.map_or(classifier.gamma, |unit| Gamma::Value(scale * unit));
+            return Ok((
+                *c,
+                Classifier {
+                    gamma,
+                    ..classifier
+                },
+            ));
+        }
+        let chosen_on = self.choosing_rows();
+        let folds = self.folds(&chosen_on)?;
+        let data = rows(&self.data, &chosen_on)?;
+        let chosen = classifier.choose(&data, &folds, candidates, &self.seed)?;
+        Ok((chosen.best.c, classifier.with_choice(&chosen)))
+    }
+
+    /// What classifiers trained as a fitted one answer to each touch (its first reading): of each fold those that have learned none of it.
+    ///
+    /// # Errors
+    /// What a fold or a training refuses.
+    pub(crate) fn held_out_answers(&self, like: &Fitted) -> Result<Vec<usize>> {
+        let n_first = self.n_first;
+        let usual = self.classifier();
+        let classifier = Classifier {
+            c: like.c.map_or(usual.c.clone(), Cost::Fixed),
+            gamma: like.gamma.map_or(usual.gamma, Gamma::Value),
+            ..usual
+        };
+        let mut answers = vec![0; n_first];
+        let first: Vec<usize> = (0..n_first).collect();
+        for fold in self.folds(&first)? {
+            // Further readings and copies are of all touches in turn.
+            let starts = (0..self.data.targets.len()).step_by(n_first);
+            let learned = starts.flat_map(|start| fold.train.iter().map(move |row| start + row));
+            let learned = rows(&self.data, &learned.collect::<Vec<_>>())?;
+            let trained = classifier.train(&learned, &self.seed)?;
+            let held_out = self.data.records.select(Axis(0), &fold.test);
+            for (&row, label) in fold.test.iter().zip(trained.labels(held_out.view())?) {
+                answers[row] = label;
+            }
+        }
+        Ok(answers)
+    }
+
+    /// The γ of a classifier that has one, where it is not chosen.
+    fn gamma(&self) -> Result<Option<f64>> {
+        let kernel = self.kind.about().kernel.filter(|_| self.kind.has_gamma());
+        let Some(kernel) = kernel.map(|kernel| kernel(&self.classifier())) else {
+            return Ok(None);
+        };
+        let records = self.data.records.view();
+        let scaled = self.recognition.scaling.fit(records)?.apply(records)?;
+        let scale = || kernel.gamma_scale(scaled.view());
+        Ok(Some(self.recognition.gamma.unwrap_or_else(scale)))
+    }
+
+    /// Returns the training rows that take part in a choice: of each object at most so many, the first ones, all of them first readings. A fold that holds
+    /// out a touch would else learn another reading of the touch.
+    fn choosing_rows(&self) -> Vec<usize> {
+        let most = self.recognition.choose_touches.unwrap_or(usize::MAX);
+        let mut n_chosen: HashMap<usize, usize> = HashMap::new();
+        let takes_part = |row: &usize| {
+            let n_chosen = n_chosen.entry(self.data.targets[*row]).or_default();
+            *n_chosen += 1;
+            *n_chosen <= most
+        };
+        (0..self.n_first).filter(takes_part).collect()
+    }
+
+    /// Splits some training rows once more, in positions within `rows`. What stays together in the study's split stays together here.
+    fn folds(&self, rows: &[usize]) -> Result<Vec<Split>> {
+        let labels = self.data.targets.select(Axis(0), rows);
+        let k = self.recognition.n_choice_folds();
+        match &self.group_keys {
+            None => stratified_k_fold(labels.view(), k, &self.seed),
+            Some(keys) => {
+                let keys = keys.select(Axis(0), rows);
+                group_k_fold(labels.view(), keys.view(), k, &self.seed)
+            }
+        }
+    }
+
+    fn classifier(&self) -> Classifier {
+        let recognition = self.recognition;
+        let usual = Classifier::new(self.kind);
+        Classifier {
+            scaling: recognition.scaling,
+            multiclass: recognition.multiclass,
+            solver: recognition.solver,
+            gamma: recognition.gamma.map_or(Gamma::Scale, Gamma::Value),
+            coef0: recognition.coef0,
+            degree: recognition.degree,
+            n_neighbours: recognition.n_neighbours.unwrap_or(usual.n_neighbours),
+            n_trees: recognition.n_trees.unwrap_or(usual.n_trees),
+            max_depth: recognition.max_depth,
+            memory_bytes: solver_memory(recognition.solver_memory_gib),
+            ..usual
+        }
+    }
+}
+
+/// Returns γ as a number, or `None` where the kernel computes γ itself or has none.
+fn number(gamma: Gamma) -> Option<f64> {
+    match gamma {
+        Gamma::Value(gamma) => Some(gamma),
+        Gamma::Scale => None,
+    }
+}
+
+/// Most bytes of kernel values that a solver holds.
+pub fn solver_memory(gib: Option<f64>) -> usize {
+    gib.map_or(DEFAULT_MEMORY_BYTES, |gib| (gib * GIB) as usize)
+}

@@ -1,0 +1,122 @@
+//! What is charted, and what was found in sentences.
+
+use crate::error::Result;
+use crate::report::study_folder::NamedPicture;
+use crate::studies::kind::Findings;
+use crate::studies::reconstruction::study::ReconstructionStudy;
+use crate::table::{Along, ChartSpec, Mark, Rule, Table, short_number};
+
+impl Findings for ReconstructionStudy {
+    /// Of each noise level: error by measurements for each ensemble, then error against time.
+    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
+        let (cells, pareto) = (&tables[0], &tables[3]);
+        let mut charts = Vec::new();
+        for of_level in cells.groups(&["noise_std"], 0..cells.n_rows) {
+            let ensembles = cells.groups(&["ensemble"], of_level.iter().copied());
+            let compressed = ensembles
+                .iter()
+                .filter(|rows| cells.word("ensemble", rows[0]) != "identity");
+            charts.extend(compressed.map(|rows| by_measurements(cells, rows)));
+            let noise = noise_words(cells, of_level[0]);
+            let level = cells.number("noise_std", of_level[0]);
+            charts.push(ChartSpec {
+                shown: cells.shown("noise_std", of_level[0]).into_iter().collect(),
+                lines: vec!["solver".to_owned()],
+                mark: Mark::Points,
+                front: true,
+                ..pareto.chart(
+                    format!("error_by_time_noise_{level}"),
+                    format!("Error of reconstructed frames against their time, {noise}"),
+                    ("error", "us_per_frame"),
+                )
+            });
+        }
+        charts
+    }
+
+    fn pictures(&self, tables: &[Table]) -> Result<Vec<NamedPicture>> {
+        self.sample_frames(tables)
+    }
+
+    /// At each noise level: the best cell of all, and the fewest measurements from which some cell is as good as full sampling.
+    fn answers(&self, tables: &[Table]) -> Vec<String> {
+        let (cells, timing) = (&tables[0], &tables[2]);
+        let error = |row: usize| cells.number("error", row);
+        let full = |row: usize| cells.number("full_sampling_error", row);
+        let mut sentences = Vec::new();
+        for rows in cells.groups(&["noise_std"], 0..cells.n_rows) {
+            let least = rows
+                .iter()
+                .copied()
+                .min_by(|&a, &b| error(a).total_cmp(&error(b)));
+            sentences.extend(least.map(|row| {
+                format!(
+                    "With {}: least error {:.3} ({}; {:.0} frames/s a core).",
+                    noise_words(cells, row),
+                    error(row),
+                    cell_words(cells, row),
+                    timing.number("frames_per_s_per_core", row)
+                )
+            }));
+            let as_good = rows.into_iter().filter(|&row| error(row) <= full(row));
+            let key = |row: usize| (cells.number("measurements", row), error(row));
+            let fewest =
+                as_good.min_by(|&a, &b| key(a).partial_cmp(&key(b)).expect("errors are numbers"));
+            sentences.extend(fewest.map(|row| {
+                format!(
+                    "As good as full sampling ({:.3}) from {} measurements ({:.0}:1): {:.3} ({}).",
+                    full(row),
+                    cells.number("measurements", row),
+                    cells.number("ratio", row),
+                    error(row),
+                    cell_words(cells, row)
+                )
+            }));
+        }
+        sentences
+    }
+}
+
+/// A panel a dictionary, a line a solver; the noisy frame itself as a rule.
+fn by_measurements(cells: &Table, rows: &[usize]) -> ChartSpec {
+    let (code, ensemble) = (
+        cells.word("ensemble", rows[0]),
+        cells.words("ensemble", rows[0]),
+    );
+    let level = cells.number("noise_std", rows[0]);
+    let noise = noise_words(cells, rows[0]);
+    let full = cells.number("full_sampling_error", rows[0]);
+    let rule = Rule::at(Along::Y, full, "full sampling: the noisy frame itself");
+    let shown = ["noise_std", "ensemble"].into_iter();
+    ChartSpec {
+        shown: shown
+            .filter_map(|column| cells.shown(column, rows[0]))
+            .collect(),
+        lines: vec!["solver".to_owned()],
+        panels: Some("dictionary".to_owned()),
+        rules: (full > 0.0).then_some(rule).into_iter().collect(),
+        ..cells.chart(
+            format!("error_{code}_noise_{level}"),
+            format!("Error of reconstructed frames by measurements, {ensemble}, {noise}"),
+            ("error", "measurements"),
+        )
+    }
+}
+
+/// The noise of a cell: `noise of 10 % of full scale`.
+pub(super) fn noise_words(cells: &Table, row: usize) -> String {
+    let level = cells.number("noise_std", row);
+    match (level, cells.word("noise_unit", row)) {
+        (0.0, _) => "no noise".to_owned(),
+        (_, "full_scale") => format!("noise of {} % of full scale", short_number(100.0 * level)),
+        (_, "n") => format!("noise of {} N", short_number(level)),
+        (_, unit) => format!("noise of {} {unit}", short_number(level)),
+    }
+}
+
+/// The settings of a cell: `LMMSE, PCA, SBHE, m = 1024`.
+pub(super) fn cell_words(cells: &Table, row: usize) -> String {
+    let names = ["solver", "dictionary", "ensemble", "measurements"];
+    let [solver, dictionary, ensemble, m] = names.map(|column| cells.words(column, row));
+    format!("{solver}, {dictionary}, {ensemble}, m = {m}")
+}

@@ -1,0 +1,95 @@
+//! A picture of a few test frames: as they were, as they were read, and as some cells reconstruct them.
+
+use crate::engine::progress::Silent;
+use crate::error::Result;
+use crate::inputs::units::millimetres;
+use crate::report::snapshots::{Snapshots, snapshots};
+use crate::report::study_folder::NamedPicture;
+use crate::sensing::{Reconstructor, SensedDictionary};
+use crate::studies::reconstruction::charts::{cell_words, noise_words};
+use crate::studies::reconstruction::study::ReconstructionStudy;
+use crate::table::Table;
+use ndarray::Array2;
+
+impl ReconstructionStudy {
+    /// Of the loudest noise; none where nothing was reconstructed.
+    pub(super) fn sample_frames(&self, tables: &[Table]) -> Result<Vec<NamedPicture>> {
+        let Some(cells) = tables.first().filter(|cells| cells.n_rows > 0) else {
+            return Ok(Vec::new());
+        };
+        let touches = self.frames(&Silent)?;
+        let loudest = touches
+            .noisy
+            .iter()
+            .max_by(|a, b| a.level.total_cmp(&b.level));
+        let Some(noisy) = loudest else {
+            return Ok(Vec::new());
+        };
+        let all = self.plan.cells();
+        let shown = shown_rows(cells, noisy.level);
+        let read = touches.pick(&noisy.frames);
+        let back = |&row: &usize| {
+            let cell = &all[cells.number("cell", row) as usize];
+            let dictionary = touches.dictionary(&self.plan, cell.dictionary)?;
+            let projection = self.plan.projection(cell.ensemble, cell.measurements)?;
+            let sensed = SensedDictionary::new(&projection, dictionary)?;
+            let effort = &self.plan.spec.reconstruction.effort();
+            let reconstructor = Reconstructor::new(cell.solver, &sensed, effort, noisy.std)?;
+            let measured = projection.measure(read.view());
+            let [solver, m] = ["solver", "measurements"].map(|name| cells.words(name, row));
+            let back = reconstructor.reconstruct(measured.view())?.frames;
+            Ok((format!("{solver} of m = {m}"), back))
+        };
+        let back = shown.iter().map(back).collect::<Result<Vec<_>>>()?;
+        let clean = touches.pick(&touches.test);
+        let mut frames = Vec::new();
+        for (sample, (_, name)) in touches.shown.iter().enumerate() {
+            let mut add = |name: String, of_all: &Array2<f64>| {
+                let values = of_all.row(sample).to_vec();
+                let frame = Array2::from_shape_vec(self.plan.shape(), values);
+                frames.push((name, frame.expect("one value a taxel")));
+            };
+            add(name.replace('_', " "), &clean);
+            add("full, noisy".to_owned(), &read);
+            for (name, back) in &back {
+                add(name.clone(), back);
+            }
+        }
+        let noise = noise_words(cells, shown.first().copied().unwrap_or(0));
+        let words: Vec<String> = shown.iter().map(|&row| cell_words(cells, row)).collect();
+        let picture = snapshots(&Snapshots {
+            frames,
+            pitch_mm: millimetres(self.plan.array.pitch()),
+            quantity: self.plan.quantity(),
+            caption: format!("{noise}; {}", words.join("; ")),
+        })?;
+        Ok(vec![NamedPicture {
+            name: "frames".to_owned(),
+            title: "Sample frames and what came back of them".to_owned(),
+            png: picture.png()?,
+            size: (picture.width / 2, picture.height / 2),
+        }])
+    }
+}
+
+/// The best cell at the m nearest to a quarter of the taxels, and at the fewest measurements.
+fn shown_rows(cells: &Table, level: f64) -> Vec<usize> {
+    let of_level: Vec<usize> = (0..cells.n_rows)
+        .filter(|&row| cells.number("noise_std", row) == level)
+        .filter(|&row| cells.word("ensemble", row) != "identity")
+        .collect();
+    let least = |of: &dyn Fn(usize) -> f64| {
+        let rows = of_level.iter().copied();
+        rows.min_by(|&a, &b| of(a).total_cmp(&of(b)))
+    };
+    let m = |row| cells.number("measurements", row);
+    let quarter = least(&|row| (cells.number("ratio", row) / 4.0).ln().abs());
+    let best = |like: usize| {
+        least(&|row| match m(row) == m(like) {
+            true => cells.number("error", row),
+            false => f64::INFINITY,
+        })
+    };
+    let like = [quarter, least(&m)].into_iter().flatten();
+    like.filter_map(best).collect()
+}

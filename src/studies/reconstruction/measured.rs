@@ -1,0 +1,139 @@
+//! All that is reconstructed from the same measurements.
+
+use crate::engine::work_items::pending::PiecesLeft;
+use crate::engine::work_items::shared::Shared;
+use crate::error::Result;
+use crate::random::Seed;
+use crate::sensing::{Basis, Extremes, Reconstructor, SensedDictionary};
+use crate::studies::reconstruction::plan::ReconstructionPlan;
+use crate::studies::reconstruction::rows::{
+    EnsembleStatistics, ReconstructionCell, ReconstructionRow, ReconstructionRows,
+    ReconstructionTime,
+};
+use crate::studies::reconstruction::score::{Found, square_errors};
+use crate::studies::reconstruction::touches::{Noisy, Touches};
+use ndarray::{Array2, Axis};
+use rayon::prelude::*;
+use std::time::Instant;
+
+/// Frames reconstructed together by one thread: enough for matrix products, few enough to share out.
+const BLOCK: usize = 64;
+
+/// Does what is left of all cells of an ensemble and m, by the number of these; dictionaries are learned when something needs them.
+pub(super) fn measure_cells(
+    (plan, touches): (&ReconstructionPlan, &Touches),
+    (group, cells): (usize, &[ReconstructionCell]),
+    left: &PiecesLeft<ReconstructionRows>,
+) -> Result<()> {
+    let first = &cells[0];
+    // Of each group the isometry of every dictionary comes before the cells.
+    let n_dictionaries = plan.dictionaries.len();
+    let isometries = first.cell + group * n_dictionaries;
+    let projection = Shared::default();
+    let projection = || projection.get(|| plan.projection(first.ensemble, first.measurements));
+    let sensed = plan.of_each_dictionary();
+    let sense = |basis: Basis| {
+        let sense = || SensedDictionary::new(projection()?, touches.dictionary(plan, basis)?);
+        sensed[plan.place_of(basis)].get(sense)
+    };
+    let dictionaries = plan.dictionaries.par_iter().enumerate();
+    dictionaries.try_for_each(|(place, &basis)| {
+        left.finish(isometries + place, || {
+            Ok((Vec::new(), statistics(plan, sense(basis)?)?))
+        })
+    })?;
+    let of_levels = cells.chunk_by(|a, b| a.noise_std == b.noise_std);
+    for (noisy, cells) in touches.noisy.iter().zip(of_levels) {
+        let measurements = Shared::default();
+        for cell in cells {
+            left.finish(cell.cell + (group + 1) * n_dictionaries, || {
+                let measure = || Ok(projection()?.measure(noisy.frames.view()));
+                let measurements = measurements.get(measure)?;
+                let sensed = sense(cell.dictionary)?;
+                let row = reconstruct((plan, touches), cell, sensed, (noisy, measurements))?;
+                Ok((vec![row], Vec::new()))
+            })?;
+        }
+    }
+    Ok(())
+}
+
+/// Errors and times of a cell.
+fn reconstruct(
+    (plan, touches): (&ReconstructionPlan, &Touches),
+    cell: &ReconstructionCell,
+    sensed: &SensedDictionary,
+    (noisy, measurements): (&Noisy, &Array2<f64>),
+) -> Result<ReconstructionRow> {
+    let start = Instant::now();
+    let effort = &plan.spec.reconstruction.effort();
+    let reconstructor = Reconstructor::new(cell.solver, sensed, effort, noisy.std)?;
+    let prepare_s = start.elapsed().as_secs_f64();
+    let clean = touches.test.axis_chunks_iter(Axis(0), BLOCK);
+    let blocks = measurements.axis_chunks_iter(Axis(0), BLOCK);
+    let blocks = blocks.into_par_iter().zip(clean.into_par_iter());
+    let found = blocks.map(|(measurements, clean)| {
+        let start = Instant::now();
+        let back = reconstructor.reconstruct(measurements)?;
+        Ok(Found {
+            seconds: start.elapsed().as_secs_f64(),
+            errors: square_errors(back.frames.view(), clean),
+            n_atoms: back.n_atoms.iter().sum(),
+            n_capped: back.capped.iter().filter(|&&capped| capped).count(),
+        })
+    });
+    let found = found.collect::<Result<Vec<Found>>>()?;
+    let seconds: f64 = found.iter().map(|block| block.seconds).sum();
+    let us_per_frame = 1e6 * seconds / measurements.nrows() as f64;
+    let cell = ReconstructionCell {
+        atoms: sensed.dictionary().n_atoms(),
+        ..cell.clone()
+    };
+    let time = ReconstructionTime {
+        prepare_s,
+        us_per_frame,
+        frames_per_s_per_core: 1e6 / us_per_frame,
+    };
+    Ok((cell, touches.truth.score(&found, &noisy.errors), time))
+}
+
+/// What a dictionary keeps apart, seen through a projection: a row a size of supports.
+fn statistics(
+    plan: &ReconstructionPlan,
+    sensed: &SensedDictionary,
+) -> Result<Vec<EnsembleStatistics>> {
+    let (projection, dictionary) = (sensed.projection(), sensed.dictionary());
+    let coherence = sensed.coherence();
+    let n_subsets = plan.spec.reconstruction.isometry_subsets;
+    let seed = Seed::new(plan.spec.seed);
+    let sizes = plan.spec.reconstruction.isometry_sparsity.values();
+    let rows = sizes.into_iter().map(|sparsity| {
+        let sparsity = sparsity.min(dictionary.n_atoms());
+        let extremes = sensed.isometry(sparsity, n_subsets, &seed)?;
+        let quantile = |of: fn(&Extremes) -> f64, part: f64| {
+            let mut values: Vec<f64> = extremes.iter().map(of).collect();
+            values.sort_by(f64::total_cmp);
+            values[((values.len() - 1) as f64 * part).round() as usize]
+        };
+        let (low, high) = (|e: &Extremes| e.low, |e: &Extremes| e.high);
+        Ok(EnsembleStatistics {
+            ensemble: projection.ensemble(),
+            measurements: projection.n_measurements(),
+            ratio: projection.n_taxels() as f64 / projection.n_measurements() as f64,
+            dictionary: dictionary.basis(),
+            atoms: dictionary.n_atoms(),
+            coherence: coherence.mutual,
+            welch_bound: coherence.welch_bound,
+            n_invisible: coherence.n_invisible,
+            sparsity,
+            n_subsets,
+            low_min: quantile(low, 0.0),
+            low_median: quantile(low, 0.5),
+            high_median: quantile(high, 0.5),
+            high_max: quantile(high, 1.0),
+            deviation_median: quantile(Extremes::deviation, 0.5),
+            delta_lower_bound: quantile(Extremes::deviation, 1.0),
+        })
+    });
+    rows.collect()
+}

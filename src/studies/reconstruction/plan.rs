@@ -1,0 +1,247 @@
+//! A reconstruction study that can run: every key checked, every unit SI.
+
+use crate::engine::work_items::shared::Shared;
+use crate::error::Result;
+use crate::inputs::check::{COUNT, Check, Range};
+use crate::inputs::units::MM;
+use crate::random::Seed;
+use crate::sensing::{Basis, Dictionary, Effort, Ensemble, Projection, Solver};
+use crate::signal::{Noise, NoiseUnit, Quantity, SignalStep};
+use crate::studies::recognition::plan::taxel_array::TaxelArray;
+use crate::studies::recognition::spec::signal::{CombineSpec, SignalSpec, StepSpec};
+use crate::studies::recognition::sweep::sweep::nested;
+use crate::studies::reconstruction::rows::ReconstructionCell;
+use crate::studies::reconstruction::spec::{ReconstructionSpec, ReconstructionStudySpec};
+use crate::world::{Grid, Placement};
+
+/// Axes and settings of a reconstruction study, ready to run.
+#[derive(Clone, Debug)]
+pub struct ReconstructionPlan {
+    /// As it was written.
+    pub spec: ReconstructionStudySpec,
+    /// The array.
+    pub array: TaxelArray,
+    /// How touches are drawn.
+    pub placement: Placement,
+    /// Approach speed at the moment of reading, m/s.
+    pub speed: f64,
+    /// What the noise axis is measured in.
+    pub noise_unit: NoiseUnit,
+    /// The noise axis, in `noise_unit`.
+    pub noise: Vec<f64>,
+    /// The dictionary axis.
+    pub dictionaries: Vec<Basis>,
+}
+
+/// Supports that are drawn of each size, at most: all are in memory at once.
+const MOST_SUBSETS: usize = 1_000_000;
+
+/// Atoms of a dictionary, at most: more than any array has taxels. One atom has no threshold: λ is √(2 ln k) of k atoms.
+const MOST_ATOMS: usize = 100_000_000;
+
+/// What the numbers of `[reconstruction]` may be.
+const KEYS: [(&str, Range); 10] = [
+    ("dictionary", Range::Any),
+    ("atoms", Range::Count(2, MOST_ATOMS)),
+    ("solver", Range::Any),
+    ("most_atoms", COUNT),
+    ("most_steps", COUNT),
+    ("lambda_scale", Range::Positive),
+    ("tolerance", Range::Positive),
+    ("test_fraction", Range::Part),
+    ("isometry_sparsity", COUNT),
+    ("isometry_subsets", Range::Count(1, MOST_SUBSETS)),
+];
+
+impl ReconstructionPlan {
+    /// Checks a study.
+    ///
+    /// # Errors
+    /// The error names `place` (the file) and the first key that is out of its range.
+    pub fn new(place: &str, mut spec: ReconstructionStudySpec) -> Result<Self> {
+        let check = Check { place };
+        check.objects(&spec.objects)?;
+        let allowed = "one pitch and one size: a dictionary is of one array";
+        let array = check.one_array(&spec.skin, allowed)?;
+        spec.objects
+            .settle_surface_error(std::slice::from_ref(&array));
+        let placement = check.placement(&spec.touches)?;
+        let (noise_unit, noise) = check.noise(&spec.signal, None)?;
+        check.steps(&spec.signal)?;
+        check.noise_is_last(&spec.signal)?;
+        check.sensing(&spec.sensing, std::slice::from_ref(&array))?;
+        check.drawn("sensing.ensemble", spec.sensing.ensemble.values())?;
+        let wanted = &spec.reconstruction;
+        check.keys("reconstruction", wanted, KEYS)?;
+        check.efforts(wanted)?;
+        let dictionaries = check.dictionaries(wanted, array.grid())?;
+        let axes = [
+            spec.sensing.ensemble.values().len(),
+            spec.sensing.measurements_on(array.n_taxels()).len(),
+            noise.len(),
+            dictionaries.len(),
+            wanted.solver.values().len(),
+        ];
+        check.configurations(axes.iter().map(|&n| n as f64).product())?;
+        Ok(Self {
+            array,
+            placement,
+            speed: spec.touches.speed_mm_per_s * MM,
+            noise_unit,
+            noise,
+            dictionaries,
+            spec,
+        })
+    }
+
+    /// The study's steps at a noise level; without its noise step for `None`.
+    pub fn signal_steps(&self, noise: Option<f64>) -> Vec<SignalStep> {
+        let unit = self.noise_unit;
+        let steps = self.spec.signal.steps.iter();
+        let steps = steps.filter_map(|step| match step {
+            StepSpec::Force => Some(SignalStep::Force),
+            StepSpec::Noise => noise.map(|std| SignalStep::Noise(Noise { std, unit })),
+            // Steps that a reconstruction has no place for are refused.
+            _ => None,
+        });
+        steps.collect()
+    }
+
+    /// What frames are when noise is added.
+    pub fn quantity(&self) -> Quantity {
+        match self.spec.signal.steps.contains(&StepSpec::Force) {
+            true => Quantity::Force,
+            false => Quantity::Deflection,
+        }
+    }
+
+    /// The measurements axis of an ensemble; identity has all taxels whatever is asked.
+    pub fn measurement_counts(&self, ensemble: Ensemble) -> Vec<usize> {
+        let n = self.array.n_taxels();
+        if ensemble == Ensemble::Identity {
+            return vec![n];
+        }
+        let mut counts = self.spec.sensing.measurements_on(n);
+        counts.sort_unstable();
+        counts.dedup();
+        counts
+    }
+
+    /// The study's projection of an ensemble to m measurements.
+    pub(super) fn projection(&self, ensemble: Ensemble, m: usize) -> Result<Projection> {
+        let seed = Seed::new(self.spec.seed).named("projection").numbered(0);
+        Projection::new(ensemble, self.shape(), m, &seed)
+    }
+
+    /// Of a frame: rows and columns.
+    pub(super) fn shape(&self) -> (usize, usize) {
+        self.array.shape()
+    }
+
+    /// One for each dictionary, in their order.
+    pub(super) fn of_each_dictionary<T>(&self) -> Vec<Shared<T>> {
+        let each = self.dictionaries.iter();
+        each.map(|_| Shared::default()).collect()
+    }
+
+    /// Which of its dictionaries it is.
+    pub(super) fn place_of(&self, basis: Basis) -> usize {
+        let place = self.dictionaries.iter().position(|&known| known == basis);
+        place.expect("cells have the dictionaries of their plan")
+    }
+
+    /// All cells, those of an ensemble and m together; how many atoms a dictionary has is known once it is learned.
+    pub fn cells(&self) -> Vec<ReconstructionCell> {
+        let n_taxels = self.array.n_taxels() as f64;
+        let mut cells = Vec::new();
+        nested! {
+            ensemble in self.spec.sensing.ensemble.values();
+            measurements in self.measurement_counts(ensemble);
+            &noise_std in &self.noise;
+            &dictionary in &self.dictionaries;
+            solver in self.spec.reconstruction.solver.values();
+            cells.push(ReconstructionCell {
+                cell: cells.len(),
+                noise_std,
+                noise_unit: self.noise_unit,
+                ensemble,
+                measurements,
+                ratio: n_taxels / measurements as f64,
+                dictionary,
+                atoms: 0,
+                solver,
+            })
+        }
+        cells
+    }
+}
+
+impl Check<'_> {
+    /// Solvers assume independent noise on every taxel, and a clean frame to compare with: nothing may follow the noise.
+    fn noise_is_last(&self, signal: &SignalSpec) -> Result<()> {
+        let refuse = |key, given: &str, allowed| Err(self.error(key, given, allowed));
+        if signal.tested_on.is_some() {
+            let allowed = "no such key: only studies of recognition test on another skin";
+            return refuse("signal.tested_on", "given", allowed);
+        }
+        if signal.combine != CombineSpec::All {
+            let allowed = "no such key: noise is the only axis of the signal, so that there is nothing to combine";
+            return refuse("signal.combine", "given", allowed);
+        }
+        if signal.axes.of("smoothing_mm").is_some() {
+            return refuse(
+                "signal.smoothing_mm",
+                "smoothing before reconstruction",
+                "no smoothing: solvers take the noise of taxels to be independent",
+            );
+        }
+        let mut steps = signal.steps.iter();
+        if let Some(step) = steps.find(|step| matches!(step, StepSpec::Error(_))) {
+            return refuse(
+                "signal.steps",
+                &format!("\"{}\" before reconstruction", step.word()),
+                "force and noise: solvers take taxels to differ from the truth by independent noise alone",
+            );
+        }
+        let place = |step| signal.steps.iter().position(|s| *s == step);
+        match (place(StepSpec::Force), place(StepSpec::Noise)) {
+            (Some(force), Some(noise)) if force > noise => refuse(
+                "signal.steps",
+                "force after noise",
+                "noise after force: solvers take noise to be Gaussian, and force cuts it at zero",
+            ),
+            _ => Ok(()),
+        }
+    }
+
+    /// Each bound of a solver's work that is not as by default has a solver that it bounds.
+    fn efforts(&self, wanted: &ReconstructionSpec) -> Result<()> {
+        let (given, usual) = (wanted.effort(), Effort::default());
+        let pursuit = (Solver::Omp, "omp");
+        let l1 = (Solver::L1, "l1");
+        for (key, is_set, (solver, name)) in [
+            ("most_atoms", given.most_atoms != usual.most_atoms, pursuit),
+            ("lambda_scale", given.lambda_scale != usual.lambda_scale, l1),
+            ("tolerance", given.tolerance != usual.tolerance, l1),
+            ("most_steps", given.most_steps != usual.most_steps, l1),
+        ] {
+            if is_set && !wanted.solver.values().contains(&solver) {
+                let allowed = format!("{name} among reconstruction.solver, or no such key");
+                let given = "given, but no solver of the study uses it";
+                return Err(self.error(&format!("reconstruction.{key}"), given, allowed));
+            }
+        }
+        Ok(())
+    }
+
+    fn dictionaries(&self, wanted: &ReconstructionSpec, grid: &Grid) -> Result<Vec<Basis>> {
+        let bases = wanted.dictionary.values();
+        for &basis in bases.iter().filter(|&&basis| basis != Basis::Pca) {
+            Dictionary::complete(basis, (grid.ny, grid.nx)).map_err(|error| {
+                let given = format!("{basis:?} ({error})");
+                self.error("reconstruction.dictionary", given, "a basis of this array")
+            })?;
+        }
+        Ok(bases)
+    }
+}

@@ -1,0 +1,163 @@
+//! Runs a reconstruction study: touches once, dictionaries once, then every ensemble, m, noise, dictionary and solver.
+
+use crate::engine::progress::Progress;
+use crate::engine::work_items::NamedPiece;
+use crate::engine::work_items::pending::PiecesLeft;
+use crate::engine::work_items::scale::Scale;
+use crate::engine::work_items::shared::Shared;
+use crate::engine::work_items::study_runner::PieceStudy;
+use crate::error::Result;
+use crate::inputs::object_files::{load_objects, objects_content};
+use crate::random::Seed;
+use crate::studies::found_and_cost;
+use crate::studies::kind::{About, Facts, Files, Kind};
+use crate::studies::recognition::touches::drawn_touches::{TouchedObject, draw_touches};
+use crate::studies::reconstruction::measured::measure_cells;
+use crate::studies::reconstruction::plan::ReconstructionPlan;
+use crate::studies::reconstruction::rows::{
+    EnsembleStatistics, ReconstructionCell, ReconstructionPareto, ReconstructionRows,
+    ReconstructionScore, ReconstructionTime,
+};
+use crate::studies::reconstruction::score::pareto;
+use crate::studies::reconstruction::spec::ReconstructionStudySpec;
+use crate::studies::reconstruction::touches::Touches;
+use crate::studies::source::Source;
+use crate::table::{File, Table};
+use std::collections::BTreeMap;
+
+/// A reconstruction study and its touches.
+pub struct ReconstructionStudy {
+    /// What to run.
+    pub plan: ReconstructionPlan,
+    /// What is touched.
+    pub touched: Vec<TouchedObject>,
+    /// Their frames, once something needed them.
+    frames: Shared<Touches>,
+}
+
+const CELLS: File<(ReconstructionCell, ReconstructionScore)> = File::new(
+    "reconstruction.csv",
+    "Every cell",
+    "Errors are relative to the clean frames: 0 is perfect, 1 is as wrong as an empty frame.",
+);
+const ENSEMBLES: File<EnsembleStatistics> = File::new(
+    "ensembles.csv",
+    "Isometry of ensembles and dictionaries",
+    "Squared singular values of supports drawn at random, whose columns have a mean square norm of 1.",
+);
+const TIMING: File<(ReconstructionCell, ReconstructionTime)> =
+    File::new("timing.csv", "Time of every cell", "").of_times();
+const PARETO: File<(ReconstructionCell, ReconstructionPareto)> = File::new(
+    "pareto.csv",
+    "Error and time of every cell",
+    "One core, frames in blocks of 64.",
+)
+.summary()
+.of_times();
+
+impl Kind for ReconstructionStudy {
+    const ABOUT: About = About {
+        table: "reconstruction",
+        words: "a study that reconstructs frames",
+        may_change: &[
+            "question",
+            "expected",
+            "signal.noise_std_full_scale",
+            "signal.noise_std_mm",
+            "signal.noise_std_n",
+            "sensing.ensemble",
+            "sensing.ratio",
+            "sensing.measurements",
+            "reconstruction.solver",
+            "reconstruction.dictionary",
+        ],
+    };
+    const FILES: Files = &[&CELLS, &ENSEMBLES, &TIMING, &PARETO];
+
+    fn load(source: &Source) -> Result<Self> {
+        let mut spec = ReconstructionStudySpec::parse(&source.place, &source.text)?;
+        spec.seed = source.seed(spec.seed);
+        source.replace_objects(&mut spec.objects);
+        let plan = ReconstructionPlan::new(&source.place, spec)?;
+        let objects = load_objects(&plan.spec.objects, source.packings.as_deref())?;
+        let touched = draw_touches(objects, &plan.placement, &Seed::new(plan.spec.seed))?;
+        Ok(Self {
+            plan,
+            touched,
+            frames: Shared::default(),
+        })
+    }
+
+    fn facts(&self) -> Result<Facts> {
+        let spec = &self.plan.spec;
+        Ok(Facts::of(spec, objects_content(&spec.objects)?))
+    }
+
+    fn scale(&self) -> Scale {
+        let n_touches: usize = self.touched.iter().map(|t| t.touches.len()).sum();
+        let n_taxels = self.plan.array.n_taxels() as f64;
+        // Frames clean, read and reconstructed; one dictionary.
+        let frames = 3.0 * n_touches as f64 * n_taxels;
+        Scale {
+            objects: self.touched.len().to_string(),
+            touches: format!("{n_touches} on one array"),
+            n_configurations: self.plan.cells().len(),
+            bytes: 8.0 * (frames + n_taxels * n_taxels),
+            ..Scale::default()
+        }
+    }
+}
+
+impl PieceStudy for ReconstructionStudy {
+    type Rows = ReconstructionRows;
+
+    /// Of each ensemble and m what every dictionary keeps apart, then its cells.
+    fn pieces(&self) -> Vec<NamedPiece> {
+        let mut pieces = Vec::new();
+        for (group, cells) in on_measured(&self.plan.cells()).enumerate() {
+            let mut add = |name| pieces.push(NamedPiece::new(name, group));
+            for &basis in &self.plan.dictionaries {
+                add(cells[0].isometry_name(basis));
+            }
+            for cell in cells {
+                add(cell.name());
+            }
+        }
+        pieces
+    }
+
+    fn measure(&self, left: &PiecesLeft<ReconstructionRows>) -> Result<()> {
+        let touches = self.frames(left.progress)?;
+        left.progress.stage("reconstruct", left.n() as u64);
+        let cells = self.plan.cells();
+        let mut groups = on_measured(&cells).enumerate();
+        groups.try_for_each(|group| measure_cells((&self.plan, touches), group, left))
+    }
+
+    fn tables(&self, (mut rows, statistics): ReconstructionRows) -> Result<Vec<Table>> {
+        // Cells that were finished when axes had other values have other numbers.
+        let numbers = self.plan.cells().into_iter();
+        let numbers: BTreeMap<String, usize> =
+            numbers.map(|cell| (cell.name(), cell.cell)).collect();
+        for (cell, ..) in &mut rows {
+            cell.cell = numbers[&cell.name()];
+        }
+        let pareto = pareto(&rows, &self.plan.noise);
+        let [cells, timing] = found_and_cost(&CELLS, &TIMING, &rows)?;
+        let ensembles = ENSEMBLES.of(&statistics)?;
+        Ok(vec![cells, ensembles, timing, PARETO.of(&pareto)?])
+    }
+}
+
+/// Cells in groups that reconstruct from the same measurements.
+fn on_measured(cells: &[ReconstructionCell]) -> impl Iterator<Item = &[ReconstructionCell]> {
+    cells.chunk_by(|a, b| (a.ensemble, a.measurements) == (b.ensemble, b.measurements))
+}
+
+impl ReconstructionStudy {
+    /// The frames of all touches.
+    pub(super) fn frames(&self, progress: &dyn Progress) -> Result<&Touches> {
+        let simulate = || Touches::simulate(&self.plan, &self.touched, progress);
+        self.frames.get(simulate)
+    }
+}

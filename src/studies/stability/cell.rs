@@ -1,0 +1,307 @@
+//! One cell: a scene simulated in one way, and judged.
+
+use crate::contact::balance::{
+    Balancer, FreeObject, Ground, Outcome as BalanceOutcome, PlacedSkin,
+};
+use crate::contact::{Approach, DamperState, Workspace, press_at_pose, spring_load};
+use crate::dynamics::{
+    Divergence, Drive, ImplicitEuler, Integrator, SemiImplicit, Steps, System, run,
+};
+use crate::error::Result;
+use crate::geometry::Pose;
+use crate::studies::median_time::median_s;
+use crate::studies::stability::rows::{StabilityCell, StabilityScore, StabilityTime};
+use crate::studies::stability::scene::{CellScene, GRAVITY};
+use crate::studies::stability::spec::{ContactMethod, StabilityScene};
+use crate::world::{Taxel, VelocityPlan};
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+use std::slice::from_ref;
+use std::time::Instant;
+
+/// Errors up to this are right.
+pub const TOLERANCE: f64 = 0.01;
+
+/// Steps of a free ball, at least.
+pub const LEAST_STEPS: f64 = 50.0;
+
+/// What came of a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Outcome {
+    /// Force imbalance and deflection error are at most [`TOLERANCE`].
+    Right,
+    /// It came to an end, but not to the right one.
+    Inaccurate,
+    /// At a moment of judgement the taxels that are to be pushed are in less than half as far as they must be, all together, or more than twice
+    /// as far; or nothing holds the ball.
+    MissedContact,
+    /// More energy than the scene can have: at most four times what goes into it.
+    EnergyGrowth,
+    /// A number is not finite.
+    NotFinite,
+}
+
+/// What a method says at the moment of judgement.
+#[derive(Default)]
+struct Answer {
+    /// How it broke before; the rest is then nothing.
+    broken: Option<Outcome>,
+    /// Σ f, newtons, against what it must be, as a share of that.
+    force_imbalance: f64,
+    /// n_taxels at the moment of judgement, metres.
+    deflection: Vec<f64>,
+    /// Σ |δ| after the release, metres; 0 where nothing is released.
+    left_over: f64,
+    /// 0 where nothing is stepped.
+    n_steps: usize,
+}
+
+/// Times of what takes less than this are medians of several, seconds: one alone says what else the machine did.
+const SHORT: f64 = 5e-3;
+/// Of so many.
+const N_REPEATS: usize = 9;
+
+/// Simulates and judges a cell with these taxels before they are damped.
+pub(super) fn measure(
+    cell: &StabilityCell,
+    undamped: Taxel,
+) -> Result<(StabilityScore, StabilityTime)> {
+    let scene = CellScene::new(cell, undamped)?;
+    let tries = match cell.method {
+        ContactMethod::SemiImplicit => contact_stiffnesses(cell, &scene)?.map(Some).to_vec(),
+        _ => vec![None],
+    };
+    let tried = tries.into_iter().map(|contact_stiffness| {
+        let again = || simulate(cell, &scene, contact_stiffness);
+        let start = Instant::now();
+        let answer = again()?;
+        let once_s = start.elapsed().as_secs_f64();
+        let wall_s = match once_s < SHORT {
+            true => median_s(0..N_REPEATS, |_| drop(again())),
+            false => once_s,
+        };
+        let score = StabilityScore {
+            contact_stiffness_n_per_m: contact_stiffness,
+            ..judge(cell, &scene, &answer)
+        };
+        let per_simulated_s = score.simulated_s.map(|seconds| wall_s / seconds);
+        let time = StabilityTime {
+            wall_s,
+            per_simulated_s,
+        };
+        Ok((score, time))
+    });
+    let tried = tried.collect::<Result<Vec<_>>>()?.into_iter();
+    let rank = |score: &StabilityScore| {
+        let error = score.deflection_error.unwrap_or(f64::INFINITY);
+        (score.outcome, error)
+    };
+    let best = tried.reduce(|kept, next| match rank(&next.0) < rank(&kept.0) {
+        true => next,
+        false => kept,
+    });
+    Ok(best.expect("at least one try"))
+}
+
+/// How many times stiffer than the tolerance asks: the ball sinks in by its share of every taxel.
+const SAFETY: f64 = 4.0;
+
+/// What a careful author of a penalty method tries: as stiff as the error allows, and as stiff as the step allows.
+fn contact_stiffnesses(cell: &StabilityCell, scene: &CellScene) -> Result<[f64; 2]> {
+    let (taxel, truth) = (&scene.taxel, &scene.truth);
+    let deepest = truth.deflection.iter().copied().fold(0.0, f64::max);
+    let n_at_least = |least: f64| truth.deflection.iter().filter(|d| **d >= least).count();
+    // The taxels that are in as far as any share what the stops carry.
+    let of_stops = truth.stops / n_at_least(deepest * (1.0 - 1e-9)) as f64;
+    let heaviest = taxel.stiffness * deepest + of_stops;
+    let needed = taxel.stiffness.max(heaviest / taxel.stroke);
+    let exact = SAFETY * needed / TOLERANCE;
+    let n_touched = n_at_least(f64::MIN_POSITIVE);
+    let stable = SemiImplicit::stiffest(&scene.system(cell)?, cell.dt_s, n_touched);
+    Ok([exact, stable])
+}
+
+fn simulate(
+    cell: &StabilityCell,
+    scene: &CellScene,
+    contact_stiffness: Option<f64>,
+) -> Result<Answer> {
+    if cell.method == ContactMethod::QuasiStatic {
+        return match (cell.scene, &scene.drive) {
+            (_, Drive::Imposed(plan)) => Ok(press_and_release(cell, scene, plan)),
+            (StabilityScene::Plunger, _) => press_to_weight(scene),
+            (_, Drive::Free { mass, .. }) => put_to_rest(scene, *mass, cell.scene.n_balls()),
+        };
+    }
+    let system = scene.system(cell)?;
+    let mut integrator = integrator(cell, &system, contact_stiffness)?;
+    let frames = scene.frames(cell.dt_s);
+    let steps = Steps {
+        dt: cell.dt_s,
+        n: frames[frames.len() - 1],
+        frames: &frames,
+        energy_limit: scene.energy_limit,
+    };
+    let recorded = run(&system, integrator.as_mut(), &steps)?;
+    let n_steps = recorded.n_steps;
+    if let Some(divergence) = recorded.divergence {
+        let broken = Some(match divergence {
+            Divergence::NotFinite => Outcome::NotFinite,
+            Divergence::EnergyGrowth => Outcome::EnergyGrowth,
+        });
+        return Ok(Answer {
+            broken,
+            n_steps,
+            ..Answer::default()
+        });
+    }
+    let felt = &recorded.recording;
+    let released = felt.deflection.rows().into_iter().nth(1);
+    Ok(Answer {
+        force_imbalance: (felt.force.row(0).sum() / scene.force - 1.0).abs(),
+        deflection: felt.deflection.row(0).to_vec(),
+        left_over: released.map_or(0.0, |row| row.iter().map(|d| d.abs()).sum()),
+        n_steps,
+        broken: None,
+    })
+}
+
+fn integrator(
+    cell: &StabilityCell,
+    system: &System,
+    contact_stiffness: Option<f64>,
+) -> Result<Box<dyn Integrator>> {
+    match (cell.method, contact_stiffness) {
+        (ContactMethod::SemiImplicit, Some(stiffness)) => {
+            Ok(Box::new(SemiImplicit::new(system, stiffness)))
+        }
+        #[cfg(feature = "rapier")]
+        (method, _) if method.is_engine() => {
+            use crate::dynamics::{RapierSettings, RapierWorld};
+            // The plan gives an engine its iterations.
+            let n = cell.solver_iterations.unwrap_or(1);
+            let settings = match method {
+                ContactMethod::RapierSkinSim => RapierSettings::skin_sim(system, n),
+                ContactMethod::RapierTuned => RapierSettings {
+                    solver_iterations: n,
+                    ..RapierSettings::tuned(system)
+                },
+                _ => RapierSettings {
+                    solver_iterations: n,
+                    ..RapierSettings::as_it_comes(system)
+                },
+            };
+            Ok(Box::new(RapierWorld::new(system, settings)?))
+        }
+        // The plan leaves out what is not built, and ours does not step.
+        _ => Ok(Box::new(ImplicitEuler::new(system))),
+    }
+}
+
+/// Ours, for a free ball, or several one upon the other in a tube: they may turn and move aside, too.
+fn put_to_rest(scene: &CellScene, mass: f64, n_balls: usize) -> Result<Answer> {
+    let cradle = &scene.cradle;
+    let spheres = cradle.ball.spheres().expect("a ball is a sphere");
+    let ball = FreeObject::new(spheres, mass, DVec3::ZERO)?;
+    let skin = PlacedSkin::new(&cradle.patch, Pose::IDENTITY);
+    let gravity = -GRAVITY * DVec3::Z;
+    let planes = match n_balls {
+        1 => Vec::new(),
+        _ => cradle.tube(),
+    };
+    let ground = Ground {
+        skins: vec![skin],
+        planes,
+        ..Ground::default()
+    };
+    let starts: Vec<Pose> = cradle.stack(n_balls).collect();
+    let balls = vec![ball; n_balls];
+    let balances = Balancer::new().settle_all(&balls, &ground, gravity, &starts)?;
+    let mut workspace = Workspace::new();
+    let poses: Vec<Pose> = balances.iter().map(|balance| balance.pose).collect();
+    let models = vec![cradle.ball.clone(); n_balls];
+    press_at_pose(&cradle.patch, &models, &poses, &mut workspace);
+    let imbalances = balances.iter().map(|balance| match balance.outcome {
+        BalanceOutcome::Settled => balance.imbalance,
+        _ => f64::INFINITY,
+    });
+    Ok(Answer {
+        force_imbalance: imbalances.fold(0.0, f64::max),
+        deflection: workspace.deflections().to_vec(),
+        ..Answer::default()
+    })
+}
+
+/// Ours, for a plunger: it goes on until the springs carry its weight.
+fn press_to_weight(scene: &CellScene) -> Result<Answer> {
+    let (cradle, weight) = (&scene.cradle, scene.force);
+    let ball = from_ref(&cradle.ball);
+    let above = [Pose::from_translation(
+        cradle.pose.translation + 1e-3 * DVec3::Z,
+    )];
+    let mut workspace = Workspace::new();
+    let approach = Approach::new(&cradle.patch, DVec3::Z)?;
+    let press = approach.press_to_force(ball, &above, weight, &mut workspace)?;
+    let carried = spring_load(&cradle.patch, workspace.contacts()).spring_force;
+    Ok(Answer {
+        force_imbalance: press.map_or(f64::INFINITY, |_| (carried / weight - 1.0).abs()),
+        deflection: workspace.deflections().to_vec(),
+        ..Answer::default()
+    })
+}
+
+/// Ours, for an imposed ball: the time loop of damped taxels.
+fn press_and_release(cell: &StabilityCell, scene: &CellScene, plan: &VelocityPlan) -> Answer {
+    let (dt, patch) = (cell.dt_s, &scene.cradle.patch);
+    let frames = scene.frames(dt);
+    let mut state = DamperState::at_rest(patch.n_taxels());
+    let mut workspace = Workspace::new();
+    let mut answer = Answer {
+        n_steps: frames[frames.len() - 1],
+        ..Answer::default()
+    };
+    for step in 1..=answer.n_steps {
+        let pose = plan.pose_at(step as f64 * dt);
+        press_at_pose(patch, from_ref(&scene.cradle.ball), &[pose], &mut workspace);
+        state.step(patch.taxels(), dt, workspace.deflections());
+        if step == frames[0] {
+            let force: f64 = state.force.iter().sum();
+            answer.force_imbalance = (force / scene.force - 1.0).abs();
+            answer.deflection.clone_from(&state.deflection);
+        }
+    }
+    answer.left_over = state.deflection.iter().sum();
+    answer
+}
+
+fn judge(cell: &StabilityCell, scene: &CellScene, answer: &Answer) -> StabilityScore {
+    let wanted = &scene.truth.deflection;
+    let all: f64 = wanted.iter().sum();
+    let pairs = || answer.deflection.iter().zip(wanted);
+    let off: f64 = pairs().map(|(felt, wanted)| (felt - wanted).abs()).sum();
+    let error = (off / all).max(answer.left_over / all);
+    let touched = pairs().filter(|(_, wanted)| **wanted > 0.0);
+    let in_all = touched.map(|(felt, _)| felt).sum::<f64>() / all;
+    let is_held = answer.force_imbalance.is_finite() && (0.5..=2.0).contains(&in_all);
+    let worst = error.max(answer.force_imbalance);
+    let outcome = match answer.broken {
+        Some(how) => how,
+        None if worst.is_nan() => Outcome::NotFinite,
+        None if !is_held => Outcome::MissedContact,
+        None if worst > TOLERANCE => Outcome::Inaccurate,
+        None => Outcome::Right,
+    };
+    let is_whole = answer.broken.is_none();
+    StabilityScore {
+        mass_ratio: cell.mass_ratio(),
+        explicit_limit_s: 2.0 * (cell.taxel_mass_kg / cell.stiffness_n_per_m).sqrt(),
+        damping_n_s_per_m: scene.taxel.damping,
+        contact_stiffness_n_per_m: None,
+        outcome,
+        force_imbalance: is_whole.then_some(answer.force_imbalance),
+        deflection_error: is_whole.then_some(error),
+        n_steps: answer.n_steps,
+        simulated_s: (answer.n_steps > 0).then_some(answer.n_steps as f64 * cell.dt_s),
+    }
+}

@@ -1,0 +1,157 @@
+//! A study of stability that can run: every key checked, its cells laid out.
+
+use crate::error::Result;
+use crate::inputs::check::{COUNT, Check, Range};
+use crate::inputs::units::MM;
+use crate::studies::recognition::sweep::sweep::nested;
+use crate::studies::stability::rows::StabilityCell;
+use crate::studies::stability::spec::{
+    ContactMethod, StabilityPartSpec, StabilityScene, StabilityStudySpec,
+};
+use crate::world::Taxel;
+use std::path::{Path, PathBuf};
+
+/// Settings of a study of stability, ready to run.
+#[derive(Clone, Debug)]
+pub struct StabilityPlan {
+    /// As it was written.
+    pub spec: StabilityStudySpec,
+    /// Part by part, each with its taxels before they are damped; methods that this build does not have are left out.
+    pub cells: Vec<(StabilityCell, Taxel)>,
+    /// Where the rows of other programs are.
+    pub peers: Option<PathBuf>,
+}
+
+/// Taxels a side, at most: a million and more of bodies is no question of stability.
+const MOST_TAXELS: usize = 256;
+
+/// What the numbers of a part may be.
+const KEYS: [(&str, Range); 9] = [
+    ("methods", Range::Any),
+    ("taxels", COUNT),
+    ("stroke_mm", Range::Positive),
+    ("stiffness_n_per_m", Range::Positive),
+    ("taxel_mass_kg", Range::Positive),
+    ("object_mass_kg", Range::Positive),
+    ("object_mass_per_taxel_kg", Range::Positive),
+    ("dt_s", Range::Positive),
+    ("solver_iterations", COUNT),
+];
+
+impl StabilityPlan {
+    /// Checks a study that lies in `folder`.
+    ///
+    /// # Errors
+    /// The error names `place` (the file) and the first key that is out of its range.
+    pub fn new(place: &str, folder: &Path, spec: StabilityStudySpec) -> Result<Self> {
+        let check = Check { place };
+        let wanted = &spec.stability;
+        check.keys("stability", wanted, [("pitch_mm", Range::Positive)])?;
+        check.list("stability.parts", wanted.parts.clone())?;
+        let mut cells = Vec::new();
+        for (number, part) in wanted.parts.iter().enumerate() {
+            let taxel = |cell: &StabilityCell| Taxel {
+                radius: 0.5 * wanted.pitch_mm * MM,
+                stiffness: cell.stiffness_n_per_m,
+                damping: 0.0,
+                stroke: part.stroke_mm * MM,
+            };
+            let of_part = check.stability_part(number + 1, part)?.into_iter();
+            cells.extend(of_part.map(|cell| (cell.clone(), taxel(&cell))));
+        }
+        Ok(Self {
+            cells,
+            peers: wanted.peers.as_ref().map(|path| path.within(folder)),
+            spec,
+        })
+    }
+}
+
+impl Check<'_> {
+    fn stability_part(
+        &self,
+        part: usize,
+        wanted: &StabilityPartSpec,
+    ) -> Result<Vec<StabilityCell>> {
+        let name = format!("stability.parts[{part}]");
+        let error =
+            |[key, given, allowed]: [&str; 3]| self.error(&format!("{name}.{key}"), given, allowed);
+        self.keys(&name, wanted, KEYS)?;
+        if wanted.methods.iter().any(|method| method.is_peer()) {
+            let allowed =
+                "methods of this program: other programs leave their rows in stability.peers";
+            return Err(error(["methods", "MuJoCo", allowed]));
+        }
+        let sides = wanted.taxels.values();
+        // Even, so that the ball lies between four taxels and not on one.
+        if let Some(n) = sides.iter().find(|&&n| n % 2 != 0 || n > MOST_TAXELS) {
+            let allowed = format!("even numbers from 2 to {MOST_TAXELS}");
+            return Err(error(["taxels", &n.to_string(), &allowed]));
+        }
+        let masses = object_masses(wanted).map_err(error)?;
+        let of_engines = wanted.solver_iterations.values();
+        let iterations = |method: ContactMethod| match method.is_engine() {
+            true => of_engines.iter().copied().map(Some).collect(),
+            false => vec![None],
+        };
+        let methods = wanted.methods.iter().copied();
+        let methods: Vec<ContactMethod> = methods.filter(|method| method.is_built()).collect();
+        let axes = [
+            methods.iter().map(|&method| iterations(method).len()).sum(),
+            sides.len(),
+            wanted.stiffness_n_per_m.values().len(),
+            masses.len(),
+            wanted.taxel_mass_kg.values().len(),
+            wanted.dt_s.values().len(),
+        ];
+        self.configurations(axes.iter().map(|&n| n as f64).product())?;
+        let mut cells = Vec::new();
+        nested! {
+            method in methods;
+            solver_iterations in iterations(method);
+            &taxels in &sides;
+            stiffness_n_per_m in wanted.stiffness_n_per_m.values();
+            &mass in &masses;
+            taxel_mass_kg in wanted.taxel_mass_kg.values();
+            dt_s in wanted.dt_s.values();
+            {
+                let n_carriers = match wanted.object_mass_per_taxel_kg {
+                    Some(_) => taxels * taxels,
+                    None => 1,
+                };
+                cells.push(StabilityCell {
+                    part,
+                    scene: wanted.scene,
+                    method,
+                    solver_iterations,
+                    taxels,
+                    stiffness_n_per_m,
+                    taxel_mass_kg,
+                    object_mass_kg: mass.map(|mass| n_carriers as f64 * mass),
+                    dt_s,
+                });
+            }
+        }
+        Ok(cells)
+    }
+}
+
+/// M or, where it is given so, M over the number of taxels; none where the ball's motion is imposed. The error is a key, what was given, and
+/// what is allowed.
+fn object_masses(
+    part: &StabilityPartSpec,
+) -> std::result::Result<Vec<Option<f64>>, [&'static str; 3]> {
+    let [whole, per_taxel] = ["object_mass_kg", "object_mass_per_taxel_kg"];
+    let imposed = "no such key: the ball's motion is imposed";
+    let is_imposed = part.scene == StabilityScene::Press;
+    match (&part.object_mass_kg, &part.object_mass_per_taxel_kg) {
+        (None, None) if is_imposed => Ok(vec![None]),
+        (Some(_), _) if is_imposed => Err([whole, "a mass", imposed]),
+        (None, Some(_)) if is_imposed => Err([per_taxel, "a mass", imposed]),
+        (None, None) => Err([whole, "none", "a mass: the ball is free"]),
+        (Some(_), Some(_)) => Err([per_taxel, "a mass", "one of this key and object_mass_kg"]),
+        (Some(axis), None) | (None, Some(axis)) => {
+            Ok(axis.values().into_iter().map(Some).collect())
+        }
+    }
+}

@@ -1,0 +1,293 @@
+//! A cell's scene: cradle, ball, dampers, how long it takes, and the exact answer.
+
+use crate::contact::balance::HalfSpace;
+use crate::dynamics::{Drive, Rest, System, rest, skin_sim};
+use crate::error::Result;
+use crate::geometry::Pose;
+use crate::objects::{Model, Sphere, SphereUnion};
+use crate::studies::stability::cell::LEAST_STEPS;
+use crate::studies::stability::rows::StabilityCell;
+use crate::studies::stability::spec::StabilityScene;
+use crate::world::{Grid, Layout, Patch, Phase, Taxel, Taxels, VelocityPlan};
+use glam::DVec3;
+
+/// g, m/s².
+pub(super) const GRAVITY: f64 = 9.81;
+/// Of an imposed ball, m/s.
+const SPEED: f64 = 0.5;
+/// From where an imposed ball starts to first contact, metres.
+const APPROACH: f64 = 2e-3;
+/// A hold takes at least so long, seconds.
+const LEAST_HOLD: f64 = 0.2;
+/// What is left of the slowest motion at the end of a hold or of a run: e to the minus this, 5e-5.
+const DECAY: f64 = 10.0;
+/// A hold takes at least so many steps.
+const LEAST_HOLD_STEPS: f64 = 5.0;
+/// Travel within which taxels are met, in strokes: all are within 1.25 of them; much further, the ball would be behind the substrate.
+const REACH: f64 = 1.5;
+/// A free ball is watched at least so long, seconds.
+const LEAST_TIME: f64 = 0.5;
+
+/// All taxels of a cradle under a ball; see the module's title page.
+#[derive(Clone, Debug)]
+pub(super) struct Cradle {
+    pub patch: Patch,
+    pub ball: Model,
+    /// `patch_from_object` at first contact.
+    pub pose: Pose,
+}
+
+/// A cell's scene, ready to be simulated in any way.
+#[derive(Clone, Debug)]
+pub(super) struct CellScene {
+    pub cradle: Cradle,
+    pub taxel: Taxel,
+    /// Of the ball.
+    pub drive: Drive,
+    /// What must be at the moment of judgement.
+    pub truth: Rest,
+    /// Σ f at that moment, newtons.
+    pub force: f64,
+    /// The moment of judgement, seconds: the end of the hold, or the end.
+    judged: f64,
+    /// The end, seconds.
+    end: f64,
+    /// Joules that the scene never has.
+    pub energy_limit: f64,
+}
+
+impl Cradle {
+    /// A square of `side` taxels a side under a ball as large as it.
+    fn new(side: usize, taxel: Taxel) -> Result<Self> {
+        let grid = Grid {
+            nx: side,
+            ny: side,
+            pitch: 2.0 * taxel.radius,
+        };
+        let radius = side as f64 * grid.pitch;
+        let reach = radius + taxel.radius;
+        let corner = grid.x(0).powi(2) + grid.y(0).powi(2);
+        let places = (0..side).flat_map(|row| (0..side).map(move |column| (column, row)));
+        let center = |(column, row)| {
+            let (x, y) = (grid.x(column), grid.y(row));
+            let across = x * x + y * y;
+            let under_ball = reach - (reach * reach - across).sqrt();
+            DVec3::new(x, y, under_ball - 0.25 * taxel.stroke * across / corner)
+        };
+        let layout = Layout::new(places.map(center).collect(), vec![DVec3::Z; side * side])?;
+        let center = DVec3::ZERO;
+        let ball = SphereUnion::new(vec![Sphere { center, radius }])?;
+        // The innermost taxels are met first.
+        let innermost = DVec3::new(0.5 * grid.pitch, 0.5 * grid.pitch, 0.0).length_squared();
+        let lift = reach - 0.25 * taxel.stroke * innermost / corner;
+        Ok(Self {
+            patch: Patch::new("cradle", layout, Taxels::Equal(taxel))?,
+            ball: ball.into(),
+            pose: Pose::from_translation(lift * DVec3::Z),
+        })
+    }
+
+    /// Where an imposed ball starts.
+    fn above(&self) -> Pose {
+        Pose::from_translation(self.pose.translation + APPROACH * DVec3::Z)
+    }
+
+    /// Where the balls of a stack lie that is at first contact, from below: `patch_from_object`.
+    pub fn stack(&self, n_balls: usize) -> impl Iterator<Item = Pose> {
+        let radius = self
+            .ball
+            .spheres()
+            .map_or(0.0, |ball| ball.spheres()[0].radius);
+        let above = move |number| 2.0 * number as f64 * radius * DVec3::Z;
+        (0..n_balls)
+            .map(move |number| Pose::from_translation(self.pose.translation + above(number)))
+    }
+
+    /// The walls of a tube that holds a stack upright: half-spaces that the balls touch and do not push.
+    pub fn tube(&self) -> Vec<HalfSpace> {
+        let radius = self
+            .ball
+            .spheres()
+            .map_or(0.0, |ball| ball.spheres()[0].radius);
+        let inwards = [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y];
+        let wall = |normal| HalfSpace {
+            normal,
+            height: -radius,
+        };
+        inwards.map(wall).into()
+    }
+
+    /// As the methods with mass see it: taxels of this mass, and the ball of a cell at a pose, with those taxels that it meets within a
+    /// reach, metres, and with what is stacked on it.
+    fn system(&self, cell: &StabilityCell, drive: &Drive, reach: f64) -> Result<System<'_>> {
+        let pose = match drive {
+            Drive::Free { .. } => self.pose,
+            Drive::Imposed(_) => self.above(),
+        };
+        let mass = cell.taxel_mass_kg;
+        let system = System::new(&self.patch, mass, &self.ball, pose, drive.clone(), reach)?;
+        match (drive, cell.scene.n_balls()) {
+            (&Drive::Free { mass, .. }, n_balls @ 2..) => system.stacked(&vec![mass; n_balls - 1]),
+            _ => Ok(system),
+        }
+    }
+}
+
+impl CellScene {
+    /// Of a cell, with its taxels before they are damped.
+    pub fn new(cell: &StabilityCell, undamped: Taxel) -> Result<Self> {
+        let cradle = Cradle::new(cell.taxels, undamped)?;
+        let mut scene = match cell.object_mass_kg {
+            Some(mass) => Self::of_free(cell, cradle, undamped, mass)?,
+            None => Self::of_imposed(cell, cradle, undamped)?,
+        };
+        let layout = scene.cradle.patch.layout().clone();
+        scene.cradle.patch = Patch::new("cradle", layout, Taxels::Equal(scene.taxel))?;
+        Ok(scene)
+    }
+
+    /// Everything as the methods with mass see it.
+    pub fn system(&self, cell: &StabilityCell) -> Result<System<'_>> {
+        let reach = APPROACH + REACH * self.taxel.stroke;
+        self.cradle.system(cell, &self.drive, reach)
+    }
+
+    /// The steps of `dt` seconds after which something is looked at, from 1: the moment of judgement, and the end where that is another.
+    pub fn frames(&self, dt: f64) -> Vec<usize> {
+        let end = (self.end / dt).ceil() as usize;
+        match self.judged < self.end {
+            true => vec![(self.judged / dt).floor() as usize, end],
+            false => vec![end],
+        }
+    }
+
+    fn of_free(cell: &StabilityCell, cradle: Cradle, taxel: Taxel, mass: f64) -> Result<Self> {
+        let drive = Drive::Free {
+            mass,
+            gravity: GRAVITY,
+            travel: 0.0,
+        };
+        let (k, m) = (taxel.stiffness, cell.taxel_mass_kg);
+        let system = cradle.system(cell, &drive, REACH * taxel.stroke)?;
+        let truth = rest(&system).expect("a free ball over taxels comes to rest");
+        let n_touched = truth.deflection.iter().filter(|d| **d > 0.0).count();
+        let all = cell.scene.n_balls() as f64 * mass;
+        // What each taxel has to move, itself included.
+        let share = all / n_touched as f64 + m;
+        let damping = match cell.scene {
+            StabilityScene::Plunger => k * skin_sim::DAMPING / skin_sim::STIFFNESS,
+            _ => 2.0 * (k * share).sqrt(),
+        };
+        let end = LEAST_TIME
+            .max(DECAY / slowest(k, damping, share))
+            .max(LEAST_STEPS * cell.dt_s);
+        Ok(Self {
+            cradle,
+            truth,
+            force: all * GRAVITY,
+            judged: end,
+            end,
+            // It begins with none, and all that it gains by falling goes into springs and dampers.
+            energy_limit: all * GRAVITY * taxel.stroke,
+            taxel: Taxel { damping, ..taxel },
+            drive,
+        })
+    }
+
+    fn of_imposed(cell: &StabilityCell, cradle: Cradle, taxel: Taxel) -> Result<Self> {
+        let (k, m) = (taxel.stiffness, cell.taxel_mass_kg);
+        let ratio = skin_sim::DAMPING / (2.0 * (skin_sim::STIFFNESS * skin_sim::TAXEL_MASS).sqrt());
+        let damping = 2.0 * ratio * (k * m).sqrt();
+        let hold = LEAST_HOLD
+            .max(DECAY / slowest(k, damping, m))
+            .max(LEAST_HOLD_STEPS * cell.dt_s);
+        let depth = 0.5 * taxel.stroke;
+        let way = (APPROACH + depth) / SPEED;
+        let phase = |duration, speed| Phase {
+            duration,
+            linear: speed * DVec3::Z,
+            angular: DVec3::ZERO,
+        };
+        let phases = vec![phase(way, -SPEED), phase(hold, 0.0), phase(way, SPEED)];
+        let drive = Drive::Imposed(VelocityPlan::new(cradle.above(), phases)?);
+        let system = cradle.system(cell, &drive, APPROACH + REACH * taxel.stroke)?;
+        let travel = APPROACH + depth;
+        let starts = system.starts().iter();
+        let deflection: Vec<f64> = starts.map(|start| (travel - start).max(0.0)).collect();
+        // What springs hold at the deepest, and what taxels have that are hit at twice the speed.
+        let n_taxels = deflection.len() as f64;
+        let most = 0.5 * n_taxels * (k * depth * depth + m * (2.0 * SPEED).powi(2));
+        Ok(Self {
+            force: k * deflection.iter().sum::<f64>(),
+            truth: Rest {
+                travel,
+                deflection,
+                stops: 0.0,
+            },
+            judged: way + hold,
+            end: way + hold + way + hold,
+            energy_limit: 4.0 * most,
+            cradle,
+            taxel: Taxel { damping, ..taxel },
+            drive,
+        })
+    }
+}
+
+/// The rate of decay of the slower motion of `m ẍ + c ẋ + k x = 0`, per second.
+fn slowest(k: f64, c: f64, m: f64) -> f64 {
+    let half = 0.5 * c / m;
+    let inside = half * half - k / m;
+    if inside > 0.0 {
+        // Without cancellation: k/m over the faster rate.
+        (k / m) / (half + inside.sqrt())
+    } else {
+        half
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::studies::stability::spec::ContactMethod;
+
+    #[test]
+    fn the_ball_meets_the_innermost_taxels_where_it_starts_and_all_within_a_quarter_of_the_stroke()
+    {
+        for taxels in [2, 8, 16] {
+            let cell = StabilityCell {
+                part: 1,
+                scene: StabilityScene::Rest,
+                method: ContactMethod::QuasiStatic,
+                solver_iterations: None,
+                taxels,
+                stiffness_n_per_m: 100.0,
+                taxel_mass_kg: 1e-3,
+                object_mass_kg: Some(1.0),
+                dt_s: 1e-3,
+            };
+            let undamped = Taxel {
+                radius: 2e-3,
+                stiffness: 100.0,
+                damping: 0.0,
+                stroke: 2e-3,
+            };
+            let scene = CellScene::new(&cell, undamped).unwrap();
+            let system = scene.system(&cell).unwrap();
+            let (mut low, mut high) = (f64::INFINITY, 0.0_f64);
+            for &start in system.starts() {
+                low = low.min(start);
+                high = high.max(start);
+            }
+            assert!(low.abs() < 1e-15 && high < 0.5e-3 + 1e-12, "{low} {high}");
+        }
+    }
+
+    #[test]
+    fn the_slowest_rate_is_that_of_the_closed_form() {
+        assert!((slowest(4.0, 4.0, 1.0) - 2.0).abs() < 1e-12, "critical");
+        assert!((slowest(4.0, 0.4, 1.0) - 0.2).abs() < 1e-15, "ringing");
+        let overdamped = 2.5 - (6.25_f64 - 4.0).sqrt();
+        assert!((slowest(4.0, 5.0, 1.0) - overdamped).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,189 @@
+//! Runs a study of stability, and makes its tables.
+
+use crate::engine::work_items::NamedPiece;
+use crate::engine::work_items::pending::PiecesLeft;
+use crate::engine::work_items::scale::Scale;
+use crate::engine::work_items::study_runner::PieceStudy;
+use crate::error::Result;
+use crate::inputs::units::millimetres;
+use crate::studies::kind::{About, Facts, Files, Kind};
+use crate::studies::source::Source;
+use crate::studies::stability::cell::{Outcome, measure};
+use crate::studies::stability::peers::peer_rows;
+use crate::studies::stability::plan::StabilityPlan;
+use crate::studies::stability::rows::{
+    Joints, StabilityCell, StabilityRow, StabilityScore, StabilitySummary, StabilityTime,
+};
+use crate::studies::stability::spec::{StabilityScene, StabilityStudySpec};
+use crate::studies::{found_and_cost, grouped};
+use crate::table::{File, Table};
+use rayon::prelude::*;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+const CELLS: File<(StabilityCell, StabilityScore)> =
+    File::new("stability.csv", "Every configuration", "");
+const SUMMARY: File<StabilitySummary> = File::new(
+    "stability_summary.csv",
+    "Scenes and methods",
+    "Right: force balance and deflections within 1 %. Imbalance, deflection: the worst errors of what came to an end, as shares.",
+)
+.summary();
+const TIMING: File<(StabilityCell, StabilityTime)> =
+    File::new("timing.csv", "Time of every configuration", "").of_times();
+const JOINTS: File<Joints> = File::new(
+    "joints.csv",
+    "Taxels on joints",
+    "Plungers on SkinSim's springs and dampers whose taxels carry the same on all arrays. Quasi-static steps nothing: its time is that of the whole answer.",
+)
+.summary()
+.of_times();
+
+impl Kind for StabilityPlan {
+    const ABOUT: About = About {
+        table: "stability",
+        words: "a study of where contact methods break",
+        may_change: &["question", "expected", "stability.parts"],
+    };
+    const FILES: Files = &[&CELLS, &SUMMARY, &TIMING, &JOINTS];
+
+    fn load(source: &Source) -> Result<Self> {
+        source.refuse_objects("a ball is what touches")?;
+        source.refuse_seed("nothing is drawn at random")?;
+        let spec = StabilityStudySpec::parse(&source.place, &source.text)?;
+        Self::new(&source.place, &source.folder, spec)
+    }
+
+    fn facts(&self) -> Result<Facts> {
+        Ok(Facts::of(&self.spec, BTreeMap::new()))
+    }
+
+    fn scale(&self) -> Scale {
+        // Of a taxel: the state, its history and an engine's body.
+        const TAXEL_BYTES: f64 = 2000.0;
+        let n_taxels = self.cells.iter().map(|(cell, _)| cell.n_taxels());
+        let most = n_taxels.max().unwrap_or(0);
+        Scale {
+            objects: "a ball and a plunger".to_owned(),
+            touches: format!("one a configuration, on up to {most} taxels"),
+            n_configurations: self.cells.len(),
+            item_bytes: TAXEL_BYTES * most as f64,
+            ..Scale::default()
+        }
+    }
+
+    fn read_tables(&self, folder: &Path) -> Result<Vec<Table>> {
+        let mut tables = Self::read(folder)?;
+        tables[0].note = peer_rows(self)?.1;
+        Ok(tables)
+    }
+}
+
+impl PieceStudy for StabilityPlan {
+    type Rows = Vec<StabilityRow>;
+
+    /// By their settings: which cells there are depends on what the program was built with.
+    fn pieces(&self) -> Vec<NamedPiece> {
+        let pieces = self.cells.iter().enumerate();
+        let pieces = pieces.map(|(group, (cell, taxel))| {
+            let settings = format!("{cell:?}");
+            let settings = settings.trim_start_matches("StabilityCell ");
+            let stroke_mm = millimetres(taxel.stroke);
+            let name = format!("{settings} and a stroke of {stroke_mm} mm");
+            NamedPiece::new(name, group)
+        });
+        pieces.collect()
+    }
+
+    fn measure(&self, left: &PiecesLeft<Self::Rows>) -> Result<()> {
+        left.progress.stage("stability", left.n() as u64);
+        let cells = self.cells.par_iter().enumerate();
+        // One at a time: a cell takes from microseconds to a minute.
+        let cells = cells.with_max_len(1);
+        cells.try_for_each(|(number, (cell, undamped))| {
+            left.finish(number, || {
+                let (score, time) = measure(cell, *undamped)?;
+                Ok(vec![(cell.clone(), score, time)])
+            })
+        })
+    }
+
+    fn tables(&self, mut rows: Self::Rows) -> Result<Vec<Table>> {
+        let (peers, sources) = peer_rows(self)?;
+        // Behind those of the parts that have such a cell.
+        for row in peers {
+            let behind = rows.partition_point(|(cell, ..)| cell.part <= row.0.part);
+            rows.insert(behind, row);
+        }
+        let [cells, timing] = found_and_cost(&CELLS, &TIMING, &rows)?;
+        let summary = SUMMARY.of(&summary(&rows))?;
+        let joints = JOINTS.of(&joints(&rows))?;
+        Ok(vec![cells.noted(sources), summary, timing, joints])
+    }
+}
+
+/// A row a scene, method and number of iterations, in the order of first occurrence.
+fn summary(rows: &[StabilityRow]) -> Vec<StabilitySummary> {
+    let settings = grouped(rows, |(cell, ..)| {
+        (cell.scene, cell.method, cell.solver_iterations)
+    });
+    let summarise = |((scene, method, solver_iterations), rows): (_, Vec<&StabilityRow>)| {
+        let scores: Vec<&StabilityScore> = rows.iter().map(|(_, score, _)| score).collect();
+        let count = |outcome| scores.iter().filter(|s| s.outcome == outcome).count();
+        let worst = |error: fn(&StabilityScore) -> Option<f64>| {
+            let errors = scores.iter().filter_map(|score| error(score));
+            errors.reduce(f64::max)
+        };
+        StabilitySummary {
+            scene,
+            method,
+            solver_iterations,
+            n_cells: scores.len(),
+            n_right: count(Outcome::Right),
+            n_inaccurate: count(Outcome::Inaccurate),
+            n_missed_contact: count(Outcome::MissedContact),
+            n_energy_growth: count(Outcome::EnergyGrowth),
+            n_not_finite: count(Outcome::NotFinite),
+            worst_force_imbalance: worst(|score| score.force_imbalance),
+            worst_deflection_error: worst(|score| score.deflection_error),
+        }
+    };
+    settings.into_iter().map(summarise).collect()
+}
+
+/// Arrays of different sizes that make a ladder, at least.
+const LEAST_RUNGS: usize = 3;
+
+/// The plungers whose taxels carry the same on most sizes of arrays; none where no three sizes do.
+fn joints(rows: &[StabilityRow]) -> Vec<Joints> {
+    let plungers = rows.iter();
+    let plungers = plungers.filter(|(cell, ..)| cell.scene == StabilityScene::Plunger);
+    let mut all: Vec<Joints> = plungers
+        .map(|(cell, score, time)| Joints {
+            method: cell.method,
+            solver_iterations: cell.solver_iterations,
+            taxel_mass_kg: cell.taxel_mass_kg,
+            dt_s: cell.dt_s,
+            joints: cell.n_taxels(),
+            carried_kg: carried(cell),
+            outcome: score.outcome,
+            time_s: time.per_simulated_s.unwrap_or(time.wall_s),
+        })
+        .collect();
+    let n_sizes = |load: f64| {
+        let of_load = all.iter().filter(|row| row.carried_kg == load);
+        of_load.map(|row| row.joints).collect::<BTreeSet<_>>().len()
+    };
+    let loads = all.iter().map(|row| row.carried_kg);
+    let most = loads.max_by_key(|&load| n_sizes(load));
+    let most = most.filter(|&load| n_sizes(load) >= LEAST_RUNGS);
+    all.retain(|row| most == Some(row.carried_kg));
+    all
+}
+
+/// Mass of the ball over the number of taxels, kg, but for rounding.
+fn carried(cell: &StabilityCell) -> f64 {
+    let load = cell.object_mass_kg.unwrap_or(0.0) / cell.n_taxels() as f64;
+    let digits = format!("{load:.9e}");
+    digits.parse().expect("a number is written as one")
+}

@@ -1,0 +1,97 @@
+//! Work items that run again beside the rows that stand in a folder.
+
+use crate::engine::work_items::study_runner::PieceFailure;
+use crate::error::{Error, Result};
+use crate::random::Seed;
+use crate::report::csv_tables::{FAILURES_FILE, read_rows};
+use crate::studies::kind::Kind;
+use crate::studies::loaded::Loaded;
+use crate::table::Table;
+use rand::seq::SliceRandom;
+use std::collections::BTreeSet;
+use std::path::Path;
+
+impl<K: Kind> Loaded<K> {
+    /// Numbers of some of the items of a folder that did not fail: how many, drawn from a seed.
+    pub(super) fn drawn(&self, folder: &Path, (n, seed): (usize, u64)) -> Result<BTreeSet<usize>> {
+        let failed: Vec<PieceFailure> = read_rows(&folder.join(FAILURES_FILE))?;
+        let has_failed = |number: usize| {
+            let words = || self.kind.words(number, &self.pieces[number]);
+            failed.iter().any(|row| row.work_item == words())
+        };
+        let numbers = (0..self.pieces.len()).filter(|&number| !has_failed(number));
+        let mut rng = Seed::new(seed).named("verify").rng();
+        let numbers: Vec<usize> = numbers.collect();
+        Ok(numbers.choose_multiple(&mut rng, n).copied().collect())
+    }
+}
+
+/// Returns how many rows without times stand in a folder as they came out again. If `is_whole`, all work items ran again, and whole tables
+/// are compared: a row more or less, or a summary that differs, is noticed.
+///
+/// # Errors
+/// If a row differs; the error names file and line.
+pub fn same_rows(folder: &Path, again: &[Table], is_whole: bool) -> Result<usize> {
+    let mut n_rows = 0;
+    let of_items = again
+        .iter()
+        .filter(|table| table.repeats && !table.csv.is_empty());
+    for table in of_items.filter(|table| is_whole || !table.is_summary) {
+        let path = folder.join(table.file);
+        let text = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, "read", e))?;
+        let content = String::from_utf8_lossy(&table.csv);
+        let header = content.lines().next().unwrap_or_default();
+        let same_columns = match is_whole || text.lines().next() == Some(header) {
+            true => None,
+            false => columns_of(&text, header),
+        };
+        let lines = same_columns.as_deref().unwrap_or(&text).lines();
+        let stands: BTreeSet<&str> = lines.clone().collect();
+        for row in content.lines().skip(1) {
+            if !stands.contains(row) {
+                let nearest = lines.zip(1..).max_by_key(|(other, _)| n_alike(row, other));
+                let (nearest, line) = nearest.unwrap_or(("(none)", 1));
+                return Err(Error::input(
+                    format!("{}:{line}", path.display()),
+                    format!("has the row\n  {nearest}"),
+                    format!("\n  again it is\n  {row}"),
+                ));
+            }
+            n_rows += 1;
+        }
+        if is_whole && content != text {
+            let given = "differs from the table that all work items give";
+            let allowed = "the rows of one run, each once, in their order";
+            return Err(Error::input(path.display(), given, allowed));
+        }
+    }
+    Ok(n_rows)
+}
+
+/// Returns a table restricted to the columns of `header`. Columns such as the number of groups exist only if some row of the whole table has them, so
+/// the table of a few work items may lack them. Returns `None` if the table lacks a column of `header`.
+fn columns_of(text: &str, header: &str) -> Option<String> {
+    let mut reader = csv::ReaderBuilder::new();
+    let mut reader = reader.has_headers(false).from_reader(text.as_bytes());
+    let mut rows = reader.records();
+    let names = rows.next()?.ok()?;
+    let places = header
+        .split(',')
+        .map(|column| names.iter().position(|name| name == column));
+    let places: Vec<usize> = places.collect::<Option<_>>()?;
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(header.split(',')).ok()?;
+    for row in rows {
+        let row = row.ok()?;
+        writer
+            .write_record(places.iter().filter_map(|&place| row.get(place)))
+            .ok()?;
+    }
+    String::from_utf8(writer.into_inner().ok()?).ok()
+}
+
+/// Leading letters that two rows share: rows begin with what they are about.
+fn n_alike(a: &str, b: &str) -> usize {
+    let pairs = a.bytes().zip(b.bytes());
+    pairs.take_while(|(a, b)| a == b).count()
+}

@@ -1,0 +1,86 @@
+//! An object on its way over a body, and where it touches first.
+
+use crate::error::{Error, Result};
+use crate::geometry::Pose;
+use crate::objects::SphereUnion;
+use crate::studies::whole_body::path::Path;
+use crate::studies::whole_body::plan::Aim;
+use crate::whole_body::{BodyContact, BodyState, SphereClusters, WholeBody};
+use glam::DVec3;
+
+/// What a damped taxel has forgotten after, seconds.
+pub(super) const FORGOTTEN: f64 = 1e9;
+/// Of the search for the first contact, metres: steps, and how near it comes.
+const SEARCH_STEP: f64 = 1e-3;
+const SEARCH_END: f64 = 1e-7;
+/// How far outside of a first touch the search begins, metres.
+const SEARCH_START: f64 = 0.05;
+
+/// A body, and where everything of it is.
+pub(super) struct Posture<'a> {
+    pub body: &'a WholeBody,
+    /// `world_from_patch`, of each.
+    pub patches: Vec<Pose>,
+    /// `world_from_link`, of each.
+    pub links: Vec<Pose>,
+}
+
+/// An object on its way.
+pub(super) struct Drive<'a> {
+    pub body: &'a WholeBody,
+    pub state: BodyState,
+    pub object: [SphereClusters; 1],
+    pub path: Path,
+}
+
+impl<'a> Drive<'a> {
+    pub fn new(posture: &Posture<'a>, object: &SphereUnion, aim: &Aim) -> Self {
+        let mut state = BodyState::at_rest(posture.body);
+        state.place(posture.body, &posture.patches);
+        Self {
+            body: posture.body,
+            state,
+            object: [SphereClusters::new(object)],
+            path: Path {
+                world_from_link: posture.links[aim.link],
+                ..aim.path
+            },
+        }
+    }
+
+    /// Touches at the start of a path, as if nothing had been before.
+    pub fn probe(&mut self, path: Path) -> BodyContact {
+        let pose = [path.at(0.0)];
+        self.state.press(self.body, &self.object, &pose, FORGOTTEN)
+    }
+
+    /// The touched taxels of the last press: number, and metres.
+    pub fn touched(&self) -> impl Iterator<Item = (usize, f64)> {
+        self.state.touched(self.body)
+    }
+
+    /// Moves the start of the path along `from` (unit, out of the skin) to `depth` metres past the first contact on the way in.
+    pub fn approach(&mut self, from: DVec3, depth: f64) -> Result<()> {
+        let reach = self.object[0].ball().radius + self.object[0].ball().center.length();
+        let path = self.path;
+        let mut is_touched = |away: f64| self.probe(path.shifted(away * from)).n_touched > 0;
+        let mut outside = reach + SEARCH_START;
+        while !is_touched(outside - SEARCH_STEP) {
+            outside -= SEARCH_STEP;
+            if outside < -reach {
+                let allowed = "a place and a direction from which the object meets the skin";
+                return Err(Error::input("approach", "no contact", allowed));
+            }
+        }
+        let mut inside = outside - SEARCH_STEP;
+        while outside - inside > SEARCH_END {
+            let middle = 0.5 * (outside + inside);
+            match is_touched(middle) {
+                true => inside = middle,
+                false => outside = middle,
+            }
+        }
+        self.path = path.shifted((inside - depth) * from);
+        Ok(())
+    }
+}

@@ -1,0 +1,162 @@
+//! What a step costs by the size of skin, touch and object: rungs of equal sleeves, far from each other, under a cushion of spheres.
+
+use crate::error::Result;
+use crate::geometry::Pose;
+use crate::studies::whole_body::drive::{Drive, Posture};
+use crate::studies::whole_body::objects::cushion;
+use crate::studies::whole_body::path::Path;
+use crate::studies::whole_body::plan::{Aim, WholeBodyPlan};
+use crate::studies::whole_body::rows::{Driven, Series};
+use crate::studies::whole_body::spec::LaddersSpec;
+use crate::whole_body::WholeBody;
+use crate::world::{Extrusion, Patch, Taxel};
+use glam::{DQuat, DVec3};
+use std::f64::consts::TAU;
+
+/// Patches around and along a sleeve of the ladder of skins, ten, so that 100,000 taxels are one sleeve of patches of 10,000; and
+/// of the other ladders, where the touch needs more room: as large as a trunk.
+const SMALL: (usize, usize) = (5, 2);
+const LARGE: (usize, usize) = (9, 4);
+/// Share of a sleeve's taxels that a touch may cover, at most: there must be room for the cushion.
+const MOST_TOUCHED: f64 = 0.4;
+/// The cushion swings by so many radians about the sleeve's axis, and slides by such a share of its side, each half second.
+const SWING: f64 = 0.05;
+const SLIDE: f64 = 0.02;
+const PERIOD: f64 = 0.5;
+/// Halvings of the search for the depth at which so many taxels are touched.
+const N_HALVINGS: usize = 40;
+
+/// A rung: how much skin, how much of it touched, by how many spheres.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Rung {
+    pub series: Series,
+    pub name: String,
+    sleeve: (usize, usize),
+    n_taxels: usize,
+    n_touched: usize,
+    n_spheres: usize,
+}
+
+/// All rungs, ladder by ladder.
+pub(super) fn rungs(wanted: &LaddersSpec) -> Vec<Rung> {
+    let small = SMALL.0 * SMALL.1 * 10_000;
+    let mut rungs = Vec::new();
+    for &n_touched in &wanted.touched_at_taxels {
+        let has_room = |n: &&usize| n_touched as f64 <= MOST_TOUCHED * small.min(**n) as f64;
+        rungs.extend(wanted.taxels.iter().filter(has_room).map(|&n_taxels| Rung {
+            series: Series::Skin,
+            name: format!("{n_taxels} taxels, {n_touched} touched"),
+            sleeve: SMALL,
+            n_taxels,
+            n_touched,
+            n_spheres: wanted.spheres[0],
+        }));
+    }
+    let large = |series, name, n_touched, n_spheres| Rung {
+        series,
+        name,
+        sleeve: LARGE,
+        n_taxels: wanted.taxels_at_touch,
+        n_touched,
+        n_spheres,
+    };
+    rungs.extend(wanted.touched.iter().map(|&n| {
+        let name = format!("{n} touched");
+        large(Series::Touch, name, n, wanted.spheres[0])
+    }));
+    rungs.extend(wanted.spheres.iter().map(|&n| {
+        let name = format!("{n} spheres");
+        large(Series::Spheres, name, wanted.touched_at_spheres, n)
+    }));
+    rungs
+}
+
+/// Climbs a rung.
+pub(super) fn climb(plan: &WholeBodyPlan, rung: &Rung) -> Result<Driven> {
+    let sleeve = Sleeve::of_body(rung.n_taxels, rung.sleeve, plan.pitch);
+    let (body, patches) = sleeve.body(rung.n_taxels, plan.taxel, plan.pitch)?;
+    let side = plan.pitch * (rung.n_touched as f64).sqrt();
+    // Its spheres are where a taxel's own sphere begins.
+    let object = cushion(rung.n_spheres, side, sleeve.radius() + plan.taxel.radius)?;
+    let posture = Posture {
+        body: &body,
+        patches,
+        links: vec![Pose::IDENTITY],
+    };
+    let path = Path {
+        moves: SLIDE * side * DVec3::Z,
+        swing: SWING,
+        period: PERIOD,
+        ..Path::resting(Pose::IDENTITY)
+    };
+    let aim = Aim {
+        link: 0,
+        from: DVec3::X,
+        path,
+    };
+    let mut drive = Drive::new(&posture, &object, &aim);
+    // A cushion that goes deeper than the stroke only saturates more.
+    let (mut out, mut deep) = (0.0, plan.taxel.stroke);
+    for _ in 0..N_HALVINGS {
+        let depth = 0.5 * (out + deep);
+        match drive.probe(path.shifted(-depth * aim.from)).n_touched < rung.n_touched {
+            true => out = depth,
+            false => deep = depth,
+        }
+    }
+    drive.path = path.shifted(-deep * aim.from);
+    drive.run(plan, (rung.series, &rung.name), &[])
+}
+
+/// A sleeve: how many patches of `side` metres are around it and along it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Sleeve {
+    n_around: usize,
+    n_along: usize,
+    side: f64,
+}
+
+/// From sleeve to sleeve, metres.
+const APART: f64 = 1.0;
+
+impl Sleeve {
+    /// Patches of 100 × 100 taxels, or smaller ones of a body that has fewer taxels than one sleeve of those.
+    fn of_body(n_taxels: usize, (n_around, n_along): (usize, usize), pitch: f64) -> Self {
+        let a_patch = (n_taxels as f64 / (n_around * n_along) as f64).min(1e4);
+        Self {
+            n_around,
+            n_along,
+            side: pitch * a_patch.sqrt().round(),
+        }
+    }
+
+    /// Of the rest centres, metres.
+    fn radius(&self) -> f64 {
+        self.n_around as f64 * self.side / TAU
+    }
+
+    /// Sleeves about z in rows of twenty, the first at the origin, the last with patches missing: about `n_taxels` in all.
+    fn body(&self, n_taxels: usize, taxel: Taxel, pitch: f64) -> Result<(WholeBody, Vec<Pose>)> {
+        let (radius, length) = (self.radius(), self.side - pitch);
+        let part = Extrusion::cylinder(radius, length, length / radius, pitch)?;
+        let n_patches = (n_taxels as f64 / part.n_taxels() as f64).round().max(1.0) as usize;
+        let patches =
+            (0..n_patches).map(|number| Patch::new(format!("patch {number}"), part.clone(), taxel));
+        let poses = (0..n_patches).map(|number| self.pose(number)).collect();
+        Ok((
+            WholeBody::new(&patches.collect::<Result<Vec<_>>>()?)?,
+            poses,
+        ))
+    }
+
+    fn pose(&self, number: usize) -> Pose {
+        let a_sleeve = self.n_around * self.n_along;
+        let (sleeve, place) = (number / a_sleeve, number % a_sleeve);
+        let (row, column) = ((sleeve / 20) as f64, (sleeve % 20) as f64);
+        let turn = TAU * (place % self.n_around) as f64 / self.n_around as f64;
+        let ring = (place / self.n_around) as f64;
+        let height = (ring - 0.5 * (self.n_along - 1) as f64) * self.side;
+        let place = DVec3::new(APART * row, APART * column, height);
+        Pose::new(DQuat::from_rotation_z(turn), place)
+    }
+}

@@ -1,0 +1,172 @@
+//! The picture of the scene that touches most of a robot: with what touches it, and the pressure on its patches without.
+
+use crate::error::Result;
+use crate::objects::Sphere;
+use crate::report::canvas::{Canvas, Hit, view_from};
+use crate::report::colours::tint;
+use crate::report::drawing::{Align, Area, Drawing, TextStyle};
+use crate::report::picture::Picture;
+use crate::report::picture_axes::{draw_colours, draw_scale_bar};
+use crate::report::shaded_view::{Lighting, PAINT};
+use crate::report::study_folder::NamedPicture;
+use crate::studies::whole_body::plan::{ScenePlan, WholeBodyPlan};
+use crate::table::{Table, short_number};
+use glam::{DQuat, DVec2, DVec3};
+use std::f64::consts::FRAC_PI_2;
+
+/// What a scene looks like, in the world frame.
+struct SceneView {
+    /// Places on the skin, metres, some millimetres apart, and the pressure on their patch: force over area, Pa.
+    skin: Vec<(DVec3, f64)>,
+    /// Touched taxels, metres.
+    touched: Vec<DVec3>,
+    /// What touches, metres.
+    object: Vec<Sphere>,
+}
+
+/// Between the places of a picture's skin, metres.
+const PICTURE_PITCH: f64 = 4e-3;
+/// Pixels of a panel.
+const PANEL: [usize; 2] = [600, 900];
+/// Skin that nothing touches, and taxels that something does.
+const BARE: [u8; 3] = [226, 214, 200];
+const TOUCHED: [u8; 3] = [0xd5, 0x5e, 0x00];
+/// Radius of a place on the skin, metres: neighbours overlap. A touched taxel stands a little out.
+const SKIN_RADIUS: f64 = 3.4e-3;
+const TOUCHED_RADIUS: f64 = 3.8e-3;
+/// From where the eye looks, radians: to the right of the robot's front, and up.
+const AZIMUTH: f64 = 0.7;
+const ELEVATION: f64 = 0.3;
+
+/// The scene in which most patches are touched, of those in which any taxel is; the last of equals.
+///
+/// # Errors
+/// As of a run.
+pub(super) fn picture_of_body(plan: &WholeBodyPlan, cases: &Table) -> Result<Option<NamedPicture>> {
+    let patches = |row: &usize| cases.number("patches_touched_mean", *row);
+    let most = (0..cases.n_rows)
+        .filter(|&row| cases.word("series", row) == "scene")
+        .filter(|&row| cases.number("touched_max", row) > 0.0)
+        .max_by(|a, b| patches(a).total_cmp(&patches(b)));
+    let name = most.map(|row| cases.word("name", row));
+    let mut scenes = plan.scenes.iter();
+    let Some(scene) = scenes.find(|scene| Some(scene.spec.name.as_str()) == name) else {
+        return Ok(None);
+    };
+    let name = &scene.spec.name;
+    let drawn = draw(name, &view(plan, scene)?)?;
+    Ok(Some(NamedPicture {
+        name: "touched".to_owned(),
+        title: format!("The scene {name}, and the pressure on each patch"),
+        png: drawn.png()?,
+        size: (drawn.width, drawn.height),
+    }))
+}
+
+fn view(plan: &WholeBodyPlan, scene: &ScenePlan) -> Result<SceneView> {
+    let covered = plan.cover(plan.pitch)?;
+    let poses = plan.posture(&covered, &scene.positions)?.patches;
+    let (mut drive, object) = plan.begin(scene, &covered)?;
+    drive.probe(drive.path);
+    let felt: Vec<(usize, f64)> = drive.touched().collect();
+    let (mut pressures, mut touched) = (Vec::new(), Vec::new());
+    let body = covered.body();
+    for ((patch, pose), &first) in body.patches().iter().zip(&poses).zip(body.firsts()) {
+        let taxels = first..first + patch.n_taxels();
+        let of_patch = felt.iter().filter(|(taxel, _)| taxels.contains(taxel));
+        let of_patch: Vec<&(usize, f64)> = of_patch.collect();
+        let forces = of_patch.iter().map(|(_, d)| plan.taxel.stiffness * d);
+        let force: f64 = forces.sum();
+        pressures.push(force / (patch.n_taxels() as f64 * plan.pitch * plan.pitch));
+        if !of_patch.is_empty() {
+            let layout = patch.layout();
+            let centers = of_patch
+                .iter()
+                .map(|(taxel, _)| layout.centers()[taxel - first]);
+            touched.extend(centers.map(|center| pose.transform_point(center)));
+        }
+    }
+    let coarse = plan.cover(PICTURE_PITCH.max(plan.pitch))?;
+    let patches = coarse.body().patches().iter().zip(&poses).zip(&pressures);
+    let mut skin = Vec::new();
+    for ((patch, pose), &pressure) in patches {
+        let layout = patch.layout();
+        let centers = layout.centers().iter();
+        skin.extend(centers.map(|&center| (pose.transform_point(center), pressure)));
+    }
+    Ok(SceneView {
+        skin,
+        touched,
+        object: object.moved(&drive.path.at(0.0)).spheres().to_vec(),
+    })
+}
+
+/// Two panels: the robot with what touches it, and the robot alone, its patches the bluer the higher their mean pressure, touched taxels
+/// orange. The same bytes for the same input.
+fn draw(name: &str, scene: &SceneView) -> Result<Picture> {
+    let turn = DQuat::from_rotation_z(-FRAC_PI_2);
+    let sphere = |center: DVec3, radius| Sphere {
+        center: turn * center,
+        radius,
+    };
+    let skin = scene.skin.iter().map(|place| sphere(place.0, SKIN_RADIUS));
+    let touched = scene.touched.iter().map(|&at| sphere(at, TOUCHED_RADIUS));
+    let alone: Vec<Sphere> = skin.chain(touched).collect();
+    let object = scene.object.iter().map(|s| sphere(s.center, s.radius));
+    let both: Vec<Sphere> = alone.iter().copied().chain(object).collect();
+    let [width, height] = PANEL.map(|side| side as f64);
+    let room = DVec2::new(0.62 * width, height - 150.0);
+    let canvas = Canvas::new(view_from(AZIMUTH, ELEVATION), &both, PANEL, room);
+    let highest = scene.skin.iter().map(|place| place.1).fold(0.0, f64::max);
+    let pressure = |_: usize, hit: &Hit| match scene.skin.get(hit.part) {
+        Some(&(_, pressure)) if pressure > 0.0 => tint(pressure / highest),
+        Some(_) => BARE,
+        None => TOUCHED,
+    };
+    let colour = |_: usize, hit: &Hit| match hit.part {
+        part if part < scene.skin.len() => BARE,
+        part if part < alone.len() => TOUCHED,
+        _ => PAINT,
+    };
+    let mut picture = Picture::blank(2 * PANEL[0], PANEL[1])?;
+    let lighting = Lighting::Smoothed;
+    canvas.paint(&mut picture, [0, 0], &canvas.hits(&both), lighting, colour);
+    let right = [PANEL[0], 0];
+    canvas.paint(
+        &mut picture,
+        right,
+        &canvas.hits(&alone),
+        lighting,
+        pressure,
+    );
+
+    let mut drawing = Drawing::new(2.0 * width, height);
+    let style = |size| TextStyle::new(size).align(Align::Middle);
+    let touched = format!("{} touched taxels in orange", scene.touched.len());
+    drawing.text((0.5 * width, 30.0), name, style(16));
+    drawing.text(
+        (1.5 * width, 30.0),
+        "mean pressure on each patch",
+        style(16),
+    );
+    drawing.text((1.5 * width, 50.0), &touched, style(13));
+    let below = (0.5 * width, height - 24.0);
+    draw_scale_bar(&mut drawing, below, canvas.pixels_per_metre(), 0.22 * width);
+    let bar = Area {
+        x: 1.25 * width,
+        y: height - 40.0,
+        width: 0.5 * width,
+        height: 12.0,
+    };
+    draw_colours(&mut drawing, bar, tint);
+    for part in [0.0, 0.5, 1.0] {
+        let (x, y) = bar.at(part, 0.0);
+        let kilopascals = format!(
+            "{} kPa",
+            short_number((0.1 * part * highest).round() / 100.0)
+        );
+        drawing.text((x, y + 16.0), &kilopascals, style(12));
+    }
+    picture.print(&drawing)?;
+    Ok(picture)
+}

@@ -1,0 +1,156 @@
+//! Which object is it? A linear SVM for each compression, learned from simulated touches and tested on others.
+
+use crate::engine::progress::Progress;
+use crate::error::Result;
+use crate::geometry::Pose;
+use crate::inputs::units::MM;
+use crate::learning::classifiers::ClassifierKind;
+use crate::learning::classifiers::classifier::Classifier;
+use crate::learning::classifiers::trained_classifier::TrainedClassifier;
+use crate::random::Seed;
+use crate::sensing::{Columns, Ensemble, Projection};
+use crate::studies::model_recognition::{accuracy, touches_of};
+use crate::studies::whole_body::drive::{Drive, Posture};
+use crate::studies::whole_body::objects::built_in;
+use crate::studies::whole_body::path::Path;
+use crate::studies::whole_body::plan::WholeBodyPlan;
+use crate::studies::whole_body::rows::BodyRecognition;
+use glam::DQuat;
+use ndarray::{Array2, ArrayView2, Axis};
+use rand::Rng;
+use rayon::prelude::*;
+
+/// A compression and what has learned from it.
+pub(super) struct Compression {
+    pub columns: Columns,
+    pub classifier: TrainedClassifier,
+    pub score: BodyRecognition,
+}
+
+/// Draws every compression of a body, and learns from touches of it.
+pub(super) fn learn(
+    plan: &WholeBodyPlan,
+    posture: &Posture,
+    progress: &dyn Progress,
+) -> Result<Vec<Compression>> {
+    let m = plan.spec.whole_body.sensing.measurements;
+    let blocks = plan.compressions.par_iter();
+    let columns = blocks.map(|&(_, block)| columns(plan, posture, block));
+    let columns = columns.collect::<Result<Vec<_>>>()?;
+    let features = measure(plan, posture, &columns, progress)?;
+    progress.stage("train", columns.len() as u64);
+    let of_each = features.axis_chunks_iter(Axis(1), m);
+    let named = plan.compressions.iter().zip(columns).zip(of_each);
+    // Each is a piece of its own, which advances once it is kept.
+    named
+        .map(|(((name, _), columns), features)| train(plan, name, columns, features))
+        .collect()
+}
+
+/// Of very sparse rows, or of SBHE with blocks of so many taxels.
+fn columns(plan: &WholeBodyPlan, posture: &Posture, block: Option<usize>) -> Result<Columns> {
+    let size = (posture.body.n_taxels(), 1);
+    let m = plan.spec.whole_body.sensing.measurements;
+    let seed = Seed::new(plan.spec.seed).named("projection");
+    let projection = match block {
+        Some(block) => Projection::sbhe(size, m, block, &seed)?,
+        None => Projection::new(Ensemble::Sparse, size, m, &seed)?,
+    };
+    Ok(projection.columns())
+}
+
+/// A row a touch, object by object: the measurements of each compression, one after the other.
+fn measure(
+    plan: &WholeBodyPlan,
+    posture: &Posture,
+    columns: &[Columns],
+    progress: &dyn Progress,
+) -> Result<Array2<f64>> {
+    let wanted = plan.recognition();
+    let m = plan.spec.whole_body.sensing.measurements;
+    let objects = wanted.objects.par_iter();
+    let unions = objects.map(|name| built_in(name, plan.surface_error));
+    let unions = unions.collect::<Result<Vec<_>>>()?;
+    progress.stage("touch", wanted.n_touches() as u64);
+    let mut features = Array2::zeros((wanted.n_touches(), columns.len() * m));
+    let rows = features.axis_iter_mut(Axis(0)).into_par_iter().enumerate();
+    // A thread keeps the body and the object for its next touch of the same.
+    rows.try_for_each_init(
+        || None,
+        |kept: &mut Option<(usize, Drive)>, (number, mut row)| -> Result<()> {
+            let object = number / wanted.of_each();
+            let (_, drive) = match kept {
+                Some(of) if of.0 == object => of,
+                _ => kept.insert((object, Drive::new(posture, &unions[object], &plan.aim))),
+            };
+            let (start, depth) = draw(plan, object, number % wanted.of_each());
+            drive.path = Path {
+                start,
+                ..drive.path
+            };
+            drive.approach(plan.aim.from, depth)?;
+            drive.probe(drive.path);
+            let row = row.as_slice_mut().expect("rows are whole");
+            for (columns, row) in columns.iter().zip(row.chunks_exact_mut(m)) {
+                columns.measure_touched(drive.touched(), row);
+            }
+            progress.advance(1);
+            Ok(())
+        },
+    )?;
+    Ok(features)
+}
+
+/// Where an object aims at a touch (`link_from_object`), and how far it goes past first contact, metres.
+fn draw(plan: &WholeBodyPlan, object: usize, touch: usize) -> (Pose, f64) {
+    let wanted = plan.recognition();
+    let seed = Seed::new(plan.spec.seed).named("whole_body").named("touch");
+    let seed = seed.named(&wanted.objects[object]);
+    let mut rng = seed.numbered(touch as u64).rng();
+    let mut within = |half: f64| half * (2.0 * rng.r#gen::<f64>() - 1.0);
+    let (across, beside) = plan.aim.from.any_orthonormal_pair();
+    let half = MM * wanted.offset_mm;
+    let offset = within(half) * across + within(half) * beside;
+    let turn = DQuat::from_rotation_z(within(wanted.yaw_deg.to_radians()));
+    let [least, most] = wanted.depth_mm.map(|depth| MM * depth);
+    let depth = 0.5 * (least + most) + within(0.5 * (most - least));
+    (
+        Pose::new(turn, plan.aim.path.start.translation + offset),
+        depth,
+    )
+}
+
+/// Trains on the first touches of each object and tests on the others.
+fn train(
+    plan: &WholeBodyPlan,
+    name: &str,
+    columns: Columns,
+    features: ArrayView2<f64>,
+) -> Result<Compression> {
+    let wanted = plan.recognition();
+    let of_each = || features.axis_chunks_iter(Axis(0), wanted.of_each());
+    let training = touches_of(of_each(), 0..wanted.training_touches)?;
+    let test = touches_of(of_each(), wanted.training_touches..wanted.of_each())?;
+    let seed = Seed::new(plan.spec.seed).named("whole_body").named("train");
+    let classifier = Classifier::new(ClassifierKind::LinearSvm).train(&training, &seed)?;
+    let (share, interval) = accuracy(&classifier, &test)?;
+    let per_taxel = |count: usize| count as f64 / columns.n_taxels() as f64;
+    Ok(Compression {
+        score: BodyRecognition {
+            compression: name.to_owned(),
+            n_measurements: columns.n_measurements(),
+            entries_per_taxel: per_taxel(columns.n_entries()),
+            read_share: per_taxel(columns.n_read()),
+            bytes_per_taxel: per_taxel(columns.n_bytes()),
+            n_objects: wanted.objects.len(),
+            n_training: training.targets.len(),
+            n_test: test.targets.len(),
+            accuracy: share,
+            accuracy_low: interval.low,
+            accuracy_high: interval.high,
+            n_capped: classifier.n_capped(),
+        },
+        columns,
+        classifier,
+    })
+}

@@ -1,0 +1,228 @@
+//! Runs a study of a whole body: learn, then the scenes and the ladders one after the other, so that nothing else is timed.
+
+use crate::engine::work_items::NamedPiece;
+use crate::engine::work_items::pending::PiecesLeft;
+use crate::engine::work_items::scale::Scale;
+use crate::engine::work_items::shared::Shared;
+use crate::engine::work_items::study_runner::PieceStudy;
+use crate::error::{Error, Result};
+use crate::geometry::Pose;
+use crate::inputs::object_files::file_content;
+use crate::inputs::units::MM;
+use crate::objects::SphereUnion;
+use crate::studies::kind::{About, Facts, Files, Kind};
+use crate::studies::source::Source;
+use crate::studies::whole_body::drive::{Drive, Posture};
+use crate::studies::whole_body::ladders::{Rung, climb, rungs};
+use crate::studies::whole_body::objects::of_scene;
+use crate::studies::whole_body::plan::{ScenePlan, WholeBodyPlan};
+use crate::studies::whole_body::recognition::learn;
+use crate::studies::whole_body::rows::{
+    BodyCase, BodyCount, BodyRecognition, BodySensed, BodyStage, BodyTouch, Series, StepTime,
+    WholeBodyRows,
+};
+use crate::studies::whole_body::spec::WholeBodyStudySpec;
+use crate::table::{File, Table};
+use crate::whole_body::CoveredRobot;
+
+const CASES: File<(BodyCase, BodyCount)> = File::new("whole_body.csv", "Scenes and rungs", "");
+const RECOGNITION: File<BodyRecognition> = File::new(
+    "recognition.csv",
+    "Recognition",
+    "A linear SVM, trained and tested on simulated touches.",
+);
+const SENSED: File<BodySensed> = File::new("sensed.csv", "What scenes are taken for", "");
+const TIMING: File<(BodyCase, BodyStage, StepTime)> = File::new(
+    "timing.csv",
+    "From touch to answer",
+    "Medians over steps, on this machine.",
+)
+.of_times();
+const STEPS: File<(BodyCase, BodyTouch, StepTime)> = File::new(
+    "steps.csv",
+    "Steps of the skin",
+    "Medians over steps of a moving object; of ladders, a cushion of spheres, half of them on its far side.",
+)
+.summary()
+.of_times();
+
+impl Kind for WholeBodyPlan {
+    const ABOUT: About = About {
+        table: "whole_body",
+        words: "a study of a whole body of skin",
+        may_change: &[
+            "question",
+            "expected",
+            "whole_body.scenes",
+            "whole_body.ladders.taxels",
+            "whole_body.ladders.touched_at_taxels",
+            "whole_body.ladders.touched",
+            "whole_body.ladders.spheres",
+        ],
+    };
+    const FILES: Files = &[&CASES, &RECOGNITION, &SENSED, &TIMING, &STEPS];
+
+    fn load(source: &Source) -> Result<Self> {
+        source.refuse_objects("a whole body is touched by the objects that its study names")?;
+        let mut spec = WholeBodyStudySpec::parse(&source.place, &source.text)?;
+        spec.seed = source.seed(spec.seed);
+        Self::new(&source.place, &source.folder, spec)
+    }
+
+    fn facts(&self) -> Result<Facts> {
+        let robot = file_content(&self.robot_file)?;
+        Ok(Facts::of(&self.spec, [("robot".to_owned(), robot)].into()))
+    }
+
+    fn scale(&self) -> Scale {
+        // A taxel's place and what its compressions keep of it.
+        const TAXEL_BYTES: f64 = 150.0;
+        // Of a body, about, square metres.
+        const AREA: f64 = 2.0;
+        let n_objects = self.recognition().objects.len();
+        let n_taxels = AREA / (self.pitch * self.pitch);
+        Scale {
+            objects: format!("{n_objects} to tell apart, {} scenes", self.scenes.len()),
+            touches: format!(
+                "{} on a body of about {n_taxels:.0} taxels",
+                self.recognition().n_touches()
+            ),
+            n_configurations: self.compressions.len() + self.scenes.len(),
+            bytes: TAXEL_BYTES * n_taxels,
+            ..Scale::default()
+        }
+    }
+}
+
+impl PieceStudy for WholeBodyPlan {
+    type Rows = WholeBodyRows;
+
+    /// Compressions and scenes need all that is learned; rungs need nothing.
+    fn pieces(&self) -> Vec<NamedPiece> {
+        let compressions = self
+            .compressions
+            .iter()
+            .map(|(name, _)| NamedPiece::new(format!("learn from {name}"), 0));
+        let scenes = self
+            .scenes
+            .iter()
+            .map(|scene| NamedPiece::new(format!("scene {}", scene.spec.name), 0).made_of(scene));
+        let rungs = self.rungs().into_iter().enumerate().map(|(number, rung)| {
+            let name = format!("ladder of {:?}, {}", rung.series, rung.name).to_lowercase();
+            NamedPiece::new(name, number + 1).made_of(rung)
+        });
+        compressions.chain(scenes).chain(rungs).collect()
+    }
+
+    fn measure(&self, left: &PiecesLeft<WholeBodyRows>) -> Result<()> {
+        let (covered, compressions) = (Shared::default(), Shared::default());
+        let cover = || covered.get(|| self.cover(self.pitch));
+        let learn = || {
+            compressions.get(|| {
+                let straight = self.posture(cover()?, &vec![0.0; self.robot.n_positions()])?;
+                learn(self, &straight, left.progress)
+            })
+        };
+        let n_compressions = self.compressions.len();
+        for number in 0..n_compressions {
+            left.finish(number, || {
+                Ok((vec![learn()?[number].score.clone()], Vec::new()))
+            })?;
+        }
+        let rungs = self.rungs();
+        let first_rung = n_compressions + self.scenes.len();
+        let driven = n_compressions..first_rung + rungs.len();
+        let n_left = driven.filter(|&number| left.has(number)).count();
+        left.progress.stage("scenes and ladders", n_left as u64);
+        for (scene, number) in self.scenes.iter().zip(n_compressions..) {
+            left.finish(number, || {
+                let (mut drive, _) = self.begin(scene, cover()?)?;
+                let driven = drive.run(self, (Series::Scene, &scene.spec.name), learn()?)?;
+                Ok((Vec::new(), vec![driven]))
+            })?;
+        }
+        for (rung, number) in rungs.iter().zip(first_rung..) {
+            left.finish(number, || Ok((Vec::new(), vec![climb(self, rung)?])))?;
+        }
+        Ok(())
+    }
+
+    fn tables(&self, (recognition, driven): WholeBodyRows) -> Result<Vec<Table>> {
+        let mut sensed = Vec::new();
+        let (mut cases, mut times, mut steps) = (Vec::new(), Vec::new(), Vec::new());
+        for of in driven {
+            let touch = BodyTouch {
+                touched: round_to_two(of.count.touched_mean),
+                touched_mean: of.count.touched_mean,
+            };
+            steps.push((of.case.clone(), touch, of.times[0].1.clone()));
+            let of_case = |(stage, time)| (of.case.clone(), stage, time);
+            times.extend(of.times.into_iter().map(of_case));
+            cases.push((of.case, of.count));
+            sensed.extend(of.sensed);
+        }
+        Ok(vec![
+            CASES.of(&cases)?,
+            RECOGNITION.of(&recognition)?,
+            SENSED.of(&sensed)?,
+            TIMING.of(&times)?,
+            STEPS.of(&steps)?,
+        ])
+    }
+}
+
+/// To two digits: a touch of 10,008 taxels is one of 10,000.
+fn round_to_two(value: f64) -> f64 {
+    let unit = 10f64.powf(value.max(1.0).log10().floor() - 1.0);
+    (value / unit).round() * unit
+}
+
+impl WholeBodyPlan {
+    fn rungs(&self) -> Vec<Rung> {
+        let ladders = self.spec.whole_body.ladders.as_ref();
+        ladders.map_or_else(Vec::new, rungs)
+    }
+
+    /// The robot under skin with so many metres between taxels.
+    pub(super) fn cover(&self, pitch: f64) -> Result<CoveredRobot> {
+        let cover = match self.spec.whole_body.flat_ends {
+            true => CoveredRobot::with_flat_ends,
+            false => CoveredRobot::new,
+        };
+        cover(&self.robot, self.taxel, pitch, self.side)
+    }
+
+    /// Where everything of the robot is.
+    pub(super) fn posture<'a>(
+        &self,
+        covered: &'a CoveredRobot,
+        positions: &[f64],
+    ) -> Result<Posture<'a>> {
+        let links = self.robot.forward(&Pose::IDENTITY, positions)?;
+        let mut patches = Vec::new();
+        covered.patch_poses(&links, &mut patches);
+        Ok(Posture {
+            body: covered.body(),
+            patches,
+            links,
+        })
+    }
+
+    /// The object of a scene where that begins; the error names the scene.
+    pub(super) fn begin<'a>(
+        &self,
+        scene: &ScenePlan,
+        covered: &'a CoveredRobot,
+    ) -> Result<(Drive<'a>, SphereUnion)> {
+        let begin = || {
+            let object = of_scene(&scene.spec, self.surface_error)?;
+            let posture = self.posture(covered, &scene.positions)?;
+            let mut drive = Drive::new(&posture, &object, &scene.aim);
+            if let Some(depth_mm) = scene.spec.depth_mm {
+                drive.approach(scene.aim.from, MM * depth_mm)?;
+            }
+            Ok((drive, object))
+        };
+        begin().map_err(|error: Error| error.under(format!("scene {}, ", scene.spec.name)))
+    }
+}

@@ -1,0 +1,56 @@
+//! The names of studies under one path, `bubbletouch::study`, for programs. Their code stands in [`engine`](crate::engine), [`inputs`](crate::inputs) and
+//! [`studies::recognition`](crate::studies::recognition).
+
+pub use crate::engine::axis::Axis;
+pub use crate::engine::shard::Shard;
+pub use crate::engine::work_items as pieces;
+pub use crate::engine::{axes, journal, progress, provenance};
+pub use crate::inputs::arrays::whole_numbers::KeyValue;
+pub use crate::inputs::content_hash::sha256;
+pub use crate::inputs::memory;
+pub use crate::inputs::npy::{write_integers, write_npy, write_texts};
+pub use crate::inputs::object_files::{
+    NamedMesh, file_content, load_catalogue, load_mesh, load_named_meshes, load_objects,
+    load_spheres, objects_content, read_mesh, read_mesh_file,
+};
+pub use crate::inputs::objects_spec::{ModelSpec, ObjectsSpec};
+pub use crate::inputs::packings::{Packed, pack_within, packing_path};
+pub use crate::inputs::sensor_errors::{Strengths, TestedOn, all_strengths, strength_columns};
+pub use crate::inputs::units::millimetres;
+pub use crate::report::snapshots::Snapshots;
+pub use crate::statistics::p_status::CONFIDENCE;
+pub use crate::studies::recognition::exports::feature_files::{
+    FEATURE_FILES, FeatureSet, read_features,
+};
+pub use crate::studies::recognition::exports::touch_files::{
+    ReadFrames, TOUCH_FILES, touch_units, write_human_touches, write_touches,
+};
+pub use crate::studies::recognition::frames::FrameFacts;
+pub use crate::studies::recognition::frames::array_press::{ArrayPress, ArrayWorkspace};
+pub use crate::studies::recognition::frames::human_touches::{
+    HumanTouches, RecordedTouch, record_touch,
+};
+pub use crate::studies::recognition::frames::kept::Frames;
+pub use crate::studies::recognition::frames::recorded_frames::RecordedFrames;
+pub use crate::studies::recognition::frames::recorded_skin::{RecordedSkinFiles, UntouchedFrames};
+pub use crate::studies::recognition::frames::samples::{Samples, sample_frames};
+pub use crate::studies::recognition::frames::shear_ripple::ShearRipple;
+pub use crate::studies::recognition::frames::simulation::simulate_array;
+pub use crate::studies::recognition::frames::touch_set::TouchSet;
+pub use crate::studies::recognition::plan::group::Group;
+pub use crate::studies::recognition::plan::plan::Plan;
+pub use crate::studies::recognition::plan::pose_groups::KeepTogether;
+pub use crate::studies::recognition::plan::sensed::Sensed;
+pub use crate::studies::recognition::plan::signal::Condition;
+pub use crate::studies::recognition::plan::taxel_array;
+pub use crate::studies::recognition::spec::pose_split::PoseSplit;
+pub use crate::studies::recognition::spec::{signal::*, study::*};
+pub use crate::studies::recognition::sweep::sweep::{StudyPart, Sweep};
+pub use crate::studies::recognition::touches::drawn_touches::{TouchedObject, draw_touches};
+
+/// The rows of the result tables.
+pub mod table {
+    pub use crate::statistics::p_status::PStatus;
+    pub use crate::studies::recognition::rows::cell::Cell;
+    pub use crate::studies::recognition::rows::table_rows::*;
+}
