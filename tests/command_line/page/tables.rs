@@ -247,6 +247,7 @@ fn equal_tables_give_equal_bytes_in_every_file() {
         names[TABLE_FILES.len()..],
         [
             "limits.csv",
+            "robustness.csv",
             "accuracy_by_noise.svg",
             "accuracy_by_noise_per_classifier.svg",
             "confusion.svg",

@@ -6,6 +6,7 @@ use crate::report::study_folder::words_of;
 use crate::report::swept::{Setting, Swept, without};
 use crate::report::terminal::paragraph;
 use crate::studies::recognition::charts::filled;
+use crate::studies::recognition::charts::robustness::robustness_words;
 use crate::studies::recognition::charts::tables::CELLS;
 use crate::table::{Table, Value, short_number};
 
@@ -20,13 +21,20 @@ pub fn answers(tables: &[Table]) -> Vec<String> {
     let mut sentences = bests(cells).unwrap_or_default();
     sentences.extend(missed(tables));
     sentences.extend(effects(cells).unwrap_or_default());
+    sentences.extend(robustness_words(tables));
     sentences.extend(remarks(tables));
     sentences
 }
 
 /// What a run prints at its end: all cells, the answers, and what is beside what was published and confused most often.
 pub fn words(tables: &[Table], width: usize) -> String {
-    let shown = [CELLS, "published.csv", "confused.csv", "variance.csv"];
+    let shown = [
+        CELLS,
+        "published.csv",
+        "confused.csv",
+        "variance.csv",
+        "robustness.csv",
+    ];
     let shown = shown.into_iter().filter_map(|file| filled(tables, file));
     let missed = missed(tables);
     let mut answers = answers(tables);

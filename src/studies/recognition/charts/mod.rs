@@ -2,6 +2,7 @@
 
 pub(crate) mod answers;
 pub(crate) mod charts;
+pub(crate) mod robustness;
 pub(crate) mod sections;
 pub(crate) mod tables;
 

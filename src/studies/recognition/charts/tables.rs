@@ -6,6 +6,7 @@ use crate::report::csv_tables::LIMITS_FILE;
 use crate::statistics::bootstrap::coverage_of_95;
 use crate::statistics::grouped::FEW_GROUPS;
 use crate::statistics::p_status::CONFIDENCE;
+use crate::studies::recognition::charts::robustness::{ObjectCounts, ROBUSTNESS, robustness};
 use crate::studies::recognition::rows::cell::Cell;
 use crate::studies::recognition::rows::table_rows::{
     CellScore, Comparison, Confused, Confusion, Limit, Pareto, Published, StageTime, Tables,
@@ -14,7 +15,6 @@ use crate::studies::recognition::rows::table_rows::{
 use crate::studies::recognition::spec::study::StudySpec;
 use crate::table::{Better, Column, Columns, Data, File, Role, Scale, Table};
 use serde::Serialize;
-use std::collections::HashMap;
 use std::path::Path;
 
 /// The table of all that is known of each cell; it has no file.
@@ -66,7 +66,7 @@ const VARIANCE: File<Variance> =
 const LIMITS: File<Limit> = File::new(LIMITS_FILE, "How often limits were reached", "").summary();
 
 /// Names of all table files of a recognition study.
-pub const TABLE_NAMES: [&str; 11] = [
+pub const TABLE_NAMES: [&str; 12] = [
     ACCURACY.name(),
     SUMMARY.name(),
     CONFUSION.name(),
@@ -78,6 +78,7 @@ pub const TABLE_NAMES: [&str; 11] = [
     PUBLISHED.name(),
     VARIANCE.name(),
     LIMITS.name(),
+    ROBUSTNESS.name(),
 ];
 
 /// Every table of a run, in the order of their files; then [`CELLS`].
@@ -147,6 +148,11 @@ impl From<'_> {
             if let Some(note) = note_of_few_trials(table) {
                 table.note += &note;
             }
+        }
+        let of = |file: &str| tables.iter().find(|table| table.file == file);
+        if let (Some(summary), Some(confusion)) = (of(SUMMARY.name()), of(CONFUSION.name())) {
+            let robustness = robustness(summary, confusion)?;
+            tables.extend(robustness);
         }
         let cells = cells_of(&tables);
         tables.extend(cells);
@@ -225,14 +231,10 @@ pub(crate) const CHANCE: &str = "chance";
 
 /// Returns 1 / the number of objects that each cell tells apart, if cells differ in it and each has its confusion matrix.
 fn chance_of_cells(summary: &Table, confusion: &Table) -> Option<(Column, Data)> {
-    let mut n_objects: HashMap<u64, usize> = HashMap::new();
-    for rows in confusion.groups(&["cell", "object"], 0..confusion.n_rows) {
-        let cell = confusion.number("cell", rows[0]);
-        *n_objects.entry(cell.to_bits()).or_default() += 1;
-    }
+    let n_objects = ObjectCounts::new(confusion);
     let chance = (0..summary.n_rows).map(|row| {
-        let n_objects = n_objects.get(&summary.number("cell", row).to_bits());
-        n_objects.map(|&n| 1.0 / n as f64)
+        let own = n_objects.own(summary.number("cell", row));
+        own.map(|n| 1.0 / n as f64)
     });
     let chance = Data::Numbers(chance.collect::<Option<_>>()?);
     let role = Role::Value(Better::Neither);

@@ -1,0 +1,575 @@
+//! The value of a condition at which half of the accuracy above chance is lost.
+//!
+//! For each design (all other columns equal) and each numeric condition with at least three values: the highest mean accuracy a₀ along the condition, and
+//! the first value from there, towards larger or smaller values, at which the accuracy is chance + (a₀ − chance) / 2. Between two values the accuracy
+//! is interpolated linearly over the scale of the condition.
+//!
+//! The interval comes from simulation: each mean accuracy a of n independent test rows is drawn from Beta(a n + ½, (1 − a) n + ½), and the place is
+//! found again; the middle 95 % of the places are the interval. n is the number of rows whose Wilson interval is as wide as the one in
+//! `summary.csv`, so that folds and held-out groups count as they do there.
+
+use crate::error::Result;
+use crate::random::Seed;
+use crate::report::swept::{Setting, Swept};
+use crate::row;
+use crate::statistics::p_status::CONFIDENCE;
+use crate::table::{Data, File, Role, Table, Value, short_number};
+use rand_distr::{Beta, Distribution};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
+
+pub(super) const ROBUSTNESS: File<Robustness> = File::new(
+    "robustness.csv",
+    "Robustness",
+    "The value of a condition at which half of the accuracy above chance is lost, for each configuration that is most accurate along it.",
+)
+.summary();
+
+row! {
+/// A design along a condition: a row of `robustness.csv`.
+pub struct Robustness {
+    /// Number of the design's most accurate configuration along the condition: a row of `summary.csv`.
+    cell: usize => Subject: Linear;
+    /// The design: settings that vary in the study, but for the condition.
+    design: String => Subject;
+    /// The column of the condition.
+    condition: String => Subject;
+    /// Whether the accuracy is followed to larger or to smaller values.
+    direction: Direction => Subject "towards";
+    /// The value at which the accuracy is highest.
+    clean_at: f64 => Note "most accurate at": Linear;
+    /// The highest mean accuracy.
+    clean_accuracy: f64 => Value(More) "accuracy there": Share;
+    /// One in the number of objects.
+    chance: f64 => Note: Share;
+    /// `chance + (clean_accuracy − chance) / 2`.
+    half_accuracy: f64 => Note "half-way to chance": Share;
+    /// Whether the accuracy falls to that.
+    status: HalfStatus => Outcome "half-way is";
+    /// The value at which the accuracy falls to that; empty if it does not.
+    half_accuracy_at: Option<f64> => Value(Neither) "half-way at": Linear between [half_accuracy_at_low, half_accuracy_at_high];
+    /// Lower end of its 95 % interval; empty if that is beyond the last value.
+    half_accuracy_at_low: Option<f64> => Note "95 % interval of the place, lower end": Linear;
+    /// Upper end of the same interval; empty if that is beyond the last value.
+    half_accuracy_at_high: Option<f64> => Note "95 % interval of the place, upper end": Linear;
+    /// The last value.
+    end: f64 => Note "last value": Linear;
+    /// The mean accuracy there.
+    accuracy_at_end: f64 => Value(More) "accuracy at the last value": Share;
+} }
+
+/// A direction along an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Direction {
+    /// To larger values.
+    Larger,
+    /// To smaller values.
+    Smaller,
+}
+
+/// Whether a value at which half of the accuracy is lost was found, and why not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum HalfStatus {
+    /// The accuracy falls to half-way.
+    Found,
+    /// The accuracy stays above half-way up to the last value.
+    BeyondTheLastValue,
+    /// The highest accuracy is not above chance.
+    AllAtChance,
+}
+
+/// Draws of all accuracies for an interval. With more the ends of intervals depend less on the draws and reports of many configurations take longer:
+/// with 1,000 the standard error of an end is about a tenth of the interval's half width.
+const N_DRAWS: usize = 1000;
+
+/// Smallest number of values of a condition. With two, the straight line between them would decide everything.
+const MIN_VALUES: usize = 3;
+
+/// Length of the range from zero to the smallest positive value of a logarithmic axis, decades. Larger: most of the axis is that range; smaller: zero
+/// and that value are hardly apart.
+const ZERO_DECADES: f64 = 0.5;
+
+/// Ratio of the largest to the smallest positive value from which on an axis is logarithmic, as in charts.
+const LOG_RATIO: f64 = 16.0;
+
+/// Mean accuracies along a condition, values ascending.
+struct Curve {
+    values: Vec<f64>,
+    accuracy: Vec<f64>,
+    /// Independent test rows of each.
+    n_test: Vec<f64>,
+    chance: f64,
+}
+
+impl Curve {
+    /// Returns the index of the highest accuracy, of equals the first.
+    fn best(&self) -> usize {
+        let accuracy = &self.accuracy;
+        let backwards = (0..accuracy.len()).rev();
+        let best = backwards.max_by(|&a, &b| accuracy[a].total_cmp(&accuracy[b]));
+        best.unwrap_or(0)
+    }
+
+    /// Returns the accuracy half-way from `accuracy` to chance.
+    fn half_accuracy(&self, accuracy: f64) -> f64 {
+        self.chance + 0.5 * (accuracy - self.chance)
+    }
+
+    /// Returns the indices from the highest accuracy to the end of the axis.
+    fn outwards(&self, direction: Direction) -> Vec<usize> {
+        match direction {
+            Direction::Smaller => (0..=self.best()).rev().collect(),
+            Direction::Larger => (self.best()..self.values.len()).collect(),
+        }
+    }
+
+    /// Returns the smallest positive value, and whether the axis is logarithmic from there on.
+    fn scale(&self) -> (f64, bool) {
+        let positive = self.values.iter().copied().filter(|&value| value > 0.0);
+        let start = positive.fold(f64::INFINITY, f64::min);
+        let last = self.values[self.values.len() - 1];
+        (start, self.values[0] >= 0.0 && last / start >= LOG_RATIO)
+    }
+
+    /// Returns the place of a value along the axis.
+    fn place(&self, value: f64) -> f64 {
+        match self.scale() {
+            (_, false) => value,
+            (start, true) if value < start => ZERO_DECADES * (value / start - 1.0),
+            (start, true) => (value / start).log10(),
+        }
+    }
+
+    /// Returns the value at a place; the inverse of [`place`](Self::place).
+    fn value(&self, place: f64) -> f64 {
+        match self.scale() {
+            (_, false) => place,
+            (start, true) if place < 0.0 => start * (1.0 + place / ZERO_DECADES),
+            (start, true) => start * 10f64.powf(place),
+        }
+    }
+
+    /// Returns the value at which half of the accuracy above chance is lost, and both ends of its interval; `None` beyond the last value.
+    fn half(&self, direction: Direction, seed: &Seed) -> [Option<f64>; 3] {
+        let places: Vec<f64> = self.values.iter().map(|&value| self.place(value)).collect();
+        let outwards = self.outwards(direction);
+        let beyond = match direction {
+            Direction::Smaller => f64::NEG_INFINITY,
+            Direction::Larger => f64::INFINITY,
+        };
+        let crossing = |accuracy: &[f64]| {
+            let half = self.half_accuracy(accuracy[outwards[0]]);
+            let mut steps = outwards.windows(2);
+            let found = steps.find_map(|step| {
+                let (before, after) = (accuracy[step[0]], accuracy[step[1]]);
+                let fraction = (before - half) / (before - after);
+                let length = places[step[1]] - places[step[0]];
+                (after <= half && before > after).then(|| places[step[0]] + fraction * length)
+            });
+            found.unwrap_or(beyond)
+        };
+        let pairs = self.accuracy.iter().zip(&self.n_test);
+        let betas = pairs.map(|(accuracy, n)| {
+            let n_correct = accuracy * n;
+            Beta::new(n_correct + 0.5, n - n_correct + 0.5).expect("both are positive")
+        });
+        let betas: Vec<Beta<f64>> = betas.collect();
+        let mut rng = seed.rng();
+        let mut draw = || {
+            let drawn = betas.iter().map(|beta| beta.sample(&mut rng));
+            crossing(&drawn.collect::<Vec<_>>())
+        };
+        let mut draws: Vec<f64> = (0..N_DRAWS).map(|_| draw()).collect();
+        draws.sort_by(f64::total_cmp);
+        let tail = (0.5 * (1.0 - CONFIDENCE) * N_DRAWS as f64) as usize;
+        let ends = [
+            crossing(&self.accuracy),
+            draws[tail],
+            draws[N_DRAWS - 1 - tail],
+        ];
+        ends.map(|place| place.is_finite().then(|| self.value(place)))
+    }
+}
+
+/// Returns the number of rows whose 95 % Wilson interval around `accuracy` is so wide, at least 1.
+fn rows_of_interval(accuracy: f64, width: f64) -> f64 {
+    // With a = z² / n and q = p (1 − p): width² (1 + a)² = 4 a q + a².
+    const Z: f64 = 1.959_963_984_540_054;
+    let (squared, q) = (width * width, accuracy * (1.0 - accuracy));
+    if !(squared > 0.0 && squared < 1.0) {
+        return 1.0;
+    }
+    let b = 2.0 * q - squared;
+    let a = (-b + (b * b + (1.0 - squared) * squared).sqrt()) / (1.0 - squared);
+    (Z * Z / a).max(1.0)
+}
+
+/// Returns the table of robustness, or `None` if no numeric condition has enough values. `summary` has a row for each configuration.
+///
+/// # Errors
+/// A row that has no form in a file.
+pub(super) fn robustness(summary: &Table, confusion: &Table) -> Result<Option<Table>> {
+    let all: Vec<usize> = (0..summary.n_rows).collect();
+    let settings = Swept::of(summary, &all).free;
+    let mut curves = Vec::new();
+    for condition in summary.of_role(Role::Condition) {
+        let Some((column, Data::Numbers(values))) = summary.column(condition) else {
+            continue;
+        };
+        // Named numbers, such as 0 bits for no converter, have no place between others.
+        let is_named = |value: f64| column.word(&short_number(value)) != short_number(value);
+        let others = [Role::Choice, Role::Condition].map(|role| summary.of_role(role));
+        let mut others = others.concat();
+        others.retain(|column| *column != condition);
+        for mut along in summary.groups(&others, all.iter().copied()) {
+            along.retain(|&row| values[row].is_finite() && !is_named(values[row]));
+            along.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
+            let repeats = |pair: &[usize]| values[pair[0]] == values[pair[1]];
+            if along.len() >= MIN_VALUES && !along.windows(2).any(repeats) {
+                curves.push((condition, along));
+            }
+        }
+    }
+    let n_objects = ObjectCounts::new(confusion);
+    let rows = curves.par_iter().flat_map_iter(|(condition, along)| {
+        both_sides(summary, &n_objects, (condition, along), &settings)
+    });
+    let rows: Vec<Robustness> = rows.collect();
+    match rows.is_empty() {
+        true => Ok(None),
+        false => ROBUSTNESS.of(&rows).map(Some),
+    }
+}
+
+/// Returns a row for each side of the highest accuracy that has values; `along`: rows of the summary, by ascending values of the condition.
+fn both_sides(
+    summary: &Table,
+    n_objects: &ObjectCounts,
+    (condition, along): (&str, &[usize]),
+    settings: &[Setting],
+) -> Vec<Robustness> {
+    let numbers = |column: &str| -> Vec<f64> {
+        let rows = along.iter();
+        rows.map(|&row| summary.number(column, row)).collect()
+    };
+    let accuracy = numbers("accuracy");
+    let ends = numbers("accuracy_low")
+        .into_iter()
+        .zip(numbers("accuracy_high"));
+    let n_test = accuracy.iter().zip(ends);
+    let n_test = n_test.map(|(&accuracy, (low, high))| rows_of_interval(accuracy, high - low));
+    let mut curve = Curve {
+        values: numbers(condition),
+        n_test: n_test.collect(),
+        accuracy,
+        chance: 0.0,
+    };
+    let best = curve.best();
+    let row = along[best];
+    let cell = summary.number("cell", row);
+    curve.chance = 1.0 / n_objects.of(cell) as f64;
+    let said = |one: &&Setting| {
+        let has_value = one.data.value(row).is_some() || !one.column.word("").is_empty();
+        has_value && one.column.name != condition
+    };
+    let said = settings.iter().filter(said).map(|one| one.phrase(row));
+    let design = said.collect::<Vec<_>>().join(", ");
+    let clean = curve.accuracy[best];
+    let seed = Seed::new(0).named("robustness").named(condition);
+    let seed = seed.numbered(cell as u64);
+    let side = |direction: Direction| {
+        let outwards = curve.outwards(direction);
+        let end = *outwards[1..].last()?;
+        let halves = curve.half(direction, &seed.numbered(direction as u64));
+        let (status, [at, low, high]) = match halves {
+            _ if clean <= curve.chance => (HalfStatus::AllAtChance, [None; 3]),
+            [None, ..] => (HalfStatus::BeyondTheLastValue, halves),
+            _ => (HalfStatus::Found, halves),
+        };
+        Some(Robustness {
+            cell: cell as usize,
+            design: design.clone(),
+            condition: condition.to_owned(),
+            direction,
+            clean_at: curve.values[best],
+            clean_accuracy: clean,
+            chance: curve.chance,
+            half_accuracy: curve.half_accuracy(clean),
+            status,
+            half_accuracy_at: at,
+            half_accuracy_at_low: low,
+            half_accuracy_at_high: high,
+            end: curve.values[end],
+            accuracy_at_end: curve.accuracy[end],
+        })
+    };
+    let sides = [Direction::Larger, Direction::Smaller].map(side);
+    sides.into_iter().flatten().collect()
+}
+
+/// Numbers of objects that configurations tell apart, from their confusion matrices.
+pub(super) struct ObjectCounts {
+    of_cells: HashMap<u64, usize>,
+    of_all: usize,
+}
+
+impl ObjectCounts {
+    pub(super) fn new(confusion: &Table) -> Self {
+        let mut of_cells = HashMap::new();
+        for rows in confusion.groups(&["cell", "object"], 0..confusion.n_rows) {
+            let cell = confusion.number("cell", rows[0]);
+            *of_cells.entry(cell.to_bits()).or_default() += 1;
+        }
+        let of_all = confusion.groups(&["object"], 0..confusion.n_rows).len();
+        Self { of_cells, of_all }
+    }
+
+    /// Returns the number of a configuration, at least 1. If a study keeps the matrices of some configurations only, all have the same objects.
+    fn of(&self, cell: f64) -> usize {
+        self.own(cell).unwrap_or(self.of_all).max(1)
+    }
+
+    /// Returns the number of a configuration, or `None` if its matrix was not kept.
+    pub(super) fn own(&self, cell: f64) -> Option<usize> {
+        self.of_cells.get(&cell.to_bits()).copied()
+    }
+}
+
+/// Returns a sentence for each condition: the place where the design that goes furthest has lost half of its accuracy.
+pub(super) fn robustness_words(tables: &[Table]) -> Vec<String> {
+    let of = |file: &str| tables.iter().find(|table| table.file == file);
+    match (of("summary.csv"), of(ROBUSTNESS.name())) {
+        (Some(summary), Some(table)) => sentences(summary, table),
+        _ => Vec::new(),
+    }
+}
+
+fn sentences(summary: &Table, table: &Table) -> Vec<String> {
+    let conditions = table.groups(&["condition", "direction"], 0..table.n_rows);
+    let sentence = |rows: &Vec<usize>| {
+        let (column, _) = summary.column(table.word("condition", rows[0]))?;
+        let at = |row: usize| table.number("half_accuracy_at", row);
+        let found: Vec<usize> = rows
+            .iter()
+            .copied()
+            .filter(|&row| !at(row).is_nan())
+            .collect();
+        let n_kept = rows.len() - found.len();
+        let sign = match table.word("direction", rows[0]) {
+            "smaller" => -1.0,
+            _ => 1.0,
+        };
+        let further = |&a: &usize, &b: &usize| (sign * at(a)).total_cmp(&(sign * at(b)));
+        let furthest = found.into_iter().max_by(further)?;
+        let end = |name: &str| match table.number(name, furthest) {
+            end if end.is_nan() => "beyond the last value".to_owned(),
+            end => column.number_words(three_digits(end)),
+        };
+        let (low, high) = (end("half_accuracy_at_low"), end("half_accuracy_at_high"));
+        let design = match table.word("design", furthest) {
+            "" => String::new(),
+            design => format!(" with {design}"),
+        };
+        let kept = match n_kept {
+            0 => String::new(),
+            n => format!(
+                "; {n} of {} configurations keep more than half up to the last value",
+                rows.len()
+            ),
+        };
+        let place = column.phrase(&Value::Number(three_digits(at(furthest))));
+        Some(format!(
+            "Half of the accuracy above chance is lost at {place} ({low} to {high}){design}{kept}."
+        ))
+    };
+    conditions.iter().filter_map(sentence).collect()
+}
+
+/// Rounds an interpolated value to three digits.
+fn three_digits(value: f64) -> f64 {
+    let digits = 10f64.powi(2 - value.abs().max(f64::MIN_POSITIVE).log10().floor() as i32);
+    (value * digits).round() / digits
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::statistics::interval::Interval;
+    use crate::studies::recognition::rows::cell::Cell;
+    use crate::studies::recognition::rows::cell::tests::cell;
+    use crate::studies::recognition::rows::table_rows::{CellScore, Confusion};
+    use rand_distr::Binomial;
+
+    fn curve(values: &[f64], accuracy: &[f64], n_test: f64, chance: f64) -> Curve {
+        Curve {
+            values: values.to_vec(),
+            accuracy: accuracy.to_vec(),
+            n_test: vec![n_test; values.len()],
+            chance,
+        }
+    }
+
+    /// Returns the table of configurations that differ in C and noise, with ten objects.
+    fn tables_of(accuracies: &[(f64, f64, f64)]) -> (Table, Option<Table>) {
+        let n_test = 1000;
+        let cells = accuracies.iter().enumerate();
+        let cells = cells.map(|(number, &(c, noise_std, accuracy))| {
+            let cell = Cell {
+                cell: number,
+                c: Some(c),
+                noise_std,
+                ..cell()
+            };
+            let n_correct = (accuracy * n_test as f64) as usize;
+            let interval = Interval::wilson(n_correct, n_test, 0.95).unwrap();
+            let score = CellScore {
+                n_trials: 1,
+                n_test,
+                accuracy,
+                accuracy_std: 0.0,
+                accuracy_low: interval.low,
+                accuracy_high: interval.high,
+                n_groups: None,
+                bootstrap_low: None,
+                bootstrap_high: None,
+                macro_f1: accuracy,
+                n_capped: 0,
+            };
+            (cell, score)
+        });
+        let rows = (0..10).map(|object| Confusion {
+            cell: 0,
+            object: format!("object {object}"),
+            predicted: "object 0".to_owned(),
+            count: 1,
+        });
+        let summary = File::<(Cell, CellScore)>::new("summary.csv", "", "");
+        let summary = summary.of(&cells.collect::<Vec<_>>()).unwrap();
+        let confusion = File::<Confusion>::new("confusion.csv", "", "");
+        let confusion = confusion.of(&rows.collect::<Vec<_>>()).unwrap();
+        let robustness = robustness(&summary, &confusion).unwrap();
+        (summary, robustness)
+    }
+
+    #[test]
+    fn a_planted_curve_has_its_half_point_for_each_design() {
+        let planted = [
+            // 0.9 falls by 0.1 for each 0.1 of noise: half-way to chance 0.1 is 0.5, at a noise of 0.4.
+            (1.0, 0.1, 0.8),
+            (1.0, 0.0, 0.9),
+            (1.0, 0.3, 0.6),
+            (1.0, 0.6, 0.3),
+            // Never half-way.
+            (10.0, 0.0, 0.9),
+            (10.0, 0.1, 0.95),
+            (10.0, 0.3, 0.8),
+            (10.0, 0.6, 0.7),
+            // Guesses.
+            (100.0, 0.0, 0.1),
+            (100.0, 0.1, 0.1),
+            (100.0, 0.3, 0.08),
+        ];
+        let (summary, table) = tables_of(&planted);
+        let table = table.unwrap();
+        let words = |column: &str| -> Vec<String> {
+            let rows = 0..table.n_rows;
+            rows.map(|row| table.words(column, row)).collect()
+        };
+        assert_eq!(words("design"), ["C = 1", "C = 10", "C = 10", "C = 100"]);
+        assert_eq!(
+            words("direction"),
+            ["larger", "larger", "smaller", "larger"]
+        );
+        assert_eq!(words("condition"), ["noise std"; 4]);
+        let beyond = "beyond the last value";
+        assert_eq!(words("status"), ["found", beyond, beyond, "all at chance"]);
+        let number = |column: &str, row: usize| table.number(column, row);
+        assert!((number("half_accuracy_at", 0) - 0.4).abs() < 1e-9);
+        let (low, high) = (
+            number("half_accuracy_at_low", 0),
+            number("half_accuracy_at_high", 0),
+        );
+        assert!(
+            0.35 < low && low < 0.39 && 0.41 < high && high < 0.45,
+            "{low} {high}"
+        );
+        assert_eq!((number("clean_at", 0), number("clean_at", 1)), (0.0, 0.1));
+        assert!((number("half_accuracy", 0) - 0.5).abs() < 1e-12);
+        for row in 1..4 {
+            assert!(number("half_accuracy_at", row).is_nan());
+        }
+        assert_eq!((number("end", 2), number("accuracy_at_end", 2)), (0.0, 0.9));
+        let said = robustness_words(&[summary, table]);
+        let start = "Half of the accuracy above chance is lost at noise 40 % (3";
+        assert!(said.len() == 1 && said[0].starts_with(start), "{said:?}");
+        let end = "with C = 1; 2 of 3 configurations keep more than half up to the last value.";
+        assert!(said[0].ends_with(end), "{said:?}");
+        // Two values are joined by any straight line.
+        assert_eq!(tables_of(&planted[..2]).1, None);
+    }
+
+    #[test]
+    fn half_way_lies_on_a_line_between_two_values_on_the_scale_of_the_condition() {
+        // From 0.9 half-way to 0.1: 0.5.
+        let log = curve(&[0.01, 0.1, 1.0, 10.0], &[0.9, 0.7, 0.3, 0.1], 1e6, 0.1);
+        let [at, low, high] = log
+            .half(Direction::Larger, &Seed::new(1))
+            .map(Option::unwrap);
+        assert!((at - 10f64.powf(-0.5)).abs() < 1e-9, "{at}");
+        assert!(low < at && at < high && high < 1.05 * low);
+        let linear = curve(&[1.0, 2.0, 3.0], &[0.1, 0.9, 0.7], 1e6, 0.1);
+        let [at, ..] = linear.half(Direction::Smaller, &Seed::new(1));
+        assert!((at.unwrap() - 1.5).abs() < 1e-9);
+        assert_eq!(linear.half(Direction::Larger, &Seed::new(1)), [None; 3]);
+        // With few test rows the lower end may be known where the place is not.
+        let unsure = curve(&[0.0, 1.0, 2.0], &[0.9, 0.8, 0.55], 12.0, 0.1);
+        let [at, low, high] = unsure.half(Direction::Larger, &Seed::new(1));
+        assert!(at.is_none() && low.unwrap() < 2.0 && high.is_none());
+    }
+
+    #[test]
+    fn the_interval_holds_the_true_place_as_often_as_it_says() {
+        let values: Vec<f64> = (1..10).map(f64::from).collect();
+        let truth = values.iter().map(|x| 0.1 + 0.8 / (1.0 + (x / 5.0).powi(4)));
+        let truth: Vec<f64> = truth.collect();
+        let n = 400;
+        let half = |accuracy: &[f64], seed| {
+            let curve = curve(&values, accuracy, n as f64, 0.1);
+            let half = curve.half(Direction::Larger, &Seed::new(seed));
+            half.map(|place| place.unwrap_or(f64::INFINITY))
+        };
+        let [exact, ..] = half(&truth, 0);
+        let n_cases = 200;
+        let holds = |case: &u64| {
+            let mut rng = Seed::new(9).named("cases").numbered(*case).rng();
+            let mut draw =
+                |&p: &f64| Binomial::new(n, p).unwrap().sample(&mut rng) as f64 / n as f64;
+            let seen: Vec<f64> = truth.iter().map(&mut draw).collect();
+            let [_, low, high] = half(&seen, *case);
+            low <= exact && exact <= high
+        };
+        let share = (0..n_cases).filter(holds).count() as f64 / n_cases as f64;
+        assert!((0.9..=0.995).contains(&share), "{share}");
+    }
+
+    #[test]
+    fn places_and_values_are_inverse_with_a_zero() {
+        let curve = curve(&[0.0, 0.01, 10.0], &[0.9; 3], 1.0, 0.1);
+        for value in [0.0, 1e-3, 0.01, 0.5, 7.0] {
+            assert!((curve.value(curve.place(value)) - value).abs() < 1e-12);
+        }
+        assert_eq!(curve.place(0.0), -ZERO_DECADES);
+    }
+
+    #[test]
+    fn the_width_of_wilsons_interval_gives_its_rows() {
+        for (n_correct, n) in [(50, 100), (100, 100), (299, 320), (0, 7)] {
+            let interval = Interval::wilson(n_correct, n, 0.95).unwrap();
+            let found = rows_of_interval(n_correct as f64 / n as f64, interval.high - interval.low);
+            assert!((found - n as f64).abs() < 1e-6 * n as f64, "{found} {n}");
+        }
+    }
+}
