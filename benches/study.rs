@@ -8,10 +8,10 @@ use bubbletouch::Result;
 use bubbletouch::kinds::recognition::RecognitionStudy;
 use bubbletouch::random::Seed;
 use bubbletouch::study::journal::{Identity, JOURNAL_FILE, Journal};
-use bubbletouch::study::pieces::{
-    NamedPiece, Part, PieceManner, PieceRows, PieceStudy, PiecesLeft, PiecesRun,
-};
 use bubbletouch::study::progress::Silent;
+use bubbletouch::study::work_items::{
+    ItemRows, Part, PendingItems, RunOptions, StudyRun, StudyRunner, WorkItem,
+};
 use bubbletouch::study::{Plan, StudySpec, draw_touches, load_objects};
 use bubbletouch::table::Table;
 use rayon::prelude::*;
@@ -33,7 +33,7 @@ struct Rows {
     rows: Vec<(Row, Row)>,
 }
 
-impl PieceRows for Rows {
+impl ItemRows for Rows {
     fn append(&mut self, next: Self) {
         self.rows.extend(next.rows);
     }
@@ -46,15 +46,15 @@ fn name(number: usize) -> String {
     format!("piece number {number} of a study that does nothing")
 }
 
-impl PieceStudy for Nothing {
+impl StudyRunner for Nothing {
     type Rows = Rows;
 
-    fn pieces(&self) -> Vec<NamedPiece> {
-        let piece = |n| NamedPiece::new(name(n), n);
+    fn work_items(&self) -> Vec<WorkItem> {
+        let piece = |n| WorkItem::new(name(n), n);
         (0..N_PIECES).map(piece).collect()
     }
 
-    fn measure(&self, left: &PiecesLeft<Rows>) -> Result<()> {
+    fn measure(&self, left: &PendingItems<Rows>) -> Result<()> {
         (0..N_PIECES).into_par_iter().try_for_each(|number| {
             left.finish(number, || {
                 let row = Row {
@@ -118,27 +118,27 @@ fn journal(folder: &Path, name: &str) -> Result<Journal> {
     Journal::open(&folder.join(format!("{name}_{JOURNAL_FILE}")), &identity)
 }
 
-fn n_left(study: &impl PieceStudy, journal: &Journal) -> usize {
-    let manner = PieceManner {
+fn n_left(study: &impl StudyRunner, journal: &Journal) -> usize {
+    let manner = RunOptions {
         journal,
-        ..PieceManner::whole(&Silent)
+        ..RunOptions::whole(&Silent)
     };
-    PiecesRun::new(study, &study.pieces(), &manner).n_left()
+    StudyRun::new(study, &study.work_items(), &manner).n_pending()
 }
 
 fn time_pieces(folder: &Path) -> Result<()> {
     for what in ["done and kept", "read and put into rows"] {
         let start = Instant::now();
         let journal = journal(folder, "pieces")?;
-        let manner = PieceManner {
+        let manner = RunOptions {
             journal: &journal,
             fail_fast: false,
             retries: true,
             part: Part::All,
             progress: &Silent,
         };
-        let pieces = Nothing.pieces();
-        let (rows, _) = PiecesRun::new(&Nothing, &pieces, &manner).run()?;
+        let pieces = Nothing.work_items();
+        let (rows, _) = StudyRun::new(&Nothing, &pieces, &manner).run()?;
         journal.sync()?;
         assert_eq!(rows.rows.len(), N_PIECES);
         let seconds = start.elapsed().as_secs_f64();
@@ -163,7 +163,7 @@ fn time_cells(folder: &Path) -> Result<()> {
         "{n_cells} cells of {} classes",
         study.first().touched.class_names().len()
     );
-    let n_items = study.pieces().len();
+    let n_items = study.work_items().len();
     println!("{n_items} work items");
     say("a cell, planned", start.elapsed().as_secs_f64(), n_cells);
     for what in ["done and kept", "read and tabulated"] {
@@ -188,15 +188,15 @@ fn time_cells(folder: &Path) -> Result<()> {
 fn time_run(folder: &Path, study: &RecognitionStudy) -> Result<f64> {
     let start = Instant::now();
     let journal = journal(folder, "cells")?;
-    let manner = PieceManner {
+    let manner = RunOptions {
         journal: &journal,
         fail_fast: false,
         retries: true,
         part: Part::All,
         progress: &Silent,
     };
-    let pieces = study.pieces();
-    let (rows, failures) = PiecesRun::new(study, &pieces, &manner).run()?;
+    let pieces = study.work_items();
+    let (rows, failures) = StudyRun::new(study, &pieces, &manner).run()?;
     assert!(failures.is_empty(), "{:?}", failures[0]);
     let outcome = study.outcome(rows)?;
     journal.sync()?;

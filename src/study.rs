@@ -3,8 +3,7 @@
 
 pub use crate::engine::axis::Axis;
 pub use crate::engine::shard::Shard;
-pub use crate::engine::work_items as pieces;
-pub use crate::engine::{axes, journal, progress, provenance};
+pub use crate::engine::{axes, journal, progress, provenance, work_items};
 pub use crate::inputs::arrays::whole_numbers::KeyValue;
 pub use crate::inputs::content_hash::sha256;
 pub use crate::inputs::memory;
@@ -25,18 +24,17 @@ pub use crate::studies::recognition::exports::feature_files::{
 pub use crate::studies::recognition::exports::touch_files::{
     ReadFrames, TOUCH_FILES, touch_units, write_human_touches, write_touches,
 };
-pub use crate::studies::recognition::frames::FrameFacts;
 pub use crate::studies::recognition::frames::array_press::{ArrayPress, ArrayWorkspace};
 pub use crate::studies::recognition::frames::human_touches::{
     HumanTouches, RecordedTouch, record_touch,
 };
-pub use crate::studies::recognition::frames::kept::Frames;
+pub use crate::studies::recognition::frames::kept::{FrameFacts, Frames};
 pub use crate::studies::recognition::frames::recorded_frames::RecordedFrames;
 pub use crate::studies::recognition::frames::recorded_skin::{RecordedSkinFiles, UntouchedFrames};
-pub use crate::studies::recognition::frames::samples::{Samples, sample_frames};
+pub use crate::studies::recognition::frames::samples::sample_frames;
 pub use crate::studies::recognition::frames::shear_ripple::ShearRipple;
 pub use crate::studies::recognition::frames::simulation::simulate_array;
-pub use crate::studies::recognition::frames::touch_set::TouchSet;
+pub use crate::studies::recognition::frames::touch_set::{Samples, TouchSet};
 pub use crate::studies::recognition::plan::group::Group;
 pub use crate::studies::recognition::plan::plan::Plan;
 pub use crate::studies::recognition::plan::pose_groups::KeepTogether;
@@ -44,7 +42,8 @@ pub use crate::studies::recognition::plan::sensed::Sensed;
 pub use crate::studies::recognition::plan::signal::Condition;
 pub use crate::studies::recognition::plan::taxel_array;
 pub use crate::studies::recognition::spec::pose_split::PoseSplit;
-pub use crate::studies::recognition::spec::{signal::*, study::*};
+pub use crate::studies::recognition::spec::signal::*;
+pub use crate::studies::recognition::spec::study::*;
 pub use crate::studies::recognition::sweep::sweep::{StudyPart, Sweep};
 pub use crate::studies::recognition::touches::drawn_touches::{TouchedObject, draw_touches};
 

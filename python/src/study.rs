@@ -11,9 +11,9 @@ use bubbletouch::report::advice_answers::{answers, answers_json};
 use bubbletouch::report::study_folder::ChartFormat;
 use bubbletouch::shell_line::shell_line;
 use bubbletouch::study::journal::{JOURNAL_FILE, Journal};
-use bubbletouch::study::pieces::{Part, PieceManner};
 use bubbletouch::study::progress::Progress;
 use bubbletouch::study::provenance::Manifest;
+use bubbletouch::study::work_items::{Part, RunOptions};
 use bubbletouch::table::{Data, Table};
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
@@ -111,8 +111,8 @@ fn run(asked: &Asked, told: &Told) -> Result<Vec<Table>> {
     let study = load(&asked.source)?;
     std::fs::create_dir_all(results).map_err(|e| Error::io(results, "create folder", e))?;
     let journal = Journal::open(&results.join(JOURNAL_FILE), study.identity())?;
-    let n_before = study.n_all() - study.n_left(Part::All, &journal);
-    let outcome = study.run(&PieceManner {
+    let n_before = study.n_all() - study.n_pending(Part::All, &journal);
+    let outcome = study.run(&RunOptions {
         journal: &journal,
         fail_fast: true,
         retries: true,

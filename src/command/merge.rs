@@ -3,7 +3,7 @@
 use super::output::output_folder;
 use super::study_run::{RunArgs, StudyRun};
 use bubbletouch::study::journal::{JOURNAL_FILE, Journal};
-use bubbletouch::study::pieces::{Part, PieceManner};
+use bubbletouch::study::work_items::{Part, RunOptions};
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
 
@@ -33,15 +33,15 @@ pub fn merge(args: &Args) -> Result<()> {
         }
     }
     journal.sync()?;
-    let (n_all, n_left) = (study.n_all(), study.n_left(Part::All, &journal));
-    if n_left > 0 {
+    let (n_all, n_pending) = (study.n_all(), study.n_pending(Part::All, &journal));
+    if n_pending > 0 {
         return Err(Error::input(
             folder.display(),
-            format!("{n_left} of {n_all} work items are in none of the {n_journals} journals"),
+            format!("{n_pending} of {n_all} work items are in none of the {n_journals} journals"),
             "the journals of all shards, each run to its end (or bubbletouch run, which does here what is left)",
         ));
     }
-    let outcome = study.run(&PieceManner {
+    let outcome = study.run(&RunOptions {
         journal: &journal,
         fail_fast: false,
         // Items that failed in every shard run again.

@@ -6,8 +6,8 @@ use super::study_args::StudyArgs;
 use bubbletouch::kinds::AnyStudy;
 use bubbletouch::report::run_clock::RunClock;
 
-use bubbletouch::study::pieces::PieceManner;
 use bubbletouch::study::progress::Progress;
+use bubbletouch::study::work_items::RunOptions;
 use bubbletouch::{Error, Result};
 use bubbletouch_sim::spelling::duration;
 use std::sync::mpsc::{self, RecvTimeoutError};
@@ -67,7 +67,7 @@ fn sample(study: Box<dyn AnyStudy>, seconds: f64) -> Result<String> {
     let (sender, ended) = mpsc::channel();
     let progress = sample.clone();
     thread::spawn(move || {
-        let outcome = study.run(&PieceManner::whole(progress.as_ref()));
+        let outcome = study.run(&RunOptions::whole(progress.as_ref()));
         // Nobody listens any more once the sample is over.
         let _ = sender.send(outcome.map(drop));
     });

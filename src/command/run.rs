@@ -6,7 +6,7 @@ use super::study_run::{RunArgs, StudyRun};
 use bubbletouch::kinds::AnyStudy;
 use bubbletouch::study::Shard;
 use bubbletouch::study::journal::{JOURNAL_FILE, Journal, set_aside};
-use bubbletouch::study::pieces::{Part, PieceManner};
+use bubbletouch::study::work_items::{Part, RunOptions};
 use bubbletouch::{Error, Result};
 use std::path::Path;
 use std::sync::Arc;
@@ -38,12 +38,12 @@ pub fn run(args: &Args) -> Result<()> {
     }
     let journal = open_journal(args, &run)?;
     let n_all = study.n_all();
-    let n_before = n_all - study.n_left(Part::All, &journal);
+    let n_before = n_all - study.n_pending(Part::All, &journal);
     if n_before > 0 {
         let going_on = format!("going on: {n_before} of {n_all} work items were finished before");
         progress.finish(&going_on);
     }
-    let outcome = study.run(&PieceManner {
+    let outcome = study.run(&RunOptions {
         journal: &journal,
         fail_fast: args.fail_fast,
         retries: true,
@@ -90,5 +90,5 @@ fn is_interrupted(study: &dyn AnyStudy, journal: &Path) -> bool {
     let Ok(Some((begun, journal))) = Journal::read(journal) else {
         return false;
     };
-    begun.differences(study.identity()).is_empty() && study.n_left(Part::All, &journal) > 0
+    begun.differences(study.identity()).is_empty() && study.n_pending(Part::All, &journal) > 0
 }

@@ -7,7 +7,7 @@ use super::study_run::ResultsArgs;
 use bubbletouch::kinds::{self, AnyStudy};
 use bubbletouch::shell_line::shell_line;
 use bubbletouch::study::journal::{JOURNAL_FILE, Journal};
-use bubbletouch::study::pieces::Part;
+use bubbletouch::study::work_items::Part;
 use bubbletouch::study::{Shard, sha256};
 use bubbletouch::{Error, Result};
 use std::path::Path;

@@ -64,3 +64,8 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for AxisVisitor<T> {
         Vec::deserialize(SeqAccessDeserializer::new(values)).map(Axis::Many)
     }
 }
+
+/// An axis of the number one.
+pub(crate) fn one_value() -> Axis<usize> {
+    Axis::One(1)
+}

@@ -2,6 +2,7 @@
 
 use crate::contact::Instructions;
 use crate::engine::journal::identity::Identity;
+pub use crate::engine::program::{PROGRAM, SOURCE};
 use crate::error::{Error, Result};
 use chrono::{DateTime, SecondsFormat, Utc};
 use serde::{Deserialize, Serialize};
@@ -9,12 +10,6 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
-
-/// Program and version.
-pub const PROGRAM: &str = concat!("bubbletouch ", env!("CARGO_PKG_VERSION"));
-
-/// Hash of the sources that the program was built from: equal hashes, equal results.
-pub const SOURCE: &str = env!("BUBBLETOUCH_SOURCE");
 
 /// The commit at which sources last changed, `-changed` if they were not those of it, `unknown` outside a repository.
 const COMMIT: &str = env!("BUBBLETOUCH_COMMIT");

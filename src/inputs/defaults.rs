@@ -9,3 +9,7 @@ pub(crate) fn number<const N: u32>() -> f64 {
 pub(crate) fn count<const N: usize>() -> usize {
     N
 }
+
+pub(crate) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}

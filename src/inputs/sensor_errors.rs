@@ -1,7 +1,7 @@
 //! Sensor errors as a study has them: their strengths, and which skin tests.
 
 use crate::random::Seed;
-use crate::signal::{MOST_STRENGTHS, SENSOR_ERRORS, SensorError, SignalStep, Strength};
+use crate::signal::{MOST_STRENGTHS, NoiseUnit, SENSOR_ERRORS, SensorError, SignalStep, Strength};
 use crate::table::{Column, Role, Scale};
 use serde::{Deserialize, Serialize};
 use std::sync::LazyLock;
@@ -93,6 +93,13 @@ impl Strengths {
         error.step(&strengths, *skin)
     }
 }
+
+/// What noise is measured in.
+pub(crate) const NOISES: [(&str, NoiseUnit); 3] = [
+    ("noise_std_full_scale", NoiseUnit::FullScale),
+    ("noise_std_mm", NoiseUnit::Mm),
+    ("noise_std_n", NoiseUnit::N),
+];
 
 #[cfg(test)]
 mod tests {

@@ -3,8 +3,7 @@
 
 use crate::error::{Error, Result};
 use crate::report::swept::{Setting, Swept};
-use crate::table::column_name;
-use crate::table::{Better, Column, Role, Scale, Table, Value, front};
+use crate::table::{Better, Column, Role, Scale, Table, Value, column_name, front};
 use std::collections::HashSet;
 
 /// A column that is sought in tables.

@@ -373,3 +373,13 @@ fn marker_outline(shape: usize, (x, y): Point, radius: f64) -> Vec<Point> {
     };
     (0..corners).map(corner).collect()
 }
+
+impl Picture {
+    /// Prints a drawing of its size on it: what is white in the drawing stays as it is.
+    pub(crate) fn print(&mut self, drawing: &Drawing) -> Result<()> {
+        for (value, ink) in self.rgb.iter_mut().zip(drawing.pixels(1)?.rgb) {
+            *value = (*value).min(ink);
+        }
+        Ok(())
+    }
+}

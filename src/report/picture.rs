@@ -1,7 +1,6 @@
 //! A picture of pixels, and the PNG file that holds it.
 
 use crate::error::{Error, Result};
-use crate::report::drawing::Drawing;
 
 /// Brightness of blank paper, 0 to 255.
 pub(crate) const BACKGROUND: u8 = 250;
@@ -75,14 +74,6 @@ impl Picture {
         }
         let rgb = [BACKGROUND; 3].repeat(width * height);
         Ok(Self { width, height, rgb })
-    }
-
-    /// Prints a drawing of its size on it: what is white in the drawing stays as it is.
-    pub(crate) fn print(&mut self, drawing: &Drawing) -> Result<()> {
-        for (value, ink) in self.rgb.iter_mut().zip(drawing.pixels(1)?.rgb) {
-            *value = (*value).min(ink);
-        }
-        Ok(())
     }
 
     /// Copies another picture to a place from the top left corner, as far as it is on the paper.

@@ -2,57 +2,13 @@
 
 use crate::error::Result;
 use crate::report::chart;
+pub use crate::report::chart_format::ChartFormat;
 use crate::report::folder::NamedFile;
-use crate::report::page::{Beside, Section, StudyAbout, study_page};
+use crate::report::page::{Beside, StudyAbout, study_page};
+pub use crate::report::study_content::{Beyond, Found, NamedPicture};
 use crate::report::terminal::{paragraph, table_text};
 use crate::table::{ChartSpec, Role, Table};
 use rayon::prelude::*;
-use serde::Deserialize;
-
-/// A picture that is no chart: frames, bodies, objects.
-pub struct NamedPicture {
-    /// File name without ending.
-    pub name: String,
-    /// What it shows, in words.
-    pub title: String,
-    /// A PNG file's bytes.
-    pub png: Vec<u8>,
-    /// Width and height in the page, pixels.
-    pub size: (usize, usize),
-}
-
-/// What a study found, for whoever shows it.
-#[derive(Clone, Copy)]
-pub struct Found<'a> {
-    /// All tables.
-    pub tables: &'a [Table],
-    /// What is charted, the most telling first.
-    pub charts: &'a [ChartSpec],
-    /// What was found, in sentences.
-    pub answers: &'a [String],
-}
-
-/// What a folder has beside tables, charts and answers.
-#[derive(Default)]
-pub struct Beyond {
-    /// Pictures that are no charts.
-    pub pictures: Vec<NamedPicture>,
-    /// Sections of the page.
-    pub sections: Vec<Section>,
-}
-
-/// File formats of charts. Pictures of frames and objects are PNG files in every case.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ChartFormat {
-    /// SVG files, about a fifth of the size of PNG files.
-    #[default]
-    Svg,
-    /// PNG files with two pixels per unit of the SVG file.
-    Png,
-    /// Both files for each chart.
-    Both,
-}
 
 /// Charts that are drawn, unless all are asked for, and charts in the page. With more, the page is too large for a phone and drawing takes
 /// minutes.

@@ -76,6 +76,7 @@ mod robot_state;
 mod simulation;
 mod skin_state;
 mod spec;
+pub(crate) mod spec_motion;
 mod spec_object;
 mod spec_patch;
 mod summary;

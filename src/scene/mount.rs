@@ -3,9 +3,10 @@
 use super::plan_robot::PlannedRobot;
 use super::reader::Reader;
 use super::robot_state::RobotState;
-use super::spec::{ObjectSpec, PatchSpec, PoseSpec};
+use super::spec::{ObjectSpec, PatchSpec};
 use crate::error::Result;
 use crate::geometry::Pose;
+use crate::scene::spec_motion::PoseSpec;
 
 /// What carries something.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,8 +1,9 @@
 //! Robots of a scene, their motions checked.
 
 use super::reader::Reader;
-use super::spec::{JointsSpec, RobotSpec};
+use super::spec::RobotSpec;
 use crate::error::Result;
+use crate::scene::spec_motion::JointsSpec;
 use crate::spelling::nearest_names;
 use crate::world::{Joint, JointTrajectory, Motion, Robot};
 use ndarray::Array2;

@@ -5,11 +5,10 @@ use super::reader::{MM, Reader};
 use super::spec::SignalStepSpec;
 use crate::error::Result;
 use crate::inputs::check::not_negative;
-use crate::inputs::sensor_errors::all_strengths;
+use crate::inputs::sensor_errors::{NOISES, all_strengths};
 use crate::random::Seed;
 use crate::signal::{Chain, MOST_STRENGTHS, Noise, Quantity, Recording, Scratch, SignalStep};
 use crate::spelling::nearest_names;
-use crate::studies::recognition::spec::signal::NOISES;
 use crate::world::Patch;
 use std::collections::BTreeMap;
 

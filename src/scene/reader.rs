@@ -1,11 +1,12 @@
 //! What all parts of a plan need: errors with file and key, poses, motions, files beside the scene's.
 
-use super::spec::{MotionSpec, PlaneSpec, PoseSpec};
+use super::spec::PlaneSpec;
 use crate::contact::balance::HalfSpace;
 use crate::error::Result;
 use crate::geometry::{Pose, rotation_from_rpy};
 use crate::inputs::check::{Check, not_negative};
 use crate::objects::Model;
+use crate::scene::spec_motion::{MotionSpec, PoseSpec};
 use crate::spelling::known;
 use crate::world::{Motion, Phase, PoseTrajectory, VelocityPlan};
 use glam::DVec3;

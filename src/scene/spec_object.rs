@@ -1,10 +1,10 @@
 //! Objects as they are written: `[[objects]]`.
 
 use super::numbers::Numbers;
-use super::spec::{MotionSpec, PoseSpec};
 use crate::file_path::FilePath;
 use crate::inputs::objects_spec::ModelSpec;
 use crate::mesh::LengthUnit;
+use crate::scene::spec_motion::{MotionSpec, PoseSpec};
 use serde::{Deserialize, Serialize};
 
 /// `[[objects]]`: what is touched.

@@ -1,9 +1,9 @@
 //! Skin as it is written: `[[patches]]`.
 
 use super::numbers::Numbers;
-use super::spec::PoseSpec;
 use crate::file_path::FilePath;
 use crate::mesh::LengthUnit;
+use crate::scene::spec_motion::PoseSpec;
 use crate::world::ShapeRole;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

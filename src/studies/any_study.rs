@@ -4,10 +4,10 @@ use crate::engine::journal::identity::Identity;
 use crate::engine::journal::journal_file::Journal;
 use crate::engine::progress::Progress;
 use crate::engine::provenance::Manifest;
-use crate::engine::work_items::study_runner::{Part, PieceManner};
+use crate::engine::work_items::run_options::{Part, RunOptions};
 use crate::error::Result;
+use crate::report::chart_format::ChartFormat;
 use crate::report::page::StudyAbout;
-use crate::report::study_folder::ChartFormat;
 use crate::table::Table;
 use std::path::Path;
 
@@ -26,7 +26,7 @@ pub trait AnyStudy: Send {
     fn plan(&self) -> Result<String>;
 
     /// Of a part, those of which a journal does not say what came of them.
-    fn n_left(&self, part: Part, journal: &Journal) -> usize;
+    fn n_pending(&self, part: Part, journal: &Journal) -> usize;
 
     /// Returns the number of work items in `part` that have not succeeded according to the journal.
     fn n_without_success(&self, part: Part, journal: &Journal) -> usize;
@@ -35,7 +35,7 @@ pub trait AnyStudy: Send {
     ///
     /// # Errors
     /// The journal cannot be written; what an item fails of, if the first to fail ends the run; too little memory for any item.
-    fn run(&self, manner: &PieceManner) -> Result<Outcome>;
+    fn run(&self, options: &RunOptions) -> Result<Outcome>;
 
     /// Writes tables, charts and page, the study and the manifest, of which what is known of the run is given.
     ///

@@ -1,10 +1,11 @@
 //! What a kind of study says of itself.
 
 use crate::engine::work_items::scale::Scale;
-use crate::engine::work_items::study_runner::PieceStudy;
+use crate::engine::work_items::study_runner::StudyRunner;
 use crate::error::Result;
 use crate::report::page::Section;
-use crate::report::study_folder::{NamedPicture, first_found, words_of};
+use crate::report::study_content::NamedPicture;
+use crate::report::study_folder::{first_found, words_of};
 use crate::studies::source::Source;
 use crate::table::{ChartSpec, Columns, File, Table};
 use crate::toml_text;
@@ -99,11 +100,11 @@ impl<R: Columns> AnyFile for File<R> {
 pub type Files = &'static [&'static dyn AnyFile];
 
 /// A kind of study. The engine does all else: it runs, keeps, resumes, deals out, merges, plans, verifies and reports it.
-pub trait Kind: Send + PieceStudy + Findings + Sized + Sync + 'static {
+pub trait Kind: Send + StudyRunner + Findings + Sized + Sync + 'static {
     /// Which it is.
     const ABOUT: About;
 
-    /// The files of [`PieceStudy::tables`].
+    /// The files of [`StudyRunner::tables`].
     const FILES: Files = &[];
 
     /// Those behind them, of parts that a study may leave out.
@@ -130,7 +131,7 @@ pub trait Kind: Send + PieceStudy + Findings + Sized + Sync + 'static {
     /// How large it is.
     fn scale(&self) -> Scale;
 
-    /// The tables of [`PieceStudy::tables`], from the files of a folder; those of parts that a study may leave out, where there are any.
+    /// The tables of [`StudyRunner::tables`], from the files of a folder; those of parts that a study may leave out, where there are any.
     ///
     /// # Errors
     /// A table that cannot be read, or has other columns.

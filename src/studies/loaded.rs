@@ -2,17 +2,22 @@
 
 use crate::engine::journal::identity::Identity;
 use crate::engine::journal::journal_file::Journal;
+use crate::engine::program::PROGRAM;
 use crate::engine::progress::{Progress, Silent};
-use crate::engine::provenance::{Manifest, PROGRAM, REPORT};
-use crate::engine::work_items::NamedPiece;
-use crate::engine::work_items::study_runner::{Part, PieceFailure, PieceManner, PiecesRun};
+use crate::engine::provenance::{Manifest, REPORT};
+use crate::engine::work_items::run_options::{Part, RunOptions};
+use crate::engine::work_items::study_runner::{ItemFailure, StudyRun};
+use crate::engine::work_items::work_item::WorkItem;
 use crate::error::Result;
 use crate::files::{DataFolder, MANIFEST_FILE, OwnedFiles, RUN};
 use crate::inputs::content_hash::sha256;
-use crate::report::csv_tables::FAILURES_FILE;
+use crate::random::Seed;
+use crate::report::chart_format::ChartFormat;
+use crate::report::csv_tables::{FAILURES_FILE, read_rows};
 use crate::report::folder::{NamedFile, table_files, write_files};
 use crate::report::page::StudyAbout;
-use crate::report::study_folder::{Beyond, ChartFormat, Found, files_with};
+use crate::report::study_content::{Beyond, Found};
+use crate::report::study_folder::files_with;
 use crate::studies::any_study::{AnyStudy, Outcome};
 use crate::studies::ceiling::{threads_within, within_memory};
 use crate::studies::kind::{Facts, Kind};
@@ -20,18 +25,19 @@ use crate::studies::source::Source;
 use crate::studies::verified::same_rows;
 use crate::table::{File, Table};
 use crate::toml_numbers::with_line;
+use rand::seq::SliceRandom;
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Work items that failed.
-pub(super) const FAILURES: File<PieceFailure> =
-    File::new(FAILURES_FILE, "What failed, and why", "");
+pub(super) const FAILURES: File<ItemFailure> = File::new(FAILURES_FILE, "What failed, and why", "");
 
 /// A study that is read and checked, and what its results depend on.
 pub struct Loaded<K> {
     pub(super) kind: K,
     facts: Facts,
     identity: Identity,
-    pub(super) pieces: Vec<NamedPiece>,
+    pub(super) items: Vec<WorkItem>,
     /// Most bytes to hold.
     memory: Option<u64>,
 }
@@ -49,7 +55,7 @@ impl<K: Kind> Loaded<K> {
         let (toml, content) = (facts.toml.clone(), facts.content.clone());
         Ok(Self {
             identity: Identity::new(toml, content, K::ABOUT.may_change),
-            pieces: kind.pieces(),
+            items: kind.work_items(),
             memory: source.memory,
             facts,
             kind,
@@ -58,13 +64,13 @@ impl<K: Kind> Loaded<K> {
 
     /// Returns the number of work items that a run does; with `retries` also those that failed.
     fn n_to_run(&self, part: Part, journal: &Journal, retries: bool) -> usize {
-        let manner = PieceManner {
+        let options = RunOptions {
             journal,
             part,
             retries,
-            ..PieceManner::whole(&Silent)
+            ..RunOptions::whole(&Silent)
         };
-        PiecesRun::new(&self.kind, &self.pieces, &manner).n_left()
+        StudyRun::new(&self.kind, &self.items, &options).n_pending()
     }
 
     /// Charts, pictures and page, for a folder, with what is known of its run: nothing is written yet.
@@ -97,17 +103,17 @@ impl<K: Kind> AnyStudy for Loaded<K> {
     }
 
     fn n_all(&self) -> usize {
-        self.pieces.len()
+        self.items.len()
     }
 
     fn plan(&self) -> Result<String> {
         let scale = self.kind.scale();
         let n_threads = threads_within(&scale, self.memory)?;
-        let lines = scale.describe(self.pieces.len(), n_threads);
+        let lines = scale.describe(self.items.len(), n_threads);
         Ok(format!("{}\n{lines}", self.facts.question))
     }
 
-    fn n_left(&self, part: Part, journal: &Journal) -> usize {
+    fn n_pending(&self, part: Part, journal: &Journal) -> usize {
         self.n_to_run(part, journal, false)
     }
 
@@ -115,10 +121,10 @@ impl<K: Kind> AnyStudy for Loaded<K> {
         self.n_to_run(part, journal, true)
     }
 
-    fn run(&self, manner: &PieceManner) -> Result<Outcome> {
+    fn run(&self, options: &RunOptions) -> Result<Outcome> {
         let (finished, mut tables) = within_memory(&self.kind.scale(), self.memory, || {
-            let pieces = PiecesRun::new(&self.kind, &self.pieces, manner);
-            let (rows, failures) = pieces.run()?;
+            let items = StudyRun::new(&self.kind, &self.items, options);
+            let (rows, failures) = items.run()?;
             Ok((failures, self.kind.tables(rows)?))
         })?;
         tables.push(FAILURES.of(&finished)?);
@@ -142,7 +148,7 @@ impl<K: Kind> AnyStudy for Loaded<K> {
         let words = |&(columns, method): &(&str, &str)| (columns.to_owned(), method.to_owned());
         let manifest = Manifest {
             seed: self.facts.seed,
-            n_cells: self.pieces.len(),
+            n_cells: self.items.len(),
             n_trials: 1,
             n_failed: outcome.n_failed,
             tables_sha256: hashes(true),
@@ -176,21 +182,21 @@ impl<K: Kind> AnyStudy for Loaded<K> {
         progress: &dyn Progress,
     ) -> Result<String> {
         let chosen = self.drawn(folder, (n, draw))?;
-        let manner = PieceManner {
+        let options = RunOptions {
             part: Part::Only(&chosen),
-            ..PieceManner::whole(progress)
+            ..RunOptions::whole(progress)
         };
         let again = within_memory(&self.kind.scale(), self.memory, || {
-            let run = PiecesRun::new(&self.kind, &self.pieces, &manner);
+            let run = StudyRun::new(&self.kind, &self.items, &options);
             self.kind.tables(run.run()?.0)
         })?;
         progress.finish("");
-        let is_whole = chosen.len() == self.pieces.len();
+        let is_whole = chosen.len() == self.items.len();
         let n_rows = same_rows(folder, &again, is_whole)?;
         Ok(format!(
             "{} of {} work items ran again, and {n_rows} rows without times are the same bytes",
             chosen.len(),
-            self.pieces.len(),
+            self.items.len(),
         ))
     }
 
@@ -246,4 +252,19 @@ fn write_results(
     files.extend(of_run);
     files.extend(page);
     write_files(folder, files).map(drop)
+}
+
+impl<K: Kind> Loaded<K> {
+    /// Numbers of some of the items of a folder that did not fail: how many, drawn from a seed.
+    pub(crate) fn drawn(&self, folder: &Path, (n, seed): (usize, u64)) -> Result<BTreeSet<usize>> {
+        let failed: Vec<ItemFailure> = read_rows(&folder.join(FAILURES_FILE))?;
+        let has_failed = |number: usize| {
+            let words = || self.kind.words(number, &self.items[number]);
+            failed.iter().any(|row| row.work_item == words())
+        };
+        let numbers = (0..self.items.len()).filter(|&number| !has_failed(number));
+        let mut rng = Seed::new(seed).named("verify").rng();
+        let numbers: Vec<usize> = numbers.collect();
+        Ok(numbers.choose_multiple(&mut rng, n).copied().collect())
+    }
 }

@@ -1,30 +1,9 @@
 //! Work items that run again beside the rows that stand in a folder.
 
-use crate::engine::work_items::study_runner::PieceFailure;
 use crate::error::{Error, Result};
-use crate::random::Seed;
-use crate::report::csv_tables::{FAILURES_FILE, read_rows};
-use crate::studies::kind::Kind;
-use crate::studies::loaded::Loaded;
 use crate::table::Table;
-use rand::seq::SliceRandom;
 use std::collections::BTreeSet;
 use std::path::Path;
-
-impl<K: Kind> Loaded<K> {
-    /// Numbers of some of the items of a folder that did not fail: how many, drawn from a seed.
-    pub(super) fn drawn(&self, folder: &Path, (n, seed): (usize, u64)) -> Result<BTreeSet<usize>> {
-        let failed: Vec<PieceFailure> = read_rows(&folder.join(FAILURES_FILE))?;
-        let has_failed = |number: usize| {
-            let words = || self.kind.words(number, &self.pieces[number]);
-            failed.iter().any(|row| row.work_item == words())
-        };
-        let numbers = (0..self.pieces.len()).filter(|&number| !has_failed(number));
-        let mut rng = Seed::new(seed).named("verify").rng();
-        let numbers: Vec<usize> = numbers.collect();
-        Ok(numbers.choose_multiple(&mut rng, n).copied().collect())
-    }
-}
 
 /// Returns how many rows without times stand in a folder as they came out again. If `is_whole`, all work items ran again, and whole tables
 /// are compared: a row more or less, or a summary that differs, is noticed.

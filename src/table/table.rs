@@ -2,7 +2,7 @@
 
 use super::{Better, Column, Role, Scale};
 use crate::error::{Error, Result};
-use serde::Serialize;
+use crate::table::value::Value;
 use std::collections::HashMap;
 use std::fmt;
 use std::path::Path;
@@ -42,16 +42,6 @@ pub enum Data {
         /// Of each row.
         codes: Vec<u32>,
     },
-}
-
-/// A value of a row.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(untagged)]
-pub enum Value {
-    /// A number.
-    Number(f64),
-    /// A word.
-    Word(String),
 }
 
 impl From<f64> for Value {

@@ -5,9 +5,9 @@ use crate::study::{self, Study};
 use bubbletouch::kinds::recognition::RecognitionStudy;
 use bubbletouch::report::folder::{table_files, write_files};
 use bubbletouch::studies::recognition::charts::{read_tables, tables_of};
-use bubbletouch::study::pieces::PieceStudy;
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::table::{Tables, TrialScore};
+use bubbletouch::study::work_items::StudyRunner;
 use bubbletouch::study::{Plan, StudySpec};
 
 const REST: &str = r#"
@@ -110,7 +110,7 @@ fn an_axis_with_more_values_leaves_the_names_of_what_was_done() {
         let axes = format!(
             "touches.depth_mm = {depths}\nskin.stroke_mm = [5.0]\nrecognition.classifier = [\"k_nearest\"]"
         );
-        let pieces = laid_out(&with_axes(&axes)).pieces();
+        let pieces = laid_out(&with_axes(&axes)).work_items();
         pieces
             .into_iter()
             .map(|piece| piece.name)

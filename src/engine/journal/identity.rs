@@ -33,8 +33,8 @@ impl Identity {
         may_change: &'static [&'static str],
     ) -> Self {
         Self {
-            program: crate::engine::provenance::PROGRAM.to_owned(),
-            source: crate::engine::provenance::SOURCE.to_owned(),
+            program: crate::engine::program::PROGRAM.to_owned(),
+            source: crate::engine::program::SOURCE.to_owned(),
             study,
             objects,
             may_change,

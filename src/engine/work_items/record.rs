@@ -1,29 +1,29 @@
-//! What a journal keeps of a piece.
+//! What a journal keeps of a item.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 /// Rows of a study's tables, and what else its tables are made of. A journal has them as JSON: numbers that may be infinite say
 /// `#[serde(with = "any_number")]`.
-pub trait PieceRows: Default + Serialize + DeserializeOwned + Send {
-    /// Puts the rows of the next piece behind those that are there.
+pub trait ItemRows: Default + Serialize + DeserializeOwned + Send {
+    /// Puts the rows of the next item behind those that are there.
     fn append(&mut self, next: Self);
 }
 
-impl<R: Serialize + DeserializeOwned + Send> PieceRows for Vec<R> {
+impl<R: Serialize + DeserializeOwned + Send> ItemRows for Vec<R> {
     fn append(&mut self, next: Self) {
         self.extend(next);
     }
 }
 
-impl<A: PieceRows, B: PieceRows> PieceRows for (A, B) {
+impl<A: ItemRows, B: ItemRows> ItemRows for (A, B) {
     fn append(&mut self, next: Self) {
         self.0.append(next.0);
         self.1.append(next.1);
     }
 }
 
-impl<A: PieceRows, B: PieceRows, C: PieceRows> PieceRows for (A, B, C) {
+impl<A: ItemRows, B: ItemRows, C: ItemRows> ItemRows for (A, B, C) {
     fn append(&mut self, next: Self) {
         self.0.append(next.0);
         self.1.append(next.1);
@@ -31,15 +31,16 @@ impl<A: PieceRows, B: PieceRows, C: PieceRows> PieceRows for (A, B, C) {
     }
 }
 
-/// What came of a piece: rows, or what went wrong.
-pub type PieceResult<R> = std::result::Result<R, String>;
+/// What came of a item: rows, or what went wrong.
+pub type ItemResult<R> = std::result::Result<R, String>;
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::engine::journal::identity::Identity;
     use crate::engine::journal::journal_file::{JOURNAL_FILE, Journal};
-    use crate::engine::work_items::{NamedPiece, any_number};
+    use crate::engine::work_items::any_number;
+    use crate::engine::work_items::work_item::WorkItem;
     use rand::{Rng, SeedableRng};
     use rand_chacha::ChaCha8Rng;
     use serde::Deserialize;
@@ -57,7 +58,7 @@ mod tests {
         rows: Vec<(Row, Row)>,
     }
 
-    impl PieceRows for Rows {
+    impl ItemRows for Rows {
         fn append(&mut self, next: Self) {
             self.rows.extend(next.rows);
         }
@@ -95,26 +96,24 @@ mod tests {
         let path = folder.path().join(JOURNAL_FILE);
         let identity = Identity::new("a = 1".to_owned(), Default::default(), &[]);
         let journal = Journal::open(&path, &identity).unwrap();
-        let piece = |name: &str| NamedPiece::new(name.to_owned(), 0);
-        let keep =
-            |name: &str, result: PieceResult<Rows>| journal.keep(&piece(name).key(), &result);
+        let item = |name: &str| WorkItem::new(name.to_owned(), 0);
+        let keep = |name: &str, result: ItemResult<Rows>| journal.keep(&item(name).key(), &result);
         keep("one", Ok(rows.clone())).unwrap();
         keep("two", Err("no\nroom".to_owned())).unwrap();
         drop(journal);
         let journal = Journal::open(&path, &identity).unwrap();
-        let in_journal =
-            |piece: NamedPiece| -> Option<PieceResult<Rows>> { journal.get(&piece.key()) };
-        let back = in_journal(piece("one")).unwrap().unwrap();
+        let in_journal = |item: WorkItem| -> Option<ItemResult<Rows>> { journal.get(&item.key()) };
+        let back = in_journal(item("one")).unwrap().unwrap();
         assert_eq!(back.rows[..500], rows.rows[..500]);
         let bits = |rows: &Rows| -> Vec<Option<u64>> {
             let numbers = rows.rows.iter().map(|(row, _)| row.other);
             numbers.map(|number| number.map(f64::to_bits)).collect()
         };
         assert_eq!(bits(&back), bits(&rows));
-        let failed = in_journal(piece("two"));
+        let failed = in_journal(item("two"));
         assert_eq!(failed, Some(Err("no\nroom".to_owned())));
-        assert_eq!(in_journal(piece("three")), None);
-        let of_more = piece("one").made_of("more");
+        assert_eq!(in_journal(item("three")), None);
+        let of_more = item("one").made_of("more");
         assert_eq!(in_journal(of_more), None);
     }
 }

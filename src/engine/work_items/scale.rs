@@ -1,4 +1,4 @@
-//! How large a study of pieces is, told before it runs.
+//! How large a study of items is, told before it runs.
 
 use crate::inputs::memory::Bytes;
 use crate::spelling::counted;

@@ -1,131 +1,90 @@
-//! Runs a study piece by piece.
+//! Runs a study item by item.
 
-use crate::engine::journal::journal_file::Journal;
 use crate::engine::progress::Progress;
-use crate::engine::shard::Shard;
-use crate::engine::work_items::NamedPiece;
-use crate::engine::work_items::pending::PiecesLeft;
-use crate::engine::work_items::record::{PieceResult, PieceRows};
+use crate::engine::work_items::pending::PendingItems;
+use crate::engine::work_items::record::{ItemResult, ItemRows};
+use crate::engine::work_items::run_options::{Part, RunOptions};
+use crate::engine::work_items::work_item::WorkItem;
 use crate::error::Result;
 use crate::row;
 use crate::table::Table;
-use std::collections::BTreeSet;
 
-/// A study that is ready to run, in pieces.
-pub trait PieceStudy {
-    /// What a piece finds.
-    type Rows: PieceRows;
-    /// All pieces, in the order of their rows.
-    fn pieces(&self) -> Vec<NamedPiece>;
+/// A study that is ready to run, in items.
+pub trait StudyRunner {
+    /// What a item finds.
+    type Rows: ItemRows;
+    /// All items, in the order of their rows.
+    fn work_items(&self) -> Vec<WorkItem>;
 
-    /// Does every piece that is left, in any order and on any threads; what several need is made for those that are left only.
+    /// Does every item that is left, in any order and on any threads; what several need is made for those that are left only.
     ///
     /// # Errors
-    /// Those of [`PiecesLeft::finish`]; what no piece can do without.
-    fn measure(&self, left: &PiecesLeft<Self::Rows>) -> Result<()>;
+    /// Those of [`PendingItems::finish`]; what no item can do without.
+    fn measure(&self, left: &PendingItems<Self::Rows>) -> Result<()>;
 
-    /// Gives the rows of a piece, by its number, what its place among all pieces decides, such as numbers of cells: rows that the journal has
+    /// Gives the rows of a item, by its number, what its place among all items decides, such as numbers of cells: rows that the journal has
     /// may be of a study with other axes.
     fn place(&self, _number: usize, _rows: &mut Self::Rows) {}
 
-    /// A piece in words, by its number: for failures.
-    fn words(&self, _number: usize, piece: &NamedPiece) -> String {
-        piece.name.clone()
+    /// A item in words, by its number: for failures.
+    fn words(&self, _number: usize, item: &WorkItem) -> String {
+        item.name.clone()
     }
 
-    /// The tables of the rows of all pieces, but for those that failed.
+    /// The tables of the rows of all items, but for those that failed.
     ///
     /// # Errors
     /// A file that tables need cannot be read.
     fn tables(&self, rows: Self::Rows) -> Result<Vec<Table>>;
 }
 
-/// Which pieces of a study a run does.
-#[derive(Clone, Copy, Debug)]
-pub enum Part<'a> {
-    /// All.
-    All,
-    /// One of several equal parts.
-    Shard(Shard),
-    /// Those of these numbers.
-    Only(&'a BTreeSet<usize>),
-}
-
-/// How a run goes about its pieces.
-#[derive(Clone, Copy)]
-pub struct PieceManner<'a> {
-    /// Where finished pieces are looked for and kept.
-    pub journal: &'a Journal,
-    /// Whether the first piece that fails ends the run.
-    pub fail_fast: bool,
-    /// Whether pieces that failed in an earlier run are tried again.
-    pub retries: bool,
-    /// Which pieces to do.
-    pub part: Part<'a>,
-    /// What is told how far the run is.
-    pub progress: &'a dyn Progress,
-}
-
 row! {
-/// A piece that failed: a row of `failures.csv`.
-pub struct PieceFailure {
-    /// The piece, in words.
+/// A item that failed: a row of `failures.csv`.
+pub struct ItemFailure {
+    /// The item, in words.
     work_item: String => Subject "work item";
     /// What went wrong.
     error: String => Note;
 } }
 
-impl<'a> PieceManner<'a> {
-    /// All at once; nothing is kept, and the first piece that fails ends the run.
-    pub fn whole(progress: &'a dyn Progress) -> Self {
-        Self {
-            journal: Journal::none(),
-            fail_fast: true,
-            retries: false,
-            part: Part::All,
-            progress,
-        }
-    }
-}
-
-/// A run of a study's pieces that has read its journal.
-pub struct PiecesRun<'a, S: PieceStudy> {
+/// A run of a study's items that has read its journal.
+pub struct StudyRun<'a, S: StudyRunner> {
     study: &'a S,
-    pieces: &'a [NamedPiece],
+    items: &'a [WorkItem],
     /// What came of each before.
-    before: Vec<Option<PieceResult<S::Rows>>>,
-    left: PiecesLeft<'a, S::Rows>,
+    before: Vec<Option<ItemResult<S::Rows>>>,
+    left: PendingItems<'a, S::Rows>,
 }
 
-impl<'a, S: PieceStudy> PiecesRun<'a, S> {
-    /// Of this study, with all its pieces.
-    pub fn new(study: &'a S, pieces: &'a [NamedPiece], manner: &PieceManner<'a>) -> Self {
-        let results = pieces.iter().map(|piece| manner.journal.get(&piece.key()));
-        let before: Vec<Option<PieceResult<S::Rows>>> = results.collect();
-        let is_in = is_in(pieces, manner.part);
+impl<'a, S: StudyRunner> StudyRun<'a, S> {
+    /// Of this study, with all its items.
+    pub fn new(study: &'a S, items: &'a [WorkItem], options: &RunOptions<'a>) -> Self {
+        let results = items.iter().map(|item| options.journal.get(&item.key()));
+        let before: Vec<Option<ItemResult<S::Rows>>> = results.collect();
+        let is_in = is_in(items, options.part);
         let is_left = before.iter().enumerate().map(|(number, result)| {
-            let is_done = matches!(result, Some(Ok(_))) || (result.is_some() && !manner.retries);
+            let is_done = matches!(result, Some(Ok(_))) || (result.is_some() && !options.retries);
             !is_done && is_in(number)
         });
         Self {
             study,
-            pieces,
-            left: PiecesLeft::new(manner, (pieces, is_left.collect())),
+            items,
+            left: PendingItems::new(options, (items, is_left.collect())),
             before,
         }
     }
 
-    /// How many pieces it will do.
-    pub fn n_left(&self) -> usize {
+    /// How many items it will do.
+    pub fn n_pending(&self) -> usize {
         self.left.n()
     }
 
-    /// Does what the journal has not yet: rows of all pieces that did not fail, now or before, in the order of pieces, and those that failed.
+    /// Does what the journal has not yet: rows of all items that did not fail, now or before, in the order of items, and those that failed.
     /// The rows but for times are the same as if all were done at once.
     ///
     /// # Errors
-    /// The journal cannot be written; what a piece fails of, if the first to fail ends the run; what no piece can do without.
-    pub fn run(self) -> Result<(S::Rows, Vec<PieceFailure>)> {
+    /// The journal cannot be written; what a item fails of, if the first to fail ends the run; what no item can do without.
+    pub fn run(self) -> Result<(S::Rows, Vec<ItemFailure>)> {
         let Self { study, left, .. } = self;
         left.progress.expect(left.n());
         if left.n() > 0 {
@@ -134,7 +93,7 @@ impl<'a, S: PieceStudy> PiecesRun<'a, S> {
         let (is_left, mut now) = left.into_results();
         let mut rows = S::Rows::default();
         let mut failures = Vec::new();
-        for (number, (piece, before)) in self.pieces.iter().zip(self.before).enumerate() {
+        for (number, (item, before)) in self.items.iter().zip(self.before).enumerate() {
             let passed_over = || Err("a defect of the program: it was passed over".to_owned());
             let result = match is_left[number] {
                 true => Some(now.remove(&number).unwrap_or_else(passed_over)),
@@ -145,8 +104,8 @@ impl<'a, S: PieceStudy> PiecesRun<'a, S> {
                     study.place(number, &mut found);
                     rows.append(found);
                 }
-                Some(Err(error)) => failures.push(PieceFailure {
-                    work_item: study.words(number, piece),
+                Some(Err(error)) => failures.push(ItemFailure {
+                    work_item: study.words(number, item),
                     error,
                 }),
                 // It is of another shard.
@@ -157,23 +116,23 @@ impl<'a, S: PieceStudy> PiecesRun<'a, S> {
     }
 }
 
-/// Runs a whole study at once, keeps nothing, and ends at the first piece that fails.
+/// Runs a whole study at once, keeps nothing, and ends at the first item that fails.
 ///
 /// # Errors
-/// What a piece fails of.
-pub fn run_whole<S: PieceStudy>(study: &S, progress: &dyn Progress) -> Result<S::Rows> {
-    let pieces = study.pieces();
-    let run = PiecesRun::new(study, &pieces, &PieceManner::whole(progress));
+/// What a item fails of.
+pub fn run_whole<S: StudyRunner>(study: &S, progress: &dyn Progress) -> Result<S::Rows> {
+    let items = study.work_items();
+    let run = StudyRun::new(study, &items, &RunOptions::whole(progress));
     Ok(run.run()?.0)
 }
 
-/// Whether a piece, by its number, belongs to a part.
-fn is_in<'a>(pieces: &'a [NamedPiece], part: Part<'a>) -> impl Fn(usize) -> bool + 'a {
-    let groups = pieces.iter().map(|piece| piece.group);
+/// Whether a item, by its number, belongs to a part.
+fn is_in<'a>(items: &'a [WorkItem], part: Part<'a>) -> impl Fn(usize) -> bool + 'a {
+    let groups = items.iter().map(|item| item.group);
     let n_groups = groups.max().map_or(0, |last| last + 1);
     move |number| match part {
         Part::All => true,
-        Part::Shard(shard) => shard.takes((pieces[number].group, n_groups), number),
+        Part::Shard(shard) => shard.takes((items[number].group, n_groups), number),
         Part::Only(numbers) => numbers.contains(&number),
     }
 }

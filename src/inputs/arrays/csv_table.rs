@@ -1,7 +1,7 @@
 //! Tables of comma-separated values: one row a line; also with semicolons, tabs or spaces, and with one line of names above.
 
 use crate::error::{Error, Result};
-use crate::inputs::arrays::{ElementKind, Elements, FileArray};
+use crate::inputs::arrays::file_array::{ElementKind, Elements, FileArray};
 use std::path::Path;
 
 /// Reads a table of numbers or, if a cell is no number, of texts. An empty cell of numbers is NaN. A first line with a cell that is no number, above

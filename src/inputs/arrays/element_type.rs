@@ -1,7 +1,7 @@
 //! Types of elements as NumPy's headers name them, and their numbers.
 
 use crate::error::{Error, Result};
-use crate::inputs::arrays::{ElementKind, Elements};
+use crate::inputs::arrays::file_array::{ElementKind, Elements};
 
 const ALLOWED: &str = "numbers (float16 to float64, int8 to int64, uint8 to uint64, bool) or texts";
 

@@ -3,9 +3,11 @@
 //! A `.npz` archive is read by the name of the array that is looked for (`frames`, `labels` …), or its only member is taken. A `.csv` file is a
 //! table of rows and columns. Elements are converted to f64 (integers exactly up to 2⁵³), or kept as texts.
 
+use crate::inputs::arrays::file_array::{Elements, FileArray};
 pub(crate) mod axis_order;
 pub(crate) mod csv_table;
 pub(crate) mod element_type;
+pub(crate) mod file_array;
 pub(crate) mod npy_file;
 pub(crate) mod whole_numbers;
 
@@ -20,41 +22,6 @@ use ndarray::{Array2, ArrayD, IxDyn};
 use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::Path;
-
-/// What the elements of a file are.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ElementKind {
-    /// Floating-point numbers with this spacing relative to their size.
-    Float(f64),
-    /// Integers.
-    Integer,
-    /// False and true.
-    Truth,
-    /// Texts.
-    Text,
-}
-
-/// The elements of a file in row-major order.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Elements {
-    /// Numbers; false is 0, true is 1.
-    Numbers(Vec<f64>),
-    /// Texts without their padding.
-    Texts(Vec<String>),
-}
-
-/// An array as it stands in a file.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FileArray {
-    /// The name of the file, and of its member if it is an archive, for errors.
-    pub place: String,
-    /// Lengths of the axes.
-    pub shape: Vec<usize>,
-    /// What the elements are.
-    pub kind: ElementKind,
-    /// The elements in row-major order.
-    pub elements: Elements,
-}
 
 /// How a file is read.
 #[derive(Clone, Copy, PartialEq)]

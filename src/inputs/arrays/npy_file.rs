@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::inputs::arrays::element_type::ElementType;
-use crate::inputs::arrays::{Elements, FileArray};
+use crate::inputs::arrays::file_array::{Elements, FileArray};
 use ndarray::{ArrayD, IxDyn, ShapeBuilder};
 use std::io::Read;
 

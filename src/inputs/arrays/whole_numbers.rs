@@ -1,7 +1,7 @@
 //! Classes, groups and rows out of arrays: whole numbers, texts, or one column for each class.
 
 use crate::error::{Error, Result};
-use crate::inputs::arrays::{ElementKind, Elements, FileArray};
+use crate::inputs::arrays::file_array::{ElementKind, Elements, FileArray};
 use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 

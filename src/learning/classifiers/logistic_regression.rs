@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use crate::learning::classifiers::classifier_about::ClassifierAbout;
 
-pub use bubbletouch_svm::classifiers::logistic_regression::{Logistic, LogisticParams, MAX_ITERATIONS};
+pub use bubbletouch_svm::classifiers::logistic_regression::{
+    Logistic, LogisticParams, MAX_ITERATIONS,
+};
 
 pub(crate) const ABOUT: ClassifierAbout = ClassifierAbout {
     has_c: true,

@@ -13,7 +13,7 @@ mod scale;
 mod tiles;
 mod view;
 
-pub(in crate::report) use scale::even_ticks;
+pub(crate) use scale::even_ticks;
 pub use view::Place;
 
 use crate::error::{Error, Result};

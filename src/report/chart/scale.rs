@@ -208,7 +208,7 @@ fn tick_step(length: f64) -> f64 {
 }
 
 /// Multiples of a round step between two ends.
-pub(in crate::report) fn even_ticks(low: f64, high: f64) -> Vec<f64> {
+pub(crate) fn even_ticks(low: f64, high: f64) -> Vec<f64> {
     let step = tick_step(high - low);
     let (first, last) = (
         (low / step - 1e-9).ceil() as i64,

@@ -1,13 +1,14 @@
 //! What moved between two folders of results: sentences, a table, and a page.
 
-use crate::engine::provenance::PROGRAM;
+use crate::engine::program::PROGRAM;
 use crate::error::Result;
 use crate::quantile::quantile;
 use crate::report::differences::{ColumnDifferences, Difference, Moved};
 use crate::report::entries::{ColumnEntries, TableEntries};
 use crate::report::page::StudyAbout;
 use crate::report::rank_agreement::RankAgreement;
-use crate::report::study_folder::{Found, MOST_CHARTS, page_of};
+use crate::report::study_content::Found;
+use crate::report::study_folder::{MOST_CHARTS, page_of};
 use crate::report::terminal::{paragraph, table_text};
 use crate::spelling::counted;
 use crate::statistics::p_status::PStatus;

@@ -1,7 +1,7 @@
 //! What a study says of itself, beside its tables.
 
 use crate::engine::provenance::Manifest;
-use crate::report::study_folder::ChartFormat;
+use crate::report::chart_format::ChartFormat;
 
 /// What a study says of itself, beside its tables.
 #[derive(Clone, Debug, Default)]

@@ -2,7 +2,7 @@
 
 use crate::report::advice::{Asked, Offer, Offers};
 use crate::report::drawing::escape;
-use crate::report::study_folder::Found;
+use crate::report::study_content::Found;
 use crate::report::swept::Setting;
 use crate::table::{Role, Value};
 

@@ -20,7 +20,7 @@ const TOP: f64 = 76.0;
 const LARGEST_DISC: f64 = 24.0;
 
 /// The cells of a skin, pixels from the top left corner of the drawing.
-pub(in crate::report) struct Cells {
+pub(crate) struct Cells {
     /// All cells.
     pub area: Area,
     /// The middle of each: of a grid row by row, else one a taxel.
@@ -117,7 +117,7 @@ impl Cells {
 }
 
 /// Pixels of each of so many cells in a row that have some room: whole ones, so that no seams part neighbours.
-pub(in crate::report) fn whole_pixels(room: f64, n_cells: usize) -> f64 {
+pub(crate) fn whole_pixels(room: f64, n_cells: usize) -> f64 {
     (room / n_cells as f64).floor().max(1.0)
 }
 

@@ -5,7 +5,7 @@ use crate::report::colours::Rgb;
 use crate::report::picture::Picture;
 
 /// Colours all cells, one colour each, in a picture that is `fine` times as large as the drawing.
-pub(in crate::report) fn paint(picture: &mut Picture, cells: &Cells, fine: f64, colours: &[Rgb]) {
+pub(crate) fn paint(picture: &mut Picture, cells: &Cells, fine: f64, colours: &[Rgb]) {
     let radius = fine * cells.radius;
     let range = |middle: f64, n: usize| {
         let clamp = |place: f64| place.clamp(0.0, n as f64) as usize;

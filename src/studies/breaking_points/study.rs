@@ -1,9 +1,9 @@
 //! A study of breaking points: every value of every way, on all threads.
 
-use crate::engine::work_items::NamedPiece;
-use crate::engine::work_items::pending::PiecesLeft;
+use crate::engine::work_items::pending::PendingItems;
 use crate::engine::work_items::scale::Scale;
-use crate::engine::work_items::study_runner::PieceStudy;
+use crate::engine::work_items::study_runner::StudyRunner;
+use crate::engine::work_items::work_item::WorkItem;
 use crate::error::Result;
 use crate::inputs::object_files::{load_objects, objects_content};
 use crate::inputs::objects_spec::ObjectsSpec;
@@ -90,20 +90,20 @@ fn n_read(value: &PlannedValue) -> usize {
     value.plans().map(of_plan).sum()
 }
 
-impl PieceStudy for BreakingPointsStudy {
+impl StudyRunner for BreakingPointsStudy {
     type Rows = DrivenRows;
 
-    fn pieces(&self) -> Vec<NamedPiece> {
-        let pieces = self.values().enumerate();
-        let pieces = pieces.map(|(group, value)| {
+    fn work_items(&self) -> Vec<WorkItem> {
+        let items = self.values().enumerate();
+        let items = items.map(|(group, value)| {
             // The study at this value is all that it depends on.
             let specs: Vec<_> = value.1.plans().map(|plan| &plan.spec).collect();
-            NamedPiece::new(name(&value), group).made_of(specs)
+            WorkItem::new(name(&value), group).made_of(specs)
         });
-        pieces.collect()
+        items.collect()
     }
 
-    fn measure(&self, left: &PiecesLeft<DrivenRows>) -> Result<()> {
+    fn measure(&self, left: &PendingItems<DrivenRows>) -> Result<()> {
         let specs = self.objects();
         left.progress.stage("objects", specs.len() as u64);
         let sets = specs.into_iter().map(|spec| {

@@ -9,8 +9,8 @@ use crate::studies::object_detail::deflection::{Truth, in_mm};
 use crate::studies::object_detail::plan::ObjectDetailPlan;
 use crate::studies::object_detail::rows::{DetailCell, DetailScore, DetailTime};
 use crate::studies::object_detail::spec::DetailMethod;
-use crate::studies::object_detail::study::ObjectDetailStudy;
 use crate::studies::object_detail::variants::{Variant, variants};
+use std::path::Path;
 
 /// An object and its models.
 pub(super) struct Measured<'a> {
@@ -22,10 +22,12 @@ pub(super) struct Measured<'a> {
 }
 
 impl<'a> Measured<'a> {
-    pub fn new(study: &ObjectDetailStudy, mesh: &'a NamedMesh) -> Result<Self> {
-        let plan = &study.plan;
+    pub fn new(
+        (plan, packings): (&ObjectDetailPlan, Option<&Path>),
+        mesh: &'a NamedMesh,
+    ) -> Result<Self> {
         let surface = Surface::new(mesh.mesh.clone());
-        let variants = variants(plan, &mesh.place, &surface, study.packings.as_deref())?;
+        let variants = variants(plan, &mesh.place, &surface, packings)?;
         let exact = (&mesh.name[..], variants[0].model.clone());
         let seed = Seed::new(plan.spec.seed);
         Ok(Self {

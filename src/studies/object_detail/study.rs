@@ -1,9 +1,9 @@
 //! A study of object detail: models of every mesh, their errors on all threads, then their times on one.
 
-use crate::engine::work_items::NamedPiece;
-use crate::engine::work_items::pending::PiecesLeft;
+use crate::engine::work_items::pending::PendingItems;
 use crate::engine::work_items::scale::Scale;
-use crate::engine::work_items::study_runner::PieceStudy;
+use crate::engine::work_items::study_runner::StudyRunner;
+use crate::engine::work_items::work_item::WorkItem;
 use crate::error::Result;
 use crate::inputs::object_files::{NamedMesh, load_named_meshes, objects_content};
 use crate::studies::kind::{About, Facts, Files, Kind};
@@ -61,24 +61,24 @@ pub(super) const RECOGNITION: File<DetailRecognition> = File::new(
     "",
 );
 
-impl PieceStudy for ObjectDetailStudy {
+impl StudyRunner for ObjectDetailStudy {
     type Rows = DetailRows;
 
     /// Of each object its models and their times; then each level and classifier, which all need all objects.
-    fn pieces(&self) -> Vec<NamedPiece> {
-        let mut pieces = Vec::new();
+    fn work_items(&self) -> Vec<WorkItem> {
+        let mut items = Vec::new();
         for (group, NamedMesh { name, .. }) in self.meshes.iter().enumerate() {
-            let mut add = |name| pieces.push(NamedPiece::new(name, group));
+            let mut add = |name| items.push(WorkItem::new(name, group));
             add(format!("models of {name}"));
             add(format!("times of {name}"));
         }
         let group = self.meshes.len();
         let learned = Learned::all(&self.plan).into_iter();
-        pieces.extend(learned.map(|learned| NamedPiece::new(learned.name(), group)));
-        pieces
+        items.extend(learned.map(|learned| WorkItem::new(learned.name(), group)));
+        items
     }
 
-    fn measure(&self, left: &PiecesLeft<DetailRows>) -> Result<()> {
+    fn measure(&self, left: &PendingItems<DetailRows>) -> Result<()> {
         let learned = left.of(models_item(self.meshes.len()), Learned::all(&self.plan));
         let learners: Vec<usize> = learned.iter().map(|(number, _)| *number).collect();
         let spec = self.plan.recognition().filter(|_| !learned.is_empty());
@@ -150,17 +150,20 @@ impl ObjectDetailStudy {
         &self,
         object: usize,
         learners: &[usize],
-        left: &PiecesLeft<DetailRows>,
+        left: &PendingItems<DetailRows>,
     ) -> Result<Option<Measured<'_>>> {
         let (mesh, mut made) = (&self.meshes[object], None);
         left.finish(models_item(object), || {
-            let object = made.insert(Measured::new(self, mesh)?);
+            let object = made.insert(Measured::new((&self.plan, self.packings.as_deref()), mesh)?);
             Ok((object.models(&self.plan), Vec::new(), Vec::new()))
         })?;
         let needed = [&[times_item(object)], learners].concat();
         // Where it is not made, its rows are there from a run before.
         left.prepare(&needed, || {
-            made.map_or_else(|| Measured::new(self, mesh), Ok)
+            made.map_or_else(
+                || Measured::new((&self.plan, self.packings.as_deref()), mesh),
+                Ok,
+            )
         })
     }
 }

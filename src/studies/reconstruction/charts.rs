@@ -1,7 +1,7 @@
 //! What is charted, and what was found in sentences.
 
 use crate::error::Result;
-use crate::report::study_folder::NamedPicture;
+use crate::report::study_content::NamedPicture;
 use crate::studies::kind::Findings;
 use crate::studies::reconstruction::study::ReconstructionStudy;
 use crate::table::{Along, ChartSpec, Mark, Rule, Table, short_number};

@@ -4,7 +4,7 @@ use crate::engine::progress::Silent;
 use crate::error::Result;
 use crate::inputs::units::millimetres;
 use crate::report::snapshots::{Snapshots, snapshots};
-use crate::report::study_folder::NamedPicture;
+use crate::report::study_content::NamedPicture;
 use crate::sensing::{Reconstructor, SensedDictionary};
 use crate::studies::reconstruction::charts::{cell_words, noise_words};
 use crate::studies::reconstruction::study::ReconstructionStudy;

@@ -1,6 +1,6 @@
 //! All that is reconstructed from the same measurements.
 
-use crate::engine::work_items::pending::PiecesLeft;
+use crate::engine::work_items::pending::PendingItems;
 use crate::engine::work_items::shared::Shared;
 use crate::error::Result;
 use crate::random::Seed;
@@ -23,7 +23,7 @@ const BLOCK: usize = 64;
 pub(super) fn measure_cells(
     (plan, touches): (&ReconstructionPlan, &Touches),
     (group, cells): (usize, &[ReconstructionCell]),
-    left: &PiecesLeft<ReconstructionRows>,
+    left: &PendingItems<ReconstructionRows>,
 ) -> Result<()> {
     let first = &cells[0];
     // Of each group the isometry of every dictionary comes before the cells.

@@ -1,11 +1,11 @@
 //! Runs a reconstruction study: touches once, dictionaries once, then every ensemble, m, noise, dictionary and solver.
 
 use crate::engine::progress::Progress;
-use crate::engine::work_items::NamedPiece;
-use crate::engine::work_items::pending::PiecesLeft;
+use crate::engine::work_items::pending::PendingItems;
 use crate::engine::work_items::scale::Scale;
 use crate::engine::work_items::shared::Shared;
-use crate::engine::work_items::study_runner::PieceStudy;
+use crate::engine::work_items::study_runner::StudyRunner;
+use crate::engine::work_items::work_item::WorkItem;
 use crate::error::Result;
 use crate::inputs::object_files::{load_objects, objects_content};
 use crate::random::Seed;
@@ -108,14 +108,14 @@ impl Kind for ReconstructionStudy {
     }
 }
 
-impl PieceStudy for ReconstructionStudy {
+impl StudyRunner for ReconstructionStudy {
     type Rows = ReconstructionRows;
 
     /// Of each ensemble and m what every dictionary keeps apart, then its cells.
-    fn pieces(&self) -> Vec<NamedPiece> {
-        let mut pieces = Vec::new();
+    fn work_items(&self) -> Vec<WorkItem> {
+        let mut items = Vec::new();
         for (group, cells) in on_measured(&self.plan.cells()).enumerate() {
-            let mut add = |name| pieces.push(NamedPiece::new(name, group));
+            let mut add = |name| items.push(WorkItem::new(name, group));
             for &basis in &self.plan.dictionaries {
                 add(cells[0].isometry_name(basis));
             }
@@ -123,10 +123,10 @@ impl PieceStudy for ReconstructionStudy {
                 add(cell.name());
             }
         }
-        pieces
+        items
     }
 
-    fn measure(&self, left: &PiecesLeft<ReconstructionRows>) -> Result<()> {
+    fn measure(&self, left: &PendingItems<ReconstructionRows>) -> Result<()> {
         let touches = self.frames(left.progress)?;
         left.progress.stage("reconstruct", left.n() as u64);
         let cells = self.plan.cells();

@@ -10,37 +10,15 @@ use crate::dynamics::{
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::studies::median_time::median_s;
-use crate::studies::stability::rows::{StabilityCell, StabilityScore, StabilityTime};
+use crate::studies::stability::rows::{
+    Outcome, StabilityCell, StabilityScore, StabilityTime, TOLERANCE,
+};
 use crate::studies::stability::scene::{CellScene, GRAVITY};
 use crate::studies::stability::spec::{ContactMethod, StabilityScene};
 use crate::world::{Taxel, VelocityPlan};
 use glam::DVec3;
-use serde::{Deserialize, Serialize};
 use std::slice::from_ref;
 use std::time::Instant;
-
-/// Errors up to this are right.
-pub const TOLERANCE: f64 = 0.01;
-
-/// Steps of a free ball, at least.
-pub const LEAST_STEPS: f64 = 50.0;
-
-/// What came of a cell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Outcome {
-    /// Force imbalance and deflection error are at most [`TOLERANCE`].
-    Right,
-    /// It came to an end, but not to the right one.
-    Inaccurate,
-    /// At a moment of judgement the taxels that are to be pushed are in less than half as far as they must be, all together, or more than twice
-    /// as far; or nothing holds the ball.
-    MissedContact,
-    /// More energy than the scene can have: at most four times what goes into it.
-    EnergyGrowth,
-    /// A number is not finite.
-    NotFinite,
-}
 
 /// What a method says at the moment of judgement.
 #[derive(Default)]

@@ -26,8 +26,9 @@ mod scene;
 mod spec;
 mod study;
 
-pub use crate::studies::stability::cell::{LEAST_STEPS, Outcome, TOLERANCE};
 pub use crate::studies::stability::plan::StabilityPlan;
+pub use crate::studies::stability::rows::{Outcome, TOLERANCE};
+pub use crate::studies::stability::scene::LEAST_STEPS;
 pub use crate::studies::stability::spec::{
     ContactMethod, StabilityPartSpec, StabilityScene, StabilitySpec, StabilityStudySpec,
 };

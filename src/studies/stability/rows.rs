@@ -2,7 +2,6 @@
 
 use crate::engine::work_items::any_number;
 use crate::row;
-use crate::studies::stability::cell::Outcome;
 use crate::studies::stability::spec::{ContactMethod, StabilityScene};
 use serde::{Deserialize, Serialize};
 
@@ -147,3 +146,23 @@ pub struct PeerSource {
     /// Year-month-day.
     pub date: String,
 }
+
+/// What came of a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Outcome {
+    /// Force imbalance and deflection error are at most [`TOLERANCE`].
+    Right,
+    /// It came to an end, but not to the right one.
+    Inaccurate,
+    /// At a moment of judgement the taxels that are to be pushed are in less than half as far as they must be, all together, or more than twice
+    /// as far; or nothing holds the ball.
+    MissedContact,
+    /// More energy than the scene can have: at most four times what goes into it.
+    EnergyGrowth,
+    /// A number is not finite.
+    NotFinite,
+}
+
+/// Errors up to this are right.
+pub const TOLERANCE: f64 = 0.01;

@@ -5,7 +5,6 @@ use crate::dynamics::{Drive, Rest, System, rest, skin_sim};
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::objects::{Model, Sphere, SphereUnion};
-use crate::studies::stability::cell::LEAST_STEPS;
 use crate::studies::stability::rows::StabilityCell;
 use crate::studies::stability::spec::StabilityScene;
 use crate::world::{Grid, Layout, Patch, Phase, Taxel, Taxels, VelocityPlan};
@@ -245,6 +244,9 @@ fn slowest(k: f64, c: f64, m: f64) -> f64 {
         half
     }
 }
+
+/// Steps of a free ball, at least.
+pub const LEAST_STEPS: f64 = 50.0;
 
 #[cfg(test)]
 mod tests {

@@ -1,18 +1,18 @@
 //! Runs a study of stability, and makes its tables.
 
-use crate::engine::work_items::NamedPiece;
-use crate::engine::work_items::pending::PiecesLeft;
+use crate::engine::work_items::pending::PendingItems;
 use crate::engine::work_items::scale::Scale;
-use crate::engine::work_items::study_runner::PieceStudy;
+use crate::engine::work_items::study_runner::StudyRunner;
+use crate::engine::work_items::work_item::WorkItem;
 use crate::error::Result;
 use crate::inputs::units::millimetres;
 use crate::studies::kind::{About, Facts, Files, Kind};
 use crate::studies::source::Source;
-use crate::studies::stability::cell::{Outcome, measure};
+use crate::studies::stability::cell::measure;
 use crate::studies::stability::peers::peer_rows;
 use crate::studies::stability::plan::StabilityPlan;
 use crate::studies::stability::rows::{
-    Joints, StabilityCell, StabilityRow, StabilityScore, StabilitySummary, StabilityTime,
+    Joints, Outcome, StabilityCell, StabilityRow, StabilityScore, StabilitySummary, StabilityTime,
 };
 use crate::studies::stability::spec::{StabilityScene, StabilityStudySpec};
 use crate::studies::{found_and_cost, grouped};
@@ -79,23 +79,23 @@ impl Kind for StabilityPlan {
     }
 }
 
-impl PieceStudy for StabilityPlan {
+impl StudyRunner for StabilityPlan {
     type Rows = Vec<StabilityRow>;
 
     /// By their settings: which cells there are depends on what the program was built with.
-    fn pieces(&self) -> Vec<NamedPiece> {
-        let pieces = self.cells.iter().enumerate();
-        let pieces = pieces.map(|(group, (cell, taxel))| {
+    fn work_items(&self) -> Vec<WorkItem> {
+        let items = self.cells.iter().enumerate();
+        let items = items.map(|(group, (cell, taxel))| {
             let settings = format!("{cell:?}");
             let settings = settings.trim_start_matches("StabilityCell ");
             let stroke_mm = millimetres(taxel.stroke);
             let name = format!("{settings} and a stroke of {stroke_mm} mm");
-            NamedPiece::new(name, group)
+            WorkItem::new(name, group)
         });
-        pieces.collect()
+        items.collect()
     }
 
-    fn measure(&self, left: &PiecesLeft<Self::Rows>) -> Result<()> {
+    fn measure(&self, left: &PendingItems<Self::Rows>) -> Result<()> {
         left.progress.stage("stability", left.n() as u64);
         let cells = self.cells.par_iter().enumerate();
         // One at a time: a cell takes from microseconds to a minute.

@@ -1,7 +1,7 @@
 //! What is charted, and what was found in sentences.
 
 use crate::error::Result;
-use crate::report::study_folder::NamedPicture;
+use crate::report::study_content::NamedPicture;
 use crate::studies::kind::Findings;
 use crate::studies::whole_body::memory_chart::memory_chart;
 use crate::studies::whole_body::picture::picture_of_body;

@@ -8,7 +8,7 @@ use crate::report::drawing::{Align, Area, Drawing, TextStyle};
 use crate::report::picture::Picture;
 use crate::report::picture_axes::{draw_colours, draw_scale_bar};
 use crate::report::shaded_view::{Lighting, PAINT};
-use crate::report::study_folder::NamedPicture;
+use crate::report::study_content::NamedPicture;
 use crate::studies::whole_body::plan::{ScenePlan, WholeBodyPlan};
 use crate::table::{Table, short_number};
 use glam::{DQuat, DVec2, DVec3};

@@ -41,7 +41,7 @@ pub(super) fn learn(
     progress.stage("train", columns.len() as u64);
     let of_each = features.axis_chunks_iter(Axis(1), m);
     let named = plan.compressions.iter().zip(columns).zip(of_each);
-    // Each is a piece of its own, which advances once it is kept.
+    // Each is a item of its own, which advances once it is kept.
     named
         .map(|(((name, _), columns), features)| train(plan, name, columns, features))
         .collect()

@@ -1,10 +1,10 @@
 //! Runs a study of a whole body: learn, then the scenes and the ladders one after the other, so that nothing else is timed.
 
-use crate::engine::work_items::NamedPiece;
-use crate::engine::work_items::pending::PiecesLeft;
+use crate::engine::work_items::pending::PendingItems;
 use crate::engine::work_items::scale::Scale;
 use crate::engine::work_items::shared::Shared;
-use crate::engine::work_items::study_runner::PieceStudy;
+use crate::engine::work_items::study_runner::StudyRunner;
+use crate::engine::work_items::work_item::WorkItem;
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::inputs::object_files::file_content;
@@ -94,27 +94,27 @@ impl Kind for WholeBodyPlan {
     }
 }
 
-impl PieceStudy for WholeBodyPlan {
+impl StudyRunner for WholeBodyPlan {
     type Rows = WholeBodyRows;
 
     /// Compressions and scenes need all that is learned; rungs need nothing.
-    fn pieces(&self) -> Vec<NamedPiece> {
+    fn work_items(&self) -> Vec<WorkItem> {
         let compressions = self
             .compressions
             .iter()
-            .map(|(name, _)| NamedPiece::new(format!("learn from {name}"), 0));
+            .map(|(name, _)| WorkItem::new(format!("learn from {name}"), 0));
         let scenes = self
             .scenes
             .iter()
-            .map(|scene| NamedPiece::new(format!("scene {}", scene.spec.name), 0).made_of(scene));
+            .map(|scene| WorkItem::new(format!("scene {}", scene.spec.name), 0).made_of(scene));
         let rungs = self.rungs().into_iter().enumerate().map(|(number, rung)| {
             let name = format!("ladder of {:?}, {}", rung.series, rung.name).to_lowercase();
-            NamedPiece::new(name, number + 1).made_of(rung)
+            WorkItem::new(name, number + 1).made_of(rung)
         });
         compressions.chain(scenes).chain(rungs).collect()
     }
 
-    fn measure(&self, left: &PiecesLeft<WholeBodyRows>) -> Result<()> {
+    fn measure(&self, left: &PendingItems<WholeBodyRows>) -> Result<()> {
         let (covered, compressions) = (Shared::default(), Shared::default());
         let cover = || covered.get(|| self.cover(self.pitch));
         let learn = || {
@@ -132,8 +132,8 @@ impl PieceStudy for WholeBodyPlan {
         let rungs = self.rungs();
         let first_rung = n_compressions + self.scenes.len();
         let driven = n_compressions..first_rung + rungs.len();
-        let n_left = driven.filter(|&number| left.has(number)).count();
-        left.progress.stage("scenes and ladders", n_left as u64);
+        let n_pending = driven.filter(|&number| left.has(number)).count();
+        left.progress.stage("scenes and ladders", n_pending as u64);
         for (scene, number) in self.scenes.iter().zip(n_compressions..) {
             left.finish(number, || {
                 let (mut drive, _) = self.begin(scene, cover()?)?;

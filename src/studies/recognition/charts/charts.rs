@@ -5,7 +5,7 @@
 
 use crate::report::study_folder::MOST_CHARTS;
 use crate::report::swept::{Setting, Swept, without};
-use crate::studies::recognition::charts::filled;
+use crate::studies::recognition::charts::filled::filled;
 use crate::studies::recognition::charts::tables::{
     CELLS, CHANCE, OVER_FOLDS, OVER_TRIAL, note_of_groups,
 };

@@ -3,18 +3,11 @@
 pub(crate) mod answers;
 pub(crate) mod charts;
 pub(crate) mod robustness;
+pub(crate) mod filled;
 pub(crate) mod sections;
 pub(crate) mod tables;
-
-use crate::table::Table;
 
 pub use crate::studies::recognition::charts::answers::{answers, words};
 pub use crate::studies::recognition::charts::charts::charts;
 pub use crate::studies::recognition::charts::sections::sections;
 pub use crate::studies::recognition::charts::tables::{CELLS, TABLE_NAMES, read_tables, tables_of};
-
-/// A table that has rows, by its file.
-fn filled<'a>(tables: &'a [Table], file: &str) -> Option<&'a Table> {
-    let mut tables = tables.iter();
-    tables.find(|table| table.file == file && table.n_rows > 0)
-}

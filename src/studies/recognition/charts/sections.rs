@@ -6,7 +6,7 @@ use crate::report::drawing::escape;
 use crate::report::page::{Section, definition, touches_html};
 use crate::report::snapshots::Snapshots;
 use crate::report::swept::Swept;
-use crate::studies::recognition::charts::filled;
+use crate::studies::recognition::charts::filled::filled;
 use crate::studies::recognition::charts::tables::CELLS;
 use crate::table::{Table, short_number};
 

@@ -1,18 +1,9 @@
 //! Human touches of a study: drawn once, recorded on each array.
 
 use crate::contact::{Workspace, press_with_contacts};
-use crate::engine::progress::Progress;
 use crate::error::{Error, Result};
 use crate::objects::{Hand, Model};
 use crate::random::Seed;
-use crate::studies::recognition::frames::human_samples::human_samples;
-use crate::studies::recognition::frames::kept::Frames;
-use crate::studies::recognition::frames::reading::{TouchToRead, touches_to_read};
-use crate::studies::recognition::frames::samples::Samples;
-use crate::studies::recognition::frames::touch_set::TouchSet;
-use crate::studies::recognition::plan::group::Group;
-use crate::studies::recognition::plan::plan::Plan;
-use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use crate::studies::recognition::spec::human::HumanTouchSpec;
 use crate::world::{HumanTouch, Patch, TouchRanges};
 use ndarray::ArrayViewMut2;
@@ -96,51 +87,4 @@ pub fn record_touch(
         }
     }
     (n_touched == 0, n_saturated > 0)
-}
-
-impl TouchSet for HumanTouches {
-    fn classes(&self) -> Vec<(&str, usize)> {
-        let kinds = self.spec.kinds.iter();
-        kinds
-            .map(|kind| (kind.name(), self.spec.per_kind))
-            .collect()
-    }
-
-    fn simulate(&self, (array, n_frames): (&TaxelArray, usize), progress: &dyn Progress) -> Frames {
-        let skin = self.spec.skin(array);
-        let skin = skin.expect("the plan has checked that it fits");
-        let interval = self.spec.interval();
-        let mut frames = Frames::new((array.n_taxels(), n_frames));
-        let record = |touch: &_, workspace: &mut _, rows: ArrayViewMut2<f32>| {
-            record_touch(&skin, touch, interval, rows, workspace)
-        };
-        frames.make(&self.touches, Workspace::new, record, progress);
-        frames
-    }
-
-    fn to_read(&self, _speed: f64, _n_frames: usize, seed: &Seed) -> Vec<TouchToRead> {
-        let mut touches = touches_to_read(self.classes(), seed);
-        for touch in &mut touches {
-            touch.interval = Some(self.spec.interval());
-        }
-        touches
-    }
-
-    fn samples(&self, plan: &Plan, _groups: &[Group]) -> Result<Samples> {
-        human_samples(plan, self)
-    }
-
-    fn settings(&self) -> Vec<(String, String)> {
-        let row = |name: &str, value: String| (name.to_owned(), value);
-        let names = self.class_names();
-        let hz = 1.0 / self.spec.interval();
-        let kinds = format!("{}: {}", names.len(), names.join(", "));
-        let frames = format!("{} at {hz:.0} Hz", self.spec.n_frames());
-        let arm = format!("{:.0} mm across", 2e3 * self.spec.surface());
-        vec![
-            row("Kinds of touch", kinds),
-            row("Frames a touch", frames),
-            row("Arm", arm),
-        ]
-    }
 }

@@ -1,6 +1,5 @@
 //! Encoded frames in memory.
 
-use crate::studies::recognition::frames::FrameFacts;
 use bubbletouch_sim::frame_coding::decode;
 use ndarray::{Array2, Axis};
 use rayon::prelude::*;
@@ -58,4 +57,17 @@ impl Frames {
         });
         array
     }
+}
+
+/// What happened while frames were made.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FrameFacts {
+    /// F, frames a touch.
+    pub n_frames: usize,
+    /// Touches that met nothing: no taxel is deflected when they are deepest.
+    pub n_missed: usize,
+    /// Touches with at least one taxel at its stroke when they are deepest.
+    pub n_saturated: usize,
+    /// Processor-seconds, summed over threads.
+    pub cpu_s: f64,
 }

@@ -1,8 +1,7 @@
 //! Frames made on all threads, and put down in their order.
 
 use crate::engine::progress::Progress;
-use crate::studies::recognition::frames::FrameFacts;
-use crate::studies::recognition::frames::kept::Frames;
+use crate::studies::recognition::frames::kept::{FrameFacts, Frames};
 use bubbletouch_sim::frame_coding::encode;
 use ndarray::{Array2, ArrayViewMut2};
 use rayon::prelude::*;

@@ -8,10 +8,10 @@ use crate::contact::saturation_limit;
 use crate::engine::progress::Progress;
 use crate::error::{Error, Result};
 use crate::inputs::arrays::axis_order::FrameShape;
+use crate::inputs::arrays::file_array::{ElementKind, FileArray};
 use crate::inputs::arrays::whole_numbers::{
     ClassLabels, KeyValue, group_keys, read_class_values, read_group_values,
 };
-use crate::inputs::arrays::{ElementKind, FileArray};
 use crate::inputs::memory::check_memory;
 use crate::inputs::object_files::file_content;
 use crate::learning::data::split::Side;
@@ -20,8 +20,8 @@ use crate::report::snapshots::Snapshots;
 use crate::signal::Quantity;
 use crate::studies::recognition::frames::kept::Frames;
 use crate::studies::recognition::frames::reading::{TouchToRead, touches_to_read};
-use crate::studies::recognition::frames::samples::{Samples, spread_samples};
-use crate::studies::recognition::frames::touch_set::TouchSet;
+use crate::studies::recognition::frames::samples::spread_samples;
+use crate::studies::recognition::frames::touch_set::{Samples, TouchSet};
 use crate::studies::recognition::plan::group::Group;
 use crate::studies::recognition::plan::plan::Plan;
 use crate::studies::recognition::plan::taxel_array::TaxelArray;

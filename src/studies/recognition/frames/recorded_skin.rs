@@ -2,7 +2,7 @@
 
 use crate::calibration::RecordedSkin;
 use crate::error::{Error, Result};
-use crate::inputs::arrays::{ElementKind, FileArray};
+use crate::inputs::arrays::file_array::{ElementKind, FileArray};
 use crate::studies::recognition::spec::recorded::RecordedSpec;
 use ndarray::{Array1, Array2, Axis};
 use std::ops::Range;

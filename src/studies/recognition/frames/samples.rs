@@ -9,7 +9,7 @@ use crate::sensing::{Ensemble, Projection};
 use crate::signal::{Chain, SensorError, SignalStep, Strength};
 use crate::studies::recognition::frames::reading::{Reading, measure, touches_to_read};
 use crate::studies::recognition::frames::simulation::simulate_array;
-use crate::studies::recognition::frames::touch_set::TouchSet;
+use crate::studies::recognition::frames::touch_set::{Samples, TouchSet};
 use crate::studies::recognition::plan::group::Group;
 use crate::studies::recognition::plan::plan::Plan;
 use crate::studies::recognition::plan::taxel_array::skin;
@@ -19,15 +19,6 @@ use ndarray::{Array2, ArrayView1};
 
 /// How many objects a picture of samples shows when the study names none.
 const N_SAMPLES: usize = 4;
-
-/// First touches of a study's objects.
-#[derive(Clone, Debug)]
-pub struct Samples {
-    /// What its picture shows.
-    pub shown: Snapshots,
-    /// One touch of each object; none where touches are of a hand.
-    pub each: Option<Snapshots>,
-}
 
 /// The first touch of the objects that the study names for its picture (else of four spread over its list), read with its
 /// finest array at its highest noise, before smoothing; in a study of one imperfection at a time, the first touch of the first

@@ -8,7 +8,7 @@
 //! they carry different labels.
 
 use crate::error::{Error, Result};
-use crate::studies::recognition::spec::study::GroupSpec;
+use crate::studies::recognition::spec::pose_split::GroupSpec;
 use crate::world::{Touch, TouchAxis};
 use ndarray::Array1;
 use std::collections::BTreeMap;

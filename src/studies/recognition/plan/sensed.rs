@@ -1,9 +1,6 @@
 //! What the taxels of an array read of a touch.
 
-use crate::error::Result;
 use crate::random::Seed;
-use crate::signal::{Chain, SignalStep};
-use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use crate::world::Shear;
 
 /// What a taxel reads.
@@ -35,32 +32,6 @@ impl Sensed {
             Self::Force => "force",
             Self::Shear(_) => "force and shear",
         }
-    }
-}
-
-impl TaxelArray {
-    /// The signal of each channel, with the steps that a skin of some name has: channels are read by converters of their own, so each has a name, and
-    /// noise, of its own; the first has that of the skin.
-    ///
-    /// # Errors
-    /// Those of [`Chain::new`].
-    pub fn chains(
-        &self,
-        skin: &Seed,
-        steps: impl Fn(&Seed) -> Vec<SignalStep>,
-    ) -> Result<Vec<Chain>> {
-        let channels = 0..self.sensed().n_channels();
-        let chain = |channel| {
-            let mut steps = steps(&of_channel(skin, channel));
-            if *self.sensed() != Sensed::Deflection {
-                steps.insert(0, SignalStep::Force);
-            }
-            match channel {
-                0 => Chain::new(&steps, self.patch()),
-                _ => Chain::of_shear(&steps, self.patch()),
-            }
-        };
-        channels.map(chain).collect()
     }
 }
 

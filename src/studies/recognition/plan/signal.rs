@@ -3,14 +3,12 @@
 use crate::engine::axis::Axis;
 use crate::error::Result;
 use crate::inputs::check::{Check, Range};
-use crate::inputs::sensor_errors::{Strengths, all_strengths};
+use crate::inputs::sensor_errors::{NOISES, Strengths, all_strengths};
 use crate::inputs::units::MM;
 use crate::signal::{NoiseUnit, SENSOR_ERRORS, Strength};
 use crate::studies::recognition::plan::plan::Plan;
 use crate::studies::recognition::spec::scene::{SensedSpec, TouchesSpec};
-use crate::studies::recognition::spec::signal::{
-    CombineSpec, NOISES, SignalAxis, SignalSpec, StepSpec,
-};
+use crate::studies::recognition::spec::signal::{CombineSpec, SignalAxis, SignalSpec, StepSpec};
 
 /// One value for each axis of the signal.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

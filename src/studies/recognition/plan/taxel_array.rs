@@ -3,7 +3,8 @@
 use crate::error::Result;
 use crate::inputs::units::millimetres;
 use crate::random::Seed;
-use crate::studies::recognition::plan::sensed::Sensed;
+use crate::signal::{Chain, SignalStep};
+use crate::studies::recognition::plan::sensed::{Sensed, of_channel};
 use crate::world::{ArrayLayout, Grid, Patch, Taxel, Taxels};
 use bubbletouch_sim::features::Chart;
 use glam::{DVec2, DVec3};
@@ -269,4 +270,30 @@ pub(crate) fn skin(study: &Seed, array: &TaxelArray) -> Seed {
     let sides = study.named("skin").numbered(nx as u64);
     let sides = sides.numbered(ny as u64);
     sides.numbered(array.pitch().to_bits())
+}
+
+impl TaxelArray {
+    /// The signal of each channel, with the steps that a skin of some name has: channels are read by converters of their own, so each has a name, and
+    /// noise, of its own; the first has that of the skin.
+    ///
+    /// # Errors
+    /// Those of [`Chain::new`].
+    pub fn chains(
+        &self,
+        skin: &Seed,
+        steps: impl Fn(&Seed) -> Vec<SignalStep>,
+    ) -> Result<Vec<Chain>> {
+        let channels = 0..self.sensed().n_channels();
+        let chain = |channel| {
+            let mut steps = steps(&of_channel(skin, channel));
+            if *self.sensed() != Sensed::Deflection {
+                steps.insert(0, SignalStep::Force);
+            }
+            match channel {
+                0 => Chain::new(&steps, self.patch()),
+                _ => Chain::of_shear(&steps, self.patch()),
+            }
+        };
+        channels.map(chain).collect()
+    }
 }

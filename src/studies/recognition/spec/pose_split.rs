@@ -16,7 +16,6 @@
 
 use crate::error::{Error, Result};
 use crate::learning::data::split::Side;
-use crate::studies::recognition::spec::study::GroupSpec;
 use crate::world::{Touch, TouchAxis};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
@@ -191,4 +190,22 @@ impl PartialOrd for Value {
     fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
         Some(self.cmp(other))
     }
+}
+
+/// What groups touches for a split that keeps groups together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GroupSpec {
+    /// Rest pose, offset, yaw and tilt: everything but the depth.
+    Pose,
+    /// Both offsets.
+    Offset,
+    /// The yaw.
+    Yaw,
+    /// Both tilts.
+    Tilt,
+    /// The stable pose.
+    Rest,
+    /// The depth.
+    Depth,
 }

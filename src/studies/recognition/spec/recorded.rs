@@ -3,7 +3,8 @@
 use crate::error::{Error, Result};
 use crate::files::{file_path, optional_file_path};
 use crate::inputs::arrays::axis_order::{FrameAxes, FrameShape, frame_shape};
-use crate::inputs::arrays::{FileArray, is_member};
+use crate::inputs::arrays::file_array::FileArray;
+use crate::inputs::arrays::is_member;
 use serde::de::{IntoDeserializer, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 use std::fmt;

@@ -1,8 +1,7 @@
 //! What touches what, as it is written: `[objects]`, `[skin]` and `[touches]`.
 
-use crate::engine::axis::Axis;
+use crate::engine::axis::{Axis, one_value};
 use crate::inputs::defaults::number;
-use crate::studies::recognition::spec::study::one_value;
 use crate::world::{ArrayLayout, RestPoses};
 use serde::{Deserialize, Serialize};
 

@@ -1,9 +1,9 @@
 //! What happens to a frame, as it is written: `[signal]`.
 
 use crate::engine::axis::Axis;
-use crate::inputs::sensor_errors::{TestedOn, all_strengths};
-use crate::signal::{NoiseUnit, SENSOR_ERRORS, SensorError};
-use crate::studies::recognition::spec::study::is_default;
+use crate::inputs::defaults::is_default;
+use crate::inputs::sensor_errors::{NOISES, TestedOn, all_strengths};
+use crate::signal::{SENSOR_ERRORS, SensorError};
 use serde::de::{Error as _, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::collections::BTreeMap;
@@ -47,13 +47,6 @@ fn all_axes() -> impl Iterator<Item = (&'static str, StepSpec)> {
         .chain([("smoothing_mm", StepSpec::Smoothing)])
         .chain(errors)
 }
-
-/// What noise is measured in.
-pub(crate) const NOISES: [(&str, NoiseUnit); 3] = [
-    ("noise_std_full_scale", NoiseUnit::FullScale),
-    ("noise_std_mm", NoiseUnit::Mm),
-    ("noise_std_n", NoiseUnit::N),
-];
 
 impl SignalAxes {
     /// The axis of a key.

@@ -4,9 +4,9 @@
 
 use crate::engine::axes;
 use crate::engine::axes::{AxisRules, StudyAxes};
-use crate::engine::axis::Axis;
+use crate::engine::axis::{Axis, one_value};
 use crate::error::Result;
-use crate::inputs::defaults::{count, number};
+use crate::inputs::defaults::{count, is_default, number};
 use crate::inputs::objects_spec::ObjectsSpec;
 use crate::inputs::toml_value::value_at;
 use crate::learning::classifiers::ClassifierKind;
@@ -16,6 +16,7 @@ use crate::sensing::Ensemble;
 use crate::studies::recognition::rows::cell::Cell;
 use crate::studies::recognition::rows::table_rows::TrialScore;
 pub use crate::studies::recognition::spec::human::*;
+use crate::studies::recognition::spec::pose_split::GroupSpec;
 pub use crate::studies::recognition::spec::pose_split::PoseSplit;
 pub use crate::studies::recognition::spec::recorded::*;
 pub use crate::studies::recognition::spec::scene::*;
@@ -265,24 +266,6 @@ pub struct PublishedSpec {
     pub at: toml::Table,
 }
 
-/// What groups touches for a split that keeps groups together.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum GroupSpec {
-    /// Rest pose, offset, yaw and tilt: everything but the depth.
-    Pose,
-    /// Both offsets.
-    Offset,
-    /// The yaw.
-    Yaw,
-    /// Both tilts.
-    Tilt,
-    /// The stable pose.
-    Rest,
-    /// The depth.
-    Depth,
-}
-
 impl StudySpec {
     /// Reads a study.
     ///
@@ -337,15 +320,6 @@ impl StudySpec {
 /// The seed of every kind of study that names none.
 pub(crate) fn default_seed() -> u64 {
     2018
-}
-
-pub(crate) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
-    *value == T::default()
-}
-
-/// An axis of the number one.
-pub(crate) fn one_value() -> Axis<usize> {
-    Axis::One(1)
 }
 
 fn default_features() -> Axis<Features> {

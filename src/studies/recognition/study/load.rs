@@ -5,7 +5,6 @@ use crate::error::{Error, Result};
 use crate::files::with_folder;
 use crate::inputs::memory::check_memory;
 use crate::inputs::object_files::load_objects;
-use crate::inputs::objects_spec::ObjectsSpec;
 use crate::note::note;
 use crate::random::Seed;
 use crate::studies::recognition::frames::human_touches::HumanTouches;
@@ -13,14 +12,12 @@ use crate::studies::recognition::frames::recorded_frames::RecordedFrames;
 use crate::studies::recognition::frames::shear_ripple::note_shear_ripple;
 use crate::studies::recognition::frames::touch_set::TouchSet;
 use crate::studies::recognition::plan::plan::Plan;
-use crate::studies::recognition::spec::human::HumanTouchSpec;
-use crate::studies::recognition::spec::recorded::RecordedSpec;
 use crate::studies::recognition::spec::study::StudySpec;
 use crate::studies::recognition::study::scale::recognition_scale;
 use crate::studies::recognition::study::study::RecognitionStudy;
+use crate::studies::recognition::study::touch_inputs::TouchInputs;
 use crate::studies::recognition::touches::drawn_touches::draw_touches;
 use crate::studies::source::Source;
-use crate::world::Placement;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::path::Path;
@@ -119,35 +116,6 @@ const MANY_SPLITS: f64 = 7e7;
 fn slow_splits(n_touches: f64, n_trials: usize) -> Option<String> {
     (n_touches * n_trials as f64 >= MANY_SPLITS)
         .then(|| format!("splitting {n_touches} touches in {n_trials} trials"))
-}
-
-/// Everything of a plan that its touches are drawn from, beside the array and the files of its objects. Plans with equal inputs share their touches.
-#[derive(Debug)]
-pub(crate) struct TouchInputs<'a> {
-    objects: &'a ObjectsSpec,
-    placement: &'a Placement,
-    human_touch: Option<&'a HumanTouchSpec>,
-    recorded: Option<&'a RecordedSpec>,
-    seed: u64,
-}
-
-impl<'a> TouchInputs<'a> {
-    /// Returns the inputs of a plan's touches.
-    pub fn of(plan: &'a Plan) -> Self {
-        let spec = &plan.spec;
-        Self {
-            objects: &spec.objects,
-            placement: &plan.placement,
-            human_touch: spec.human_touch.as_ref(),
-            recorded: spec.recorded.as_ref(),
-            seed: spec.seed,
-        }
-    }
-
-    /// Returns a text that is equal for equal inputs only.
-    pub fn key(&self) -> String {
-        format!("{self:?}")
-    }
 }
 
 /// Returns a text that is equal for plans with the same touches, beside the array and the files of their objects.

@@ -1,7 +1,7 @@
 //! Makes the touches of an array once, measures each group once a trial, evaluates every family that is left.
 
 use crate::engine::progress::{Progress, Silent};
-use crate::engine::work_items::pending::PiecesLeft;
+use crate::engine::work_items::pending::PendingItems;
 use crate::error::Result;
 use crate::studies::recognition::frames::kept::Frames;
 use crate::studies::recognition::measurements::measurement::Measurements;
@@ -23,7 +23,7 @@ pub(crate) struct Job<'a> {
 }
 
 impl RecognitionStudy {
-    pub(crate) fn measure_all(&self, left: &PiecesLeft<RecognitionRows>) -> Result<()> {
+    pub(crate) fn measure_all(&self, left: &PendingItems<RecognitionRows>) -> Result<()> {
         for part in self.parts() {
             part.touched.prepare();
         }
@@ -50,7 +50,7 @@ impl RecognitionStudy {
     }
 
     /// Touches that are made or that families need that are left, with what is measured of them.
-    fn jobs_left(&self, left: &PiecesLeft<RecognitionRows>) -> Vec<(usize, Vec<Job<'_>>)> {
+    fn jobs_left(&self, left: &PendingItems<RecognitionRows>) -> Vec<(usize, Vec<Job<'_>>)> {
         let touches = 0..self.touch_sets.len();
         let jobs = touches.map(|touches| (touches, self.jobs(left, touches)));
         let is_left = |(touches, jobs): &(usize, Vec<Job>)| {
@@ -61,7 +61,7 @@ impl RecognitionStudy {
 
     /// What is measured of some touches for families that are left. A group of prefixes is measured once and serves all cells; else each m
     /// serves its own.
-    fn jobs(&self, left: &PiecesLeft<RecognitionRows>, touches: usize) -> Vec<Job<'_>> {
+    fn jobs(&self, left: &PendingItems<RecognitionRows>, touches: usize) -> Vec<Job<'_>> {
         let mut alike: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (number, family) in self.families.iter().enumerate() {
             let group = &self.groups[family.group];
@@ -98,7 +98,7 @@ impl RecognitionStudy {
     /// Does what is left of some touches.
     fn on_touches(
         &self,
-        left: &PiecesLeft<RecognitionRows>,
+        left: &PendingItems<RecognitionRows>,
         on: usize,
         jobs: Vec<Job>,
     ) -> Result<()> {
@@ -149,7 +149,7 @@ impl Job<'_> {
     }
 
     /// Measures, then evaluates the families.
-    fn run(&self, left: &PiecesLeft<RecognitionRows>, frames: &Frames) -> Result<()> {
+    fn run(&self, left: &PendingItems<RecognitionRows>, frames: &Frames) -> Result<()> {
         let need: Vec<usize> = self.items().collect();
         let measured = left.prepare(&need, || self.measure(frames))?;
         let cpu_s = measured.as_ref().map_or(0.0, |measured| measured.cpu_s);

@@ -7,6 +7,7 @@ pub(crate) mod measuring;
 pub(crate) mod rows;
 pub(crate) mod scale;
 pub(crate) mod study;
+pub(crate) mod touch_inputs;
 
 pub use crate::studies::recognition::study::load::{load_study, read_plans, touch_content};
 pub use crate::studies::recognition::study::rows::RecognitionRows;

@@ -2,19 +2,18 @@
 
 use crate::engine::axes::AxisValues;
 use crate::engine::progress::Progress;
-use crate::engine::work_items::NamedPiece;
-use crate::engine::work_items::pending::PiecesLeft;
+use crate::engine::work_items::pending::PendingItems;
 use crate::engine::work_items::scale::Scale;
 use crate::engine::work_items::shared::Shared;
-use crate::engine::work_items::study_runner::{PieceStudy, run_whole};
+use crate::engine::work_items::study_runner::{StudyRunner, run_whole};
+use crate::engine::work_items::work_item::WorkItem;
 use crate::error::{Error, Result};
 use crate::inputs::content_hash::short_hash;
 use crate::inputs::object_files::objects_content;
 use crate::inputs::objects_spec::ObjectsSpec;
 use crate::inputs::units::millimetres;
 use crate::studies::recognition::charts::tables::tables_of;
-use crate::studies::recognition::frames::samples::Samples;
-use crate::studies::recognition::frames::touch_set::TouchSet;
+use crate::studies::recognition::frames::touch_set::{Samples, TouchSet};
 use crate::studies::recognition::plan::group::Group;
 use crate::studies::recognition::plan::plan::Plan;
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
@@ -22,8 +21,8 @@ use crate::studies::recognition::rows::cell::Cell;
 use crate::studies::recognition::rows::table_rows::{StageTime, Tables};
 use crate::studies::recognition::spec::recorded::RecordedSpec;
 use crate::studies::recognition::spec::study::ConfusionMatrices;
-use crate::studies::recognition::study::load::TouchInputs;
 use crate::studies::recognition::study::rows::{RecognitionRows, TouchRow};
+use crate::studies::recognition::study::touch_inputs::TouchInputs;
 use crate::studies::recognition::sweep::cell_content::family_name;
 use crate::studies::recognition::sweep::sweep::{StudyPart, Sweep};
 use crate::studies::recognition::tables::published::{check_published, compare_with_published};
@@ -309,7 +308,7 @@ impl RecognitionStudy {
     /// The tables of all rows, typed.
     ///
     /// # Errors
-    /// Those of [`PieceStudy::tables`].
+    /// Those of [`StudyRunner::tables`].
     pub fn outcome(&self, (cells, touches): RecognitionRows) -> Result<Tables> {
         let mut tables = Tables::default();
         let scored = cells.into_iter().map(|row| {
@@ -345,32 +344,32 @@ impl RecognitionStudy {
     }
 }
 
-impl PieceStudy for RecognitionStudy {
+impl StudyRunner for RecognitionStudy {
     type Rows = RecognitionRows;
 
     /// Trial by trial all families, group by group; then the touches of each array.
-    fn pieces(&self) -> Vec<NamedPiece> {
+    fn work_items(&self) -> Vec<WorkItem> {
         let families = 0..self.families.len();
         let of_family = |family| {
             let (part, cells) = self.family(family);
             family_name(&part.plan, cells)
         };
         let families: Vec<String> = families.map(of_family).collect();
-        let mut pieces = Vec::with_capacity(self.n_trials() * families.len());
+        let mut items = Vec::with_capacity(self.n_trials() * families.len());
         for trial in 0..self.n_trials() {
             for (family, name) in self.families.iter().zip(&families) {
                 let group = trial * self.groups.len() + family.group;
                 let name = format!("{name}, trial {trial}");
-                pieces.push(NamedPiece::new(name, group));
+                items.push(WorkItem::new(name, group));
             }
         }
         for touches in &self.touch_sets {
-            pieces.push(NamedPiece::new(touches.name.clone(), touches.group));
+            items.push(WorkItem::new(touches.name.clone(), touches.group));
         }
-        pieces
+        items
     }
 
-    fn measure(&self, left: &PiecesLeft<RecognitionRows>) -> Result<()> {
+    fn measure(&self, left: &PendingItems<RecognitionRows>) -> Result<()> {
         self.measure_all(left)
     }
 
@@ -391,9 +390,9 @@ impl PieceStudy for RecognitionStudy {
     }
 
     /// A family by the settings of its first cell.
-    fn words(&self, number: usize, piece: &NamedPiece) -> String {
+    fn words(&self, number: usize, item: &WorkItem) -> String {
         if number >= self.touches_item(0) {
-            return piece.name.clone();
+            return item.name.clone();
         }
         let (trial, family) = (number / self.families.len(), number % self.families.len());
         let settings = serde_json::to_value(&self.family(family).1[0]).unwrap_or_default();

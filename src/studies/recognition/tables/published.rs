@@ -6,8 +6,7 @@ use crate::studies::recognition::rows::cell::Cell;
 use crate::studies::recognition::rows::conditions::{by_condition, most_accurate, settings_of};
 use crate::studies::recognition::rows::table_rows::{CellScore, Published};
 use crate::studies::recognition::spec::study::PublishedSpec;
-use crate::table::column_name;
-use crate::table::{Table, Value};
+use crate::table::{Table, Value, column_name};
 use std::fmt::Display;
 
 /// Every claim is an accuracy about at least one cell.
