@@ -1,6 +1,6 @@
 //! The `bubbletouch` command.
 
-// They panic where nobody reads any more; `command::streams` does not.
+// They panic where nobody reads any more; `command::terminal::streams` does not.
 #![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
 
 mod command;
@@ -15,7 +15,7 @@ fn main() -> ExitCode {
     match command::dispatch() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            command::streams::note(format_args!("error: {error}"));
+            command::terminal::streams::note(format_args!("error: {error}"));
             ExitCode::from(error.exit_code())
         }
     }

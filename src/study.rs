@@ -16,7 +16,7 @@ pub use crate::inputs::objects_spec::{ModelSpec, ObjectsSpec};
 pub use crate::inputs::packings::{Packed, pack_within, packing_path};
 pub use crate::inputs::sensor_errors::{Strengths, TestedOn, all_strengths, strength_columns};
 pub use crate::inputs::units::millimetres;
-pub use crate::report::snapshots::Snapshots;
+pub use crate::report::pictures::snapshots::Snapshots;
 pub use crate::statistics::p_status::CONFIDENCE;
 pub use crate::studies::recognition::exports::feature_files::{
     FEATURE_FILES, FeatureSet, read_features,

@@ -1,6 +1,6 @@
 //! `bubbletouch advise`: which setting to take.
 
-use super::streams::say;
+use crate::command::terminal::streams::say;
 use bubbletouch::report::advice::{Advice, Asked, Offers, Wish};
 use bubbletouch::report::advice_answers::{Answer, answers, answers_json};
 use bubbletouch::{Result, kinds};

@@ -1,7 +1,7 @@
 //! `bubbletouch calibrate`: the signal of a skin from what it has recorded.
 
-use super::output::check_ending;
-use super::streams::{note, write_out};
+use crate::command::terminal::output::check_ending;
+use crate::command::terminal::streams::{note, write_out};
 use bubbletouch::calibration::{Estimate, calibrate as estimated};
 use bubbletouch::files::write_bytes;
 use bubbletouch::study::{RecordedSkinFiles, UntouchedFrames};

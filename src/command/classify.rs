@@ -1,8 +1,8 @@
 //! `bubbletouch classify`: one classifier on one folder of features, timed.
 
-use super::streams::say;
-use super::study_args::set_threads;
-use super::unused::check_used;
+use crate::command::options::study_args::set_threads;
+use crate::command::options::unused::check_used;
+use crate::command::terminal::streams::say;
 use bubbletouch::files::check_single_output;
 use bubbletouch::quantile::quantile;
 use bubbletouch::random::Seed;

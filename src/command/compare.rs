@@ -1,7 +1,7 @@
 //! `bubbletouch compare`: two folders of results side by side.
 
-use super::output::{check_ending, terminal_width};
-use super::streams::{say, write_out};
+use crate::command::terminal::output::{check_ending, terminal_width};
+use crate::command::terminal::streams::{say, write_out};
 use bubbletouch::files::{CsvFile, check_output, write_bytes};
 use bubbletouch::report::compared::{
     differences_page, differences_text, entries_words, sentences_text,

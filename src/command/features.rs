@@ -1,7 +1,7 @@
 //! `bubbletouch features`: what one cell of a study learns from.
 
-use super::output::output_folder;
-use super::study_args::StudyArgs;
+use crate::command::options::study_args::StudyArgs;
+use crate::command::terminal::output::output_folder;
 use bubbletouch::Result;
 use bubbletouch::files::DataFolder;
 use bubbletouch::kinds::recognition::load_study;

@@ -1,7 +1,7 @@
 //! `bubbletouch merge`: the shards of a study put together.
 
-use super::output::output_folder;
-use super::study_run::{RunArgs, StudyRun};
+use crate::command::options::study_run::{RunArgs, StudyRun};
+use crate::command::terminal::output::output_folder;
 use bubbletouch::study::journal::{JOURNAL_FILE, Journal};
 use bubbletouch::study::work_items::{Part, RunOptions};
 use bubbletouch::{Error, Result};

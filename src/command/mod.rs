@@ -5,36 +5,29 @@ mod calibrate;
 mod classify;
 mod compare;
 mod features;
-mod memory_limit;
 mod merge;
 mod objects;
 mod objects_pack;
 mod objects_show;
-mod output;
+mod options;
 mod plan;
 mod press;
 mod press_place;
 mod press_poses;
 mod recording;
 mod report;
-mod results_folder;
 mod run;
 mod shell;
-mod signals;
 mod simulate;
 mod slurm;
 mod slurm_jobs;
-pub mod streams;
-mod study_args;
-mod study_run;
+pub mod terminal;
 mod touches;
-mod unused;
 mod verify;
-mod which_object;
 
 use bubbletouch::Result;
-use clap::{Parser, Subcommand};
-use study_args::QUICKSTART_FILE;
+use clap::{CommandFactory, Parser, Subcommand};
+use options::study_args::QUICKSTART_FILE;
 
 /// Simulated touch for robot skin: press objects on arrays of taxels, compress what they feel, recognise the object.
 ///
@@ -105,7 +98,7 @@ pub fn dispatch() -> Result<()> {
     let line = match CommandLine::try_parse() {
         Ok(line) => line,
         // --help and --version.
-        Err(asked) if !asked.use_stderr() => return streams::written(asked.print()),
+        Err(asked) if !asked.use_stderr() => return terminal::streams::written(asked.print()),
         Err(wrong) => wrong.exit(),
     };
     let quickstart = ["bubbletouch", "run", QUICKSTART_FILE, "--demonstration"];
@@ -130,8 +123,8 @@ pub fn dispatch() -> Result<()> {
         Some(Command::Press(args)) => press::press(&args),
         Some(Command::Recording(args)) => recording::recording(&args),
         Some(Command::Objects(args)) => objects::objects(&args),
-        Some(Command::Completions(args)) => shell::completions(&args),
-        Some(Command::Man(args)) => shell::man(&args),
+        Some(Command::Completions(args)) => shell::completions(&args, CommandLine::command()),
+        Some(Command::Man(args)) => shell::man(&args, CommandLine::command()),
     }
 }
 

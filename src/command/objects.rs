@@ -1,10 +1,10 @@
 //! `bubbletouch objects`: what there is to touch, as a list or as pictures.
 
-use super::output::check_ending;
-use super::streams::say;
-use super::unused::check_used;
-use super::which_object::catalogue;
 use super::{objects_pack, objects_show};
+use crate::command::options::unused::check_used;
+use crate::command::options::which_object::catalogue;
+use crate::command::terminal::output::check_ending;
+use crate::command::terminal::streams::say;
 use bubbletouch::Result;
 use bubbletouch::files::write_bytes;
 use bubbletouch::mesh::{LengthUnit, MeshReport, SizeLimits};

@@ -1,8 +1,8 @@
 //! `bubbletouch objects pack`: a mesh or a built-in object as few spheres, and how well they fit.
 
-use super::output::check_ending;
-use super::streams::say;
-use super::which_object::WhichObject;
+use crate::command::options::which_object::WhichObject;
+use crate::command::terminal::output::check_ending;
+use crate::command::terminal::streams::say;
 use bubbletouch::Result;
 use bubbletouch::files::write_whole;
 use bubbletouch::objects::{Solid, SphereUnion, surface_error, write_spheres};

@@ -1,9 +1,9 @@
 //! `bubbletouch objects show`: an object, the spheres that stand for it, and the error between them, side by side.
 
 use super::objects_pack::renamed;
-use super::output::check_ending;
-use super::unused::check_used;
-use super::which_object::WhichObject;
+use crate::command::options::unused::check_used;
+use crate::command::options::which_object::WhichObject;
+use crate::command::terminal::output::check_ending;
 use bubbletouch::Result;
 use bubbletouch::files::write_bytes;
 use bubbletouch::mesh::{LengthUnit, SizeLimits};

@@ -1,8 +1,8 @@
 //! `bubbletouch plan`: the size of a study, without a run of it.
 
-use super::memory_limit::MemoryLimit;
-use super::streams::say;
-use super::study_args::StudyArgs;
+use crate::command::options::memory_limit::MemoryLimit;
+use crate::command::options::study_args::StudyArgs;
+use crate::command::terminal::streams::say;
 use bubbletouch::kinds::AnyStudy;
 use bubbletouch::report::run_clock::RunClock;
 

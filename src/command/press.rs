@@ -1,12 +1,12 @@
 //! `bubbletouch press`: one object, one patch, one reading.
 
 use super::classify::word;
-use super::output::terminal_width;
 use super::press_place::Place;
 use super::press_poses::{self, press_poses};
-use super::streams::{note, write_out};
-use super::unused::check_used;
-use super::which_object::catalogue;
+use crate::command::options::unused::check_used;
+use crate::command::options::which_object::catalogue;
+use crate::command::terminal::output::terminal_width;
+use crate::command::terminal::streams::{note, write_out};
 use bubbletouch::contact::{self, Goal, Workspace};
 use bubbletouch::files::check_single_output;
 use bubbletouch::geometry::Pose;

@@ -1,8 +1,8 @@
 //! `bubbletouch press --poses`: one object read in many places, and how long each reading takes.
 
-use super::output::check_ending;
-use super::streams::say;
-use super::unused::check_used;
+use crate::command::options::unused::check_used;
+use crate::command::terminal::output::check_ending;
+use crate::command::terminal::streams::say;
 use bubbletouch::contact::{self, Contact, Goal, Workspace};
 use bubbletouch::files::table_error;
 use bubbletouch::geometry::Pose;

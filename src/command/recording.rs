@@ -1,9 +1,9 @@
 //! `bubbletouch recording`: what a file of frames over time holds, as a table, a picture or an animation.
 
 use super::classify::word;
-use super::output::{check_ending, terminal_width};
-use super::streams::{note, write_out};
-use super::unused::check_used;
+use crate::command::options::unused::check_used;
+use crate::command::terminal::output::{check_ending, terminal_width};
+use crate::command::terminal::streams::{note, write_out};
 use bubbletouch::files::write_bytes;
 use bubbletouch::report::heat_map::ColourScale;
 use bubbletouch::report::pressure_map::pressure_text;

@@ -1,8 +1,8 @@
 //! `bubbletouch report`: the charts and the page of a folder of results again, from its tables.
 
 use super::classify::word;
-use super::results_folder::{checked_manifest, load_study};
-use super::streams::{note, say};
+use crate::command::options::results_folder::{checked_manifest, load_study};
+use crate::command::terminal::streams::{note, say};
 use bubbletouch::report::page::StudyAbout;
 use bubbletouch::report::study_folder::ChartFormat;
 use bubbletouch::shell_line::shell_line;

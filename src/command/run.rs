@@ -1,8 +1,8 @@
 //! `bubbletouch run`: a study from its file to its folder of results.
 
-use super::output::output_folder;
-use super::signals::keep_journal_on_signals;
-use super::study_run::{RunArgs, StudyRun};
+use crate::command::options::study_run::{RunArgs, StudyRun};
+use crate::command::terminal::output::output_folder;
+use crate::command::terminal::signals::keep_journal_on_signals;
 use bubbletouch::kinds::AnyStudy;
 use bubbletouch::study::Shard;
 use bubbletouch::study::journal::{JOURNAL_FILE, Journal, set_aside};

@@ -1,11 +1,10 @@
 //! `bubbletouch completions` and `bubbletouch man`: what a shell and `man` need to know of the command.
 
-use super::CommandLine;
-use super::output::output_folder;
-use super::streams::{say, write_out};
+use crate::command::terminal::output::output_folder;
+use crate::command::terminal::streams::{say, write_out};
 use bubbletouch::files::write_bytes;
 use bubbletouch::{Error, Result};
-use clap::CommandFactory;
+use clap::Command;
 use clap_complete::Shell;
 use clap_mangen::Man;
 use std::path::{Path, PathBuf};
@@ -25,19 +24,18 @@ pub struct ManArgs {
 }
 
 /// Writes a completion script to standard output.
-pub fn completions(args: &CompletionArgs) -> Result<()> {
+pub fn completions(args: &CompletionArgs, mut command: Command) -> Result<()> {
     let mut script = Vec::new();
-    let mut command = CommandLine::command();
     let name = command.get_name().to_owned();
     clap_complete::generate(args.shell, &mut command, name, &mut script);
     write_out(&script)
 }
 
 /// Writes the pages of all commands into a folder; the error names a page of that name that is of another program.
-fn write_pages(folder: &Path) -> Result<()> {
+fn write_pages(folder: &Path, command: Command) -> Result<()> {
     let failed = |error| Error::io(folder, "write", error);
     let made = tempfile::tempdir().map_err(failed)?;
-    clap_mangen::generate_to(CommandLine::command(), made.path()).map_err(failed)?;
+    clap_mangen::generate_to(command, made.path()).map_err(failed)?;
     let mut pages = Vec::new();
     for entry in std::fs::read_dir(made.path()).map_err(failed)? {
         let entry = entry.map_err(failed)?;
@@ -62,12 +60,12 @@ fn write_pages(folder: &Path) -> Result<()> {
 }
 
 /// Writes manual pages.
-pub fn man(args: &ManArgs) -> Result<()> {
+pub fn man(args: &ManArgs, command: Command) -> Result<()> {
     if let Some(folder) = &args.out {
-        write_pages(folder)?;
+        write_pages(folder, command)?;
         return say(format_args!("Manual pages in {}", folder.display()));
     }
-    let mut command = CommandLine::command().disable_help_subcommand(true);
+    let mut command = command.disable_help_subcommand(true);
     command.build();
     let mut page = Vec::new();
     let rendered = Man::new(command).render(&mut page);

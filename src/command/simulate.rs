@@ -1,7 +1,7 @@
 //! `bubbletouch simulate`: a scene from its file to its folder of results.
 
-use super::output::output_folder;
-use super::streams::{note, say, write_out};
+use crate::command::terminal::output::output_folder;
+use crate::command::terminal::streams::{note, say, write_out};
 use bubbletouch::Result;
 use bubbletouch::report::progress::to_stderr;
 use bubbletouch::report::scene_files::SceneFiles;

@@ -1,9 +1,9 @@
 //! `bubbletouch slurm`: the shards of a study as an array of jobs, and their merge after them.
 
-use super::output::output_folder;
 use super::slurm_jobs::{queued_shards, submit};
-use super::streams::say;
-use super::study_run::ResultsArgs;
+use crate::command::options::study_run::ResultsArgs;
+use crate::command::terminal::output::output_folder;
+use crate::command::terminal::streams::say;
 use bubbletouch::kinds::{self, AnyStudy};
 use bubbletouch::shell_line::shell_line;
 use bubbletouch::study::journal::{JOURNAL_FILE, Journal};

@@ -1,7 +1,7 @@
 //! `bubbletouch touches`: just the data set.
 
-use super::output::output_folder;
-use super::study_args::StudyArgs;
+use crate::command::options::study_args::StudyArgs;
+use crate::command::terminal::output::output_folder;
 use bubbletouch::files::DataFolder;
 use bubbletouch::kinds::recognition::{load_study, read_plans, touch_content};
 use bubbletouch::report::progress;

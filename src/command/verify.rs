@@ -1,9 +1,9 @@
 //! `bubbletouch verify`: whether a folder of results comes out again.
 
-use super::memory_limit::MemoryLimit;
-use super::results_folder::{check_page, checked_manifest, load_study};
-use super::streams::say;
-use super::study_args::set_threads;
+use crate::command::options::memory_limit::MemoryLimit;
+use crate::command::options::results_folder::{check_page, checked_manifest, load_study};
+use crate::command::options::study_args::set_threads;
+use crate::command::terminal::streams::say;
 use bubbletouch::report::progress::to_stderr;
 use bubbletouch::shell_line::shell_line;
 use bubbletouch::study::provenance::{MANIFEST_FILE, SOURCE};

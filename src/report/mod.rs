@@ -10,29 +10,18 @@
 
 pub mod advice;
 pub mod advice_answers;
-pub(crate) mod canvas;
 pub mod chart;
 pub(crate) mod chart_format;
-pub mod colours;
 pub mod comparison;
 pub mod csv_tables;
-pub mod drawing;
-pub mod fit_picture;
 pub mod folder;
-pub mod frame_files;
-pub mod heat_map;
-pub mod object_picture;
 pub mod page;
-pub(crate) mod picture;
-pub(crate) mod picture_axes;
-pub mod pressure_map;
+pub mod pictures;
 pub mod progress;
 pub mod recording;
 pub mod run_clock;
 pub mod scene_files;
 pub mod scene_summary;
-pub(crate) mod shaded_view;
-pub mod snapshots;
 pub(crate) mod study_content;
 pub mod study_folder;
 pub mod swept;
@@ -40,3 +29,6 @@ pub mod terminal;
 pub mod text_width;
 
 pub use comparison::{compared, differences, entries, rank_agreement};
+pub use pictures::{
+    colours, drawing, fit_picture, frame_files, heat_map, object_picture, pressure_map, snapshots,
+};

@@ -1,6 +1,6 @@
 //! What a run prints at its end: tables at the width of the terminal.
 
-use crate::report::colours::Rgb;
+use crate::report::pictures::colours::Rgb;
 use crate::report::swept::{Setting, Swept, without};
 use crate::report::text_width::break_lines;
 use crate::table::{Column, Role, Table, Value};

@@ -3,8 +3,8 @@
 use super::legend::{Heading, LEFT, LegendEntry, RIGHT};
 use super::scale::{Scale, Tick, thin};
 use super::view::View;
-use crate::report::colours::{GRID, INK, MUTED};
-use crate::report::drawing::{Align, Area, Drawing, Stroke, TextStyle};
+use crate::report::pictures::colours::{GRID, INK, MUTED};
+use crate::report::pictures::drawing::{Align, Area, Drawing, Stroke, TextStyle};
 use crate::report::text_width::{shorten, text_width, wrap};
 
 /// Letters of tick labels.

@@ -1,7 +1,7 @@
 //! What stands above a chart's panels: title, fixed settings, and the legend.
 
-use crate::report::colours::{INK, LINES, MUTED};
-use crate::report::drawing::{Area, Drawing, Stroke, TextStyle};
+use crate::report::pictures::colours::{INK, LINES, MUTED};
+use crate::report::pictures::drawing::{Area, Drawing, Stroke, TextStyle};
 use crate::report::text_width::{text_width, wrap};
 
 /// Left margin of a chart, pixels.

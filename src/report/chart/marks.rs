@@ -5,8 +5,8 @@ use super::layout::Layout;
 use super::legend::{FRONT, LegendEntry, MARKER_RADIUS, line_stroke};
 use super::rules;
 use super::view::{Place, View};
-use crate::report::colours::{INK, MUTED, Rgb};
-use crate::report::drawing::{Align, Area, Drawing, Point, Stroke, TextStyle};
+use crate::report::pictures::colours::{INK, MUTED, Rgb};
+use crate::report::pictures::drawing::{Align, Area, Drawing, Point, Stroke, TextStyle};
 
 /// Points beyond which each is small.
 const MANY: usize = 400;

@@ -13,11 +13,10 @@ mod scale;
 mod tiles;
 mod view;
 
-pub(crate) use scale::even_ticks;
 pub use view::Place;
 
 use crate::error::{Error, Result};
-use crate::report::drawing::Drawing;
+use crate::report::pictures::drawing::Drawing;
 use crate::table::{ChartSpec, Mark, Table};
 use front::Front;
 use view::View;

@@ -2,8 +2,8 @@
 
 use super::legend::LegendEntry;
 use super::view::View;
-use crate::report::colours::{INK, MUTED, PAPER};
-use crate::report::drawing::{Area, Drawing, Point, Stroke};
+use crate::report::pictures::colours::{INK, MUTED, PAPER};
+use crate::report::pictures::drawing::{Area, Drawing, Point, Stroke};
 use crate::table::{Along, At, Rule};
 
 /// How rules are told apart, in their order.

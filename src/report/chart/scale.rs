@@ -1,5 +1,7 @@
 //! Where values stand along an axis: the one scale of all charts.
 
+use crate::report::pictures::even_ticks::even_ticks;
+use crate::report::pictures::even_ticks::tick_step;
 use crate::table::{Along, Column, Role, Scale as Spacing};
 
 /// Part of a logarithmic axis on which zero stands apart.
@@ -195,31 +197,6 @@ fn ends(values: &[f64]) -> (f64, f64) {
         false => 0.5 * low.abs().max(1e-12),
     };
     (low - margin, high + margin)
-}
-
-/// 1, 2 or 5 times a power of ten: about five steps over a length.
-fn tick_step(length: f64) -> f64 {
-    let raw = length / 5.0;
-    let power = 10f64.powf(raw.log10().floor());
-    let factor = [1.0, 2.0, 5.0, 10.0]
-        .into_iter()
-        .find(|f| f * power >= raw * 0.999);
-    factor.unwrap_or(10.0) * power
-}
-
-/// Multiples of a round step between two ends.
-pub(crate) fn even_ticks(low: f64, high: f64) -> Vec<f64> {
-    let step = tick_step(high - low);
-    let (first, last) = (
-        (low / step - 1e-9).ceil() as i64,
-        (high / step + 1e-9).floor() as i64,
-    );
-    // A quotient by the inverse is the nearest number to what is meant, which the product is not: 3 × 0.1.
-    let value = |tick: i64| match step < 1.0 {
-        true => tick as f64 / (1.0 / step).round(),
-        false => tick as f64 * step,
-    };
-    (first..=last).map(value).collect()
 }
 
 /// Powers of ten; where these are fewer than three, multiples of them; where these are too, round numbers at equal steps.

@@ -2,7 +2,7 @@
 
 use super::scale::Scale;
 use crate::error::{Error, Result};
-use crate::report::drawing::Drawing;
+use crate::report::pictures::drawing::Drawing;
 use crate::report::swept::Setting;
 use crate::table::{Along, At, ChartSpec, Data, Mark, Role, Scale as Spacing, Table};
 use std::collections::{HashMap, HashSet};

@@ -1,7 +1,7 @@
 //! The section "What to choose": the Pareto fronts of the table that offers choices.
 
 use crate::report::advice::{Asked, Offer, Offers};
-use crate::report::drawing::escape;
+use crate::report::pictures::drawing::escape;
 use crate::report::study_content::Found;
 use crate::report::swept::Setting;
 use crate::table::{Role, Value};

@@ -1,7 +1,7 @@
 //! What every page has: head, question, contents, sections, foot.
 
 use super::about::StudyAbout;
-use crate::report::drawing::escape;
+use crate::report::pictures::drawing::escape;
 
 const TEMPLATE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");

@@ -1,6 +1,6 @@
 //! Pictures in a page.
 
-use crate::report::drawing::escape;
+use crate::report::pictures::drawing::escape;
 
 /// The element of a PNG file, with its width and height in pixels; the title is for those who cannot see it.
 pub(crate) fn png_element(png: &[u8], (width, height): (usize, usize), title: &str) -> String {

@@ -2,7 +2,7 @@
 
 use super::frame::definition;
 use crate::engine::provenance::Manifest;
-use crate::report::drawing::escape;
+use crate::report::pictures::drawing::escape;
 use crate::spelling::counted;
 use std::collections::BTreeMap;
 

@@ -7,7 +7,7 @@ use super::picture::{figure, png_element};
 use super::provenance::provenance_html;
 use super::table::table_html;
 use crate::report::chart_format::ChartFormat;
-use crate::report::drawing::escape;
+use crate::report::pictures::drawing::escape;
 use crate::report::study_content::{Beyond, Found, NamedPicture};
 use crate::table::{ChartSpec, Mark, Table, short_number};
 use std::collections::HashMap;

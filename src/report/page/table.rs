@@ -1,6 +1,6 @@
 //! Tables of a page: HTML in which each cell shows a rounded value with its unit and holds the value of the file.
 
-use crate::report::drawing::escape;
+use crate::report::pictures::drawing::escape;
 use crate::table::{Better, Column, Data, Role, Table};
 
 /// Rows of a table that does not fit into the page.

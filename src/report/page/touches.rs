@@ -1,12 +1,14 @@
 //! Sample touches as heat maps, side by side on one scale of colours.
 
 use crate::error::Result;
-use crate::report::colours::heat;
-use crate::report::drawing::escape;
-use crate::report::heat_map::{ColourScale, block_sentence, check_frame, largest_of_blocks};
 use crate::report::page::picture::png_element;
-use crate::report::picture::Picture;
-use crate::report::snapshots::Snapshots;
+use crate::report::pictures::colours::heat;
+use crate::report::pictures::drawing::escape;
+use crate::report::pictures::heat_map::{
+    ColourScale, block_sentence, check_frame, largest_of_blocks,
+};
+use crate::report::pictures::picture::Picture;
+use crate::report::pictures::snapshots::Snapshots;
 use crate::table::short_number;
 use ndarray::Array2;
 

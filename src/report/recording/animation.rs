@@ -6,7 +6,7 @@ use super::reader::RecordingFile;
 use super::skin_picture::{Picture, SkinPicture};
 use crate::error::{Error, Result};
 use crate::files::write_bytes;
-use crate::report::heat_map::ColourScale;
+use crate::report::pictures::heat_map::ColourScale;
 use crate::signal::Quantity;
 use png::{BitDepth, BlendOp, ColorType, Encoder, EncodingError};
 use std::path::Path;

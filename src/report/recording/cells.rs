@@ -2,10 +2,10 @@
 
 use super::header::RecordedPatch;
 use super::unrolled::unroll;
-use crate::report::colours::{GRID, INK};
-use crate::report::drawing::{Area, Drawing, Point, Stroke};
-use crate::report::heat_map::{block_sentence, grid_sentence};
-use crate::report::picture_axes::{Side, draw_map_axis, draw_scale_bar};
+use crate::report::pictures::colours::{GRID, INK};
+use crate::report::pictures::drawing::{Area, Drawing, Point, Stroke};
+use crate::report::pictures::heat_map::{block_sentence, grid_sentence};
+use crate::report::pictures::picture_axes::{Side, draw_map_axis, draw_scale_bar};
 use crate::world::Grid;
 use glam::DVec2;
 

@@ -1,8 +1,8 @@
 //! Cells as pixels: a drawing of four thousand of them takes the chart library a tenth of a second; this, some milliseconds.
 
 use super::cells::Cells;
-use crate::report::colours::Rgb;
-use crate::report::picture::Picture;
+use crate::report::pictures::colours::Rgb;
+use crate::report::pictures::picture::Picture;
 
 /// Colours all cells, one colour each, in a picture that is `fine` times as large as the drawing.
 pub(crate) fn paint(picture: &mut Picture, cells: &Cells, fine: f64, colours: &[Rgb]) {
@@ -32,7 +32,7 @@ pub(crate) fn paint(picture: &mut Picture, cells: &Cells, fine: f64, colours: &[
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::drawing::Area;
+    use crate::report::pictures::drawing::Area;
     use glam::DVec2;
 
     fn cells(places: &[[f64; 2]], radius: f64, distance: fn(f64, f64) -> f64) -> Cells {

@@ -3,7 +3,7 @@
 use crate::engine::progress::Silent;
 use crate::error::Result;
 use crate::inputs::units::millimetres;
-use crate::report::snapshots::{Snapshots, snapshots};
+use crate::report::pictures::snapshots::{Snapshots, snapshots};
 use crate::report::study_content::NamedPicture;
 use crate::sensing::{Reconstructor, SensedDictionary};
 use crate::studies::reconstruction::charts::{cell_words, noise_words};

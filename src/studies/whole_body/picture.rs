@@ -2,12 +2,12 @@
 
 use crate::error::Result;
 use crate::objects::Sphere;
-use crate::report::canvas::{Canvas, Hit, view_from};
-use crate::report::colours::tint;
-use crate::report::drawing::{Align, Area, Drawing, TextStyle};
-use crate::report::picture::Picture;
-use crate::report::picture_axes::{draw_colours, draw_scale_bar};
-use crate::report::shaded_view::{Lighting, PAINT};
+use crate::report::pictures::canvas::{Canvas, Hit, view_from};
+use crate::report::pictures::colours::tint;
+use crate::report::pictures::drawing::{Align, Area, Drawing, TextStyle};
+use crate::report::pictures::picture::Picture;
+use crate::report::pictures::picture_axes::{draw_colours, draw_scale_bar};
+use crate::report::pictures::shaded_view::{Lighting, PAINT};
 use crate::report::study_content::NamedPicture;
 use crate::studies::whole_body::plan::{ScenePlan, WholeBodyPlan};
 use crate::table::{Table, short_number};

@@ -2,9 +2,9 @@
 
 use crate::error::Result;
 use crate::report::csv_tables::LIMITS_FILE;
-use crate::report::drawing::escape;
 use crate::report::page::{Section, definition, touches_html};
-use crate::report::snapshots::Snapshots;
+use crate::report::pictures::drawing::escape;
+use crate::report::pictures::snapshots::Snapshots;
 use crate::report::swept::Swept;
 use crate::studies::recognition::charts::filled::filled;
 use crate::studies::recognition::charts::tables::CELLS;

@@ -3,7 +3,7 @@
 use crate::contact::Workspace;
 use crate::error::{Error, Result};
 use crate::inputs::units::millimetres;
-use crate::report::snapshots::Snapshots;
+use crate::report::pictures::snapshots::Snapshots;
 use crate::signal::Quantity;
 use crate::studies::recognition::frames::human_touches::{HumanTouches, record_touch};
 use crate::studies::recognition::frames::samples::named_samples;

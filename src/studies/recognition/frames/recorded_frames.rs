@@ -16,7 +16,7 @@ use crate::inputs::memory::check_memory;
 use crate::inputs::object_files::file_content;
 use crate::learning::data::split::Side;
 use crate::random::Seed;
-use crate::report::snapshots::Snapshots;
+use crate::report::pictures::snapshots::Snapshots;
 use crate::signal::Quantity;
 use crate::studies::recognition::frames::kept::Frames;
 use crate::studies::recognition::frames::reading::{TouchToRead, touches_to_read};

@@ -4,7 +4,7 @@ use crate::engine::progress::Silent;
 use crate::error::{Error, Result};
 use crate::inputs::sensor_errors::strength_columns;
 use crate::random::Seed;
-use crate::report::snapshots::Snapshots;
+use crate::report::pictures::snapshots::Snapshots;
 use crate::sensing::{Ensemble, Projection};
 use crate::signal::{Chain, SensorError, SignalStep, Strength};
 use crate::studies::recognition::frames::reading::{Reading, measure, touches_to_read};

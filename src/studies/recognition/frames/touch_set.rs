@@ -4,7 +4,7 @@ use crate::engine::progress::Progress;
 use crate::error::Result;
 use crate::learning::data::split::Side;
 use crate::random::Seed;
-use crate::report::snapshots::Snapshots;
+use crate::report::pictures::snapshots::Snapshots;
 use crate::studies::recognition::frames::kept::Frames;
 use crate::studies::recognition::frames::reading::TouchToRead;
 use crate::studies::recognition::plan::group::Group;

@@ -3,7 +3,7 @@
 use crate::engine::work_items::scale::Scale;
 use crate::error::Result;
 use crate::report::page::Section;
-use crate::report::snapshots::{Snapshots, snapshots};
+use crate::report::pictures::snapshots::{Snapshots, snapshots};
 use crate::report::study_content::NamedPicture;
 use crate::studies::kind::{About, Facts, Findings, Kind};
 use crate::studies::recognition::charts;

@@ -1,7 +1,7 @@
 //! A frame as a heat map: the scale of its colours, and what of a large frame is shown.
 
 use crate::error::{Error, Result};
-use crate::report::colours::{Rgb, heat};
+use crate::report::pictures::colours::{Rgb, heat};
 use crate::signal::Quantity;
 use crate::table::short_number;
 use ndarray::{Array2, ArrayView2};

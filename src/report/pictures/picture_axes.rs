@@ -1,9 +1,9 @@
 //! Axes, bars of colours and bars of length: what says how large and how much the things in a picture are.
 
-use super::chart::even_ticks;
-use super::colours::{INK, Rgb, heat};
-use super::drawing::{Align, Area, Drawing, Point, Stroke, TextStyle};
-use super::heat_map::ColourScale;
+use super::even_ticks::even_ticks;
+use crate::report::pictures::colours::{INK, Rgb, heat};
+use crate::report::pictures::drawing::{Align, Area, Drawing, Point, Stroke, TextStyle};
+use crate::report::pictures::heat_map::ColourScale;
 use crate::table::short_number;
 
 /// Where an axis stands.

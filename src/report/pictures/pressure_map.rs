@@ -1,8 +1,10 @@
 //! One frame for the eye: a drawing in the terminal.
 
 use crate::error::Result;
-use crate::report::colours::heat;
-use crate::report::heat_map::{ColourScale, check_frame, grid_sentence, largest_of_blocks};
+use crate::report::pictures::colours::heat;
+use crate::report::pictures::heat_map::{
+    ColourScale, check_frame, grid_sentence, largest_of_blocks,
+};
 use crate::report::terminal::Ink;
 use crate::signal::Quantity;
 use crate::table::short_number;
@@ -65,7 +67,7 @@ pub fn pressure_text(
 }
 
 /// Where the largest value is, and how many taxels are above zero.
-pub(super) fn peak_sentence(frame: &Array2<f64>, pitch_mm: f64, quantity: Quantity) -> String {
+pub(crate) fn peak_sentence(frame: &Array2<f64>, pitch_mm: f64, quantity: Quantity) -> String {
     let (ny, nx) = frame.dim();
     let touched = frame.iter().filter(|&&value| value > 0.0).count();
     if touched == 0 {

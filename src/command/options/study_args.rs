@@ -1,6 +1,6 @@
 //! The study that a command is about: its file, and what replaces some of it.
 
-use super::output::packings_beside;
+use crate::command::terminal::output::packings_beside;
 use bubbletouch::kinds::{self, AnyStudy, Source};
 use bubbletouch::shell_line::shell_line;
 use bubbletouch::study::TouchesSpec;
@@ -14,7 +14,7 @@ const MOST_THREADS: usize = 1024;
 pub const QUICKSTART_FILE: &str = "experiments/quickstart.toml";
 
 /// It is part of the command, so that it runs in any folder.
-const QUICKSTART: &str = include_str!("../../experiments/quickstart.toml");
+const QUICKSTART: &str = include_str!("../../../experiments/quickstart.toml");
 
 #[derive(clap::Args)]
 pub struct StudyArgs {

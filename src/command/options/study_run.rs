@@ -1,10 +1,10 @@
 //! A run of a study from its file to its folder of results: how `run` and `merge` begin, and how they end.
 
-use super::classify::word;
-use super::memory_limit::MemoryLimit;
-use super::output::terminal_width;
-use super::streams::{say, write_out};
-use super::study_args::StudyArgs;
+use crate::command::classify::word;
+use crate::command::options::memory_limit::MemoryLimit;
+use crate::command::options::study_args::StudyArgs;
+use crate::command::terminal::output::terminal_width;
+use crate::command::terminal::streams::{say, write_out};
 use bubbletouch::kinds::{self, AnyStudy, Outcome, Source};
 use bubbletouch::report::csv_tables::FAILURES_FILE;
 use bubbletouch::report::progress::{json_lines, to_stderr};

@@ -1,7 +1,7 @@
 //! Which object a command is about: a mesh file or a built-in one; and its packing, with progress shown.
 
-use super::streams::note;
-use super::unused::check_used;
+use crate::command::options::unused::check_used;
+use crate::command::terminal::streams::note;
 use bubbletouch::Result;
 use bubbletouch::mesh::{LengthUnit, SizeLimits, Surface};
 use bubbletouch::objects::{Catalogue, SphereUnion};

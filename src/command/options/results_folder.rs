@@ -1,6 +1,6 @@
 //! A folder of results: whether its files are those that its run wrote, and the study that they are of.
 
-use super::output::packings_beside;
+use crate::command::terminal::output::packings_beside;
 use bubbletouch::kinds::{self, AnyStudy, Source};
 use bubbletouch::study::file_content;
 use bubbletouch::study::provenance::Manifest;

@@ -1,6 +1,6 @@
 //! Ctrl-C, and a scheduler that ends the process: nothing is half-written, and a line says how to go on.
 
-use super::streams::note;
+use crate::command::terminal::streams::note;
 use bubbletouch::study::journal::Journal;
 use bubbletouch::{Error, Result};
 use std::sync::Arc;

@@ -33,7 +33,7 @@ impl Picture {
     }
 
     /// Of a PNG file's bytes; opaque.
-    pub(super) fn of_png(png: &[u8]) -> Result<Self> {
+    pub(crate) fn of_png(png: &[u8]) -> Result<Self> {
         let mut reader = png::Decoder::new(std::io::Cursor::new(png))
             .read_info()
             .map_err(unfit)?;
@@ -48,7 +48,7 @@ impl Picture {
     }
 
     /// The same at half the size (rounded down), each pixel the mean of four.
-    pub(super) fn halved(&self) -> Self {
+    pub(crate) fn halved(&self) -> Self {
         let (width, height) = (self.width / 2, self.height / 2);
         let mut rgb = Vec::with_capacity(3 * width * height);
         for y in 0..height {
@@ -86,6 +86,6 @@ impl Picture {
     }
 }
 
-pub(super) fn unfit(said: impl std::fmt::Display) -> Error {
+pub(crate) fn unfit(said: impl std::fmt::Display) -> Error {
     Error::input("picture", said, "a size that fits into a PNG file")
 }

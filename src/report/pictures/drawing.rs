@@ -5,8 +5,8 @@
 //! not always be the same bytes.
 
 use crate::error::Result;
-use crate::report::colours::{INK, PAPER, Rgb};
-use crate::report::picture::{Picture, unfit};
+use crate::report::pictures::colours::{INK, PAPER, Rgb};
+use crate::report::pictures::picture::{Picture, unfit};
 use kuva::backend::svg::SvgBackend;
 use kuva::render::color::Color;
 pub use kuva::render::render::TextAnchor as Align;
@@ -295,7 +295,7 @@ impl Drawing {
     }
 
     /// The drawing as pixels, so many a pixel of its own each way.
-    pub(super) fn pixels(&self, scale: u32) -> Result<Picture> {
+    pub(crate) fn pixels(&self, scale: u32) -> Result<Picture> {
         let mut elements = self.elements.clone();
         for element in &mut elements {
             if let Primitive::PolyLine {

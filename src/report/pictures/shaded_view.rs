@@ -1,8 +1,8 @@
 //! Surfaces drawn for the eye: orthographic, softly lit, with outlines.
 
-use super::canvas::{Canvas, Hit};
-use super::colours::Rgb;
-use super::picture::{BACKGROUND, Picture};
+use crate::report::pictures::canvas::{Canvas, Hit};
+use crate::report::pictures::colours::Rgb;
+use crate::report::pictures::picture::{BACKGROUND, Picture};
 use glam::DVec3;
 use rayon::prelude::*;
 

@@ -1,12 +1,12 @@
 //! The picture of objects: their spheres seen from above and to the side, in tiles.
 
-use super::canvas::{Canvas, three_quarter_view};
-use super::drawing::{Align, Drawing, TextStyle};
-pub use super::picture::Picture;
-use super::picture_axes::draw_scale_bar;
-use super::shaded_view::{Lighting, PAINT};
 use crate::error::{Error, Result};
 use crate::objects::SphereUnion;
+use crate::report::pictures::canvas::{Canvas, three_quarter_view};
+use crate::report::pictures::drawing::{Align, Drawing, TextStyle};
+pub use crate::report::pictures::picture::Picture;
+use crate::report::pictures::picture_axes::draw_scale_bar;
+use crate::report::pictures::shaded_view::{Lighting, PAINT};
 use glam::DVec2;
 
 /// Objects, each at its own scale, in rows of `n_columns` tiles of `tile` × `tile` pixels: orthographic, z up, light

@@ -1,16 +1,16 @@
 //! The picture of a fit: an object, the spheres that stand for it, and how far apart the two are.
 
-use super::canvas::{Canvas, Hit, three_quarter_view};
-use super::colours::diverging;
-use super::drawing::{Align, Area, Drawing, TextStyle};
-use super::picture::Picture;
-use super::picture_axes::{draw_colours, draw_scale_bar};
-use super::shaded_view::{Lighting, PAINT};
 use crate::error::{Error, Result};
 use crate::mesh::Surface;
 use crate::objects::{Solid, SphereUnion};
 use crate::packing::Body;
 use crate::quantile::quantile;
+use crate::report::pictures::canvas::{Canvas, Hit, three_quarter_view};
+use crate::report::pictures::colours::diverging;
+use crate::report::pictures::drawing::{Align, Area, Drawing, TextStyle};
+use crate::report::pictures::picture::Picture;
+use crate::report::pictures::picture_axes::{draw_colours, draw_scale_bar};
+use crate::report::pictures::shaded_view::{Lighting, PAINT};
 use crate::table::short_number;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;

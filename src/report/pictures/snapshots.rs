@@ -1,11 +1,11 @@
 //! Frames side by side on one colour scale, as in Figure 4 of \[BT\].
 
 use crate::error::{Error, Result};
-use crate::report::colours::{INK, MUTED};
-use crate::report::drawing::{Align, Area, Drawing, Stroke, TextStyle};
-use crate::report::heat_map::{ColourScale, check_frame, largest_of_blocks};
-use crate::report::picture::Picture;
-use crate::report::picture_axes::{Side, draw_colour_bar, draw_map_axis};
+use crate::report::pictures::colours::{INK, MUTED};
+use crate::report::pictures::drawing::{Align, Area, Drawing, Stroke, TextStyle};
+use crate::report::pictures::heat_map::{ColourScale, check_frame, largest_of_blocks};
+use crate::report::pictures::picture::Picture;
+use crate::report::pictures::picture_axes::{Side, draw_colour_bar, draw_map_axis};
 use crate::report::recording::cells::{Cells, whole_pixels};
 use crate::report::recording::pixels::paint;
 use crate::report::text_width::shorten;

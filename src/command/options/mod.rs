@@ -1,0 +1,8 @@
+//! Options that several subcommands share.
+
+pub(crate) mod memory_limit;
+pub(crate) mod results_folder;
+pub(crate) mod study_args;
+pub(crate) mod study_run;
+pub(crate) mod unused;
+pub(crate) mod which_object;

@@ -1,0 +1,26 @@
+//! Round values at even distances, for axes.
+
+/// Multiples of a round step between two ends.
+pub(crate) fn even_ticks(low: f64, high: f64) -> Vec<f64> {
+    let step = tick_step(high - low);
+    let (first, last) = (
+        (low / step - 1e-9).ceil() as i64,
+        (high / step + 1e-9).floor() as i64,
+    );
+    // A quotient by the inverse is the nearest number to what is meant, which the product is not: 3 × 0.1.
+    let value = |tick: i64| match step < 1.0 {
+        true => tick as f64 / (1.0 / step).round(),
+        false => tick as f64 * step,
+    };
+    (first..=last).map(value).collect()
+}
+
+/// 1, 2 or 5 times a power of ten: about five steps over a length.
+pub(crate) fn tick_step(length: f64) -> f64 {
+    let raw = length / 5.0;
+    let power = 10f64.powf(raw.log10().floor());
+    let factor = [1.0, 2.0, 5.0, 10.0]
+        .into_iter()
+        .find(|f| f * power >= raw * 0.999);
+    factor.unwrap_or(10.0) * power
+}

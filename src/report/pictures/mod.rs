@@ -1,0 +1,15 @@
+//! Pictures: drawings of lines and texts, and frames, bodies and objects in pixels.
+
+pub(crate) mod canvas;
+pub mod colours;
+pub mod drawing;
+pub(crate) mod even_ticks;
+pub mod fit_picture;
+pub mod frame_files;
+pub mod heat_map;
+pub mod object_picture;
+pub(crate) mod picture;
+pub(crate) mod picture_axes;
+pub mod pressure_map;
+pub(crate) mod shaded_view;
+pub mod snapshots;
