@@ -5,8 +5,8 @@ use crate::report::csv_tables::{LIMITS_FILE, MISSED_TOUCHES};
 use crate::report::study_folder::words_of;
 use crate::report::swept::{Setting, Swept, without};
 use crate::report::terminal::paragraph;
-use crate::studies::recognition::charts::robustness::robustness_words;
 use crate::studies::recognition::charts::filled::filled;
+use crate::studies::recognition::charts::robustness::robustness_words;
 use crate::studies::recognition::charts::tables::CELLS;
 use crate::table::{Table, Value, short_number};
 

@@ -2,8 +2,8 @@
 
 pub(crate) mod answers;
 pub(crate) mod charts;
-pub(crate) mod robustness;
 pub(crate) mod filled;
+pub(crate) mod robustness;
 pub(crate) mod sections;
 pub(crate) mod tables;
 
