@@ -1,6 +1,6 @@
 //! One press: the kernel beside every sphere against every taxel.
 
-use bubbletouch::contact::balance::{Balancer, FreeObject, PlacedSkin};
+use bubbletouch::contact::equilibrium::{EquilibriumSolver, FreeObject, PlacedSkin};
 use bubbletouch::contact::{
     Instructions, Workspace, press_at_pose, press_to_depth, press_with_contacts,
 };
@@ -389,13 +389,13 @@ fn rest(c: &mut Criterion) {
     let skin = patch(64);
     let egg = egg(1_000);
     let object = FreeObject::new(&egg, 0.3, DVec3::ZERO).expect("the mass is positive");
-    let mut balancer = Balancer::new();
+    let mut balancer = EquilibriumSolver::new();
     let mut settle = |height: f64, start: &Pose| {
         let skins = [PlacedSkin::new(
             &skin,
             Pose::from_translation(height * DVec3::Z),
         )];
-        let balance = balancer.settle(&object, &skins, -9.81 * DVec3::Z, start);
+        let balance = balancer.solve(&object, &skins, -9.81 * DVec3::Z, start);
         balance.expect("the start is finite")
     };
     let mut height = 0.0;

@@ -1,6 +1,8 @@
 //! Time to find the resting poses of an object of 3,000 spheres, and to put free objects to rest again.
 
-use bubbletouch::contact::balance::{Balancer, FreeObject, Ground, Outcome, PlacedSkin};
+use bubbletouch::contact::equilibrium::{
+    EquilibriumSolver, FreeObject, Ground, Outcome, PlacedSkin,
+};
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{Sphere, SphereUnion};
 use bubbletouch::world::{Grid, Patch, Taxel, center_of_mass, stable_poses};
@@ -96,7 +98,7 @@ fn settle(criterion: &mut Criterion) {
     let object = FreeObject::new(&egg, 0.1, DVec3::new(1e-3, 0.0, -3e-3));
     let object = object.expect("the mass is positive");
     for n in [1, 2, 4] {
-        let mut balancer = Balancer::new();
+        let mut balancer = EquilibriumSolver::new();
         let mut settle = |height: f64, starts: &[Pose]| {
             let skins = [PlacedSkin::new(
                 &skin,
@@ -107,9 +109,9 @@ fn settle(criterion: &mut Criterion) {
                 ..Ground::default()
             };
             let objects = vec![object; n];
-            let found = balancer.settle_all(&objects, &ground, -9.81 * DVec3::Z, starts);
+            let found = balancer.solve_all(&objects, &ground, -9.81 * DVec3::Z, starts);
             let found = found.expect("the starts are finite");
-            assert!(found.iter().all(|b| b.outcome == Outcome::Settled));
+            assert!(found.iter().all(|b| b.outcome == Outcome::AtRest));
             found.iter().map(|b| b.pose).collect::<Vec<_>>()
         };
         let start = |k: usize| {

@@ -166,10 +166,13 @@ pub mod study;
 mod study_file;
 pub mod table;
 
+pub use bubbletouch_sim::statistics::quantile;
 #[cfg(test)]
-use bubbletouch_sim::standard_errors;
+use bubbletouch_sim::statistics::standard_errors;
+pub(crate) use bubbletouch_sim::text::{
+    note, numbers_csv, spelling, toml_lines, toml_numbers, toml_text,
+};
 pub use bubbletouch_sim::{
     Error, Result, calibration, contact, dynamics, error, files, geometry, mesh, objects, packing,
-    quantile, random, sensing, signal, whole_body, world,
+    random, sensing, signal, whole_body, world,
 };
-pub(crate) use bubbletouch_sim::{note, numbers_csv, spelling, toml_numbers, toml_text};

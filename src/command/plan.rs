@@ -9,7 +9,7 @@ use bubbletouch::report::run_clock::RunClock;
 use bubbletouch::study::progress::Progress;
 use bubbletouch::study::work_items::RunOptions;
 use bubbletouch::{Error, Result};
-use bubbletouch_sim::spelling::duration;
+use bubbletouch_sim::text::spelling::duration;
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;

@@ -1,7 +1,7 @@
 //! What a scene is like at one instant, and who wants to know.
 
 use crate::contact::Wrench;
-use crate::contact::balance::{Balance, Touch};
+use crate::contact::equilibrium::{Equilibrium, Touch};
 use crate::error::Result;
 use crate::geometry::Pose;
 use glam::DVec3;
@@ -69,7 +69,7 @@ pub struct ObjectReading {
     /// What decides that.
     pub held: Held,
     /// Of a free object that is there: what holds it, and how well that balances its weight.
-    pub balance: Option<Balance>,
+    pub balance: Option<Equilibrium>,
 }
 
 /// What holds an object.

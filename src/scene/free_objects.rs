@@ -5,9 +5,9 @@ use super::plan::ScenePlan;
 use super::plan_object::Movement;
 use super::plan_patch::PlannedPatch;
 use super::skin_state::{OUT_OF_REACH, PlacedObjects, SkinState};
-use crate::contact::balance::{
-    Balance, Balancer, FreeObject, Ground, Obstacle, Outcome, PlacedSkin, TaxelLoad, Tip, TipLoad,
-    Touch, Touched,
+use crate::contact::equilibrium::{
+    Equilibrium, EquilibriumSolver, FreeObject, Ground, Obstacle, Outcome, PlacedSkin,
+    TangentialSpring, TangentialSpringState, TaxelLoad, Touch, Touched,
 };
 use crate::contact::{Workspace, press_with_contacts};
 use crate::error::Result;
@@ -22,7 +22,7 @@ pub(super) struct FreeObjects {
     there: Vec<usize>,
     /// And of the objects that go where they are told.
     obstacles: Vec<usize>,
-    balancer: Balancer,
+    balancer: EquilibriumSolver,
     /// How far the others push each taxel of each patch; empty where they push none.
     pushed: Vec<Vec<f64>>,
     workspace: Workspace,
@@ -64,7 +64,7 @@ impl FreeObjects {
             obstacles: (0..plan.objects.len())
                 .filter(|&object| !is_free(object))
                 .collect(),
-            balancer: Balancer::new(),
+            balancer: EquilibriumSolver::new(),
             pushed: vec![Vec::new(); plan.patches.len()],
             workspace: Workspace::new(),
         }
@@ -96,13 +96,13 @@ impl FreeObjects {
         self.hold_by_tips(plan, skins, objects);
         let is_there = |free: &&mut Free| !matches!(free.reading.held, Held::Escaped { .. });
         let mut there: Vec<&mut Free> = self.all.iter_mut().filter(is_there).collect();
-        let own = |tip: Tip| {
+        let own = |tip: TangentialSpring| {
             let object = there.iter().position(|free| free.object == tip.object)?;
-            Some(Tip { object, ..tip })
+            Some(TangentialSpring { object, ..tip })
         };
-        let tips: Vec<Vec<Tip>> = skins
+        let tips: Vec<Vec<TangentialSpring>> = skins
             .iter()
-            .map(|skin| skin.tips().filter_map(own).collect())
+            .map(|skin| skin.tangential_springs().filter_map(own).collect())
             .collect();
         let skins = skins.iter().zip(&plan.patches).zip(&self.pushed).zip(&tips);
         let skins: Vec<PlacedSkin> = skins
@@ -111,7 +111,7 @@ impl FreeObjects {
                 world_from_patch: skin.pose,
                 pushed,
                 before: (patch.remembers() && dt.is_finite()).then(|| (skin.deflection(), dt)),
-                tips,
+                tangential_springs: tips,
             })
             .collect();
         let bodies = there.iter().map(|free| {
@@ -130,7 +130,7 @@ impl FreeObjects {
         };
         let balances = self
             .balancer
-            .settle_all(&bodies, &ground, plan.gravity, &starts)?;
+            .solve_all(&bodies, &ground, plan.gravity, &starts)?;
         self.there = there.iter().map(|free| free.object).collect();
         for (free, balance) in there.iter_mut().zip(balances) {
             free.reading = reading(balance, time);
@@ -150,12 +150,14 @@ impl FreeObjects {
     }
 
     /// What holds them on a patch with friction, in the order of its taxels, by the scene's numbers of objects.
-    pub fn tips_on(&self, patch: usize) -> Vec<TipLoad> {
-        let tips = self.balancer.tips().iter();
-        let own = tips.filter(|tip| tip.skin == patch).map(|tip| TipLoad {
-            object: self.there[tip.object],
-            ..*tip
-        });
+    pub fn tips_on(&self, patch: usize) -> Vec<TangentialSpringState> {
+        let tips = self.balancer.tangential_springs().iter();
+        let own = tips
+            .filter(|tip| tip.skin == patch)
+            .map(|tip| TangentialSpringState {
+                object: self.there[tip.object],
+                ..*tip
+            });
         own.collect()
     }
 
@@ -226,12 +228,12 @@ fn spheres(plan: &ScenePlan, object: usize) -> &SphereUnion {
     spheres.expect("the plan lets only unions of spheres be beside free ones")
 }
 
-fn reading(balance: Balance, time: f64) -> ObjectReading {
+fn reading(balance: Equilibrium, time: f64) -> ObjectReading {
     ObjectReading {
         pose: balance.pose,
         held: match balance.outcome {
-            Outcome::Settled => Held::AtRest,
-            Outcome::Unsettled => Held::Unsettled,
+            Outcome::AtRest => Held::AtRest,
+            Outcome::NotConverged => Held::Unsettled,
             Outcome::Escaped { direction } => Held::Escaped { time, direction },
         },
         balance: balance.is_there().then_some(balance),

@@ -12,7 +12,7 @@
 //!    the same when all rest. A force that is not reached is no error: the object waits at the end of its travel, and each frame
 //!    says what it carries;
 //! 3. free objects go to rest on the skin that is there, on planes ([`PlaneSpec`]), on imposed objects and on one another, all together and each from
-//!    where it was ([`balance`](crate::contact::balance)). What carries them on skin is its springs, with what dampers add to them
+//!    where it was ([`balance`](crate::contact::equilibrium)). What carries them on skin is its springs, with what dampers add to them
 //!    within the step, and, at the end of a stroke, the reaction of the rigid stop, which
 //!    follows from the balance and counts in the forces of the patch;
 //! 4. each patch is pressed, unless no object is within its reach: what nothing pushes relaxes

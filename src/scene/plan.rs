@@ -7,7 +7,7 @@ use super::plan_press::PlannedPress;
 use super::plan_robot::PlannedRobot;
 use super::reader::{MM, Reader};
 use super::spec::SceneSpec;
-use crate::contact::balance::HalfSpace;
+use crate::contact::equilibrium::HalfSpace;
 use crate::error::{Error, Result};
 use crate::file_path::with_absolute_paths;
 use crate::inputs::check::{Check, not_negative, positive};

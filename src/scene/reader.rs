@@ -1,7 +1,7 @@
 //! What all parts of a plan need: errors with file and key, poses, motions, files beside the scene's.
 
 use super::spec::PlaneSpec;
-use crate::contact::balance::HalfSpace;
+use crate::contact::equilibrium::HalfSpace;
 use crate::error::Result;
 use crate::geometry::{Pose, rotation_from_rpy};
 use crate::inputs::check::{Check, not_negative};

@@ -3,10 +3,10 @@
 use super::frame::PatchReading;
 use super::mount::Mount;
 use super::plan_patch::PlannedPatch;
-use crate::contact::balance::{TaxelLoad, Tip, TipLoad};
+use crate::contact::equilibrium::{TangentialSpring, TangentialSpringState, TaxelLoad};
 use crate::contact::{
-    Contact, DamperState, FrictionState, GripCounts, NormalForce, TaxelContact, Workspace, Wrench,
-    axial_load, press_at_pose, press_with_contacts,
+    Contact, ContactModeCounts, DamperState, FrictionState, NormalForce, TaxelContact, Workspace,
+    Wrench, axial_load, press_at_pose, press_with_contacts,
 };
 use crate::geometry::Pose;
 use crate::objects::Model;
@@ -73,7 +73,7 @@ pub(super) struct SkinState {
     workspace: Workspace,
     /// Of a patch with friction.
     friction: Option<FrictionState>,
-    grips: GripCounts,
+    contact_modes: ContactModeCounts,
     /// `patch_from_object`, one an object.
     poses: Vec<Pose>,
     counts: Contact,
@@ -94,7 +94,7 @@ impl SkinState {
             is_idle: true,
             workspace: Workspace::new(),
             friction: friction.map(at_rest),
-            grips: GripCounts::default(),
+            contact_modes: ContactModeCounts::default(),
             poses: Vec::new(),
             counts: Contact::default(),
         }
@@ -105,9 +105,11 @@ impl SkinState {
         self.workspace.hold(contacts);
     }
 
-    /// Its tips that hold something, by the scene's numbers of objects.
-    pub fn tips(&self) -> impl Iterator<Item = Tip> {
-        self.friction.iter().flat_map(FrictionState::tips)
+    /// Tangential springs that hold objects; the numbers of objects are those of the scene.
+    pub fn tangential_springs(&self) -> impl Iterator<Item = TangentialSpring> {
+        self.friction
+            .iter()
+            .flat_map(FrictionState::tangential_springs)
     }
 
     /// Its tips hold an object by what it touches where it is, as if it had just been put there; all others are out of reach.
@@ -137,7 +139,7 @@ impl SkinState {
         models: &[Model],
         objects: &PlacedObjects,
         dt: f64,
-        (loads, tips): (&[&TaxelLoad], &[TipLoad]),
+        (loads, tips): (&[&TaxelLoad], &[TangentialSpringState]),
         reading: &mut PatchReading,
     ) {
         self.feel(patch, models, objects, (dt, tips), Detail::Contacts);
@@ -161,8 +163,8 @@ impl SkinState {
             let load = state.load(&patch.skin, contacts);
             reading.wrench = reading.wrench + on_patch(load.friction);
             friction.shear = on_patch(load.friction).force;
-            friction.n_sticking = self.grips.n_sticking;
-            friction.n_slipping = self.grips.n_slipping;
+            friction.n_sticking = self.contact_modes.n_sticking;
+            friction.n_slipping = self.contact_modes.n_slipping;
             for contact in contacts {
                 let frame = patch.skin.layout().frame(contact.taxel);
                 let force = state.friction(contact.taxel).extend(0.0);
@@ -177,7 +179,7 @@ impl SkinState {
         patch: &PlannedPatch,
         models: &[Model],
         objects: &PlacedObjects,
-        (dt, tips): (f64, &[TipLoad]),
+        (dt, tips): (f64, &[TangentialSpringState]),
         detail: Detail,
     ) {
         let is_reached = self.workspace.holds_any() || objects.can_reach(patch, &self.pose);
@@ -203,7 +205,8 @@ impl SkinState {
             // Drags the tips along with what touches them.
             let normal = NormalForce::Dampers(&self.damper);
             let contacts = workspace.contacts();
-            self.grips = friction.step_with(&patch.skin, contacts, &self.poses, normal, tips);
+            self.contact_modes =
+                friction.step_with(&patch.skin, contacts, &self.poses, normal, tips);
         }
         let mut deflections = self.damper.deflection.iter();
         self.is_idle = !is_reached && deflections.all(|&deflection| deflection == 0.0);

@@ -31,7 +31,7 @@ pub struct ObjectSummary {
     pub held: Held,
     /// Frames in which it was unsettled.
     pub n_unsettled: usize,
-    /// The most of a free object's [imbalance](crate::contact::balance::Balance::imbalance) in any frame; 0 of others.
+    /// The most of a free object's [imbalance](crate::contact::equilibrium::Equilibrium::imbalance) in any frame; 0 of others.
     pub imbalance: f64,
     /// Frames in which it was pressed with another force than was wanted.
     pub n_off: usize,

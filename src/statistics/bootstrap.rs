@@ -3,7 +3,7 @@
 use crate::quantile::of_sorted;
 use crate::random::Seed;
 use crate::{Error, Result};
-use bubbletouch_sim::interval::{Interval, check_confidence};
+use bubbletouch_sim::statistics::interval::{Interval, check_confidence};
 use ndarray::ArrayView2;
 use rand::Rng;
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};

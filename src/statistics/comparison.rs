@@ -4,7 +4,7 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use crate::statistics::mean_squares::MeanSquares;
 use crate::{Error, Result};
-use bubbletouch_sim::interval::{Interval, check_confidence};
+use bubbletouch_sim::statistics::interval::{Interval, check_confidence};
 use ndarray::ArrayView2;
 
 /// The difference between two cells' scores over the same trials.

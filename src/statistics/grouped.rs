@@ -21,7 +21,7 @@
 //! Several tests are of splits of the same touches, so a group that is tested again is the same group: n counts the rows of each group once.
 
 use crate::{Error, Result};
-use bubbletouch_sim::interval::{Interval, check_confidence};
+use bubbletouch_sim::statistics::interval::{Interval, check_confidence};
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 use std::collections::BTreeMap;

@@ -10,4 +10,4 @@ pub mod rank_correlation;
 pub mod repeats;
 pub mod variance;
 
-pub use bubbletouch_sim::interval;
+pub use bubbletouch_sim::statistics::interval;

@@ -7,7 +7,7 @@
 
 use crate::quantile::quantile;
 use crate::random::Seed;
-use bubbletouch_sim::interval::Interval;
+use bubbletouch_sim::statistics::interval::Interval;
 use rand::Rng;
 
 /// Resamples of the bootstrap: its ends move by a hundredth of its width with others.

@@ -5,7 +5,7 @@ use crate::statistics::comparison::{
     Comparison, TrialSize, compare, compare_crossed, trials_needed,
 };
 use crate::statistics::p_status::{CONFIDENCE, PStatus};
-use bubbletouch_sim::interval::Interval;
+use bubbletouch_sim::statistics::interval::Interval;
 use ndarray::Array2;
 use std::collections::{BTreeSet, HashMap};
 

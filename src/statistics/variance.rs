@@ -2,7 +2,7 @@
 
 use crate::statistics::mean_squares::MeanSquares;
 use crate::{Error, Result};
-use bubbletouch_sim::interval::{Interval, check_confidence};
+use bubbletouch_sim::statistics::interval::{Interval, check_confidence};
 use ndarray::ArrayView2;
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
 

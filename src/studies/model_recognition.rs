@@ -5,7 +5,7 @@
 use crate::error::{Error, Result};
 use crate::learning::classifiers::trained_classifier::TrainedClassifier;
 use crate::statistics::p_status::CONFIDENCE;
-use bubbletouch_sim::interval::Interval;
+use bubbletouch_sim::statistics::interval::Interval;
 use bubbletouch_svm::dataset::{Dataset, dataset};
 use ndarray::{Array1, ArrayView2, Axis, concatenate, s};
 use std::ops::Range;

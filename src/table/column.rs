@@ -1,7 +1,7 @@
 //! What a column of a table is: its name, words, unit, scale and role.
 
 use super::value::Value;
-use bubbletouch_sim::numbers::{short_number, time_words};
+use bubbletouch_sim::text::numbers::{short_number, time_words};
 use std::borrow::Cow;
 
 /// A text that is mostly written in the program, and made where a study names its own axes.

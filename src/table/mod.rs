@@ -10,7 +10,7 @@ mod column;
 mod file;
 mod front;
 mod value;
-use bubbletouch_sim::numbers;
+use bubbletouch_sim::text::numbers;
 mod row_macro;
 mod rows;
 #[allow(clippy::module_inception)]

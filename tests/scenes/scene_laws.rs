@@ -1,6 +1,8 @@
 //! Laws of scenes: steps, frames of reference, shortcuts, free objects; each against a slower or simpler way.
 
-use bubbletouch::contact::balance::{Balancer, FreeObject, Ground, Obstacle, PlacedSkin, Touched};
+use bubbletouch::contact::equilibrium::{
+    EquilibriumSolver, FreeObject, Ground, Obstacle, PlacedSkin, Touched,
+};
 use bubbletouch::contact::{Workspace, Wrench, press_with_contacts, simulate, spring_load};
 use bubbletouch::geometry::Pose;
 use bubbletouch::scene::{
@@ -269,7 +271,7 @@ fn a_mug_on_a_bed_is_where_the_balance_of_one_object_puts_it_and_rises_with_the_
     let skin = PlacedSkin::new(&plan.patches[0].skin, Pose::IDENTITY);
     let spheres = plan.models[0].spheres().unwrap();
     let mug = FreeObject::new(spheres, mass, center_of_mass).unwrap();
-    let settled = Balancer::new().settle(&mug, &[skin], plan.gravity, &start);
+    let settled = EquilibriumSolver::new().solve(&mug, &[skin], plan.gravity, &start);
     let (first, last) = (&frames[0], &frames[frames.len() - 1]);
     assert_eq!(first.objects[0].pose, settled.unwrap().pose);
     for frame in &frames {
@@ -512,7 +514,7 @@ fn a_free_ball_comes_to_rest_in_the_hollow_that_an_imposed_one_makes_and_on_it()
             obstacles,
             ..Ground::default()
         };
-        let balances = Balancer::new().settle_all(&[ball], &ground, plan.gravity, &[start]);
+        let balances = EquilibriumSolver::new().solve_all(&[ball], &ground, plan.gravity, &[start]);
         balances.unwrap()[0].pose
     };
     let both = settled(workspace.deflections(), obstacles.to_vec());

@@ -8,7 +8,7 @@ mod kinds;
 mod mesh_shapes;
 #[path = "../fixtures/study/mod.rs"]
 mod study;
-use bubbletouch_sim::standard_errors;
+use bubbletouch_sim::statistics::standard_errors;
 
 mod accuracy;
 mod axes;

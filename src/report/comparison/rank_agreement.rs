@@ -9,7 +9,7 @@ use crate::report::swept::Setting;
 use crate::statistics::p_status::CONFIDENCE;
 use crate::statistics::rank_correlation::{ENOUGH_SETTINGS, kendall, kendall_interval};
 use crate::table::{Column, Role, Table, Value, short_number};
-use bubbletouch_sim::interval::Interval;
+use bubbletouch_sim::statistics::interval::Interval;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// What is ranked.

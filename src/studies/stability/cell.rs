@@ -1,7 +1,7 @@
 //! One cell: a scene simulated in one way, and judged.
 
-use crate::contact::balance::{
-    Balancer, FreeObject, Ground, Outcome as BalanceOutcome, PlacedSkin,
+use crate::contact::equilibrium::{
+    EquilibriumSolver, FreeObject, Ground, Outcome as EquilibriumOutcome, PlacedSkin,
 };
 use crate::contact::{Approach, DamperState, Workspace, press_at_pose, spring_load};
 use crate::dynamics::{
@@ -195,13 +195,13 @@ fn put_to_rest(scene: &CellScene, mass: f64, n_balls: usize) -> Result<Answer> {
     };
     let starts: Vec<Pose> = cradle.stack(n_balls).collect();
     let balls = vec![ball; n_balls];
-    let balances = Balancer::new().settle_all(&balls, &ground, gravity, &starts)?;
+    let balances = EquilibriumSolver::new().solve_all(&balls, &ground, gravity, &starts)?;
     let mut workspace = Workspace::new();
     let poses: Vec<Pose> = balances.iter().map(|balance| balance.pose).collect();
     let models = vec![cradle.ball.clone(); n_balls];
     press_at_pose(&cradle.patch, &models, &poses, &mut workspace);
     let imbalances = balances.iter().map(|balance| match balance.outcome {
-        BalanceOutcome::Settled => balance.imbalance,
+        EquilibriumOutcome::AtRest => balance.imbalance,
         _ => f64::INFINITY,
     });
     Ok(Answer {

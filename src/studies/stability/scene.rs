@@ -1,6 +1,6 @@
 //! A cell's scene: cradle, ball, dampers, how long it takes, and the exact answer.
 
-use crate::contact::balance::HalfSpace;
+use crate::contact::equilibrium::HalfSpace;
 use crate::dynamics::{Drive, Rest, System, rest, skin_sim};
 use crate::error::Result;
 use crate::geometry::Pose;

@@ -93,7 +93,7 @@ impl StabilityScene {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ContactMethod {
-    /// Ours: taxels without mass, in closed form ([`balance`](crate::contact::balance) at rest,
+    /// Ours: taxels without mass, in closed form ([`balance`](crate::contact::equilibrium) at rest,
     /// [`Approach::press_to_force`](crate::contact::Approach::press_to_force) under a plunger, [`DamperState`](crate::contact::DamperState) over time).
     QuasiStatic,
     /// [`SemiImplicit`](crate::dynamics::SemiImplicit), the better of two contact stiffnesses: one that lets nothing sink in by more than a

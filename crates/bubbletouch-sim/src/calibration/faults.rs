@@ -5,7 +5,7 @@
 
 use super::robust::median;
 use super::{Estimate, RecordedSkin};
-use crate::interval::Interval;
+use crate::statistics::interval::Interval;
 use ndarray::Axis;
 
 /// Share of its neighbours' standard deviation that a taxel moves at least. Larger takes taxels of low gain for faults; smaller misses those with noise.

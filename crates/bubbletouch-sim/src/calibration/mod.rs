@@ -20,41 +20,24 @@
 pub mod converter;
 pub mod crosstalk;
 pub mod drift;
+mod estimate;
 pub mod faults;
-mod frames;
 pub mod gain;
 pub mod noise;
+mod recorded_skin;
 mod robust;
 mod saturation;
 mod signal_table;
 pub mod smoothing;
 pub mod stiffness;
+mod touched;
 mod untouched;
 
-pub use frames::RecordedSkin;
+pub use estimate::Estimate;
+pub use recorded_skin::RecordedSkin;
 pub use saturation::plateau;
 
 use crate::error::Result;
-use crate::numbers::short_number;
-
-/// Half of a 95 % interval, of the number in it: wider ones leave a setting that may be wrong by more.
-const NARROW: f64 = 0.1;
-/// What is as good as none of something, of the full scale or of one.
-const NONE: f64 = 0.01;
-
-/// What frames say of a parameter.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Estimate {
-    /// A number.
-    Found {
-        /// In the unit of the parameter's key.
-        value: f64,
-        /// Its 95 % interval, lower and upper end.
-        interval: [f64; 2],
-    },
-    /// Nothing, and why.
-    NotIdentifiable(String),
-}
 
 /// What frames say of the skin that read them.
 #[derive(Clone, Debug, PartialEq)]
@@ -79,63 +62,6 @@ pub struct Calibration {
     pub stiffness: Estimate,
 }
 
-impl Estimate {
-    /// The number, if there is one.
-    pub fn value(&self) -> Option<f64> {
-        match self {
-            Self::Found { value, .. } => Some(*value),
-            Self::NotIdentifiable(_) => None,
-        }
-    }
-
-    fn exactly(value: f64) -> Self {
-        Self::Found {
-            value,
-            interval: [value, value],
-        }
-    }
-
-    fn unknown(why: impl Into<String>) -> Self {
-        Self::NotIdentifiable(why.into())
-    }
-
-    /// The same where its interval is narrow; 0 where that reaches 0 and has no end above [`NONE`]. What frames tell so loosely is not told.
-    fn resolved(self) -> Self {
-        match self {
-            Self::Found {
-                interval: [low, high],
-                ..
-            } if low <= 0.0 && high <= NONE => Self::Found {
-                value: 0.0,
-                interval: [0.0, high],
-            },
-            Self::Found {
-                value,
-                interval: [low, high],
-            } if high - low > 2.0 * NARROW * value => Self::unknown(format!(
-                "frames tell only that it is from {} to {}",
-                short_number(low.max(0.0)),
-                short_number(high)
-            )),
-            other => other,
-        }
-    }
-
-    /// The same number of something whose value follows from that of this, which must rise with it.
-    fn map(self, of: impl Fn(f64) -> f64) -> Self {
-        match self {
-            Self::Found {
-                value,
-                interval: [low, high],
-            } => Self::Found {
-                value: of(value),
-                interval: [of(low), of(high)],
-            },
-            unknown @ Self::NotIdentifiable(_) => unknown,
-        }
-    }
-}
-
 /// Estimates all parameters.
 ///
 /// # Errors
@@ -143,7 +69,7 @@ impl Estimate {
 pub fn calibrate(skin: &RecordedSkin) -> Result<Calibration> {
     skin.check()?;
     let faults = faults::find(skin);
-    let saturation = frames::saturation(skin, &faults);
+    let saturation = touched::saturation(skin, &faults);
     let converter = converter::estimate(skin, saturation);
     let step = converter.value().map_or(0.0, converter::step_of);
     let untouched = untouched::Untouched::new(skin, &faults, step);
@@ -154,7 +80,7 @@ pub fn calibrate(skin: &RecordedSkin) -> Result<Calibration> {
     let std = read_noise.value().unwrap_or(0.0);
     let drift = drift::estimate(skin, untouched, (std, width));
     let drifts = drift.value().unwrap_or(1.0);
-    let touched = frames::touched(skin, &faults, (untouched, drifts), saturation);
+    let touched = touched::touched(skin, &faults, (untouched, drifts), saturation);
     let is_clipped = untouched.is_some_and(|untouched| untouched.is_clipped);
     let hides_zeros = is_clipped && drift.value() != Some(0.0);
     let told = |estimate: Estimate| match hides_zeros {

@@ -14,7 +14,7 @@ const OF_NORMAL: f64 = 1.018442;
 pub fn median(values: &mut [f64]) -> f64 {
     match values.is_empty() {
         true => f64::NAN,
-        false => crate::quantile::quantile(values, 0.5),
+        false => crate::statistics::quantile::quantile(values, 0.5),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::smoothing::narrow;
 use super::{Calibration, Estimate};
-use crate::numbers::short_number;
+use crate::text::numbers::short_number;
 
 /// What is found below this is none: half of the last digit that is written.
 const NONE: f64 = 5e-5;

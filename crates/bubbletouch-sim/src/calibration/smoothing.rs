@@ -3,9 +3,10 @@
 //! Noise that is independent from taxel to taxel comes out of a smoothing S with the covariance S Sᵀ. The mean correlation of neighbours rises with
 //! the width; the width is that of the correlation measured. Only what is smoothed after the noise comes in shows here: a soft cover does not.
 
+use super::estimate::NONE;
 use super::robust::jackknife;
 use super::untouched::{Untouched, Zero};
-use super::{Estimate, NONE, RecordedSkin};
+use super::{Estimate, RecordedSkin};
 use crate::signal::Smoothing;
 use crate::world::Grid;
 use std::f64::consts::FRAC_PI_2;

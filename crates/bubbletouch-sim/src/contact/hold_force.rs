@@ -1,7 +1,7 @@
 //! One object among others moved along a line so that a skin feels a force, no farther than it can go in a step.
 
-use super::crossing::crossing;
-use super::grid_force::ACCURACY;
+use super::force_goal::FORCE_ACCURACY;
+use super::root_search::crossing;
 use super::spring_load::sample;
 use super::{Workspace, press_with_contacts};
 use crate::geometry::Pose;
@@ -56,7 +56,7 @@ impl MovedObject<'_> {
             let is_moved = |number| number == self.moving;
             sample(self.patch, workspace.contacts(), self.direction, is_moved)
         };
-        let tolerance = ACCURACY * force;
+        let tolerance = FORCE_ACCURACY * force;
         let now = carried(here).value;
         let bracket = if (now - force).abs() <= tolerance {
             [here, here]

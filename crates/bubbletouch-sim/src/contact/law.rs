@@ -18,11 +18,17 @@
 //! ([`is_in_front`]). A press from the front has B = −∞: all spheres with q > 0 count.
 //!
 //! Every layout has its own evaluator of this law, which finds the pairs of taxels and spheres with q > 0 and shares q and h among taxels:
-//! `placed_sphere` (rows of a flat grid), `near_spheres` (leaves of the taxel tree), `balance::reach` (with derivatives), and in `whole_body`
+//! `placed_sphere` (rows of a flat grid), `near_spheres` (leaves of the taxel tree), `equilibrium::reach` (with derivatives), and in `whole_body`
 //! `row_press` (extrusions), `dome_patch` (rings) and `draped_patch` (tiles). A mesh obeys the same rule with the heights at which it stops a taxel
 //! ([`reaches_front`]).
 
-use super::Below;
+use super::LanesBelow;
+
+/// Returns the deflection, metres, above which a taxel of this stroke (metres) is saturated. It exceeds the stroke by rounding (1e-12 of the
+/// stroke), so that a press to a depth of exactly the stroke saturates no taxel.
+pub fn saturation_limit(stroke: f64) -> f64 {
+    stroke * (1.0 + 1e-12)
+}
 
 /// Factor of squares that are compared before a root is taken: below 1 by more than rounding. Larger: rounding decides; smaller: more roots that
 /// change nothing.
@@ -98,7 +104,7 @@ pub(crate) fn beats<const N: usize>(
     for k in 0..N {
         shortfalls[k] = shortfall(squares[k], heights[k], deflections[k]);
     }
-    !Below::of(&shortfalls, 0.0).is_empty()
+    !LanesBelow::new(&shortfalls, 0.0).is_empty()
 }
 
 /// Raises deflections to √q − h where q is above zero; `squares` are q, m², and `heights` h, metres.
@@ -107,7 +113,7 @@ pub(crate) fn beats<const N: usize>(
 /// numbers in memory that may be the same are not computed together; roots of all, as those of less than nothing cost no more; and a
 /// maximum, as a comparison in its place becomes a masked store, for which some processors take ten times as long.
 #[inline(always)]
-pub(crate) fn raise<const N: usize>(
+pub(crate) fn indent<const N: usize>(
     squares: &[f64; N],
     heights: &[f64; N],
     deflections: &mut [f64; N],
@@ -138,7 +144,7 @@ mod tests {
             let behind = -6e-3;
             let counting = squares_in_front(&squares, &heights, behind);
             let mut raised = before;
-            raise(&counting, &heights, &mut raised);
+            indent(&counting, &heights, &mut raised);
             for k in 0..8 {
                 let (q, h) = (squares[k], heights[k]);
                 // The rule with the root taken.

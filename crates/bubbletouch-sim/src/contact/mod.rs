@@ -27,7 +27,7 @@
 //! tree. [`press_with_contacts`] also says which part of which object decides each taxel ([`TaxelContact`]); [`spring_load`] adds up
 //! what the springs carry.
 //!
-//! A free object rests where its weight and the forces of the taxels balance: [`balance`].
+//! A free object rests where its weight and the forces of the taxels balance: [`equilibrium`].
 //!
 //! A **touch to a force** goes on until the springs carry Σ k δ = F together: exactly the press at the travel that it finds.
 //! [`MovedObject`] holds a force by one object among others.
@@ -36,54 +36,44 @@
 //! taxel feels a force in three dimensions ([`FrictionState`], which has the equations). Without it, and with μ = 0 to the bit, the forces
 //! are those of `spring_load`.
 
-mod approach;
-mod approach_force;
-pub mod balance;
-mod below;
-mod coulomb;
-mod crossing;
 mod damper;
-mod envelope;
+pub mod equilibrium;
+mod force_goal;
 mod friction;
-mod grid_force;
-mod grid_lines;
-mod grid_press;
+mod grid;
 mod hold_force;
 mod instructions;
+mod lanes_below;
 pub(crate) mod law;
-mod near_spheres;
-mod placed_sphere;
+mod mesh;
 mod press;
-mod row;
-mod sheet;
+mod press_summary;
+mod root_search;
 mod simulate;
-mod skin_mesh;
-mod sphere_search;
 mod spring_load;
-mod swept_triangle;
 mod taxel_contact;
-mod tree_press;
-mod way;
+mod tree;
 mod workspace;
+mod wrench;
 
-pub use approach::Approach;
-pub use below::Below;
-pub(crate) use crossing::{Sample, crossing};
-pub use damper::Relaxation;
-pub use damper::{DamperState, relaxation_factor};
-pub use friction::{FrictionLoad, FrictionState, Grip, GripCounts, NormalForce};
-pub use grid_lines::Lines;
-pub use grid_press::saturation_limit;
+pub use damper::{DamperState, Relaxation, relaxation_factor};
+pub use friction::{ContactMode, ContactModeCounts, FrictionLoad, FrictionState, NormalForce};
+pub use grid::{Lines, Row};
 pub use hold_force::{HeldForce, MovedObject};
 pub use instructions::Instructions;
 pub(crate) use instructions::for_instructions;
+pub use lanes_below::LanesBelow;
+pub use law::saturation_limit;
+pub use mesh::stopping_height;
 pub use press::{
-    Contact, Goal, first_contact, press, press_at_pose, press_into, press_onto_zeros,
-    press_to_depth, press_to_force, press_to_travel, press_with_contacts,
+    Goal, first_contact, press, press_at_pose, press_into, press_onto_zeros, press_to_depth,
+    press_to_force, press_to_travel,
 };
-pub use row::Row;
+pub use press_summary::Contact;
+pub(crate) use root_search::{Sample, crossing};
 pub use simulate::{Recording, simulate};
-pub use spring_load::{AxialLoad, SpringLoad, Wrench, axial_load, spring_load};
-pub use swept_triangle::stopping_height;
+pub use spring_load::{AxialLoad, SpringLoad, axial_load, spring_load};
 pub use taxel_contact::{GRAZING, TaxelContact};
+pub use tree::{Approach, press_with_contacts};
 pub use workspace::Workspace;
+pub use wrench::Wrench;

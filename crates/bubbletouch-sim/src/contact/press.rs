@@ -1,28 +1,16 @@
 //! Presses: of any patch on any objects, to a depth, a travel or a force along its z axis, or right at a pose.
 //!
-//! A flat grid of taxels that go equally deep is pressed row by row (`grid_press`, `grid_force`), any other patch taxel by taxel
-//! (`approach`); what both can do is the same, to rounding.
+//! A flat grid of taxels that go equally deep is pressed row by row (`grid`), any other patch taxel by taxel
+//! (`tree`); what both can do is the same, to rounding.
 
-use super::approach::Approach;
-use super::grid_press::Until;
-use super::row::{Filling, Row};
+use super::grid::{OutputBuffer, Row, TravelGoal, force};
+use super::press_summary::Contact;
+use super::tree::{self, Approach};
 use super::workspace::Workspace;
-use super::{grid_force, tree_press};
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::objects::Model;
 use crate::world::{Patch, Taxels};
-
-/// What a press did, beside what it left in the [`Workspace`].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Contact {
-    /// How far the patch went along its way from the pose it was given, metres; negative if it had to go back.
-    pub travel: f64,
-    /// Taxels with a deflection above zero.
-    pub n_touched: usize,
-    /// Taxels at their stroke that an object would push further.
-    pub n_saturated: usize,
-}
 
 /// What ends a press.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,7 +40,7 @@ pub fn press(
     workspace: &mut Workspace,
 ) -> Result<Option<Contact>> {
     let placed = (objects, patch_from_objects);
-    to_goal(patch, placed, goal, (workspace, &mut Filling::nothing()))
+    to_goal(patch, placed, goal, (workspace, &mut OutputBuffer::none()))
 }
 
 /// The same press, whose deflections are written into a row, too: faster than a copy of them, where rows are many.
@@ -71,7 +59,7 @@ pub fn press_into(
     workspace: &mut Workspace,
 ) -> Result<Option<Contact>> {
     let placed = (objects, patch_from_objects);
-    press_filling(patch, placed, goal, (workspace, Filling::of(row)))
+    press_with_output(patch, placed, goal, (workspace, OutputBuffer::new(row)))
 }
 
 /// The same press into a row of zeros. What nothing has come near is left alone: an array whose pages were never written costs nothing there.
@@ -90,21 +78,26 @@ pub fn press_onto_zeros(
     workspace: &mut Workspace,
 ) -> Result<Option<Contact>> {
     let placed = (objects, patch_from_objects);
-    press_filling(patch, placed, goal, (workspace, Filling::of_zeros(zeros)))
+    press_with_output(
+        patch,
+        placed,
+        goal,
+        (workspace, OutputBuffer::from_zeros(zeros)),
+    )
 }
 
-fn press_filling(
+fn press_with_output(
     patch: &Patch,
     placed: (&[Model], &[Pose]),
     goal: Goal,
-    (workspace, mut filling): (&mut Workspace, Filling),
+    (workspace, mut output): (&mut Workspace, OutputBuffer),
 ) -> Result<Option<Contact>> {
-    assert_eq!(filling.row.len(), patch.n_taxels(), "one number a taxel");
-    let contact = to_goal(patch, placed, goal, (workspace, &mut filling))?;
+    assert_eq!(output.row.len(), patch.n_taxels(), "one number a taxel");
+    let contact = to_goal(patch, placed, goal, (workspace, &mut output))?;
     match workspace.is_on_grid() {
         // Written there, or nothing is touched.
-        true => filling.finish(),
-        false => filling.row.write(workspace.deflections()),
+        true => output.finish(),
+        false => output.row.write(workspace.deflections()),
     }
     Ok(contact)
 }
@@ -113,12 +106,12 @@ fn to_goal(
     patch: &Patch,
     placed: (&[Model], &[Pose]),
     goal: Goal,
-    scratch: (&mut Workspace, &mut Filling),
+    scratch: (&mut Workspace, &mut OutputBuffer),
 ) -> Result<Option<Contact>> {
     let until = match goal {
-        Goal::Pose => Until::Pose,
-        Goal::Depth(depth) => Until::Depth(depth),
-        Goal::Travel(travel) => Until::Travel(travel),
+        Goal::Pose => TravelGoal::Pose,
+        Goal::Depth(depth) => TravelGoal::Depth(depth),
+        Goal::Travel(travel) => TravelGoal::Travel(travel),
         Goal::Force(force) => return to_force(patch, placed, force, scratch),
     };
     Ok(to_place(patch, placed, until, scratch))
@@ -128,13 +121,13 @@ fn to_goal(
 fn to_place(
     patch: &Patch,
     (objects, patch_from_objects): (&[Model], &[Pose]),
-    until: Until,
-    (workspace, filling): (&mut Workspace, &mut Filling),
+    until: TravelGoal,
+    (workspace, output): (&mut Workspace, &mut OutputBuffer),
 ) -> Option<Contact> {
     let by_rows = |workspace: &Workspace| match until {
-        Until::Depth(_) | Until::Travel(_) => true,
+        TravelGoal::Depth(_) | TravelGoal::Travel(_) => true,
         // At a pose a mesh may be behind some taxels, and what is held pushes from there.
-        Until::Pose => {
+        TravelGoal::Pose => {
             objects.iter().all(|object| object.spheres().is_some()) && !workspace.holds_any()
         }
     };
@@ -144,34 +137,29 @@ fn to_place(
         let press = workspace.on_grid();
         let first = press.gather(grid, objects, patch_from_objects, until);
         let travel = match (until, first) {
-            (Until::Pose, _) => 0.0,
-            (Until::Travel(travel), _) => travel,
-            (Until::Depth(depth), Some(first)) => first + depth,
-            (Until::Depth(_), None) => {
+            (TravelGoal::Pose, _) => 0.0,
+            (TravelGoal::Travel(travel), _) => travel,
+            (TravelGoal::Depth(depth), Some(first)) => first + depth,
+            (TravelGoal::Depth(_), None) => {
                 press.touch_nothing(grid);
                 return None;
             }
         };
-        return Some(press.indent(grid, travel, filling));
+        return Some(press.indent(grid, travel, output));
     }
-    if let Until::Pose = until {
-        return Some(tree_press::deflect(
-            patch,
-            objects,
-            patch_from_objects,
-            workspace,
-        ));
+    if let TravelGoal::Pose = until {
+        return Some(tree::deflect(patch, objects, patch_from_objects, workspace));
     }
     let approach = Approach::ahead(patch);
     let first = approach.first_contact(objects, patch_from_objects);
     let travels = first.and_then(|first| match until {
-        Until::Depth(depth) => Some([first, first + depth]),
-        Until::Travel(travel) => (first < travel).then_some([first, travel]),
-        Until::Pose => None,
+        TravelGoal::Depth(depth) => Some([first, first + depth]),
+        TravelGoal::Travel(travel) => (first < travel).then_some([first, travel]),
+        TravelGoal::Pose => None,
     });
     let contact = approach.deflect(objects, patch_from_objects, travels, workspace);
     match until {
-        Until::Travel(travel) => Some(Contact {
+        TravelGoal::Travel(travel) => Some(Contact {
             travel,
             ..contact.unwrap_or_default()
         }),
@@ -194,7 +182,7 @@ pub fn first_contact(
 ) -> Option<f64> {
     match patch.even_grid() {
         Some(grid) => {
-            let until = Until::Depth(0.0);
+            let until = TravelGoal::Depth(0.0);
             workspace
                 .on_grid()
                 .gather(grid, objects, patch_from_objects, until)
@@ -218,8 +206,8 @@ pub fn press_to_depth(
     workspace: &mut Workspace,
 ) -> Option<Contact> {
     let placed = (objects, patch_from_objects);
-    let scratch = (workspace, &mut Filling::nothing());
-    to_place(patch, placed, Until::Depth(depth), scratch)
+    let scratch = (workspace, &mut OutputBuffer::none());
+    to_place(patch, placed, TravelGoal::Depth(depth), scratch)
 }
 
 /// Presses until the patch has moved `travel` metres along z from the pose given, from the front: the press of [`press_to_depth`]
@@ -235,8 +223,8 @@ pub fn press_to_travel(
     workspace: &mut Workspace,
 ) -> Contact {
     let placed = (objects, patch_from_objects);
-    let scratch = (workspace, &mut Filling::nothing());
-    to_place(patch, placed, Until::Travel(travel), scratch).unwrap_or_default()
+    let scratch = (workspace, &mut OutputBuffer::none());
+    to_place(patch, placed, TravelGoal::Travel(travel), scratch).unwrap_or_default()
 }
 
 /// Presses until the springs carry `force` newtons together, Σ k δ: to within 1e-12 of it, or to the last bit of the travel.
@@ -285,63 +273,18 @@ fn to_force(
     patch: &Patch,
     (objects, patch_from_objects): (&[Model], &[Pose]),
     force: f64,
-    (workspace, filling): (&mut Workspace, &mut Filling),
+    (workspace, output): (&mut Workspace, &mut OutputBuffer),
 ) -> Result<Option<Contact>> {
     match (patch.even_grid(), patch.taxels()) {
-        (Some(grid), Taxels::Equal(taxel)) => grid_force::press(
+        (Some(grid), Taxels::Equal(taxel)) => force::press(
             (grid, taxel.stiffness),
             objects,
             patch_from_objects,
             force,
-            (workspace.on_grid(), filling),
+            (workspace.on_grid(), output),
         ),
         _ => Approach::ahead(patch).press_to_force(objects, patch_from_objects, force, workspace),
     }
-}
-
-/// Presses a patch on objects, right where they are: poses are `patch_from_object`, one an object.
-///
-/// What is behind the substrate does not count (the contact stage's title page has the rule), for each taxel by itself: so what a forearm
-/// rests on does not press on its other side. What has gone far past the stroke lies there, too, unless it is known how it came
-/// ([`press_to_depth`]). A single part decides each touched taxel; where two need the same, the object that comes first, and of a union the first of its spheres.
-///
-/// ```
-/// use bubbletouch_sim::contact::{Workspace, press_with_contacts, spring_load};
-/// use bubbletouch_sim::geometry::Pose;
-/// use bubbletouch_sim::objects::{Sphere, SphereUnion};
-/// use bubbletouch_sim::world::{Layout, Patch, Taxel, Taxels};
-/// use glam::DVec3;
-///
-/// // A fingertip: half a ball of 8 mm with a taxel every 1.5 mm.
-/// let layout = Layout::sphere_cap(8e-3, std::f64::consts::FRAC_PI_2, 1.5e-3)?;
-/// let taxel = Taxel { radius: 0.5e-3, stiffness: 100.0, damping: 0.0, stroke: 2e-3 };
-/// let fingertip = Patch::new("fingertip", layout, Taxels::Equal(taxel))?;
-///
-/// // A marble comes half a millimetre too near, from the side.
-/// let marble = Sphere { center: DVec3::ZERO, radius: 8e-3 };
-/// let objects = [SphereUnion::new(vec![marble])?.into()];
-/// let pose = Pose::from_translation(16e-3 * DVec3::new(0.6, 0.0, 0.8));
-/// let mut workspace = Workspace::new();
-/// let counts = press_with_contacts(&fingertip, &objects, &[pose], &mut workspace);
-/// assert!(counts.n_touched > 3 && counts.n_saturated == 0);
-///
-/// // The marble is pushed back the way it came.
-/// let load = spring_load(&fingertip, workspace.contacts());
-/// let force = load.on_object.force;
-/// assert!(force.normalize().dot(DVec3::new(0.6, 0.0, 0.8)) > 0.95);
-/// # Ok::<(), bubbletouch_sim::Error>(())
-/// ```
-///
-/// # Panics
-/// If there are not as many poses as objects.
-pub fn press_with_contacts(
-    patch: &Patch,
-    objects: &[Model],
-    patch_from_objects: &[Pose],
-    workspace: &mut Workspace,
-) -> Contact {
-    tree_press::push(patch, objects, patch_from_objects, workspace);
-    tree_press::meet(patch, objects, patch_from_objects, workspace)
 }
 
 /// The deflections of [`press_with_contacts`] alone, where nobody wants to know what touches what.
@@ -355,6 +298,6 @@ pub fn press_at_pose(
     workspace: &mut Workspace,
 ) -> Contact {
     let placed = (objects, patch_from_objects);
-    let scratch = (workspace, &mut Filling::nothing());
-    to_place(patch, placed, Until::Pose, scratch).unwrap_or_default()
+    let scratch = (workspace, &mut OutputBuffer::none());
+    to_place(patch, placed, TravelGoal::Pose, scratch).unwrap_or_default()
 }

@@ -1,10 +1,11 @@
 //! The time loop: a moving patch over moving or fixed objects.
 
-use super::{DamperState, Workspace, tree_press};
+use super::tree;
+use super::{DamperState, Workspace};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
-use crate::in_range::positive;
 use crate::objects::Model;
+use crate::text::in_range::positive;
 use crate::world::{Patch, VelocityPlan};
 use ndarray::{Array1, Array2, ArrayView1};
 
@@ -70,7 +71,7 @@ pub fn simulate(
                 .iter()
                 .map(|plan| plan.pose_at(time).seen_from(&world_from_patch)),
         );
-        let contact = tree_press::deflect(patch, objects, &poses, &mut workspace);
+        let contact = tree::deflect(patch, objects, &poses, &mut workspace);
         workspace.hold_touched();
         state.step(patch.taxels(), dt, workspace.deflections());
         recording.n_saturated += contact.n_saturated;

@@ -1,51 +1,10 @@
 //! What the springs of a skin patch carry: forces, torques, and where.
 
-use super::crossing::Sample;
+use super::root_search::Sample;
 use super::taxel_contact::TaxelContact;
+use super::wrench::Wrench;
 use crate::world::Patch;
 use glam::DVec3;
-use std::ops::{Add, Neg};
-
-/// A force and its torque about the origin of the patch frame, in the patch frame.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Wrench {
-    /// N.
-    pub force: DVec3,
-    /// N·m.
-    pub torque: DVec3,
-}
-
-impl Wrench {
-    /// Of a force (N) at a point (m, in the patch frame).
-    pub fn at(point: DVec3, force: DVec3) -> Self {
-        Self {
-            force,
-            torque: point.cross(force),
-        }
-    }
-}
-
-impl Add for Wrench {
-    type Output = Self;
-
-    fn add(self, other: Self) -> Self {
-        Self {
-            force: self.force + other.force,
-            torque: self.torque + other.torque,
-        }
-    }
-}
-
-impl Neg for Wrench {
-    type Output = Self;
-
-    fn neg(self) -> Self {
-        Self {
-            force: -self.force,
-            torque: -self.torque,
-        }
-    }
-}
 
 /// What the springs of some contacts carry together.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! One taxel on one object: how far it is pushed, and along which way the object feels it.
 
-use super::Wrench;
-use super::grid_press::saturation_limit;
+use super::law::saturation_limit;
+use super::wrench::Wrench;
 use crate::world::Taxel;
 use glam::DVec3;
 

@@ -1,7 +1,6 @@
 //! What a thread presses in.
 
-use super::grid_lines::GridLines;
-use super::grid_press::GridPress;
+use super::grid::{GridLines, GridPress};
 use super::instructions::Instructions;
 use super::taxel_contact::TaxelContact;
 use crate::geometry::Pose;

@@ -4,7 +4,7 @@ use super::state::{Integrator, State};
 use super::system::System;
 use crate::contact::Recording;
 use crate::error::{Error, Result};
-use crate::in_range::positive;
+use crate::text::in_range::positive;
 use ndarray::{Array1, Array2};
 
 /// How far to go, and what to keep.

@@ -3,8 +3,8 @@
 use crate::contact::{Workspace, press_with_contacts};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
-use crate::in_range::positive;
 use crate::objects::Model;
+use crate::text::in_range::positive;
 use crate::world::{Patch, VelocityPlan};
 use glam::DVec3;
 

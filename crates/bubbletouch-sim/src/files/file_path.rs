@@ -1,6 +1,6 @@
 //! Paths in a study or scene file: relative to that file, absolute where the file is written out.
 
-use crate::note::note;
+use crate::text::note::note;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::cell::RefCell;
 use std::ops::Deref;

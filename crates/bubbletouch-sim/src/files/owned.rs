@@ -1,6 +1,7 @@
 //! The files of an output folder that the program wrote: the only ones that it may replace.
 
-use super::{check_output, write_bytes};
+use super::inputs::check_output;
+use super::whole_file::write_bytes;
 use crate::error::{Error, Result};
 use serde_json::{Map, Value};
 use std::collections::BTreeSet;

@@ -2,7 +2,7 @@
 
 use super::text_lines::each_line;
 use crate::error::{Error, Result};
-use crate::spelling::nearest_names;
+use crate::text::spelling::nearest_names;
 use std::collections::BTreeMap;
 use std::io::BufRead;
 

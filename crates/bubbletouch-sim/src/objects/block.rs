@@ -1,8 +1,7 @@
 //! A box, sharp or with rounded edges: its distance, its surface, its spheres.
 
 use super::Sphere;
-use super::fit::Fit;
-use super::pack::MAX_SPHERES;
+use super::fit::{Fit, MAX_SPHERES};
 use super::surface_patch::{SurfacePatch, frame};
 use crate::geometry::Pose;
 use glam::{DVec2, DVec3};

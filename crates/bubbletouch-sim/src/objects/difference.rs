@@ -8,8 +8,7 @@
 //! A cut that ends exactly where a part does leaves nothing there, but a membrane without thickness would pass all tests; so cuts are
 //! taken larger by [`GROWTH`]. What is thinner than that beside a cut is lost.
 
-use super::fit::Fit;
-use super::pack::MAX_SPHERES;
+use super::fit::{Fit, MAX_SPHERES};
 use super::surface_patch::{PatchCell, SurfacePatch};
 use super::{Part, Solid, Sphere};
 use glam::DVec3;

@@ -3,6 +3,10 @@
 use super::Sphere;
 use glam::DVec3;
 
+/// Largest number of spheres that [`pack`](super::pack) makes of a part. Larger: packings take more than 100 MB, and a touch takes hours; smaller:
+/// fine tolerances of large parts are refused.
+pub const MAX_SPHERES: usize = 2_000_000;
+
 /// How far the surface of the spheres may lie outside and inside that of the solid, metres.
 ///
 /// A ball of radius r inside the solid that touches its surface is swollen by [`outside`](Self::outside). Such a sphere comes

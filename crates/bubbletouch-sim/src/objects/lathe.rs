@@ -3,9 +3,8 @@
 //! The nearest surface point of a solid of revolution lies in the same half plane, so its distance is the polygon's.
 
 use super::Sphere;
-use super::fit::Fit;
+use super::fit::{Fit, MAX_SPHERES};
 use super::outline::Outline;
-use super::pack::MAX_SPHERES;
 use super::surface_patch::SurfacePatch;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};

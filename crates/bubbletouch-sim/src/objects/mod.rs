@@ -24,6 +24,7 @@ mod prism;
 mod shape;
 mod solid;
 mod solid_toml;
+mod sphere;
 mod sphere_clusters;
 mod sphere_csv;
 mod sphere_union;
@@ -34,16 +35,18 @@ mod torus;
 mod vertex_spheres;
 
 pub use catalogue::{Catalogue, Entry};
+pub use fit::MAX_SPHERES;
 pub use hand::{FingerPose, Hand};
 pub use mesh_model::{ContactFace, MeshModel};
 pub use model::Model;
-pub use pack::{MAX_SPHERES, pack};
+pub use pack::pack;
 pub use shape::Shape;
 pub use solid::{Part, Solid};
+pub use sphere::Sphere;
 pub use sphere_clusters::SphereClusters;
 pub(crate) use sphere_clusters::{Cluster, ClusterBounds, MOST_IN_CLUSTER};
 pub use sphere_csv::{read_spheres, write_spheres};
-pub use sphere_union::{Sphere, SphereUnion};
+pub use sphere_union::SphereUnion;
 pub use surface_error::{SurfaceError, surface_error};
 pub use vertex_spheres::vertex_spheres;
 

@@ -14,12 +14,9 @@
 //! nothing of them is swollen.
 
 use super::difference::pack_difference;
-use super::fit::Fit;
+use super::fit::{Fit, MAX_SPHERES};
 use super::{Solid, Sphere, SphereUnion};
 use crate::error::{Error, Result};
-
-/// The most spheres that [`pack`] makes of a part before it gives up: 100 MB of them, and hours of touches.
-pub const MAX_SPHERES: usize = 2_000_000;
 
 /// Spheres whose union is the solid to within `tolerance` (metres, positive).
 ///
@@ -63,6 +60,16 @@ pub fn pack(solid: &Solid, tolerance: f64) -> Result<SphereUnion> {
         );
     }
     SphereUnion::new(kept)
+}
+
+impl Solid {
+    /// Packs the solid, as [`pack`] does.
+    ///
+    /// # Errors
+    /// Those of [`pack`].
+    pub fn pack(&self, tolerance: f64) -> Result<SphereUnion> {
+        pack(self, tolerance)
+    }
 }
 
 /// A solid from which something is subtracted.

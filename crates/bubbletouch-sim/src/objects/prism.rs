@@ -1,9 +1,8 @@
 //! A polygon with a thickness: its distance, its surface, its spheres.
 
 use super::Sphere;
-use super::fit::Fit;
+use super::fit::{Fit, MAX_SPHERES};
 use super::outline::Outline;
-use super::pack::MAX_SPHERES;
 use super::surface_patch::SurfacePatch;
 use glam::{DVec2, DVec3};
 

@@ -7,7 +7,7 @@ use super::prism::Prism;
 use super::strand::Strand;
 use super::surface_patch::SurfacePatch;
 use super::torus::Torus;
-use super::{Shape, Sphere, SphereUnion};
+use super::{Shape, Sphere};
 use crate::error::{Error, Result};
 use crate::geometry::{Aabb, Pose};
 use glam::{DVec2, DVec3};
@@ -267,14 +267,6 @@ impl Solid {
             nearest(&self.cuts, p) >= -rounding && nearest(&self.parts, p) < -rounding
         });
         of_parts.chain(of_cuts).collect()
-    }
-
-    /// [`super::pack`] as a method.
-    ///
-    /// # Errors
-    /// Those of [`super::pack`].
-    pub fn pack(&self, tolerance: f64) -> Result<SphereUnion> {
-        super::pack::pack(self, tolerance)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Spheres of an object, neighbours together, so that those far from the skin are left out by the dozen.
 
-use super::{Sphere, SphereUnion};
+use super::Sphere;
 use glam::{DVec3, DVec4};
 
 /// Spheres in a cluster, at most. More: spheres are looked at in vain; fewer: clusters are.
@@ -38,9 +38,9 @@ pub(crate) struct ClusterBounds {
 }
 
 impl SphereClusters {
-    /// Sorts the spheres of an object into clusters; about 100 ns a sphere.
-    pub fn new(union: &SphereUnion) -> Self {
-        let mut numbered: Vec<(u32, Sphere)> = (0..).zip(union.spheres().to_vec()).collect();
+    /// Sorts the spheres of an object into clusters; about 100 ns per sphere.
+    pub(super) fn from_spheres(spheres: &[Sphere]) -> Self {
+        let mut numbered: Vec<(u32, Sphere)> = (0..).zip(spheres.to_vec()).collect();
         let mut sizes = Vec::new();
         cut(&mut numbered, &mut sizes);
         let (numbers, spheres): (Vec<u32>, Vec<Sphere>) = numbered.into_iter().unzip();
@@ -218,7 +218,7 @@ mod tests {
                     radius: rng.gen_range(0.01..0.2),
                 })
                 .collect();
-            let clusters = SphereClusters::new(&SphereUnion::new(spheres.clone()).unwrap());
+            let clusters = SphereClusters::from_spheres(&spheres);
             let is_inside = |inner: &Sphere, outer: &Sphere| {
                 inner.center.distance(outer.center) + inner.radius <= outer.radius * (1.0 + 1e-12)
             };

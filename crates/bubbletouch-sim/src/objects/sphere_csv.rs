@@ -2,7 +2,7 @@
 
 use super::{Sphere, SphereUnion};
 use crate::error::{Error, Result};
-use crate::numbers_csv::{check_width, finite, line_of, rows_of, unreadable};
+use crate::text::numbers_csv::{check_width, finite, line_of, rows_of, unreadable};
 use glam::DVec3;
 use std::io::{self, Read, Write};
 

@@ -1,8 +1,7 @@
 //! A torus about z: its distance, its surface, its spheres.
 
 use super::Sphere;
-use super::fit::Fit;
-use super::pack::MAX_SPHERES;
+use super::fit::{Fit, MAX_SPHERES};
 use super::surface_patch::SurfacePatch;
 use glam::DVec3;
 

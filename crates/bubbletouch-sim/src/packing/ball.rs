@@ -30,7 +30,46 @@ pub(super) fn relief(e: f64) -> f64 {
     (1.0 + PROTRUSION) * e
 }
 
+/// Distance beside the centre of a ball on the surface, relative to the tolerance, at which it is tested whether the centre lies in the solid.
+/// It must be less than the rounding reserve of [`Target::new`], since it adds to the protrusion; smaller: rounding decides.
+const BESIDE: f64 = 1e-7;
+
 impl Ball {
+    /// Returns the largest ball that touches the surface from inside at `foot`; on a sheet the ball around `foot`.
+    pub fn at(target: &Target, foot: DVec3, normal: DVec3) -> Self {
+        let largest = Self::largest(target, foot, -normal, 0.0, target.largest_radius());
+        largest.unwrap_or(Self::on_surface(foot))
+    }
+
+    /// Returns the largest ball that touches the surface at the point nearest to the shifted centre of this ball; on a sheet the ball around
+    /// this point. Returns `None` if the shifted centre is outside a solid.
+    pub fn beside(&self, target: &Target, shift: DVec3) -> Option<Self> {
+        let center = self.center + shift;
+        let nearest = target.surface.closest(center, f64::INFINITY)?;
+        if target.body == Body::Sheet {
+            return Some(Self::on_surface(nearest.point));
+        }
+        let is_inside = shift.length() < self.depth || !target.surface.is_outside(center, &nearest);
+        if nearest.distance <= 0.0 || !is_inside {
+            return None;
+        }
+        let inward = (center - nearest.point) / nearest.distance;
+        Self::largest(target, nearest.point, inward, 0.0, target.largest_radius())
+    }
+
+    /// Returns whether the centre is in the solid. The centre of a ball on the surface lies on a face, which need not bound the solid where
+    /// parts overlap.
+    pub fn has_center_in(&self, target: &Target) -> bool {
+        if target.body == Body::Sheet {
+            return true;
+        }
+        if self.depth > 0.0 {
+            return target.surface.contains(self.center);
+        }
+        let lift = BESIDE * target.e * target.normal_at(self.center);
+        target.surface.contains(self.center - lift) || target.surface.contains(self.center + lift)
+    }
+
     /// The ball of largest t with centre `foot + t·inward` and no surface nearer to its centre than t − `slack`.
     ///
     /// Without slack it is the largest ball inside the mesh that touches it at the foot \[MBC\]; with slack, surface may

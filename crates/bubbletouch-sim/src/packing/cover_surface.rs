@@ -67,7 +67,7 @@ pub(super) fn cover_surface(
             covering.sample_gaps(&gaps.places);
         }
     }
-    covering.chosen.retain(|ball| target.holds_center(ball));
+    covering.chosen.retain(|ball| ball.has_center_in(target));
     let mut gaps = covering.gaps();
     for _ in 0..MAX_REPAIRS {
         if gaps.places.is_empty() {
@@ -213,7 +213,7 @@ impl<'a> Covering<'a> {
             let ball = &balls[number % balls.len()];
             let shift = DVec3::from_array(std::array::from_fn(|_| rng.gen_range(-1.0..1.0)));
             let shift = 0.5 * ball.half_width(self.target.e) * shift;
-            moved.extend(self.target.ball_beside(ball, shift));
+            moved.extend(ball.beside(self.target, shift));
         }
         moved
     }
@@ -222,7 +222,7 @@ impl<'a> Covering<'a> {
     fn balls_at(&self, gaps: &[Sample]) -> Vec<Ball> {
         let ball = |gap: &Sample| {
             let normal = self.target.normal_at(gap.position);
-            self.target.ball_at(gap.position, normal)
+            Ball::at(self.target, gap.position, normal)
         };
         gaps.iter().map(ball).collect()
     }
@@ -245,7 +245,7 @@ impl<'a> Covering<'a> {
     /// Adds few balls that cover these gaps, but for those that no ball with its centre in the solid covers.
     fn fill(&mut self, gaps: &[Sample]) {
         let target = self.target;
-        let held = |ball: Ball| target.holds_center(&ball).then_some(ball);
+        let held = |ball: Ball| ball.has_center_in(target).then_some(ball);
         let (mut balls, mut places) = (Vec::new(), Vec::new());
         for (gap, ball) in gaps.iter().zip(self.balls_at(gaps)) {
             if let Some(ball) = held(ball).or_else(|| held(Ball::on_surface(ball.foot))) {

@@ -225,7 +225,7 @@ impl Sampler<'_> {
                 self.due_feet -= 1.0;
                 self.sampling
                     .balls
-                    .push(self.sizes.target.ball_at(foot, normal));
+                    .push(Ball::at(self.sizes.target, foot, normal));
             }
         }
     }

@@ -1,6 +1,5 @@
 //! What is packed: a mesh, what of it counts, and how near the spheres must come.
 
-use super::ball::Ball;
 use crate::error::{Error, Result};
 use crate::mesh::{Hole, Surface, Triangle, TriangleMesh, Welded};
 use glam::DVec3;
@@ -11,10 +10,6 @@ pub(super) const MESH: &str = "mesh";
 /// How far above a face, as a share of the tolerance, it is asked whether the face lies inside the solid: clefts that are
 /// narrower count as closed. Larger: wider ones do; smaller: rounding decides where faces lie on each other.
 const LIFT: f64 = 1e-3;
-
-/// The same beside the centre of a ball on the surface: what it adds to a protrusion must be less than [`Target::new`]
-/// leaves rounding errors.
-const BESIDE: f64 = 1e-7;
 
 /// What a mesh stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,41 +53,6 @@ impl<'a> Target<'a> {
     /// No ball is larger, metres.
     pub fn largest_radius(&self) -> f64 {
         0.5 * self.surface.bounds().size().length()
-    }
-
-    /// The largest ball that touches the surface from inside at a point; on a sheet around it.
-    pub fn ball_at(&self, foot: DVec3, normal: DVec3) -> Ball {
-        let largest = Ball::largest(self, foot, -normal, 0.0, self.largest_radius());
-        largest.unwrap_or(Ball::on_surface(foot))
-    }
-
-    /// The largest ball that touches the surface where it is nearest to a point beside the centre of another ball; on a
-    /// sheet around that place. `None` if the point is outside a solid.
-    pub fn ball_beside(&self, ball: &Ball, shift: DVec3) -> Option<Ball> {
-        let center = ball.center + shift;
-        let nearest = self.surface.closest(center, f64::INFINITY)?;
-        if self.body == Body::Sheet {
-            return Some(Ball::on_surface(nearest.point));
-        }
-        let is_inside = shift.length() < ball.depth || !self.surface.is_outside(center, &nearest);
-        if nearest.distance <= 0.0 || !is_inside {
-            return None;
-        }
-        let inward = (center - nearest.point) / nearest.distance;
-        Ball::largest(self, nearest.point, inward, 0.0, self.largest_radius())
-    }
-
-    /// Whether a ball's centre is in a solid. That of a ball on the surface lies on a face, which need not bound the solid where
-    /// parts overlap.
-    pub fn holds_center(&self, ball: &Ball) -> bool {
-        if self.body == Body::Sheet {
-            return true;
-        }
-        if ball.depth > 0.0 {
-            return self.surface.contains(ball.center);
-        }
-        let lift = BESIDE * self.e * self.normal_at(ball.center);
-        self.surface.contains(ball.center - lift) || self.surface.contains(ball.center + lift)
     }
 
     /// The outward unit normal near a point of the surface; zero where there is none.

@@ -42,20 +42,27 @@
 //!
 //! How well a pair of Φ and Ψ can do is bounded by its [`Coherence`] and restricted isometry
 //! ([`SensedDictionary::isometry`]).
+//!
+//! # Stages
+//!
+//! | stage | input → output |
+//! |---|---|
+//! | `ensembles` | a name and a seed → the map Φ ([`Ensemble`], [`Operator`]) |
+//! | `projection`, `columns` | frames → measurements ([`Projection`]) |
+//! | `dictionary`, `wavelet`, `pca`, `cosine` | training frames → atoms Ψ ([`Dictionary`]) |
+//! | `sensed`, `coherence` | Φ and Ψ → A = ΦΨ, and how well it can do |
+//! | `reconstruction` | measurements → frames ([`Reconstructor`]) |
+//! | `image_prior`, `image_estimate` | measurements → linear estimates of images ([`ImageEstimate`]) |
+//! | `cholesky`, `symmetric_eigen` | matrices → factors |
 
 mod cholesky;
 mod coherence;
 mod columns;
 mod cosine;
-mod dense;
 mod dictionary;
-#[macro_use]
-mod ensemble;
+mod ensembles;
 mod image_estimate;
 mod image_prior;
-mod lasso;
-mod lmmse;
-mod omp;
 mod pca;
 mod projection;
 mod reconstruction;
@@ -63,31 +70,14 @@ mod sensed;
 mod symmetric_eigen;
 mod wavelet;
 
-// Everything that a study may say of an ensemble follows from its line here and from the file that it names.
-ensembles! {
-    Gaussian gaussian "Independent Gaussian entries.";
-    Bernoulli bernoulli "Independent entries ±1/√n, either sign as likely.";
-    Sparse sparse "Independent entries +√(s/n), 0, −√(s/n) with probabilities 1/2s, 1 − 1/s, 1/2s, where s = √n: the very sparse projections of Li, Hastie and Church (2006). A measurement reads √n taxels on average.";
-    Circulant circulant "Some rows of a random circulant matrix: cyclic shifts of one row of signs ±1/√n.";
-    Sbhe sbhe "Scrambled block Hadamard \\[SBHE\\]: taxels permuted, Walsh–Hadamard transforms of blocks, coefficients in random order.";
-    BlockAverage block_average "Averages over blocks of neighbouring taxels: equal squares where the array allows them (64 × 64 at m = 1,024 is 2 × 2 taxels each), else the cells of recursive splitting, largest first, along its longer side. A cell of a smaller m is a union of cells of a larger m, so the smaller measurements follow from the larger, among all m of splitting and among squares whose sides divide each other (ratios 4, 16, 64 …).";
-    Subsample subsample "Some taxels, drawn without replacement.";
-    Fourier fourier "The lowest Fourier coefficients: products of cosines and sines, the lowest frequencies first.";
-    PrincipalComponents principal_components "The first principal components of frames that training touches read: directions in which they differ most.";
-    Identity identity "The frame itself, whatever m.";
-}
-
 pub use coherence::{Coherence, Extremes};
 pub use columns::Columns;
 pub use dictionary::{Basis, Dictionary, Energy};
-pub use ensemble::{Draw, EnsembleAbout, Learn, Operator, Source};
+pub use ensembles::{Draw, Ensemble, EnsembleAbout, Learn, Operator, Source};
 pub use image_estimate::{ImageEstimate, N_STEPS};
 pub use image_prior::{ImagePrior, N_COMPONENTS, Readings};
-pub use lasso::Lasso;
-pub use lmmse::Lmmse;
-pub use omp::Omp;
 pub use projection::Projection;
-pub use reconstruction::{Effort, Reconstruction, Reconstructor, Solved, Solver};
+pub use reconstruction::{
+    Effort, Lasso, Lmmse, Omp, Reconstruction, Reconstructor, Solved, Solver,
+};
 pub use sensed::SensedDictionary;
-
-use serde::{Deserialize, Serialize};

@@ -1,8 +1,8 @@
 //! One prepared projection of any ensemble.
 
 use super::Ensemble;
-use super::ensemble::{Operator, Source};
-use super::sbhe::ScrambledHadamard;
+use super::ensembles::ScrambledHadamard;
+use super::ensembles::{Operator, Source};
 use crate::error::{Error, Result};
 use crate::random::Seed;
 use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis, s};

@@ -8,7 +8,7 @@
 
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use crate::error::Result;
-use crate::in_range::fraction;
+use crate::text::in_range::fraction;
 use crate::world::{Grid, Neighbours};
 
 /// A leak, prepared for one grid.

@@ -8,8 +8,8 @@
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use super::taxel_effect::{CHUNK, Chunk, Moment, TaxelEffect};
 use crate::error::{Error, Result};
-use crate::in_range::fraction;
 use crate::random::{CounterKey, Seed};
+use crate::text::in_range::fraction;
 use rand::Rng;
 use rand::seq::SliceRandom;
 

@@ -6,8 +6,8 @@
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use super::taxel_effect::{Chunk, Moment, TaxelEffect};
 use crate::error::Result;
-use crate::in_range::not_negative;
 use crate::random::{CounterKey, Seed};
+use crate::text::in_range::not_negative;
 use rand::Rng;
 use rand_distr::StandardNormal;
 

@@ -16,7 +16,7 @@
 
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use crate::error::{Error, Result};
-use crate::in_range::not_negative;
+use crate::text::in_range::not_negative;
 use crate::world::Grid;
 
 /// A reader of one line resistance, prepared for one grid and full scale.

@@ -42,6 +42,7 @@ mod body_readout;
 mod chain;
 mod force;
 mod noise;
+mod quantity;
 #[macro_use]
 mod sensor_error;
 mod smoothing;
@@ -68,53 +69,8 @@ pub use crosstalk::Crosstalk;
 pub use force::force;
 pub use noise::{Noise, NoiseUnit};
 pub use quantisation::Quantisation;
+pub use quantity::Quantity;
 pub use sensor_error::{Effect, ErrorAbout, MOST_STRENGTHS, Prepare, Skin, Strength, TouchRead};
 pub use smoothing::Smoothing;
 pub use step::SignalStep;
 pub use taxel_effect::Moment;
-
-use crate::world::Taxel;
-
-/// What the numbers of a frame are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Quantity {
-    /// Metres.
-    Deflection,
-    /// Newtons.
-    Force,
-}
-
-impl Quantity {
-    /// Shown value = stored value × this: deflections are shown in millimetres.
-    pub fn factor(self) -> f64 {
-        match self {
-            Self::Deflection => 1e3,
-            Self::Force => 1.0,
-        }
-    }
-
-    /// The value of a taxel at its stroke: metres or newtons.
-    pub fn full_scale(self, taxel: &Taxel) -> f64 {
-        match self {
-            Self::Deflection => taxel.stroke,
-            Self::Force => taxel.stroke * taxel.stiffness,
-        }
-    }
-
-    /// The unit of the shown value.
-    pub fn unit(self) -> &'static str {
-        match self {
-            Self::Deflection => "mm",
-            Self::Force => "N",
-        }
-    }
-
-    /// The name of the shown value.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Deflection => "deflection",
-            Self::Force => "force",
-        }
-    }
-}

@@ -3,8 +3,8 @@
 use super::Quantity;
 use super::taxel_effect::{Chunk, Moment, TaxelEffect};
 use crate::error::{Error, Result};
-use crate::in_range::not_negative;
 use crate::random::{CounterKey, Seed};
+use crate::text::in_range::not_negative;
 use crate::world::Taxel;
 use rand::Rng;
 use rand_distr::StandardNormal;

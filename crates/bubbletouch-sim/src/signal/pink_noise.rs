@@ -11,8 +11,8 @@
 //! the last frame is the same however many come before it.
 
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
-use crate::in_range::not_negative;
 use crate::random::Seed;
+use crate::text::in_range::not_negative;
 use rand::Rng;
 use rand_distr::StandardNormal;
 
@@ -70,7 +70,7 @@ fn add_held(readings: &mut [f64], scale: f64, hold: usize, stream: &Seed) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::standard_errors::{assert_expected, of_mean};
+    use crate::statistics::standard_errors::{assert_expected, of_mean};
 
     /// The noise of a touch of so many readings, of standard deviation 1.
     fn noise(touch: u64, n_readings: usize) -> Vec<f64> {

@@ -7,7 +7,7 @@
 
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use crate::error::Result;
-use crate::in_range::not_negative;
+use crate::text::in_range::not_negative;
 
 /// A scan of one duration.
 #[derive(Clone, Copy, Debug, PartialEq)]

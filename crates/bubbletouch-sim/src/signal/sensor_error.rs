@@ -1,7 +1,6 @@
 //! What a sensor error says of itself: its step, its strengths, what it belongs to, what it costs, and how it is made.
 
 use super::taxel_effect::TaxelEffect;
-use super::{SENSOR_ERRORS, SensorError, SignalStep};
 use crate::error::Result;
 use crate::random::{CounterKey, Seed};
 use crate::world::Patch;
@@ -152,25 +151,6 @@ impl Strength {
             allowed,
             ..Self::fraction(key, words)
         }
-    }
-}
-
-impl SensorError {
-    /// The step that does it at some strengths, those that are not given being zero, of the skin of a name.
-    pub fn step(self, given: &[f64], skin: Seed) -> SignalStep {
-        let mut strengths = [0.0; MOST_STRENGTHS];
-        strengths[..given.len()].copy_from_slice(given);
-        SignalStep::Error {
-            error: self,
-            strengths,
-            skin,
-        }
-    }
-
-    /// The one of a step's word.
-    pub fn of_step(word: &str) -> Option<Self> {
-        let mut all = SENSOR_ERRORS.iter().copied();
-        all.find(|error| error.about().step == word)
     }
 }
 

@@ -1,6 +1,6 @@
 //! The steps that a chain can have.
 
-use super::{MOST_STRENGTHS, Noise, SensorError};
+use super::{MOST_STRENGTHS, Noise, SENSOR_ERRORS, SensorError};
 use crate::random::Seed;
 
 /// One step from deflections to frames, as a study names it.
@@ -30,5 +30,24 @@ impl SignalStep {
     /// Whether what a touch reads depends on the touches before it.
     pub(super) fn remembers(&self) -> bool {
         matches!(self, Self::Error { error, .. } if error.about().remembers)
+    }
+}
+
+impl SensorError {
+    /// The step that does it at some strengths, those that are not given being zero, of the skin of a name.
+    pub fn step(self, given: &[f64], skin: Seed) -> SignalStep {
+        let mut strengths = [0.0; MOST_STRENGTHS];
+        strengths[..given.len()].copy_from_slice(given);
+        SignalStep::Error {
+            error: self,
+            strengths,
+            skin,
+        }
+    }
+
+    /// The one of a step's word.
+    pub fn of_step(word: &str) -> Option<Self> {
+        let mut all = SENSOR_ERRORS.iter().copied();
+        all.find(|error| error.about().step == word)
     }
 }

@@ -1,37 +1,15 @@
-//! A patch on a sphere: rings of taxels, of which a pushing sphere covers one interval each.
-//!
-//! The axis of every taxel goes through the centre, so with t = c·n and Q = |c|² − S² the sphere needs
-//! `δ = √(t² − Q) − (t − R)`, wherever the taxel is. It is positive where t is above
-//!
-//! ```text
-//! √Q                if 0 ≤ Q ≤ R²: the sphere is beside the taxel's axis below
-//! (R² + Q) / (2R)   if Q > R²: it is above the taxel below
-//! ```
-//!
-//! and with B = R − s − ρ the sphere is in front of the substrate (`contact::law`) where `t + √(t² − Q) ≥ B`, which is where t is B or (B² + Q) / (2B) or more.
-//! On a ring t is A + A' cos(φ − φ_c): an interval.
+//! A patch on a sphere: rings of taxels around the z axis.
 
 use super::lanes::ball_around;
-use super::object_press::Pushed;
-use super::patch_state::PatchState;
-use crate::contact::law;
 use crate::objects::Sphere;
-use crate::world::{Dome, DomeRing};
-use glam::{DVec3, Vec3Swizzles};
-use std::f64::consts::{PI, TAU};
-use std::ops::Range;
-
-/// What rounding may add to an interval, in radians: far above 1e-16 and far below what is felt.
-const ROUNDING: f64 = 1e-9;
-/// The same of an arc cosine, which turns an error of 1e-16 near 1 into one of 1e-8.
-const ACOS_ROUNDING: f64 = 1e-7;
+use crate::world::Dome;
 
 /// Equal taxels on a dome.
 #[derive(Clone, Debug)]
 pub(super) struct DomePatch {
     dome: Dome,
     /// Of the sphere that the substrate is on, metres.
-    substrate: f64,
+    pub substrate: f64,
     /// Around all taxels from their rest centres back to the substrate, in the patch frame.
     pub ball: Sphere,
 }
@@ -61,7 +39,7 @@ impl DomePatch {
     }
 
     /// Above which t a taxel is pushed, metres.
-    fn least_along(&self, power: f64) -> f64 {
+    pub fn least_along(&self, power: f64) -> f64 {
         let radius = self.dome.radius();
         match power {
             power if power < 0.0 => f64::NEG_INFINITY,
@@ -69,69 +47,4 @@ impl DomePatch {
             power => (radius * radius + power) / (2.0 * radius),
         }
     }
-}
-
-impl Pushed for DomePatch {
-    /// Nothing is nearer than its ball, which has been looked at.
-    #[inline(always)]
-    fn is_near(&self, _: DVec3, _: f64) -> bool {
-        true
-    }
-
-    #[inline(always)]
-    fn push(&self, state: &mut PatchState, center: DVec3, reach: f64) {
-        let radius = self.dome.radius();
-        let power = center.length_squared() - reach * reach;
-        let substrate = self.substrate;
-        let behind = substrate.min((substrate * substrate + power) / (2.0 * substrate));
-        let least = self.least_along(power).max(behind);
-        let across = center.xy().length();
-        let angle = center.y.atan2(center.x);
-        for (row, ring) in self.dome.rings().iter().enumerate() {
-            let (along, around) = (center.z * ring.cos, across * ring.sin);
-            let Some(half_width) = half_width(least - along, around) else {
-                continue;
-            };
-            let directions = &self.dome.directions()[ring.first..ring.first + ring.n];
-            let slope = ring.sin * center.xy();
-            let needed = |column: usize| {
-                let t = along + slope.dot(directions[column]);
-                let q = t * t - power;
-                match q > 0.0 && t >= behind {
-                    true => law::deflection(q, t - radius),
-                    false => 0.0,
-                }
-            };
-            for columns in covered(ring, angle, half_width) {
-                if !columns.is_empty() {
-                    state.push_row(row, ring.first, columns, needed);
-                }
-            }
-        }
-    }
-}
-
-/// How far from φ_c, radians, `around · cos(φ − φ_c)` is `least` or more, and by no more than rounding beyond; `None` where it
-/// nowhere is.
-fn half_width(least: f64, around: f64) -> Option<f64> {
-    if least > around * (1.0 + ROUNDING) {
-        return None;
-    }
-    if least <= -around {
-        return Some(PI);
-    }
-    Some((least / around).min(1.0).acos() + ACOS_ROUNDING)
-}
-
-/// The columns of a ring within `half_width` radians of an angle: of a ring that goes around, in up to three parts.
-fn covered(ring: &DomeRing, angle: f64, half_width: f64) -> [Range<usize>; 3] {
-    [-TAU, 0.0, TAU].map(|turn| {
-        let middle = (angle + turn - ring.start) / ring.step;
-        let spread = half_width / ring.step + ROUNDING;
-        let first = (middle - spread).ceil().max(0.0) as usize;
-        let last = (middle + spread).floor();
-        // Below zero the cast would make it the first column.
-        let end = if last < 0.0 { 0 } else { last as usize + 1 };
-        first..end.min(ring.n)
-    })
 }

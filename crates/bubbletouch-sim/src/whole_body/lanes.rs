@@ -1,6 +1,6 @@
 //! Eight at a time: what is near a sphere is looked for among blocks of eight balls, and taxels are pushed by eight.
 
-use crate::contact::Below;
+use crate::contact::LanesBelow;
 use crate::objects::{ClusterBounds, MOST_IN_CLUSTER, Sphere, SphereClusters};
 use glam::{DMat3, DVec3};
 
@@ -42,7 +42,7 @@ impl Balls {
 
     /// Which of them a sphere with this reach comes near.
     #[inline(always)]
-    pub fn near(&self, center: DVec3, reach: f64) -> Below {
+    pub fn near(&self, center: DVec3, reach: f64) -> LanesBelow {
         let mut gaps = [0.0; LANES];
         for (k, gap) in gaps.iter_mut().enumerate() {
             let (dx, dy, dz) = (
@@ -53,7 +53,7 @@ impl Balls {
             let reach = (self.radius[k] + reach) * ROUNDING;
             *gap = dx * dx + dy * dy + dz * dz - reach * reach;
         }
-        Below::of(&gaps, 0.0)
+        LanesBelow::new(&gaps, 0.0)
     }
 }
 
@@ -160,8 +160,8 @@ pub(super) struct Placed {
 impl Placed {
     /// Those that may touch the patch.
     #[inline(always)]
-    pub fn near(&self) -> Below {
-        Below::of(&self.gaps, 0.0)
+    pub fn near(&self) -> LanesBelow {
+        LanesBelow::new(&self.gaps, 0.0)
     }
 
     /// The centre and S of one.

@@ -4,7 +4,7 @@ use super::SphereClusters;
 use super::body_patch::{BodyPatch, Surface};
 use super::lanes::{LANES, View};
 use super::patch_state::PatchState;
-use crate::contact::{Below, for_instructions};
+use crate::contact::{Instructions, LanesBelow, for_instructions};
 use crate::geometry::Pose;
 use glam::{DMat3, DVec3};
 
@@ -17,9 +17,26 @@ pub(super) trait Pushed {
     fn push(&self, state: &mut PatchState, center: DVec3, reach: f64);
 }
 
+impl PatchState {
+    /// Relaxes what is deflected for `dt` seconds, then pushes by objects at poses in the patch frame.
+    pub fn step<'a>(
+        &mut self,
+        patch: &BodyPatch,
+        objects: impl Iterator<Item = (&'a SphereClusters, Pose)>,
+        dt: f64,
+        instructions: Instructions,
+    ) {
+        self.begin_step(patch, dt);
+        for (object, pose) in objects {
+            push_object(instructions, self, patch, object, &pose);
+        }
+        self.end_step(patch);
+    }
+}
+
 for_instructions! {
     /// Pushes a patch by one object.
-    pub(super) fn push_object(
+    fn push_object(
         state: &mut PatchState,
         patch: &BodyPatch,
         object: &SphereClusters,
@@ -62,7 +79,7 @@ fn push_each(state: &mut PatchState, surface: &impl Pushed, object: &SphereClust
     view.lay_gaps(bounds, &mut gaps[..bounds.len()]);
     let mut n_evaluated = 0;
     for (look, gaps) in gaps.as_chunks::<LANES>().0.iter().enumerate() {
-        for k in Below::of(gaps, 0.0) {
+        for k in LanesBelow::new(gaps, 0.0) {
             let cluster = look * LANES + k;
             let (center, reach) = view.ball(bounds, cluster);
             if !surface.is_near(center, reach) {

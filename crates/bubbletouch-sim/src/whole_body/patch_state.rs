@@ -1,12 +1,9 @@
 //! One patch from step to step: which of its taxels are deflected, and how far.
 
-use super::SphereClusters;
 use super::body_patch::BodyPatch;
 use super::lanes::LANES;
-use super::object_press::push_object;
-use super::row_press::Share;
-use crate::contact::{Instructions, Relaxation, relaxation_factor, saturation_limit};
-use crate::geometry::Pose;
+use super::row_patch::SphereOverBundle;
+use crate::contact::{Relaxation, relaxation_factor, saturation_limit};
 use std::ops::Range;
 
 /// What relaxes and is deflected by less is at rest, metres; a ten-thousandth of what the finest skins tell apart.
@@ -34,7 +31,7 @@ pub(super) struct PatchState {
     /// Scratch of a search: of each cluster of an object, below zero if one of its spheres may touch.
     pub gaps: Vec<f64>,
     /// Scratch of a sphere: the bundles under it, by their first columns.
-    pub under: Vec<(u32, Share)>,
+    pub under: Vec<(u32, SphereOverBundle)>,
 }
 
 impl PatchState {
@@ -68,7 +65,7 @@ impl PatchState {
             + size_of_val(&self.deflections[..])
             + size_of_val(&self.spans[..])
             + self.gaps.capacity() * size_of::<f64>()
-            + self.under.capacity() * size_of::<(u32, Share)>()
+            + self.under.capacity() * size_of::<(u32, SphereOverBundle)>()
             + self.active.capacity() * size_of::<u32>()
             + (self.touched.capacity() + self.before.capacity()) * size_of::<(u32, f64)>()
     }
@@ -78,23 +75,13 @@ impl PatchState {
         &self.deflections[..self.n_taxels]
     }
 
-    /// Relaxes what is deflected for `dt` seconds, then pushes by objects at poses in the patch frame.
-    pub fn step<'a>(
-        &mut self,
-        patch: &BodyPatch,
-        objects: impl Iterator<Item = (&'a SphereClusters, Pose)>,
-        dt: f64,
-        instructions: Instructions,
-    ) {
+    /// Relaxes the deflected taxels for `dt` seconds: a step begins.
+    pub fn begin_step(&mut self, patch: &BodyPatch, dt: f64) {
         (self.n_evaluated, self.n_rejected) = (0, 0);
         if patch.taxel().damping > 0.0 {
             std::mem::swap(&mut self.touched, &mut self.before);
         }
         self.relax(patch, relaxation_factor(patch.taxel(), dt));
-        for (object, pose) in objects {
-            push_object(instructions, self, patch, object, &pose);
-        }
-        self.read(patch);
     }
 
     /// The deflected taxels, ascending, and the forces, newtons, that took them there in the last step, which was of `dt` seconds.
@@ -158,8 +145,8 @@ impl PatchState {
         });
     }
 
-    /// Stops what is pushed too far, and lists what is deflected.
-    fn read(&mut self, patch: &BodyPatch) {
+    /// Stops taxels at their stroke, and lists those that are deflected: a step ends.
+    pub fn end_step(&mut self, patch: &BodyPatch) {
         let stroke = patch.taxel().stroke;
         self.active.sort_unstable();
         self.touched.clear();

@@ -1,10 +1,11 @@
 //! A patch that is a row of taxels repeated along a line: flat, or a part of a cylinder.
 
-use super::lanes::{Balls, FAR, LANES, ball_around, filled};
+use super::lanes::{Balls, FAR, LANES, ball_around, filled, largest};
 use crate::contact::Lines;
+use crate::contact::law::{beats, indent, squares_in_front};
 use crate::objects::Sphere;
 use crate::world::Extrusion;
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 /// Equal taxels in a row that is repeated, and what finds those that a sphere is near.
 #[derive(Clone, Debug)]
@@ -120,5 +121,56 @@ impl Bundle {
             axis_u: of(|(_, axis)| axis.x),
             axis_v: of(|(_, axis)| axis.y),
         }
+    }
+}
+
+/// A sphere above the columns of a bundle, the same for all rows.
+#[derive(Clone, Debug)]
+pub(super) struct SphereOverBundle {
+    /// S² − b² of each column, m².
+    pub squares: [f64; LANES],
+    /// h of each column, metres.
+    pub heights: [f64; LANES],
+}
+
+impl SphereOverBundle {
+    /// Returns the sphere above the columns, and the square of the largest distance along the rows at which it pushes a taxel from the front, m²;
+    /// zero or less if it pushes none.
+    #[inline(always)]
+    pub fn new(bundle: &Bundle, center: DVec3, reach: f64) -> (Self, f64) {
+        let (mut squares, mut heights, mut spares) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        for k in 0..LANES {
+            let (du, dv) = (center.x - bundle.u[k], center.y - bundle.v[k]);
+            let beside = du * bundle.axis_v[k] - dv * bundle.axis_u[k];
+            let height = du * bundle.axis_u[k] + dv * bundle.axis_v[k];
+            let square = reach * reach - beside * beside;
+            let above = height.max(0.0);
+            squares[k] = square;
+            heights[k] = height;
+            spares[k] = square - above * above;
+        }
+        (Self { squares, heights }, largest(&spares))
+    }
+
+    /// Indents the taxels of a row at the distance √`along2` along the rows; `along2` in m².
+    #[inline(always)]
+    pub fn push(&self, along2: f64, is_small: bool, taxels: &mut [f64; LANES]) {
+        let mut squares = self.squares;
+        for square in &mut squares {
+            *square -= along2;
+        }
+        if is_small || beats(&squares, &self.heights, taxels) {
+            indent(&squares, &self.heights, taxels);
+        }
+    }
+
+    /// Returns S² − b² − `along2`, m², with substrates at the height `behind`; zero or less where the sphere does not reach through a substrate.
+    #[inline(always)]
+    pub fn through(&self, along2: f64, behind: f64) -> [f64; LANES] {
+        let mut squares = self.squares;
+        for square in &mut squares {
+            *square -= along2;
+        }
+        squares_in_front(&squares, &self.heights, behind)
     }
 }

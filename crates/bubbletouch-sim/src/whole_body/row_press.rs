@@ -4,12 +4,12 @@
 //! Of 32 spheres that touch all of 64 × 64 taxels singles were wrong by 5e-9 m (radius 45 mm, pressed lightly), 2e-7 m (as deep as
 //! its middle) and 6e-7 m (radius 4 m); of 512 × 512 by up to 5e-5 m. `cargo bench --bench precision` measures it again.
 
-use super::lanes::{LANES, largest};
+use super::lanes::LANES;
 use super::object_press::Pushed;
 use super::patch_state::PatchState;
-use super::row_patch::{Bundle, RowPatch};
-use crate::contact::Below;
-use crate::contact::law::{beats, raise, squares_in_front};
+use super::row_patch::{RowPatch, SphereOverBundle};
+use crate::contact::LanesBelow;
+use crate::contact::law::{beats, indent};
 use glam::DVec3;
 
 /// Under so few bundles a sphere is small: to know whether it needs more takes as long as the root.
@@ -36,7 +36,7 @@ impl Pushed for RowPatch {
         for (look, circles) in self.circles().iter().enumerate() {
             for k in circles.near(center.with_z(0.0), reach) {
                 let bundle = look * LANES + k;
-                let (share, spare) = Share::of(&self.bundles()[bundle], center, reach);
+                let (share, spare) = SphereOverBundle::new(&self.bundles()[bundle], center, reach);
                 if spare > 0.0 {
                     widest = if spare > widest { spare } else { widest };
                     lower(&mut lowest, &share.heights);
@@ -44,7 +44,7 @@ impl Pushed for RowPatch {
                 }
             }
         }
-        if !Below::of(&lowest, self.behind()).is_empty() {
+        if !LanesBelow::new(&lowest, self.behind()).is_empty() {
             push_through(state, self, &under, center.z, widest.sqrt());
         } else if !under.is_empty() {
             push_rows(state, self, &under, center.z, widest.sqrt());
@@ -77,7 +77,7 @@ fn is_beside(patch: &RowPatch, w: f64, reach: f64) -> bool {
 fn push_rows(
     state: &mut PatchState,
     patch: &RowPatch,
-    under: &[(u32, Share)],
+    under: &[(u32, SphereOverBundle)],
     w: f64,
     within: f64,
 ) {
@@ -100,7 +100,7 @@ fn push_rows(
 fn push_through(
     state: &mut PatchState,
     patch: &RowPatch,
-    under: &[(u32, Share)],
+    under: &[(u32, SphereOverBundle)],
     w: f64,
     within: f64,
 ) {
@@ -112,60 +112,10 @@ fn push_through(
             let squares = share.through(along * along, behind);
             let taxels = state.block(row * n_columns + *start as usize);
             if beats(&squares, &share.heights, taxels) {
-                raise(&squares, &share.heights, taxels);
+                indent(&squares, &share.heights, taxels);
                 let columns = *start..(start + LANES as u32).min(n_columns as u32);
                 state.widen(row, &columns);
             }
         }
-    }
-}
-
-/// What a sphere is to the columns of a bundle, the same in all rows.
-#[derive(Clone, Debug)]
-pub(super) struct Share {
-    /// S² − b², m².
-    squares: [f64; LANES],
-    /// h, metres.
-    heights: [f64; LANES],
-}
-
-impl Share {
-    /// Also how far along the rows it pushes any from the front, squared, m²; zero or less if it pushes none.
-    #[inline(always)]
-    fn of(bundle: &Bundle, center: DVec3, reach: f64) -> (Self, f64) {
-        let (mut squares, mut heights, mut spares) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-        for k in 0..LANES {
-            let (du, dv) = (center.x - bundle.u[k], center.y - bundle.v[k]);
-            let beside = du * bundle.axis_v[k] - dv * bundle.axis_u[k];
-            let height = du * bundle.axis_u[k] + dv * bundle.axis_v[k];
-            let square = reach * reach - beside * beside;
-            let above = height.max(0.0);
-            squares[k] = square;
-            heights[k] = height;
-            spares[k] = square - above * above;
-        }
-        (Self { squares, heights }, largest(&spares))
-    }
-
-    /// Raises taxels of a row that is so far away along the rows, squared, m².
-    #[inline(always)]
-    fn push(&self, along2: f64, is_small: bool, taxels: &mut [f64; LANES]) {
-        let mut squares = self.squares;
-        for square in &mut squares {
-            *square -= along2;
-        }
-        if is_small || beats(&squares, &self.heights, taxels) {
-            raise(&squares, &self.heights, taxels);
-        }
-    }
-
-    /// What is left of the squares so far away, m², with substrates at the height `behind`: nothing where the sphere does not reach through one.
-    #[inline(always)]
-    fn through(&self, along2: f64, behind: f64) -> [f64; LANES] {
-        let mut squares = self.squares;
-        for square in &mut squares {
-            *square -= along2;
-        }
-        squares_in_front(&squares, &self.heights, behind)
     }
 }

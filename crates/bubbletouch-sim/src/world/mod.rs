@@ -3,51 +3,43 @@
 //! Frames: in the **patch frame** the taxels of a flat [`Patch`] rest in the plane z = 0 with their axes along +z, away from the substrate;
 //! on another [`Layout`] each taxel has its own place and axis.
 //! In the **table frame** z points up and objects rest on z = 0.
+//!
+//! | stage | input → output |
+//! |---|---|
+//! | `layouts` | a pitch and a shape → places and axes of taxels ([`Layout`]) |
+//! | `patch`, `taxel`, `shear` | a layout and properties of taxels → a [`Patch`], its search tree |
+//! | `neighbours` | a patch → the neighbours of each taxel ([`Neighbours`]) |
+//! | `rest` | an object → the poses in which it rests on a table ([`RestPose`]) |
+//! | `placement`, `touches` | ranges of offsets, turns and depths → [`Touch`]es |
+//! | `robot` | URDF → links and joints ([`Robot`]) |
+//! | `motion`, `trajectory` | way points → poses and joint positions over time |
+//! | `human_touch` | a kind of touch by a hand → poses of fingers over time ([`HumanTouch`]) |
 
-mod array_layout;
-mod basins;
-mod body;
-mod dome;
-mod drape_region;
-mod extrusion;
 mod human_touch;
-mod layout;
-mod layout_curved;
-mod layout_draped;
-mod layout_flat;
-mod layout_order;
-mod mass;
+mod layouts;
 mod motion;
 mod neighbours;
 mod patch;
 mod per_taxel;
 mod placement;
 mod rest;
-mod ring;
 mod robot;
-mod settle;
 mod shear;
-mod support;
 mod taxel;
 mod taxel_tree;
 mod touches;
 mod trajectory;
 
-pub use array_layout::ArrayLayout;
-pub use dome::{Dome, DomeRing};
-pub use drape_region::DrapeRegion;
-pub use extrusion::Extrusion;
 pub use human_touch::{HandState, HumanTouch, TOUCH_KINDS, TouchKind, TouchRanges};
-pub(crate) use layout::Rule;
-pub use layout::{Layout, MOST_TAXELS};
-pub use mass::center_of_mass;
+pub(crate) use layouts::Rule;
+pub use layouts::{ArrayLayout, Dome, DomeRing, DrapeRegion, Extrusion, Layout, MOST_TAXELS};
 pub use motion::{Interpolation, JointTrajectory, Motion, PoseTrajectory};
 pub use neighbours::Neighbours;
+pub use patch::Patch;
 pub(crate) use patch::{EvenGrid, Travelling};
-pub use patch::{Patch, Taxels};
-pub use per_taxel::PerTaxel;
+pub use per_taxel::{PerTaxel, Taxels};
 pub use placement::{Placement, RestPoses, Spread, Touch, TouchAxis};
-pub use rest::{RestPose, as_modelled, stable_poses, stable_poses_about};
+pub use rest::{RestPose, as_modelled, center_of_mass, stable_poses, stable_poses_about};
 pub use robot::{
     Coordinate, Dimension, Joint, JointKind, Limits, Link, LinkGeometry, LinkShape, Mimic, Robot,
     ShapeRole,

@@ -1,7 +1,7 @@
 //! A patch of skin of any shape.
 
 use super::taxel_tree::TaxelTree;
-use super::{Grid, Layout, PerTaxel, Taxel};
+use super::{Grid, Layout, Taxel, Taxels};
 use crate::error::Result;
 use glam::DVec3;
 use std::sync::OnceLock;
@@ -55,9 +55,6 @@ impl Travelling {
         }
     }
 }
-
-/// What the taxels of a patch are.
-pub type Taxels = PerTaxel<Taxel>;
 
 impl Patch {
     /// Checks the taxels. What presses need is made at the first of them: about a microsecond a taxel.

@@ -1,5 +1,6 @@
 //! A property of every taxel of a patch: one for all, or one each.
 
+use super::taxel::Taxel;
 use crate::error::{Error, Result};
 
 /// What the taxels of a patch have, in the order of its layout.
@@ -10,6 +11,9 @@ pub enum PerTaxel<T> {
     /// One each, in the order of the layout.
     Each(Vec<T>),
 }
+
+/// Properties of the taxels of a patch.
+pub type Taxels = PerTaxel<Taxel>;
 
 impl<T> From<T> for PerTaxel<T> {
     fn from(all: T) -> Self {

@@ -2,7 +2,7 @@
 
 use super::{Patch, PerTaxel};
 use crate::error::Result;
-use crate::in_range::{not_negative, positive};
+use crate::text::in_range::{not_negative, positive};
 
 /// A taxel's shear spring and its friction; an option beside a [`Patch`], whose taxels slide along their axes without it.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! A taxel, and a rectangular grid of them.
 
 use crate::error::{Error, Result};
-use crate::in_range::{not_negative, positive};
+use crate::text::in_range::{not_negative, positive};
 use glam::DVec3;
 
 /// One sensing element: a sphere on a spring and damper, sliding along one axis.

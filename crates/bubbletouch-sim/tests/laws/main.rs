@@ -14,7 +14,7 @@ mod objects;
 mod sensing;
 mod world;
 
-use bubbletouch_sim::standard_errors;
+use bubbletouch_sim::statistics::standard_errors;
 use fixtures::{
     counting, double_double, mesh_shapes, overlapping, random_scenes, reference_data, scans,
 };

@@ -12,7 +12,7 @@ use crate::studies::recognition::rows::table_rows::{
     CellScore, Comparison, Confused, Confusion, Pareto, TrialScore, TrialTime,
 };
 use crate::table::front;
-use bubbletouch_sim::interval::{Interval, RowTest};
+use bubbletouch_sim::statistics::interval::{Interval, RowTest};
 use std::collections::BTreeMap;
 
 /// A row of the accuracy table.

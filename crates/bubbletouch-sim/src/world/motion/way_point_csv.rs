@@ -2,8 +2,8 @@
 
 use super::way_points::{Origin, WayPoints};
 use crate::error::{Error, Result};
-use crate::numbers_csv::NumberTable;
-use crate::spelling::nearest_names;
+use crate::text::numbers_csv::NumberTable;
+use crate::text::spelling::nearest_names;
 use ndarray::Array2;
 use std::io::Read;
 

@@ -27,6 +27,7 @@ mod tactile;
 mod text;
 mod tree;
 mod urdf;
+mod urdf_file;
 mod xml;
 
 pub use coordinate::{Coordinate, Dimension};

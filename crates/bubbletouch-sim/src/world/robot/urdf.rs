@@ -11,7 +11,7 @@ use super::tree::Tree;
 use super::xml::{Element, Lines};
 use super::{Joint, JointKind, Limits, Link, Mimic, Robot};
 use crate::error::{Error, Result};
-use crate::spelling::nearest_names;
+use crate::text::spelling::nearest_names;
 use glam::DVec3;
 use roxmltree::Node;
 use std::collections::HashMap;

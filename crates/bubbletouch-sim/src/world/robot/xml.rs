@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::geometry::{Pose, rotation_from_rpy, written_rotation};
-use crate::spelling::slip_of;
+use crate::text::spelling::slip_of;
 use glam::{DQuat, DVec3};
 use roxmltree::Node;
 use std::cell::RefCell;

@@ -1,6 +1,8 @@
 //! Laws of free objects: they rest where all forces balance, wherever the world is, or they are said to leave.
 
-use bubbletouch_sim::contact::balance::{Balance, Balancer, FreeObject, Outcome, PlacedSkin};
+use bubbletouch_sim::contact::equilibrium::{
+    Equilibrium, EquilibriumSolver, FreeObject, Outcome, PlacedSkin,
+};
 use bubbletouch_sim::contact::{Workspace, press_with_contacts, spring_load};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::objects::{Model, Sphere, SphereUnion};
@@ -41,8 +43,10 @@ fn ball(radius: f64) -> SphereUnion {
     SphereUnion::new(vec![Sphere { center, radius }]).unwrap()
 }
 
-fn settle(object: &FreeObject, skins: &[PlacedSkin], start: &Pose) -> Balance {
-    Balancer::new().settle(object, skins, DOWN, start).unwrap()
+fn settle(object: &FreeObject, skins: &[PlacedSkin], start: &Pose) -> Equilibrium {
+    EquilibriumSolver::new()
+        .solve(object, skins, DOWN, start)
+        .unwrap()
 }
 
 fn at(x: f64, y: f64, z: f64) -> Pose {
@@ -60,7 +64,7 @@ fn a_ball_rests_as_deep_as_its_weight_asks() {
         &[placed(&patch, Pose::IDENTITY)],
         &at(1e-3, 1e-3, 0.05),
     );
-    assert_eq!(rest.outcome, Outcome::Settled);
+    assert_eq!(rest.outcome, Outcome::AtRest);
     // The lift at a height, taxel by taxel, where the ball is.
     let place = rest.pose.translation;
     let lift = |height: f64| -> f64 {
@@ -94,7 +98,7 @@ fn forces_balance_for_every_weight_and_stiffness() {
             let skins = [placed(&patch, Pose::IDENTITY)];
             let rest = settle(&object, &skins, &at(0.3e-3, 0.2e-3, 0.04));
             let case = format!("{mass} kg on {stiffness} N/m: {rest:?}");
-            assert_eq!(rest.outcome, Outcome::Settled, "{case}");
+            assert_eq!(rest.outcome, Outcome::AtRest, "{case}");
             assert!(rest.imbalance <= 1e-6, "{case}");
             assert!((rest.force.z / (mass * G) - 1.0).abs() <= 1e-6, "{case}");
         }
@@ -119,7 +123,7 @@ fn the_skin_feels_the_weight_that_rests_on_it() {
         &[placed(&patch, Pose::IDENTITY)],
         &at(0.0, 0.0, 0.06),
     );
-    assert_eq!(rest.outcome, Outcome::Settled);
+    assert_eq!(rest.outcome, Outcome::AtRest);
     let objects = [Model::from(union.clone())];
     let mut workspace = Workspace::new();
     press_with_contacts(&patch, &objects, &[rest.pose], &mut workspace);
@@ -153,17 +157,17 @@ fn moving_the_whole_world_moves_the_rest() {
     let object = FreeObject::new(&union, 0.06, DVec3::new(0.0, -2e-3, 1e-3)).unwrap();
     let start = at(1.3e-3, -0.7e-3, 0.03);
     let here = settle(&object, &[placed(&patch, Pose::IDENTITY)], &start);
-    assert_eq!(here.outcome, Outcome::Settled);
+    assert_eq!(here.outcome, Outcome::AtRest);
     let world = Pose::new(
         DQuat::from_euler(glam::EulerRot::XYZ, 0.7, -1.1, 2.0),
         DVec3::new(3.0, -2.0, 1.0),
     );
     let skins = [placed(&patch, world)];
     let moved = world.compose(&start);
-    let there = Balancer::new()
-        .settle(&object, &skins, world.transform_vector(DOWN), &moved)
+    let there = EquilibriumSolver::new()
+        .solve(&object, &skins, world.transform_vector(DOWN), &moved)
         .unwrap();
-    assert_eq!(there.outcome, Outcome::Settled);
+    assert_eq!(there.outcome, Outcome::AtRest);
     let back = world.inverse().compose(&there.pose);
     assert!(
         (back.translation - here.pose.translation).length() < 1e-8,
@@ -188,7 +192,7 @@ fn two_skins_in_a_v_carry_a_ball_together() {
     let mass = 0.1;
     let object = FreeObject::new(&union, mass, DVec3::ZERO).unwrap();
     let rest = settle(&object, &skins, &at(0.0, 1e-3, 0.08));
-    assert_eq!(rest.outcome, Outcome::Settled);
+    assert_eq!(rest.outcome, Outcome::AtRest);
     assert!(rest.imbalance < 1e-6);
     assert!(rest.pose.translation.x.abs() < 1.1e-3, "{rest:?}");
     let sum: f64 = skins
@@ -273,18 +277,18 @@ fn at_rest_it_stays_and_nearby_it_returns() {
     let skins = [placed(&patch, Pose::IDENTITY)];
     let union = ball(0.03);
     let object = FreeObject::new(&union, 0.3, DVec3::new(0.0, 0.0, -0.01)).unwrap();
-    let mut balancer = Balancer::new();
+    let mut balancer = EquilibriumSolver::new();
     let first = balancer
-        .settle(&object, &skins, DOWN, &at(0.4e-3, 0.1e-3, 0.04))
+        .solve(&object, &skins, DOWN, &at(0.4e-3, 0.1e-3, 0.04))
         .unwrap();
-    let again = balancer.settle(&object, &skins, DOWN, &first.pose).unwrap();
+    let again = balancer.solve(&object, &skins, DOWN, &first.pose).unwrap();
     assert!((again.pose.translation - first.pose.translation).length() < 1e-9);
     assert!(again.n_steps <= 6, "{again:?}");
     let lifted = Pose::new(
         first.pose.rotation,
         first.pose.translation + 1e-3 * DVec3::Z,
     );
-    let back = balancer.settle(&object, &skins, DOWN, &lifted).unwrap();
+    let back = balancer.solve(&object, &skins, DOWN, &lifted).unwrap();
     assert!((back.pose.translation.z - first.pose.translation.z).abs() < 1e-6);
 }
 
@@ -305,7 +309,7 @@ fn others_that_push_the_taxels_take_their_part() {
         ..placed(&patch, Pose::IDENTITY)
     }];
     let lower = settle(&object, &skins, &at(0.0, 0.0, 0.05));
-    assert_eq!(lower.outcome, Outcome::Settled);
+    assert_eq!(lower.outcome, Outcome::AtRest);
     assert!(lower.imbalance < 1e-6);
     assert!(
         lower.pose.translation.z < alone.pose.translation.z - 0.3e-3,
@@ -434,7 +438,7 @@ fn a_thousand_objects_settle_or_leave() {
             let rest = settle(&object, &[placed(&patch, Pose::IDENTITY)], &start);
             assert!(rest.pose.translation.is_finite() && rest.pose.rotation.is_finite());
             match rest.outcome {
-                Outcome::Settled => {
+                Outcome::AtRest => {
                     assert!(rest.imbalance <= 1e-6, "case {case}: {rest:?}");
                     // Every sphere against every taxel, a hundred times over, takes its time.
                     let is_tried = case.is_multiple_of(5);
@@ -445,7 +449,7 @@ fn a_thousand_objects_settle_or_leave() {
                     assert!((direction.length() - 1.0).abs() < 1e-9);
                     None
                 }
-                Outcome::Unsettled => panic!("case {case}: {rest:?}"),
+                Outcome::NotConverged => panic!("case {case}: {rest:?}"),
             }
         })
         .collect();
@@ -467,13 +471,13 @@ fn bad_input_is_named() {
     let error = FreeObject::new(&union, 1.0, nowhere).unwrap_err();
     assert!(error.to_string().starts_with("centre of mass"), "{error}");
     let object = FreeObject::new(&union, 1.0, DVec3::ZERO).unwrap();
-    let mut balancer = Balancer::new();
+    let mut balancer = EquilibriumSolver::new();
     let error = balancer
-        .settle(&object, &[], DVec3::ZERO, &Pose::IDENTITY)
+        .solve(&object, &[], DVec3::ZERO, &Pose::IDENTITY)
         .unwrap_err();
     assert!(error.to_string().starts_with("gravity"), "{error}");
     let error = balancer
-        .settle(&object, &[], DOWN, &Pose::from_translation(nowhere))
+        .solve(&object, &[], DOWN, &Pose::from_translation(nowhere))
         .unwrap_err();
     assert!(error.to_string().starts_with("object pose"), "{error}");
 }

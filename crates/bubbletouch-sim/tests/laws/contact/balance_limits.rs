@@ -1,7 +1,9 @@
 //! Where the balance of free objects could break. Each case has the behaviour that `guide::limits` states.
 
 use crate::random_scenes::{TAXEL, direction, rng};
-use bubbletouch_sim::contact::balance::{Balance, Balancer, FreeObject, Outcome, PlacedSkin};
+use bubbletouch_sim::contact::equilibrium::{
+    Equilibrium, EquilibriumSolver, FreeObject, Outcome, PlacedSkin,
+};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::objects::{Sphere, SphereUnion};
 use bubbletouch_sim::world::{Grid, Layout, Patch, Taxel, Taxels};
@@ -27,12 +29,14 @@ fn union(places: impl IntoIterator<Item = DVec3>, radius: f64) -> SphereUnion {
     SphereUnion::new(spheres.collect()).unwrap()
 }
 
-fn settle_on(skin: &Patch, at: Pose, object: &FreeObject, start: &Pose) -> Balance {
+fn settle_on(skin: &Patch, at: Pose, object: &FreeObject, start: &Pose) -> Equilibrium {
     let skins = [PlacedSkin::new(skin, at)];
-    Balancer::new().settle(object, &skins, DOWN, start).unwrap()
+    EquilibriumSolver::new()
+        .solve(object, &skins, DOWN, start)
+        .unwrap()
 }
 
-fn settle(skin: &Patch, object: &FreeObject, start: &Pose) -> Balance {
+fn settle(skin: &Patch, object: &FreeObject, start: &Pose) -> Equilibrium {
     settle_on(skin, Pose::IDENTITY, object, start)
 }
 
@@ -68,13 +72,13 @@ fn lift(skin: &Patch, spheres: &SphereUnion, pose: &Pose) -> f64 {
 }
 
 /// What is wrong with something that should be at rest.
-fn fault(rest: &Balance, weight: f64) -> Option<String> {
+fn fault(rest: &Equilibrium, weight: f64) -> Option<String> {
     let is_balanced = rest.imbalance <= 1e-6 && (rest.force.z / weight - 1.0).abs() <= 1e-6;
-    let is_right = rest.outcome == Outcome::Settled && is_balanced;
+    let is_right = rest.outcome == Outcome::AtRest && is_balanced;
     (!is_right).then(|| format!("{rest:?}"))
 }
 
-fn assert_rests(rest: &Balance, weight: f64, case: &str) {
+fn assert_rests(rest: &Equilibrium, weight: f64, case: &str) {
     if let Some(fault) = fault(rest, weight) {
         panic!("{case}: {fault}");
     }
@@ -118,10 +122,10 @@ fn a_million_metres_from_the_origin_objects_rest_as_at_it() {
 
 /// Whether an object is said not to rest on a spring on which a last bit of its place, from where it started at this height, is more than
 /// what balances: no pose can say what such a spring carries.
-fn is_beyond_last_bits(rest: &Balance, stiffness: f64, size: f64, weight: f64) -> bool {
+fn is_beyond_last_bits(rest: &Equilibrium, stiffness: f64, size: f64, weight: f64) -> bool {
     let place = size + (0.05 - rest.pose.translation.z);
     let last_bit = f64::EPSILON * place;
-    rest.outcome == Outcome::Unsettled && stiffness * last_bit > 1e-6 * weight
+    rest.outcome == Outcome::NotConverged && stiffness * last_bit > 1e-6 * weight
 }
 
 #[test]
@@ -370,11 +374,11 @@ fn balls_of_all_sizes_rest_at_the_height_of_the_formula_or_fall_between_the_taxe
             continue;
         }
         // Much larger than the bed it rolls off, so far that the steps may not be enough.
-        if radius > 0.5 && rest.outcome != Outcome::Settled {
+        if radius > 0.5 && rest.outcome != Outcome::AtRest {
             continue;
         }
         faults.extend(fault(&rest, mass * G).map(|fault| format!("{case}: {fault}")));
-        if rest.n_saturated == 0 && rest.outcome == Outcome::Settled {
+        if rest.n_saturated == 0 && rest.outcome == Outcome::AtRest {
             let error = lift(&skin, &ball, &rest.pose) / (mass * G) - 1.0;
             // Of a kilometre only 1e-13 m are known.
             let known = 1e-6 + 256.0 * 100.0 * 4.0 * f64::EPSILON * radius / (mass * G);

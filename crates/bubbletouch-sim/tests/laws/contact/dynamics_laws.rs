@@ -1,6 +1,6 @@
 //! Laws of taxels with mass: closed forms, rest, energy, and the limit of explicit steps.
 
-use bubbletouch_sim::contact::balance::{Balancer, FreeObject, Outcome, PlacedSkin};
+use bubbletouch_sim::contact::equilibrium::{EquilibriumSolver, FreeObject, Outcome, PlacedSkin};
 use bubbletouch_sim::dynamics::{
     Divergence, Drive, ImplicitEuler, Integrator, SemiImplicit, State, Steps, System, rest, run,
     skin_sim,
@@ -165,11 +165,11 @@ fn a_ball_on_its_guide_comes_to_the_rest_of_the_quasi_static_balance() {
     let object = FreeObject::new(ball.spheres().unwrap(), mass, DVec3::ZERO).unwrap();
     let skin = PlacedSkin::new(&patch, Pose::IDENTITY);
     let gravity = -9.81 * DVec3::Z;
-    let mut balancer = Balancer::new();
+    let mut balancer = EquilibriumSolver::new();
     let balance = balancer
-        .settle(&object, &[skin], gravity, &at(TOUCHING))
+        .solve(&object, &[skin], gravity, &at(TOUCHING))
         .unwrap();
-    assert_eq!(balance.outcome, Outcome::Settled);
+    assert_eq!(balance.outcome, Outcome::AtRest);
     let travel = TOUCHING - balance.pose.translation.z;
     assert!(
         (travel - found.travel).abs() < 1e-9,

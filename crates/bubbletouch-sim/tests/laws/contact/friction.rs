@@ -1,8 +1,8 @@
 //! Laws of friction on skins: the cone, dissipation, steps of any size, symmetry, and textbook slip.
 
 use bubbletouch_sim::contact::{
-    Approach, DamperState, FrictionLoad, FrictionState, Grip, GripCounts, NormalForce, Workspace,
-    press_with_contacts, spring_load,
+    Approach, ContactMode, ContactModeCounts, DamperState, FrictionLoad, FrictionState,
+    NormalForce, Workspace, press_with_contacts, spring_load,
 };
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::objects::{MeshModel, Model, Sphere, SphereUnion};
@@ -58,7 +58,7 @@ impl Bench {
         }
     }
 
-    fn step(&mut self, poses: &[Pose]) -> GripCounts {
+    fn step(&mut self, poses: &[Pose]) -> ContactModeCounts {
         press_with_contacts(&self.skin, &self.objects, poses, &mut self.workspace);
         let contacts = self.workspace.contacts();
         self.state
@@ -66,7 +66,7 @@ impl Bench {
     }
 
     /// A step of one object to a place, not turned.
-    fn slide_to(&mut self, place: DVec3) -> GripCounts {
+    fn slide_to(&mut self, place: DVec3) -> ContactModeCounts {
         self.step(&[Pose::from_translation(place)])
     }
 
@@ -157,7 +157,7 @@ fn friction_is_within_its_cone_after_a_step_of_any_size() {
                 let most = bench.state.shears().at(taxel).friction * force.z;
                 let friction = bench.state.friction(taxel).length();
                 assert!(friction <= most * (1.0 + 1e-14), "{friction} of {most}");
-                let is_free = bench.state.grips()[taxel] == Grip::Free;
+                let is_free = bench.state.contact_modes()[taxel] == ContactMode::Free;
                 assert_eq!(is_free, *force == DVec3::ZERO);
                 assert_eq!(is_free, bench.workspace.deflections()[taxel] == 0.0);
             }
@@ -300,14 +300,14 @@ fn under_a_dragged_ball_the_outer_taxels_slip_first_and_the_force_is_the_textboo
             "a ring that has slipped goes on"
         );
         n_before = counts.n_slipping;
-        let from_middle = |grip: Grip| {
-            let taxels = bench.state.grips().iter().enumerate();
+        let from_middle = |grip: ContactMode| {
+            let taxels = bench.state.contact_modes().iter().enumerate();
             let of_grip = taxels.filter(move |(_, g)| **g == grip);
             let centers = bench.skin.layout().centers();
             of_grip.map(|(taxel, _)| centers[taxel].length())
         };
-        let innermost_slip = from_middle(Grip::Slip).fold(f64::INFINITY, f64::min);
-        let outermost_stick = from_middle(Grip::Stick).fold(0.0, f64::max);
+        let innermost_slip = from_middle(ContactMode::Slip).fold(f64::INFINITY, f64::min);
+        let outermost_stick = from_middle(ContactMode::Stick).fold(0.0, f64::max);
         // The ball's own way, a few micrometres, moves the ring by as much.
         assert!(outermost_stick < innermost_slip + 20e-6, "{k}");
         // The deepest taxel's reach is the onset, to its distance from the ball's middle.
@@ -410,7 +410,7 @@ fn a_taxel_that_is_left_or_touched_by_another_object_forgets_its_shear() {
     assert!((bench.state.displacement(0).x - 1e-4).abs() < 1e-15);
     bench.step(&[off, off]);
     assert_eq!(bench.state.force3(), [DVec3::ZERO]);
-    assert_eq!(bench.state.grips(), [Grip::Free]);
+    assert_eq!(bench.state.contact_modes(), [ContactMode::Free]);
     bench.step(&[on(2e-4), off]);
     assert_eq!(bench.state.displacement(0), DVec2::ZERO);
     bench.step(&[on(3e-4), off]);

@@ -1,7 +1,7 @@
 //! Laws of free objects on a skin with friction: its tips hold them inside of Coulomb's cone, and no further.
 
-use bubbletouch_sim::contact::balance::{
-    Balance, Balancer, FreeObject, Ground, Outcome, PlacedSkin, Tip,
+use bubbletouch_sim::contact::equilibrium::{
+    Equilibrium, EquilibriumSolver, FreeObject, Ground, Outcome, PlacedSkin, TangentialSpring,
 };
 use bubbletouch_sim::contact::{FrictionState, NormalForce, Workspace, press_with_contacts};
 use bubbletouch_sim::geometry::Pose;
@@ -54,13 +54,13 @@ struct Held {
     patch: Patch,
     union: SphereUnion,
     objects: [Model; 1],
-    balancer: Balancer,
+    balancer: EquilibriumSolver,
     workspace: Workspace,
     friction: FrictionState,
     world_from_patch: Pose,
-    balance: Balance,
+    balance: Equilibrium,
     /// Those that the last step began with.
-    tips: Vec<Tip>,
+    tips: Vec<TangentialSpring>,
 }
 
 impl Held {
@@ -68,13 +68,13 @@ impl Held {
     fn new(shear: Shear) -> Self {
         let (patch, union) = (bed(), plate());
         let object = FreeObject::new(&union, MASS, DVec3::ZERO).unwrap();
-        let mut balancer = Balancer::new();
+        let mut balancer = EquilibriumSolver::new();
         let start = Pose::from_translation(DVec3::new(0.3e-3, -0.2e-3, 6e-3));
         let skins = [PlacedSkin::new(&patch, Pose::IDENTITY)];
         let balance = balancer
-            .settle(&object, &skins, gravity(0.0), &start)
+            .solve(&object, &skins, gravity(0.0), &start)
             .unwrap();
-        assert_eq!(balance.outcome, Outcome::Settled);
+        assert_eq!(balance.outcome, Outcome::AtRest);
         let mut held = Self {
             friction: FrictionState::at_rest(&patch, Shears::Equal(shear)).unwrap(),
             objects: [union.clone().into()],
@@ -94,21 +94,21 @@ impl Held {
         let pose = self.balance.pose.seen_from(&self.world_from_patch);
         press_with_contacts(&self.patch, &self.objects, &[pose], &mut self.workspace);
         let contacts = self.workspace.contacts();
-        let at_rest = self.balancer.tips();
+        let at_rest = self.balancer.tangential_springs();
         let normal = NormalForce::Springs;
         self.friction
             .step_with(&self.patch, contacts, &[pose], normal, at_rest);
     }
 
     fn step(&mut self, gravity: DVec3) -> Outcome {
-        self.tips = self.friction.tips().collect();
+        self.tips = self.friction.tangential_springs().collect();
         let object = FreeObject::new(&self.union, MASS, DVec3::ZERO).unwrap();
         let skins = [PlacedSkin {
-            tips: &self.tips,
+            tangential_springs: &self.tips,
             ..PlacedSkin::new(&self.patch, self.world_from_patch)
         }];
         let start = self.balance.pose;
-        let found = self.balancer.settle(&object, &skins, gravity, &start);
+        let found = self.balancer.solve(&object, &skins, gravity, &start);
         self.balance = found.unwrap();
         self.feel();
         self.balance.outcome
@@ -118,7 +118,7 @@ impl Held {
     fn assert_balanced(&self, gravity: DVec3, case: &str) {
         let pose = self.balance.pose.seen_from(&self.world_from_patch);
         let normal = self.balancer.loads().iter().map(|load| load.on_object);
-        let friction = self.balancer.tips().iter().map(|tip| {
+        let friction = self.balancer.tangential_springs().iter().map(|tip| {
             let shear = self.friction.shears().at(tip.taxel);
             let force = -shear.stiffness * tip.displacement.extend(0.0);
             bubbletouch_sim::contact::Wrench::at(tip.place, force)
@@ -155,7 +155,7 @@ fn angle_without_friction() -> f64 {
     let angles = (1..90).map(|k| 0.5 * f64::from(k) * std::f64::consts::PI / 180.0);
     let left = angles
         .clone()
-        .position(|angle| held.step(gravity(angle)) != Outcome::Settled);
+        .position(|angle| held.step(gravity(angle)) != Outcome::AtRest);
     angles.clone().nth(left.unwrap()).unwrap()
 }
 
@@ -171,7 +171,7 @@ fn a_plate_sticks_below_the_angle_of_friction_and_leaves_above() {
         for k in 1..=12 {
             let angle = 0.08 * f64::from(k) * most;
             let case = format!("μ {friction} at {angle} of {most}");
-            assert_eq!(held.step(gravity(angle)), Outcome::Settled, "{case}");
+            assert_eq!(held.step(gravity(angle)), Outcome::AtRest, "{case}");
             held.assert_balanced(gravity(angle), &case);
             // The springs across and along the axes give way by millimetres at the most.
             let way = held.balance.pose.translation - start;
@@ -194,7 +194,7 @@ fn a_plate_that_is_drawn_a_little_goes_as_far_as_its_shear_springs_say() {
     });
     let start = held.balance.pose;
     let angle = 0.01;
-    assert_eq!(held.step(gravity(angle)), Outcome::Settled);
+    assert_eq!(held.step(gravity(angle)), Outcome::AtRest);
     let n = held.tips.len() as f64;
     let way = held.balance.pose.translation - start.translation;
     let pull = MASS * G * angle.sin();
@@ -207,7 +207,7 @@ fn a_plate_that_is_drawn_a_little_goes_as_far_as_its_shear_springs_say() {
         .sum();
     let of_tips: f64 = held
         .balancer
-        .tips()
+        .tangential_springs()
         .iter()
         .map(|tip| stiffness * tip.displacement.x)
         .sum();
@@ -219,7 +219,12 @@ fn a_plate_that_is_drawn_a_little_goes_as_far_as_its_shear_springs_say() {
         (way.x - expected).abs() <= 5e-3 * turn + 1e-9,
         "{way} {expected} {turn}"
     );
-    assert!(held.balancer.tips().iter().all(|tip| !tip.has_slipped));
+    assert!(
+        held.balancer
+            .tangential_springs()
+            .iter()
+            .all(|tip| !tip.has_slipped)
+    );
 }
 
 #[test]
@@ -239,7 +244,7 @@ fn a_skin_that_moves_takes_along_what_lies_on_it() {
             along * f64::from(step),
         );
         held.world_from_patch = moved;
-        assert_eq!(held.step(gravity(0.0)), Outcome::Settled, "{step}");
+        assert_eq!(held.step(gravity(0.0)), Outcome::AtRest, "{step}");
         let seen = held.balance.pose.seen_from(&held.world_from_patch);
         let apart = seen.translation - on_patch.translation;
         assert!(apart.length() < 1e-8, "{step}: {apart}");
@@ -263,7 +268,7 @@ fn no_friction_is_none_to_the_bit() {
     let mut balancer = held.balancer.clone();
     let start = held.balance.pose;
     let free = balancer
-        .settle(&object, &skins, gravity(1e-4), &start)
+        .solve(&object, &skins, gravity(1e-4), &start)
         .unwrap();
     held.step(gravity(1e-4));
     assert_eq!(held.balance, free);
@@ -281,10 +286,10 @@ fn where_a_plate_rests_on_tips_that_stick_and_slip_its_energy_is_least() {
     for k in 1..=9 {
         // Near its end some slip already, since the foot turns.
         let angle = 0.11 * f64::from(k) * f64::atan(friction);
-        assert_eq!(held.step(gravity(angle)), Outcome::Settled);
+        assert_eq!(held.step(gravity(angle)), Outcome::AtRest);
         n_slipped += held
             .balancer
-            .tips()
+            .tangential_springs()
             .iter()
             .filter(|tip| tip.has_slipped)
             .count();
@@ -335,7 +340,7 @@ fn where_a_plate_rests_on_tips_that_stick_and_slip_its_energy_is_least() {
         }
     }
     assert!(n_slipped > 0);
-    let still = |tip: &Tip| tip.displacement == DVec2::ZERO;
+    let still = |tip: &TangentialSpring| tip.displacement == DVec2::ZERO;
     assert!(!held.tips.iter().all(still));
 }
 
@@ -368,31 +373,29 @@ fn lumps_that_share_taxels_are_held_together() {
             friction: 0.3,
         };
         let mut friction = FrictionState::at_rest(&patch, Shears::Equal(shear)).unwrap();
-        let (mut balancer, mut workspace) = (Balancer::new(), Workspace::new());
+        let (mut balancer, mut workspace) = (EquilibriumSolver::new(), Workspace::new());
         let mut poses =
             [-1.0, 1.0].map(|x| Pose::from_translation(DVec3::new(9.2e-3 * x, 0.0, 6e-3)));
         for step in 0..8 {
-            let tips: Vec<Tip> = friction.tips().collect();
+            let tips: Vec<TangentialSpring> = friction.tangential_springs().collect();
             let ground = Ground {
                 skins: vec![PlacedSkin {
-                    tips: &tips,
+                    tangential_springs: &tips,
                     ..PlacedSkin::new(&patch, Pose::IDENTITY)
                 }],
                 ..Ground::default()
             };
             let down = gravity(0.03 * f64::from(step));
-            let found = balancer
-                .settle_all(&objects, &ground, down, &poses)
-                .unwrap();
-            if found.iter().any(|one| one.outcome != Outcome::Settled) {
-                let is_unsettled = |one: &Balance| one.outcome == Outcome::Unsettled;
+            let found = balancer.solve_all(&objects, &ground, down, &poses).unwrap();
+            if found.iter().any(|one| one.outcome != Outcome::AtRest) {
+                let is_unsettled = |one: &Equilibrium| one.outcome == Outcome::NotConverged;
                 n_unsettled += usize::from(found.iter().any(is_unsettled));
                 break;
             }
             n_at_rest += 1;
             poses = [found[0].pose, found[1].pose];
             press_with_contacts(&patch, &models, &poses, &mut workspace);
-            let at_rest = balancer.tips();
+            let at_rest = balancer.tangential_springs();
             n_slipped += at_rest.iter().filter(|tip| tip.has_slipped).count();
             for (number, pose) in poses.iter().enumerate() {
                 let loads = balancer.loads().iter().filter(|load| load.object == number);

@@ -2,8 +2,9 @@
 
 use crate::{reference_data, scans};
 use bubbletouch_sim::contact::GRAZING;
-use bubbletouch_sim::contact::balance::{
-    Balance, Balancer, FreeObject, Ground, HalfSpace, Obstacle, Outcome, PlacedSkin, Touched,
+use bubbletouch_sim::contact::equilibrium::{
+    Equilibrium, EquilibriumSolver, FreeObject, Ground, HalfSpace, Obstacle, Outcome, PlacedSkin,
+    Touched,
 };
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::mesh::Surface;
@@ -56,8 +57,8 @@ impl<'a> Free<'a> {
 struct Rest<'a> {
     ground: Ground<'a>,
     objects: Vec<Free<'a>>,
-    balances: Vec<Balance>,
-    balancer: Balancer,
+    balances: Vec<Equilibrium>,
+    balancer: EquilibriumSolver,
 }
 
 fn settle<'a>(ground: Ground<'a>, objects: &[Free<'a>], starts: &[Pose]) -> Rest<'a> {
@@ -65,8 +66,8 @@ fn settle<'a>(ground: Ground<'a>, objects: &[Free<'a>], starts: &[Pose]) -> Rest
         .iter()
         .map(|object| FreeObject::new(object.union, object.mass, object.center).unwrap());
     let free: Vec<_> = free.collect();
-    let mut balancer = Balancer::new();
-    let balances = balancer.settle_all(&free, &ground, DOWN, starts).unwrap();
+    let mut balancer = EquilibriumSolver::new();
+    let balances = balancer.solve_all(&free, &ground, DOWN, starts).unwrap();
     Rest {
         ground,
         objects: objects.to_vec(),
@@ -221,7 +222,7 @@ impl Rest<'_> {
         let mut on_object = vec![[DVec3::ZERO; 2]; self.objects.len()];
         let poses = self.poses();
         for (object, balance) in self.balances.iter().enumerate() {
-            if balance.outcome == Outcome::Unsettled {
+            if balance.outcome == Outcome::NotConverged {
                 faults.push(format!("object {object} is not at rest: {balance:?}"));
             }
         }
@@ -648,7 +649,7 @@ fn what_has_no_room_is_said_not_to_rest_and_what_does_not_touch_it_rests() {
     let starts = [0.0, 0.1].map(|x| Pose::from_translation(DVec3::new(x, 0.0, 0.012)));
     let rest = settle(ground, &objects, &starts);
     let outcomes = [0, 1].map(|object| rest.balances[object].outcome);
-    assert_eq!(outcomes, [Outcome::Unsettled, Outcome::Settled]);
+    assert_eq!(outcomes, [Outcome::NotConverged, Outcome::AtRest]);
     assert!(rest.balances[0].imbalance > BALANCED || rest.faults().len() > 1);
 }
 
@@ -674,7 +675,7 @@ fn what_slides_on_a_slope_escapes_down_it_and_what_lies_in_a_gutter_of_planes_st
         };
         let rest = settle(ground, &[Free::new(&union, 0.1)], &start);
         match (rest.balances[0].outcome, way) {
-            (Outcome::Settled, None) => assert_eq!(rest.faults(), NO_FAULTS),
+            (Outcome::AtRest, None) => assert_eq!(rest.faults(), NO_FAULTS),
             (Outcome::Escaped { direction }, Some(way)) => {
                 assert!(direction.dot(way) > 0.999, "{direction}");
             }

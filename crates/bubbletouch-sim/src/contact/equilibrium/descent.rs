@@ -1,0 +1,375 @@
+//! Down the energy to a pose at rest.
+
+use super::body::Body;
+use super::energy::{Energy, PairLoad, wrenches};
+use super::fall::Loose;
+use super::free_object::Ground;
+use super::loads::{Multipliers, Smoothness};
+use super::model::{Model, Step};
+use super::pair::{Key, Part};
+use super::scene::Scene;
+use super::shear_springs::{self, Spring};
+use super::symmetric::{Symmetric, norm};
+use glam::DVec3;
+
+/// Poses looked at for each body, at most: one that rolls across a whole skin takes some hundreds.
+const MAX_STEPS: usize = 4000;
+/// Rounds of multipliers, at most; three to six are usual.
+const MAX_ROUNDS: usize = 40;
+/// Imbalance at which a pose is at rest; ten times less than is promised.
+const AT_REST: f64 = 1e-7;
+/// Imbalance that a pose at rest never has more of, even where flanks are so steep that nothing nearby is better.
+const PROMISED: f64 = 1e-6;
+/// [Looseness](super::energy::Energy::complementarity_residual) of ties and stops at which a pose is at rest.
+const TIGHT: f64 = 1e-7;
+/// The same that one never has more of: where so many stops carry that steeper sides come to what rounding makes of them.
+const ENOUGH: f64 = 1e-5;
+/// Steps up to this share of the farthest are foreseen with all contacts that they make.
+const NEARBY: f64 = 0.04;
+/// Smoothing of ties as a share of the largest deflection, and of the one under which a taxel carries all the weight.
+const SMOOTHING: f64 = 1e-2;
+/// The least smoothing, in last bits of the object's size.
+const LAST_BITS: f64 = 64.0;
+/// Rounds in which ties and stops are made steeper, at most: five to the so many-th is what f64 has room for.
+const MOST_TIGHTENED: usize = 12;
+/// Places closer than this share of the object's size and way are the same.
+const SAME_PLACE: f64 = 1e-15;
+
+/// Memory of descents, reused; the multipliers of one descent start the next one.
+#[derive(Clone, Debug, Default)]
+pub(super) struct DescentWorkspace {
+    /// Energy at the current poses.
+    pub now: Energy,
+    /// Memory for the energy at the next poses.
+    next: Energy,
+    model: Model,
+    pub multipliers: Multipliers,
+}
+
+/// Bodies on their way down.
+pub(super) struct Descent<'a, 'b> {
+    pub workspace: &'b mut DescentWorkspace,
+    /// What is known of the forces inside taxels gets better from round to round.
+    pub scene: Scene<'a>,
+    /// No step is longer, metres.
+    pub farthest: f64,
+    /// The longest step that is trusted now, metres.
+    pub reach: f64,
+    pub n_steps: usize,
+}
+
+/// How a descent ended.
+pub(super) enum End {
+    /// All are at rest.
+    Rest,
+    /// There is nothing below these any more.
+    Endless(Vec<usize>),
+    /// Neither within the largest number of steps.
+    Exhausted,
+}
+
+impl<'a, 'b> Descent<'a, 'b> {
+    /// Of at least one body.
+    pub fn new(
+        workspace: &'b mut DescentWorkspace,
+        bodies: Vec<Body<'a>>,
+        ground: &'a Ground<'a>,
+    ) -> Self {
+        let (mut stroke, mut stiffness) = (f64::INFINITY, 0.0_f64);
+        for skin in &ground.skins {
+            for (number, taxel) in skin.patch.taxels().all().iter().enumerate() {
+                stroke = stroke.min(taxel.stroke);
+                stiffness = stiffness.max(skin.stiffness(number));
+            }
+        }
+        let smallest = bodies.iter().map(Body::arm).fold(f64::INFINITY, f64::min);
+        let stroke = if stroke.is_finite() { stroke } else { smallest };
+        let weight: f64 = bodies.iter().map(|body| body.weight.length()).sum();
+        let size = bodies.iter().map(Body::arm).fold(0.0, f64::max);
+        Self {
+            farthest: 0.5 * stroke,
+            scene: Scene {
+                ground,
+                springs: Spring::all(&bodies, ground),
+                bodies,
+                multipliers: std::mem::take(&mut workspace.multipliers),
+                smoothness: Smoothness {
+                    smoothing: 1e-3 * stroke,
+                    load: SMOOTHING,
+                    least: LAST_BITS * f64::EPSILON * size,
+                    stop_stiffness: (1e3 * stiffness).max(weight / (1e-3 * stroke)),
+                },
+            },
+            reach: 0.125 * stroke,
+            n_steps: 0,
+            workspace,
+        }
+    }
+
+    /// Rounds of descents, each with better multipliers; of those that come no nearer to rest any more, the best within what is promised.
+    pub fn run(&mut self) -> End {
+        self.look(&[]);
+        let mut complementarity_residual = f64::INFINITY;
+        let mut n_tightened = 0;
+        let (mut best, mut least) = (None, f64::INFINITY);
+        for _ in 0..MAX_ROUNDS {
+            match self.descend() {
+                End::Rest => {}
+                end => return end,
+            }
+            let Scene {
+                springs, bodies, ..
+            } = &mut self.scene;
+            let now = &self.workspace.now;
+            let change = shear_springs::renew(springs, bodies, (&now.pairs, &now.loads));
+            if change <= AT_REST && self.is_at_rest(AT_REST, TIGHT) {
+                return End::Rest;
+            }
+            let now = self.complementarity_residual();
+            if now < least && change <= PROMISED && self.is_at_rest(PROMISED, ENOUGH) {
+                (best, least) = (Some(self.scene.clone()), now);
+            }
+            let Some(deepest) = self.deepest() else {
+                // Less than the last bit above taxels that are too stiff to be pressed by it.
+                return End::Exhausted;
+            };
+            let energy = &self.workspace.now;
+            self.scene.multipliers = energy.loads.multipliers(&energy.pairs);
+            let smoothness = &mut self.scene.smoothness;
+            if deepest > 0.0 {
+                smoothness.smoothing = smoothness.smoothing.min(SMOOTHING * deepest);
+            }
+            // Where the energy bends down between ties, multipliers need steeper sides to converge.
+            if now > TIGHT.max(0.25 * complementarity_residual) && n_tightened < MOST_TIGHTENED {
+                n_tightened += 1;
+                smoothness.tighten(0.2);
+                smoothness.stop_stiffness *= 5.0;
+            }
+            complementarity_residual = now;
+            self.look_again();
+        }
+        let Some(best) = best else {
+            return End::Exhausted;
+        };
+        self.scene = best;
+        self.look_again();
+        End::Rest
+    }
+
+    fn is_at_rest(&self, imbalance: f64, complementarity_residual: f64) -> bool {
+        let now = &self.workspace.now;
+        let imbalances = self.imbalances(&now.pair_loads()).into_iter();
+        imbalances.fold(0.0, f64::max) <= imbalance
+            && self.complementarity_residual() <= complementarity_residual
+    }
+
+    /// The largest of all islands.
+    fn complementarity_residual(&self) -> f64 {
+        let now = &self.workspace.now;
+        let islands = now.pairs.islands(self.scene.bodies.len());
+        now.complementarity_residual(&islands)
+            .into_iter()
+            .fold(0.0, f64::max)
+    }
+
+    /// Of bodies that touch one another, those that are farthest from rest.
+    pub fn most_restless(&self) -> Vec<usize> {
+        let now = &self.workspace.now;
+        let islands = now.pairs.islands(self.scene.bodies.len());
+        let mut unrest = now.complementarity_residual(&islands);
+        for (body, imbalance) in self.imbalances(&now.pair_loads()).into_iter().enumerate() {
+            let unrest = &mut unrest[islands[body]];
+            *unrest = unrest.max(imbalance);
+        }
+        let most = |one: &&usize, other: &&usize| unrest[**one].total_cmp(&unrest[**other]);
+        let worst = islands.iter().max_by(most).copied();
+        let all = 0..islands.len();
+        all.filter(|&body| Some(islands[body]) == worst).collect()
+    }
+
+    /// Down to a stationary point of the smooth energy that is no saddle.
+    fn descend(&mut self) -> End {
+        while self.n_steps < MAX_STEPS * self.scene.bodies.len() {
+            if let Some((loose, way, room)) = self.loose() {
+                match room.is_finite() {
+                    true => self.fall(&loose, room * way),
+                    false => {
+                        self.shift(&loose, self.farthest * way);
+                        return End::Endless(loose.bodies);
+                    }
+                }
+                continue;
+            }
+            let (slope, step) = match self.best() {
+                Some(found) => found,
+                None => return End::Rest,
+            };
+            let length = norm(&step.motion);
+            if length <= self.same_place() {
+                // Where the reach has come to nothing too soon, the next round sees farther.
+                if slope > AT_REST {
+                    self.reach = self.nearby();
+                }
+                return End::Rest;
+            }
+            match self.attempt(&step, slope) {
+                Some(ratio) if ratio > 0.75 && length > 0.8 * self.reach => {
+                    self.reach = (2.0 * self.reach).min(self.farthest);
+                }
+                Some(ratio) if ratio < 0.25 => self.reach = 0.5 * length,
+                Some(_) => {}
+                None => self.reach = 0.25 * length,
+            }
+        }
+        End::Exhausted
+    }
+
+    /// The [slope](Scene::slope) of the energy, and the best step; `None` at a stationary point that is no saddle.
+    fn best(&mut self) -> Option<(f64, Step)> {
+        let (gradient, hessian) = self.derivatives();
+        let slope = self.scene.slope(&gradient);
+        if slope <= 0.1 * AT_REST && hessian.is_convex() {
+            return None;
+        }
+        let DescentWorkspace { now, model, .. } = &mut *self.workspace;
+        let step = model.best(&self.scene, now, (gradient, hessian), self.reach);
+        Some((slope, step))
+    }
+
+    /// Lays the model at the pose that was looked at last; gradient (N) and Hessian (N/m) there.
+    fn derivatives(&mut self) -> (Vec<f64>, Symmetric) {
+        let DescentWorkspace { now, model, .. } = &mut *self.workspace;
+        model.lay(&self.scene, now)
+    }
+
+    /// Goes a step if it leads down; how much of the promised gain it brought, `None` if it was not gone.
+    fn attempt(&mut self, step: &Step, slope: f64) -> Option<f64> {
+        let bodies = self.scene.bodies.clone();
+        let fallen = self.go(&step.motion);
+        let before = self.workspace.now.loads.elastic;
+        std::mem::swap(&mut self.workspace.now, &mut self.workspace.next);
+        let behind = std::mem::take(&mut self.workspace.next.pairs.behind);
+        self.look(&behind);
+        self.workspace.next.pairs.behind = behind;
+        let after = self.workspace.now.loads.elastic;
+        let gain = before - after + fallen;
+        // So little that the energies' last digits decide: the slope then says whether this is the right way.
+        let noise = 1e-14 * (before.abs() + after.abs() + fallen.abs());
+        let is_noise = step.gain <= 100.0 * noise;
+        let is_better = match is_noise {
+            true => {
+                let (gradient, _) = self.derivatives();
+                self.scene.slope(&gradient) < slope
+            }
+            false => gain >= 1e-4 * step.gain,
+        };
+        if is_better {
+            return Some(if is_noise { 1.0 } else { gain / step.gain });
+        }
+        std::mem::swap(&mut self.workspace.now, &mut self.workspace.next);
+        self.scene.bodies = bodies;
+        None
+    }
+
+    /// Moves the bodies; what their weights do by that, joules.
+    fn go(&mut self, motion: &[f64]) -> f64 {
+        let bodies = self.scene.bodies.iter_mut().zip(motion.chunks(6));
+        bodies
+            .map(|(body, motion)| body.weight.dot(body.go(motion)))
+            .sum()
+    }
+
+    /// Bodies that nothing holds, if there are any, their way down (unit), and how far they may go, metres.
+    fn loose(&self) -> Option<(Loose, DVec3, f64)> {
+        let down = self.scene.bodies[0].weight.normalize();
+        let all = Loose::all(&self.workspace.now.pairs, self.scene.bodies.len());
+        all.into_iter().find_map(|loose| {
+            let way = loose.way(self.scene.ground, down)?;
+            let room = match loose.room(&self.scene.bodies, self.scene.ground, way) {
+                // Steps find the way along a plane, with what is near.
+                None if loose.slides() => return None,
+                room => room.unwrap_or(0.0).max(self.farthest),
+            };
+            Some((loose, way, room))
+        })
+    }
+
+    /// Bodies go a way together, not deeper into what is below than to where they are no worse off.
+    fn fall(&mut self, loose: &Loose, mut way: DVec3) {
+        let weights = loose
+            .bodies
+            .iter()
+            .map(|&body| self.scene.bodies[body].weight);
+        let weight: DVec3 = weights.sum();
+        let before = self.workspace.now.loads.elastic;
+        let behind = std::mem::take(&mut self.workspace.now.pairs.behind);
+        self.shift(loose, way);
+        loop {
+            self.look(&behind);
+            let gain = before - self.workspace.now.loads.elastic + 0.5 * weight.dot(way);
+            if gain >= 0.0 || way.length() <= self.same_place() {
+                return;
+            }
+            way *= 0.5;
+            self.shift(loose, -way);
+        }
+    }
+
+    fn shift(&mut self, loose: &Loose, by: DVec3) {
+        let bodies = loose.bodies.iter();
+        bodies.for_each(|&body| self.scene.bodies[body].center += by);
+    }
+
+    /// Metres that are none.
+    fn same_place(&self) -> f64 {
+        let bodies = self.scene.bodies.iter();
+        let sizes = bodies.map(|body| body.arm() + body.center.length());
+        SAME_PLACE * sizes.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Looks at the pose; `behind`: the spheres that were behind taxels where it comes from.
+    fn look(&mut self, behind: &[(Key, Part)]) {
+        self.n_steps += 1;
+        // Of far steps not all is foreseen: that would be most spheres.
+        let step = self.reach.min(self.nearby());
+        self.workspace.now.look(&self.scene, step, behind);
+    }
+
+    /// Looks at the pose with what was behind taxels before.
+    fn look_again(&mut self) {
+        let behind = std::mem::take(&mut self.workspace.now.pairs.behind);
+        self.look(&behind);
+    }
+
+    /// Steps up to this, metres, are foreseen with all contacts that they make.
+    fn nearby(&self) -> f64 {
+        NEARBY * self.farthest
+    }
+
+    /// How far the farthest taxel is pushed, metres; 0 where only what is rigid carries, `None` if nothing does.
+    fn deepest(&self) -> Option<f64> {
+        let now = &self.workspace.now;
+        let carrying = now.loads.carrying(&now.pairs.groups);
+        carrying
+            .map(|(group, load)| match group.key {
+                Key::Taxel(..) => load.deepest,
+                Key::Rigid(..) => 0.0,
+            })
+            .reduce(f64::max)
+    }
+
+    /// Of each body with these loads.
+    fn imbalances(&self, loads: &[PairLoad]) -> Vec<f64> {
+        let pairs = &self.workspace.now.pairs.all;
+        let Scene {
+            springs,
+            bodies,
+            ground,
+            ..
+        } = &self.scene;
+        let wrenches = wrenches((loads, pairs), springs, bodies, &ground.skins);
+        let each = bodies.iter().zip(wrenches);
+        each.map(|(body, wrench)| body.imbalance_of(wrench))
+            .collect()
+    }
+}

@@ -1,0 +1,138 @@
+//! Elastic energy of the skins that free objects press where they are, and the forces there.
+
+use super::body::Body;
+use super::free_object::PlacedSkin;
+use super::loads::{Load, Loads};
+use super::pair::{Key, Pair, Part};
+use super::pairs::{Group, Margins, Pairs};
+use super::scene::Scene;
+use super::shear_springs::{self, Spring};
+use glam::DVec3;
+
+/// What misses of rigid things count as in [`Energy::complementarity_residual`], per metre: a nanometre is a hundred-thousandth.
+const RIGID_MISS: f64 = 1e-7 / 3e-10;
+
+/// The energy at one place of all bodies, and all that its model is made of. Reused: nothing is allocated once it has seen the most
+/// pairs.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Energy {
+    pub pairs: Pairs,
+    pub loads: Loads,
+}
+
+/// What one pair puts on its taxel, or on something rigid.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PairLoad {
+    /// Its number.
+    pub pair: usize,
+    /// Newtons along the axis; with the stop's.
+    pub force: f64,
+    /// The stop's part.
+    pub stop: f64,
+}
+
+impl Energy {
+    /// Looks at bodies where they are, and at what they would press after a motion of `step` metres; `behind`: the spheres that were
+    /// behind taxels before.
+    pub fn look(&mut self, scene: &Scene, step: f64, behind: &[(Key, Part)]) {
+        let margins = Margins {
+            step,
+            window: 2.0 * scene.smoothness.smoothing + 4.0 * step,
+        };
+        self.pairs
+            .look(&scene.bodies, scene.ground, margins, behind);
+        self.loads.weigh(
+            (&scene.multipliers, &scene.smoothness),
+            &self.pairs,
+            |(_, pair)| pair.deflection,
+        );
+        self.loads.elastic += shear_springs::energy(&scene.springs, &scene.bodies);
+    }
+
+    /// What each pair carries, if each taxel carries k times its deflection and what its stop carries.
+    pub fn pair_loads(&self) -> Vec<PairLoad> {
+        let mut all = Vec::new();
+        for (group, load) in self.loads.carrying(&self.pairs.groups) {
+            let force = group.stiffness * load.deepest.clamp(0.0, group.stroke) + load.stop;
+            let sharing = group.pairs.clone().map(|at| (at, self.loads.shares[at]));
+            let sharing = sharing.filter(|(_, share)| *share > 0.0);
+            all.extend(sharing.map(|(pair, share)| PairLoad {
+                pair,
+                force: share * force,
+                stop: share * load.stop,
+            }));
+        }
+        all
+    }
+
+    /// Complementarity residual of each [island](Pairs::islands), dimensionless, at the number of the island; 0 where nothing touches.
+    ///
+    /// Spheres that share a taxel should push it equally far; a stop that carries should be reached exactly, and no stop passed. The residual
+    /// is the force of the taxel's spring over the largest violation, divided by the largest force of a spring. Rigid contacts count with
+    /// the stiffness [`RIGID_MISS`].
+    pub fn complementarity_residual(&self, islands: &[usize]) -> Vec<f64> {
+        let (mut loose, mut largest) = (vec![0.0_f64; islands.len()], vec![0.0_f64; islands.len()]);
+        let mut rigid = loose.clone();
+        for (group, load) in self.pairs.groups.iter().zip(&self.loads.all) {
+            let mut ends = self.pairs.all[group.pairs.clone()]
+                .iter()
+                .flat_map(Pair::ends);
+            let Some((body, ..)) = ends.next() else {
+                continue;
+            };
+            let island = islands[body];
+            let miss = self.miss(group, load);
+            if let Key::Rigid(..) = group.key {
+                rigid[island] = rigid[island].max(RIGID_MISS * miss);
+            } else {
+                loose[island] = loose[island].max(group.stiffness * miss);
+                largest[island] = largest[island].max(group.stiffness * load.deepest);
+            }
+        }
+        for (island, rigid) in rigid.into_iter().enumerate() {
+            let largest = largest[island].max(f64::MIN_POSITIVE);
+            loose[island] = rigid.max(loose[island] / largest);
+        }
+        loose
+    }
+
+    /// What makes the [complementarity_residual](Self::complementarity_residual) of one taxel or rigid thing, metres.
+    fn miss(&self, group: &Group, load: &Load) -> f64 {
+        let past = load.deepest - group.stroke;
+        let of_stop: f64 = if load.stop > 0.0 { past.abs() } else { past };
+        if load.force == 0.0 {
+            // Pressed, and below the smoothed maximum about shares that another pose had.
+            return of_stop.max(load.deepest);
+        }
+        let sharing = group
+            .pairs
+            .clone()
+            .filter(|&at| self.loads.shares[at] > 1e-9);
+        let apart = sharing.map(|at| load.deepest - self.pairs.all[at].deflection);
+        apart.fold(of_stop, f64::max)
+    }
+}
+
+/// Force (N) and torque about the centre of mass (N·m) that loads of pairs and springs of tips put on each body, in the world.
+pub(super) fn wrenches(
+    (loads, pairs): (&[PairLoad], &[Pair]),
+    springs: &[Spring],
+    bodies: &[Body],
+    skins: &[PlacedSkin],
+) -> Vec<(DVec3, DVec3)> {
+    let mut all = vec![(DVec3::ZERO, DVec3::ZERO); bodies.len()];
+    for load in loads {
+        let pair = &pairs[load.pair];
+        let push = pair.push(load.force);
+        let to_world = |v: DVec3| match pair.key {
+            Key::Taxel(skin, _) => skins[skin as usize].world_from_patch.rotation * v,
+            Key::Rigid(..) => v,
+        };
+        for (body, sign, arm) in pair.ends() {
+            all[body].0 += to_world(sign * push);
+            all[body].1 += to_world(arm.cross(sign * push));
+        }
+    }
+    shear_springs::add_wrenches(springs, bodies, &mut all);
+    all
+}

@@ -1,0 +1,359 @@
+//! The energy near a pose: deflections go linearly with the object's motion, their curvature is that of the forces there.
+//!
+//! So it knows which taxels a step lifts off, and which it meets: what makes the energy itself bend is in the model.
+
+use super::energy::Energy;
+use super::loads::Loads;
+use super::pair::Key;
+use super::pairs::Pairs;
+use super::scene::Scene;
+use super::shear_springs::Held;
+use super::slopes::Slopes;
+use super::symmetric::{Six, Symmetric, best_step, dot, norm};
+use glam::DVec3;
+
+/// Steps inside the model, at most.
+const MAX_STEPS: usize = 40;
+
+/// A model of the energy; a motion is six numbers a [body](super::body::Body).
+#[derive(Clone, Debug, Default)]
+pub(super) struct Model {
+    slopes: Slopes,
+    /// After the motion that was looked at last.
+    loads: Loads,
+    curvature: Symmetric,
+    held: Held,
+    /// Of the loads of one taxel: weighted means and sums of slopes, one a body that pushes it.
+    means: Vec<(u32, Six)>,
+    sums: Vec<(u32, Six)>,
+}
+
+/// A step, and how much lower the model is there, joules.
+#[derive(Clone, Debug)]
+pub(super) struct Step {
+    pub motion: Vec<f64>,
+    pub gain: f64,
+}
+
+impl Model {
+    /// The model around the pose of this energy; gradient (N) and Hessian (N/m) there.
+    pub fn lay(
+        &mut self,
+        scene: &Scene,
+        Energy { pairs, loads }: &Energy,
+    ) -> (Vec<f64>, Symmetric) {
+        self.curvature.clear(6 * scene.bodies.len());
+        self.slopes.clear();
+        for (group, load) in pairs.groups.iter().zip(&loads.all) {
+            let axes = match group.key {
+                Key::Taxel(skin, _) => {
+                    let skin = &scene.ground.skins[skin as usize];
+                    let to_patch = skin.world_from_patch.rotation.conjugate();
+                    DVec3::AXES.map(|axis| to_patch * axis)
+                }
+                Key::Rigid(..) => DVec3::AXES,
+            };
+            for at in group.pairs.clone() {
+                let (pair, force) = (&pairs.all[at], loads.shares[at] * load.force);
+                let curvature = &mut self.curvature;
+                self.slopes
+                    .lay(&scene.bodies, &axes, pair, curvature, force);
+            }
+        }
+        self.held
+            .lay(&scene.springs, &scene.bodies, &mut self.curvature);
+        let still = vec![0.0; self.curvature.n()];
+        self.derivatives(scene, pairs, loads, &still)
+    }
+
+    /// Energy after a motion, with the weights'; joules.
+    fn energy_after(&mut self, scene: &Scene, pairs: &Pairs, motion: &[f64]) -> f64 {
+        let Self { loads, slopes, .. } = self;
+        loads.weigh(
+            (&scene.multipliers, &scene.smoothness),
+            pairs,
+            |(at, pair)| pair.deflection + slopes.dot(at, motion),
+        );
+        let bodies = scene.bodies.iter().zip(motion.chunks(6));
+        let fallen: f64 = bodies
+            .map(|(body, motion)| body.weight.dot(DVec3::from_slice(motion)))
+            .sum();
+        let bent = 0.5 * dot(motion, &self.curvature.times(motion));
+        self.loads.elastic + self.held.energy_after(motion) + bent - fallen
+    }
+
+    /// Gradient (N) and Hessian (N/m) after a motion that leads to these loads.
+    fn derivatives(
+        &mut self,
+        scene: &Scene,
+        pairs: &Pairs,
+        loads: &Loads,
+        motion: &[f64],
+    ) -> (Vec<f64>, Symmetric) {
+        let mut gradient = self.curvature.times(motion);
+        for (body, gradient) in scene.bodies.iter().zip(gradient.chunks_mut(6)) {
+            add(gradient, -1.0, &body.weight.to_array());
+        }
+        let mut hessian = self.curvature.clone();
+        self.held
+            .add_derivatives(motion, &mut gradient, &mut hessian);
+        let Self {
+            slopes,
+            means,
+            sums,
+            ..
+        } = self;
+        for (group, load) in loads.carrying(&pairs.groups) {
+            means.clear();
+            sums.clear();
+            let stiffening = load.force / load.smoothing;
+            for at in group.pairs.clone() {
+                let share = loads.shares[at];
+                if share <= 0.0 {
+                    continue;
+                }
+                for (body, slope) in slopes.of(at) {
+                    add(of_body(means, *body), share, slope);
+                    add(
+                        &mut gradient[6 * *body as usize..],
+                        load.force * share,
+                        slope,
+                    );
+                    if load.n_sharing > 1 {
+                        add(of_body(sums, *body), 1.0, slope);
+                        let block = [*body as usize; 2];
+                        hessian.add_block(block, stiffening, slope, slope);
+                    }
+                }
+            }
+            add_square(&mut hessian, -stiffening / load.n_sharing as f64, sums);
+            add_square(&mut hessian, load.tangent, means);
+        }
+        (gradient, hessian)
+    }
+
+    /// A motion of at most `reach` that is good for the model: trust-region Newton steps inside it. The model must have been
+    /// [laid](Self::lay) around this energy, where it has this gradient and Hessian.
+    pub fn best(
+        &mut self,
+        scene: &Scene,
+        Energy { pairs, loads }: &Energy,
+        (mut gradient, mut hessian): (Vec<f64>, Symmetric),
+        reach: f64,
+    ) -> Step {
+        let start = loads.elastic;
+        let enough = 0.03 * scene.slope(&gradient);
+        let (mut motion, mut energy) = (vec![0.0; gradient.len()], start);
+        let mut part = reach;
+        for _ in 0..MAX_STEPS {
+            let (step, promised) = best_step(&gradient, &hessian, part);
+            let mut next: Vec<f64> = motion.iter().zip(&step).map(|(a, b)| a + b).collect();
+            let length = norm(&next);
+            let is_far = length > reach * (1.0 + 1e-6);
+            if is_far {
+                next.iter_mut().for_each(|x| *x *= reach / length);
+            }
+            let after = self.energy_after(scene, pairs, &next);
+            if after >= energy || energy - after < 0.1 * promised && !is_far {
+                part *= 0.25;
+            }
+            if after < energy {
+                (motion, energy) = (next, after);
+                let loads = std::mem::take(&mut self.loads);
+                (gradient, hessian) = self.derivatives(scene, pairs, &loads, &motion);
+                self.loads = loads;
+                if is_far || scene.slope(&gradient) <= enough {
+                    break;
+                }
+            } else if part < 1e-9 * reach {
+                break;
+            }
+        }
+        Step {
+            motion,
+            gain: start - energy,
+        }
+    }
+}
+
+fn add(to: &mut [f64], factor: f64, v: &[f64]) {
+    for (to, v) in to.iter_mut().zip(v) {
+        *to += factor * v;
+    }
+}
+
+fn of_body(sums: &mut Vec<(u32, Six)>, body: u32) -> &mut Six {
+    let at = sums.iter().position(|sum| sum.0 == body);
+    let at = at.unwrap_or_else(|| {
+        sums.push((body, [0.0; 6]));
+        sums.len() - 1
+    });
+    &mut sums[at].1
+}
+
+/// Adds `factor · v vᵀ`.
+fn add_square(hessian: &mut Symmetric, factor: f64, v: &[(u32, Six)]) {
+    for (a, x) in v {
+        for (b, y) in v {
+            hessian.add_block([*a as usize, *b as usize], factor, x, y);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::equilibrium::body::Body;
+    use crate::contact::equilibrium::loads::{Multipliers, Smoothness};
+    use crate::contact::equilibrium::shear_springs::Spring;
+    use crate::contact::equilibrium::{
+        FreeObject, Ground, HalfSpace, Obstacle, PlacedSkin, TangentialSpring, Touched,
+    };
+    use crate::geometry::Pose;
+    use crate::objects::{Sphere, SphereUnion};
+    use crate::random::Seed;
+    use crate::world::{Grid, Patch, Shear, Taxel};
+    use glam::{DQuat, DVec2};
+    use rand::Rng;
+
+    /// Two objects of seven spheres inside of one another, of an obstacle, and of a plane, on a bed that is tilted in the world, deep enough for
+    /// some stops, in a step of its dampers, held by some of its tips.
+    #[test]
+    fn gradient_and_hessian_are_the_differences_of_the_energy() {
+        let taxel = Taxel {
+            radius: 1e-3,
+            stiffness: 200.0,
+            damping: 2.0,
+            stroke: 4e-3,
+        };
+        let grid = Grid {
+            nx: 16,
+            ny: 16,
+            pitch: 2e-3,
+        };
+        let patch = Patch::grid(grid, taxel).unwrap();
+        let before: Vec<f64> = (0..256).map(|taxel| 1e-6 * f64::from(taxel)).collect();
+        let world_from_patch = Pose::new(
+            DQuat::from_rotation_x(0.4) * DQuat::from_rotation_y(-0.2),
+            DVec3::new(0.1, -0.2, 0.3),
+        );
+        let skin = PlacedSkin::new(&patch, world_from_patch);
+        let before = Some((&before[..], 0.01));
+        // Some stick, some slip.
+        let tips: Vec<TangentialSpring> = (0..12)
+            .map(|k| TangentialSpring {
+                taxel: 100 + 7 * k,
+                object: k % 2,
+                point: DVec3::new(2e-3, 1e-3 * k as f64, -3e-3),
+                place: DVec3::new(3e-3 * k as f64, 2e-3, 3e-3),
+                displacement: DVec2::new(1e-4 * k as f64, -2e-4),
+                shear: Shear {
+                    stiffness: 150.0,
+                    friction: 0.5,
+                },
+                force: if k < 6 { 100.0 } else { 0.4 },
+            })
+            .collect();
+        let skins = [PlacedSkin {
+            before,
+            tangential_springs: &tips,
+            ..skin
+        }];
+        let mut rng = Seed::new(5).named("model").rng();
+        let mut random = || DVec3::from_array(std::array::from_fn(|_| rng.gen_range(-1.0..1.0)));
+        let mut union = |n: usize| {
+            let spheres = (0..n).map(|_| Sphere {
+                center: 8e-3 * random(),
+                radius: 6e-3,
+            });
+            SphereUnion::new(spheres.collect()).unwrap()
+        };
+        let unions = [union(7), union(7), union(2)];
+        let at = |x: f64| world_from_patch.transform_point(DVec3::new(x, 1e-3, 6e-3));
+        let normal = DVec3::new(0.3, 0.1, 0.9).normalize();
+        let ground = Ground {
+            skins: skins.to_vec(),
+            planes: vec![HalfSpace {
+                normal,
+                height: normal.dot(at(0.0)) - 8e-3,
+            }],
+            obstacles: vec![Obstacle {
+                spheres: &unions[2],
+                pose: Pose::from_translation(at(-5e-3)),
+            }],
+        };
+        let weights = [DVec3::new(0.1, 0.3, -0.9), DVec3::new(0.2, -0.1, -0.3)];
+        let bodies = [0, 1].map(|k| {
+            let center = DVec3::new(1e-3, 2e-3, -1e-3);
+            let object = FreeObject::new(&unions[k], 1.0, center).unwrap();
+            let start = Pose::from_translation(at(14e-3 * k as f64));
+            Body::new((k, object), weights[k], &start)
+        });
+        let scene = Scene {
+            springs: Spring::all(&bodies, &ground),
+            bodies: bodies.to_vec(),
+            ground: &ground,
+            multipliers: Multipliers::default(),
+            smoothness: Smoothness {
+                smoothing: 2e-4,
+                load: f64::INFINITY,
+                least: 0.0,
+                stop_stiffness: 1e4,
+            },
+        };
+        let mut energy = Energy::default();
+        let mut value = |motion: &[f64; 12]| {
+            let mut moved = scene.clone();
+            let mut fallen = 0.0;
+            for (body, motion) in moved.bodies.iter_mut().zip(motion.chunks(6)) {
+                fallen += body.weight.dot(body.go(motion));
+            }
+            energy.look(&moved, 0.0, &[]);
+            energy.loads.elastic - fallen
+        };
+        let mut at = |steps: &[(usize, f64)]| {
+            let mut motion = [0.0; 12];
+            steps.iter().for_each(|(k, by)| motion[*k] += by);
+            value(&motion)
+        };
+        let slopes: [f64; 12] =
+            std::array::from_fn(|k| (at(&[(k, 1e-6)]) - at(&[(k, -1e-6)])) / 2e-6);
+        let h = 3e-6;
+        let bends: [[f64; 12]; 12] = std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                let along = at(&[(i, h), (j, h)]) + at(&[(i, -h), (j, -h)]);
+                (along - at(&[(i, h), (j, -h)]) - at(&[(i, -h), (j, h)])) / (4.0 * h * h)
+            })
+        });
+        energy.look(&scene, 0.0, &[]);
+        let has = |what: fn(&Key) -> bool| {
+            let all = energy.loads.carrying(&energy.pairs.groups);
+            all.filter(|(group, _)| what(&group.key)).count()
+        };
+        assert!(has(|key| matches!(key, Key::Rigid(_, Touched::Plane(_)))) > 0);
+        assert!(has(|key| matches!(key, Key::Rigid(_, Touched::Obstacle(..)))) > 0);
+        assert!(has(|key| matches!(key, Key::Rigid(_, Touched::Object(..)))) > 0);
+        let mut all = energy.loads.carrying(&energy.pairs.groups);
+        assert!(all.any(|(_, load)| load.n_sharing > 1), "ties");
+        let mut all = energy.loads.carrying(&energy.pairs.groups);
+        let is_stop = |key: &Key| matches!(key, Key::Taxel(..));
+        assert!(all.any(|(group, load)| is_stop(&group.key) && load.stop > 0.0));
+        let mut model = Model::default();
+        let (gradient, hessian) = model.lay(&scene, &energy);
+        let largest = hessian.size();
+        for i in 0..12 {
+            assert!(
+                (gradient[i] - slopes[i]).abs() < 1e-4 * norm(&gradient),
+                "{i}: {} {}",
+                gradient[i],
+                slopes[i]
+            );
+            let mut unit = vec![0.0; 12];
+            unit[i] = 1.0;
+            for (j, entry) in hessian.times(&unit).iter().enumerate() {
+                let error = (entry - bends[i][j]).abs();
+                assert!(error < 2e-3 * largest, "{i} {j}: {entry} {}", bends[i][j]);
+            }
+        }
+    }
+}

@@ -1,0 +1,225 @@
+//! The spheres of free objects and what they push, or could after a small step: taxels, and rigid things.
+//!
+//! What is rigid is a taxel without a spring, at the end of its stroke: a sphere pushes it by how far it is inside, and what it carries
+//! is the force of its stop. So both are pairs, and everything else sees no difference.
+
+use super::super::taxel_contact::GRAZING;
+use super::body::Body;
+use super::free_object::{Ground, PlacedSkin};
+use super::pair::{Key, Kind, OTHERS, Pair, Part};
+use super::reach::Reach;
+use super::rigid_pairs::gather_rigid;
+use glam::{DMat3, DVec3};
+use std::ops::Range;
+
+/// A taxel, or something rigid, and the pairs that push it.
+#[derive(Clone, Debug)]
+pub(super) struct Group {
+    pub key: Key,
+    pub pairs: Range<usize>,
+    /// N/m; 0 of what is rigid.
+    pub stiffness: f64,
+    /// From where it is if nothing pushes it, metres; 0 of what is rigid.
+    pub stroke: f64,
+    /// What others push, metres.
+    pub others: f64,
+    /// Of the lightest body that pushes it, newtons.
+    pub weight: f64,
+}
+
+/// How much more than what presses is looked at.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Margins {
+    /// How far spheres may move and still be known to meet a taxel, metres.
+    pub step: f64,
+    /// Spheres that push a taxel less far than the deepest by more than this do not count, metres.
+    pub window: f64,
+}
+
+/// Pairs at one place of all bodies.
+///
+/// A sphere behind a taxel's substrate does not push it. It also does not while it comes up from there: else it would meet a
+/// cliff where the substrate is, on which an object could hang. So such pairs are remembered until they are apart.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Pairs {
+    /// Those that push or could, sorted by what they push and by sphere.
+    pub all: Vec<Pair>,
+    pub groups: Vec<Group>,
+    /// Those that do not since the sphere came from behind; sorted.
+    pub behind: Vec<(Key, Part)>,
+    deepest: Vec<f64>,
+}
+
+impl Pairs {
+    /// Looks at bodies where they are; `behind`: what was behind before.
+    pub fn look(
+        &mut self,
+        bodies: &[Body],
+        ground: &Ground,
+        margins: Margins,
+        behind: &[(Key, Part)],
+    ) {
+        self.all.clear();
+        self.behind.clear();
+        for (number, skin) in ground.skins.iter().enumerate() {
+            self.gather(bodies, (number as u32, skin), margins, behind);
+        }
+        self.behind.sort_unstable();
+        gather_rigid(&mut self.all, bodies, ground, 2.0 * margins.step);
+        self.groups.clear();
+        let mut first = 0;
+        for of_key in self.all.chunk_by(|a, b| a.key == b.key) {
+            let pairs = first..first + of_key.len();
+            first = pairs.end;
+            self.groups.push(group(of_key, pairs, bodies, ground));
+        }
+    }
+
+    /// Of each of `n_bodies` the number of one that stands for all which it touches or shares taxels with.
+    pub fn islands(&self, n_bodies: usize) -> Vec<usize> {
+        let mut islands: Vec<usize> = (0..n_bodies).collect();
+        for group in &self.groups {
+            let mut bodies = self.all[group.pairs.clone()].iter().flat_map(Pair::ends);
+            let Some((first, ..)) = bodies.next() else {
+                continue;
+            };
+            for (other, ..) in bodies {
+                let [one, other] = [first, other].map(|body| islands[body]);
+                if one != other {
+                    let joined = islands.iter_mut().filter(|island| **island == other);
+                    joined.for_each(|island| *island = one);
+                }
+            }
+        }
+        islands
+    }
+
+    fn gather(
+        &mut self,
+        bodies: &[Body],
+        (number, skin): (u32, &PlacedSkin),
+        margins: Margins,
+        behind: &[(Key, Part)],
+    ) {
+        let tree = skin.patch.tree();
+        let Some(bounds) = tree.bounds() else { return };
+        // A sphere may move by twice the step: along it, and by turning.
+        let more = GRAZING * tree.depth() + 2.0 * margins.step;
+        let to_patch = skin.world_from_patch.inverse();
+        let is_near = |body: &Body| {
+            let away = bounds.distance_squared(to_patch.transform_point(body.center));
+            away.sqrt() <= body.arm() + tree.largest_radius() + more
+        };
+        if !bodies.iter().any(is_near) {
+            return;
+        }
+        let first = self.all.len();
+        self.deepest.clear();
+        self.deepest.resize(skin.patch.n_taxels(), 0.0);
+        for (slot, body) in bodies.iter().enumerate() {
+            if is_near(body) {
+                self.gather_body((slot as u32, body), (number, skin), (margins, more), behind);
+            }
+        }
+        self.gather_others(number, skin);
+        let Self { all, deepest, .. } = self;
+        let mut kept = first;
+        for index in first..all.len() {
+            let pair = all[index];
+            let Key::Taxel(_, taxel) = pair.key else {
+                continue;
+            };
+            // Of a taxel that nothing pushes yet, all that could.
+            let deepest = deepest[taxel as usize];
+            if deepest == 0.0 || pair.deflection >= deepest - margins.window {
+                all[kept] = pair;
+                kept += 1;
+            }
+        }
+        all.truncate(kept);
+        all[first..].sort_unstable_by_key(|pair| (pair.key, pair.part));
+    }
+
+    fn gather_body(
+        &mut self,
+        (slot, body): (u32, &Body),
+        (number, skin): (u32, &PlacedSkin),
+        (margins, more): (Margins, f64),
+        behind: &[(Key, Part)],
+    ) {
+        let Self {
+            all: pairs,
+            behind: now_behind,
+            deepest,
+            ..
+        } = self;
+        let patch_from_object = body.pose().seen_from(&skin.world_from_patch);
+        let rotation = DMat3::from_quat(patch_from_object.rotation);
+        let center_of_mass = patch_from_object.transform_point(body.object.center_of_mass);
+        let tree = skin.patch.tree();
+        for (sphere, index) in body.object.spheres.iter().zip(0..) {
+            let center = rotation * sphere.center + patch_from_object.translation;
+            tree.each_near(center, sphere.radius + more, |taxel| {
+                let found = Reach::new(center, sphere.radius, taxel, 2.0 * margins.step);
+                let Some(reach) = found else { return };
+                let (key, part) = (Key::Taxel(number, taxel.number), (slot, index));
+                if reach.is_behind(taxel, center) || behind.binary_search(&(key, part)).is_ok() {
+                    now_behind.push((key, part));
+                    return;
+                }
+                let at = taxel.number as usize;
+                let deflection = reach.deflection - skin.relaxed(at);
+                if deflection >= deepest[at] - margins.window {
+                    deepest[at] = deepest[at].max(deflection);
+                    pairs.push(Pair {
+                        key,
+                        part,
+                        deflection,
+                        kind: Kind::Taxel(reach),
+                        arm: center - center_of_mass,
+                    });
+                }
+            });
+        }
+    }
+
+    /// What others push of taxels that a free object pushes, too.
+    fn gather_others(&mut self, number: u32, skin: &PlacedSkin) {
+        let deepest = self.deepest.iter_mut().zip(skin.pushed);
+        for (taxel, (deepest, others)) in deepest.enumerate() {
+            let others = others - skin.relaxed(taxel);
+            if *deepest > 0.0 && others > 0.0 {
+                *deepest = deepest.max(others);
+                self.all.push(Pair {
+                    key: Key::Taxel(number, taxel as u32),
+                    part: OTHERS,
+                    deflection: others,
+                    kind: Kind::Fixed,
+                    arm: DVec3::ZERO,
+                });
+            }
+        }
+    }
+}
+
+fn group(pairs: &[Pair], places: Range<usize>, bodies: &[Body], ground: &Ground) -> Group {
+    let all = pairs.iter().flat_map(Pair::ends);
+    let weights = all.map(|(body, ..)| bodies[body].weight.length());
+    let (mut stiffness, mut stroke, mut others) = (0.0, 0.0, 0.0);
+    if let Key::Taxel(skin, taxel) = pairs[0].key {
+        let (skin, taxel) = (&ground.skins[skin as usize], taxel as usize);
+        let relaxed = skin.relaxed(taxel);
+        stiffness = skin.stiffness(taxel);
+        stroke = skin.patch.taxels().at(taxel).stroke - relaxed;
+        let pushed = skin.pushed.get(taxel).copied().unwrap_or(0.0);
+        others = (pushed - relaxed).max(0.0);
+    }
+    Group {
+        key: pairs[0].key,
+        pairs: places,
+        stiffness,
+        stroke,
+        others,
+        weight: weights.fold(f64::INFINITY, f64::min),
+    }
+}

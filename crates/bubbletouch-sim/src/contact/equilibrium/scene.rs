@@ -1,0 +1,26 @@
+//! Free objects on their way to equilibrium, and what their energy depends on.
+
+use super::body::Body;
+use super::free_object::Ground;
+use super::loads::{Multipliers, Smoothness};
+use super::shear_springs::Spring;
+use super::symmetric::norm;
+
+/// Bodies, the ground, and the parameters of the energy.
+#[derive(Clone)]
+pub(super) struct Scene<'a> {
+    pub bodies: Vec<Body<'a>>,
+    pub ground: &'a Ground<'a>,
+    pub multipliers: Multipliers,
+    pub smoothness: Smoothness,
+    pub springs: Vec<Spring>,
+}
+
+impl Scene<'_> {
+    /// Returns the largest force on a body in a gradient of the energy, relative to the weight of this body.
+    pub fn slope(&self, gradient: &[f64]) -> f64 {
+        let each = self.bodies.iter().zip(gradient.chunks(6));
+        each.map(|(body, part)| norm(part) / body.weight.length())
+            .fold(0.0, f64::max)
+    }
+}

@@ -1,0 +1,237 @@
+//! Friction: the tips of taxels that hold free objects by their shear springs.
+//!
+//! A tip that touched an object when the step began is dragged along by the material point a that it touched. With v = u + P (a − a₀) across
+//! the taxel's axis, k_t the shear spring's stiffness and r = μ f / k_t, its energy is
+//!
+//! ```text
+//! ½ k_t |v|²               |v| ≤ r        it sticks
+//! k_t r (|v| − ½ r)        |v| > r        it slips
+//! ```
+//!
+//! Its slope is k_t times the return of v to the cone. In itself r depends on the force f at rest: each round of a descent takes it from the
+//! rest of the last one (Tresca's friction, again and again), until both agree \[NJ\].
+
+use super::body::{Body, along, ways};
+use super::free_object::{Ground, PlacedSkin};
+use super::loads::Loads;
+use super::pair::Key;
+use super::pairs::Pairs;
+use super::slopes::add_turning;
+use super::symmetric::{Six, Symmetric, dot};
+use crate::contact::friction::{TangentialSpring, TangentialSpringState};
+use glam::{DVec2, DVec3};
+
+/// What rounding may add to a tip on its cone: less is no slip.
+const ROUNDING: f64 = 1.0 + 1e-12;
+
+/// A tip on a body.
+#[derive(Clone, Debug)]
+pub(super) struct Spring {
+    skin: usize,
+    tip: TangentialSpring,
+    /// The body's place among those on their way.
+    pub body: usize,
+    /// x and y of the taxel's frame, in the world.
+    axes: [DVec3; 2],
+    /// Where the point was, seen from the patch where it is now; in the world.
+    start: DVec3,
+    /// r, metres.
+    reach: f64,
+}
+
+impl Spring {
+    /// All that hold these bodies.
+    pub fn all(bodies: &[Body], ground: &Ground) -> Vec<Self> {
+        let skins = ground.skins.iter().enumerate();
+        let tips = skins.flat_map(|skin| {
+            let springs = skin.1.tangential_springs.iter();
+            springs.map(move |tip| (skin, tip))
+        });
+        let springs = tips.filter_map(|((number, skin), tip)| {
+            let body = bodies.iter().position(|body| body.number == tip.object)?;
+            let frame = skin.patch.layout().frame(tip.taxel);
+            let to_world = |axis: DVec3| skin.world_from_patch.transform_vector(axis);
+            Some(Self {
+                skin: number,
+                tip: *tip,
+                body,
+                axes: [to_world(frame.x_axis), to_world(frame.y_axis)],
+                start: skin.world_from_patch.transform_point(tip.place),
+                reach: tip.shear.reach(tip.force),
+            })
+        });
+        springs.collect()
+    }
+
+    /// From the body's centre of mass to the point, in the world.
+    fn arm(&self, bodies: &[Body]) -> DVec3 {
+        let body = &bodies[self.body];
+        body.rotation * (self.tip.point - body.object.center_of_mass)
+    }
+
+    /// v, metres.
+    fn stretch(&self, bodies: &[Body]) -> DVec2 {
+        let way = bodies[self.body].center + self.arm(bodies) - self.start;
+        let [x, y] = self.axes;
+        self.tip.displacement + DVec2::new(way.dot(x), way.dot(y))
+    }
+
+    /// Its energy, joules, with v.
+    fn energy(&self, v: DVec2) -> f64 {
+        let (k, r, length) = (self.tip.shear.stiffness, self.reach, v.length());
+        match length <= r {
+            true => 0.5 * k * length * length,
+            false => k * r * (length - 0.5 * r),
+        }
+    }
+
+    /// The energy's slope by v, newtons.
+    fn slope(&self, v: DVec2) -> DVec2 {
+        self.tip.shear.stiffness * v.clamp_length_max(self.reach)
+    }
+
+    /// The slope's, N/m: how much of it is along any way, and how much less of it along v.
+    fn bend(&self, v: DVec2) -> (f64, f64) {
+        let (k, length) = (self.tip.shear.stiffness, v.length());
+        if self.reach > 0.0 && length <= self.reach {
+            return (k, 0.0);
+        }
+        let slipping = k * self.reach / length.max(f64::MIN_POSITIVE);
+        (slipping, slipping)
+    }
+
+    /// In the world, newtons.
+    fn force(&self, v: DVec2) -> DVec3 {
+        let DVec2 { x, y } = -self.slope(v);
+        x * self.axes[0] + y * self.axes[1]
+    }
+
+    /// What presses its taxel into the body where this energy was looked at, newtons; what the stop carries is none of it.
+    fn pressing(&self, (pairs, loads): (&Pairs, &Loads)) -> f64 {
+        let key = Key::Taxel(self.skin as u32, self.tip.taxel as u32);
+        let Ok(at) = pairs.groups.binary_search_by_key(&key, |group| group.key) else {
+            return 0.0;
+        };
+        let group = &pairs.groups[at];
+        let is_own = |&pair: &usize| {
+            pairs.all[pair].part.0 as usize == self.body && loads.shares[pair] > 0.0
+        };
+        match group.pairs.clone().any(|pair| is_own(&pair)) {
+            true => group.stiffness * loads.all[at].deepest.clamp(0.0, group.stroke),
+            false => 0.0,
+        }
+    }
+
+    /// What it does at rest, by the number of its object.
+    pub fn load(&self, bodies: &[Body], skins: &[PlacedSkin]) -> TangentialSpringState {
+        let v = self.stretch(bodies);
+        let place = bodies[self.body].center + self.arm(bodies);
+        TangentialSpringState {
+            skin: self.skin,
+            taxel: self.tip.taxel,
+            object: self.tip.object,
+            place: skins[self.skin]
+                .world_from_patch
+                .inverse()
+                .transform_point(place),
+            displacement: v.clamp_length_max(self.reach),
+            has_slipped: v.length() > self.reach * ROUNDING,
+        }
+    }
+}
+
+/// The energy of springs, joules.
+pub(super) fn energy(springs: &[Spring], bodies: &[Body]) -> f64 {
+    let each = springs.iter();
+    each.map(|spring| spring.energy(spring.stretch(bodies)))
+        .sum()
+}
+
+/// Adds what they put on each body to its force (N) and torque about the centre of mass (N·m), in the world.
+pub(super) fn add_wrenches(springs: &[Spring], bodies: &[Body], to: &mut [(DVec3, DVec3)]) {
+    for spring in springs {
+        let force = spring.force(spring.stretch(bodies));
+        to[spring.body].0 += force;
+        to[spring.body].1 += spring.arm(bodies).cross(force);
+    }
+}
+
+/// Takes the cones from what presses the taxels here; how far they were from it, as a share of the weights.
+pub(super) fn renew(springs: &mut [Spring], bodies: &[Body], here: (&Pairs, &Loads)) -> f64 {
+    let mut most = 0.0_f64;
+    for spring in springs {
+        let reach = spring.tip.shear.reach(spring.pressing(here));
+        let before = spring.slope(spring.stretch(bodies));
+        spring.reach = reach;
+        let change = before - spring.slope(spring.stretch(bodies));
+        most = most.max(change.length() / bodies[spring.body].weight.length());
+    }
+    most
+}
+
+/// The springs in a model of the energy: v goes linearly with the motion.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Held {
+    /// Each with its v at the pose, and ∂v by the motion of its body.
+    all: Vec<(Spring, DVec2, [Six; 2])>,
+}
+
+impl Held {
+    /// Lays the model at a pose; adds the energy's curvature by what turns there.
+    pub fn lay(&mut self, springs: &[Spring], bodies: &[Body], curvature: &mut Symmetric) {
+        self.all.clear();
+        for spring in springs {
+            let (body, arm) = (&bodies[spring.body], spring.arm(bodies));
+            let ways = ways(&DVec3::AXES, arm, body.arm());
+            let v = spring.stretch(bodies);
+            let slopes = spring.axes.map(|axis| along(&ways, axis));
+            let turning = body.arm().powi(-2);
+            let gradient = -spring.force(v);
+            add_turning(
+                curvature,
+                spring.body,
+                turning,
+                &DVec3::AXES,
+                [arm, gradient],
+            );
+            self.all.push((spring.clone(), v, slopes));
+        }
+    }
+
+    fn after<'a>(
+        &'a self,
+        motion: &'a [f64],
+    ) -> impl Iterator<Item = (&'a Spring, DVec2, &'a [Six; 2])> {
+        self.all.iter().map(|(spring, v, slopes)| {
+            let own = &motion[6 * spring.body..];
+            let [x, y] = slopes.each_ref().map(|slope| dot(slope, own));
+            (spring, *v + DVec2::new(x, y), slopes)
+        })
+    }
+
+    /// After a motion, joules.
+    pub fn energy_after(&self, motion: &[f64]) -> f64 {
+        self.after(motion)
+            .map(|(spring, v, _)| spring.energy(v))
+            .sum()
+    }
+
+    /// Adds their part of gradient (N) and Hessian (N/m) after a motion.
+    pub fn add_derivatives(&self, motion: &[f64], gradient: &mut [f64], hessian: &mut Symmetric) {
+        for (spring, v, slopes) in self.after(motion) {
+            let slope = spring.slope(v).to_array();
+            let (all, less) = spring.bend(v);
+            let along = v.normalize_or_zero().to_array();
+            let mut along_v = [0.0; 6];
+            let own = &mut gradient[6 * spring.body..];
+            for (way, (slope, along)) in slopes.iter().zip(slope.into_iter().zip(along)) {
+                for k in 0..6 {
+                    own[k] += slope * way[k];
+                    along_v[k] += along * way[k];
+                }
+                hessian.add_block([spring.body; 2], all, way, way);
+            }
+            hessian.add_block([spring.body; 2], -less, &along_v, &along_v);
+        }
+    }
+}

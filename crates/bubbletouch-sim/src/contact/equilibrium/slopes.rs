@@ -1,0 +1,84 @@
+//! Derivatives of deflections by the motions of bodies.
+
+use super::body::{Body, along, ways};
+use super::pair::Pair;
+use super::symmetric::{Six, Symmetric, dot};
+use glam::DVec3;
+
+/// ∂δ of each pair by the motions of the bodies that it depends on.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Slopes {
+    /// Where those of each pair begin, and the end of the last.
+    first: Vec<u32>,
+    all: Vec<(u32, Six)>,
+}
+
+impl Slopes {
+    pub fn of(&self, pair: usize) -> &[(u32, Six)] {
+        &self.all[self.first[pair] as usize..self.first[pair + 1] as usize]
+    }
+
+    /// How much more of a pair's deflection a motion is.
+    pub fn dot(&self, pair: usize, motion: &[f64]) -> f64 {
+        let of = self.of(pair).iter();
+        of.map(|(body, slope)| dot(slope, &motion[6 * *body as usize..]))
+            .sum()
+    }
+
+    pub fn clear(&mut self) {
+        self.all.clear();
+        self.first.clear();
+        self.first.push(0);
+    }
+
+    /// Those of the next pair, with the `axes` of the world in the frame of its arm; adds the energy's curvature where it carries a force, newtons.
+    pub fn lay(
+        &mut self,
+        bodies: &[Body],
+        axes: &[DVec3; 3],
+        pair: &Pair,
+        curvature: &mut Symmetric,
+        force: f64,
+    ) {
+        if let Some((gradient, bending)) = pair.derivatives() {
+            for (body, sign, arm) in pair.ends() {
+                let own = ways(axes, arm, bodies[body].arm());
+                self.all.push((body as u32, along(&own, sign * gradient)));
+                if force <= 0.0 {
+                    continue;
+                }
+                let bent = own.map(|way| sign * force * (bending * way));
+                for (other, other_sign, arm) in pair.ends() {
+                    let ways = ways(axes, arm, bodies[other].arm());
+                    for (i, bent) in bent.iter().enumerate() {
+                        let row = curvature.part_mut(6 * body + i, 6 * other);
+                        for (entry, way) in row.iter_mut().zip(&ways) {
+                            *entry += other_sign * bent.dot(*way);
+                        }
+                    }
+                }
+                let turning = force / bodies[body].arm().powi(2);
+                add_turning(curvature, body, turning, axes, [arm, sign * gradient]);
+            }
+        }
+        self.first.push(self.all.len() as u32);
+    }
+}
+
+/// Second order of a rotation θ, which takes r to r + θ × r + ½ θ × (θ × r): a·½ θ × (θ × r) = ½ ((a·θ)(r·θ) − (a·r) θ²).
+pub(super) fn add_turning(
+    curvature: &mut Symmetric,
+    body: usize,
+    force: f64,
+    axes: &[DVec3; 3],
+    [r, a]: [DVec3; 2],
+) {
+    for i in 0..3 {
+        let row = curvature.part_mut(6 * body + 3 + i, 6 * body + 3);
+        for j in 0..3 {
+            let both = 0.5 * (a.dot(axes[i]) * r.dot(axes[j]) + r.dot(axes[i]) * a.dot(axes[j]));
+            let same = if i == j { a.dot(r) } else { 0.0 };
+            row[j] += force * (both - same);
+        }
+    }
+}

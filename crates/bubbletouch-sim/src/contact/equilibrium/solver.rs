@@ -1,0 +1,290 @@
+//! Solver for the equilibrium of free objects.
+
+use super::body::Body;
+use super::descent::{Descent, DescentWorkspace, End};
+use super::energy::{PairLoad, wrenches};
+use super::free_object::{FreeObject, Ground, PlacedSkin};
+use super::loads::Multipliers;
+use super::pair::Key;
+use super::reports::{TaxelLoad, Touch};
+use crate::contact::friction::TangentialSpringState;
+use crate::error::{Error, Result};
+use crate::geometry::Pose;
+use glam::DVec3;
+
+/// Result of the solver for one object.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Outcome {
+    /// The object is at rest: forces and torques balance, and no small motion lowers the energy.
+    AtRest,
+    /// The object left all patches, or no patch supports it.
+    Escaped {
+        /// Direction from the start, unit, in the world; across gravity unless the object fell straight down.
+        direction: DVec3,
+    },
+    /// The step limit was reached for the object and those that touch it. The other objects are at rest without them.
+    NotConverged,
+}
+
+/// Final pose of a free object, and the forces on it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Equilibrium {
+    /// `world_from_object`.
+    pub pose: Pose,
+    /// Result of the solver.
+    pub outcome: Outcome,
+    /// Force of taxels (springs and stops) and of rigid contacts on the object, newtons, in the world.
+    pub force: DVec3,
+    /// Torque of these forces about the centre of mass, N·m.
+    pub torque: DVec3,
+    /// Force residual divided by the weight, or torque residual divided by weight times radius of the object, whichever is larger;
+    /// dimensionless.
+    pub imbalance: f64,
+    /// Number of taxels that carry the object.
+    pub n_touched: usize,
+    /// Number of taxels whose stops carry the object.
+    pub n_saturated: usize,
+    /// Taxels pushed along a flank as good as parallel to their axis: see [`GRAZING`](crate::contact::GRAZING).
+    pub n_grazing: usize,
+    /// Number of poses that the solver evaluated, of all objects together.
+    pub n_steps: usize,
+}
+
+impl Equilibrium {
+    /// Whether the object is on the ground: at rest, or not converged.
+    pub fn is_there(&self) -> bool {
+        !matches!(self.outcome, Outcome::Escaped { .. })
+    }
+}
+
+/// Solver for resting poses; multipliers of the last solution start the next one.
+#[derive(Clone, Debug, Default)]
+pub struct EquilibriumSolver {
+    workspace: DescentWorkspace,
+    loads: Vec<TaxelLoad>,
+    touches: Vec<Touch>,
+    tangential_springs: Vec<TangentialSpringState>,
+    /// Numbers of the objects to which the multipliers belong.
+    numbers: Vec<usize>,
+}
+
+impl EquilibriumSolver {
+    /// Creates a solver without a warm start.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Loads of taxels in the last solution, in the order of skins and taxels; without objects that escaped. With the
+    /// [touches](Self::touches) they add up to the forces of each [`Equilibrium`].
+    pub fn loads(&self) -> &[TaxelLoad] {
+        &self.loads
+    }
+
+    /// Tangential springs in the last solution, in the order of skins and taxels.
+    pub fn tangential_springs(&self) -> &[TangentialSpringState] {
+        &self.tangential_springs
+    }
+
+    /// Rigid contacts in the last solution.
+    pub fn touches(&self) -> &[Touch] {
+        &self.touches
+    }
+
+    /// Solves for the equilibrium of one object on skins, from a pose (`world_from_object`), under `gravity` (m/s², in the world).
+    ///
+    /// # Errors
+    /// Those of [`solve_all`](Self::solve_all).
+    pub fn solve(
+        &mut self,
+        object: &FreeObject,
+        skins: &[PlacedSkin],
+        gravity: DVec3,
+        start: &Pose,
+    ) -> Result<Equilibrium> {
+        let ground = Ground {
+            skins: skins.to_vec(),
+            ..Ground::default()
+        };
+        let solutions = self.solve_all(&[*object], &ground, gravity, &[*start])?;
+        Ok(solutions[0])
+    }
+
+    /// Solves for the equilibrium of objects together, from their poses (`world_from_object`, one an object), under `gravity` (m/s², in the world).
+    ///
+    /// The energy never increases from the start to the solution; objects at rest do not move. The ground is fixed.
+    ///
+    /// # Errors
+    /// The error names a gravity that is zero or not finite, and a pose that is not finite.
+    ///
+    /// # Panics
+    /// If there are not as many poses as objects.
+    pub fn solve_all(
+        &mut self,
+        objects: &[FreeObject],
+        ground: &Ground,
+        gravity: DVec3,
+        starts: &[Pose],
+    ) -> Result<Vec<Equilibrium>> {
+        assert_eq!(objects.len(), starts.len());
+        check(gravity, starts)?;
+        // Where the objects are, is the origin: far from the world's, places have too few digits to balance stiff springs.
+        let origin = starts.first().map_or(DVec3::ZERO, |pose| pose.translation);
+        let ground = ground.seen_from(origin);
+        let from_there = |pose: &Pose| Pose::new(pose.rotation, pose.translation - origin);
+        let bodies = objects.iter().copied().enumerate().zip(starts);
+        let bodies = bodies.map(|(object, start)| Body::new(object, gravity, &from_there(start)));
+        let mut solutions = self.solve_bodies(bodies.collect(), &ground);
+        for solution in &mut solutions {
+            solution.pose.translation += origin;
+        }
+        for touch in &mut self.touches {
+            touch.point += origin;
+        }
+        Ok(solutions)
+    }
+
+    /// Descends repeatedly. Objects that leave or do not converge are removed, and the others continue. If a descent does not converge, it is
+    /// repeated once from there without multipliers: those of a diverged iteration would mislead the next.
+    fn solve_bodies<'s>(
+        &mut self,
+        mut bodies: Vec<Body<'s>>,
+        ground: &'s Ground<'s>,
+    ) -> Vec<Equilibrium> {
+        let mut numbers: Vec<usize> = (0..bodies.len()).collect();
+        let mut solutions = vec![None; bodies.len()];
+        let (mut n_steps, mut is_again) = (0, false);
+        self.loads.clear();
+        self.touches.clear();
+        self.tangential_springs.clear();
+        while !bodies.is_empty() {
+            if is_again || self.numbers != numbers {
+                self.workspace.multipliers = Multipliers::default();
+                self.numbers.clone_from(&numbers);
+            }
+            let mut descent = Descent::new(&mut self.workspace, bodies, ground);
+            let end = descent.run();
+            n_steps += descent.n_steps;
+            let is_first = !std::mem::replace(&mut is_again, false);
+            // What leaves has no outcome yet: its direction is its own.
+            let (done, outcome) = match end {
+                End::Endless(gone) => (gone, None),
+                End::Rest => ((0..numbers.len()).collect(), Some(Outcome::AtRest)),
+                End::Exhausted => (descent.most_restless(), Some(Outcome::NotConverged)),
+            };
+            bodies = std::mem::take(&mut descent.scene.bodies);
+            let springs = std::mem::take(&mut descent.scene.springs);
+            self.workspace.multipliers = std::mem::take(&mut descent.scene.multipliers);
+            if is_first && outcome == Some(Outcome::NotConverged) {
+                is_again = true;
+                continue;
+            }
+            let loads = match outcome {
+                Some(_) => self.workspace.now.pair_loads(),
+                None => Vec::new(),
+            };
+            self.report(&bodies, &loads, (&numbers, &done), &ground.skins);
+            let wrenches = wrenches(
+                (&loads, &self.workspace.now.pairs.all),
+                &springs,
+                &bodies,
+                &ground.skins,
+            );
+            if outcome.is_some() {
+                let held = springs.iter().filter(|spring| done.contains(&spring.body));
+                let tips = held.map(|spring| spring.load(&bodies, &ground.skins));
+                self.tangential_springs.extend(tips);
+            }
+            for slot in done.into_iter().rev() {
+                let number = numbers.remove(slot);
+                let body = bodies.remove(slot);
+                let outcome = outcome.unwrap_or(Outcome::Escaped {
+                    direction: body.way_out(),
+                });
+                solutions[number] =
+                    Some(self.equilibrium((&body, number), wrenches[slot], outcome, n_steps));
+            }
+        }
+        let own = |load: &TaxelLoad| (load.skin, load.taxel, load.object, load.sphere);
+        self.loads.sort_by_key(own);
+        self.tangential_springs
+            .sort_by_key(|tip| (tip.skin, tip.taxel));
+        solutions
+            .into_iter()
+            .map(|solution| solution.expect("each rests, has escaped, or does neither"))
+            .collect()
+    }
+
+    /// Returns the equilibrium of an object whose loads have been reported.
+    fn equilibrium(
+        &self,
+        (body, number): (&Body, usize),
+        wrench: (DVec3, DVec3),
+        outcome: Outcome,
+        n_steps: usize,
+    ) -> Equilibrium {
+        let own = self.loads.iter().filter(|load| load.object == number);
+        let own: Vec<&TaxelLoad> = own.collect();
+        let taxels = own.chunk_by(|a, b| (a.skin, a.taxel) == (b.skin, b.taxel));
+        let is_stopped = |of: &&[&TaxelLoad]| of.iter().any(|load| load.stop > 0.0);
+        Equilibrium {
+            pose: body.pose(),
+            outcome,
+            force: wrench.0,
+            torque: wrench.1,
+            imbalance: body.imbalance_of(wrench),
+            n_touched: taxels.clone().count(),
+            n_saturated: taxels.filter(is_stopped).count(),
+            n_grazing: own.iter().filter(|load| load.is_grazing).count(),
+            n_steps,
+        }
+    }
+
+    /// What carries those bodies that are `done`, by the numbers of the objects.
+    fn report(
+        &mut self,
+        bodies: &[Body],
+        loads: &[PairLoad],
+        (numbers, done): (&[usize], &[usize]),
+        skins: &[PlacedSkin],
+    ) {
+        let number = |slot: usize| numbers[slot];
+        for load in loads {
+            let pair = &self.workspace.now.pairs.all[load.pair];
+            if !done.contains(&(pair.part.0 as usize)) {
+                continue;
+            }
+            let body = &bodies[pair.part.0 as usize];
+            match pair.key {
+                Key::Taxel(skin, taxel) => {
+                    let taxel = (skin as usize, taxel as usize);
+                    let object = number(pair.part.0 as usize);
+                    let found = TaxelLoad::new(taxel, object, pair, load, body, skins);
+                    self.loads.push(found);
+                }
+                Key::Rigid(_, touched) => {
+                    self.touches
+                        .push(Touch::new(pair, touched, load, body, number));
+                }
+            }
+        }
+    }
+}
+
+fn check(gravity: DVec3, starts: &[Pose]) -> Result<()> {
+    if !(gravity.is_finite() && gravity != DVec3::ZERO) {
+        return Err(Error::input(
+            "gravity",
+            format!("{gravity} m/s²"),
+            "finite, and not zero for a free object",
+        ));
+    }
+    let is_odd = |pose: &&Pose| !(pose.translation.is_finite() && pose.rotation.is_finite());
+    match starts.iter().find(is_odd) {
+        Some(odd) => Err(Error::input(
+            "object pose",
+            odd.translation,
+            "finite numbers",
+        )),
+        None => Ok(()),
+    }
+}

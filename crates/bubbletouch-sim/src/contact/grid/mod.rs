@@ -1,0 +1,31 @@
+//! Presses of flat grids along their axis: the kernel goes along rows of taxels.
+//!
+//! | stage | input → output |
+//! |---|---|
+//! | `lines` | a grid → the places of its rows and columns |
+//! | `placed_objects` | objects and poses → what the grid sees of them |
+//! | `sphere_search` | sphere unions → the spheres that reach a taxel |
+//! | `placed_sphere` | a sphere → the deflections of the taxels under it |
+//! | `envelope` | meshes → the height at which they stop each taxel |
+//! | `deflection_grid` | all deflections, and the rectangle that contains those above zero |
+//! | `output_buffer` | deflections → a row of the caller's array |
+//! | `press` | travel → deflections |
+//! | `force` | force → travel |
+
+mod deflection_grid;
+mod envelope;
+pub(super) mod force;
+mod lines;
+mod output_buffer;
+mod placed_objects;
+mod placed_sphere;
+mod press;
+mod sphere_search;
+
+pub(super) use lines::GridLines;
+pub use lines::Lines;
+pub(super) use output_buffer::OutputBuffer;
+pub use output_buffer::Row;
+pub(super) use placed_objects::TravelGoal;
+pub(super) use placed_sphere::View;
+pub(super) use press::GridPress;

@@ -1,0 +1,101 @@
+//! Row of an array of the caller that receives the deflections of a press.
+
+/// Where the frame of a press goes, metres: one number a taxel, of either kind.
+///
+/// An array of many frames is seldom in the processor's caches, and to fill a row with zeros takes a third of a fast press. So it is
+/// filled bit by bit while the spheres press, when the memory has nothing else to do.
+#[derive(Debug)]
+pub enum Row<'a> {
+    /// Rounded to single precision.
+    Single(&'a mut [f32]),
+    /// As they are.
+    Double(&'a mut [f64]),
+}
+
+impl Row<'_> {
+    pub(crate) fn len(&self) -> usize {
+        match self {
+            Self::Single(row) => row.len(),
+            Self::Double(row) => row.len(),
+        }
+    }
+
+    /// Writes a deflection for each taxel.
+    pub(crate) fn write(&mut self, deflections: &[f64]) {
+        match self {
+            Self::Double(row) => row.copy_from_slice(deflections),
+            Self::Single(row) => {
+                assert_eq!(row.len(), deflections.len(), "one number a taxel");
+                for (single, double) in row.iter_mut().zip(deflections) {
+                    *single = *double as f32;
+                }
+            }
+        }
+    }
+}
+
+/// Row that is filled with zeros while the spheres are evaluated, and then receives their deflections.
+pub(crate) struct OutputBuffer<'a> {
+    pub row: Row<'a>,
+    n_filled: usize,
+    /// Numbers that are filled in one step.
+    step: usize,
+}
+
+impl<'a> OutputBuffer<'a> {
+    /// Creates the buffer of a row with any contents.
+    pub fn new(row: Row<'a>) -> Self {
+        Self {
+            row,
+            n_filled: 0,
+            step: 0,
+        }
+    }
+
+    /// Creates the buffer of a row that contains zeros.
+    pub fn from_zeros(row: Row<'a>) -> Self {
+        Self {
+            n_filled: row.len(),
+            row,
+            step: 0,
+        }
+    }
+
+    /// Creates a buffer without a row.
+    pub fn none() -> Self {
+        Self::new(Row::Double(&mut []))
+    }
+
+    /// Distributes the filling over `n_steps` steps.
+    pub fn in_steps(&mut self, n_steps: usize) {
+        let step = (self.row.len() - self.n_filled).div_ceil(n_steps.max(1));
+        self.step = step.next_multiple_of(LINE);
+    }
+
+    /// Fills the numbers of one step.
+    #[inline(always)]
+    pub fn step(&mut self) {
+        if self.step > 0 {
+            self.fill(self.step);
+        }
+    }
+
+    /// Fills the remaining numbers.
+    pub fn finish(&mut self) {
+        self.fill(self.row.len());
+    }
+
+    #[inline(always)]
+    fn fill(&mut self, n: usize) {
+        let end = self.row.len().min(self.n_filled + n);
+        let step = self.n_filled..end;
+        match &mut self.row {
+            Row::Single(row) => row[step].fill(0.0),
+            Row::Double(row) => row[step].fill(0.0),
+        }
+        self.n_filled = end;
+    }
+}
+
+/// Numbers of whole lines of a cache: of 64 bytes, or two of them.
+const LINE: usize = 16;

@@ -1,0 +1,304 @@
+//! A sphere over a flat grid, and the taxels under it, row by row.
+
+use super::deflection_grid::{BLOCK, DeflectionGrid, WIDE};
+use super::lines::GridLines;
+use crate::contact::law::{self, beats, indent};
+use crate::geometry::Pose;
+use crate::objects::{Cluster, ClusterBounds, MOST_IN_CLUSTER, Sphere};
+use glam::{DMat3, DVec3};
+use std::ops::Range;
+
+/// A sphere in the patch frame, its radius grown by the taxel's: the taxel is then a point.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PlacedSphere {
+    pub center: DVec3,
+    /// S = ρ + R.
+    pub reach: f64,
+}
+
+/// What rounding may add to a reach, far above 1e-16 and far below what is felt.
+const ROUNDING: f64 = 1.0 + 1e-9;
+
+/// Footprints of at most so many columns are looked at as squares. More: taxels beside large spheres are looked at in vain; fewer: the
+/// ends of short rows are computed in vain.
+const SQUARE: usize = 10;
+
+/// An object's frame seen from the patch.
+#[derive(Clone, Debug)]
+pub(crate) struct View {
+    /// Rows of the rotation.
+    rows: DMat3,
+    translation: DVec3,
+    /// ρ.
+    taxel_radius: f64,
+    /// The outermost taxels' |x| and |y|.
+    half_size: [f64; 2],
+}
+
+impl View {
+    /// Of an object at `patch_from_object` from a grid with taxels of one radius.
+    pub fn new(taxel_radius: f64, lines: &GridLines, pose: &Pose) -> Self {
+        let last = |positions: &[f64]| positions.last().copied().unwrap_or(0.0);
+        Self {
+            rows: DMat3::from_quat(pose.rotation).transpose(),
+            translation: pose.translation,
+            taxel_radius,
+            half_size: [last(&lines.x.positions), last(&lines.y.positions)],
+        }
+    }
+
+    /// Travels before which no sphere of a cluster meets a taxel, metres, one a cluster; infinite if its shadow misses the patch.
+    #[inline(always)]
+    pub fn lay_starts(&self, bounds: &ClusterBounds, starts: &mut [f64]) {
+        let n = starts.len();
+        let [x, y, z] = &bounds.middle;
+        let (x, y, z) = (&x[..n], &y[..n], &z[..n]);
+        let [wide, deep, high] = &bounds.half;
+        let (wide, deep, high) = (&wide[..n], &deep[..n], &high[..n]);
+        let (radius, largest) = (&bounds.radius[..n], &bounds.largest[..n]);
+        let [half_x, half_y] = self.half_size;
+        let up = self.rows.z_axis.abs();
+        for k in 0..n {
+            let middle = DVec3::new(x[k], y[k], z[k]);
+            let beside = (self.taxel_radius + radius[k]) * ROUNDING;
+            let at_x = self.rows.x_axis.dot(middle) + self.translation.x;
+            let at_y = self.rows.y_axis.dot(middle) + self.translation.y;
+            let at_z = self.rows.z_axis.dot(middle) + self.translation.z;
+            let below = up.dot(DVec3::new(wide[k], deep[k], high[k]));
+            let below = (below + largest[k] + self.taxel_radius) * ROUNDING;
+            // The ball is the tighter one around spheres of different sizes.
+            let below = if beside < below { beside } else { below };
+            let is_beside = (at_x.abs() >= half_x + beside) | (at_y.abs() >= half_y + beside);
+            starts[k] = if is_beside {
+                f64::INFINITY
+            } else {
+                at_z - below
+            };
+        }
+    }
+
+    /// Travels before which the spheres of a cluster meet no taxel, metres.
+    #[inline(always)]
+    pub fn starts(&self, cluster: &Cluster) -> [f64; MOST_IN_CLUSTER] {
+        let [x, y, z] = cluster.centers;
+        let mut starts = [f64::INFINITY; MOST_IN_CLUSTER];
+        for (k, start) in starts.iter_mut().enumerate() {
+            let center = DVec3::new(x[k], y[k], z[k]);
+            let reach = self.taxel_radius + cluster.radii[k];
+            let its = self.rows.z_axis.dot(center) + self.translation.z - reach;
+            *start = if k < cluster.n_spheres {
+                its
+            } else {
+                f64::INFINITY
+            };
+        }
+        starts
+    }
+
+    /// The sphere in the patch frame; `None` if it meets no taxel before `travel` or its shadow misses the patch.
+    #[inline(always)]
+    pub fn place(&self, sphere: &Sphere, travel: f64) -> Option<PlacedSphere> {
+        let reach = self.taxel_radius + sphere.radius;
+        let z = self.rows.z_axis.dot(sphere.center) + self.translation.z;
+        if z - reach >= travel {
+            return None;
+        }
+        let x = self.rows.x_axis.dot(sphere.center) + self.translation.x;
+        let y = self.rows.y_axis.dot(sphere.center) + self.translation.y;
+        let [half_x, half_y] = self.half_size;
+        let beside = reach * ROUNDING;
+        (x.abs() < half_x + beside && y.abs() < half_y + beside).then_some(PlacedSphere {
+            center: DVec3::new(x, y, z),
+            reach,
+        })
+    }
+}
+
+/// Returns `value - numbers[k]` for each k.
+#[inline(always)]
+fn less<const N: usize>(value: f64, numbers: &[f64; N]) -> [f64; N] {
+    let mut differences = [0.0; N];
+    for k in 0..N {
+        differences[k] = value - numbers[k];
+    }
+    differences
+}
+
+impl PlacedSphere {
+    /// The travel at which the sphere meets the taxel nearest to its axis, its first; infinite if it passes between all.
+    #[inline(always)]
+    pub fn first_touch(&self, lines: &GridLines) -> f64 {
+        let DVec3 { x, y, z } = self.center;
+        let (dx, dy) = (x - lines.x.nearest(x), y - lines.y.nearest(y));
+        let q = self.reach * self.reach - (dx * dx + dy * dy);
+        if q > 0.0 {
+            -law::deflection(q, z)
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    /// Raises each deflection to the one that the sphere needs with its centre at `height` above the grid, metres.
+    #[inline(always)]
+    pub fn indent(&self, lines: &GridLines, height: f64, deflections: &mut DeflectionGrid) {
+        let reach2 = self.reach * self.reach;
+        let lift = height.max(0.0);
+        let footprint = (reach2 - lift * lift).max(0.0);
+        let half_width = footprint.sqrt();
+        let columns = lines.x.within(self.center.x, half_width);
+        let rows = lines.y.within(self.center.y, half_width);
+        if columns.is_empty() || rows.is_empty() {
+            return;
+        }
+        deflections.cover(&rows, &columns);
+        let first = columns.start / BLOCK * BLOCK;
+        match (columns.end - first).div_ceil(BLOCK) {
+            1 => self.indent_square::<1>(lines, rows, first, height, deflections),
+            2 => self.indent_square::<2>(lines, rows, first, height, deflections),
+            3 => self.indent_square::<3>(lines, rows, first, height, deflections),
+            _ => self.indent_rows(lines, rows, footprint, height, deflections),
+        }
+    }
+
+    /// The same with its centre behind the substrate, which is at height `behind`: it pushes the taxels whose substrates are inside of it.
+    #[cold]
+    pub fn indent_through(
+        &self,
+        lines: &GridLines,
+        height: f64,
+        behind: f64,
+        deflections: &mut DeflectionGrid,
+    ) {
+        let gap = behind - height;
+        let reach2 = self.reach * self.reach;
+        let half_width = (reach2 - gap * gap).max(0.0).sqrt();
+        let columns = lines.x.within(self.center.x, half_width);
+        let rows = lines.y.within(self.center.y, half_width);
+        if columns.is_empty() || rows.is_empty() {
+            return;
+        }
+        deflections.cover(&rows, &columns);
+        for row in rows {
+            let dy = lines.y.positions[row] - self.center.y;
+            let taxels = deflections.row(row, columns.clone()).iter_mut();
+            for (deflection, x) in taxels.zip(&lines.x.positions[columns.clone()]) {
+                let dx = x - self.center.x;
+                let q = reach2 - dy * dy - dx * dx;
+                *deflection = deflection.max(law::needed(q, height, behind));
+            }
+        }
+    }
+
+    /// N blocks from column `first` of each row.
+    #[inline(always)]
+    fn indent_square<const N: usize>(
+        &self,
+        lines: &GridLines,
+        rows: Range<usize>,
+        first: usize,
+        height: f64,
+        deflections: &mut DeflectionGrid,
+    ) {
+        let reach2 = self.reach * self.reach;
+        let mut dx2 = [[f64::INFINITY; BLOCK]; N];
+        let places = &lines.x.positions[first..];
+        let places = &places[..places.len().min(N * BLOCK)];
+        for k in 0..places.len() {
+            let dx = places[k] - self.center.x;
+            dx2[k / BLOCK][k % BLOCK] = dx * dx;
+        }
+        for row in rows {
+            let dy = lines.y.positions[row] - self.center.y;
+            let row_reach2 = reach2 - dy * dy;
+            let blocks: &mut [[f64; BLOCK]; N] = deflections.blocks(row, first);
+            for block in 0..N {
+                let squares = less(row_reach2, &dx2[block]);
+                indent(&squares, &[height; BLOCK], &mut blocks[block]);
+            }
+        }
+    }
+
+    /// Of each row the columns that it reaches, more than a block of them.
+    #[inline(always)]
+    fn indent_rows(
+        &self,
+        lines: &GridLines,
+        rows: Range<usize>,
+        footprint: f64,
+        height: f64,
+        deflections: &mut DeflectionGrid,
+    ) {
+        let reach2 = self.reach * self.reach;
+        let last = lines.x.positions.len() - WIDE;
+        for row in rows {
+            let dy = lines.y.positions[row] - self.center.y;
+            let half_width = (footprint - dy * dy).max(0.0).sqrt();
+            let columns = lines.x.within(self.center.x, half_width);
+            let row_reach2 = reach2 - dy * dy;
+            let mut next = columns.start;
+            while next < columns.end {
+                // The last block of a row goes over some of the one before it again.
+                let first = next.min(last);
+                let mut dx2 = [0.0; WIDE];
+                let places = &lines.x.positions[first..first + WIDE];
+                for k in 0..WIDE {
+                    let dx = places[k] - self.center.x;
+                    dx2[k] = dx * dx;
+                }
+                let squares = less(row_reach2, &dx2);
+                let taxels = deflections.wide_block(row, first);
+                if beats(&squares, &[height; WIDE], taxels) {
+                    indent(&squares, &[height; WIDE], taxels);
+                }
+                next = first + WIDE;
+            }
+        }
+    }
+
+    /// Raises each deflection to the one that the sphere needs at its own height, and marks the taxels whose deflection it raised. Where it is behind the
+    /// substrate, which is at height `behind`, it does not count.
+    ///
+    /// The footprint is where the sphere needs more than zero: `b² < S² − max(h, 0)²`. Ranges are rounded outwards, those of small
+    /// footprints to a square; the comparison with S in the innermost loop is what decides.
+    pub fn indent_and_mark<M: Copy>(
+        &self,
+        lines: &GridLines,
+        behind: f64,
+        deflections: &mut [f64],
+        (mark, marks): (M, &mut [M]),
+    ) {
+        let DVec3 { x, y, z: height } = self.center;
+        let reach2 = self.reach * self.reach;
+        let lift = height.max(0.0);
+        let footprint = (reach2 - lift * lift).max(0.0);
+        let half_width = footprint.sqrt();
+        let square = lines.x.within(x, half_width);
+        for row in lines.y.within(y, half_width) {
+            let dy = lines.y.positions[row] - y;
+            let mut columns = square.clone();
+            if square.len() > SQUARE {
+                let half_width = (footprint - dy * dy).max(0.0).sqrt();
+                columns = lines.x.within(x, half_width);
+            }
+            let first = row * lines.x.positions.len();
+            let taxels = first + columns.start..first + columns.end;
+            let marked = deflections[taxels.clone()]
+                .iter_mut()
+                .zip(&mut marks[taxels]);
+            for ((deflection, marked), place) in marked.zip(&lines.x.positions[columns]) {
+                let dx = place - x;
+                let q = reach2 - dy * dy - dx * dx;
+                if !law::is_in_front(q, height, behind) {
+                    continue;
+                }
+                if law::may_exceed(q, height, *deflection) {
+                    let needed = law::deflection(q, height);
+                    if needed > *deflection {
+                        *deflection = needed;
+                        *marked = mark;
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,225 @@
+//! The kernel of a flat grid pressed along its axis: only the spheres and triangles that reach the skin, only the taxels under them.
+
+use super::deflection_grid::DeflectionGrid;
+use super::envelope::Envelope;
+use super::lines::GridLines;
+use super::output_buffer::{OutputBuffer, Row};
+use super::placed_objects::{PlacedObjects, TravelGoal};
+use super::placed_sphere::PlacedSphere;
+use super::sphere_search::{SphereSearch, search};
+use crate::contact::Contact;
+use crate::contact::instructions::{Instructions, for_instructions};
+use crate::contact::law::saturation_limit;
+use crate::geometry::Pose;
+use crate::objects::Model;
+use crate::world::EvenGrid;
+
+/// Scratch of one thread.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct GridPress {
+    pub instructions: Instructions,
+    /// Of the last grid.
+    lines: GridLines,
+    /// Spheres that can press.
+    search: SphereSearch,
+    /// Where the meshes stop the taxels; empty if there are none.
+    envelope: Envelope,
+    deflections: DeflectionGrid,
+    /// Height of the substrate, metres. A sphere with a lower centre pushes only taxels whose substrate is inside the sphere. −s − ρ at a pose;
+    /// −∞ if the press comes from the front, where all spheres count.
+    behind: f64,
+    /// Of the last press to a force: see [`starts`](Self::starts).
+    starts: Vec<f64>,
+}
+
+impl GridPress {
+    /// Deflections of the last press: n_taxels, metres, row (patch y, ascending) by row.
+    pub fn deflections(&self) -> &[f64] {
+        self.deflections.deflections()
+    }
+
+    /// Keeps the spheres that press a taxel on the way to the goal, and returns the travel to first contact if the
+    /// goal is a depth (`None` where no travel touches anything).
+    pub(crate) fn gather(
+        &mut self,
+        grid: &EvenGrid,
+        objects: &[Model],
+        patch_from_objects: &[Pose],
+        goal: TravelGoal,
+    ) -> Option<f64> {
+        assert_eq!(
+            objects.len(),
+            patch_from_objects.len(),
+            "one pose an object"
+        );
+        self.lines.lay(&grid.grid);
+        self.behind = match goal {
+            TravelGoal::Pose => grid.behind,
+            TravelGoal::Travel(_) | TravelGoal::Depth(_) => f64::NEG_INFINITY,
+        };
+        let placed = PlacedObjects {
+            objects,
+            patch_from_objects,
+            radius: grid.radius,
+            behind: self.behind,
+            lines: &self.lines,
+        };
+        let mut first = search(self.instructions, &mut self.search, &placed, goal);
+        if self.envelope.look(&placed, (goal, first)) {
+            first = first.min(self.envelope.first);
+        }
+        first.is_finite().then_some(first)
+    }
+
+    /// Indents the patch at a travel, after a depth of at least as much has been gathered for.
+    pub(crate) fn indent(
+        &mut self,
+        grid: &EvenGrid,
+        travel: f64,
+        output: &mut OutputBuffer,
+    ) -> Contact {
+        let stroke = grid.stroke;
+        self.push(grid, travel, output);
+        output.finish();
+        let row = &mut output.row;
+        let [n_touched, n_saturated] =
+            stop_at_stroke(self.instructions, &mut self.deflections, stroke, row);
+        Contact {
+            travel,
+            n_touched,
+            n_saturated,
+        }
+    }
+
+    /// For each taxel that what has been gathered reaches up to `travel`, the travel at which it begins to move, metres.
+    pub(crate) fn starts(&mut self, grid: &EvenGrid, travel: f64) -> &[f64] {
+        self.push(grid, travel, &mut OutputBuffer::none());
+        self.starts.clear();
+        self.starts.reserve(grid.grid.n_taxels());
+        let Self {
+            deflections,
+            starts,
+            ..
+        } = self;
+        deflections.each_row(|_, taxels| {
+            let touched = taxels.iter().filter(|needed| **needed > 0.0);
+            starts.extend(touched.map(|needed| travel - *needed));
+        });
+        &self.starts
+    }
+
+    /// Leaves all taxels of a patch at rest.
+    pub(crate) fn touch_nothing(&mut self, grid: &EvenGrid) {
+        self.deflections.clear(grid.grid.nx, grid.grid.ny);
+    }
+
+    /// Sets the deflections to what the taxels need at a travel, without a stop.
+    fn push(&mut self, grid: &EvenGrid, travel: f64, output: &mut OutputBuffer) {
+        self.touch_nothing(grid);
+        output.in_steps(self.search.found.len());
+        indent_all(
+            self.instructions,
+            &self.search.found,
+            &self.lines,
+            (travel, self.behind),
+            &mut self.deflections,
+            output,
+        );
+        if !self.envelope.heights.is_empty() {
+            self.deflections
+                .cover(&(0..grid.grid.ny), &(0..grid.grid.nx));
+            let mut heights = self.envelope.heights.chunks_exact(grid.grid.nx);
+            self.deflections.each_row(|_, taxels| {
+                let heights = heights.next().unwrap_or_default();
+                for (deflection, height) in taxels.iter_mut().zip(heights) {
+                    *deflection = deflection.max(travel - height);
+                }
+            });
+        }
+    }
+}
+
+for_instructions! {
+    /// Indents the taxels by all spheres that count at a travel, and fills the output meanwhile.
+    fn indent_all(
+        spheres: &[PlacedSphere],
+        lines: &GridLines,
+        travel_and_behind: (f64, f64),
+        deflections: &mut DeflectionGrid,
+        output: &mut OutputBuffer,
+    ) = indent_each
+}
+
+#[inline(always)]
+fn indent_each(
+    spheres: &[PlacedSphere],
+    lines: &GridLines,
+    (travel, behind): (f64, f64),
+    deflections: &mut DeflectionGrid,
+    output: &mut OutputBuffer,
+) {
+    for sphere in spheres {
+        output.step();
+        let height = sphere.center.z - travel;
+        if height < behind {
+            sphere.indent_through(lines, height, behind, deflections);
+        } else if height < sphere.reach {
+            sphere.indent(lines, height, deflections);
+        }
+    }
+}
+
+for_instructions! {
+    /// Counts touched and saturated taxels, stops the latter at their stroke, and writes all into a row of zeros, if it is one.
+    fn stop_at_stroke(deflections: &mut DeflectionGrid, stroke: f64, row: &mut Row) -> [usize; 2] = stop_each
+}
+
+#[inline(always)]
+fn stop_each(deflections: &mut DeflectionGrid, stroke: f64, row: &mut Row) -> [usize; 2] {
+    let mut stop = Stop {
+        stroke,
+        limit: saturation_limit(stroke),
+        n_touched: 0,
+        n_saturated: 0,
+    };
+    match row {
+        Row::Double([]) => deflections.each_row(|_, taxels| {
+            for taxel in taxels {
+                *taxel = stop.of(*taxel);
+            }
+        }),
+        Row::Double(row) => deflections.each_row(|first, taxels| {
+            let to = &mut row[first..][..taxels.len()];
+            for at in 0..taxels.len() {
+                taxels[at] = stop.of(taxels[at]);
+                to[at] = taxels[at];
+            }
+        }),
+        Row::Single(row) => deflections.each_row(|first, taxels| {
+            let to = &mut row[first..][..taxels.len()];
+            for at in 0..taxels.len() {
+                taxels[at] = stop.of(taxels[at]);
+                to[at] = taxels[at] as f32;
+            }
+        }),
+    }
+    [stop.n_touched, stop.n_saturated]
+}
+
+/// The end of the taxels' strokes.
+struct Stop {
+    stroke: f64,
+    limit: f64,
+    n_touched: usize,
+    n_saturated: usize,
+}
+
+impl Stop {
+    /// Counts a deflection, and what is left of it.
+    #[inline(always)]
+    fn of(&mut self, deflection: f64) -> f64 {
+        self.n_touched += usize::from(deflection > 0.0);
+        self.n_saturated += usize::from(deflection > self.limit);
+        deflection.min(self.stroke)
+    }
+}

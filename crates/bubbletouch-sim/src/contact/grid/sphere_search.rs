@@ -1,0 +1,139 @@
+//! Which spheres can press a flat grid: clusters of neighbours first, then the spheres of those that are near.
+
+use super::placed_objects::{PlacedObjects, TravelGoal};
+use super::placed_sphere::{PlacedSphere, View};
+use crate::contact::LanesBelow;
+use crate::contact::instructions::for_instructions;
+use crate::contact::law;
+use crate::objects::{Model, SphereClusters};
+
+/// Scratch of a search, reused.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SphereSearch {
+    /// Of the sphere unions, in their order.
+    views: Vec<View>,
+    /// For each of their clusters a travel before which none of its spheres presses any taxel, metres; infinite beside the patch.
+    starts: Vec<f64>,
+    /// Spheres that can press, in the patch frame before any travel.
+    pub found: Vec<PlacedSphere>,
+}
+
+/// So many clusters are looked at together.
+const LOOK: usize = 8;
+
+for_instructions! {
+    /// Finds the spheres that can press a taxel on the way to the goal, and returns the travel at which the first taxel is touched;
+    /// infinite if none is, or if the goal is no depth.
+    ///
+    /// For a depth, the cluster that is nearest is looked at beforehand, so that most others need no look to know what is first.
+    pub(crate) fn search(search: &mut SphereSearch, placed: &PlacedObjects, goal: TravelGoal) -> f64 = run
+}
+
+#[inline(always)]
+fn run(search: &mut SphereSearch, placed: &PlacedObjects, goal: TravelGoal) -> f64 {
+    search.lay(placed);
+    match goal {
+        TravelGoal::Travel(travel) => {
+            search.gather(placed.objects, travel, |_| true);
+            f64::INFINITY
+        }
+        TravelGoal::Depth(depth) => {
+            let first = search.first_touch(placed);
+            search.gather(placed.objects, first + depth, |_| true);
+            first
+        }
+        TravelGoal::Pose => {
+            search.gather(placed.objects, 0.0, |sphere| {
+                law::is_in_front(sphere.reach * sphere.reach, sphere.center.z, placed.behind)
+            });
+            f64::INFINITY
+        }
+    }
+}
+
+impl SphereSearch {
+    #[inline(always)]
+    fn lay(&mut self, placed: &PlacedObjects) {
+        self.views.clear();
+        self.starts.clear();
+        for (object, pose) in placed.objects.iter().zip(placed.patch_from_objects) {
+            if let Some(union) = object.spheres() {
+                let view = View::new(placed.radius, placed.lines, pose);
+                let bounds = union.clusters().bounds();
+                let before = self.starts.len();
+                let n = bounds.len().next_multiple_of(LOOK);
+                self.starts.resize(before + n, f64::INFINITY);
+                view.lay_starts(bounds, &mut self.starts[before..before + bounds.len()]);
+                self.views.push(view);
+            }
+        }
+    }
+
+    /// The travel at which the first sphere meets its first taxel.
+    #[inline(always)]
+    fn first_touch(&self, placed: &PlacedObjects) -> f64 {
+        let mut lowest = [f64::INFINITY; LOOK];
+        for starts in self.starts.as_chunks::<LOOK>().0 {
+            for k in 0..LOOK {
+                lowest[k] = if starts[k] < lowest[k] {
+                    starts[k]
+                } else {
+                    lowest[k]
+                };
+            }
+        }
+        let lowest = lowest.into_iter().fold(f64::INFINITY, f64::min);
+        let mut first = f64::INFINITY;
+        // The nearest cluster by itself, then what may be before its first.
+        for limit in [lowest.next_up(), f64::INFINITY] {
+            for (union, view, starts) in self.unions(placed.objects) {
+                for (look, starts) in starts.iter().enumerate() {
+                    for k in LanesBelow::new(starts, limit.min(first)) {
+                        let cluster = union.of(look * LOOK + k);
+                        for sphere in LanesBelow::new(&view.starts(&cluster), first) {
+                            if let Some(sphere) = view.place(&cluster.at(sphere), first) {
+                                first = first.min(sphere.first_touch(placed.lines));
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        first
+    }
+
+    /// Keeps the spheres that press before a travel and count.
+    #[inline(always)]
+    fn gather(&mut self, objects: &[Model], limit: f64, counts: impl Fn(&PlacedSphere) -> bool) {
+        let mut found = std::mem::take(&mut self.found);
+        found.clear();
+        for (union, view, starts) in self.unions(objects) {
+            for (look, starts) in starts.iter().enumerate() {
+                for k in LanesBelow::new(starts, limit) {
+                    let cluster = union.of(look * LOOK + k);
+                    for sphere in LanesBelow::new(&view.starts(&cluster), limit) {
+                        let placed = view.place(&cluster.at(sphere), limit);
+                        found.extend(placed.filter(&counts));
+                    }
+                }
+            }
+        }
+        self.found = found;
+    }
+
+    /// The unions, from where each is seen, and the starts of its clusters.
+    #[inline(always)]
+    fn unions<'a>(
+        &'a self,
+        objects: &'a [Model],
+    ) -> impl Iterator<Item = (&'a SphereClusters, &'a View, &'a [[f64; LOOK]])> {
+        let unions = objects.iter().filter_map(|object| object.spheres());
+        let mut rest = self.starts.as_chunks().0;
+        unions.zip(&self.views).map(move |(union, view)| {
+            let clusters = union.clusters();
+            let (starts, behind) = rest.split_at(clusters.bounds().len().div_ceil(LOOK));
+            rest = behind;
+            (clusters, view, starts)
+        })
+    }
+}

@@ -1,0 +1,179 @@
+//! Where a mesh stops one taxel that comes up along its own axis.
+
+use super::swept_triangle::stopping_height;
+use crate::contact::law;
+use crate::geometry::{Aabb, Pose};
+use crate::mesh::Triangle;
+use crate::objects::MeshModel;
+use crate::world::PlacedTaxel;
+use glam::{DMat3, DVec2, DVec3};
+
+/// A mesh where it is, in the patch frame.
+pub(crate) struct MeshAt<'a> {
+    mesh: &'a MeshModel,
+    pose: &'a Pose,
+    rotation: DMat3,
+}
+
+/// The triangle that stops a taxel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Stop {
+    /// Of the taxel's centre along its axis, from where it rests, metres: below zero.
+    pub height: f64,
+    /// Its number in the mesh.
+    pub triangle: usize,
+}
+
+/// How far beside its axis the bottom of a taxel is looked at, in radii: beside it, since the diagonals of boxes often run
+/// through the axes of grids, and a line along an edge meets both of its triangles or none.
+const BESIDE: DVec2 = DVec2::new(0.011, 0.007);
+
+impl<'a> MeshAt<'a> {
+    pub fn new(mesh: &'a MeshModel, pose: &'a Pose) -> Self {
+        let rotation = DMat3::from_quat(pose.rotation);
+        Self {
+            mesh,
+            pose,
+            rotation,
+        }
+    }
+
+    /// A ball around the mesh, in the patch frame: centre and radius, metres.
+    pub fn ball(&self) -> (DVec3, f64) {
+        let bounds = self.mesh.bounds();
+        let radius = 0.5 * bounds.size().length();
+        (self.pose.transform_point(bounds.center()), radius)
+    }
+
+    /// Where a taxel stops, if the mesh pushes it.
+    ///
+    /// Of triangles that stop it equally any may be named; the same one each time.
+    pub fn stop(&self, taxel: &PlacedTaxel) -> Option<Stop> {
+        let view = AxisView::new(self, taxel);
+        let mut found = None;
+        self.mesh.bvh().search(
+            0.0,
+            |bounds| view.lowest(bounds),
+            |number, triangle, limit| match view.stop(triangle) {
+                Some(height) if height < limit => {
+                    found = Some(Stop {
+                        height,
+                        triangle: number,
+                    });
+                    height
+                }
+                _ => limit,
+            },
+        );
+        // A taxel at its stroke stays there, however much further the mesh reaches.
+        match found {
+            Some(stop) if stop.height < taxel.behind + taxel.radius => found,
+            _ => self.entered(&view).or(found),
+        }
+    }
+
+    /// Where a triangle stops a taxel, behind its substrate too.
+    pub fn stop_by(&self, taxel: &PlacedTaxel, triangle: usize) -> Option<Stop> {
+        let turned = AxisView::new(self, taxel).turned(&self.mesh.mesh().triangle(triangle));
+        let height = stopping_height(&turned, taxel.radius, DVec2::ZERO)?;
+        Some(Stop { height, triangle })
+    }
+
+    /// The triangle through which a taxel's axis came into the mesh, if the mesh is solid at its substrate: the nearest
+    /// triangle behind is seen from outside, and the nearest one ahead from inside.
+    fn entered(&self, view: &AxisView) -> Option<Stop> {
+        let beside = view.taxel.radius * BESIDE;
+        let place = view.to_mesh(beside.extend(view.taxel.behind));
+        let bounds = self.mesh.bounds();
+        if place.cmplt(bounds.min).any() || place.cmpgt(bounds.max).any() {
+            return None;
+        }
+        let up = view.up_in_mesh();
+        let first = |direction| {
+            let hit = self
+                .mesh
+                .bvh()
+                .first_hit(place, direction, 0.0..f64::INFINITY)?;
+            let triangle = self.mesh.mesh().triangle(hit.triangle);
+            let rise = triangle.normal()?.dot(up);
+            Some((hit.triangle, triangle, rise))
+        };
+        let (_, _, rise_ahead) = first(up)?;
+        let (number, triangle, rise_behind) = first(-up)?;
+        if rise_ahead <= 0.0 || rise_behind >= 0.0 {
+            return None;
+        }
+        let height = stopping_height(&view.turned(&triangle), view.taxel.radius, DVec2::ZERO)?;
+        Some(Stop {
+            height,
+            triangle: number,
+        })
+    }
+}
+
+/// A mesh's frame seen from a taxel: z along its axis, its rest centre at the origin.
+struct AxisView<'a> {
+    taxel: &'a PlacedTaxel,
+    rotation: DMat3,
+    translation: DVec3,
+    /// The rotation's entries without their signs: they turn half the size of a box.
+    absolute: DMat3,
+}
+
+impl<'a> AxisView<'a> {
+    fn new(mesh: &MeshAt, taxel: &'a PlacedTaxel) -> Self {
+        let [x, y] = taxel.across;
+        let taxel_from_patch = DMat3::from_cols(x, y, taxel.axis).transpose();
+        let rotation = taxel_from_patch * mesh.rotation;
+        Self {
+            taxel,
+            rotation,
+            translation: taxel_from_patch * (mesh.pose.translation - taxel.center),
+            absolute: DMat3::from_cols(
+                rotation.x_axis.abs(),
+                rotation.y_axis.abs(),
+                rotation.z_axis.abs(),
+            ),
+        }
+    }
+
+    fn turned(&self, triangle: &Triangle) -> Triangle {
+        let place = |corner: DVec3| self.rotation * corner + self.translation;
+        Triangle(triangle.0.map(place))
+    }
+
+    fn to_mesh(&self, place: DVec3) -> DVec3 {
+        self.rotation.transpose() * (place - self.translation)
+    }
+
+    /// The taxel's axis in the mesh's frame.
+    fn up_in_mesh(&self) -> DVec3 {
+        self.rotation.transpose() * DVec3::Z
+    }
+
+    /// The least height at which something in a box can stop the taxel; infinite if nothing can, or only behind its
+    /// substrate.
+    fn lowest(&self, bounds: &Aabb) -> f64 {
+        let center = self.rotation * bounds.center() + self.translation;
+        let half = self.absolute * (0.5 * bounds.size()) + self.taxel.radius;
+        let is_beside = center.x.abs() > half.x || center.y.abs() > half.y;
+        if is_beside || center.z + half.z < self.taxel.behind {
+            return f64::INFINITY;
+        }
+        center.z - half.z
+    }
+
+    /// Where a triangle stops the taxel; `None` if it passes by, or touches it only behind its substrate.
+    fn stop(&self, triangle: &Triangle) -> Option<f64> {
+        let turned = self.turned(triangle);
+        let radius = self.taxel.radius;
+        let height = stopping_height(&turned, radius, DVec2::ZERO)?;
+        if law::reaches_front(height, self.taxel.behind) {
+            return Some(height);
+        }
+        // Seen from above, it stops a taxel that comes down at the highest place where they touch.
+        let mirrored = Triangle(turned.0.map(|v| DVec3::new(v.x, v.y, -v.z)));
+        let highest = -stopping_height(&mirrored, radius, DVec2::ZERO)?;
+        law::reaches_front(highest, self.taxel.behind).then_some(height)
+    }
+}

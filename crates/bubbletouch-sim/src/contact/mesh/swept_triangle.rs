@@ -1,0 +1,186 @@
+//! A ball rising along a line meets a triangle: on its face, an edge or a corner, each in closed form.
+//!
+//! The ball's centre is at (x, y) and rises from z = −∞. It stops at the lowest point of the triangle swept by the ball:
+//! the smallest of the heights below, over those parts whose nearest point to the stopped centre belongs to them.
+//!
+//! | part | with | stops at |
+//! |---|---|---|
+//! | face | unit normal n, n_z < 0, corner a | the plane through a + ρn, if the foot (x, y) − ρ(n_x, n_y) is under the triangle |
+//! | edge | rise tan θ along the ground, d: distance beside it, r = √(ρ² − d²) | z_A − r cos θ, A being r sin θ before (x, y) along the edge |
+//! | corner | v, b: distance beside it | v_z − √(ρ² − b²) |
+
+use crate::contact::law;
+use crate::mesh::Triangle;
+use glam::{DVec2, DVec3, Vec3Swizzles};
+
+/// A face or edge steeper than this cosine is left to its edges or corners: less than a nanometre of its 0.1 m is seen from
+/// below, and its heights there would be noise.
+const STEEP: f64 = 1e-8;
+
+/// The height of the centre of a ball that comes up along z at (x, y) and stops at a triangle; `None` if it passes by.
+///
+/// All in metres; the triangle is solid from both sides and may be as thin as a line or a point.
+pub fn stopping_height(triangle: &Triangle, radius: f64, at: DVec2) -> Option<f64> {
+    let [a, b, c] = triangle.0;
+    let face = triangle
+        .normal()
+        .and_then(|normal| SweptFace::new(&triangle.0, normal, radius));
+    let edges = [(a, b), (b, c), (c, a)]
+        .map(|(from, to)| SweptEdge::new(from, to, radius, [DVec3::ZERO; 2]));
+    let heights = [face.and_then(|face| face.height(at))]
+        .into_iter()
+        .chain(edges.map(|edge| edge.and_then(|edge| edge.height(at))))
+        .chain(triangle.0.map(|corner| corner_height(corner, radius, at)));
+    heights.flatten().reduce(f64::min)
+}
+
+/// Where a ball stops at a corner.
+#[inline]
+pub(crate) fn corner_height(corner: DVec3, radius: f64, at: DVec2) -> Option<f64> {
+    let q = radius * radius - at.distance_squared(corner.xy());
+    (q > 0.0).then(|| -law::deflection(q, corner.z))
+}
+
+/// A face moved down by the ball's radius along its normal.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SweptFace {
+    corners: [DVec2; 3],
+    /// Unit; seen from above the corners turn counter-clockwise if it points up.
+    normal: DVec3,
+    height_of_first: f64,
+}
+
+impl SweptFace {
+    /// `None` for a face that is seen edge-on; `normal`: the triangle's.
+    #[inline]
+    pub fn new(corners: &[DVec3; 3], normal: DVec3, radius: f64) -> Option<Self> {
+        if normal.z.abs() < STEEP {
+            return None;
+        }
+        let shift = if normal.z > 0.0 { -radius } else { radius } * normal;
+        Some(Self {
+            corners: corners.map(|corner| (corner + shift).xy()),
+            normal,
+            height_of_first: corners[0].z + shift.z,
+        })
+    }
+
+    /// The lowest and highest corner of the ground that it covers.
+    #[inline]
+    pub fn ground(&self) -> (DVec2, DVec2) {
+        let [a, b, c] = self.corners;
+        (a.min(b).min(c), a.max(b).max(c))
+    }
+
+    /// Where a ball stops at the face itself.
+    #[inline]
+    pub fn height(&self, at: DVec2) -> Option<f64> {
+        let [a, b, c] = self.corners;
+        let beside = |from: DVec2, to: DVec2| (to - from).perp_dot(at - from);
+        let sides = [beside(a, b), beside(b, c), beside(c, a)];
+        let is_under = match self.normal.z > 0.0 {
+            true => sides.iter().all(|&side| side >= 0.0),
+            false => sides.iter().all(|&side| side <= 0.0),
+        };
+        is_under.then(|| self.height_of_first - self.normal.xy().dot(at - a) / self.normal.z)
+    }
+}
+
+/// The lower side of a tube around an edge, or the part of it that no face hides.
+///
+/// Distances along and beside the edge are kept as multiples of its length on the ground: most edges are done with before
+/// that length is needed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SweptEdge {
+    from: DVec3,
+    edge: DVec3,
+    /// Square of its length on the ground.
+    length2: f64,
+    radius: f64,
+    /// Between which distances beside the edge, positive to the left, it can be what stops the ball; times its length.
+    beside: [f64; 2],
+    /// The normals of its faces, pointing down, if one lies on either side.
+    between: Option<[DVec3; 2]>,
+}
+
+impl SweptEdge {
+    /// `None` for an edge that is a point from below, or that its faces hide altogether.
+    ///
+    /// `faces`: the unit normals of those at the edge, zero for none. Seen from above, a face lies to the left of the edge if
+    /// its normal points up, and to the right if it points down.
+    ///
+    /// A face hides the edge wherever the way from the edge to the centre of the stopped ball leads towards the face: from
+    /// the place where the face begins when it is moved down by the radius, ρ n·aside beside the edge.
+    #[inline]
+    pub fn new(from: DVec3, to: DVec3, radius: f64, faces: [DVec3; 2]) -> Option<Self> {
+        let edge = to - from;
+        let length2 = edge.xy().length_squared();
+        if length2 <= STEEP * STEEP * (length2 + edge.z * edge.z) {
+            return None;
+        }
+        let aside = edge.xy().perp();
+        // A little less is hidden, so that no rounding opens a gap between an edge and its faces.
+        let slack = 1e-6 * radius * (aside.x.abs() + aside.y.abs());
+        let mut beside = [f64::NEG_INFINITY, f64::INFINITY];
+        for normal in faces {
+            let shift = radius * normal.xy().dot(aside);
+            if normal.z > 0.0 {
+                beside[1] = beside[1].min(slack - shift);
+            } else if normal.z < 0.0 || shift != 0.0 {
+                beside[0] = beside[0].max(shift - slack);
+            }
+        }
+        let [a, b] = faces;
+        let between = if a.z > 0.0 && b.z < 0.0 {
+            Some([-a, b])
+        } else if a.z < 0.0 && b.z > 0.0 {
+            Some([a, -b])
+        } else {
+            None
+        };
+        (beside[0] <= beside[1]).then_some(Self {
+            between,
+            from,
+            edge,
+            length2,
+            radius,
+            beside,
+        })
+    }
+
+    /// The lowest and highest corner of a box on the ground around all places where the edge can stop the ball.
+    ///
+    /// It is the edge moved by ρ along all directions between its faces' normals. Their arc leaves its chord by no more than
+    /// ρ (1 − cos β) / 2, β being the angle between the normals.
+    #[inline]
+    pub fn ground(&self) -> (DVec2, DVec2) {
+        let to = (self.from + self.edge).xy();
+        let (low, high) = (self.from.xy().min(to), self.from.xy().max(to));
+        let Some([a, b]) = self.between else {
+            return (low - self.radius, high + self.radius);
+        };
+        let arc = self.radius * (0.5 - 0.5 * a.dot(b)) + 1e-5 * self.radius;
+        let (a, b) = (self.radius * a.xy(), self.radius * b.xy());
+        (low + a.min(b) - arc, high + a.max(b) + arc)
+    }
+
+    /// Where a ball stops at the part of the edge that is not hidden.
+    #[inline]
+    pub fn height(&self, at: DVec2) -> Option<f64> {
+        let from = at - self.from.xy();
+        let ground = self.edge.xy();
+        let beside = ground.perp_dot(from);
+        let is_hidden = beside < self.beside[0] || beside > self.beside[1];
+        if is_hidden || beside * beside > self.radius * self.radius * self.length2 {
+            return None;
+        }
+        let length = self.length2.sqrt();
+        let whole = (self.length2 + self.edge.z * self.edge.z).sqrt();
+        let (sine, cosine) = (self.edge.z / whole, length / whole);
+        let d = beside / length;
+        let r = (self.radius * self.radius - d * d).max(0.0).sqrt();
+        let foot = ground.dot(from) / length - r * sine;
+        (foot >= 0.0 && foot <= length)
+            .then(|| self.from.z + foot * (self.edge.z / length) - r * cosine)
+    }
+}

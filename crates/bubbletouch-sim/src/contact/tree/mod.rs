@@ -1,0 +1,19 @@
+//! Presses of patches of any layout: each sphere finds the taxels near it in a tree.
+//!
+//! | stage | input → output |
+//! |---|---|
+//! | `near_spheres` | a sphere and taxels → the deflections that they need |
+//! | `press` | objects and poses → deflections and contacts |
+//! | `path` | a direction → presses from step to step along it |
+//! | `approach` | a direction → first contact, and presses past it |
+//! | `approach_force` | force → travel |
+
+mod approach;
+mod approach_force;
+mod near_spheres;
+mod path;
+mod press;
+
+pub use approach::Approach;
+pub(super) use press::deflect;
+pub use press::press_with_contacts;

@@ -1,0 +1,90 @@
+//! The spheres of an object that are where a skin is: by clusters, so that most of a large object is never looked at.
+
+use crate::contact::law;
+use crate::geometry::Pose;
+use crate::objects::{Sphere, SphereUnion};
+use crate::world::{LEAF, Leaf};
+use glam::{DMat3, DVec3};
+
+/// An object's spheres in the patch frame.
+pub(crate) struct PlacedUnion<'a> {
+    union: &'a SphereUnion,
+    rotation: DMat3,
+    translation: DVec3,
+}
+
+impl<'a> PlacedUnion<'a> {
+    pub fn new(union: &'a SphereUnion, pose: &Pose) -> Self {
+        Self {
+            union,
+            rotation: DMat3::from_quat(pose.rotation),
+            translation: pose.translation,
+        }
+    }
+
+    /// A sphere by its number.
+    #[inline(always)]
+    pub fn at(&self, number: u32) -> Sphere {
+        self.place(self.union.spheres()[number as usize])
+    }
+
+    #[inline(always)]
+    fn place(&self, sphere: Sphere) -> Sphere {
+        Sphere {
+            center: self.rotation * sphere.center + self.translation,
+            ..sphere
+        }
+    }
+
+    /// The clusters that may count by the balls around them.
+    pub fn clusters(&self) -> impl Iterator<Item = (usize, Sphere)> {
+        let bounds = self.union.clusters().bounds();
+        (0..bounds.len()).map(|cluster| (cluster, self.place(bounds.ball(cluster))))
+    }
+
+    /// The numbers of the spheres of a cluster.
+    pub fn of(&self, cluster: usize) -> &'a [u32] {
+        self.union.clusters().numbers(cluster)
+    }
+
+    /// The numbers of the spheres of those clusters that may count, ascending.
+    pub fn gather(&self, mut may_count: impl FnMut(&Sphere) -> bool, numbers: &mut Vec<u32>) {
+        numbers.clear();
+        for (cluster, ball) in self.clusters() {
+            if may_count(&ball) {
+                numbers.extend_from_slice(self.of(cluster));
+            }
+        }
+        numbers.sort_unstable();
+    }
+}
+
+/// How far a sphere needs a taxel to be pushed, metres, zero or less if it does not meet it or is behind its substrate, which is at height
+/// `behind` along its axis. `from`: the sphere's centre to the taxel's; `frame`: across the axis, twice, and along it, unit; `reach`: both radii,
+/// metres.
+///
+/// The order of the operations is that of the grid kernel, so that both agree to the last bit on a grid.
+#[inline(always)]
+pub(crate) fn needed_along(from: DVec3, frame: [DVec3; 3], reach: f64, behind: f64) -> f64 {
+    let [across_x, across_y, axis] = frame;
+    let (dx, dy, height) = (from.dot(across_x), from.dot(across_y), -from.dot(axis));
+    let q = reach * reach - dy * dy - dx * dx;
+    law::needed(q, height, behind)
+}
+
+/// The same of each taxel of a leaf and a sphere in the patch frame.
+#[inline(always)]
+pub(crate) fn needed_of_leaf(leaf: &Leaf, sphere: &Sphere) -> [f64; LEAF] {
+    let mut needed = [0.0; LEAF];
+    for (k, needed) in needed.iter_mut().enumerate() {
+        let from = leaf.vector(&leaf.centers, k) - sphere.center;
+        let frame = [
+            leaf.vector(&leaf.across[0], k),
+            leaf.vector(&leaf.across[1], k),
+            leaf.vector(&leaf.axes, k),
+        ];
+        let reach = leaf.radii[k] + sphere.radius;
+        *needed = needed_along(from, frame, reach, leaf.behind[k]);
+    }
+    needed
+}

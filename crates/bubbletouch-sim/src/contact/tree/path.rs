@@ -1,0 +1,193 @@
+//! A patch on its way along a line past objects.
+
+use super::press::{self, press_with_contacts};
+use crate::contact::{Contact, FrictionState, NormalForce, Workspace};
+use crate::error::{Error, Result};
+use crate::geometry::Pose;
+use crate::objects::Model;
+use crate::world::{Patch, Taxel, TaxelTree};
+use glam::DVec3;
+
+/// Steps in which the way is looked at are this part of the shortest stroke. Larger: a short peak of the force may be jumped
+/// over, and small spheres may pass through; smaller: more presses in vain.
+const STEP: f64 = 0.5;
+/// With friction a step is this part of the smallest taxel's radius, too. Larger: what comes into contact within a step has dragged less
+/// than it should; smaller: more presses for no more than a hundredth of the shear.
+const FRICTION_STEP: f64 = 0.25;
+/// At most so many steps a way: of strokes far shorter than the way they become longer.
+const MOST_STEPS: f64 = 4096.0;
+
+/// A patch, and where the objects are before it goes along a direction (unit, in the patch frame).
+pub(crate) struct ApproachPath<'a> {
+    pub patch: &'a Patch,
+    pub objects: &'a [Model],
+    pub patch_from_objects: &'a [Pose],
+    pub direction: DVec3,
+    pub contacts: ContactRequest,
+    pub workspace: &'a mut Workspace,
+}
+
+/// Whether anybody asks what touches what.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum ContactRequest {
+    /// At the end of the way.
+    AtEnd,
+    None,
+}
+
+impl Patch {
+    /// In how many steps a part of a way past objects is looked at; its length in metres.
+    pub fn n_steps(&self, length: f64) -> usize {
+        let step = STEP * self.least(|taxel| taxel.stroke);
+        (length / step).ceil().clamp(1.0, MOST_STEPS) as usize
+    }
+
+    fn least(&self, of: fn(&Taxel) -> f64) -> f64 {
+        let values = self.taxels().all().iter().map(of);
+        values.fold(f64::INFINITY, f64::min)
+    }
+}
+
+impl ApproachPath<'_> {
+    /// An error unless a direction's length is one.
+    pub fn check(direction: DVec3) -> Result<()> {
+        match direction.is_finite() && (direction.length() - 1.0).abs() < 1e-9 {
+            true => Ok(()),
+            false => Err(Error::input(
+                "touch direction",
+                direction,
+                "a vector of length one",
+            )),
+        }
+    }
+
+    /// In how many steps a part of the way (metres) is looked at where friction drags the taxels' tips.
+    pub fn n_friction_steps(&self, length: f64) -> usize {
+        let step = FRICTION_STEP * self.patch.least(|taxel| taxel.radius);
+        // A whole number of steps is not one more for the last bit of a length.
+        let n_steps = (length / step * (1.0 - 1e-9)).ceil();
+        let n_steps = n_steps.clamp(1.0, MOST_STEPS) as usize;
+        n_steps.max(self.patch.n_steps(length))
+    }
+
+    /// Presses after a travel.
+    pub fn press(&mut self, travel: f64) -> Contact {
+        self.press_at(travel * self.direction)
+    }
+
+    /// Presses where the patch is after it has moved (metres, in the patch frame), which is the objects' motion the other way.
+    pub fn press_at(&mut self, moved: DVec3) -> Contact {
+        self.at(moved, press_with_contacts)
+    }
+
+    /// Presses a flat patch along its axis by its taxels as they travel, from the front.
+    pub fn press_through(&mut self, taxels: &TaxelTree, travel: f64) -> Contact {
+        let contact = self.at(
+            travel * self.direction,
+            |patch, objects, poses, workspace| {
+                press::push_tree(
+                    (taxels, None),
+                    patch.n_taxels(),
+                    (objects, poses),
+                    workspace,
+                );
+                press::stop(patch, workspace)
+            },
+        );
+        Contact { travel, ..contact }
+    }
+
+    fn at(
+        &mut self,
+        moved: DVec3,
+        press: impl FnOnce(&Patch, &[Model], &[Pose], &mut Workspace) -> Contact,
+    ) -> Contact {
+        let mut poses = std::mem::take(&mut self.workspace.poses);
+        poses.clear();
+        let back = -moved;
+        poses.extend(self.patch_from_objects.iter().map(|pose| Pose {
+            translation: pose.translation + back,
+            ..*pose
+        }));
+        let counts = press(self.patch, self.objects, &poses, self.workspace);
+        self.workspace.poses = poses;
+        counts
+    }
+
+    /// Presses from one travel to another, `None` where nothing is met, and slides along a straight line.
+    pub fn press_and_slide(
+        &mut self,
+        travels: Option<[f64; 2]>,
+        slide: DVec3,
+        mut friction: Option<&mut FrictionState>,
+    ) -> Option<Contact> {
+        self.workspace.hold([]);
+        if let Some(friction) = &mut friction {
+            friction.step(self.patch, &[], &[], NormalForce::Springs);
+        }
+        let Some([first, travel]) = travels else {
+            press::deflect(self.patch, &[], &[], self.workspace);
+            return None;
+        };
+        let n_steps = |length| match friction {
+            Some(_) => self.n_friction_steps(length),
+            None => self.patch.n_steps(length),
+        };
+        let direction = self.direction;
+        let depth = travel - first;
+        let pressed = parts([first, travel], n_steps(depth)).map(|part| part * direction);
+        let length = slide.length();
+        let n_slides = if length > 0.0 { n_steps(length) } else { 0 };
+        let slid = parts([0.0, 1.0], n_slides).map(|part| travel * direction + part * slide);
+        let mut contact = Contact::default();
+        let mut places = pressed.chain(slid).peekable();
+        while let Some(place) = places.next() {
+            let is_last = places.peek().is_none();
+            let are_asked = is_last && self.contacts == ContactRequest::AtEnd;
+            contact = match are_asked || friction.is_some() {
+                true => self.press_at(place),
+                false => self.at(place, press::deflect),
+            };
+            if !is_last {
+                self.workspace.hold_touched();
+            }
+            if let Some(friction) = &mut friction {
+                let (contacts, poses) = (self.workspace.contacts(), &self.workspace.poses);
+                friction.step(self.patch, contacts, poses, NormalForce::Springs);
+            }
+        }
+        self.workspace.hold([]);
+        Some(Contact { travel, ..contact })
+    }
+}
+
+/// The ends of so many equal parts of a stretch; the last is its end.
+fn parts([start, end]: [f64; 2], n: usize) -> impl Iterator<Item = f64> {
+    (1..=n).map(move |number| match number == n {
+        true => end,
+        false => start + (end - start) * number as f64 / n as f64,
+    })
+}
+
+/// The travels between which the balls around a patch that goes along a direction and objects meet; `None` if none does.
+pub(crate) fn meeting(
+    patch: &Patch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    direction: DVec3,
+) -> Option<[f64; 2]> {
+    let tree = patch.tree();
+    let around = tree.bounds()?;
+    let center = around.center();
+    let radius = 0.5 * around.size().length() + tree.largest_radius();
+    let pairs = objects.iter().zip(patch_from_objects);
+    let meetings = pairs.filter_map(|(object, pose)| {
+        let bounds = object.bounds();
+        let away = pose.transform_point(bounds.center()) - center;
+        let reach = radius + 0.5 * bounds.size().length();
+        let ahead = away.dot(direction);
+        let half2 = reach * reach - away.cross(direction).length_squared();
+        (half2 > 0.0).then(|| [ahead - half2.sqrt(), ahead + half2.sqrt()])
+    });
+    meetings.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
+}

@@ -1,0 +1,309 @@
+//! The kernel of any layout: each taxel along its own axis, only those that a sphere reaches.
+
+use super::near_spheres::{PlacedUnion, needed_along, needed_of_leaf};
+use crate::contact::grid::View;
+use crate::contact::instructions::for_instructions;
+use crate::contact::law::saturation_limit;
+use crate::contact::mesh::skin_mesh::MeshAt;
+use crate::contact::taxel_contact::TaxelContact;
+use crate::contact::workspace::Held;
+use crate::contact::{Contact, Workspace};
+use crate::geometry::Pose;
+use crate::mesh::Triangle;
+use crate::objects::{MeshModel, Model, Sphere, SphereUnion};
+use crate::world::{EvenGrid, LEAF, Patch, PlacedTaxel, TaxelTree};
+use glam::DVec3;
+
+/// Pushes each taxel as far as an object needs, without a stop.
+pub(crate) fn push(
+    patch: &Patch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    workspace: &mut Workspace,
+) {
+    let taxels = (patch.tree(), patch.even_grid());
+    let placed = (objects, patch_from_objects);
+    push_tree(taxels, patch.n_taxels(), placed, workspace);
+    push_held(patch, objects, patch_from_objects, workspace);
+}
+
+/// The same of so many taxels in a tree, which may be an even grid, whatever is held.
+pub(crate) fn push_tree(
+    (taxels, even_grid): (&TaxelTree, Option<&EvenGrid>),
+    n_taxels: usize,
+    (objects, patch_from_objects): (&[Model], &[Pose]),
+    workspace: &mut Workspace,
+) {
+    assert_eq!(
+        objects.len(),
+        patch_from_objects.len(),
+        "one pose an object"
+    );
+    workspace.clear(n_taxels);
+    for (number, (object, pose)) in objects.iter().zip(patch_from_objects).enumerate() {
+        match object {
+            Model::Spheres(union) => {
+                let placed = PlacedUnion::new(union, pose);
+                let mut near = std::mem::take(&mut workspace.near);
+                placed.gather(|ball| taxels.is_near(ball.center, ball.radius), &mut near);
+                match even_grid {
+                    Some(grid) => push_along_rows(grid, (number, union, &near), pose, workspace),
+                    None => push_by_spheres(
+                        workspace.instructions(),
+                        taxels,
+                        (number, &placed, &near),
+                        workspace,
+                    ),
+                }
+                workspace.near = near;
+            }
+            Model::Mesh(mesh) => push_by_mesh(taxels, number, mesh, pose, workspace),
+        }
+    }
+}
+
+/// Pushes the taxels by the parts that are held and lie behind the substrate; those in front of it push anyway.
+fn push_held(
+    patch: &Patch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    workspace: &mut Workspace,
+) {
+    let held = std::mem::take(&mut workspace.held);
+    for &Held { taxel, by } in &held {
+        let taxel = PlacedTaxel::of(patch.layout(), patch.taxels(), taxel as usize);
+        let [object, part] = by.map(|number| number as usize);
+        let pose = &patch_from_objects[object];
+        let needed = match &objects[object] {
+            Model::Spheres(union) => {
+                let Sphere { center, radius } = union.spheres()[part];
+                let from = taxel.center - pose.transform_point(center);
+                let [across_x, across_y] = taxel.across;
+                let frame = [across_x, across_y, taxel.axis];
+                let needed = |behind| needed_along(from, frame, taxel.radius + radius, behind);
+                // In front of the substrate it has pushed already.
+                if needed(taxel.behind) > 0.0 {
+                    continue;
+                }
+                needed(f64::NEG_INFINITY)
+            }
+            Model::Mesh(mesh) => {
+                let stop = MeshAt::new(mesh, pose).stop_by(&taxel, part);
+                stop.map_or(0.0, |stop| -stop.height)
+            }
+        };
+        workspace.push(taxel.number, needed, by);
+    }
+    workspace.held = held;
+}
+
+/// The same as [`push_by_spheres`] to the bit, for taxels in rows: no search, and no look at spheres that are above all of them.
+fn push_along_rows(
+    grid: &EvenGrid,
+    (object, union, near): (usize, &SphereUnion, &[u32]),
+    pose: &Pose,
+    workspace: &mut Workspace,
+) {
+    let Workspace {
+        deflections,
+        deciding,
+        touched,
+        lines,
+        ..
+    } = workspace;
+    lines.lay(&grid.grid);
+    let view = View::new(grid.radius, lines, pose);
+    let behind = grid.behind;
+    let mut is_near = false;
+    for &number in near {
+        let Some(placed) = view.place(&union.spheres()[number as usize], 0.0) else {
+            continue;
+        };
+        let mark = [object as u32, number];
+        is_near = true;
+        placed.indent_and_mark(lines, behind, deflections, (mark, deciding));
+    }
+    if !is_near {
+        return;
+    }
+    touched.clear();
+    let numbers = deflections.iter().enumerate();
+    touched.extend(numbers.filter_map(|(number, &d)| (d > 0.0).then_some(number as u32)));
+}
+
+for_instructions! {
+    /// Pushes the taxels by the near spheres of an object.
+    fn push_by_spheres(
+        taxels: &TaxelTree,
+        placed: (usize, &PlacedUnion, &[u32]),
+        workspace: &mut Workspace,
+    ) = push_by_each
+}
+
+#[inline(always)]
+fn push_by_each(
+    taxels: &TaxelTree,
+    (object, placed, near): (usize, &PlacedUnion, &[u32]),
+    workspace: &mut Workspace,
+) {
+    for &number in near {
+        let sphere = placed.at(number);
+        let deciding = [object as u32, number];
+        taxels.each_leaf(
+            |node| node.is_near(sphere.center, sphere.radius),
+            |leaf| {
+                let needed = needed_of_leaf(leaf, &sphere);
+                let pushes = |k: usize| needed[k] > 0.0;
+                if (0..LEAF).fold(false, |any, k| any | pushes(k)) {
+                    for k in (0..LEAF).filter(|&k| pushes(k)) {
+                        workspace.push(leaf.numbers[k], needed[k], deciding);
+                    }
+                }
+            },
+        );
+    }
+}
+
+fn push_by_mesh(
+    taxels: &TaxelTree,
+    object: usize,
+    mesh: &MeshModel,
+    pose: &Pose,
+    workspace: &mut Workspace,
+) {
+    let mesh = MeshAt::new(mesh, pose);
+    let (center, radius) = mesh.ball();
+    taxels.each_near(center, radius, |taxel| {
+        if let Some(stop) = mesh.stop(taxel) {
+            let deciding = [object as u32, stop.triangle as u32];
+            workspace.push(taxel.number, -stop.height, deciding);
+        }
+    });
+}
+
+/// Deflects the taxels, and leaves what pushes each of them.
+pub(crate) fn deflect(
+    patch: &Patch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    workspace: &mut Workspace,
+) -> Contact {
+    push(patch, objects, patch_from_objects, workspace);
+    stop(patch, workspace)
+}
+
+/// Stops the touched taxels at their strokes.
+pub(crate) fn stop(patch: &Patch, workspace: &mut Workspace) -> Contact {
+    let mut counts = Contact::default();
+    for &taxel in &workspace.touched {
+        let deflection = &mut workspace.deflections[taxel as usize];
+        let stroke = patch.taxels().at(taxel as usize).stroke;
+        counts.n_touched += 1;
+        counts.n_saturated += usize::from(*deflection > saturation_limit(stroke));
+        *deflection = deflection.min(stroke);
+    }
+    counts
+}
+
+/// Presses a patch on objects, right where they are: poses are `patch_from_object`, one an object.
+///
+/// What is behind the substrate does not count (the contact stage's title page has the rule), for each taxel by itself: so what a forearm
+/// rests on does not press on its other side. What has gone far past the stroke lies there, too, unless it is known how it came
+/// ([`press_to_depth`]). A single part decides each touched taxel; where two need the same, the object that comes first, and of a union the first of its spheres.
+///
+/// ```
+/// use bubbletouch_sim::contact::{Workspace, press_with_contacts, spring_load};
+/// use bubbletouch_sim::geometry::Pose;
+/// use bubbletouch_sim::objects::{Sphere, SphereUnion};
+/// use bubbletouch_sim::world::{Layout, Patch, Taxel, Taxels};
+/// use glam::DVec3;
+///
+/// // A fingertip: half a ball of 8 mm with a taxel every 1.5 mm.
+/// let layout = Layout::sphere_cap(8e-3, std::f64::consts::FRAC_PI_2, 1.5e-3)?;
+/// let taxel = Taxel { radius: 0.5e-3, stiffness: 100.0, damping: 0.0, stroke: 2e-3 };
+/// let fingertip = Patch::new("fingertip", layout, Taxels::Equal(taxel))?;
+///
+/// // A marble comes half a millimetre too near, from the side.
+/// let marble = Sphere { center: DVec3::ZERO, radius: 8e-3 };
+/// let objects = [SphereUnion::new(vec![marble])?.into()];
+/// let pose = Pose::from_translation(16e-3 * DVec3::new(0.6, 0.0, 0.8));
+/// let mut workspace = Workspace::new();
+/// let counts = press_with_contacts(&fingertip, &objects, &[pose], &mut workspace);
+/// assert!(counts.n_touched > 3 && counts.n_saturated == 0);
+///
+/// // The marble is pushed back the way it came.
+/// let load = spring_load(&fingertip, workspace.contacts());
+/// let force = load.on_object.force;
+/// assert!(force.normalize().dot(DVec3::new(0.6, 0.0, 0.8)) > 0.95);
+/// # Ok::<(), bubbletouch_sim::Error>(())
+/// ```
+///
+/// # Panics
+/// If there are not as many poses as objects.
+pub fn press_with_contacts(
+    patch: &Patch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    workspace: &mut Workspace,
+) -> Contact {
+    push(patch, objects, patch_from_objects, workspace);
+    meet(patch, objects, patch_from_objects, workspace)
+}
+
+/// Stops the touched taxels at their strokes, and records the contact of each.
+fn meet(
+    patch: &Patch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    workspace: &mut Workspace,
+) -> Contact {
+    workspace.touched.sort_unstable();
+    let mut counts = Contact::default();
+    for &number in &workspace.touched {
+        let taxel = number as usize;
+        let [object, part] = workspace.deciding[taxel].map(|number| number as usize);
+        let (center, axis) = (
+            patch.layout().centers()[taxel],
+            patch.layout().axes()[taxel],
+        );
+        let properties = patch.taxels().at(taxel);
+        let needed = workspace.deflections[taxel];
+        let pushed = center - needed * axis;
+        let pose = &patch_from_objects[object];
+        let (point, normal) = nearest_point(&objects[object], part, pose, pushed);
+        let normal = normal.normalize_or(-axis);
+        let contact = TaxelContact {
+            taxel,
+            object,
+            part,
+            deflection: needed.min(properties.stroke),
+            needed,
+            normal,
+            cosine: (-normal.dot(axis)).max(0.0),
+            point,
+        };
+        workspace.deflections[taxel] = contact.deflection;
+        counts.n_touched += 1;
+        counts.n_saturated += usize::from(contact.is_saturated(properties));
+        workspace.contacts.push(contact);
+    }
+    counts
+}
+
+/// The point of an object's part that is nearest to a place, and the direction from there to the place; in the patch frame.
+fn nearest_point(object: &Model, part: usize, pose: &Pose, place: DVec3) -> (DVec3, DVec3) {
+    match object {
+        Model::Spheres(union) => {
+            let Sphere { center, radius } = union.spheres()[part];
+            let center = pose.transform_point(center);
+            let away = place - center;
+            (center + radius * away.normalize_or_zero(), away)
+        }
+        Model::Mesh(mesh) => {
+            let corners = mesh.mesh().triangle(part).0;
+            let triangle = Triangle(corners.map(|corner| pose.transform_point(corner)));
+            let (point, _) = triangle.closest(place);
+            (point, place - point)
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! Joins of features of images.
+
+use super::ImageFeature;
+use super::feature::{Feature, Workspace};
+use super::image::Cut;
+use crate::error::{Error, Result};
+use std::fmt::{self, Debug};
+
+/// One feature of images, or several one after the other in the order of [`ImageFeature::ALL`].
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Join(u8);
+
+impl Join {
+    /// Of at least one feature, each once.
+    ///
+    /// # Errors
+    /// None, or one twice.
+    pub fn new(features: &[ImageFeature]) -> Result<Self> {
+        let mut join = Self(0);
+        for &feature in features {
+            let bit = 1 << feature as u8;
+            if join.0 & bit != 0 {
+                return Err(Error::input("features", feature.name(), "each once"));
+            }
+            join.0 |= bit;
+        }
+        match join.0 {
+            0 => Err(Error::input("features", "none", "at least one")),
+            _ => Ok(join),
+        }
+    }
+
+    /// The features, in their order.
+    pub fn features(self) -> impl Iterator<Item = ImageFeature> {
+        let all = ImageFeature::ALL.iter().copied();
+        all.filter(move |&feature| self.0 & (1 << feature as u8) != 0)
+    }
+
+    /// How many numbers it makes of an ny × nx image.
+    pub fn n_values(self, shape: (usize, usize)) -> usize {
+        self.features().map(|f| (f.about().n_values)(shape)).sum()
+    }
+}
+
+/// As a study spells it: `fourier_mellin+descriptors`.
+impl fmt::Display for Join {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let names: Vec<&str> = self.features().map(ImageFeature::name).collect();
+        f.write_str(&names.join("+"))
+    }
+}
+
+impl Debug for Join {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+impl ImageFeature {
+    /// The name in a study.
+    pub fn name(self) -> &'static str {
+        Self::NAMES[self as usize].0
+    }
+}
+
+/// A join that is prepared for images of one size and full scale.
+#[derive(Debug)]
+pub struct ImageFeatures {
+    nx: usize,
+    cut: Cut,
+    /// Each with how many numbers it makes.
+    features: Vec<(Box<dyn Feature>, usize)>,
+}
+
+impl ImageFeatures {
+    /// For images of ny × nx values from 0 to `full_scale`, of which some is cut off.
+    pub fn new(join: Join, shape: (usize, usize), full_scale: f64, cut: Cut) -> Self {
+        let features = join.features().map(|feature| {
+            let about = feature.about();
+            ((about.prepare)(shape, full_scale), (about.n_values)(shape))
+        });
+        Self {
+            nx: shape.1,
+            cut,
+            features: features.collect(),
+        }
+    }
+
+    /// Writes the features of a frame (ny · nx values, row after row). Nothing is allocated once `workspace` has seen one of its size.
+    ///
+    /// # Panics
+    /// If `out` is not as long as [`Join::n_values`] says.
+    pub fn write(&self, frame: &[f64], workspace: &mut Workspace, out: &mut [f64]) {
+        let mut image = std::mem::take(&mut workspace.image);
+        image.read(frame, self.nx, self.cut);
+        let mut out = out;
+        for (feature, n_values) in &self.features {
+            let (own, rest) = out.split_at_mut(*n_values);
+            feature.write(&image, workspace, own);
+            out = rest;
+        }
+        assert!(out.is_empty(), "numbers of the join");
+        workspace.image = image;
+    }
+}

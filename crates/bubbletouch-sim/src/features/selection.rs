@@ -1,0 +1,93 @@
+//! Features of a touch by their names in a study.
+
+use super::{ImageFeature, Join, fourier_magnitude, fourier_mellin};
+use crate::error::Error;
+use serde::{Deserialize, Serialize};
+
+/// Features of a touch, as a study names them.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
+)]
+#[serde(try_from = "String", into = "String")]
+pub enum Features {
+    /// The measurements.
+    #[default]
+    Raw,
+    /// Each frame without what a constant pressure adds to it.
+    Centred,
+    /// Each touch scaled to norm 1.
+    UnitNorm,
+    /// Centred, then scaled to norm 1.
+    CentredUnitNorm,
+    /// Of each frame as an image.
+    OfImage(Join),
+}
+
+/// Features of measurements: name in a study, and what people call it where that is something else.
+const OF_MEASUREMENTS: [(&str, Features); 4] = [
+    ("raw", Features::Raw),
+    ("centred", Features::Centred),
+    ("unit_norm", Features::UnitNorm),
+    ("centred_unit_norm", Features::CentredUnitNorm),
+];
+
+impl Features {
+    /// What people call those whose name does not say it.
+    pub const NAMES: &[(&str, &str)] = &[
+        ("centred_unit_norm", "centred, unit norm"),
+        ("fourier_magnitude", fourier_magnitude::ABOUT.words),
+        ("fourier_mellin", fourier_mellin::ABOUT.words),
+        (
+            "fourier_mellin+polar_harmonics+descriptors",
+            "joined invariants",
+        ),
+    ];
+
+    /// The features of images, of those that are.
+    pub fn of_image(self) -> Option<Join> {
+        match self {
+            Self::OfImage(join) => Some(join),
+            _ => None,
+        }
+    }
+
+    /// How many numbers it makes of a frame of m measurements of an ny × nx array.
+    pub fn n_values(self, m: usize, shape: (usize, usize)) -> usize {
+        self.of_image().map_or(m, |join| join.n_values(shape))
+    }
+}
+
+impl From<Features> for String {
+    fn from(features: Features) -> Self {
+        if let Features::OfImage(join) = features {
+            return join.to_string();
+        }
+        let mut known = OF_MEASUREMENTS.iter();
+        let found = known.find(|(_, known)| *known == features);
+        found.map_or_else(Self::new, |(name, _)| (*name).to_owned())
+    }
+}
+
+impl TryFrom<String> for Features {
+    type Error = Error;
+
+    fn try_from(text: String) -> Result<Self, Error> {
+        let mut known = OF_MEASUREMENTS.iter();
+        if let Some((_, features)) = known.find(|(name, _)| *name == text) {
+            return Ok(*features);
+        }
+        let all = ImageFeature::ALL.iter().copied();
+        let named = |name: &str| all.clone().find(|feature| feature.name() == name.trim());
+        let features: Option<Vec<ImageFeature>> = text.split('+').map(named).collect();
+        match features {
+            Some(features) => Join::new(&features).map(Self::OfImage),
+            None => {
+                let of_measurements = OF_MEASUREMENTS.map(|(name, _)| name).join(", ");
+                let of_images = all.map(ImageFeature::name).collect::<Vec<_>>().join(", ");
+                let allowed =
+                    format!("{of_measurements}, or {of_images}, or several of these joined by +");
+                Err(Error::input("features", format!("{text:?}"), allowed))
+            }
+        }
+    }
+}

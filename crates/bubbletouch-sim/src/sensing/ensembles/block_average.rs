@@ -1,0 +1,277 @@
+//! Averages over blocks of neighbouring taxels.
+
+use super::ensemble::{EnsembleAbout, Operator};
+use ndarray::{Array1, Array2, ArrayView2, ArrayViewMut2, s};
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+use std::ops::Range;
+
+/// A rectangle of taxels.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Block {
+    /// Along patch y.
+    pub rows: Range<usize>,
+    /// Along patch x.
+    pub columns: Range<usize>,
+}
+
+impl Block {
+    fn area(&self) -> usize {
+        self.rows.len() * self.columns.len()
+    }
+
+    /// Two halves along the longer side (rows when equal), the first not the smaller.
+    fn halves(self) -> [Self; 2] {
+        let half = |range: &Range<usize>| range.start + range.len().div_ceil(2);
+        if self.rows.len() >= self.columns.len() {
+            let middle = half(&self.rows);
+            let columns = self.columns.clone();
+            [(self.rows.start..middle), (middle..self.rows.end)].map(|rows| Self {
+                rows,
+                columns: columns.clone(),
+            })
+        } else {
+            let middle = half(&self.columns);
+            let rows = self.rows.clone();
+            [(self.columns.start..middle), (middle..self.columns.end)].map(|columns| Self {
+                rows: rows.clone(),
+                columns,
+            })
+        }
+    }
+}
+
+/// Splits an ny × nx array into m blocks, in reading order of their first taxels.
+fn blocks(grid: (usize, usize), m: usize) -> Vec<Block> {
+    let equal = equal_squares(grid, m).or_else(|| equal_halves(grid, m));
+    let mut blocks = equal.unwrap_or_else(|| rows_of_blocks(grid, m));
+    blocks.sort_by_key(|block| (block.rows.start, block.columns.start));
+    blocks
+}
+
+/// The equal squares that tile the array with m blocks, if there are any.
+fn equal_squares((ny, nx): (usize, usize), m: usize) -> Option<Vec<Block>> {
+    let side = (ny * nx / m).isqrt();
+    let tiles = side * side * m == ny * nx && ny % side == 0 && nx % side == 0;
+    let range = |tile: usize| tile * side..(tile + 1) * side;
+    tiles.then(|| {
+        (0..ny / side)
+            .flat_map(|row| (0..nx / side).map(move |column| (row, column)))
+            .map(|(row, column)| Block {
+                rows: range(row),
+                columns: range(column),
+            })
+            .collect()
+    })
+}
+
+/// Blocks by halving, if they are equally large.
+fn equal_halves(grid: (usize, usize), m: usize) -> Option<Vec<Block>> {
+    let blocks = split_blocks(grid, m);
+    let area = blocks[0].area();
+    let is_equal = blocks.iter().all(|block| block.area() == area);
+    is_equal.then_some(blocks)
+}
+
+/// As many rows of blocks as make these nearly square, and in each about as many as in the others.
+fn rows_of_blocks((ny, nx): (usize, usize), m: usize) -> Vec<Block> {
+    let square = (m as f64 * ny as f64 / nx as f64).sqrt().round() as usize;
+    let n_rows = square.clamp(m.div_ceil(nx), ny.min(m));
+    // The k-th of n parts of a length.
+    let part = |k: usize, n: usize, length: usize| k * length / n..(k + 1) * length / n;
+    let rows = (0..n_rows).flat_map(|row| {
+        let n_columns = part(row, n_rows, m).len();
+        (0..n_columns).map(move |column| Block {
+            rows: part(row, n_rows, ny),
+            columns: part(column, n_columns, nx),
+        })
+    });
+    rows.collect()
+}
+
+/// Halves the largest block (the oldest of equals) until there are m.
+fn split_blocks((ny, nx): (usize, usize), m: usize) -> Vec<Block> {
+    let whole = Block {
+        rows: 0..ny,
+        columns: 0..nx,
+    };
+    let mut blocks = vec![whole];
+    let mut largest_first = BinaryHeap::from([(ny * nx, Reverse(0), 0)]);
+    let mut age = 0;
+    while blocks.len() < m {
+        let Some((_, _, index)) = largest_first.pop() else {
+            break;
+        };
+        let [first, second] = blocks[index].clone().halves();
+        let other = blocks.len();
+        for (block, index) in [(&first, index), (&second, other)] {
+            age += 1;
+            largest_first.push((block.area(), Reverse(age), index));
+        }
+        blocks[index] = first;
+        blocks.push(second);
+    }
+    blocks
+}
+
+/// ‖φᵢ‖² of each row of Φ; rows are orthogonal.
+fn row_squares(blocks: &[Block]) -> Array1<f64> {
+    blocks
+        .iter()
+        .map(|block| 1.0 / block.area() as f64)
+        .collect()
+}
+
+/// Measurement, taxel and value of each entry that is not zero.
+fn each_entry(blocks: &[Block], visit: &mut dyn FnMut(usize, usize, f64)) {
+    let nx = width(blocks);
+    for (measurement, block) in blocks.iter().enumerate() {
+        for line in block.rows.clone() {
+            for column in block.columns.clone() {
+                visit(measurement, line * nx + column, 1.0 / block.area() as f64);
+            }
+        }
+    }
+}
+
+/// nx of the array that they cover.
+fn width(blocks: &[Block]) -> usize {
+    blocks.iter().map(|b| b.columns.end).max().unwrap_or(1)
+}
+
+/// The mean of each block of each frame.
+fn measure(blocks: &[Block], frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64>) {
+    let nx = width(blocks);
+    for (frame, mut row) in frames.outer_iter().zip(out.outer_iter_mut()) {
+        for (y, block) in row.iter_mut().zip(blocks) {
+            let mut sum = 0.0;
+            for line in block.rows.clone() {
+                let taxels = line * nx + block.columns.start..line * nx + block.columns.end;
+                sum += match frame.as_slice() {
+                    Some(frame) => frame[taxels].iter().sum::<f64>(),
+                    None => frame.slice(s![taxels]).iter().sum::<f64>(),
+                };
+            }
+            *y = sum / block.area() as f64;
+        }
+    }
+}
+
+pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
+    is_prefix_nested: false,
+    needs_rows: true,
+    ..EnsembleAbout::new("block average", |grid, m, _| {
+        Box::new(Blocks(blocks(grid, m)))
+    })
+};
+
+/// The blocks of measurements.
+#[derive(Debug)]
+struct Blocks(Vec<Block>);
+
+impl Operator for Blocks {
+    fn measure(&self, frames: ArrayView2<f64>, out: ArrayViewMut2<f64>) {
+        measure(&self.0, frames, out);
+    }
+
+    fn each_entry(&self, visit: &mut dyn FnMut(usize, usize, f64)) {
+        each_entry(&self.0, visit);
+    }
+
+    fn row_norm(&self) -> f64 {
+        row_squares(&self.0).mean().unwrap_or(1.0).sqrt()
+    }
+
+    fn known_gram(&self) -> Option<Array2<f64>> {
+        Some(Array2::from_diag(&row_squares(&self.0)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn covered(grid: (usize, usize), blocks: &[Block]) -> Vec<usize> {
+        let mut count = vec![0; grid.0 * grid.1];
+        for block in blocks {
+            for row in block.rows.clone() {
+                for column in block.columns.clone() {
+                    count[row * grid.1 + column] += 1;
+                }
+            }
+        }
+        count
+    }
+
+    #[test]
+    fn any_number_of_blocks_covers_every_taxel_once() {
+        for grid in [(1, 1), (1, 9), (7, 3), (8, 8), (5, 12)] {
+            for m in 1..=grid.0 * grid.1 {
+                let blocks = blocks(grid, m);
+                assert_eq!(blocks.len(), m);
+                assert!(covered(grid, &blocks).iter().all(|&count| count == 1));
+            }
+        }
+    }
+
+    #[test]
+    fn blocks_are_equal_squares_where_the_array_allows() {
+        for (grid, m, side) in [
+            ((64, 64), 1024, 2),
+            ((64, 64), 256, 4),
+            ((64, 64), 64, 8),
+            ((40, 40), 100, 4),
+            ((32, 64), 128, 4),
+            ((9, 6), 6, 3),
+            ((5, 5), 25, 1),
+        ] {
+            for block in blocks(grid, m) {
+                assert_eq!((block.rows.len(), block.columns.len()), (side, side));
+            }
+        }
+    }
+
+    #[test]
+    fn blocks_are_nearly_square_where_they_cannot_be_equal() {
+        for (grid, m) in [
+            ((28, 50), 88),
+            ((28, 50), 22),
+            ((31, 31), 100),
+            ((10, 60), 37),
+        ] {
+            let side = (grid.0 as f64 * grid.1 as f64 / m as f64).sqrt();
+            for block in blocks(grid, m) {
+                let sides = [block.rows.len(), block.columns.len()].map(|n| n as f64 / side);
+                assert!(
+                    sides.iter().all(|ratio| (0.6..1.6).contains(ratio)),
+                    "{grid:?}, {m}: {block:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn splitting_meets_the_equal_squares_of_powers_of_two() {
+        for m in [1, 4, 16, 64, 256] {
+            let mut split = split_blocks((16, 16), m);
+            split.sort_by_key(|block| (block.rows.start, block.columns.start));
+            assert_eq!(Some(split), equal_squares((16, 16), m));
+        }
+    }
+
+    #[test]
+    fn a_smaller_number_of_blocks_is_a_coarsening_of_a_larger() {
+        let inside = |inner: &Block, outer: &Block| {
+            outer.rows.start <= inner.rows.start
+                && inner.rows.end <= outer.rows.end
+                && outer.columns.start <= inner.columns.start
+                && inner.columns.end <= outer.columns.end
+        };
+        for (coarse, fine) in [(1, 5), (5, 6), (6, 17), (17, 64), (30, 31)] {
+            let coarse = split_blocks((11, 7), coarse);
+            for cell in split_blocks((11, 7), fine) {
+                assert_eq!(coarse.iter().filter(|c| inside(&cell, c)).count(), 1);
+            }
+        }
+    }
+}

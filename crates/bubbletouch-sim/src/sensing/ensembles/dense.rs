@@ -1,0 +1,104 @@
+//! A stored matrix Φ.
+
+use super::ensemble::{Draw, EnsembleAbout, Operator};
+use crate::random::Seed;
+use ndarray::linalg::general_mat_mul;
+use ndarray::{Array1, Array2, ArrayView2, ArrayViewMut2, s};
+use rand_chacha::ChaCha8Rng;
+
+/// A stored matrix Φ, m × n.
+#[derive(Debug)]
+pub(crate) struct Dense(pub(crate) Array2<f64>);
+
+impl Operator for Dense {
+    fn measure(&self, frames: ArrayView2<f64>, out: ArrayViewMut2<f64>) {
+        measure(&self.0, frames, out);
+    }
+
+    fn each_entry(&self, visit: &mut dyn FnMut(usize, usize, f64)) {
+        let entries = self.0.indexed_iter();
+        entries.for_each(|((measurement, taxel), &value)| visit(measurement, taxel, value));
+    }
+
+    fn row_norm(&self) -> f64 {
+        let square = self.0.iter().map(|v| v * v).sum::<f64>();
+        (square / self.0.nrows() as f64).sqrt()
+    }
+
+    fn stored(&self) -> Option<&Array2<f64>> {
+        Some(&self.0)
+    }
+}
+
+/// One of a stored matrix, by what draws it from n, m and a stream.
+pub(crate) const fn about(words: &'static str, draw: Draw) -> EnsembleAbout {
+    EnsembleAbout {
+        // As it is drawn, and as it is kept.
+        bytes: |m, n| 16.0 * n * m,
+        ..EnsembleAbout::new(words, draw)
+    }
+}
+
+/// Rows of n numbers of variance 1, divided by √n. Row r comes from the stream's child r alone, so a larger m keeps the
+/// smaller's rows.
+pub(crate) fn by_rows(
+    m: usize,
+    n: usize,
+    stream: &Seed,
+    row: impl Fn(&mut ChaCha8Rng) -> Array1<f64>,
+) -> Array2<f64> {
+    let scale = 1.0 / (n as f64).sqrt();
+    let mut matrix: Array2<f64> = Array2::zeros((m, n));
+    for (number, mut entries) in matrix.outer_iter_mut().enumerate() {
+        let mut rng = stream.numbered(number as u64).rng();
+        entries.assign(&row(&mut rng));
+    }
+    matrix * scale
+}
+
+/// Taxels that the matrix product sums one after the other before it adds the sum to those of the taxels before (matrixmultiply's
+/// `D_KC`): what is left out within such a block changes no bit of the result.
+const SUMMED_TOGETHER: usize = 256;
+/// Share of the taxels above which nothing is left out: to copy what is touched would take longer than what is saved.
+const MOSTLY_TOUCHED: f64 = 0.8;
+
+/// Y = X Φᵀ by the blocked matrix product, which sums each entry over the taxels in one fixed order whatever the
+/// number of frames or measurements (a law-test holds it to that). Taxels that read zero in all frames are left out, which
+/// changes no bit.
+fn measure(matrix: &Array2<f64>, frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64>) {
+    let touched = touched(frames);
+    if touched.len() as f64 > MOSTLY_TOUCHED * frames.ncols() as f64 {
+        return general_mat_mul(1.0, &frames, &matrix.t(), 0.0, &mut out);
+    }
+    out.fill(0.0);
+    for taxels in touched.chunk_by(|a, b| a / SUMMED_TOGETHER == b / SUMMED_TOGETHER) {
+        let (frames, matrix) = (columns(frames, taxels), columns(matrix.view(), taxels));
+        general_mat_mul(1.0, &frames, &matrix.t(), 1.0, &mut out);
+    }
+}
+
+/// The taxels that read something in any frame, in order.
+fn touched(frames: ArrayView2<f64>) -> Vec<usize> {
+    let mut any = vec![false; frames.ncols()];
+    for frame in frames.outer_iter() {
+        let taxels = any.iter_mut().zip(frame);
+        taxels.for_each(|(any, value)| *any |= *value != 0.0);
+    }
+    (0..any.len()).filter(|&taxel| any[taxel]).collect()
+}
+
+/// Some columns of a matrix, in order, next to each other.
+fn columns(matrix: ArrayView2<f64>, picked: &[usize]) -> Array2<f64> {
+    let mut columns = Array2::zeros((matrix.nrows(), picked.len()));
+    for (row, mut to) in matrix.outer_iter().zip(columns.outer_iter_mut()) {
+        let mut start = 0;
+        // Neighbours are copied together.
+        for run in picked.chunk_by(|a, b| a + 1 == *b) {
+            let end = start + run.len();
+            let from = row.slice(s![run[0]..run[0] + run.len()]);
+            to.slice_mut(s![start..end]).assign(&from);
+            start = end;
+        }
+    }
+    columns
+}

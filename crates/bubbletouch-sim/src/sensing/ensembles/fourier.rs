@@ -1,0 +1,81 @@
+//! The lowest Fourier coefficients of a frame, as real numbers.
+//!
+//! Rows are cos and sin of 2π (u x / nx + v y / ny), by rising (u/nx)² + (v/ny)², of norm 1: frequency 0 first, then a cosine and a sine of each
+//! pair ± (u, v). They are orthonormal; all n of them are a rotation. What a smooth contact is made of lies in the first, but what varies from
+//! touch to touch is how it is placed, which is in the phase of all of them.
+
+use super::dense::{Dense, about};
+use super::ensemble::EnsembleAbout;
+use ndarray::Array2;
+use std::f64::consts::TAU;
+
+pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
+    needs_rows: true,
+    ..about("lowest Fourier coefficients", |grid, m, _| {
+        Box::new(Dense(rows(grid, m)))
+    })
+};
+
+/// One of each pair of frequencies ± (u, v), with its cosine, and its sine unless that is 0 on every taxel; lowest first.
+fn waves((ny, nx): (usize, usize)) -> Vec<(usize, usize, bool)> {
+    let mut waves = Vec::with_capacity(ny * nx);
+    for v in 0..ny {
+        for u in 0..nx {
+            let opposite = ((ny - v) % ny, (nx - u) % nx);
+            if (v, u) <= opposite {
+                waves.push((u, v, false));
+            }
+            if (v, u) < opposite {
+                waves.push((u, v, true));
+            }
+        }
+    }
+    let square = |k: usize, n: usize| (k.min(n - k) as f64 / n as f64).powi(2);
+    let frequency = |&(u, v, _): &(usize, usize, bool)| square(u, nx) + square(v, ny);
+    // Stable: of one frequency in the order above.
+    waves.sort_by(|a, b| frequency(a).total_cmp(&frequency(b)));
+    waves
+}
+
+fn rows((ny, nx): (usize, usize), m: usize) -> Array2<f64> {
+    let waves = waves((ny, nx));
+    let mut rows = Array2::zeros((m, ny * nx));
+    for (mut row, &(u, v, is_sine)) in rows.outer_iter_mut().zip(&waves) {
+        for (taxel, value) in row.iter_mut().enumerate() {
+            // Whole turns are left out before they cost digits.
+            let turns = (u * (taxel % nx) % nx) as f64 / nx as f64
+                + (v * (taxel / nx) % ny) as f64 / ny as f64;
+            let (sine, cosine) = (TAU * turns).sin_cos();
+            *value = if is_sine { sine } else { cosine };
+        }
+        let norm = row.dot(&row).sqrt();
+        row /= norm;
+    }
+    rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_rows_together_are_orthonormal_and_the_first_is_the_mean() {
+        for grid in [(1, 1), (1, 6), (4, 4), (5, 3), (4, 7)] {
+            let n = grid.0 * grid.1;
+            let rows = rows(grid, n);
+            let error = rows.dot(&rows.t()) - Array2::<f64>::eye(n);
+            assert!(error.iter().all(|e| e.abs() < 1e-12), "{grid:?}");
+            let mean = 1.0 / (n as f64).sqrt();
+            assert!(rows.row(0).iter().all(|v| (v - mean).abs() < 1e-12));
+        }
+    }
+
+    #[test]
+    fn frequencies_rise() {
+        let waves = waves((8, 8));
+        let square = |k: usize| k.min(8 - k).pow(2);
+        let frequencies = waves.iter().map(|&(u, v, _)| square(u) + square(v));
+        assert!(frequencies.collect::<Vec<_>>().is_sorted());
+        assert_eq!(waves[1..5].iter().filter(|wave| wave.2).count(), 2);
+    }
+}

@@ -1,0 +1,92 @@
+//! The first principal components of frames that training touches read.
+//!
+//! Row r of Φ is the direction of unit length, at right angles to those before it, in which the frames differ most about their mean: of
+//! all m × n matrices the one whose measurements say most of such frames, in the mean square. Test touches are never looked at. What a skin
+//! that measures so needs is a matrix of m × n numbers, and training touches that it reads in full.
+
+use super::dense::Dense;
+use super::ensemble::{EnsembleAbout, Operator, Source};
+use crate::error::{Error, Result};
+use crate::random::Seed;
+use crate::sensing::pca::Pca;
+use ndarray::ArrayView2;
+
+pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
+    words: "principal components",
+    // How many are found together changes their last digits.
+    is_prefix_nested: false,
+    is_whole_frame: false,
+    needs_rows: false,
+    bytes: |m, n| 16.0 * n * m,
+    // About what it takes to find them, spread over the frames that are measured.
+    source: Source::Learned(learn),
+};
+
+fn learn(frames: ArrayView2<f64>, m: usize, seed: &Seed) -> Result<Box<dyn Operator>> {
+    let components = Pca::new(frames, m, &seed.named("principal_components")).components;
+    match components.nrows() {
+        found if found < m => {
+            let given = format!("{m} principal components");
+            let n_frames = frames.nrows();
+            let allowed =
+                format!("at most {found}, in which {n_frames} frames of training touches differ");
+            Err(Error::input("measurements", given, allowed))
+        }
+        _ => Ok(Box::new(Dense(components))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::random::Seed;
+    use crate::sensing::{Ensemble, Projection};
+    use ndarray::Array2;
+
+    /// Frames of three patterns, the first the strongest.
+    fn frames() -> Array2<f64> {
+        Array2::from_shape_fn((40, 12), |(i, j)| {
+            let pattern = |k: usize| ((j * (k + 1)) as f64 * 0.7 + k as f64).sin();
+            (0..3)
+                .map(|k| ((i * i * (k + 2)) as f64).sin() * pattern(k) / (1 + k) as f64)
+                .sum()
+        })
+    }
+
+    #[test]
+    fn no_other_matrix_of_two_rows_keeps_more_of_the_frames() {
+        let frames = frames();
+        let centred = &frames - &frames.mean_axis(ndarray::Axis(0)).unwrap();
+        let kept = |rows: &Array2<f64>| centred.dot(&rows.t()).mapv(|y| y * y).sum();
+        let learned = (frames.view(), &Seed::new(1));
+        let ensemble = Ensemble::PrincipalComponents;
+        let rows = Projection::learned(ensemble, (3, 4), 2, learned)
+            .unwrap()
+            .matrix();
+        let unit = rows.dot(&rows.t()) - Array2::<f64>::eye(2);
+        assert!(unit.iter().all(|e| e.abs() < 1e-12));
+        let most = kept(&rows);
+        for seed in 0..50 {
+            // Nearby pairs of orthonormal rows, by Gram and Schmidt.
+            let drawn = Projection::new(Ensemble::Gaussian, (3, 4), 2, &Seed::new(seed));
+            let mut other = &rows + &(0.3 * drawn.unwrap().matrix());
+            let first = other.row(0).to_owned() / other.row(0).dot(&other.row(0)).sqrt();
+            let mut second = other.row(1).to_owned();
+            second.scaled_add(-second.dot(&first), &first);
+            second /= second.dot(&second).sqrt();
+            other.row_mut(0).assign(&first);
+            other.row_mut(1).assign(&second);
+            assert!(kept(&other) < most, "{seed}");
+        }
+    }
+
+    #[test]
+    fn more_of_them_than_frames_differ_in_and_none_to_learn_from_are_refused() {
+        let frames = frames();
+        let ensemble = Ensemble::PrincipalComponents;
+        let learned = (frames.view(), &Seed::new(1));
+        let error = Projection::learned(ensemble, (3, 4), 4, learned).unwrap_err();
+        assert!(error.to_string().contains("at most 3"), "{error}");
+        let error = Projection::new(ensemble, (3, 4), 2, &Seed::new(1)).unwrap_err();
+        assert!(error.to_string().contains("learned"), "{error}");
+    }
+}

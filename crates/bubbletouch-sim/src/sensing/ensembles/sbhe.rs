@@ -1,0 +1,180 @@
+//! The scrambled block Hadamard ensemble \[SBHE\], by fast transforms.
+//!
+//! Φ = Q W P: P permutes the taxels, W is block diagonal with Walsh–Hadamard matrices H/√B, Hᵢⱼ = (−1)^popcount(i & j), and
+//! Q keeps m coefficients in random order. Where B does not divide n, zeros fill up the last block before the permutation, so
+//! they are scattered too; without them the rows of Φ are orthonormal.
+
+use super::ensemble::{EnsembleAbout, Operator};
+use super::subsample::permutation;
+use crate::random::Seed;
+use ndarray::{ArrayView2, ArrayViewMut2};
+
+/// B, a power of two: 32 as in \[SBHE\]. Larger blocks mix more taxels into each measurement, slower; at 1 the ensemble is
+/// a subsample. Arrays of fewer taxels take the next power of two above their number.
+pub(crate) const BLOCK: usize = 32;
+/// Frames transformed side by side, one in each lane of a vector register.
+const LANES: usize = 8;
+
+/// One value of each of several frames.
+type Lanes = [f64; LANES];
+
+/// P and Q, with Q sorted so that each block that is needed is transformed once.
+#[derive(Clone, Debug)]
+pub(crate) struct ScrambledHadamard {
+    n_taxels: usize,
+    block: usize,
+    /// The taxel at each place before W; n and above are zeros.
+    taxels: Vec<usize>,
+    /// (coefficient after W, measurement that takes it), ascending.
+    picks: Vec<(usize, usize)>,
+}
+
+pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
+    ..EnsembleAbout::new("SBHE", |(ny, nx), m, seed| {
+        Box::new(ScrambledHadamard::new(
+            m,
+            ny * nx,
+            BLOCK,
+            &seed.named("sbhe"),
+        ))
+    })
+};
+
+impl ScrambledHadamard {
+    /// In blocks of `block` taxels, a power of two.
+    pub(crate) fn new(m: usize, n: usize, block: usize, stream: &Seed) -> Self {
+        let block = block.min(n.next_power_of_two());
+        let n_padded = n.next_multiple_of(block);
+        let rows = permutation(n_padded, &stream.named("rows"));
+        let mut picks: Vec<_> = rows.into_iter().take(m).zip(0..).collect();
+        picks.sort_unstable();
+        Self {
+            n_taxels: n,
+            block,
+            taxels: permutation(n_padded, &stream.named("taxels")),
+            picks,
+        }
+    }
+
+    fn same_block(&self, a: &(usize, usize), b: &(usize, usize)) -> bool {
+        a.0 / self.block == b.0 / self.block
+    }
+
+    /// One block's taxels of each frame; lanes without a frame stay zero.
+    fn gather(&self, frames: &[f64], taxels: &[usize], values: &mut [Lanes]) {
+        for (lane, frame) in frames.chunks_exact(self.n_taxels).enumerate() {
+            for (value, &taxel) in values.iter_mut().zip(taxels) {
+                value[lane] = frame.get(taxel).copied().unwrap_or(0.0);
+            }
+        }
+    }
+}
+
+impl Operator for ScrambledHadamard {
+    fn measure(&self, frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64>) {
+        let frames = frames.as_standard_layout();
+        let all = frames.as_slice().unwrap_or_default();
+        let scale = 1.0 / (self.block as f64).sqrt();
+        let group_len = LANES * self.n_taxels;
+        let mut values = vec![[0.0; LANES]; self.block];
+        for (group, frames) in all.chunks(group_len).enumerate() {
+            for picks in self.picks.chunk_by(|a, b| self.same_block(a, b)) {
+                values.fill([0.0; LANES]);
+                let first = picks[0].0 / self.block * self.block;
+                self.gather(frames, &self.taxels[first..first + self.block], &mut values);
+                transform(&mut values);
+                for &(coefficient, measurement) in picks {
+                    let lanes = &values[coefficient - first];
+                    for (lane, value) in lanes[..frames.len() / self.n_taxels].iter().enumerate() {
+                        out[[group * LANES + lane, measurement]] = scale * value;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Measurement, taxel and value of each entry.
+    fn each_entry(&self, visit: &mut dyn FnMut(usize, usize, f64)) {
+        let scale = 1.0 / (self.block as f64).sqrt();
+        for &(coefficient, measurement) in &self.picks {
+            let (block, i) = (coefficient / self.block, coefficient % self.block);
+            for (j, &taxel) in self.taxels[block * self.block..][..self.block]
+                .iter()
+                .enumerate()
+            {
+                if taxel < self.n_taxels {
+                    let is_minus = (i & j).count_ones() % 2 == 1;
+                    visit(measurement, taxel, if is_minus { -scale } else { scale });
+                }
+            }
+        }
+    }
+
+    /// Below 1 where zeros were scattered among the taxels.
+    fn row_norm(&self) -> f64 {
+        let in_block = |coefficient: usize| {
+            let first = coefficient / self.block * self.block;
+            let taxels = &self.taxels[first..first + self.block];
+            taxels
+                .iter()
+                .filter(|&&taxel| taxel < self.n_taxels)
+                .count()
+        };
+        let n_entries: usize = self.picks.iter().map(|pick| in_block(pick.0)).sum();
+        (n_entries as f64 / (self.block * self.picks.len()) as f64).sqrt()
+    }
+}
+
+/// The Walsh–Hadamard transform in natural order, unscaled, in place, of 2^k values a lane.
+fn transform(values: &mut [Lanes]) {
+    let mut half = 1;
+    while half < values.len() {
+        for pair in values.chunks_exact_mut(2 * half) {
+            let (low, high) = pair.split_at_mut(half);
+            for (a, b) in low.iter_mut().zip(high) {
+                for lane in 0..LANES {
+                    (a[lane], b[lane]) = (a[lane] + b[lane], a[lane] - b[lane]);
+                }
+            }
+        }
+        half *= 2;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::Array2;
+
+    /// Φ from its definition, entry by entry.
+    fn dense(hadamard: &ScrambledHadamard) -> Array2<f64> {
+        let mut matrix = Array2::zeros((hadamard.picks.len(), hadamard.n_taxels));
+        hadamard.each_entry(&mut |measurement, taxel, value| matrix[[measurement, taxel]] = value);
+        matrix
+    }
+
+    #[test]
+    fn the_fast_transform_is_the_dense_matrix() {
+        let sizes = [(1, 1), (2, 1), (5, 5), (32, 7), (64, 64), (100, 41)];
+        for ((n, m), block) in sizes
+            .into_iter()
+            .flat_map(|size| [(size, 8), (size, BLOCK), (size, 128)])
+        {
+            let hadamard = ScrambledHadamard::new(m, n, block, &Seed::new(3));
+            let frames = Array2::from_shape_fn((19, n), |(i, j)| ((i * n + j) as f64).sin());
+            let mut fast = Array2::zeros((19, m));
+            hadamard.measure(frames.view(), fast.view_mut());
+            let slow = frames.dot(&dense(&hadamard).t());
+            assert!((&fast - &slow).iter().all(|error| error.abs() < 1e-13));
+        }
+    }
+
+    #[test]
+    fn rows_are_orthonormal_when_nothing_is_padded() {
+        for (n, m) in [(32, 32), (128, 128), (16, 9)] {
+            let matrix = dense(&ScrambledHadamard::new(m, n, BLOCK, &Seed::new(4)));
+            let products = matrix.dot(&matrix.t()) - Array2::<f64>::eye(m);
+            assert!(products.iter().all(|error| error.abs() < 1e-14));
+        }
+    }
+}

@@ -1,0 +1,214 @@
+//! Very sparse random projection: few taxels a measurement, stored as their indices.
+//!
+//! Achlioptas (2003) showed that entries +√s, 0, −√s with probabilities 1/2s, 1 − 1/s, 1/2s preserve distances for s = 3, and
+//! Li, Hastie and Church (2006, *Very sparse random projections*) for s up to √n where the data's tails are not heavy. A
+//! measurement then adds and subtracts √n taxels on average instead of n.
+
+use super::ensemble::{EnsembleAbout, Operator};
+use crate::random::Seed;
+use ndarray::{ArrayView2, ArrayViewMut2};
+use rand::Rng;
+
+/// Frames measured side by side, one in each lane of a vector register.
+const LANES: usize = 8;
+/// Taxels from which on a row is drawn from entry to entry. Entry by entry a body of millions takes a minute; below, what was
+/// drawn so once stays so.
+const BY_GAPS_FROM: usize = 1 << 17;
+
+/// Φ with entries ±√(s/n) at a density of 1/s, s = √n.
+#[derive(Clone, Debug)]
+pub(crate) struct VerySparse {
+    n_taxels: usize,
+    /// √(s/n), which makes the mean square of an entry 1/n.
+    scale: f64,
+    rows: Vec<Row>,
+}
+
+/// The taxels that one measurement adds, and those that it subtracts, ascending.
+#[derive(Clone, Debug, Default)]
+struct Row {
+    plus: Vec<usize>,
+    minus: Vec<usize>,
+}
+
+pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
+    // m rows of √n entries each.
+    bytes: |m, n| 16.0 * n.sqrt() * m,
+    ..EnsembleAbout::new("sparse", |(ny, nx), m, seed| {
+        Box::new(VerySparse::new(m, ny * nx, &seed.named("sparse")))
+    })
+};
+
+impl VerySparse {
+    /// Row r comes from the stream's child r alone, so a larger m keeps the smaller's rows.
+    pub(crate) fn new(m: usize, n: usize, stream: &Seed) -> Self {
+        let s = (n as f64).sqrt();
+        let rows = (0..m as u64).map(|row| Row::draw(n, 1.0 / s, &stream.numbered(row)));
+        Self {
+            n_taxels: n,
+            scale: (s / n as f64).sqrt(),
+            rows: rows.collect(),
+        }
+    }
+}
+
+impl Operator for VerySparse {
+    fn row_norm(&self) -> f64 {
+        let n_entries: usize = self
+            .rows
+            .iter()
+            .map(|row| row.plus.len() + row.minus.len())
+            .sum();
+        self.scale * (n_entries as f64 / self.rows.len() as f64).sqrt()
+    }
+
+    /// Measurement, taxel and value of each entry that is not zero.
+    fn each_entry(&self, visit: &mut dyn FnMut(usize, usize, f64)) {
+        for (measurement, row) in self.rows.iter().enumerate() {
+            let plus = row.plus.iter().map(|&taxel| (taxel, self.scale));
+            let minus = row.minus.iter().map(|&taxel| (taxel, -self.scale));
+            plus.chain(minus)
+                .for_each(|(taxel, value)| visit(measurement, taxel, value));
+        }
+    }
+
+    fn measure(&self, frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64>) {
+        let mut values = vec![[0.0; LANES]; self.n_taxels];
+        let groups = frames.axis_chunks_iter(ndarray::Axis(0), LANES);
+        for (group, frames) in groups.enumerate() {
+            for (lane, frame) in frames.outer_iter().enumerate() {
+                for (value, &x) in values.iter_mut().zip(frame) {
+                    value[lane] = x;
+                }
+            }
+            for (measurement, row) in self.rows.iter().enumerate() {
+                let sums = row.sums(&values);
+                for (lane, sum) in sums[..frames.nrows()].iter().enumerate() {
+                    out[[group * LANES + lane, measurement]] = self.scale * sum;
+                }
+            }
+        }
+    }
+}
+
+impl Row {
+    fn draw(n: usize, density: f64, stream: &Seed) -> Self {
+        match n < BY_GAPS_FROM {
+            true => Self::draw_each(n, density, stream),
+            false => Self::draw_by_gaps(n, density, stream),
+        }
+    }
+
+    /// Asks of every taxel whether it is added, subtracted or neither.
+    fn draw_each(n: usize, density: f64, stream: &Seed) -> Self {
+        let mut rng = stream.rng();
+        let mut row = Self::default();
+        for taxel in 0..n {
+            let u: f64 = rng.r#gen();
+            if u < 0.5 * density {
+                row.plus.push(taxel);
+            } else if u < density {
+                row.minus.push(taxel);
+            }
+        }
+        row
+    }
+
+    /// The same law at the cost of the entries that are not zero: the number of zeros before the next one is geometric, at
+    /// least g of them with probability (1 − density)^g.
+    fn draw_by_gaps(n: usize, density: f64, stream: &Seed) -> Self {
+        let mut rng = stream.rng();
+        let log_zero = (-density).ln_1p();
+        let mut row = Self::default();
+        let mut next = 0;
+        loop {
+            let above_zero = 1.0 - rng.r#gen::<f64>();
+            let zeros = above_zero.ln() / log_zero;
+            if zeros >= (n - next) as f64 {
+                return row;
+            }
+            let taxel = next + zeros as usize;
+            match rng.r#gen() {
+                true => row.plus.push(taxel),
+                false => row.minus.push(taxel),
+            }
+            next = taxel + 1;
+        }
+    }
+
+    /// The row's signed sum of each lane.
+    fn sums(&self, values: &[[f64; LANES]]) -> [f64; LANES] {
+        let mut sums = [0.0; LANES];
+        for &taxel in &self.plus {
+            for (sum, x) in sums.iter_mut().zip(values[taxel]) {
+                *sum += x;
+            }
+        }
+        for &taxel in &self.minus {
+            for (sum, x) in sums.iter_mut().zip(values[taxel]) {
+                *sum -= x;
+            }
+        }
+        sums
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const N: usize = 20_000;
+    const ROWS: u64 = 400;
+
+    /// Of many rows of one way to draw: entries a row (mean, variance), share of plus, entries in each tenth of the taxels,
+    /// and neighbours that are both entries.
+    fn counts(draw: fn(usize, f64, &Seed) -> Row) -> ([f64; 4], [f64; 10]) {
+        let density = 1.0 / (N as f64).sqrt();
+        let (mut sizes, mut n_plus, mut n_pairs, mut tenths) = (Vec::new(), 0, 0, [0.0; 10]);
+        for number in 0..ROWS {
+            let row = draw(N, density, &Seed::new(7).numbered(number));
+            for half in [&row.plus, &row.minus] {
+                assert!(half.windows(2).all(|pair| pair[0] < pair[1]), "ascending");
+            }
+            let mut all = [row.plus.clone(), row.minus].concat();
+            all.sort_unstable();
+            assert!(all.iter().all(|&taxel| taxel < N));
+            assert!(all.windows(2).all(|pair| pair[0] < pair[1]), "each once");
+            n_pairs += all.windows(2).filter(|pair| pair[1] == pair[0] + 1).count();
+            all.iter().for_each(|&taxel| tenths[taxel * 10 / N] += 1.0);
+            n_plus += row.plus.len();
+            sizes.push(all.len() as f64);
+        }
+        let total: f64 = sizes.iter().sum();
+        let mean = total / ROWS as f64;
+        let variance = sizes.iter().map(|size| (size - mean).powi(2)).sum::<f64>() / ROWS as f64;
+        (
+            [mean, variance, n_plus as f64 / total, n_pairs as f64],
+            tenths,
+        )
+    }
+
+    #[test]
+    fn rows_drawn_by_gaps_obey_the_law_of_rows_drawn_entry_by_entry() {
+        let root = (N as f64).sqrt();
+        for draw in [Row::draw_each, Row::draw_by_gaps] {
+            let ([mean, variance, plus, pairs], tenths) = counts(draw);
+            // Five standard errors each of the binomial law with n = N and p = 1/√N.
+            let spread = (root / ROWS as f64).sqrt();
+            assert!((mean - root).abs() < 5.0 * spread, "{mean} of {root}");
+            assert!((variance / root - 1.0).abs() < 5.0 * (2.0 / ROWS as f64).sqrt());
+            assert!((plus - 0.5).abs() < 5.0 * 0.5 / (root * ROWS as f64).sqrt());
+            // Two neighbours are both entries with p² = 1/N, some N times a row.
+            assert!(
+                (pairs - ROWS as f64).abs() < 5.0 * (ROWS as f64).sqrt(),
+                "{pairs}"
+            );
+            let tenth = 0.1 * root * ROWS as f64;
+            assert!(
+                tenths
+                    .iter()
+                    .all(|n| (n - tenth).abs() < 5.0 * tenth.sqrt())
+            );
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! Some taxels, drawn without replacement.
+
+use super::ensemble::{EnsembleAbout, Operator};
+use crate::random::Seed;
+use ndarray::{Array2, ArrayView2, ArrayViewMut2};
+use rand::seq::SliceRandom;
+
+pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout::new("subsample", |(ny, nx), m, seed| {
+    let mut order = permutation(ny * nx, &seed.named("subsample"));
+    order.truncate(m);
+    Box::new(Taxels(order))
+});
+
+/// The taxel of each measurement.
+#[derive(Debug)]
+pub(crate) struct Taxels(pub(crate) Vec<usize>);
+
+impl Operator for Taxels {
+    fn measure(&self, frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64>) {
+        for (frame, mut row) in frames.outer_iter().zip(out.outer_iter_mut()) {
+            row.iter_mut()
+                .zip(&self.0)
+                .for_each(|(y, &i)| *y = frame[i]);
+        }
+    }
+
+    fn each_entry(&self, visit: &mut dyn FnMut(usize, usize, f64)) {
+        let picked = self.0.iter().enumerate();
+        picked.for_each(|(measurement, &taxel)| visit(measurement, taxel, 1.0));
+    }
+
+    fn row_norm(&self) -> f64 {
+        1.0
+    }
+
+    fn known_gram(&self) -> Option<Array2<f64>> {
+        Some(Array2::eye(self.0.len()))
+    }
+}
+
+/// 0 … n − 1 in random order; every order is equally likely.
+pub(crate) fn permutation(n: usize, stream: &Seed) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..n).collect();
+    order.shuffle(&mut stream.rng());
+    order
+}

@@ -1,0 +1,265 @@
+//! The ℓ1 solver: min ½‖y − Aα‖² + λ‖α‖₁ by accelerated proximal gradient steps, many frames at a time.
+//!
+//! FISTA (Beck and Teboulle 2009): a gradient step of length 1/L from a point that runs ahead along the last change, then
+//! soft thresholding by λ/L, where L is the largest eigenvalue of AᵀA. The momentum restarts where it points uphill
+//! (O'Donoghue and Candès 2015). A frame is done when the gap between the objective and that of the dual point
+//! θ = s·(y − Aα), s = min(1, λ/‖Aᵀ(y − Aα)‖∞), is small: no solution is better than the dual's value (Kim et al. 2007).
+
+use crate::error::{Error, Result};
+use crate::sensing::{SensedDictionary, Solved};
+use ndarray::linalg::general_mat_mul;
+use ndarray::{Array1, Array2, ArrayView1, ArrayView2, ArrayViewMut1, Axis, Zip};
+
+/// Steps between two checks of the gap, which costs about a quarter of a step.
+const CHECK_EVERY: usize = 5;
+/// Power iterations for L, and the margin for what they miss: after so many the estimate is low by far less (Kuczyński and
+/// Woźniakowski 1992).
+const POWER_STEPS: usize = 60;
+const MARGIN: f64 = 1.02;
+
+/// The ℓ1 problem and when it is solved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lasso {
+    /// λ, positive, in the measurements' unit times an atom's norm.
+    pub lambda: f64,
+    /// A frame is solved when its duality gap is at most this part of ½‖y‖²; positive.
+    pub tolerance: f64,
+    /// Steps a frame, at most; at least 1.
+    pub most_steps: usize,
+}
+
+impl Lasso {
+    /// λ = σ a √(2 ln k), a the root mean square norm of A's k columns: where noise of standard deviation σ on each measurement
+    /// alone would, almost surely, raise no coefficient (the universal threshold of Donoho and Johnstone 1994, as in Chen,
+    /// Donoho and Saunders 1998).
+    pub fn universal_lambda(sensed: &SensedDictionary, noise_std: f64) -> f64 {
+        let atoms = sensed.atoms();
+        let k = atoms.nrows() as f64;
+        let square = atoms.iter().map(|a| a * a).sum::<f64>() / k;
+        noise_std * (square * 2.0 * k.ln()).sqrt()
+    }
+
+    /// Coefficients of each row of measurements (n_frames × m).
+    ///
+    /// A frame is capped when its gap is above the tolerance after `most_steps`.
+    ///
+    /// # Errors
+    /// λ or tolerance that is not a positive number; no steps allowed.
+    ///
+    /// # Panics
+    /// When a row does not have m values.
+    pub fn solve(
+        &self,
+        sensed: &SensedDictionary,
+        measurements: ArrayView2<f64>,
+    ) -> Result<Solved> {
+        self.solve_with(&Curvature::of(sensed), sensed, measurements)
+    }
+
+    /// The same with a [`Curvature`] that is kept from frame to frame.
+    pub(crate) fn solve_with(
+        &self,
+        curvature: &Curvature,
+        sensed: &SensedDictionary,
+        measurements: ArrayView2<f64>,
+    ) -> Result<Solved> {
+        self.check()?;
+        let centred = sensed.centred(measurements);
+        let mut solved = Solved::zeros(measurements.nrows(), sensed.atoms().nrows());
+        let mut open = Open::new(sensed, &centred, curvature.0);
+        for step in 1..=self.most_steps {
+            open.step(self.lambda);
+            let is_last = step == self.most_steps;
+            if is_last || step % CHECK_EVERY == 0 {
+                open.retire(self, is_last, &mut solved);
+                if open.frames.is_empty() {
+                    break;
+                }
+            }
+        }
+        Ok(solved)
+    }
+
+    fn check(&self) -> Result<()> {
+        for (name, value) in [("lambda", self.lambda), ("tolerance", self.tolerance)] {
+            if !(value.is_finite() && value > 0.0) {
+                return Err(Error::input(name, value, "a positive number"));
+            }
+        }
+        if self.most_steps == 0 {
+            return Err(Error::input("most steps", 0, "at least 1"));
+        }
+        Ok(())
+    }
+}
+
+/// L, an upper bound on the largest eigenvalue of AᵀA.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Curvature(f64);
+
+impl Curvature {
+    pub(crate) fn of(sensed: &SensedDictionary) -> Self {
+        let atoms = sensed.atoms();
+        // Any start that is orthogonal to no eigenvector in practice; fixed, so that results repeat.
+        let mut x = Array1::from_shape_fn(atoms.nrows(), |j| 1.0 + 0.5 * (j as f64 * 1.7).sin());
+        let mut value = 0.0;
+        for _ in 0..POWER_STEPS {
+            x /= x.dot(&x).sqrt().max(f64::MIN_POSITIVE);
+            x = atoms.dot(&x.dot(&atoms));
+            value = x.dot(&x).sqrt();
+        }
+        // No eigenvalue is above the sum of all, ‖A‖²_F.
+        let sum = atoms.iter().map(|a| a * a).sum::<f64>();
+        Self((MARGIN * value).min(sum).max(f64::MIN_POSITIVE))
+    }
+}
+
+/// Frames that are not solved yet, one a row of each matrix.
+struct Open<'a> {
+    sensed: &'a SensedDictionary<'a>,
+    /// L.
+    curvature: f64,
+    /// Which frames.
+    frames: Vec<usize>,
+    /// ‖y‖² of each.
+    square: Vec<f64>,
+    /// t of each: how far the momentum has grown.
+    momentum: Vec<f64>,
+    /// Aᵀy.
+    b: Array2<f64>,
+    alpha: Array2<f64>,
+    /// The point that runs ahead.
+    ahead: Array2<f64>,
+}
+
+impl<'a> Open<'a> {
+    fn new(sensed: &'a SensedDictionary<'a>, y: &Array2<f64>, curvature: f64) -> Self {
+        let n_frames = y.nrows();
+        let shape = (n_frames, sensed.atoms().nrows());
+        Self {
+            sensed,
+            curvature,
+            frames: (0..n_frames).collect(),
+            square: y.outer_iter().map(|y| y.dot(&y)).collect(),
+            momentum: vec![1.0; n_frames],
+            b: y.dot(&sensed.atoms().t()),
+            alpha: Array2::zeros(shape),
+            ahead: Array2::zeros(shape),
+        }
+    }
+
+    /// AᵀAα − Aᵀy, by whichever of AᵀA and A is the smaller.
+    fn gradient(&self, alpha: &Array2<f64>) -> Array2<f64> {
+        let atoms = self.sensed.atoms();
+        let mut gradient = self.b.clone();
+        if atoms.nrows() <= 2 * atoms.ncols() {
+            general_mat_mul(1.0, alpha, self.sensed.gram(), -1.0, &mut gradient);
+        } else {
+            general_mat_mul(1.0, &alpha.dot(&atoms), &atoms.t(), -1.0, &mut gradient);
+        }
+        gradient
+    }
+
+    fn step(&mut self, lambda: f64) {
+        let gradient = self.gradient(&self.ahead);
+        let length = 1.0 / self.curvature;
+        for (row, gradient) in gradient.outer_iter().enumerate() {
+            let alpha = self.alpha.row_mut(row);
+            let ahead = self.ahead.row_mut(row);
+            step_row(
+                alpha,
+                ahead,
+                gradient,
+                length,
+                lambda,
+                &mut self.momentum[row],
+            );
+        }
+    }
+
+    /// Hands over the frames whose gap is small enough (all of them at the last step) and goes on with the others.
+    fn retire(&mut self, rule: &Lasso, is_last: bool, solved: &mut Solved) {
+        let gradient = self.gradient(&self.alpha);
+        let mut kept = Vec::new();
+        for (row, &frame) in self.frames.iter().enumerate() {
+            let (alpha, b) = (self.alpha.row(row), self.b.row(row));
+            let square = self.square[row];
+            let gap = duality_gap(alpha, b, gradient.row(row), square, rule.lambda);
+            let is_solved = gap <= rule.tolerance * 0.5 * square;
+            if is_solved || is_last {
+                solved.coefficients.row_mut(frame).assign(&alpha);
+                solved.capped[frame] = !is_solved;
+            } else {
+                kept.push(row);
+            }
+        }
+        if kept.len() == self.frames.len() {
+            return;
+        }
+        for matrix in [&mut self.b, &mut self.alpha, &mut self.ahead] {
+            *matrix = matrix.select(Axis(0), &kept);
+        }
+        self.frames = kept.iter().map(|&row| self.frames[row]).collect();
+        self.square = kept.iter().map(|&row| self.square[row]).collect();
+        self.momentum = kept.iter().map(|&row| self.momentum[row]).collect();
+    }
+}
+
+/// One proximal step from `ahead`, and where the next one starts.
+fn step_row(
+    alpha: ArrayViewMut1<f64>,
+    mut ahead: ArrayViewMut1<f64>,
+    gradient: ArrayView1<f64>,
+    length: f64,
+    lambda: f64,
+    momentum: &mut f64,
+) {
+    let threshold = lambda * length;
+    let mut alpha = alpha;
+    let mut uphill = 0.0;
+    // `ahead` becomes the new α, `alpha` the change; both are then put in their places.
+    Zip::from(&mut alpha)
+        .and(&mut ahead)
+        .and(&gradient)
+        .for_each(|old, z, &g| {
+            let moved = *z - length * g;
+            let new = moved - moved.clamp(-threshold, threshold);
+            let change = new - *old;
+            uphill += (*z - new) * change;
+            (*old, *z) = (change, new);
+        });
+    let grown = 0.5 * (1.0 + (1.0 + 4.0 * *momentum * *momentum).sqrt());
+    let (weight, next) = match uphill > 0.0 {
+        true => (0.0, 1.0),
+        false => ((*momentum - 1.0) / grown, grown),
+    };
+    *momentum = next;
+    Zip::from(&mut alpha).and(&mut ahead).for_each(|change, z| {
+        let new = *z;
+        *z = new + weight * *change;
+        *change = new;
+    });
+}
+
+/// Objective at α minus the dual's value; b = Aᵀy, gradient = AᵀAα − b, square = ‖y‖².
+fn duality_gap(
+    alpha: ArrayView1<f64>,
+    b: ArrayView1<f64>,
+    gradient: ArrayView1<f64>,
+    square: f64,
+    lambda: f64,
+) -> f64 {
+    let along = alpha.dot(&b);
+    let residual = square - along + alpha.dot(&gradient);
+    let steepest = gradient.iter().fold(0.0f64, |most, g| most.max(g.abs()));
+    let s = if steepest > lambda {
+        lambda / steepest
+    } else {
+        1.0
+    };
+    let l1 = alpha.iter().map(|a| a.abs()).sum::<f64>();
+    let primal = 0.5 * residual + lambda * l1;
+    // ½‖y‖² − ½‖y − θ‖² with y·(y − Aα) = ‖y‖² − αᵀb.
+    let dual = s * (square - along) - 0.5 * s * s * residual;
+    primal - dual
+}

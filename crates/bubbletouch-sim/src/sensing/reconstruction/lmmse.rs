@@ -1,0 +1,125 @@
+//! The linear estimate of least mean square error: one or two matrix products a frame.
+//!
+//! Frames are modelled as x = x₀ + Σⱼ αⱼ ψⱼ + r, with uncorrelated αⱼ of the mean square eⱼ that training frames have
+//! ([`Energy`](crate::sensing::Energy)), and a rest r of mean square τ a taxel. Every taxel carries noise of standard deviation σ **before** it is
+//! projected, so y − Φx₀ = Aα + Φ(r + noise) and, with E = diag(eⱼ),
+//!
+//! α̂ = E Aᵀ (A E Aᵀ + (τ + σ²) Φ Φᵀ)⁻¹ (y − Φx₀).
+//!
+//! With PCA atoms this is the estimate from the training covariance; with a fixed basis, a Wiener filter in it.
+
+use crate::error::{Error, Result};
+use crate::sensing::SensedDictionary;
+use crate::sensing::cholesky::Cholesky;
+use ndarray::{Array1, Array2, ArrayView2};
+
+/// Part of the measurements' mean variance that is always taken for noise: without noise A E Aᵀ may have no inverse.
+const LEAST_NOISE: f64 = 1e-12;
+
+/// The estimate's matrix, ready for any number of frames.
+#[derive(Clone, Debug)]
+pub struct Lmmse {
+    form: Form,
+    /// x₀ − (what Φx₀ maps to), n: so that the estimate of y is this plus a linear map of y.
+    constant: Array1<f64>,
+}
+
+/// Whichever takes fewer operations a frame.
+#[derive(Clone, Debug)]
+enum Form {
+    /// m × n: measurements to frames.
+    Direct(Array2<f64>),
+    /// m × k and k × n: measurements to coefficients to frames.
+    Through(Array2<f64>, Array2<f64>),
+}
+
+impl Lmmse {
+    /// Prepares the estimate for noise of standard deviation σ on each taxel (zero or positive, the frames' unit).
+    ///
+    /// # Errors
+    /// A dictionary that has seen no training frames; σ negative or not finite; training frames, or a projection, that are zero.
+    pub fn new(sensed: &SensedDictionary, noise_std: f64) -> Result<Self> {
+        Self::shrunk(sensed, noise_std, None)
+    }
+
+    /// The same with each coefficient (k) multiplied by a number from 0 to 1.
+    ///
+    /// # Errors
+    /// Those of [`new`](Self::new).
+    pub(crate) fn shrunk(
+        sensed: &SensedDictionary,
+        noise_std: f64,
+        shrinkage: Option<&Array1<f64>>,
+    ) -> Result<Self> {
+        let dictionary = sensed.dictionary();
+        let energy = dictionary.energy().ok_or_else(|| {
+            let given = "a dictionary that has seen no training frames";
+            Error::input("lmmse", given, "a learned dictionary")
+        })?;
+        if !(noise_std.is_finite() && noise_std >= 0.0) {
+            return Err(Error::input(
+                "noise std",
+                noise_std,
+                "zero or a positive number",
+            ));
+        }
+        // (E Aᵀ) with one atom a row: k × m.
+        let weighted = &sensed.atoms() * &energy.of_atoms.view().insert_axis(ndarray::Axis(1));
+        let mut covariance = weighted.t().dot(&sensed.atoms());
+        let of_noise = sensed.projection().row_gram();
+        covariance.scaled_add(energy.rest + noise_std * noise_std, &of_noise);
+        let m = covariance.nrows();
+        let least = LEAST_NOISE * covariance.diag().sum() / m as f64;
+        covariance.diag_mut().iter_mut().for_each(|v| *v += least);
+        let factor = Cholesky::new(covariance).ok_or_else(|| {
+            Error::input(
+                "lmmse",
+                "measurements without variance",
+                "training frames and rows of Φ that are not zero",
+            )
+        })?;
+        // m × k: a row of measurements times this is a row of coefficients.
+        let mut to_coefficients = factor.solve(weighted.t());
+        if let Some(shrinkage) = shrinkage {
+            to_coefficients *= shrinkage;
+        }
+        Ok(Self::of(sensed, to_coefficients))
+    }
+
+    fn of(sensed: &SensedDictionary, to_coefficients: Array2<f64>) -> Self {
+        let dictionary = sensed.dictionary();
+        let (m, k) = to_coefficients.dim();
+        let n = dictionary.n_taxels();
+        let form = if k * (m + n) < m * n {
+            Form::Through(to_coefficients, dictionary.atoms(0..k))
+        } else {
+            Form::Direct(dictionary.combine(to_coefficients.view()))
+        };
+        let mut lmmse = Self {
+            form,
+            constant: Array1::zeros(n),
+        };
+        let zero = Array2::zeros((1, m));
+        let shift = lmmse.estimate(sensed.centred(zero.view()).view());
+        lmmse.constant = dictionary.origin() + &shift.row(0);
+        lmmse
+    }
+
+    /// Frames of rows of measurements (n_frames × m): n_frames × n.
+    ///
+    /// # Panics
+    /// When a row does not have m values.
+    pub fn estimate(&self, measurements: ArrayView2<f64>) -> Array2<f64> {
+        let mut frames = self.linear(measurements);
+        frames += &self.constant;
+        frames
+    }
+
+    /// Its linear part: what measurements add to the estimate of measurements of zero.
+    pub(crate) fn linear(&self, measurements: ArrayView2<f64>) -> Array2<f64> {
+        match &self.form {
+            Form::Direct(matrix) => measurements.dot(matrix),
+            Form::Through(first, second) => measurements.dot(first).dot(second),
+        }
+    }
+}

@@ -1,0 +1,21 @@
+//! Text: readers of numbers, names and TOML, and their errors.
+//!
+//! | module | input → output |
+//! |---|---|
+//! | [`toml_text`] | TOML → a value, or an error with file and line |
+//! | [`toml_lines`] | a place in TOML → its line |
+//! | [`toml_numbers`] | TOML → an error if a number is out of the bounds of its unit |
+//! | [`numbers_csv`] | CSV → columns of numbers |
+//! | [`in_range`] | a number → the number, or an error with the allowed range |
+//! | [`spelling`] | an unknown name → the nearest known one |
+//! | [`numbers`] | numbers → short text |
+//! | [`note`] | a note → standard error |
+
+pub mod in_range;
+pub mod note;
+pub mod numbers;
+pub mod numbers_csv;
+pub mod spelling;
+pub mod toml_lines;
+pub mod toml_numbers;
+pub mod toml_text;

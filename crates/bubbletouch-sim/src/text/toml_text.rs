@@ -1,0 +1,126 @@
+//! TOML that a person wrote: read into what it says, or refused with the place.
+
+use super::toml_lines::line_of;
+use super::toml_numbers::check_bounds;
+use crate::error::{Error, Result};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use toml_parser::Source;
+use toml_parser::lexer::TokenKind;
+
+/// Brackets open at once, at most. The reader knows a limit of its own (80), but forgets it where text is broken, and calls itself for
+/// each bracket: thousands of them are the end of a thread's stack.
+const MOST_OPEN: usize = 200;
+
+/// What a text says; the error names `place` (the file), line and column.
+///
+/// # Errors
+/// The text is no TOML, or has an unknown, missing or mistyped key, or a number out of bounds.
+pub fn read<T: DeserializeOwned>(place: &str, text: &str) -> Result<T> {
+    check_brackets(place, text)?;
+    check_numbers(place, text)?;
+    toml::from_str(text).map_err(|error| Error::toml(place, text, &error))
+}
+
+/// Refuses whole numbers that a type may take and no table has, so that it could not be written, and numbers [out of bounds](check_bounds).
+///
+/// # Errors
+/// The text is no TOML, or a number in it is out of bounds.
+pub fn check_numbers(place: &str, text: &str) -> Result<()> {
+    let read = text.parse::<toml::Table>();
+    read.map_err(|error| Error::toml(place, text, &error))?;
+    check_bounds(place, text)
+}
+
+/// A study with every default spelt out.
+pub fn write(study: &impl Serialize) -> String {
+    toml::to_string(study).expect("every field of a study has a TOML form")
+}
+
+/// The table that a text is, if it is one.
+pub fn table(text: &str) -> Option<toml::Table> {
+    check_brackets("", text).ok()?;
+    text.parse().ok()
+}
+
+/// Refuses text that is no TOML and would need a deep stack to say so.
+///
+/// # Errors
+/// More brackets are open at once than the reader may nest.
+pub fn check_brackets(place: &str, text: &str) -> Result<()> {
+    // Square, and curly: in broken text either may be closed by the other, or not.
+    let mut open = [0_usize; 2];
+    for token in Source::new(text).lex() {
+        match token.kind() {
+            TokenKind::LeftSquareBracket => open[0] += 1,
+            TokenKind::LeftCurlyBracket => open[1] += 1,
+            TokenKind::RightSquareBracket => open[0] = open[0].saturating_sub(1),
+            TokenKind::RightCurlyBracket => open[1] = open[1].saturating_sub(1),
+            _ => {}
+        }
+        let n_open = open[0] + open[1];
+        if n_open > MOST_OPEN {
+            let line = line_of(text, token.span().start());
+            return Err(Error::input(
+                format!("{place}:{line}"),
+                format!("{n_open} brackets that are still open"),
+                format!("at most {MOST_OPEN}"),
+            ));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// On a stack as small as that of a thread.
+    fn refused(text: &'static str) -> String {
+        let read = move || read::<toml::Table>("study.toml", text).unwrap_err();
+        let thread = std::thread::Builder::new().stack_size(2 << 20);
+        let error = thread.spawn(read).unwrap().join().unwrap();
+        assert_eq!(error.exit_code(), 2);
+        error.to_string()
+    }
+
+    #[test]
+    fn brackets_by_the_thousand_are_refused_with_their_line() {
+        let part = "position_mm = [{a = {a = 1}}}, ";
+        for text in [part, "[", "{", "a = [", "a = {b = ["] {
+            let text: &'static str = ("# deep\na = [\n".to_owned() + &text.repeat(20_000)).leak();
+            let said = refused(text);
+            assert!(said.starts_with("study.toml:3: 201 brackets"), "{said}");
+        }
+        assert_eq!(table(&"[".repeat(100_000)), None);
+    }
+
+    #[test]
+    fn numbers_that_no_table_holds_are_refused_with_their_line() {
+        #[derive(Debug, serde::Deserialize)]
+        struct Spec {
+            #[expect(dead_code, reason = "only read")]
+            seed: u64,
+        }
+        assert!(read::<Spec>("study.toml", "seed = 9223372036854775807").is_ok());
+        for number in ["9223372036854775808", "18446744073709551615"] {
+            let error = read::<Spec>("study.toml", &format!("# large\nseed = {number}"));
+            let said = error.unwrap_err().to_string();
+            assert!(said.starts_with("study.toml:2"), "{said}");
+            assert!(
+                said.ends_with("too large; expected a number below 2⁶³"),
+                "{said}"
+            );
+        }
+    }
+
+    #[test]
+    fn brackets_in_texts_and_remarks_do_not_count() {
+        let many = "[".repeat(1000);
+        let text = format!("# {many}\na = \"{many}\"\nb = '''\n{many}'''\nc = [[[1]]]\n");
+        let table: toml::Table = read("study.toml", &text).unwrap();
+        assert_eq!(table["a"].as_str(), Some(&many[..]));
+        let said = refused("a = [[1]\nb = 2\n");
+        assert!(said.starts_with("study.toml:2:"), "{said}");
+    }
+}

@@ -1,0 +1,107 @@
+//! Presses spheres on a patch on any surface: a sphere goes down the tree of balls to the tiles that it is near.
+
+use super::draped_patch::{BLOCK, DrapedPatch, Tile};
+use super::lanes::{Balls, LANES};
+use super::object_press::Pushed;
+use super::patch_state::PatchState;
+use crate::contact::LanesBelow;
+use crate::contact::law::{beats, indent, squares_in_front};
+use glam::DVec3;
+
+/// Levels of balls, at most: eight times as many taxels with each.
+const MOST_LEVELS: usize = 10;
+
+impl Pushed for DrapedPatch {
+    #[inline(always)]
+    fn is_near(&self, center: DVec3, reach: f64) -> bool {
+        Descent::new(&self.levels, center, reach).next().is_some()
+    }
+
+    #[inline(always)]
+    fn push(&self, state: &mut PatchState, center: DVec3, reach: f64) {
+        for tile in Descent::new(&self.levels, center, reach) {
+            self.push_tile(state, tile, center, reach);
+        }
+    }
+}
+
+impl DrapedPatch {
+    /// Pushes a tile.
+    #[inline(always)]
+    fn push_tile(&self, state: &mut PatchState, tile: usize, center: DVec3, reach: f64) {
+        // Of each taxel S² − b² and h.
+        let (mut squares, mut heights) = ([0.0; LANES], [0.0; LANES]);
+        let Tile {
+            centers: [x, y, z],
+            axes: [nx, ny, nz],
+        } = &self.tiles[tile];
+        for k in 0..LANES {
+            let (dx, dy, dz) = (center.x - x[k], center.y - y[k], center.z - z[k]);
+            let height = dx * nx[k] + dy * ny[k] + dz * nz[k];
+            let (bx, by, bz) = (
+                dx - height * nx[k],
+                dy - height * ny[k],
+                dz - height * nz[k],
+            );
+            let square = reach * reach - (bx * bx + by * by + bz * bz);
+            squares[k] = square;
+            heights[k] = height;
+        }
+        let squares = squares_in_front(&squares, &heights, self.behind);
+        let first = tile * LANES;
+        let taxels = state.block(first);
+        if beats(&squares, &heights, taxels) {
+            indent(&squares, &heights, taxels);
+            let start = first % BLOCK;
+            let end = (start + LANES).min(self.n_taxels - (first - start));
+            state.widen(first / BLOCK, &(start as u32..end as u32));
+        }
+    }
+}
+
+/// The tiles that a sphere is near, ascending.
+struct Descent<'a> {
+    levels: &'a [Vec<Balls>],
+    center: DVec3,
+    reach: f64,
+    /// The level that is looked at.
+    level: usize,
+    /// The block of each level down to it, and which of its balls are still to come.
+    blocks: [(usize, LanesBelow); MOST_LEVELS],
+}
+
+impl<'a> Descent<'a> {
+    #[inline(always)]
+    fn new(levels: &'a [Vec<Balls>], center: DVec3, reach: f64) -> Self {
+        let mut blocks = [(0, LanesBelow::default()); MOST_LEVELS];
+        blocks[0].1 = levels[0][0].near(center, reach);
+        Self {
+            levels,
+            center,
+            reach,
+            level: 0,
+            blocks,
+        }
+    }
+}
+
+impl Iterator for Descent<'_> {
+    type Item = usize;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<usize> {
+        loop {
+            let (block, left) = &mut self.blocks[self.level];
+            let Some(k) = left.next() else {
+                self.level = self.level.checked_sub(1)?;
+                continue;
+            };
+            let ball = *block * LANES + k;
+            let Some(below) = self.levels.get(self.level + 1) else {
+                return Some(ball);
+            };
+            self.level += 1;
+            self.blocks[self.level] = (ball, below[ball].near(self.center, self.reach));
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! The part of a mesh that a draped layout covers, and which places of it can carry a taxel.
+
+use crate::error::{Error, Result};
+use crate::geometry::Aabb;
+use crate::mesh::{Bvh, TriangleMesh};
+use glam::DVec3;
+
+/// A ray starts this share of the mesh's size ahead of the surface. Larger: walls nearer than this do not stop a ray; smaller: the triangle
+/// that a taxel lies on does.
+const AHEAD: f64 = 1e-6;
+/// A ray is moved sideways by this share of the mesh's size, so that it does not pass through an edge by symmetry.
+const ASIDE: f64 = 1e-8;
+
+/// Part of a surface. A place belongs to it if all conditions that are given hold.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DrapeRegion {
+    /// A box that contains the place; metres, in the mesh's frame.
+    pub bounds: Option<Aabb>,
+    /// A plane, by a point (metres) and a normal of any length: the place is on the side that the normal points to.
+    pub beyond: Option<(DVec3, DVec3)>,
+    /// Numbers of triangles, one of which contains the place.
+    pub triangles: Option<Vec<usize>>,
+}
+
+impl DrapeRegion {
+    /// Checks the region for a mesh.
+    ///
+    /// # Errors
+    /// If a number is not finite, a box ends before it begins, a normal is zero, or the mesh has no such triangle.
+    pub fn check(&self, mesh: &TriangleMesh) -> Result<()> {
+        let refuse = |given: String, allowed: &str| Err(Error::input("region", given, allowed));
+        if let Some(Aabb { min, max }) = self.bounds
+            && !(min.is_finite() && max.is_finite() && min.cmple(max).all())
+        {
+            let given = format!("a box from {min} m to {max} m");
+            return refuse(given, "finite corners, the least first");
+        }
+        if let Some((point, normal)) = self.beyond
+            && !(point.is_finite() && normal.is_finite() && normal != DVec3::ZERO)
+        {
+            let given = format!("a plane at {point} m with normal {normal}");
+            return refuse(given, "finite numbers, and a normal that is not zero");
+        }
+        let n = mesh.n_triangles();
+        match self.triangles.iter().flatten().find(|&&number| number >= n) {
+            Some(number) => refuse(format!("triangle {number}"), &format!("0 to {}", n - 1)),
+            None => Ok(()),
+        }
+    }
+
+    /// For each triangle of a mesh whether it may carry taxels.
+    pub(crate) fn mask(&self, mesh: &TriangleMesh) -> Vec<bool> {
+        let mut mask = vec![self.triangles.is_none(); mesh.n_triangles()];
+        for &number in self.triangles.iter().flatten() {
+            mask[number] = true;
+        }
+        mask
+    }
+
+    /// Whether a place is in the box and beyond the plane.
+    pub(crate) fn contains(&self, place: DVec3) -> bool {
+        let is_in_box =
+            |bounds: Aabb| place.cmpge(bounds.min).all() && place.cmple(bounds.max).all();
+        let is_beyond = |(point, normal): (DVec3, DVec3)| (place - point).dot(normal) >= 0.0;
+        self.bounds.is_none_or(is_in_box) && self.beyond.is_none_or(is_beyond)
+    }
+}
+
+/// Rays from the surface of a mesh.
+pub(crate) struct Rays {
+    bvh: Bvh,
+    /// The diagonal of the box around the mesh, metres.
+    size: f64,
+}
+
+impl Rays {
+    pub fn new(mesh: &TriangleMesh) -> Self {
+        let bvh = Bvh::new(mesh);
+        let size = bvh.bounds().size().length();
+        Self { bvh, size }
+    }
+
+    /// Whether a ray from a place of the surface along a unit direction meets no triangle.
+    pub fn is_free(&self, place: DVec3, direction: DVec3) -> bool {
+        let (x, y) = direction.any_orthonormal_pair();
+        let origin = place + ASIDE * self.size * (0.8 * x + 0.6 * y);
+        let range = AHEAD * self.size..f64::INFINITY;
+        self.bvh.first_hit(origin, direction, range).is_none()
+    }
+}

@@ -1,0 +1,216 @@
+//! A layout draped over a triangle mesh: taxels at least so far apart, and no place without one nearby.
+
+use super::drape_region::{DrapeRegion, Rays};
+use crate::error::{Error, Result};
+use crate::mesh::{Triangle, TriangleMesh};
+use crate::random::Seed;
+use crate::text::in_range::positive;
+use crate::world::Layout;
+use glam::DVec3;
+use rand::seq::SliceRandom;
+use std::collections::{BTreeMap, HashMap};
+
+/// The least distance between taxels, in pitches. Places taken at random until none is left that far from all others hold
+/// about 0.7 / distance² a square: at 0.83 as many as a grid of the pitch.
+const LEAST: f64 = 0.83;
+/// The longest edge of a piece of surface, in pitches. Smaller: taxels find more room, and more memory is used; larger: the
+/// surface between two pieces may be farther from a taxel than a pitch (0.83 + 2/3 of this).
+const PIECE: f64 = 0.25;
+/// Pieces of surface, at most: some 100,000 taxels, in 2 GB. The bound also holds for triangles that are long but have no area.
+const MOST_PIECES: usize = 1 << 24;
+/// Below this cosine between their normals two pieces are the two sides of a sheet, and do not keep each other's taxels away.
+const OPPOSED: f64 = -0.5;
+
+impl Layout {
+    /// Taxels spread over the outer surface of a whole mesh: [`draped_on`](Self::draped_on) without a region.
+    ///
+    /// # Errors
+    /// Those of [`draped_on`](Self::draped_on).
+    pub fn draped(mesh: &TriangleMesh, pitch: f64, seed: &Seed) -> Result<Self> {
+        Self::draped_on(mesh, pitch, &DrapeRegion::default(), seed)
+    }
+
+    /// Taxels spread over a region of a mesh's outer surface, as many as on a grid of this pitch (metres), in the order of its triangles.
+    ///
+    /// The outer surface consists of the places whose axis leaves the mesh freely: a ray along the axis does not meet the mesh again. Other
+    /// places, such as the walls of a cavity, carry no taxel; [`n_left_out`](Self::n_left_out) counts the taxels that they would carry.
+    ///
+    /// Each taxel is at least 0.83 pitches from the others (but those on the back of a thin sheet), and every place of the outer surface
+    /// is within a pitch of one. Places are taken in random order and kept if they are far enough from all before them (dart
+    /// throwing): the same seed gives the same taxels. It takes about 0.3 ms a taxel.
+    ///
+    /// Axes are the mean normals of the surface within half a pitch, so that the facets of a scan do not show and the sides
+    /// of a box stay flat; where a mean normal meets the mesh again, the axis is the normal of the taxel's own triangle.
+    ///
+    /// # Errors
+    /// If the pitch is not positive, the surface has no area, an open mesh has no [known outside](TriangleMesh::turned_outwards), the
+    /// region contains no place of the outer surface, or the pitch is too fine for the surface: there is memory for some 100,000 taxels.
+    pub fn draped_on(
+        mesh: &TriangleMesh,
+        pitch: f64,
+        region: &DrapeRegion,
+        seed: &Seed,
+    ) -> Result<Self> {
+        positive("taxel pitch", pitch, "m")?;
+        region.check(mesh)?;
+        let (mesh, orientation) = mesh.clone().turned_outwards();
+        orientation.require("draped layout")?;
+        let mesh = &mesh;
+        let too_fine = || {
+            Error::input(
+                "draped layout",
+                format!("pitch {pitch} m on {} m²", mesh.area()),
+                "a pitch that some 100,000 taxels cover the surface with",
+            )
+        };
+        let pieces = pieces(mesh, PIECE * pitch).ok_or_else(too_fine)?;
+        if pieces.is_empty() {
+            return Err(Error::input(
+                "draped layout",
+                "a mesh without area",
+                "at least one triangle with a normal",
+            ));
+        }
+        let mut order: Vec<usize> = (0..pieces.len()).collect();
+        order.shuffle(&mut seed.named("draped layout").rng());
+        let rays = Rays::new(mesh);
+        let mask = region.mask(mesh);
+        order
+            .retain(|&index| mask[pieces[index].triangle] && region.contains(pieces[index].middle));
+        // Taxels, and places inside the mesh that would carry one.
+        let (mut taxels, mut inner) = (Taken::new(LEAST * pitch), Taken::new(LEAST * pitch));
+        let mut n_left_out = 0;
+        for &index in &order {
+            let piece = &pieces[index];
+            let has_room = |taken: &Taken| {
+                let is_same_side = |other: usize| pieces[other].normal.dot(piece.normal) > OPPOSED;
+                !taken.near(piece.middle, LEAST * pitch).any(is_same_side)
+            };
+            if !has_room(&taxels) {
+                continue;
+            }
+            if rays.is_free(piece.middle, piece.normal) {
+                taxels.take(index, piece.middle);
+            } else if has_room(&inner) {
+                inner.take(index, piece.middle);
+                n_left_out += 1;
+            }
+        }
+        let mut normals = mean_normals(&pieces, &taxels, 0.5 * pitch);
+        if normals.is_empty() {
+            let given =
+                format!("no place of the region on the outer surface ({n_left_out} taxels inside)");
+            let allowed = "a region with places from which a ray leaves the mesh freely";
+            return Err(Error::input("draped layout", given, allowed));
+        }
+        for (&index, normal) in &mut normals {
+            if !rays.is_free(pieces[index].middle, *normal) {
+                *normal = pieces[index].normal;
+            }
+        }
+        let taxels = normals.into_iter();
+        let taxels = taxels.map(|(index, normal)| (pieces[index].middle, normal));
+        Ok(Self::of_taxels(taxels).with_left_out(n_left_out))
+    }
+}
+
+/// A small triangle of the surface.
+struct Piece {
+    /// The number of its triangle in the mesh.
+    triangle: usize,
+    middle: DVec3,
+    /// Unit.
+    normal: DVec3,
+    /// m².
+    area: f64,
+}
+
+/// Cuts every triangle that has a normal until no edge is longer; `None` if that takes too many pieces.
+fn pieces(mesh: &TriangleMesh, longest_edge: f64) -> Option<Vec<Piece>> {
+    // An equilateral triangle is the largest piece there can be.
+    let largest = 0.25 * 3f64.sqrt() * longest_edge * longest_edge;
+    if mesh.area() / largest > MOST_PIECES as f64 {
+        return None;
+    }
+    let mut pieces = Vec::new();
+    let mut waiting: Vec<Triangle> = Vec::new();
+    for number in 0..mesh.n_triangles() {
+        let triangle = mesh.triangle(number);
+        let Some(normal) = triangle.normal() else {
+            continue;
+        };
+        waiting.push(triangle);
+        while let Some(triangle) = waiting.pop() {
+            if triangle.longest_edge_squared() > longest_edge * longest_edge {
+                let [first, second] = triangle.bisected();
+                waiting.extend([second, first]);
+                continue;
+            }
+            if pieces.len() == MOST_PIECES {
+                return None;
+            }
+            pieces.push(Piece {
+                triangle: number,
+                middle: triangle.middle(),
+                normal,
+                area: triangle.area(),
+            });
+        }
+    }
+    Some(pieces)
+}
+
+/// The mean normal of the surface around each taxel, of length one, in the order of their pieces. What faces away from the
+/// taxel's own piece does not count.
+fn mean_normals(pieces: &[Piece], taxels: &Taken, within: f64) -> BTreeMap<usize, DVec3> {
+    let mut sums: BTreeMap<usize, DVec3> = BTreeMap::new();
+    for piece in pieces {
+        for taxel in taxels.near(piece.middle, within) {
+            if piece.normal.dot(pieces[taxel].normal) > 0.0 {
+                *sums.entry(taxel).or_default() += piece.area * piece.normal;
+            }
+        }
+    }
+    for (&taxel, sum) in &mut sums {
+        *sum = sum.normalize_or(pieces[taxel].normal);
+    }
+    sums
+}
+
+/// The pieces that have become taxels, by the cube of space that they lie in.
+struct Taken {
+    /// Of the cubes, metres. Twice a distance: whatever is within it lies in at most eight.
+    side: f64,
+    cubes: HashMap<[i64; 3], Vec<(usize, DVec3)>>,
+}
+
+impl Taken {
+    /// None yet; for distances up to this one, metres.
+    fn new(within: f64) -> Self {
+        Self {
+            side: 2.0 * within,
+            cubes: HashMap::new(),
+        }
+    }
+
+    fn take(&mut self, piece: usize, place: DVec3) {
+        let cube = self.cube(place);
+        self.cubes.entry(cube).or_default().push((piece, place));
+    }
+
+    /// Those nearer to a place than `within` metres.
+    fn near(&self, place: DVec3, within: f64) -> impl Iterator<Item = usize> {
+        let (low, high) = (self.cube(place - within), self.cube(place + within));
+        let columns = (low[0]..=high[0]).flat_map(move |x| (low[1]..=high[1]).map(move |y| [x, y]));
+        let cubes = columns.flat_map(move |[x, y]| (low[2]..=high[2]).map(move |z| [x, y, z]));
+        cubes
+            .filter_map(|cube| self.cubes.get(&cube))
+            .flatten()
+            .filter(move |(_, middle)| middle.distance_squared(place) < within * within)
+            .map(|&(piece, _)| piece)
+    }
+
+    fn cube(&self, place: DVec3) -> [i64; 3] {
+        (place / self.side).floor().to_array().map(|c| c as i64)
+    }
+}

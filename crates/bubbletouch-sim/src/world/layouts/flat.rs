@@ -1,0 +1,178 @@
+//! Flat layouts: taxels in the plane z = 0 with their axes along +z.
+
+use super::layout::Layout;
+use super::limits::check_count;
+use super::ring::{Ring, ends_of_steps, n_steps};
+use crate::error::{Error, Result};
+use crate::text::in_range::positive;
+use glam::DVec3;
+
+/// Rows of a hexagonal lattice are this many pitches apart: √3 / 2.
+const ROWS: f64 = 0.866_025_403_784_438_6;
+
+impl Layout {
+    /// `ny` rows of `nx` taxels, every other row moved by half a pitch, so that each inner taxel has six neighbours at exactly
+    /// `pitch` metres; row (patch y, ascending) by row, centred on the origin.
+    ///
+    /// # Errors
+    /// The error names a pitch that is not positive, or a number of taxels that is zero or beyond
+    /// [`MOST_TAXELS`](crate::world::MOST_TAXELS).
+    pub fn hexagonal(nx: usize, ny: usize, pitch: f64) -> Result<Self> {
+        positive("taxel pitch", pitch, "m")?;
+        check_count("hexagonal layout", nx as f64 * ny as f64)?;
+        let middle = |n: usize| 0.5 * (n as f64 - 1.0);
+        let taxels = (0..ny).flat_map(|row| {
+            // A single row is not moved.
+            let stagger = if ny == 1 { 0.0 } else { 0.25 };
+            let shift = if row % 2 == 0 { -stagger } else { stagger };
+            let y = (row as f64 - middle(ny)) * ROWS * pitch;
+            (0..nx).map(move |column| {
+                let x = (column as f64 - middle(nx) + shift) * pitch;
+                (DVec3::new(x, y, 0.0), DVec3::Z)
+            })
+        });
+        Ok(Self::of_taxels(taxels))
+    }
+
+    /// The places of a hexagonal lattice around the origin that are no farther from it than `radius` metres: the nearest
+    /// neighbours of each taxel are exactly `pitch` metres away; row by row.
+    ///
+    /// # Errors
+    /// The error names a length that is not positive, or a disc of more than [`MOST_TAXELS`](crate::world::MOST_TAXELS). A
+    /// radius below the pitch leaves the one taxel in the middle.
+    pub fn disc(radius: f64, pitch: f64) -> Result<Self> {
+        positive("taxel pitch", pitch, "m")?;
+        positive("disc radius", radius, "m")?;
+        // A place on the rim belongs to the disc, however it was rounded.
+        let reach = radius / pitch * (1.0 + 1e-9);
+        check_count(
+            "disc layout",
+            (std::f64::consts::PI / ROWS * reach * reach).max(1.0),
+        )?;
+        let last_row = (reach / ROWS) as i64;
+        let taxels = (-last_row..=last_row).flat_map(|row| {
+            let y = row as f64 * ROWS;
+            let shift = 0.5 * row.rem_euclid(2) as f64;
+            let half_width = (reach * reach - y * y).max(0.0).sqrt();
+            let first = (-half_width - shift).ceil() as i64;
+            let last = (half_width - shift).floor() as i64;
+            (first..=last).map(move |column| {
+                let place = DVec3::new(column as f64 + shift, y, 0.0);
+                (pitch * place, DVec3::Z)
+            })
+        });
+        Ok(Self::of_taxels(taxels))
+    }
+
+    /// Rings of taxels around the origin, the first at the `inner` and the last at the `outer` radius (metres); ring by ring,
+    /// from +x towards +y.
+    ///
+    /// The pitch is met as well as whole numbers of rings and of taxels in a ring allow: rings are between 0.75 and 1.5
+    /// pitches apart. An annulus narrower than 0.75 pitches is a single ring in the middle.
+    ///
+    /// # Errors
+    /// The error names a length that is not positive, radii that are not in ascending order, or a ring of more than
+    /// [`MOST_TAXELS`](crate::world::MOST_TAXELS).
+    pub fn annulus(inner: f64, outer: f64, pitch: f64) -> Result<Self> {
+        positive("taxel pitch", pitch, "m")?;
+        positive("annulus inner radius", inner, "m")?;
+        positive("annulus outer radius", outer, "m")?;
+        if inner > outer {
+            return Err(Error::input(
+                "annulus layout",
+                format!("inner radius {inner} m, outer radius {outer} m"),
+                "an inner radius that is not larger than the outer one",
+            ));
+        }
+        let width = outer - inner;
+        let area = std::f64::consts::PI * (inner + outer) * width.max(pitch);
+        check_count("annulus layout", (area / (pitch * pitch)).max(1.0))?;
+        let rings = ends_of_steps(n_steps(width, pitch)).map(|end| Ring {
+            radius: 0.5 * (inner + outer) + end * width,
+            height: 0.0,
+        });
+        let taxels = rings.flat_map(|ring| ring.places(pitch).map(|place| (place, DVec3::Z)));
+        Ok(Self::of_taxels(taxels))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::ring::nearest_distances;
+    use super::*;
+
+    #[test]
+    fn neighbours_on_hexagonal_lattices_are_exactly_a_pitch_away() {
+        let layouts = [
+            Layout::hexagonal(12, 9, 2e-3).unwrap(),
+            Layout::hexagonal(1, 2, 2e-3).unwrap(),
+            Layout::disc(0.02, 2e-3).unwrap(),
+        ];
+        for layout in layouts {
+            for distance in nearest_distances(&layout) {
+                assert!((distance - 2e-3).abs() < 1e-15, "{distance}");
+            }
+            let centers = || layout.centers().iter().copied();
+            let ends = centers().fold(DVec3::INFINITY, DVec3::min)
+                + centers().fold(DVec3::NEG_INFINITY, DVec3::max);
+            assert!(ends.length() < 1e-15, "centred: {ends}");
+        }
+        assert_eq!(Layout::hexagonal(12, 9, 2e-3).unwrap().n_taxels(), 108);
+    }
+
+    #[test]
+    fn a_disc_holds_every_place_of_its_lattice_within_the_radius() {
+        // Around a place of a hexagonal lattice lie 6 neighbours at 1, 6 at √3, 6 at 2, 12 at √7 pitches.
+        for (radius, n) in [(0.5, 1), (1.0, 7), (1.8, 13), (2.0, 19), (2.7, 31)] {
+            assert_eq!(Layout::disc(radius, 1.0).unwrap().n_taxels(), n, "{radius}");
+        }
+        let n = Layout::disc(0.1, 1e-3).unwrap().n_taxels() as f64;
+        let expected = std::f64::consts::TAU * 1e4 / 3f64.sqrt();
+        assert!((n / expected - 1.0).abs() < 0.005, "{n} of {expected}");
+    }
+
+    #[test]
+    fn the_rings_of_an_annulus_line_its_rims_at_about_the_pitch() {
+        for (inner, outer) in [(5e-3, 20e-3), (5e-3, 8.4e-3), (3e-3, 3.2e-3), (4e-3, 4e-3)] {
+            let pitch = 2e-3;
+            let layout = Layout::annulus(inner, outer, pitch).unwrap();
+            for distance in nearest_distances(&layout) {
+                let share = distance / pitch;
+                assert!((0.75..1.1).contains(&share), "{inner} {outer}: {share}");
+            }
+            let radii: Vec<f64> = layout.centers().iter().map(|c| c.length()).collect();
+            let is_wide = outer - inner >= 0.75 * pitch;
+            let smallest = radii.iter().fold(f64::INFINITY, |a, &b| a.min(b));
+            let largest = radii.iter().fold(0.0_f64, |a, &b| a.max(b));
+            if is_wide {
+                assert!((smallest - inner).abs() < 1e-15 && (largest - outer).abs() < 1e-15);
+            } else {
+                assert!((largest - smallest).abs() < 1e-15, "one ring");
+            }
+        }
+    }
+
+    #[test]
+    fn bad_lengths_and_counts_are_refused_with_their_names() {
+        let errors = [
+            Layout::hexagonal(0, 3, 1e-3),
+            Layout::hexagonal(3, 3, 0.0),
+            Layout::disc(f64::NAN, 1e-3),
+            Layout::disc(1.0, 1e-6),
+            Layout::annulus(2.0, 1.0, 0.1),
+            Layout::annulus(0.0, 1.0, 0.1),
+        ]
+        .map(|layout| layout.unwrap_err().to_string());
+        let starts = [
+            "hexagonal layout: 0 taxels; 1 to ",
+            "taxel pitch: 0 m; a finite positive number",
+            "disc radius: NaN m; a finite positive number",
+            "disc layout: 3627598735724 taxels; 1 to ",
+            "annulus layout: inner radius 2 m, outer radius 1 m; ",
+            "annulus inner radius: 0 m; ",
+        ];
+        for (error, start) in errors.iter().zip(starts) {
+            assert!(error.starts_with(start), "{error}");
+        }
+    }
+}

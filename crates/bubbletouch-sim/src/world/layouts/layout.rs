@@ -1,0 +1,324 @@
+//! Where the taxels of a skin rest, and which way they point.
+
+use super::limits::check_count;
+use crate::error::{Error, Result};
+use crate::geometry::Pose;
+use crate::world::{Dome, Extrusion, Grid};
+use glam::{DMat3, DVec3};
+use std::sync::OnceLock;
+
+/// Deviation of an axis's length from one, at most. Two written digits round to less. A larger bound would accept vectors that are no
+/// unit vectors, a smaller one would refuse what files contain.
+const MAX_LENGTH_ERROR: f64 = 0.01;
+
+/// Deviation of a unit vector's length from one by rounding of its coordinates, at most.
+const UNIT_ROUNDING: f64 = 1e-9;
+
+/// Rest centres and axes of taxels, in the patch frame.
+///
+/// Invariant: as many axes as centres; all finite; axes of length one. A layout that is a rule (a grid, an [`Extrusion`], a [`Dome`])
+/// remembers it, and has 48 bytes a taxel only once somebody asks for all of them.
+///
+/// | family | shape | taxels |
+/// |---|---|---|
+/// | [`grid`](Self::grid) | rectangle, square cells | nx · ny |
+/// | [`hexagonal`](Self::hexagonal) | rectangle, rows staggered | nx · ny |
+/// | [`disc`](Self::disc) | round | about 2π r² / (√3 pitch²) |
+/// | [`annulus`](Self::annulus) | ring | about its area / pitch² |
+/// | [`cylinder`](Self::cylinder) | forearm, finger | about arc · radius · length / pitch² |
+/// | [`sphere_cap`](Self::sphere_cap) | fingertip, elbow | about its area / pitch² |
+/// | [`draped`](Self::draped) | outer surface of a triangle mesh | about its area / pitch² |
+#[derive(Clone, Debug)]
+pub struct Layout {
+    rule: Rule,
+    places: OnceLock<Places>,
+    n_left_out: usize,
+}
+
+/// How taxels lie.
+#[derive(Clone, Debug)]
+pub(crate) enum Rule {
+    /// In rows and columns.
+    Grid(Grid),
+    /// One row repeated along a line.
+    Rows(Extrusion),
+    /// Rings on a sphere.
+    Dome(Dome),
+    /// Anywhere.
+    None,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct Places {
+    centers: Vec<DVec3>,
+    axes: Vec<DVec3>,
+}
+
+/// The same taxels, numbered alike.
+impl PartialEq for Layout {
+    fn eq(&self, other: &Self) -> bool {
+        self.places() == other.places()
+    }
+}
+
+impl Layout {
+    /// Any places (metres) with any axes (unit, away from the substrate). Axes are normalised: files write them with few digits.
+    ///
+    /// # Errors
+    /// The error names the first taxel (from 1) whose place or axis cannot be used, such as an axis whose length differs from one by
+    /// more than 1 %, or the lengths if they differ.
+    pub fn new(centers: Vec<DVec3>, mut axes: Vec<DVec3>) -> Result<Self> {
+        if centers.len() != axes.len() {
+            return Err(Error::input(
+                "layout",
+                format!("{} places with {} axes", centers.len(), axes.len()),
+                "one axis a taxel",
+            ));
+        }
+        check_count("layout", centers.len() as f64)?;
+        for (index, (center, axis)) in centers.iter().zip(&mut axes).enumerate() {
+            let place = || format!("layout, taxel {}", index + 1);
+            if !center.is_finite() {
+                return Err(Error::input(
+                    place(),
+                    format!("centre {center}"),
+                    "finite coordinates in metres",
+                ));
+            }
+            let length = axis.length();
+            if !(axis.is_finite() && (length - 1.0).abs() <= MAX_LENGTH_ERROR) {
+                return Err(Error::input(
+                    place(),
+                    format!("axis {axis} of length {length}"),
+                    "a vector of length one, within 1 %",
+                ));
+            }
+            // An axis that is a unit vector to rounding keeps its bits.
+            if (length - 1.0).abs() > UNIT_ROUNDING {
+                *axis = axis.normalize();
+            }
+        }
+        Ok(Self::of_places(Places { centers, axes }))
+    }
+
+    /// A grid in the plane z = 0, row (patch y, ascending) by row; the layout remembers that it is one.
+    ///
+    /// # Errors
+    /// The error names what is out of its range: see [`Grid::check`].
+    pub fn grid(grid: &Grid) -> Result<Self> {
+        grid.check()?;
+        check_count("taxel grid", grid.nx as f64 * grid.ny as f64)?;
+        Ok(Self::of_rule(Rule::Grid(*grid)))
+    }
+
+    /// How many taxels.
+    pub fn n_taxels(&self) -> usize {
+        match &self.rule {
+            Rule::Grid(grid) => grid.n_taxels(),
+            Rule::Rows(rows) => rows.n_taxels(),
+            Rule::Dome(dome) => dome.n_taxels(),
+            Rule::None => self.centers().len(),
+        }
+    }
+
+    /// Taxels that a [draped](Self::draped_on) layout leaves out, because their axes would meet the mesh again; 0 for other layouts.
+    pub fn n_left_out(&self) -> usize {
+        self.n_left_out
+    }
+
+    pub(crate) fn with_left_out(self, n_left_out: usize) -> Self {
+        Self { n_left_out, ..self }
+    }
+
+    /// n_taxels rest centres, metres.
+    pub fn centers(&self) -> &[DVec3] {
+        &self.places().centers
+    }
+
+    /// n_taxels axes, unit, pointing away from the substrate.
+    pub fn axes(&self) -> &[DVec3] {
+        &self.places().axes
+    }
+
+    fn places(&self) -> &Places {
+        self.places.get_or_init(|| match &self.rule {
+            Rule::Grid(grid) => grid.taxels().collect(),
+            Rule::Rows(rows) => rows.taxels().collect(),
+            Rule::Dome(dome) => dome.taxels().collect(),
+            Rule::None => unreachable!("places without a rule are there from the start"),
+        })
+    }
+
+    /// How its taxels lie.
+    pub(crate) fn rule(&self) -> &Rule {
+        &self.rule
+    }
+
+    /// The frame of one taxel: columns x, y (across its axis) and z (its axis) in the patch frame, a rotation.
+    ///
+    /// x and y are those of the patch, turned by the least rotation that takes the patch's z to the axis; of an axis that
+    /// points below the patch's xy plane, x and −y by the least rotation that takes −z there. So the taxels of a flat skin have
+    /// the patch's x and y, and those of a dome differ no more than their axes do; the frames jump only where the axes
+    /// cross the xy plane.
+    ///
+    /// # Panics
+    /// If there are not that many.
+    pub fn frame(&self, taxel: usize) -> DMat3 {
+        let axis = self.axes()[taxel];
+        let (x, y) = axis.any_orthonormal_pair();
+        DMat3::from_cols(x, y, axis)
+    }
+
+    /// The grid that it was made from, if it was.
+    pub fn as_grid(&self) -> Option<&Grid> {
+        match &self.rule {
+            Rule::Grid(grid) => Some(grid),
+            _ => None,
+        }
+    }
+
+    /// The same taxels elsewhere in the patch frame; no grid any more.
+    #[must_use]
+    pub fn moved(&self, pose: &Pose) -> Self {
+        let taxels = self.centers().iter().zip(self.axes());
+        let moved = Self::of_taxels(taxels.map(|(&center, &axis)| {
+            let axis = (pose.rotation * axis).normalize();
+            (pose.transform_point(center), axis)
+        }));
+        moved.with_left_out(self.n_left_out)
+    }
+
+    /// What a family has made: taxels whose axes are all of length one.
+    pub(crate) fn of_taxels(taxels: impl IntoIterator<Item = (DVec3, DVec3)>) -> Self {
+        Self::of_places(taxels.into_iter().collect())
+    }
+
+    fn of_places(places: Places) -> Self {
+        Self {
+            rule: Rule::None,
+            places: places.into(),
+            n_left_out: 0,
+        }
+    }
+
+    fn of_rule(rule: Rule) -> Self {
+        Self {
+            rule,
+            places: OnceLock::new(),
+            n_left_out: 0,
+        }
+    }
+}
+
+impl FromIterator<(DVec3, DVec3)> for Places {
+    fn from_iter<T: IntoIterator<Item = (DVec3, DVec3)>>(taxels: T) -> Self {
+        let (centers, axes) = taxels.into_iter().unzip();
+        Self { centers, axes }
+    }
+}
+
+impl From<Extrusion> for Layout {
+    fn from(rows: Extrusion) -> Self {
+        Self::of_rule(Rule::Rows(rows))
+    }
+}
+
+impl From<Dome> for Layout {
+    fn from(dome: Dome) -> Self {
+        Self::of_rule(Rule::Dome(dome))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Seed;
+    use glam::DQuat;
+    use rand::Rng;
+
+    #[test]
+    fn a_grid_lies_as_the_grid_says_and_remembers_it() {
+        let grid = Grid {
+            nx: 3,
+            ny: 2,
+            pitch: 2e-3,
+        };
+        let layout = Layout::grid(&grid).unwrap();
+        assert_eq!(layout.as_grid(), Some(&grid));
+        assert_eq!(layout.centers()[5], DVec3::new(2e-3, 1e-3, 0.0));
+        assert!(layout.axes().iter().all(|&axis| axis == DVec3::Z));
+    }
+
+    #[test]
+    fn frames_are_the_patchs_turned_the_least() {
+        let mut rng = Seed::new(3).named("frames").rng();
+        let mut axis = || {
+            let mut random = || rng.gen_range(-1.0..1.0);
+            DVec3::new(random(), random(), random()).normalize_or(DVec3::X)
+        };
+        let axes: Vec<DVec3> = (0..200).map(|_| axis()).collect();
+        let layout = Layout::new(vec![DVec3::ZERO; 200], axes.clone()).unwrap();
+        for (taxel, &axis) in axes.iter().enumerate() {
+            let (pole, x, y) = match axis.z > 0.0 {
+                true => (DVec3::Z, DVec3::X, DVec3::Y),
+                false => (-DVec3::Z, DVec3::X, -DVec3::Y),
+            };
+            let least = DQuat::from_rotation_arc(pole, axis);
+            let expected = DMat3::from_cols(least * x, least * y, axis);
+            assert!(layout.frame(taxel).abs_diff_eq(expected, 1e-12), "{axis}");
+            assert!((layout.frame(taxel).determinant() - 1.0).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn axes_of_few_digits_are_normalised_and_others_keep_their_bits() {
+        let third = DVec3::splat(1.0).normalize();
+        let written = [
+            DVec3::splat(0.5774),
+            third,
+            0.991 * DVec3::Y,
+            1.009 * DVec3::Y,
+        ];
+        let layout = Layout::new(vec![DVec3::ZERO; 4], written.to_vec()).unwrap();
+        let axes = layout.axes();
+        assert!((axes[0] - third).length() < 1e-15 && axes[1] == third);
+        assert_eq!(axes[2..], [DVec3::Y, DVec3::Y]);
+        for length in [0.989, 1.011, 0.0, f64::INFINITY] {
+            let given = vec![DVec3::Z, length * DVec3::X];
+            let error = Layout::new(vec![DVec3::ZERO; 2], given).unwrap_err();
+            assert!(
+                error.to_string().starts_with("layout, taxel 2: axis "),
+                "{error}"
+            );
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_a_layout_is_refused_with_its_taxel() {
+        let message = |centers: &[DVec3], axes: &[DVec3]| {
+            let layout = Layout::new(centers.to_vec(), axes.to_vec());
+            layout.unwrap_err().to_string()
+        };
+        assert_eq!(
+            message(&[DVec3::ZERO], &[]),
+            "layout: 1 places with 0 axes; one axis a taxel"
+        );
+        assert_eq!(message(&[], &[]), "layout: 0 taxels; 1 to 4194304");
+        assert_eq!(
+            message(&[DVec3::ZERO; 2], &[DVec3::Z, DVec3::new(0.0, 0.0, 2.0)]),
+            "layout, taxel 2: axis [0, 0, 2] of length 2; a vector of length one, within 1 %"
+        );
+        let nowhere = DVec3::new(f64::NAN, 0.0, 0.0);
+        assert_eq!(
+            message(&[nowhere], &[DVec3::Z]),
+            "layout, taxel 1: centre [NaN, 0, 0]; finite coordinates in metres"
+        );
+        let grid = Grid {
+            nx: 1 << 12,
+            ny: 1 << 12,
+            pitch: 1e-3,
+        };
+        let message = Layout::grid(&grid).unwrap_err().to_string();
+        assert_eq!(message, "taxel grid: 16777216 taxels; 1 to 4194304");
+    }
+}

@@ -1,0 +1,32 @@
+//! Layouts: the places and axes of the taxels of a patch.
+//!
+//! | file | layout |
+//! |---|---|
+//! | `layout` | any places and axes ([`Layout`]) |
+//! | `flat` | hexagonal, rings, staggered rows in a plane |
+//! | `extrusion` | a row repeated along a line ([`Extrusion`]): grids, cylinders |
+//! | `dome`, `curved` | on spheres ([`Dome`]) and other curved surfaces |
+//! | `draped`, `drape_region` | on a mesh, or on a part of a mesh |
+//! | `array` | arrays of equal area and density that can be compared ([`ArrayLayout`]) |
+//! | `order` | the order in which taxels are numbered |
+//! | `ring`, `limits` | rings around an axis, and the checks that all layouts share |
+
+mod array;
+mod curved;
+mod dome;
+mod drape_region;
+mod draped;
+mod extrusion;
+mod flat;
+mod layout;
+mod limits;
+mod order;
+mod ring;
+
+pub use array::ArrayLayout;
+pub use dome::{Dome, DomeRing};
+pub use drape_region::DrapeRegion;
+pub use extrusion::Extrusion;
+pub use layout::Layout;
+pub(crate) use layout::Rule;
+pub use limits::MOST_TAXELS;

@@ -1,0 +1,55 @@
+//! Rings around the z axis, which annuli, cylinders and caps are made of.
+
+use glam::DVec3;
+use std::f64::consts::TAU;
+
+/// A circle around the z axis.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ring {
+    /// Metres, not negative.
+    pub radius: f64,
+    /// z, metres.
+    pub height: f64,
+}
+
+impl Ring {
+    /// Places evenly around it, about `pitch` metres apart and the first one at +x; at least one.
+    pub fn places(self, pitch: f64) -> impl Iterator<Item = DVec3> {
+        let n = n_steps(TAU * self.radius, pitch).max(1);
+        (0..n).map(move |k| self.place(TAU * k as f64 / n as f64))
+    }
+
+    /// The place at an angle from +x towards +y, radians.
+    pub fn place(self, angle: f64) -> DVec3 {
+        let (sin, cos) = angle.sin_cos();
+        DVec3::new(self.radius * cos, self.radius * sin, self.height)
+    }
+}
+
+/// Into how many equal steps of about a pitch a length is cut: of between 0.75 and 1.5 pitches; none if it is shorter.
+pub(crate) fn n_steps(length: f64, pitch: f64) -> usize {
+    if length < 0.75 * pitch {
+        return 0;
+    }
+    (length / pitch).round() as usize
+}
+
+/// Where the ends of n equal steps are in a length about zero, as shares of it: from −0.5 to 0.5, or 0 alone.
+pub(crate) fn ends_of_steps(n: usize) -> impl Iterator<Item = f64> + Clone {
+    (0..=n).map(move |step| match n {
+        0 => 0.0,
+        n => step as f64 / n as f64 - 0.5,
+    })
+}
+
+/// Of each taxel of a layout the distance to its nearest neighbour.
+#[cfg(test)]
+pub(crate) fn nearest_distances(layout: &crate::world::Layout) -> Vec<f64> {
+    let centers = layout.centers();
+    let nearest = |i: usize| {
+        let others = centers.iter().enumerate().filter(|&(j, _)| j != i);
+        let distances = others.map(|(_, other)| other.distance(centers[i]));
+        distances.fold(f64::INFINITY, f64::min)
+    };
+    (0..centers.len()).map(nearest).collect()
+}

@@ -1,0 +1,240 @@
+//! The basins of the support function: which directions of down roll to which minimum.
+//!
+//! 1. On a mesh of directions, each flows to its lowest neighbour: basins.
+//! 2. Basins with a low barrier between them are one: first the barrier along the mesh; then, with each minimum found exactly,
+//!    the barrier along a smooth path between two minima, which follows the valley of a lying can where the mesh hops across
+//!    it.
+
+use super::descent::settle;
+use super::support::Support;
+use glam::{DQuat, DVec3};
+
+/// Spacing of the heights taken along a path, radians: a quarter of the mesh's.
+const PATH_SPACING: f64 = 0.01;
+/// How often a path between two minima may be halved to follow a bent valley; 4 follows a quarter circle.
+const VALLEY_HALVINGS: usize = 4;
+/// Minima closer than this are the same, radians: half the spacing of the mesh.
+const SAME_DIRECTION: f64 = 0.02;
+
+/// A minimum of the support function with what rolls into it.
+pub(crate) struct Basin {
+    /// The direction of down at the minimum, a unit vector.
+    pub lowest: DVec3,
+    /// Its share of all directions, 0 to 1; right within about 0.01.
+    pub share: f64,
+}
+
+/// All basins that are parted by barriers of at least `barrier` (metres), in the order of the mesh.
+pub(crate) fn basins(support: &Support, barrier: f64) -> Vec<Basin> {
+    let label = downhill_labels(support);
+    let passes = mesh_passes(support, &label);
+    let mut merging = Merging::new(support);
+    merging.merge(&passes, barrier);
+    merging.settle(support, &label);
+    for halvings in [0, VALLEY_HALVINGS] {
+        let smooth = merging.smooth_passes(support, &passes, barrier, halvings);
+        merging.merge(&smooth, barrier);
+    }
+    merging.basins(support, &label)
+}
+
+/// A way from one basin to another, by their labels, over a highest point.
+struct Pass {
+    labels: (usize, usize),
+    height: f64,
+}
+
+/// For each direction of the mesh, the lowest one that it reaches by always going to its lowest neighbour: its label.
+fn downhill_labels(support: &Support) -> Vec<usize> {
+    let heights = &support.heights;
+    // Equal heights flow to the smaller index, so that flats have an end.
+    let lower = |a: usize, b: usize| (heights[a], a) < (heights[b], b);
+    let mut next: Vec<usize> = (0..heights.len()).collect();
+    for (a, b) in edges(support) {
+        if lower(b, next[a]) {
+            next[a] = b;
+        }
+    }
+    let mut order: Vec<usize> = (0..heights.len()).collect();
+    order.sort_unstable_by(|&a, &b| heights[a].total_cmp(&heights[b]).then(a.cmp(&b)));
+    let mut label: Vec<usize> = (0..heights.len()).collect();
+    for vertex in order {
+        label[vertex] = label[next[vertex]];
+    }
+    label
+}
+
+/// Each side of each triangle; every edge of the mesh comes twice, once in either direction.
+fn edges(support: &Support) -> impl Iterator<Item = (usize, usize)> + '_ {
+    let sides = |&[a, b, c]: &[usize; 3]| [(a, b), (b, c), (c, a)];
+    support.triangles.iter().flat_map(sides)
+}
+
+/// The lowest mesh edge between each two neighbouring labels.
+fn mesh_passes(support: &Support, label: &[usize]) -> Vec<Pass> {
+    let between = edges(support).filter(|&(a, b)| label[a] < label[b]);
+    let pass = |(a, b): (usize, usize)| Pass {
+        labels: (label[a], label[b]),
+        height: support.heights[a].max(support.heights[b]),
+    };
+    lowest_of_each(between.map(pass).collect())
+}
+
+/// Of several passes between the same labels, the lowest.
+fn lowest_of_each(mut passes: Vec<Pass>) -> Vec<Pass> {
+    passes.sort_by(|a, b| {
+        let by_height = a.height.total_cmp(&b.height);
+        a.labels.cmp(&b.labels).then(by_height)
+    });
+    passes.dedup_by_key(|pass| pass.labels);
+    passes
+}
+
+/// Basins that become one as barriers are levelled.
+struct Merging {
+    /// Label → another label of the same basin; a root is its own.
+    parent: Vec<usize>,
+    /// Root → its lowest direction and height.
+    minimum: Vec<(DVec3, f64)>,
+}
+
+impl Merging {
+    /// Every mesh direction a basin of its own.
+    fn new(support: &Support) -> Self {
+        let pairs = support.directions.iter().zip(&support.heights);
+        Self {
+            parent: (0..support.directions.len()).collect(),
+            minimum: pairs.map(|(&down, &height)| (down, height)).collect(),
+        }
+    }
+
+    fn root(&mut self, mut label: usize) -> usize {
+        while self.parent[label] != label {
+            self.parent[label] = self.parent[self.parent[label]];
+            label = self.parent[label];
+        }
+        label
+    }
+
+    /// Levels barriers, lowest pass first: two basins become one if the pass stands less than `barrier` above the higher of
+    /// their minima.
+    fn merge(&mut self, passes: &[Pass], barrier: f64) {
+        let mut by_height: Vec<&Pass> = passes.iter().collect();
+        by_height.sort_by(|a, b| a.height.total_cmp(&b.height));
+        for pass in by_height {
+            let (a, b) = (self.root(pass.labels.0), self.root(pass.labels.1));
+            if pass.height - self.floor(a, b) < barrier {
+                self.join(a, b);
+            }
+        }
+    }
+
+    /// Makes two roots one; the lower minimum stays.
+    fn join(&mut self, a: usize, b: usize) {
+        let (keep, drop) = if self.minimum[a].1 <= self.minimum[b].1 {
+            (a, b)
+        } else {
+            (b, a)
+        };
+        self.parent[drop] = keep;
+    }
+
+    /// The higher of two roots' minima.
+    fn floor(&self, a: usize, b: usize) -> f64 {
+        self.minimum[a].1.max(self.minimum[b].1)
+    }
+
+    /// Moves each minimum from its mesh direction to the true local minimum. One that ends in another basin's directions has
+    /// rolled there without a rise: the two are one.
+    fn settle(&mut self, support: &Support, label: &[usize]) {
+        let mut roots: Vec<_> = label.iter().map(|&label| self.root(label)).collect();
+        roots.sort_unstable();
+        roots.dedup();
+        for &root in &roots {
+            let down = settle(support, self.minimum[root].0);
+            self.minimum[root] = (down, support.height(down));
+        }
+        for root in roots {
+            let end = label[support.nearest_direction(self.minimum[root].0)];
+            let (from, to) = (self.root(root), self.root(end));
+            self.join(from, to);
+        }
+    }
+
+    /// The passes between what is left of the basins: the mesh's, or that of a smooth path where it is lower.
+    fn smooth_passes(
+        &mut self,
+        support: &Support,
+        mesh: &[Pass],
+        barrier: f64,
+        halvings: usize,
+    ) -> Vec<Pass> {
+        let mut left = Vec::new();
+        for pass in mesh {
+            let (a, b) = (self.root(pass.labels.0), self.root(pass.labels.1));
+            if a != b {
+                left.push(Pass {
+                    labels: (a.min(b), a.max(b)),
+                    height: pass.height,
+                });
+            }
+        }
+        let mut left = lowest_of_each(left);
+        for pass in &mut left {
+            let (a, b) = pass.labels;
+            let ends = (self.minimum[a].0, self.minimum[b].0);
+            let enough = self.floor(a, b) + barrier;
+            let smooth = valley_pass(support, ends, enough, halvings);
+            pass.height = pass.height.min(smooth);
+        }
+        left
+    }
+
+    /// What is left, with each basin's share of the mesh.
+    fn basins(mut self, support: &Support, label: &[usize]) -> Vec<Basin> {
+        let mut area = vec![0.0; label.len()];
+        for corners in &support.triangles {
+            let [a, b, c] = corners.map(|v| support.directions[v]);
+            let third = (b - a).cross(c - a).length() / 6.0;
+            for &corner in corners {
+                area[self.root(label[corner])] += third;
+            }
+        }
+        let total: f64 = area.iter().sum();
+        let roots = area.iter().zip(&self.minimum).filter(|(a, _)| **a > 0.0);
+        roots
+            .map(|(area, minimum)| Basin {
+                lowest: minimum.0,
+                share: area / total,
+            })
+            .collect()
+    }
+}
+
+/// The highest point of a path between two minima: the great circle if it stays below `enough`; else it is led through
+/// the minimum that its middle rolls to, which bends it into the curved valley of a lying cone.
+fn valley_pass(support: &Support, ends: (DVec3, DVec3), enough: f64, halvings: usize) -> f64 {
+    let (from, to) = ends;
+    let direct = highest_between(support, from, to);
+    if halvings == 0 || direct < enough {
+        return direct;
+    }
+    let middle = settle(support, (from + to).normalize_or(from));
+    let arrived = |end: DVec3| end.angle_between(middle) < SAME_DIRECTION;
+    if arrived(from) || arrived(to) {
+        return direct;
+    }
+    let halves = [(from, middle), (middle, to)];
+    let passes = halves.map(|ends| valley_pass(support, ends, enough, halvings - 1));
+    direct.min(passes[0].max(passes[1]))
+}
+
+/// The highest of the heights along the shorter great circle between two directions.
+fn highest_between(support: &Support, from: DVec3, to: DVec3) -> f64 {
+    let turn = DQuat::from_rotation_arc(from, to);
+    let steps = (from.angle_between(to) / PATH_SPACING).ceil().max(1.0);
+    (0..=steps as usize)
+        .map(|i| DQuat::IDENTITY.slerp(turn, i as f64 / steps) * from)
+        .map(|down| support.height(down.normalize()))
+        .fold(f64::NEG_INFINITY, f64::max)
+}

@@ -1,0 +1,207 @@
+//! From a direction downhill to the nearest local minimum of the support function.
+//!
+//! The function is a maximum of smooth pieces, one a sphere, with creases where two spheres touch the table. So each step
+//! minimises the maximum of the linearised pieces inside a trust region, exactly; at a face of three contacts this
+//! converges like Newton's method.
+
+use super::support::Support;
+use crate::objects::Sphere;
+use glam::{DMat3, DVec3};
+
+/// The first trust region, radians: about the spacing of the mesh of directions.
+const FIRST_REACH: f64 = 0.04;
+/// The trust region below which a direction is final, radians.
+const LAST_REACH: f64 = 1e-9;
+/// The predicted gain that is rounding, as a share of the farthest point's distance.
+const LEAST_GAIN: f64 = 1e-14;
+/// Steps at most; 20 to 60 are usual.
+const MAX_STEPS: usize = 200;
+
+/// The local minimum that `start` rolls to; unit vectors. The height never rises on the way.
+pub(crate) fn settle(support: &Support, start: DVec3) -> DVec3 {
+    let mut down = start;
+    let mut height = support.height(down);
+    let mut reach = FIRST_REACH;
+    let radius = support.radius();
+    let flat = LEAST_GAIN * radius;
+    let mut gathered = (down, 4.0 * reach);
+    let mut spheres = support.candidates_near(gathered.0, gathered.1);
+    for _ in 0..MAX_STEPS {
+        // The walls' corners are two reaches away.
+        if down.distance(gathered.0) + 2.0 * reach > gathered.1 {
+            gathered = (down, 4.0 * reach);
+            spheres = support.candidates_near(gathered.0, gathered.1);
+        }
+        // Inside the walls no height changes by more than two reaches times the radius, so a sphere lower by twice that
+        // stays below the highest.
+        let lowest = height - 4.0 * reach * radius;
+        let (step, predicted) = linear_step(&spheres, down, lowest, walls(radius, height, reach));
+        let gain = height - predicted;
+        if gain <= flat || reach < LAST_REACH {
+            break;
+        }
+        let next = (down + step).normalize();
+        let next_height = support.height(next);
+        if height - next_height >= 0.25 * gain {
+            (down, height) = (next, next_height);
+            reach = (2.0 * reach).min(FIRST_REACH);
+        } else {
+            if next_height < height {
+                (down, height) = (next, next_height);
+            }
+            reach *= 0.25;
+        }
+    }
+    down
+}
+
+/// One linearised sphere: z ≥ `value` + `slope` · t in the tangent plane.
+#[derive(Clone, Copy)]
+struct Piece {
+    value: f64,
+    slope: [f64; 2],
+}
+
+impl Piece {
+    fn at(&self, t: [f64; 2]) -> f64 {
+        self.value + self.slope[0] * t[0] + self.slope[1] * t[1]
+    }
+}
+
+/// The tangent step that minimises the linearised height inside the walls, and that height; spheres below `lowest` do not
+/// count.
+fn linear_step(spheres: &[Sphere], down: DVec3, lowest: f64, walls: [Piece; 3]) -> (DVec3, f64) {
+    let (u, v) = down.any_orthonormal_pair();
+    let piece = |sphere: &Sphere| Piece {
+        value: sphere.center.dot(down) + sphere.radius,
+        slope: [sphere.center.dot(u), sphere.center.dot(v)],
+    };
+    let counts = |piece: &Piece| piece.value >= lowest;
+    let pieces: Vec<_> = spheres.iter().map(piece).filter(counts).collect();
+    let (t, z) = lowest_maximum(&pieces, walls);
+    (t[0] * u + t[1] * v, z)
+}
+
+/// Three pieces, steeper than any sphere, that rise above `height` outside a triangle of inradius `reach` and stay below
+/// every possible answer well inside it.
+fn walls(radius: f64, height: f64, reach: f64) -> [Piece; 3] {
+    let steep = 4.0 * radius;
+    [0.0, 1.0, 2.0].map(|third| {
+        let (sin, cos) = (std::f64::consts::TAU * third / 3.0).sin_cos();
+        Piece {
+            value: height - steep * reach,
+            slope: [steep * cos, steep * sin],
+        }
+    })
+}
+
+/// min over t of the maximum of `pieces` and `walls`: a linear program in three variables, by the dual simplex method.
+///
+/// Kept: three pieces whose slopes hold 0 as their mean with `weights` ≥ 0. Their common point is the minimum of their
+/// maximum; the piece that is highest there enters, and the one whose weight runs out first leaves.
+fn lowest_maximum(pieces: &[Piece], walls: [Piece; 3]) -> ([f64; 2], f64) {
+    let mut basis = walls;
+    let mut weights = [1.0 / 3.0; 3];
+    let mut answer = ([0.0; 2], walls[0].value);
+    for _ in 0..MAX_STEPS {
+        let (t, z) = answer;
+        let mut enters = (&walls[0], f64::NEG_INFINITY);
+        for piece in pieces.iter().chain(&walls) {
+            let height = piece.at(t);
+            if height > enters.1 {
+                enters = (piece, height);
+            }
+        }
+        let (enters, highest) = enters;
+        if highest <= z + 1e-15 * z.abs().max(f64::MIN_POSITIVE) {
+            break;
+        }
+        let column = |piece: &Piece| DVec3::new(piece.slope[0], piece.slope[1], 1.0);
+        let columns = DMat3::from_cols(column(&basis[0]), column(&basis[1]), column(&basis[2]));
+        let mix = (columns.inverse() * column(enters)).to_array();
+        let ratio = |i: &usize| weights[*i] / mix[*i];
+        let leaving = (0..3)
+            .filter(|&i| mix[i] > 0.0)
+            .min_by(|a, b| ratio(a).total_cmp(&ratio(b)));
+        let Some(leaves) = leaving else {
+            break;
+        };
+        let share = ratio(&leaves);
+        for i in 0..3 {
+            weights[i] = (weights[i] - share * mix[i]).max(0.0);
+        }
+        weights[leaves] = share;
+        basis[leaves] = *enters;
+        let Some(meeting) = common_point(&basis) else {
+            break;
+        };
+        answer = meeting;
+    }
+    answer
+}
+
+/// Where three pieces are equally high, and how high; `None` if their slopes lie on a line.
+fn common_point(basis: &[Piece; 3]) -> Option<([f64; 2], f64)> {
+    let row = |p: &Piece| DVec3::new(p.slope[0], p.slope[1], -1.0);
+    let rows = DMat3::from_cols(row(&basis[0]), row(&basis[1]), row(&basis[2])).transpose();
+    let values = DVec3::new(basis[0].value, basis[1].value, basis[2].value);
+    let solution = rows.inverse() * -values;
+    solution
+        .is_finite()
+        .then_some(([solution.x, solution.y], solution.z))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::objects::SphereUnion;
+    use crate::random::Seed;
+    use rand::Rng;
+
+    #[test]
+    fn the_linear_step_finds_the_lowest_maximum() {
+        let mut rng = Seed::new(1).rng();
+        for n in [1, 2, 3, 10, 100] {
+            let mut random = || 2.0 * rng.r#gen::<f64>() - 1.0;
+            let pieces: Vec<_> = (0..n)
+                .map(|_| Piece {
+                    value: random(),
+                    slope: [random(), random()],
+                })
+                .collect();
+            let walls = walls(2.0, 1.0, 0.5);
+            let highest = |t: [f64; 2]| {
+                let heights = pieces.iter().chain(&walls).map(|piece| piece.at(t));
+                heights.fold(f64::NEG_INFINITY, f64::max)
+            };
+            let (t, z) = lowest_maximum(&pieces, walls);
+            assert!((highest(t) - z).abs() < 1e-12);
+            for i in -100..=100 {
+                for j in -100..=100 {
+                    let other = [0.01 * f64::from(i), 0.01 * f64::from(j)];
+                    assert!(highest(other) >= z - 1e-12);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn settling_never_rises() {
+        let mut rng = Seed::new(2).rng();
+        let mut random = || 0.1 * (rng.r#gen::<f64>() - 0.5);
+        let sphere = |center| Sphere {
+            center,
+            radius: 0.02,
+        };
+        let centers: Vec<_> = (0..40)
+            .map(|_| DVec3::new(random(), random(), random()))
+            .collect();
+        let union = SphereUnion::new(centers.into_iter().map(sphere).collect()).unwrap();
+        let support = Support::about(DVec3::ZERO, union.spheres());
+        for start in support.directions.iter().step_by(101) {
+            let end = settle(&support, *start);
+            assert!(support.height(end) <= support.height(*start));
+            assert!((end.length() - 1.0).abs() < 1e-12);
+        }
+    }
+}

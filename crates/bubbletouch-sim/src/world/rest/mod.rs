@@ -1,0 +1,20 @@
+//! Rest: an object → the poses in which it rests on a table.
+//!
+//! | stage | input → output |
+//! |---|---|
+//! | `mass` | a union of spheres → its centre of mass |
+//! | `body` | an object → its bounds, corners and centre of mass |
+//! | `support` | an object → the height of its centre of mass for each direction of down |
+//! | `descent` | a direction → the local minimum of the height that the object rolls to |
+//! | `basins` | all directions → the minima, with the share of directions that roll to each |
+//! | `rest_pose` | minima → poses with their probabilities ([`RestPose`]) |
+
+mod basins;
+mod body;
+mod descent;
+mod mass;
+mod rest_pose;
+mod support;
+
+pub use mass::center_of_mass;
+pub use rest_pose::{RestPose, as_modelled, stable_poses, stable_poses_about};
