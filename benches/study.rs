@@ -1,25 +1,25 @@
 //! What the engine of studies costs a cell, drawing and learning apart: `cargo bench --bench study`.
 //!
-//! 1. **Pieces**: 10,000 pieces that do nothing but give a row, with a journal on disk; then the same study again, of which all is done.
+//! 1. **Items**: 10,000 work items that do nothing but give a row, with a journal on disk; then the same study again, of which all is done.
 //! 2. **Cells**: a recognition study of 12,000 cells on one thread, with a journal on disk. Its touches, measurements and fits say what
 //!    they take; what is left of the time is the engine's: laying out, journal, tables.
 
 use bubbletouch::Result;
-use bubbletouch::kinds::recognition::RecognitionStudy;
+use bubbletouch::kinds::Study;
+use bubbletouch::kinds::recognition::{RecognitionRows, RecognitionStudy};
 use bubbletouch::random::Seed;
 use bubbletouch::study::journal::{Identity, JOURNAL_FILE, Journal};
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::work_items::{
-    ItemRows, Part, PendingItems, RunOptions, StudyRun, StudyRunner, WorkItem,
+    ItemRows, Part, PendingItems, RunOptions, StudyRun, WorkItem,
 };
 use bubbletouch::study::{Plan, StudySpec, draw_touches, load_objects};
-use bubbletouch::table::Table;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::time::Instant;
 
-const N_PIECES: usize = 10_000;
+const N_ITEMS: usize = 10_000;
 
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct Row {
@@ -39,38 +39,29 @@ impl ItemRows for Rows {
     }
 }
 
-/// Pieces that do nothing.
-struct Nothing;
-
 fn name(number: usize) -> String {
-    format!("piece number {number} of a study that does nothing")
+    format!("item number {number} of a study that does nothing")
 }
 
-impl StudyRunner for Nothing {
-    type Rows = Rows;
+/// Lists the items.
+fn nothing_items() -> Vec<WorkItem> {
+    let item = |n| WorkItem::new(name(n), n);
+    (0..N_ITEMS).map(item).collect()
+}
 
-    fn work_items(&self) -> Vec<WorkItem> {
-        let piece = |n| WorkItem::new(name(n), n);
-        (0..N_PIECES).map(piece).collect()
-    }
-
-    fn measure(&self, left: &PendingItems<Rows>) -> Result<()> {
-        (0..N_PIECES).into_par_iter().try_for_each(|number| {
-            left.finish(number, || {
-                let row = Row {
-                    number,
-                    value: (number as f64).sqrt(),
-                    text: "as long as words in tables are".to_owned(),
-                };
-                let rows = vec![(row.clone(), row)];
-                Ok(Rows { rows })
-            })
+/// Computes the pending items.
+fn measure_nothing(pending: &PendingItems<Rows>) -> Result<()> {
+    (0..N_ITEMS).into_par_iter().try_for_each(|number| {
+        pending.finish(number, || {
+            let row = Row {
+                number,
+                value: (number as f64).sqrt(),
+                text: "as long as words in tables are".to_owned(),
+            };
+            let rows = vec![(row.clone(), row)];
+            Ok(Rows { rows })
         })
-    }
-
-    fn tables(&self, _rows: Rows) -> Result<Vec<Table>> {
-        Ok(Vec::new())
-    }
+    })
 }
 
 /// Two objects on an array of 64 taxels, in 12,000 ways.
@@ -118,37 +109,38 @@ fn journal(folder: &Path, name: &str) -> Result<Journal> {
     Journal::open(&folder.join(format!("{name}_{JOURNAL_FILE}")), &identity)
 }
 
-fn n_left(study: &impl StudyRunner, journal: &Journal) -> usize {
-    let manner = RunOptions {
+fn n_pending<R: ItemRows>(items: &[WorkItem], journal: &Journal) -> usize {
+    let options = RunOptions {
         journal,
         ..RunOptions::whole(&Silent)
     };
-    StudyRun::new(study, &study.work_items(), &manner).n_pending()
+    StudyRun::<R>::new(items, &options).n_pending()
 }
 
-fn time_pieces(folder: &Path) -> Result<()> {
+fn time_items(folder: &Path) -> Result<()> {
     for what in ["done and kept", "read and put into rows"] {
         let start = Instant::now();
-        let journal = journal(folder, "pieces")?;
-        let manner = RunOptions {
+        let journal = journal(folder, "items")?;
+        let options = RunOptions {
             journal: &journal,
             fail_fast: false,
             retries: true,
             part: Part::All,
             progress: &Silent,
         };
-        let pieces = Nothing.work_items();
-        let (rows, _) = StudyRun::new(&Nothing, &pieces, &manner).run()?;
+        let items = nothing_items();
+        let run = StudyRun::new(&items, &options);
+        let (rows, _) = run.run(measure_nothing, |_, _| (), name)?;
         journal.sync()?;
-        assert_eq!(rows.rows.len(), N_PIECES);
+        assert_eq!(rows.rows.len(), N_ITEMS);
         let seconds = start.elapsed().as_secs_f64();
-        say(&format!("a piece, {what}"), seconds, N_PIECES);
+        say(&format!("an item, {what}"), seconds, N_ITEMS);
     }
-    let journal = journal(folder, "pieces")?;
+    let journal = journal(folder, "items")?;
     let start = Instant::now();
-    assert_eq!(n_left(&Nothing, &journal), 0);
+    assert_eq!(n_pending::<Rows>(&nothing_items(), &journal), 0);
     let seconds = start.elapsed().as_secs_f64();
-    say("a piece, seen to be done", seconds, N_PIECES);
+    say("an item, seen to be done", seconds, N_ITEMS);
     Ok(())
 }
 
@@ -175,7 +167,10 @@ fn time_cells(folder: &Path) -> Result<()> {
     }
     let journal = journal(folder, "cells")?;
     let start = Instant::now();
-    assert_eq!(n_left(&study, &journal), 0);
+    assert_eq!(
+        n_pending::<RecognitionRows>(&study.work_items(), &journal),
+        0
+    );
     say(
         "a cell, seen to be done",
         start.elapsed().as_secs_f64(),
@@ -188,15 +183,19 @@ fn time_cells(folder: &Path) -> Result<()> {
 fn time_run(folder: &Path, study: &RecognitionStudy) -> Result<f64> {
     let start = Instant::now();
     let journal = journal(folder, "cells")?;
-    let manner = RunOptions {
+    let options = RunOptions {
         journal: &journal,
         fail_fast: false,
         retries: true,
         part: Part::All,
         progress: &Silent,
     };
-    let pieces = study.work_items();
-    let (rows, failures) = StudyRun::new(study, &pieces, &manner).run()?;
+    let items = study.work_items();
+    let (rows, failures) = StudyRun::new(&items, &options).run(
+        |pending| study.measure(pending),
+        |number, rows| study.place(number, rows),
+        |number| study.item_words(number, &items[number]),
+    )?;
     assert!(failures.is_empty(), "{:?}", failures[0]);
     let outcome = study.outcome(rows)?;
     journal.sync()?;
@@ -209,7 +208,7 @@ fn main() -> Result<()> {
     let alone = alone.expect("a thread can be had");
     let folder = tempfile::tempdir().expect("a folder can be made");
     alone.install(|| {
-        time_pieces(folder.path())?;
+        time_items(folder.path())?;
         time_cells(folder.path())
     })
 }

@@ -94,15 +94,19 @@
 //! | [`whole_body`] | millions of taxels, objects and poses → the taxels that are touched |
 //! | [`signal`] | deflections → frames |
 //! | [`sensing`] | frames → measurements, and back |
-//! | [`recognition`] | labelled measurements → classifier, scores |
 //! | [`calibration`] | recorded frames → the signal that makes such frames |
-//! | [`study`] | TOML → plan → tables |
+//! | [`learning`], [`statistics`] | labelled measurements → classifiers, scores, intervals |
+//! | [`inputs`] | files of the user → objects, arrays, checked values of keys |
+//! | [`engine`] | work items → rows: axes, journal, shards, provenance |
 //! | [`scene`] | TOML → robots, skin and objects that move → frames over time |
 //! | [`report`] | tables and frames → files for people |
+//! | [`studies`] | TOML → plan → work items → tables, charts, page |
+//!
+//! [`recognition`], [`study`] and [`kinds`] re-export names of these stages under shorter paths.
 //!
 //! The eleven stages from `mesh` to `calibration` are pure: no files (but a robot's, if it is asked for by its path), clock,
 //! threads, printing or global state; but large touches in `whole_body` and chains of packings in `packing` use the threads of the pool. All
-//! other threads live in `study`, `kinds` and `report`, files in these, in `scene` (what a scene names) and in the command.
+//! other threads live in `studies` and `report`, files in these and in `inputs` and `engine`, in `scene` (what a scene names) and in the command.
 //!
 //! The [`guide`] has chapters for users of the command and of the library, from a [first study](guide::first_study) and the
 //! [study file](guide::study_file) to [objects of your own](guide::own_objects), [statistics](guide::statistics), [long

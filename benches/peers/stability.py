@@ -3,7 +3,7 @@
 
 The parts that the study gives to rapier are run with MuJoCo as it comes, with its Euler and implicitfast integrators, and with its discrete
 integrator and hard contacts. Rows go to results/stability/peers.csv, where the study finds them. Scenes, moments of judgement and outcomes are
-those of src/kinds/stability/: see there. See README.md beside this file.
+those of src/studies/stability/: see there. See README.md beside this file.
 """
 
 import argparse

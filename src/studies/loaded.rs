@@ -6,7 +6,7 @@ use crate::engine::program::PROGRAM;
 use crate::engine::progress::{Progress, Silent};
 use crate::engine::provenance::{Manifest, REPORT};
 use crate::engine::work_items::run_options::{Part, RunOptions};
-use crate::engine::work_items::study_runner::{ItemFailure, StudyRun};
+use crate::engine::work_items::study_run::{ItemFailure, StudyRun};
 use crate::engine::work_items::work_item::WorkItem;
 use crate::error::Result;
 use crate::files::{DataFolder, MANIFEST_FILE, OwnedFiles, RUN};
@@ -16,16 +16,17 @@ use crate::report::chart_format::ChartFormat;
 use crate::report::csv_tables::{FAILURES_FILE, read_rows};
 use crate::report::folder::{NamedFile, table_files, write_files};
 use crate::report::page::StudyAbout;
-use crate::report::study_content::{Beyond, Found};
-use crate::report::study_folder::files_with;
+use crate::report::study_content::Found;
+use crate::report::study_folder::{files_with, first_found, words_of};
 use crate::studies::any_study::{AnyStudy, Outcome};
 use crate::studies::ceiling::{threads_within, within_memory};
-use crate::studies::kind::{Facts, Kind};
 use crate::studies::source::Source;
+use crate::studies::study::{Facts, Findings, Study, run_items};
 use crate::studies::verified::same_rows;
 use crate::table::{File, Table};
 use crate::toml_numbers::with_line;
 use rand::seq::SliceRandom;
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -42,11 +43,11 @@ pub struct Loaded<K> {
     memory: Option<u64>,
 }
 
-impl<K: Kind> Loaded<K> {
+impl<K: Study> Loaded<K> {
     /// Reads and checks a study.
     ///
     /// # Errors
-    /// Those of [`Kind::load`].
+    /// Those of [`Study::load`].
     pub fn load(source: &Source) -> Result<Self> {
         let kind = K::load(source);
         let kind = kind.map_err(|error| with_line(&source.place, &source.text, error))?;
@@ -70,7 +71,7 @@ impl<K: Kind> Loaded<K> {
             retries,
             ..RunOptions::whole(&Silent)
         };
-        StudyRun::new(&self.kind, &self.items, &options).n_pending()
+        StudyRun::<K::Rows>::new(&self.items, &options).n_pending()
     }
 
     /// Charts, pictures and page, for a folder, with what is known of its run: nothing is written yet.
@@ -83,21 +84,24 @@ impl<K: Kind> Loaded<K> {
             program: PROGRAM.to_owned(),
             ..of_run
         };
+        let findings = self.kind.findings(tables)?;
+        let mut noted = Cow::Borrowed(tables);
+        for (file, note) in findings.notes {
+            let is_of = |table: &&mut Table| table.file == file;
+            if let Some(table) = noted.to_mut().iter_mut().find(is_of) {
+                table.note = note;
+            }
+        }
         let found = Found {
-            tables,
-            charts: &self.kind.charts(tables),
-            answers: &self.kind.answers(tables),
+            tables: &noted,
+            charts: &findings.charts,
+            answers: &findings.answers,
         };
-        files_with(&about, &found, || {
-            Ok(Beyond {
-                pictures: self.kind.pictures(tables)?,
-                sections: self.kind.sections(tables)?,
-            })
-        })
+        files_with(&about, &found, || self.kind.beyond(tables))
     }
 }
 
-impl<K: Kind> AnyStudy for Loaded<K> {
+impl<K: Study> AnyStudy for Loaded<K> {
     fn identity(&self) -> &Identity {
         &self.identity
     }
@@ -123,8 +127,7 @@ impl<K: Kind> AnyStudy for Loaded<K> {
 
     fn run(&self, options: &RunOptions) -> Result<Outcome> {
         let (finished, mut tables) = within_memory(&self.kind.scale(), self.memory, || {
-            let items = StudyRun::new(&self.kind, &self.items, options);
-            let (rows, failures) = items.run()?;
+            let (rows, failures) = run_items(&self.kind, &self.items, options)?;
             Ok((failures, self.kind.tables(rows)?))
         })?;
         tables.push(FAILURES.of(&finished)?);
@@ -170,7 +173,15 @@ impl<K: Kind> AnyStudy for Loaded<K> {
     }
 
     fn words(&self, outcome: &Outcome, width: usize) -> String {
-        let found = self.kind.summary(&outcome.tables, width);
+        let tables = &outcome.tables;
+        let found = match self.kind.findings(tables) {
+            Ok(Findings {
+                summary: Some(summary),
+                ..
+            }) => summary(tables, width),
+            Ok(findings) => words_of(first_found(tables).as_slice(), &findings.answers, width),
+            Err(error) => error.to_string(),
+        };
         format!("{}\n\n{found}", self.facts.question)
     }
 
@@ -187,8 +198,8 @@ impl<K: Kind> AnyStudy for Loaded<K> {
             ..RunOptions::whole(progress)
         };
         let again = within_memory(&self.kind.scale(), self.memory, || {
-            let run = StudyRun::new(&self.kind, &self.items, &options);
-            self.kind.tables(run.run()?.0)
+            self.kind
+                .tables(run_items(&self.kind, &self.items, &options)?.0)
         })?;
         progress.finish("");
         let is_whole = chosen.len() == self.items.len();
@@ -201,7 +212,7 @@ impl<K: Kind> AnyStudy for Loaded<K> {
     }
 
     fn report(&self, folder: &Path, about: StudyAbout) -> Result<()> {
-        let mut tables = self.kind.read_tables(folder)?;
+        let mut tables = K::TABLES.read(folder)?;
         tables.extend(FAILURES.read_if_there(folder)?);
         let manifest = about.manifest.clone();
         let page = self.files_of(about, &tables)?;
@@ -254,12 +265,12 @@ fn write_results(
     write_files(folder, files).map(drop)
 }
 
-impl<K: Kind> Loaded<K> {
+impl<K: Study> Loaded<K> {
     /// Numbers of some of the items of a folder that did not fail: how many, drawn from a seed.
     pub(crate) fn drawn(&self, folder: &Path, (n, seed): (usize, u64)) -> Result<BTreeSet<usize>> {
         let failed: Vec<ItemFailure> = read_rows(&folder.join(FAILURES_FILE))?;
         let has_failed = |number: usize| {
-            let words = || self.kind.words(number, &self.items[number]);
+            let words = || self.kind.item_words(number, &self.items[number]);
             failed.iter().any(|row| row.work_item == words())
         };
         let numbers = (0..self.items.len()).filter(|&number| !has_failed(number));

@@ -1,13 +1,12 @@
 //! The kinds of study: a folder each, and a line each in `KINDS`.
 //!
 //! A kind says which [work items](crate::engine::work_items) a study has and measures them, and gives tables, charts, pictures and answers
-//! ([`Kind`]). [`AnyStudy`] is what all commands see of a study: whatever can be done with one kind can be done with all.
+//! ([`Study`]). [`AnyStudy`] is what all commands see of a study: whatever can be done with one kind can be done with all.
 
 pub(crate) mod any_study;
 pub mod breaking_points;
 pub(crate) mod ceiling;
 pub(crate) mod groups;
-pub(crate) mod kind;
 pub(crate) mod loaded;
 pub(crate) mod median_time;
 pub(crate) mod model_recognition;
@@ -16,13 +15,14 @@ pub mod recognition;
 pub mod reconstruction;
 pub(crate) mod source;
 pub mod stability;
+pub(crate) mod study;
 pub(crate) mod verified;
 pub mod whole_body;
 
 pub use crate::studies::any_study::{AnyStudy, Outcome};
-pub use crate::studies::kind::{About, AnyFile, Facts, Files, Findings, Kind};
 pub use crate::studies::loaded::Loaded;
 pub use crate::studies::source::Source;
+pub use crate::studies::study::{About, AnyFile, Facts, Findings, Study, TableFiles, run_whole};
 
 use crate::studies::groups::{found_and_cost, grouped};
 
@@ -41,8 +41,7 @@ use std::path::Path;
 struct Entry {
     about: About,
     load: fn(&Source) -> Result<Box<dyn AnyStudy>>,
-    read: fn(&Path) -> Result<Vec<Table>>,
-    table_names: fn() -> Vec<&'static str>,
+    tables: TableFiles,
 }
 
 /// All kinds.
@@ -58,12 +57,11 @@ const KINDS: &[Entry] = &[
 /// The kind of every file that no table makes another.
 const RECOGNITION: Entry = entry::<recognition::study::RecognitionStudy>();
 
-const fn entry<K: Kind>() -> Entry {
+const fn entry<K: Study>() -> Entry {
     Entry {
         about: K::ABOUT,
         load: |source| Ok(Box::new(Loaded::<K>::load(source)?)),
-        read: K::read,
-        table_names: K::table_names,
+        tables: K::TABLES,
     }
 }
 
@@ -75,7 +73,7 @@ pub fn about(text: &str) -> Option<About> {
 /// Reads and checks a study of any kind; one of which no table tells is taken for recognition.
 ///
 /// # Errors
-/// Those of its [`Kind::load`].
+/// Those of its [`Study::load`].
 pub fn load(source: &Source) -> Result<Box<dyn AnyStudy>> {
     check_removed(&source.place, &source.text)?;
     let entry = find(&source.text).unwrap_or(&RECOGNITION);
@@ -118,7 +116,7 @@ fn check_recognition(source: &Source) -> Result<()> {
 /// If the folder has such a file, or one that this command has read; the error names the file.
 pub fn check_folder(study: &str, folder: &Path) -> Result<()> {
     let entry = find(study).unwrap_or(&RECOGNITION);
-    let tables = (entry.table_names)().into_iter().chain([FAILURES_FILE]);
+    let tables = entry.tables.names().into_iter().chain([FAILURES_FILE]);
     OwnedFiles::read(folder, RUN)?.check_results(tables)
 }
 
@@ -130,7 +128,7 @@ pub fn read_tables(folder: &Path) -> Result<(About, Vec<Table>)> {
     let Source { place, text, .. } = Source::of_results(folder)?;
     check_removed(&place, &text)?;
     let entry = find(&text).unwrap_or(&RECOGNITION);
-    Ok((entry.about, (entry.read)(folder)?))
+    Ok((entry.about, entry.tables.read(folder)?))
 }
 
 /// Returns the table of the work items of a folder that failed, or `None` if it has no such table or none failed.

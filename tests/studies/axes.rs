@@ -2,12 +2,12 @@
 
 use crate::command::Case;
 use crate::study::{self, Study};
+use bubbletouch::kinds::Study;
 use bubbletouch::kinds::recognition::RecognitionStudy;
 use bubbletouch::report::folder::{table_files, write_files};
 use bubbletouch::studies::recognition::charts::{read_tables, tables_of};
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::table::{Tables, TrialScore};
-use bubbletouch::study::work_items::StudyRunner;
 use bubbletouch::study::{Plan, StudySpec};
 
 const REST: &str = r#"

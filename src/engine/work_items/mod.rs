@@ -1,8 +1,8 @@
-//! Work items: a study's work in named parts that know nothing of each other.
+//! Work items: the work of a study in named, independent parts.
 //!
-//! Every kind of study is a [`StudyRunner`]: it says which items there are, measures those that
-//! are left, and makes its tables of their rows. The engine does all else: it keeps each item in the [journal](crate::engine::journal) as soon as
-//! it is finished and reads it from there when the study goes on, records what fails, and deals items out to shards.
+//! A study lists its items, measures those that are pending, and makes its tables of their rows. A [`StudyRun`] does the rest: it keeps each item
+//! in the [journal](crate::engine::journal) as soon as it is finished, reads it from there when the study continues, records failures, and
+//! divides items among shards.
 
 pub use crate::engine::work_items::work_item::WorkItem;
 pub mod any_number;
@@ -11,7 +11,7 @@ pub(crate) mod record;
 pub(crate) mod run_options;
 pub(crate) mod scale;
 pub(crate) mod shared;
-pub(crate) mod study_runner;
+pub(crate) mod study_run;
 pub(crate) mod work_item;
 
 pub use crate::engine::work_items::pending::PendingItems;
@@ -19,4 +19,4 @@ pub use crate::engine::work_items::record::ItemRows;
 pub use crate::engine::work_items::run_options::{Part, RunOptions};
 pub use crate::engine::work_items::scale::Scale;
 pub use crate::engine::work_items::shared::Shared;
-pub use crate::engine::work_items::study_runner::{ItemFailure, StudyRun, StudyRunner, run_whole};
+pub use crate::engine::work_items::study_run::{ItemFailure, StudyRun};

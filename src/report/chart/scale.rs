@@ -1,7 +1,6 @@
 //! Where values stand along an axis: the one scale of all charts.
 
-use crate::report::pictures::even_ticks::even_ticks;
-use crate::report::pictures::even_ticks::tick_step;
+use crate::report::pictures::even_ticks::{even_ticks, tick_step};
 use crate::table::{Along, Column, Role, Scale as Spacing};
 
 /// Part of a logarithmic axis on which zero stands apart.

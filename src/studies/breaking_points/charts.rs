@@ -4,12 +4,11 @@ use crate::studies::breaking_points::plan::PlannedWay;
 use crate::studies::breaking_points::scale::WayScale;
 use crate::studies::breaking_points::spec::{DrivenTouches, WaySpec};
 use crate::studies::breaking_points::study::BreakingPointsStudy;
-use crate::studies::kind::Findings;
 use crate::table::{Along, ChartSpec, Column, Role, Rule, Scale, Shown, Table, short_number};
 
-impl Findings for BreakingPointsStudy {
+impl BreakingPointsStudy {
     /// A chart a way.
-    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
+    pub(crate) fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
         let breaks = &tables[2];
         let chart = |PlannedWay { spec: way, .. }: &PlannedWay| {
             let touches = match way.touches {
@@ -49,7 +48,7 @@ impl Findings for BreakingPointsStudy {
     }
 
     /// How many settings break recognition, where each does, and which do not.
-    fn answers(&self, tables: &[Table]) -> Vec<String> {
+    pub(crate) fn answers(&self, tables: &[Table]) -> Vec<String> {
         let breaks = &tables[2];
         let place_of = |row: usize| {
             let classifier = breaks.words("classifier", row);

@@ -2,7 +2,6 @@
 
 use crate::engine::work_items::pending::PendingItems;
 use crate::engine::work_items::scale::Scale;
-use crate::engine::work_items::study_runner::StudyRunner;
 use crate::engine::work_items::work_item::WorkItem;
 use crate::error::Result;
 use crate::inputs::object_files::{load_objects, objects_content};
@@ -15,7 +14,6 @@ use crate::studies::breaking_points::plan::{BreakingPointsPlan, PlannedValue, Pl
 use crate::studies::breaking_points::rows::{BreakingPoint, WayCell};
 use crate::studies::breaking_points::spec::BreakingPointsSpec;
 use crate::studies::breaking_points::value::{ObjectSets, evaluate};
-use crate::studies::kind::{About, Facts, Files, Kind};
 use crate::studies::recognition::plan::plan::Plan;
 use crate::studies::recognition::rows::table_rows::{CellScore, TrialScore, TrialTime};
 use crate::studies::recognition::sweep::sweep::Sweep;
@@ -23,6 +21,7 @@ use crate::studies::recognition::tables::summary::{grouped_tests, summarise};
 use crate::studies::recognition::tables::tabulate::share_columns;
 use crate::studies::recognition::touches::drawn_touches::draw_touches;
 use crate::studies::source::Source;
+use crate::studies::study::{About, Facts, Findings, Study, TableFiles};
 use crate::studies::{found_and_cost, grouped};
 use crate::table::{File, Table};
 use rayon::prelude::*;
@@ -90,8 +89,75 @@ fn n_read(value: &PlannedValue) -> usize {
     value.plans().map(of_plan).sum()
 }
 
-impl StudyRunner for BreakingPointsStudy {
+/// Returns for each cell the number of independent test rows that its trials are worth: those of a trial, or what the groups of all trials say.
+fn independent_rows_of_cells(
+    scores: &[(WayCell, TrialScore)],
+    mut groups: &[Vec<GroupCount>],
+) -> Result<Vec<f64>> {
+    let cells = scores.chunk_by(|a, b| a.0 == b.0).map(|trials| {
+        let here = groups.split_off(..trials.len()).unwrap_or_default();
+        let tested = grouped_tests(trials.iter().map(|(_, score)| score).zip(here));
+        match tested.is_empty() {
+            true => {
+                let n_test = trials.iter().map(|(_, score)| score.n_test).min();
+                Ok(n_test.unwrap_or(0) as f64)
+            }
+            false => independent_rows(&tested, CONFIDENCE),
+        }
+    });
+    cells.collect()
+}
+
+impl Study for BreakingPointsStudy {
+    const ABOUT: About = About {
+        table: "breaking_points",
+        words: "a study of where recognition breaks",
+        may_change: &["question", "expected", "breaking_points"],
+    };
+    const TABLES: TableFiles = TableFiles::always(&[&ACCURACY, &SUMMARY, &BREAKS, &TIMING]);
+
     type Rows = DrivenRows;
+
+    fn load(source: &Source) -> Result<Self> {
+        let mut spec = BreakingPointsSpec::parse(&source.place, &source.text)?;
+        spec.seed = source.seed(spec.seed);
+        source.replace_objects(&mut spec.objects);
+        let plan = BreakingPointsPlan::new(&source.place, spec)?;
+        let packings = source.packings.clone();
+        // Touches that cannot be split before anything is driven are known before anything runs.
+        let base = &plan.base;
+        let objects = load_objects(&base.spec.objects, packings.as_deref())?;
+        let seed = Seed::new(base.spec.seed);
+        let touched = draw_touches(objects, &base.placement, &seed)?;
+        let sweep = Sweep::new(base, &touched);
+        sweep.map_err(|error| error.under(format!("{}, ", source.place)))?;
+        Ok(Self { plan, packings })
+    }
+
+    fn facts(&self) -> Result<Facts> {
+        let mut content = BTreeMap::new();
+        for objects in self.objects() {
+            content.extend(objects_content(objects)?);
+        }
+        Ok(Facts::of(&self.plan.spec, content))
+    }
+
+    fn scale(&self) -> Scale {
+        let values = || self.values().map(|(_, value)| value);
+        let touches = values().map(|value| value.learned.placement.per_object.unwrap_or(1));
+        let touches = touches.max().unwrap_or(0);
+        let n_cells =
+            values().map(|value| value.learned.spec.recognition.classifier.values().len());
+        let most_read = values().map(n_read).max().unwrap_or(0);
+        Scale {
+            objects: "those of each value".to_owned(),
+            touches: format!("up to {touches} of each object at each value"),
+            n_configurations: n_cells.sum(),
+            // Frames in single precision.
+            item_bytes: 4.0 * (N_OBJECTS * most_read) as f64,
+            ..Scale::default()
+        }
+    }
 
     fn work_items(&self) -> Vec<WorkItem> {
         let items = self.values().enumerate();
@@ -153,73 +219,12 @@ impl StudyRunner for BreakingPointsStudy {
         let (summary, breaks) = (SUMMARY.of(&summary)?, BREAKS.of(&breaks)?);
         Ok(vec![accuracy, summary, breaks, timing])
     }
-}
 
-/// Returns for each cell the number of independent test rows that its trials are worth: those of a trial, or what the groups of all trials say.
-fn independent_rows_of_cells(
-    scores: &[(WayCell, TrialScore)],
-    mut groups: &[Vec<GroupCount>],
-) -> Result<Vec<f64>> {
-    let cells = scores.chunk_by(|a, b| a.0 == b.0).map(|trials| {
-        let here = groups.split_off(..trials.len()).unwrap_or_default();
-        let tested = grouped_tests(trials.iter().map(|(_, score)| score).zip(here));
-        match tested.is_empty() {
-            true => {
-                let n_test = trials.iter().map(|(_, score)| score.n_test).min();
-                Ok(n_test.unwrap_or(0) as f64)
-            }
-            false => independent_rows(&tested, CONFIDENCE),
-        }
-    });
-    cells.collect()
-}
-
-impl Kind for BreakingPointsStudy {
-    const ABOUT: About = About {
-        table: "breaking_points",
-        words: "a study of where recognition breaks",
-        may_change: &["question", "expected", "breaking_points"],
-    };
-    const FILES: Files = &[&ACCURACY, &SUMMARY, &BREAKS, &TIMING];
-
-    fn load(source: &Source) -> Result<Self> {
-        let mut spec = BreakingPointsSpec::parse(&source.place, &source.text)?;
-        spec.seed = source.seed(spec.seed);
-        source.replace_objects(&mut spec.objects);
-        let plan = BreakingPointsPlan::new(&source.place, spec)?;
-        let packings = source.packings.clone();
-        // Touches that cannot be split before anything is driven are known before anything runs.
-        let base = &plan.base;
-        let objects = load_objects(&base.spec.objects, packings.as_deref())?;
-        let seed = Seed::new(base.spec.seed);
-        let touched = draw_touches(objects, &base.placement, &seed)?;
-        let sweep = Sweep::new(base, &touched);
-        sweep.map_err(|error| error.under(format!("{}, ", source.place)))?;
-        Ok(Self { plan, packings })
-    }
-
-    fn facts(&self) -> Result<Facts> {
-        let mut content = BTreeMap::new();
-        for objects in self.objects() {
-            content.extend(objects_content(objects)?);
-        }
-        Ok(Facts::of(&self.plan.spec, content))
-    }
-
-    fn scale(&self) -> Scale {
-        let values = || self.values().map(|(_, value)| value);
-        let touches = values().map(|value| value.learned.placement.per_object.unwrap_or(1));
-        let touches = touches.max().unwrap_or(0);
-        let n_cells =
-            values().map(|value| value.learned.spec.recognition.classifier.values().len());
-        let most_read = values().map(n_read).max().unwrap_or(0);
-        Scale {
-            objects: "those of each value".to_owned(),
-            touches: format!("up to {touches} of each object at each value"),
-            n_configurations: n_cells.sum(),
-            // Frames in single precision.
-            item_bytes: 4.0 * (N_OBJECTS * most_read) as f64,
-            ..Scale::default()
-        }
+    fn findings(&self, tables: &[Table]) -> Result<Findings> {
+        Ok(Findings {
+            charts: self.charts(tables),
+            answers: self.answers(tables),
+            ..Findings::default()
+        })
     }
 }

@@ -1,6 +1,5 @@
 //! What is charted and said: what spheres buy, what they cost, and what an object's errors cost a classifier that has learned from it.
 
-use crate::studies::kind::Findings;
 use crate::studies::object_detail::study::{ObjectDetailStudy, RECOGNITION};
 use crate::studies::object_detail::variants::within;
 use crate::table::{ChartSpec, Table, short_number};
@@ -52,9 +51,9 @@ const LEARNED: [Named; 2] = [
     ),
 ];
 
-impl Findings for ObjectDetailStudy {
+impl ObjectDetailStudy {
     /// Errors by what they cost; with what was learned, if anything was.
-    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
+    pub(crate) fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
         let by_cost = [(FELT, SPHERES), (FELT, TIME), (SURFACE, SPHERES)];
         let errors = by_cost.into_iter().flat_map(|(errors, (by, of, x))| {
             errors.map(|(name, words, y)| {
@@ -82,7 +81,7 @@ impl Findings for ObjectDetailStudy {
     }
 
     /// The most exact model; the cheapest of each method that is within half a millimetre; what learning from a model costs.
-    fn answers(&self, tables: &[Table]) -> Vec<String> {
+    pub(crate) fn answers(&self, tables: &[Table]) -> Vec<String> {
         let costs = &tables[3];
         let rows = 0..costs.n_rows;
         let models: Vec<usize> = rows

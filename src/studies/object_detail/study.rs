@@ -2,11 +2,9 @@
 
 use crate::engine::work_items::pending::PendingItems;
 use crate::engine::work_items::scale::Scale;
-use crate::engine::work_items::study_runner::StudyRunner;
 use crate::engine::work_items::work_item::WorkItem;
 use crate::error::Result;
 use crate::inputs::object_files::{NamedMesh, load_named_meshes, objects_content};
-use crate::studies::kind::{About, Facts, Files, Kind};
 use crate::studies::model_recognition::check_apart;
 use crate::studies::object_detail::measured::Measured;
 use crate::studies::object_detail::plan::ObjectDetailPlan;
@@ -18,6 +16,7 @@ use crate::studies::object_detail::spec::ObjectDetailStudySpec;
 use crate::studies::object_detail::summary::{costs, summary};
 use crate::studies::object_detail::variants::levels;
 use crate::studies::source::Source;
+use crate::studies::study::{About, Facts, Findings, Study, TableFiles};
 use crate::table::{File, Table};
 use rayon::prelude::*;
 use std::path::PathBuf;
@@ -61,8 +60,99 @@ pub(super) const RECOGNITION: File<DetailRecognition> = File::new(
     "",
 );
 
-impl StudyRunner for ObjectDetailStudy {
+/// The number of an object's models as a work item; of one more than the last object, that of the first classifier.
+fn models_item(object: usize) -> usize {
+    2 * object
+}
+
+/// The number of their times.
+fn times_item(object: usize) -> usize {
+    models_item(object) + 1
+}
+
+impl ObjectDetailStudy {
+    /// Makes an object's models and keeps how near they are; if they cannot be made, all fails that needs them, `learners` too.
+    fn object(
+        &self,
+        object: usize,
+        learners: &[usize],
+        left: &PendingItems<DetailRows>,
+    ) -> Result<Option<Measured<'_>>> {
+        let (mesh, mut made) = (&self.meshes[object], None);
+        left.finish(models_item(object), || {
+            let object = made.insert(Measured::new((&self.plan, self.packings.as_deref()), mesh)?);
+            Ok((object.models(&self.plan), Vec::new(), Vec::new()))
+        })?;
+        let needed = [&[times_item(object)], learners].concat();
+        // Where it is not made, its rows are there from a run before.
+        left.prepare(&needed, || {
+            made.map_or_else(
+                || Measured::new((&self.plan, self.packings.as_deref()), mesh),
+                Ok,
+            )
+        })
+    }
+}
+
+impl Study for ObjectDetailStudy {
+    const ABOUT: About = About {
+        table: "object_detail",
+        words: "a study of how detailed objects are",
+        may_change: &[
+            "question",
+            "expected",
+            "object_detail.recognition.classifiers",
+        ],
+    };
+    const TABLES: TableFiles = TableFiles::Listed {
+        always: &[&DETAIL, &SUMMARY, &TIMING, &COST],
+        of_parts: &[&RECOGNITION],
+    };
+
     type Rows = DetailRows;
+
+    fn load(source: &Source) -> Result<Self> {
+        let mut spec = ObjectDetailStudySpec::parse(&source.place, &source.text)?;
+        spec.seed = source.seed(spec.seed);
+        source.replace_objects(&mut spec.objects);
+        let plan = ObjectDetailPlan::new(&source.place, spec)?;
+        let meshes = load_named_meshes(&plan.meshes, &plan.spec.objects)?;
+        if plan.recognition().is_some() {
+            check_apart(&source.place, meshes.len())?;
+        }
+        Ok(Self {
+            meshes,
+            packings: source.packings.clone(),
+            plan,
+        })
+    }
+
+    fn facts(&self) -> Result<Facts> {
+        let spec = &self.plan.spec;
+        Ok(Facts::of(spec, objects_content(&spec.objects)?))
+    }
+
+    fn scale(&self) -> Scale {
+        let n_objects = self.meshes.len();
+        let n_levels = levels(&self.plan).len();
+        let per_object = self.plan.placement.per_object.unwrap_or(1);
+        let learned = self.plan.recognition();
+        let n_learned = learned.map_or(0, |learned| learned.n_touches());
+        let n_classifiers = learned.map_or(0, |learned| learned.classifiers.len());
+        let n_taxels = self.plan.array.n_taxels();
+        let n_measurements = learned.map_or(0, |learned| learned.measurements);
+        Scale {
+            objects: format!("{n_objects} meshes, in {n_levels} models each"),
+            touches: match n_learned {
+                0 => format!("{per_object} of each model"),
+                n => format!("{per_object} of each model, {n} of each for recognition"),
+            },
+            n_configurations: n_levels * (n_objects + n_classifiers),
+            bytes: 8.0 * (n_objects * n_learned * n_levels * n_measurements) as f64,
+            // Frames as they were, and as they are read.
+            item_bytes: 12.0 * (n_learned * n_taxels) as f64,
+        }
+    }
 
     /// Of each object its models and their times; then each level and classifier, which all need all objects.
     fn work_items(&self) -> Vec<WorkItem> {
@@ -132,95 +222,12 @@ impl StudyRunner for ObjectDetailStudy {
         }
         Ok(tables)
     }
-}
 
-/// The number of an object's models as a work item; of one more than the last object, that of the first classifier.
-fn models_item(object: usize) -> usize {
-    2 * object
-}
-
-/// The number of their times.
-fn times_item(object: usize) -> usize {
-    models_item(object) + 1
-}
-
-impl ObjectDetailStudy {
-    /// Makes an object's models and keeps how near they are; if they cannot be made, all fails that needs them, `learners` too.
-    fn object(
-        &self,
-        object: usize,
-        learners: &[usize],
-        left: &PendingItems<DetailRows>,
-    ) -> Result<Option<Measured<'_>>> {
-        let (mesh, mut made) = (&self.meshes[object], None);
-        left.finish(models_item(object), || {
-            let object = made.insert(Measured::new((&self.plan, self.packings.as_deref()), mesh)?);
-            Ok((object.models(&self.plan), Vec::new(), Vec::new()))
-        })?;
-        let needed = [&[times_item(object)], learners].concat();
-        // Where it is not made, its rows are there from a run before.
-        left.prepare(&needed, || {
-            made.map_or_else(
-                || Measured::new((&self.plan, self.packings.as_deref()), mesh),
-                Ok,
-            )
+    fn findings(&self, tables: &[Table]) -> Result<Findings> {
+        Ok(Findings {
+            charts: self.charts(tables),
+            answers: self.answers(tables),
+            ..Findings::default()
         })
-    }
-}
-
-impl Kind for ObjectDetailStudy {
-    const ABOUT: About = About {
-        table: "object_detail",
-        words: "a study of how detailed objects are",
-        may_change: &[
-            "question",
-            "expected",
-            "object_detail.recognition.classifiers",
-        ],
-    };
-    const FILES: Files = &[&DETAIL, &SUMMARY, &TIMING, &COST];
-    const FILES_OF_PARTS: Files = &[&RECOGNITION];
-
-    fn load(source: &Source) -> Result<Self> {
-        let mut spec = ObjectDetailStudySpec::parse(&source.place, &source.text)?;
-        spec.seed = source.seed(spec.seed);
-        source.replace_objects(&mut spec.objects);
-        let plan = ObjectDetailPlan::new(&source.place, spec)?;
-        let meshes = load_named_meshes(&plan.meshes, &plan.spec.objects)?;
-        if plan.recognition().is_some() {
-            check_apart(&source.place, meshes.len())?;
-        }
-        Ok(Self {
-            meshes,
-            packings: source.packings.clone(),
-            plan,
-        })
-    }
-
-    fn facts(&self) -> Result<Facts> {
-        let spec = &self.plan.spec;
-        Ok(Facts::of(spec, objects_content(&spec.objects)?))
-    }
-
-    fn scale(&self) -> Scale {
-        let n_objects = self.meshes.len();
-        let n_levels = levels(&self.plan).len();
-        let per_object = self.plan.placement.per_object.unwrap_or(1);
-        let learned = self.plan.recognition();
-        let n_learned = learned.map_or(0, |learned| learned.n_touches());
-        let n_classifiers = learned.map_or(0, |learned| learned.classifiers.len());
-        let n_taxels = self.plan.array.n_taxels();
-        let n_measurements = learned.map_or(0, |learned| learned.measurements);
-        Scale {
-            objects: format!("{n_objects} meshes, in {n_levels} models each"),
-            touches: match n_learned {
-                0 => format!("{per_object} of each model"),
-                n => format!("{per_object} of each model, {n} of each for recognition"),
-            },
-            n_configurations: n_levels * (n_objects + n_classifiers),
-            bytes: 8.0 * (n_objects * n_learned * n_levels * n_measurements) as f64,
-            // Frames as they were, and as they are read.
-            item_bytes: 12.0 * (n_learned * n_taxels) as f64,
-        }
     }
 }

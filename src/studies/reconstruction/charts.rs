@@ -2,13 +2,12 @@
 
 use crate::error::Result;
 use crate::report::study_content::NamedPicture;
-use crate::studies::kind::Findings;
 use crate::studies::reconstruction::study::ReconstructionStudy;
 use crate::table::{Along, ChartSpec, Mark, Rule, Table, short_number};
 
-impl Findings for ReconstructionStudy {
+impl ReconstructionStudy {
     /// Of each noise level: error by measurements for each ensemble, then error against time.
-    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
+    pub(crate) fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
         let (cells, pareto) = (&tables[0], &tables[3]);
         let mut charts = Vec::new();
         for of_level in cells.groups(&["noise_std"], 0..cells.n_rows) {
@@ -34,12 +33,12 @@ impl Findings for ReconstructionStudy {
         charts
     }
 
-    fn pictures(&self, tables: &[Table]) -> Result<Vec<NamedPicture>> {
+    pub(crate) fn pictures(&self, tables: &[Table]) -> Result<Vec<NamedPicture>> {
         self.sample_frames(tables)
     }
 
     /// At each noise level: the best cell of all, and the fewest measurements from which some cell is as good as full sampling.
-    fn answers(&self, tables: &[Table]) -> Vec<String> {
+    pub(crate) fn answers(&self, tables: &[Table]) -> Vec<String> {
         let (cells, timing) = (&tables[0], &tables[2]);
         let error = |row: usize| cells.number("error", row);
         let full = |row: usize| cells.number("full_sampling_error", row);

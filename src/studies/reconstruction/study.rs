@@ -4,13 +4,12 @@ use crate::engine::progress::Progress;
 use crate::engine::work_items::pending::PendingItems;
 use crate::engine::work_items::scale::Scale;
 use crate::engine::work_items::shared::Shared;
-use crate::engine::work_items::study_runner::StudyRunner;
 use crate::engine::work_items::work_item::WorkItem;
 use crate::error::Result;
 use crate::inputs::object_files::{load_objects, objects_content};
 use crate::random::Seed;
+use crate::report::study_content::Beyond;
 use crate::studies::found_and_cost;
-use crate::studies::kind::{About, Facts, Files, Kind};
 use crate::studies::recognition::touches::drawn_touches::{TouchedObject, draw_touches};
 use crate::studies::reconstruction::measured::measure_cells;
 use crate::studies::reconstruction::plan::ReconstructionPlan;
@@ -22,6 +21,7 @@ use crate::studies::reconstruction::score::pareto;
 use crate::studies::reconstruction::spec::ReconstructionStudySpec;
 use crate::studies::reconstruction::touches::Touches;
 use crate::studies::source::Source;
+use crate::studies::study::{About, Facts, Findings, Study, TableFiles};
 use crate::table::{File, Table};
 use std::collections::BTreeMap;
 
@@ -55,7 +55,7 @@ const PARETO: File<(ReconstructionCell, ReconstructionPareto)> = File::new(
 .summary()
 .of_times();
 
-impl Kind for ReconstructionStudy {
+impl Study for ReconstructionStudy {
     const ABOUT: About = About {
         table: "reconstruction",
         words: "a study that reconstructs frames",
@@ -72,7 +72,9 @@ impl Kind for ReconstructionStudy {
             "reconstruction.dictionary",
         ],
     };
-    const FILES: Files = &[&CELLS, &ENSEMBLES, &TIMING, &PARETO];
+    const TABLES: TableFiles = TableFiles::always(&[&CELLS, &ENSEMBLES, &TIMING, &PARETO]);
+
+    type Rows = ReconstructionRows;
 
     fn load(source: &Source) -> Result<Self> {
         let mut spec = ReconstructionStudySpec::parse(&source.place, &source.text)?;
@@ -106,10 +108,6 @@ impl Kind for ReconstructionStudy {
             ..Scale::default()
         }
     }
-}
-
-impl StudyRunner for ReconstructionStudy {
-    type Rows = ReconstructionRows;
 
     /// Of each ensemble and m what every dictionary keeps apart, then its cells.
     fn work_items(&self) -> Vec<WorkItem> {
@@ -146,6 +144,21 @@ impl StudyRunner for ReconstructionStudy {
         let [cells, timing] = found_and_cost(&CELLS, &TIMING, &rows)?;
         let ensembles = ENSEMBLES.of(&statistics)?;
         Ok(vec![cells, ensembles, timing, PARETO.of(&pareto)?])
+    }
+
+    fn findings(&self, tables: &[Table]) -> Result<Findings> {
+        Ok(Findings {
+            charts: self.charts(tables),
+            answers: self.answers(tables),
+            ..Findings::default()
+        })
+    }
+
+    fn beyond(&self, tables: &[Table]) -> Result<Beyond> {
+        Ok(Beyond {
+            pictures: self.pictures(tables)?,
+            ..Beyond::default()
+        })
     }
 }
 

@@ -1,14 +1,13 @@
 //! What is charted: a map for each part of a study, and what taxels on joints cost.
 
 use crate::dynamics::skin_sim::UNSTABLE_JOINTS;
-use crate::studies::kind::Findings;
 use crate::studies::stability::plan::StabilityPlan;
 use crate::table::{Along, At, ChartSpec, Mark, Rule, Table};
 
-impl Findings for StabilityPlan {
+impl StabilityPlan {
     /// Maps of parts with several methods and several steps or masses: time steps across, taxel masses up, a panel a method and a row of
     /// panels a setting; then the ladder of joints.
-    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
+    pub(crate) fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
         let (cells, joints) = (&tables[0], &tables[3]);
         let mut charts: Vec<ChartSpec> = Vec::new();
         for rows in cells.groups(&["part"], 0..cells.n_rows) {
@@ -29,7 +28,7 @@ impl Findings for StabilityPlan {
     }
 
     /// How often each method is right, the best first.
-    fn answers(&self, tables: &[Table]) -> Vec<String> {
+    pub(crate) fn answers(&self, tables: &[Table]) -> Vec<String> {
         let summary = &tables[1];
         let methods = summary.groups(&["method", "solver_iterations"], 0..summary.n_rows);
         let found = methods.iter().map(|rows| {

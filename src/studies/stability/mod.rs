@@ -1,7 +1,7 @@
 //! Where does each way to simulate contact break?
 //!
 //! A file with a `[stability]` table is such a study: [`StabilityStudySpec`] (as written) → [`StabilityPlan`] (checked, SI) →
-//! [`run_whole`](crate::engine::work_items::study_runner::run_whole) → [its tables](rows).
+//! [`run_whole`](crate::studies::study::run_whole) → [its tables](rows).
 //!
 //! A ball comes down on a **cradle**, a square patch whose taxels it meets nearly all at once (all within a quarter of their stroke), in
 //! one of five [scenes](StabilityScene). Two or four balls lie one upon the other in a smooth tube, since without friction a stack that

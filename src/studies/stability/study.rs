@@ -2,11 +2,9 @@
 
 use crate::engine::work_items::pending::PendingItems;
 use crate::engine::work_items::scale::Scale;
-use crate::engine::work_items::study_runner::StudyRunner;
 use crate::engine::work_items::work_item::WorkItem;
 use crate::error::Result;
 use crate::inputs::units::millimetres;
-use crate::studies::kind::{About, Facts, Files, Kind};
 use crate::studies::source::Source;
 use crate::studies::stability::cell::measure;
 use crate::studies::stability::peers::peer_rows;
@@ -15,11 +13,11 @@ use crate::studies::stability::rows::{
     Joints, Outcome, StabilityCell, StabilityRow, StabilityScore, StabilitySummary, StabilityTime,
 };
 use crate::studies::stability::spec::{StabilityScene, StabilityStudySpec};
+use crate::studies::study::{About, Facts, Findings, Study, TableFiles};
 use crate::studies::{found_and_cost, grouped};
 use crate::table::{File, Table};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
 
 const CELLS: File<(StabilityCell, StabilityScore)> =
     File::new("stability.csv", "Every configuration", "");
@@ -39,13 +37,15 @@ const JOINTS: File<Joints> = File::new(
 .summary()
 .of_times();
 
-impl Kind for StabilityPlan {
+impl Study for StabilityPlan {
     const ABOUT: About = About {
         table: "stability",
         words: "a study of where contact methods break",
         may_change: &["question", "expected", "stability.parts"],
     };
-    const FILES: Files = &[&CELLS, &SUMMARY, &TIMING, &JOINTS];
+    const TABLES: TableFiles = TableFiles::always(&[&CELLS, &SUMMARY, &TIMING, &JOINTS]);
+
+    type Rows = Vec<StabilityRow>;
 
     fn load(source: &Source) -> Result<Self> {
         source.refuse_objects("a ball is what touches")?;
@@ -71,16 +71,6 @@ impl Kind for StabilityPlan {
             ..Scale::default()
         }
     }
-
-    fn read_tables(&self, folder: &Path) -> Result<Vec<Table>> {
-        let mut tables = Self::read(folder)?;
-        tables[0].note = peer_rows(self)?.1;
-        Ok(tables)
-    }
-}
-
-impl StudyRunner for StabilityPlan {
-    type Rows = Vec<StabilityRow>;
 
     /// By their settings: which cells there are depends on what the program was built with.
     fn work_items(&self) -> Vec<WorkItem> {
@@ -109,7 +99,7 @@ impl StudyRunner for StabilityPlan {
     }
 
     fn tables(&self, mut rows: Self::Rows) -> Result<Vec<Table>> {
-        let (peers, sources) = peer_rows(self)?;
+        let (peers, _) = peer_rows(self)?;
         // Behind those of the parts that have such a cell.
         for row in peers {
             let behind = rows.partition_point(|(cell, ..)| cell.part <= row.0.part);
@@ -118,7 +108,16 @@ impl StudyRunner for StabilityPlan {
         let [cells, timing] = found_and_cost(&CELLS, &TIMING, &rows)?;
         let summary = SUMMARY.of(&summary(&rows))?;
         let joints = JOINTS.of(&joints(&rows))?;
-        Ok(vec![cells.noted(sources), summary, timing, joints])
+        Ok(vec![cells, summary, timing, joints])
+    }
+
+    fn findings(&self, tables: &[Table]) -> Result<Findings> {
+        Ok(Findings {
+            charts: self.charts(tables),
+            answers: self.answers(tables),
+            notes: vec![(CELLS.name(), peer_rows(self)?.1)],
+            ..Findings::default()
+        })
     }
 }
 

@@ -2,15 +2,14 @@
 
 use crate::error::Result;
 use crate::report::study_content::NamedPicture;
-use crate::studies::kind::Findings;
 use crate::studies::whole_body::memory_chart::memory_chart;
 use crate::studies::whole_body::picture::picture_of_body;
 use crate::studies::whole_body::plan::WholeBodyPlan;
 use crate::table::{Along, ChartSpec, Mark, Rule, Shown, Table, short_number};
 
-impl Findings for WholeBodyPlan {
+impl WholeBodyPlan {
     /// What a step costs by skin, by touch and by spheres, then where the time of a scene goes.
-    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
+    pub(crate) fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
         let (recognition, timing, steps) = (&tables[1], &tables[3], &tables[4]);
         let ladder = |series: &str, name: &str, (x, line): (&str, &str), size: &str| {
             of_series(steps, series).map(|shown| ChartSpec {
@@ -52,12 +51,12 @@ impl Findings for WholeBodyPlan {
         charts.into_iter().flatten().collect()
     }
 
-    fn pictures(&self, tables: &[Table]) -> Result<Vec<NamedPicture>> {
+    pub(crate) fn pictures(&self, tables: &[Table]) -> Result<Vec<NamedPicture>> {
         Ok(picture_of_body(self, &tables[0])?.into_iter().collect())
     }
 
     /// From touch to answer; growth with the skin and steps a second; memory; recognition.
-    fn answers(&self, tables: &[Table]) -> Vec<String> {
+    pub(crate) fn answers(&self, tables: &[Table]) -> Vec<String> {
         let (cases, recognition) = (&tables[0], &tables[1]);
         let (timing, steps) = (&tables[3], &tables[4]);
         let mut answers = Vec::new();

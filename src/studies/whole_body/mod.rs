@@ -1,7 +1,7 @@
 //! What does a step of a whole body of skin cost, and is the way from touch to answer within its millisecond?
 //!
 //! A file with a `[whole_body]` table is such a study: [`WholeBodyStudySpec`] (as written) → [`WholeBodyPlan`] (checked, SI) →
-//! [`run_whole`](crate::engine::work_items::study_runner::run_whole) → [its tables](rows).
+//! [`run_whole`](crate::studies::study::run_whole) → [its tables](rows).
 //!
 //! 1. **Scenes**: an object goes along its path on a robot that is covered in skin ([`CoveredRobot`](crate::whole_body::CoveredRobot)).
 //!    Each step is pressed, what is touched is compressed ([`Columns`](crate::sensing::Columns)), and a linear SVM says what it is.

@@ -3,15 +3,15 @@
 use crate::engine::work_items::pending::PendingItems;
 use crate::engine::work_items::scale::Scale;
 use crate::engine::work_items::shared::Shared;
-use crate::engine::work_items::study_runner::StudyRunner;
 use crate::engine::work_items::work_item::WorkItem;
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::inputs::object_files::file_content;
 use crate::inputs::units::MM;
 use crate::objects::SphereUnion;
-use crate::studies::kind::{About, Facts, Files, Kind};
+use crate::report::study_content::Beyond;
 use crate::studies::source::Source;
+use crate::studies::study::{About, Facts, Findings, Study, TableFiles};
 use crate::studies::whole_body::drive::{Drive, Posture};
 use crate::studies::whole_body::ladders::{Rung, climb, rungs};
 use crate::studies::whole_body::objects::of_scene;
@@ -46,7 +46,7 @@ const STEPS: File<(BodyCase, BodyTouch, StepTime)> = File::new(
 .summary()
 .of_times();
 
-impl Kind for WholeBodyPlan {
+impl Study for WholeBodyPlan {
     const ABOUT: About = About {
         table: "whole_body",
         words: "a study of a whole body of skin",
@@ -60,7 +60,10 @@ impl Kind for WholeBodyPlan {
             "whole_body.ladders.spheres",
         ],
     };
-    const FILES: Files = &[&CASES, &RECOGNITION, &SENSED, &TIMING, &STEPS];
+    const TABLES: TableFiles =
+        TableFiles::always(&[&CASES, &RECOGNITION, &SENSED, &TIMING, &STEPS]);
+
+    type Rows = WholeBodyRows;
 
     fn load(source: &Source) -> Result<Self> {
         source.refuse_objects("a whole body is touched by the objects that its study names")?;
@@ -92,10 +95,6 @@ impl Kind for WholeBodyPlan {
             ..Scale::default()
         }
     }
-}
-
-impl StudyRunner for WholeBodyPlan {
-    type Rows = WholeBodyRows;
 
     /// Compressions and scenes need all that is learned; rungs need nothing.
     fn work_items(&self) -> Vec<WorkItem> {
@@ -168,6 +167,21 @@ impl StudyRunner for WholeBodyPlan {
             TIMING.of(&times)?,
             STEPS.of(&steps)?,
         ])
+    }
+
+    fn findings(&self, tables: &[Table]) -> Result<Findings> {
+        Ok(Findings {
+            charts: self.charts(tables),
+            answers: self.answers(tables),
+            ..Findings::default()
+        })
+    }
+
+    fn beyond(&self, tables: &[Table]) -> Result<Beyond> {
+        Ok(Beyond {
+            pictures: self.pictures(tables)?,
+            ..Beyond::default()
+        })
     }
 }
 

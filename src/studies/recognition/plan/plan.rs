@@ -1,7 +1,7 @@
 //! A study that can run: every key of its [`StudySpec`] checked, every unit SI.
 //!
-//! The checks of `plan.rs`, `plan_scene.rs` (arrays, taxels, placement), `plan_shear.rs`, `plan_signal.rs`, `plan_learning.rs`, `plan_human.rs` and
-//! `plan_recorded.rs` convert millimetres, degrees and fractions into metres, radians and absolute values. Other stages get SI units.
+//! The checks of `plan.rs`, `scene.rs` (arrays, taxels, placement), `shear.rs`, `signal.rs`, `learning.rs`, `human.rs` and
+//! `recorded.rs` convert millimetres, degrees and fractions into metres, radians and absolute values. Other stages get SI units.
 
 use crate::engine::axes::AxisValues;
 use crate::error::Result;

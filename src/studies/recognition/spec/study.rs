@@ -260,7 +260,7 @@ pub struct PublishedSpec {
     pub accuracy: f64,
     /// Where it was published.
     pub source: String,
-    /// Every other key narrows the cells that it is compared with: the name of a column of [`Cell`](crate::studies::recognition::rows::cell::Cell)
+    /// Every other key narrows the cells that it is compared with: the name of a column of [`Cell`]
     /// (`noise` is short for `noise_std`) and its value there.
     #[serde(flatten)]
     pub at: toml::Table,

@@ -1,21 +1,22 @@
 //! Studies that recognise objects, as a kind.
 
-use crate::engine::work_items::scale::Scale;
+use crate::engine::work_items::{PendingItems, Scale, WorkItem};
 use crate::error::Result;
 use crate::report::page::Section;
 use crate::report::pictures::snapshots::{Snapshots, snapshots};
-use crate::report::study_content::NamedPicture;
-use crate::studies::kind::{About, Facts, Findings, Kind};
+use crate::report::study_content::{Beyond, NamedPicture};
 use crate::studies::recognition::charts;
 use crate::studies::recognition::frames::touch_set::Samples;
 use crate::studies::recognition::spec::pose_split::{GroupSpec, PoseSplit};
 use crate::studies::recognition::spec::study::StudySpec;
 use crate::studies::recognition::study::load::load_study;
-use crate::studies::recognition::study::study::RecognitionStudy;
+use crate::studies::recognition::study::rows::RecognitionRows;
+use crate::studies::recognition::study::study::{Family, RecognitionStudy};
+use crate::studies::recognition::sweep::cell_content::family_name;
 use crate::studies::recognition::sweep::sweep::StudyPart;
 use crate::studies::source::Source;
+use crate::studies::study::{About, Facts, Findings, Study, TableFiles};
 use crate::table::{ChartSpec, Table};
-use std::path::Path;
 
 /// Where the intervals of accuracies stand.
 const ACCURACIES: &str = "accuracy.csv, summary.csv: accuracy_low, accuracy_high";
@@ -57,16 +58,18 @@ const METHODS: [(&str, &str); 5] = [
     ),
 ];
 
-impl Kind for RecognitionStudy {
+impl Study for RecognitionStudy {
     const ABOUT: About = About {
         table: "recognition",
         words: "a study that recognises objects",
         may_change: crate::studies::recognition::spec::study::MAY_CHANGE,
     };
 
-    fn table_names() -> Vec<&'static str> {
-        charts::TABLE_NAMES.to_vec()
-    }
+    const TABLES: TableFiles = TableFiles::Own {
+        names: &charts::TABLE_NAMES,
+        read: charts::read_tables,
+    };
+    type Rows = RecognitionRows;
 
     fn load(source: &Source) -> Result<Self> {
         load_study(source)
@@ -90,17 +93,91 @@ impl Kind for RecognitionStudy {
         self.scale.clone()
     }
 
-    fn read(folder: &Path) -> Result<Vec<Table>> {
-        charts::read_tables(folder)
+    /// Trial by trial all families, group by group; then the touches of each array.
+    fn work_items(&self) -> Vec<WorkItem> {
+        let families = 0..self.families.len();
+        let of_family = |family| {
+            let (part, cells) = self.family(family);
+            family_name(&part.plan, cells)
+        };
+        let families: Vec<String> = families.map(of_family).collect();
+        let mut items = Vec::with_capacity(self.n_trials() * families.len());
+        for trial in 0..self.n_trials() {
+            for (family, name) in self.families.iter().zip(&families) {
+                let group = trial * self.groups.len() + family.group;
+                let name = format!("{name}, trial {trial}");
+                items.push(WorkItem::new(name, group));
+            }
+        }
+        for touches in &self.touch_sets {
+            items.push(WorkItem::new(touches.name.clone(), touches.group));
+        }
+        items
+    }
+
+    fn measure(&self, left: &PendingItems<RecognitionRows>) -> Result<()> {
+        self.measure_all(left)
+    }
+
+    fn place(&self, number: usize, (rows, touch_rows): &mut RecognitionRows) {
+        let touches = match number.checked_sub(self.touches_item(0)) {
+            Some(touches) => touches,
+            None => {
+                let Family { group, cells } = &self.families[number % self.families.len()];
+                for (row, cell) in rows.iter_mut().zip(cells.clone()) {
+                    row.at = (*group, cell);
+                }
+                self.groups[*group].touches
+            }
+        };
+        for row in touch_rows {
+            row.on = touches;
+        }
+    }
+
+    /// A family by the settings of its first cell.
+    fn item_words(&self, number: usize, item: &WorkItem) -> String {
+        if number >= self.touches_item(0) {
+            return item.name.clone();
+        }
+        let (trial, family) = (number / self.families.len(), number % self.families.len());
+        let settings = serde_json::to_value(&self.family(family).1[0]).unwrap_or_default();
+        let settings = settings.as_object().into_iter().flatten();
+        let settings = settings.filter(|(_, value)| !value.is_null());
+        let mut words: Vec<String> = settings
+            .map(|(key, value)| format!("{key} = {}", value.to_string().trim_matches('"')))
+            .collect();
+        words.push(format!("trial = {trial}"));
+        words.join(", ")
+    }
+
+    fn tables(&self, rows: RecognitionRows) -> Result<Vec<Table>> {
+        charts::tables_of(&self.outcome(rows)?)
+    }
+
+    fn findings(&self, tables: &[Table]) -> Result<Findings> {
+        Ok(Findings {
+            charts: self.charts(tables),
+            answers: self.answers(tables),
+            summary: Some(charts::words),
+            ..Findings::default()
+        })
+    }
+
+    fn beyond(&self, tables: &[Table]) -> Result<Beyond> {
+        Ok(Beyond {
+            pictures: self.pictures(tables)?,
+            sections: self.sections(tables)?,
+        })
     }
 }
 
-impl Findings for RecognitionStudy {
-    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
+impl RecognitionStudy {
+    pub(crate) fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
         charts::charts(tables, self.first().plan.spec.report.pareto)
     }
 
-    fn pictures(&self, _tables: &[Table]) -> Result<Vec<NamedPicture>> {
+    pub(crate) fn pictures(&self, _tables: &[Table]) -> Result<Vec<NamedPicture>> {
         let shown = &self.samples()?.shown;
         let picture = snapshots(shown)?;
         Ok(vec![NamedPicture {
@@ -111,7 +188,7 @@ impl Findings for RecognitionStudy {
         }])
     }
 
-    fn sections(&self, tables: &[Table]) -> Result<Vec<Section>> {
+    pub(crate) fn sections(&self, tables: &[Table]) -> Result<Vec<Section>> {
         let row = |name: &str, value: String| (name.to_owned(), value);
         let first = self.first();
         let spec = &first.plan.spec;
@@ -126,12 +203,8 @@ impl Findings for RecognitionStudy {
         charts::sections(&settings, &gallery(self.samples()?), tables)
     }
 
-    fn answers(&self, tables: &[Table]) -> Vec<String> {
+    pub(crate) fn answers(&self, tables: &[Table]) -> Vec<String> {
         charts::answers(tables)
-    }
-
-    fn summary(&self, tables: &[Table], width: usize) -> String {
-        charts::words(tables, width)
     }
 }
 

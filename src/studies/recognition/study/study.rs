@@ -2,17 +2,13 @@
 
 use crate::engine::axes::AxisValues;
 use crate::engine::progress::Progress;
-use crate::engine::work_items::pending::PendingItems;
 use crate::engine::work_items::scale::Scale;
 use crate::engine::work_items::shared::Shared;
-use crate::engine::work_items::study_runner::{StudyRunner, run_whole};
-use crate::engine::work_items::work_item::WorkItem;
 use crate::error::{Error, Result};
 use crate::inputs::content_hash::short_hash;
 use crate::inputs::object_files::objects_content;
 use crate::inputs::objects_spec::ObjectsSpec;
 use crate::inputs::units::millimetres;
-use crate::studies::recognition::charts::tables::tables_of;
 use crate::studies::recognition::frames::touch_set::{Samples, TouchSet};
 use crate::studies::recognition::plan::group::Group;
 use crate::studies::recognition::plan::plan::Plan;
@@ -23,11 +19,10 @@ use crate::studies::recognition::spec::recorded::RecordedSpec;
 use crate::studies::recognition::spec::study::ConfusionMatrices;
 use crate::studies::recognition::study::rows::{RecognitionRows, TouchRow};
 use crate::studies::recognition::study::touch_inputs::TouchInputs;
-use crate::studies::recognition::sweep::cell_content::family_name;
 use crate::studies::recognition::sweep::sweep::{StudyPart, Sweep};
 use crate::studies::recognition::tables::published::{check_published, compare_with_published};
 use crate::studies::recognition::tables::tabulate::tabulate;
-use crate::table::Table;
+use crate::studies::study::run_whole;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ops::Range;
 use std::sync::Arc;
@@ -51,9 +46,9 @@ pub struct RecognitionStudy {
 /// Touches of an array that are made, with so many frames each.
 pub(crate) struct Touches {
     /// The first group that reads them.
-    group: usize,
+    pub group: usize,
     /// What they are called as a work item: the same for the same touches of the same study.
-    name: String,
+    pub name: String,
 }
 
 /// A group of a part.
@@ -71,7 +66,7 @@ pub(crate) struct PlacedGroup {
 /// A [family](Group::families) of cells: its group, and which cells of that.
 pub(crate) struct Family {
     pub group: usize,
-    cells: Range<usize>,
+    pub cells: Range<usize>,
 }
 
 impl RecognitionStudy {
@@ -308,7 +303,7 @@ impl RecognitionStudy {
     /// The tables of all rows, typed.
     ///
     /// # Errors
-    /// Those of [`StudyRunner::tables`].
+    /// Those of [`Study::tables`](crate::studies::study::Study::tables).
     pub fn outcome(&self, (cells, touches): RecognitionRows) -> Result<Tables> {
         let mut tables = Tables::default();
         let scored = cells.into_iter().map(|row| {
@@ -341,72 +336,6 @@ impl RecognitionStudy {
         let first = self.first();
         let make = || first.touched.samples(&first.plan, &first.sweep.groups);
         self.samples.get(make)
-    }
-}
-
-impl StudyRunner for RecognitionStudy {
-    type Rows = RecognitionRows;
-
-    /// Trial by trial all families, group by group; then the touches of each array.
-    fn work_items(&self) -> Vec<WorkItem> {
-        let families = 0..self.families.len();
-        let of_family = |family| {
-            let (part, cells) = self.family(family);
-            family_name(&part.plan, cells)
-        };
-        let families: Vec<String> = families.map(of_family).collect();
-        let mut items = Vec::with_capacity(self.n_trials() * families.len());
-        for trial in 0..self.n_trials() {
-            for (family, name) in self.families.iter().zip(&families) {
-                let group = trial * self.groups.len() + family.group;
-                let name = format!("{name}, trial {trial}");
-                items.push(WorkItem::new(name, group));
-            }
-        }
-        for touches in &self.touch_sets {
-            items.push(WorkItem::new(touches.name.clone(), touches.group));
-        }
-        items
-    }
-
-    fn measure(&self, left: &PendingItems<RecognitionRows>) -> Result<()> {
-        self.measure_all(left)
-    }
-
-    fn place(&self, number: usize, (rows, touch_rows): &mut RecognitionRows) {
-        let touches = match number.checked_sub(self.touches_item(0)) {
-            Some(touches) => touches,
-            None => {
-                let Family { group, cells } = &self.families[number % self.families.len()];
-                for (row, cell) in rows.iter_mut().zip(cells.clone()) {
-                    row.at = (*group, cell);
-                }
-                self.groups[*group].touches
-            }
-        };
-        for row in touch_rows {
-            row.on = touches;
-        }
-    }
-
-    /// A family by the settings of its first cell.
-    fn words(&self, number: usize, item: &WorkItem) -> String {
-        if number >= self.touches_item(0) {
-            return item.name.clone();
-        }
-        let (trial, family) = (number / self.families.len(), number % self.families.len());
-        let settings = serde_json::to_value(&self.family(family).1[0]).unwrap_or_default();
-        let settings = settings.as_object().into_iter().flatten();
-        let settings = settings.filter(|(_, value)| !value.is_null());
-        let mut words: Vec<String> = settings
-            .map(|(key, value)| format!("{key} = {}", value.to_string().trim_matches('"')))
-            .collect();
-        words.push(format!("trial = {trial}"));
-        words.join(", ")
-    }
-
-    fn tables(&self, rows: RecognitionRows) -> Result<Vec<Table>> {
-        tables_of(&self.outcome(rows)?)
     }
 }
 

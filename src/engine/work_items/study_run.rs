@@ -1,0 +1,102 @@
+//! A run of the work items of a study.
+
+use crate::engine::work_items::pending::PendingItems;
+use crate::engine::work_items::record::{ItemResult, ItemRows};
+use crate::engine::work_items::run_options::{Part, RunOptions};
+use crate::engine::work_items::work_item::WorkItem;
+use crate::error::Result;
+use crate::row;
+
+row! {
+/// A item that failed: a row of `failures.csv`.
+pub struct ItemFailure {
+    /// The item, in words.
+    work_item: String => Subject "work item";
+    /// What went wrong.
+    error: String => Note;
+} }
+
+/// A run of the work items of a study, after the journal was read.
+pub struct StudyRun<'a, R> {
+    items: &'a [WorkItem],
+    /// The result of each item in the journal, if any.
+    before: Vec<Option<ItemResult<R>>>,
+    pending: PendingItems<'a, R>,
+}
+
+impl<'a, R: ItemRows> StudyRun<'a, R> {
+    /// Reads the results of all items of a study from the journal of the options.
+    pub fn new(items: &'a [WorkItem], options: &RunOptions<'a>) -> Self {
+        let results = items.iter().map(|item| options.journal.get(&item.key()));
+        let before: Vec<Option<ItemResult<R>>> = results.collect();
+        let is_in = is_in(items, options.part);
+        let is_pending = before.iter().enumerate().map(|(number, result)| {
+            let is_done = matches!(result, Some(Ok(_))) || (result.is_some() && !options.retries);
+            !is_done && is_in(number)
+        });
+        Self {
+            items,
+            pending: PendingItems::new(options, (items, is_pending.collect())),
+            before,
+        }
+    }
+
+    /// Returns the number of items that the run computes.
+    pub fn n_pending(&self) -> usize {
+        self.pending.n()
+    }
+
+    /// Computes the pending items with `measure`. Returns the rows of all items that did not fail, now or before, in the order of items, and the items that
+    /// failed. Except for times the rows are the same as if all items were computed at once.
+    ///
+    /// `place(number, rows)` sets what the number of an item decides, such as numbers of configurations. `words(number)` describes an item for failures.
+    ///
+    /// # Errors
+    /// If the journal cannot be written, if an item fails and the first failure ends the run, or if `measure` fails as a whole.
+    pub fn run(
+        self,
+        measure: impl FnOnce(&PendingItems<R>) -> Result<()>,
+        place: impl Fn(usize, &mut R),
+        words: impl Fn(usize) -> String,
+    ) -> Result<(R, Vec<ItemFailure>)> {
+        let Self { pending, .. } = self;
+        pending.progress.expect(pending.n());
+        if pending.n() > 0 {
+            measure(&pending)?;
+        }
+        let (is_pending, mut now) = pending.into_results();
+        let mut rows = R::default();
+        let mut failures = Vec::new();
+        for (number, before) in (0..self.items.len()).zip(self.before) {
+            let passed_over = || Err("a defect of the program: it was passed over".to_owned());
+            let result = match is_pending[number] {
+                true => Some(now.remove(&number).unwrap_or_else(passed_over)),
+                false => before,
+            };
+            match result {
+                Some(Ok(mut found)) => {
+                    place(number, &mut found);
+                    rows.append(found);
+                }
+                Some(Err(error)) => failures.push(ItemFailure {
+                    work_item: words(number),
+                    error,
+                }),
+                // The item belongs to another shard.
+                None => {}
+            }
+        }
+        Ok((rows, failures))
+    }
+}
+
+/// Whether a item, by its number, belongs to a part.
+fn is_in<'a>(items: &'a [WorkItem], part: Part<'a>) -> impl Fn(usize) -> bool + 'a {
+    let groups = items.iter().map(|item| item.group);
+    let n_groups = groups.max().map_or(0, |last| last + 1);
+    move |number| match part {
+        Part::All => true,
+        Part::Shard(shard) => shard.takes((items[number].group, n_groups), number),
+        Part::Only(numbers) => numbers.contains(&number),
+    }
+}
