@@ -2,7 +2,7 @@
 
 use crate::command::Case;
 use crate::study::{self, Study};
-use bubbletouch::kinds::Study;
+use bubbletouch::kinds::Study as _;
 use bubbletouch::kinds::recognition::RecognitionStudy;
 use bubbletouch::report::folder::{table_files, write_files};
 use bubbletouch::studies::recognition::charts::{read_tables, tables_of};
