@@ -2,13 +2,13 @@
 //!
 //! A kernel value is a function of one pairwise number, which all γ share (the product x·z, of matrix products), and of the rows' squared norms.
 
-use ndarray::{Array2, ArrayView1, ArrayView2, ArrayViewMut2};
+use ndarray::{Array1, Array2, ArrayView1, ArrayView2, ArrayViewMut2};
 use serde::{Deserialize, Serialize};
 
-use crate::gram::extent::Extent;
 use crate::linalg::products::{multiply, with_each_other};
 use crate::linalg::row_products;
 use crate::linalg::scalar::Scalar;
+use crate::row_statistics::RowStatistics;
 use crate::{Error, Result};
 
 /// The largest exponent of an RBF kernel, γ times the squared distance between two rows, for f32: the exponent's rounding is
@@ -89,11 +89,11 @@ impl Kernel {
         if scale > 0.0 { 1.0 / scale } else { 1.0 }
     }
 
-    /// The kernel with γ as a number, taken from the training features (n_rows × m) of this extent.
+    /// Returns the kernel with γ as a number, from the training features (n_rows × m) and their statistics.
     pub(crate) fn resolve(
         &self,
         features: ArrayView2<f64>,
-        extent: &Extent,
+        statistics: &RowStatistics,
     ) -> Result<KernelFunction> {
         let number = |gamma: Gamma| match gamma {
             Gamma::Scale => Ok(self.gamma_scale(features)),
@@ -130,7 +130,7 @@ impl Kernel {
                 }
             }
         };
-        function.check(extent.largest_norm)?;
+        function.check(statistics.largest_norm)?;
         Ok(function)
     }
 }
@@ -202,12 +202,12 @@ impl KernelFunction {
         }
     }
 
-    /// Whether a constant that is added to all features changes nothing but a decision function's ρ: then rows are taken about
-    /// their mean, where products are small and keep their digits.
-    pub fn has_any_centre(&self) -> bool {
+    /// Returns the centre about which the kernel is computed: the mean of the rows if a constant that is added to all features changes only ρ of a
+    /// decision function, else the origin. About the mean products are small, and keep their digits.
+    pub fn centre(&self, statistics: &RowStatistics) -> Array1<f64> {
         match self {
-            Self::Linear | Self::Rbf { .. } | Self::Laplacian { .. } => true,
-            Self::Polynomial { .. } => false,
+            Self::Linear | Self::Rbf { .. } | Self::Laplacian { .. } => statistics.mean.clone(),
+            Self::Polynomial { .. } => Array1::zeros(statistics.mean.len()),
         }
     }
 
@@ -423,9 +423,9 @@ mod tests {
         let features = array![[1.0]];
         for gamma in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             let gamma = Gamma::Value(gamma);
-            let extent = Extent::of(features.view()).unwrap();
+            let statistics = RowStatistics::new(features.view()).unwrap();
             for kernel in [Kernel::Rbf { gamma }, Kernel::Laplacian { gamma }] {
-                assert!(kernel.resolve(features.view(), &extent).is_err());
+                assert!(kernel.resolve(features.view(), &statistics).is_err());
             }
         }
         for (coef0, degree) in [(-1.0, 2), (f64::NAN, 2), (0.0, 0), (0.0, 21)] {
@@ -435,8 +435,8 @@ mod tests {
                 coef0,
                 degree,
             };
-            let extent = Extent::of(features.view()).unwrap();
-            assert!(kernel.resolve(features.view(), &extent).is_err());
+            let statistics = RowStatistics::new(features.view()).unwrap();
+            assert!(kernel.resolve(features.view(), &statistics).is_err());
         }
     }
 }

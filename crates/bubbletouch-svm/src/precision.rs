@@ -46,7 +46,7 @@ impl Precision for f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::SvmParams;
+    use crate::svm_params::SvmParams;
     use linfa::traits::{Fit, Predict};
 
     #[test]

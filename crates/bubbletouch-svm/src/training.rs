@@ -9,16 +9,20 @@ use std::ops::Range;
 
 use ndarray::Array2;
 
-use crate::BinaryProblem;
+use crate::binary_problem::BinaryProblem;
 use crate::dual::DualSolution;
-use crate::gram::between::{Group, groups, pairs};
+use crate::gram::between::{Group, groups};
+use crate::gram::cached::Cached;
+use crate::gram::matrix::{Dense, Gram};
+use crate::gram::part::{Workspace, part_of_blocks};
 use crate::gram::sorted::Sorted;
+use crate::gram::sorted::pairs;
 use crate::kernel::KernelFunction;
-use crate::linalg::scalar::Scalar;
 use crate::linalg::transposed::write_columns;
 use crate::screening::first_rows::{PairsNearMargin, few_dimensions};
 use crate::screening::near_margin::NearMargin;
-use crate::smo::{Cached, Dense, Gram, Room, Smo, part_of_blocks};
+use crate::smo::Smo;
+use crate::smo::SolverScalar;
 
 /// Features from which on one-vs-one linear SVMs are solved on the rows near their margins.
 const SCREENING_FROM_FEATURES: usize = 128;
@@ -43,7 +47,7 @@ pub(crate) struct Goal<'a> {
     pub memory: usize,
 }
 
-impl<T: Scalar> Sorted<T> {
+impl<T: SolverScalar> Sorted<T> {
     /// Solves every pair of classes: for each C of the path, the problems (0, 1), (0, 2), …, (1, 2), ….
     pub fn one_vs_one(&self, goal: Goal) -> Vec<Trained<T>> {
         if self.is_worth_screening(goal.memory) {
@@ -110,7 +114,7 @@ impl<T: Scalar> Sorted<T> {
     fn pairs_from_blocks(&self, goal: Goal, problems: &mut [Vec<BinaryProblem>]) {
         let classes = groups(self.ranges());
         let groups: Vec<Group<T>> = classes.iter().map(|own| Group::new(self, own)).collect();
-        let (mut between, mut above, mut room) = (Vec::new(), Vec::new(), Room::new());
+        let (mut between, mut above, mut workspace) = (Vec::new(), Vec::new(), Workspace::new());
         for (at, own) in groups.iter().enumerate() {
             for (number, other) in groups.iter().enumerate().skip(at) {
                 if number > at {
@@ -127,7 +131,7 @@ impl<T: Scalar> Sorted<T> {
                     write_columns(&below, &mut above, second.len());
                     let across = [above.chunks_exact(second.len()).collect(), below];
                     let within = [own.own_part(first, first), other.own_part(second, second)];
-                    let mut gram = part_of_blocks(&within, &across, &mut room);
+                    let mut gram = part_of_blocks(&within, &across, &mut workspace);
                     self.solve_pair(&mut gram, (a, b), goal, problems);
                 }
             }

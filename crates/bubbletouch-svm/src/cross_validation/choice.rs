@@ -3,14 +3,14 @@
 use ndarray::{Array1, Array2, ArrayView1};
 use serde::{Deserialize, Serialize};
 
-use crate::SvmParams;
 use crate::cross_validation::grid::Grid;
 use crate::dataset::{Dataset, check_labels, distinct, rows};
-use crate::gram::extent::Extent;
 use crate::gram::sorted::Sorted;
 use crate::kernel::{Gamma, Kernel, KernelFunction};
-use crate::linalg::scalar::Scalar;
+use crate::row_statistics::RowStatistics;
+use crate::smo::SolverScalar;
 use crate::split::Split;
+use crate::svm_params::SvmParams;
 use crate::training::Goal;
 use crate::{Error, Result};
 
@@ -63,16 +63,16 @@ pub fn choose(
 ) -> Result<Chosen> {
     let path = ascending(&candidates.c);
     params.check(&path)?;
-    let extent = Extent::of(training.records.view())?;
+    let statistics = RowStatistics::new(training.records.view())?;
     check_labels(training.records.nrows(), training.targets.view())?;
     check_folds(training, folds)?;
-    let kernels = kernels(params, (training, &extent), &candidates.gamma_scales)?;
+    let kernels = kernels(params, (training, &statistics), &candidates.gamma_scales)?;
     let goal = Goal {
         path: &path,
         tolerance: params.tolerance,
         memory: params.memory_bytes,
     };
-    let (counts, n_capped) = on_one_matrix(params, (training, &extent), folds, &kernels, goal)?;
+    let (counts, n_capped) = on_one_matrix(params, (training, &statistics), folds, &kernels, goal)?;
     let n_validated: usize = folds.iter().map(|fold| fold.test.len()).sum();
     let tried = counts
         .indexed_iter()
@@ -156,12 +156,12 @@ fn ascending(values: &[f64]) -> Vec<f64> {
 /// The kernel with every γ that is asked for, ascending.
 fn kernels(
     params: &SvmParams,
-    (training, extent): (&Dataset, &Extent),
+    (training, statistics): (&Dataset, &RowStatistics),
     scales: &[f64],
 ) -> Result<Vec<KernelFunction>> {
     if scales.is_empty() || params.kernel == Kernel::Linear {
         return Ok(vec![
-            params.kernel.resolve(training.records.view(), extent)?,
+            params.kernel.resolve(training.records.view(), statistics)?,
         ]);
     }
     let unit = match params.kernel.gamma() {
@@ -172,7 +172,7 @@ fn kernels(
         .into_iter()
         .map(|scale| {
             let kernel = params.kernel.with_gamma(Gamma::Value(scale * unit));
-            kernel.resolve(training.records.view(), extent)
+            kernel.resolve(training.records.view(), statistics)
         })
         .collect()
 }
@@ -217,21 +217,21 @@ fn rows_exist(training: &Dataset, part: &[usize]) -> Result<()> {
 /// Validation rows recognised (kernels.len() × path.len()), and capped solves.
 fn on_one_matrix(
     params: &SvmParams,
-    (training, extent): (&Dataset, &Extent),
+    (training, statistics): (&Dataset, &RowStatistics),
     folds: &[Split],
     kernels: &[KernelFunction],
     goal: Goal,
 ) -> Result<(Array2<usize>, usize)> {
-    let centre = extent.centre(&kernels[0]);
+    let centre = kernels[0].centre(statistics);
     let n_rows = training.records.nrows();
-    let wants_double = |farthest: f64| {
+    let needs_double = |farthest: f64| {
         let mut kernels = kernels.iter();
-        kernels.any(|&kernel| params.wants_double(n_rows, kernel, goal.path, farthest))
+        kernels.any(|&kernel| params.needs_double(n_rows, kernel, goal.path, farthest))
     };
     let data = (training, centre.view());
-    if !wants_double(0.0) {
+    if !needs_double(0.0) {
         let sorted = by_fold::<f32>(data, folds, kernels[0]);
-        if !wants_double(sorted.farthest()) {
+        if !needs_double(sorted.farthest()) {
             return grid(params, &sorted, folds, kernels, goal);
         }
     }
@@ -240,7 +240,7 @@ fn on_one_matrix(
 }
 
 /// Rows by class, and within a class by fold: what a fold trains on then lies in few runs.
-fn by_fold<T: Scalar>(
+fn by_fold<T: SolverScalar>(
     (training, centre): (&Dataset, ArrayView1<f64>),
     folds: &[Split],
     kernel: KernelFunction,
@@ -253,7 +253,7 @@ fn by_fold<T: Scalar>(
     Sorted::within_classes(training, &classes, kernel, centre, |row| fold_of[row])
 }
 
-fn grid<T: Scalar>(
+fn grid<T: SolverScalar>(
     params: &SvmParams,
     sorted: &Sorted<T>,
     folds: &[Split],
@@ -281,8 +281,8 @@ fn grid<T: Scalar>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Multiclass;
     use crate::dataset::dataset;
+    use crate::multiclass::Multiclass;
 
     /// Three overlapping classes.
     fn overlapping(n: usize) -> Dataset {
@@ -349,14 +349,14 @@ mod tests {
                     tolerance: 1e-8,
                     ..SvmParams::default()
                 };
-                let extent = Extent::of(data.records.view()).unwrap();
-                let kernels = kernels(&params, (&data, &extent), &[0.3, 3.0]).unwrap();
+                let statistics = RowStatistics::new(data.records.view()).unwrap();
+                let kernels = kernels(&params, (&data, &statistics), &[0.3, 3.0]).unwrap();
                 let goal = Goal {
                     path: &path,
                     tolerance: params.tolerance,
                     memory: params.memory_bytes,
                 };
-                let rows = (&data, &extent);
+                let rows = (&data, &statistics);
                 let fast = on_one_matrix(&params, rows, &folds, &kernels, goal).unwrap();
                 let slow = one_by_one(&params, &data, &folds, &kernels, goal).unwrap();
                 assert_eq!(fast, slow, "{kernel:?} {multiclass:?}");

@@ -6,9 +6,10 @@
 
 use std::ops::Range;
 
-use crate::cross_validation::seed::Exchange;
-use crate::linalg::scalar::Scalar;
-use crate::smo::{Dense, Gram, Smo};
+use super::alpha_seeding::AlphaSeeding;
+use crate::gram::matrix::{Dense, Gram};
+use crate::smo::Smo;
+use crate::smo::SolverScalar;
 use crate::training::Goal;
 
 /// A fold's problem, solved for every C.
@@ -36,7 +37,7 @@ pub(crate) struct FoldSolution {
 impl FoldPath {
     /// Tells of one fold after the other, given the labels of each, one a row of the Gram matrix; those of `positive` are of
     /// the positive class.
-    pub fn of_pair<T: Scalar>(
+    pub fn of_pair<T: SolverScalar>(
         gram: &mut Dense<T>,
         (folds, positive): (Vec<Vec<f64>>, &Range<usize>),
         goal: Goal,
@@ -49,14 +50,14 @@ impl FoldPath {
         let mut last: Option<Self> = None;
         for (labels, sums) in folds.into_iter().zip(sums) {
             let smo = Smo::new(gram, &labels).at_bounds(goal.path[0], &sums);
-            let exchange = |last: Self| {
-                let exchange = Exchange::new((&last.labels, &labels), positive);
-                (last, exchange)
+            let seeding = |last: Self| {
+                let seeding = AlphaSeeding::new((&last.labels, &labels), positive);
+                (last, seeding)
             };
-            let last_and_exchange = last.take().map(exchange);
+            let last_and_exchange = last.take().map(seeding);
             let seed = |gram: &mut Dense<T>, number: usize| {
-                let (last, exchange) = last_and_exchange.as_ref()?;
-                last.moved(number, (&labels, exchange), gram)
+                let (last, seeding) = last_and_exchange.as_ref()?;
+                last.moved(number, (&labels, seeding), gram)
             };
             let solutions = along(smo, goal, seed);
             told(last.insert(Self { labels, solutions }));
@@ -65,7 +66,7 @@ impl FoldPath {
 
     /// The same for a class against all others. Classes that no hyperplane parts from the rest have values that are equal
     /// within the tolerance, and the largest wins: there the start decides. So it starts from nothing, as training does.
-    pub fn of_class<T: Scalar>(
+    pub fn of_class<T: SolverScalar>(
         gram: &mut Dense<T>,
         folds: Vec<Vec<f64>>,
         goal: Goal,
@@ -79,15 +80,15 @@ impl FoldPath {
     }
 
     /// β and f of one C with the multipliers of lost rows moved to gained ones.
-    fn moved<T: Scalar>(
+    fn moved<T: SolverScalar>(
         &self,
         number: usize,
-        (labels, exchange): (&[f64], &Exchange),
+        (labels, seeding): (&[f64], &AlphaSeeding),
         gram: &mut Dense<T>,
     ) -> Option<(Vec<f64>, Vec<f64>)> {
         let last = self.solutions.len() - 1;
         let FoldSolution { beta, f, .. } = &self.solutions[number.min(last)];
-        let moved = exchange.moved(beta, |row| gram.row(row))?;
+        let moved = seeding.transfer(beta, |row| gram.row(row))?;
         let mut moved_f = gram.times(&difference(&moved, beta));
         let both = labels.iter().zip(&self.labels);
         for ((moved, f), (label, before)) in moved_f.iter_mut().zip(f).zip(both) {
@@ -98,7 +99,7 @@ impl FoldPath {
 }
 
 /// Solves for every C, ascending, until a solution holds for all larger ones.
-fn along<T: Scalar>(
+fn along<T: SolverScalar>(
     mut smo: Smo<Dense<T>>,
     goal: Goal,
     seed: impl Fn(&mut Dense<T>, usize) -> Option<(Vec<f64>, Vec<f64>)>,
@@ -126,7 +127,11 @@ fn along<T: Scalar>(
 }
 
 /// The Gram matrix times the labels of each fold, which are those of all rows but for 0 where the fold holds a row out.
-fn sums_of_folds<T: Scalar>(gram: &mut Dense<T>, all: &[f64], folds: &[Vec<f64>]) -> Vec<Vec<f64>> {
+fn sums_of_folds<T: SolverScalar>(
+    gram: &mut Dense<T>,
+    all: &[f64],
+    folds: &[Vec<f64>],
+) -> Vec<Vec<f64>> {
     let held_out: Vec<Vec<f64>> = folds.iter().map(|labels| difference(all, labels)).collect();
     // Rows that one fold holds out, as is usual, are in the sum of what folds hold out already.
     let rest = held_out.iter().fold(all.to_vec(), |a, b| difference(&a, b));

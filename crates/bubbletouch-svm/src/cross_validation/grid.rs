@@ -3,19 +3,19 @@
 //! All folds and all candidates share the products of rows with each other: a pair's part of a kernel is made of them once for
 //! all folds, which [leave rows out](crate::cross_validation::fold_path). Along C each solution starts from the last, that of a pair
 //! at the first C from all multipliers at their bounds and, from the second fold on,
-//! [from that of the fold before](crate::cross_validation::seed) where that is nearer. Validation rows are
-//! [judged](crate::cross_validation::judgement) by their own class's problems first.
+//! [from that of the fold before](super::alpha_seeding) where that is nearer. Validation rows are
+//! [judged](super::validation_scorer) by their own class's problems first.
 
 use ndarray::{Array1, Array2};
 
-use crate::Multiclass;
+use super::validation_scorer::ValidationScorer;
 use crate::cross_validation::fold_path::FoldPath;
-use crate::cross_validation::judgement::Judgement;
+use crate::gram::matrix::Dense;
 use crate::gram::product_kernel::ProductKernel;
 use crate::gram::sorted::Sorted;
 use crate::kernel::KernelFunction;
-use crate::linalg::scalar::Scalar;
-use crate::smo::Dense;
+use crate::multiclass::Multiclass;
+use crate::smo::SolverScalar;
 use crate::split::Split;
 use crate::training::Goal;
 
@@ -44,7 +44,7 @@ struct Fold {
     validation: Vec<usize>,
 }
 
-impl<T: Scalar> Grid<'_, T> {
+impl<T: SolverScalar> Grid<'_, T> {
     /// Validation rows recognised, over all folds, per kernel and C (kernels.len() × path.len()), and solves stopped at the
     /// iteration cap.
     pub fn n_correct(&self, kernels: &[KernelFunction], goal: Goal) -> (Array2<usize>, usize) {
@@ -57,9 +57,9 @@ impl<T: Scalar> Grid<'_, T> {
         for (&kernel, mut counts) in kernels.iter().zip(counts.rows_mut()) {
             let kernel = ProductKernel::new(rows, pairwise.view(), kernel);
             for folds in folds.chunks(FOLDS_AT_ONCE) {
-                for judgement in self.judge(folds, &kernel, goal) {
-                    n_capped += judgement.n_capped();
-                    counts += &Array1::from(judgement.n_right(&kernel));
+                for scorer in self.score(folds, &kernel, goal) {
+                    n_capped += scorer.n_capped();
+                    counts += &Array1::from(scorer.n_right(&kernel));
                 }
             }
         }
@@ -86,9 +86,14 @@ impl<T: Scalar> Grid<'_, T> {
     }
 
     /// Solves all problems of some folds, and judges their validation rows.
-    fn judge(&self, folds: &[Fold], kernel: &ProductKernel<T>, goal: Goal) -> Vec<Judgement<T>> {
-        let judgement = |fold| self.judgement(fold, goal.path.len());
-        let mut judgements: Vec<Judgement<T>> = folds.iter().map(judgement).collect();
+    fn score(
+        &self,
+        folds: &[Fold],
+        kernel: &ProductKernel<T>,
+        goal: Goal,
+    ) -> Vec<ValidationScorer<T>> {
+        let scorer = |fold| self.scorer(fold, goal.path.len());
+        let mut scorers: Vec<ValidationScorer<T>> = folds.iter().map(scorer).collect();
         let mut gram = Dense::default();
         if self.multiclass == Multiclass::OneVsRest {
             kernel.write_all(&mut gram);
@@ -98,35 +103,35 @@ impl<T: Scalar> Grid<'_, T> {
                 kernel.write_pair((positive, negative), &mut gram);
             }
             let takes_part = |fold: &Fold, class: usize| fold.is_class[class];
-            let both = folds.iter().zip(&mut judgements).filter(|(fold, _)| {
+            let both = folds.iter().zip(&mut scorers).filter(|(fold, _)| {
                 takes_part(fold, problem.0) && problem.1.is_none_or(|class| takes_part(fold, class))
             });
-            let (folds, judgements): (Vec<&Fold>, Vec<_>) = both.unzip();
+            let (folds, scorers): (Vec<&Fold>, Vec<_>) = both.unzip();
             let labels = self.labels(problem, &folds);
-            let mut judgements = judgements.into_iter();
-            let judge = |path: &FoldPath| {
-                let judgement = judgements.next().expect("each fold has one");
+            let mut scorers = scorers.into_iter();
+            let score = |path: &FoldPath| {
+                let scorer = scorers.next().expect("each fold has one");
                 path.solutions
                     .iter()
-                    .for_each(|solution| judgement.take(number, solution));
+                    .for_each(|solution| scorer.take(number, solution));
             };
             match problem.1 {
                 Some(_) => {
                     let positive = 0..self.sorted.ranges()[problem.0].len();
-                    FoldPath::of_pair(&mut gram, (labels, &positive), goal, judge);
+                    FoldPath::of_pair(&mut gram, (labels, &positive), goal, score);
                 }
-                None => FoldPath::of_class(&mut gram, labels, goal, judge),
+                None => FoldPath::of_class(&mut gram, labels, goal, score),
             }
         }
-        judgements
+        scorers
     }
 
-    fn judgement(&self, fold: &Fold, n_path: usize) -> Judgement<T> {
+    fn scorer(&self, fold: &Fold, n_path: usize) -> ValidationScorer<T> {
         let ranges = self.sorted.ranges();
         let of_class = |row: &usize| ranges.partition_point(|range| range.end <= *row);
         let rows = fold.validation.iter().map(|row| (*row, of_class(row)));
         let known = rows.filter(|(_, class)| fold.is_class[*class]).collect();
-        Judgement::new((known, &fold.is_class), ranges, self.multiclass, n_path)
+        ValidationScorer::new((known, &fold.is_class), ranges, self.multiclass, n_path)
     }
 
     /// All problems with their numbers; pairs of neighbouring classes come together, so that their part of the kernel stays in the cache.

@@ -24,14 +24,6 @@ pub(crate) fn groups(ranges: &[Range<usize>]) -> Vec<Range<usize>> {
     groups
 }
 
-/// Each pair of classes, the smaller first, of one group or across two.
-pub(crate) fn pairs(
-    own: Range<usize>,
-    other: Range<usize>,
-) -> impl Iterator<Item = (usize, usize)> {
-    own.flat_map(move |a| other.clone().filter(move |&b| b > a).map(move |b| (a, b)))
-}
-
 /// A group of classes: its rows, and their kernel values.
 pub(crate) struct Group<'a, T> {
     sorted: &'a Sorted<T>,

@@ -5,14 +5,14 @@ use std::ops::Range;
 
 use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis, s};
 
-use crate::gram::points::Points;
+use crate::gram::centered_rows::CenteredRows;
+use crate::gram::matrix::Dense;
 use crate::kernel::KernelFunction;
 use crate::linalg::scalar::Scalar;
-use crate::smo::Dense;
 
 /// A kernel on rows whose pairwise numbers are known.
 pub(crate) struct ProductKernel<'a, T> {
-    points: &'a Points<T>,
+    points: &'a CenteredRows<T>,
     /// Where the rows of each class are.
     ranges: &'a [Range<usize>],
     /// n × n.
@@ -25,7 +25,7 @@ pub(crate) struct ProductKernel<'a, T> {
 impl<'a, T: Scalar> ProductKernel<'a, T> {
     /// Of rows, class by class, whose pairwise numbers are these.
     pub fn new(
-        (points, ranges): (&'a Points<T>, &'a [Range<usize>]),
+        (points, ranges): (&'a CenteredRows<T>, &'a [Range<usize>]),
         pairwise: ArrayView2<'a, T>,
         kernel: KernelFunction,
     ) -> Self {
@@ -79,14 +79,14 @@ impl<'a, T: Scalar> ProductKernel<'a, T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gram::matrix::Gram;
     use crate::linalg::products::own_products;
-    use crate::smo::Gram;
     use ndarray::Array1;
 
     #[test]
     fn values_are_those_of_the_rows_however_they_are_asked_for() {
         let rows = Array2::from_shape_fn((23, 4), |(i, j)| ((i * 4 + j) as f64 * 1.7).sin());
-        let points = Points::<f64>::new(rows.view(), Array1::zeros(4).view());
+        let points = CenteredRows::<f64>::new(rows.view(), Array1::zeros(4).view());
         let kernel = KernelFunction::Rbf { gamma: 0.3 };
         let expected = points.all().own_kernel(&kernel);
         let ranges = [0..9, 9..10, 10..23];

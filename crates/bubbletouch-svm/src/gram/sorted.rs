@@ -4,17 +4,24 @@ use std::ops::Range;
 
 use ndarray::{Array1, ArrayView1, ArrayView2};
 
-use crate::BinaryProblem;
+use crate::binary_problem::BinaryProblem;
 use crate::dataset::Dataset;
-use crate::gram::between::pairs;
-use crate::gram::points::Points;
+use crate::gram::centered_rows::CenteredRows;
 use crate::kernel::KernelFunction;
 use crate::linalg::scalar::Scalar;
+
+/// Returns each pair of classes `(a, b)` with a < b, a of one range of classes and b of another, which may be the same.
+pub(crate) fn pairs(
+    own: Range<usize>,
+    other: Range<usize>,
+) -> impl Iterator<Item = (usize, usize)> {
+    own.flat_map(move |a| other.clone().filter(move |&b| b > a).map(move |b| (a, b)))
+}
 
 /// Training rows sorted by class, about their centre.
 #[derive(Clone)]
 pub(crate) struct Sorted<T> {
-    points: Points<T>,
+    points: CenteredRows<T>,
     /// The original number of each sorted row.
     order: Vec<usize>,
     /// Where each original row is.
@@ -63,7 +70,7 @@ impl<T: Scalar> Sorted<T> {
         }
         let rows = order.iter().map(|&row| data.records.row(row));
         let (mut centre_products, mut farthest) = (Vec::new(), 0.0_f64);
-        let points = Points::of_rows_and(rows, centre, |moved| {
+        let points = CenteredRows::of_rows_and(rows, centre, |moved| {
             farthest = farthest.max(moved.norm);
             if kernel == KernelFunction::Linear {
                 centre_products.push(moved.along_centre);
@@ -98,12 +105,12 @@ impl<T: Scalar> Sorted<T> {
     }
 
     /// The rows, class by class.
-    pub fn points(&self) -> &Points<T> {
+    pub fn points(&self) -> &CenteredRows<T> {
         &self.points
     }
 
     /// The rows alone.
-    pub fn into_points(self) -> Points<T> {
+    pub fn into_points(self) -> CenteredRows<T> {
         self.points
     }
 

@@ -1,8 +1,9 @@
 //! Products of rows and factors of symmetric matrices.
 
+pub(crate) mod centered_row;
 pub(crate) mod factors;
 pub(crate) mod few_dimensions;
-pub(crate) mod moved_row;
+pub(crate) mod lanes;
 pub(crate) mod products;
 pub(crate) mod row_products;
 pub(crate) mod row_tiles;

@@ -3,11 +3,6 @@
 use ndarray::NdFloat;
 
 use crate::linalg::row_tiles;
-use crate::smo::Gram;
-use crate::smo::iterations::{Search, Stop, run_plain};
-#[cfg(target_arch = "x86_64")]
-use crate::smo::passes_512;
-use crate::smo::variables::Variables;
 
 /// f32 or f64: what a Gram matrix holds.
 pub(crate) trait Scalar: NdFloat + Default {
@@ -21,15 +16,6 @@ pub(crate) trait Scalar: NdFloat + Default {
     /// written, where there is no fast way.
     fn products_in_place(_: &[&[Self]], _: &[&[Self]], _: &mut [Self]) -> bool {
         false
-    }
-    /// The solver's [iterations](run_plain).
-    fn run<G: Gram<Self>>(
-        gram: &mut G,
-        variables: &mut Variables<Self>,
-        search: &mut Search,
-        first_look: u64,
-    ) -> Stop {
-        run_plain(gram, variables, search, first_look)
     }
 }
 
@@ -64,30 +50,6 @@ impl Scalar for f32 {
 
     fn products_in_place(rows: &[&[Self]], others: &[&[Self]], products: &mut [Self]) -> bool {
         row_tiles::products_in_place(rows, others, products)
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    fn run<G: Gram<Self>>(
-        gram: &mut G,
-        variables: &mut Variables<Self>,
-        search: &mut Search,
-        first_look: u64,
-    ) -> Stop {
-        run_f32(gram, variables, search, first_look)
-    }
-}
-
-#[cfg(target_arch = "x86_64")]
-#[multiversion::multiversion(targets("x86_64+avx512f"))]
-fn run_f32<G: Gram<f32>>(
-    gram: &mut G,
-    variables: &mut Variables<f32>,
-    search: &mut Search,
-    first_look: u64,
-) -> Stop {
-    multiversion::target::match_target! {
-        "x86_64+avx512f" => passes_512::run(gram, variables, search, first_look),
-        _ => run_plain(gram, variables, search, first_look),
     }
 }
 

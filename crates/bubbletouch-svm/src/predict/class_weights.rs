@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use ndarray::{Array2, ArrayView2, s};
 
-use crate::BinaryProblem;
+use crate::binary_problem::BinaryProblem;
 use crate::gram::sorted::Sorted;
 use crate::linalg::scalar::Scalar;
 

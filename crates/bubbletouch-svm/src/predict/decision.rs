@@ -4,15 +4,16 @@ use std::borrow::Cow;
 
 use ndarray::{Array1, Array2, ArrayView2, Axis, s};
 
-use crate::gram::points::Points;
+use super::condorcet_winner::{Pairs, condorcet_winners_by_hyperplanes};
+use crate::binary_problem::BinaryProblem;
+use crate::gram::centered_rows::CenteredRows;
 use crate::gram::sorted::Sorted;
 use crate::kernel::KernelFunction;
 use crate::linalg::products::{FEW_ROWS, multiply};
 use crate::linalg::scalar::Scalar;
+use crate::multiclass::Multiclass;
 use crate::predict::class_weights::{ClassWeights, weighted_sums};
-use crate::predict::unbeaten::{Pairs, unbeaten_by_hyperplanes};
-use crate::predict::voting::Ballot;
-use crate::{BinaryProblem, Multiclass};
+use crate::predict::voting::VoteCounter;
 
 /// Rows whose decision values are computed at once. Fewer, and a product spends its time on bringing the support vectors into order; more,
 /// and their kernel values (10 MB with 5,000 support vectors) take much memory.
@@ -41,7 +42,7 @@ enum Sums<T> {
 #[derive(Clone, Debug)]
 struct Support<T> {
     kernel: KernelFunction,
-    vectors: Points<T>,
+    vectors: CenteredRows<T>,
     weights: Vec<ClassWeights<T>>,
     /// For one-vs-one.
     pairs: Option<Pairs<T>>,
@@ -112,9 +113,9 @@ impl<T: Scalar> DecisionFunctions<T> {
 
     /// The position of the class that each row's decision values speak for.
     pub fn winners(&self, features: ArrayView2<f64>, between: (usize, Multiclass)) -> Vec<usize> {
-        let elect = |sums: Array2<T>| Ballot::elect(&sums, self.rho.view(), between, |_| true);
+        let elect = |sums: Array2<T>| VoteCounter::elect(&sums, self.rho.view(), between, |_| true);
         let mut room = self.room(features.nrows());
-        let of_block = |points: Points<T>| match &self.sums {
+        let of_block = |points: CenteredRows<T>| match &self.sums {
             Sums::Support(
                 support @ Support {
                     pairs: Some(pairs), ..
@@ -123,9 +124,10 @@ impl<T: Scalar> DecisionFunctions<T> {
                 let Support {
                     vectors, kernel, ..
                 } = support;
-                elect_open(pairs.unbeaten_by_few(&points, vectors, kernel), |open| {
-                    elect(self.sums_of(&points.select(open), &mut room))
-                })
+                elect_open(
+                    pairs.condorcet_winners_by_few(&points, vectors, kernel),
+                    |open| elect(self.sums_of(&points.select(open), &mut room)),
+                )
             }
             Sums::Support(
                 support @ Support {
@@ -133,7 +135,7 @@ impl<T: Scalar> DecisionFunctions<T> {
                 },
             ) => {
                 let values = support.kernel_values(&points, &mut room);
-                elect_open(pairs.unbeaten(values), |open| {
+                elect_open(pairs.condorcet_winners(values), |open| {
                     let values = values.select(Axis(0), open);
                     elect(weighted_sums(
                         &support.weights,
@@ -148,7 +150,7 @@ impl<T: Scalar> DecisionFunctions<T> {
             {
                 let hyperplanes = (normals.view(), self.rho.view());
                 elect_open(
-                    unbeaten_by_hyperplanes(between.0, hyperplanes, &points),
+                    condorcet_winners_by_hyperplanes(between.0, hyperplanes, &points),
                     |open| elect(self.sums_of(&points.select(open), &mut room)),
                 )
             }
@@ -157,10 +159,13 @@ impl<T: Scalar> DecisionFunctions<T> {
         self.blocks(&features).flat_map(of_block).collect()
     }
 
-    fn blocks<'a>(&'a self, features: &'a ArrayView2<f64>) -> impl Iterator<Item = Points<T>> + 'a {
+    fn blocks<'a>(
+        &'a self,
+        features: &'a ArrayView2<f64>,
+    ) -> impl Iterator<Item = CenteredRows<T>> + 'a {
         features
             .axis_chunks_iter(Axis(0), BLOCK_ROWS)
-            .map(|rows| Points::new(rows, self.centre.view()))
+            .map(|rows| CenteredRows::new(rows, self.centre.view()))
     }
 
     /// Room for a block's kernel values: written over and over, so that its memory is asked for once.
@@ -173,7 +178,7 @@ impl<T: Scalar> DecisionFunctions<T> {
     }
 
     /// `Σ y a K(x_i, x)` of some rows: n_problems × rows, so that all rows of a problem lie side by side.
-    fn sums_of(&self, points: &Points<T>, room: &mut Array2<T>) -> Array2<T> {
+    fn sums_of(&self, points: &CenteredRows<T>, room: &mut Array2<T>) -> Array2<T> {
         match &self.sums {
             Sums::Hyperplanes(normals) => {
                 let mut sums = Array2::zeros((normals.nrows(), points.len()));
@@ -209,7 +214,11 @@ fn elect_open(
 
 impl<T: Scalar> Support<T> {
     /// `K(x, x_i)`: rows × vectors.
-    fn kernel_values<'a>(&self, points: &Points<T>, room: &'a mut Array2<T>) -> ArrayView2<'a, T> {
+    fn kernel_values<'a>(
+        &self,
+        points: &CenteredRows<T>,
+        room: &'a mut Array2<T>,
+    ) -> ArrayView2<'a, T> {
         let n = points.len();
         let values = room.slice_mut(s![..n, ..]);
         points

@@ -3,7 +3,7 @@
 //! A block of rows meets all support vectors of a class in one matrix product, and their coefficients for all binary
 //! problems in a second one; a linear SVM is one product with its hyperplanes. Both run in the precision that the model was
 //! trained in. Labels of one-vs-one SVMs with a kernel need the second product only where no class wins all its pairs
-//! (`unbeaten`).
+//! (`condorcet_winner`).
 
 use std::borrow::Cow;
 
@@ -11,14 +11,15 @@ use linfa::traits::PredictInplace;
 use ndarray::{Array1, Array2, ArrayBase, ArrayView2, Data, Ix2};
 
 use crate::Result;
+use crate::binary_problem::BinaryProblem;
 use crate::dataset::check_width;
 use crate::gram::sorted::Sorted;
 use crate::linalg::scalar::Scalar;
+use crate::multiclass::Multiclass;
 use crate::precision::Precision;
 use crate::predict::decision::DecisionFunctions;
 use crate::predict::voting::Voting;
 use crate::training::Trained;
-use crate::{BinaryProblem, Multiclass};
 
 /// A trained SVM. Implements linfa's [`PredictInplace`] and so its `Predict`.
 #[derive(Clone, Debug)]

@@ -2,8 +2,8 @@
 
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2};
 
-use crate::Multiclass;
 use crate::linalg::scalar::Scalar;
+use crate::multiclass::Multiclass;
 
 /// Which class the decision values speak for: for one-vs-one those of all pairs (0, 1), (0, 2), …, (1, 2), … of the
 /// classes' positions, the first positive; for one-vs-rest one a class.
@@ -58,17 +58,17 @@ impl Voting {
     }
 }
 
-/// The votes of many rows, taken problem by problem.
+/// Counter of the votes of many rows, problem by problem.
 #[derive(Clone, Debug)]
-pub(crate) enum Ballot {
+pub(crate) enum VoteCounter {
     /// One-vs-one: votes, n_classes × n_rows.
     Counts(Array2<u16>),
     /// One-vs-rest: of the problems so far the largest value, and whose it is; one a row.
     Best(Vec<f64>, Vec<usize>),
 }
 
-impl Ballot {
-    /// No votes yet.
+impl VoteCounter {
+    /// Creates a counter without votes.
     pub fn new(n_classes: usize, n_rows: usize, multiclass: Multiclass) -> Self {
         match multiclass {
             Multiclass::OneVsRest => Self::Best(vec![f64::NEG_INFINITY; n_rows], vec![0; n_rows]),
@@ -116,15 +116,15 @@ impl Ballot {
         (n_classes, multiclass): (usize, Multiclass),
         takes_part: impl Fn(usize) -> bool,
     ) -> Vec<usize> {
-        let mut ballot = Self::new(n_classes, sums.ncols(), multiclass);
+        let mut counter = Self::new(n_classes, sums.ncols(), multiclass);
         let problems = multiclass.problems(n_classes).into_iter();
         for (((positive, negative), sums), &rho) in problems.zip(sums.rows()).zip(rho) {
             if takes_part(positive) && negative.is_none_or(&takes_part) {
                 let sums = sums.to_slice().expect("sums are stored problem by problem");
-                ballot.take((positive, negative), sums, rho);
+                counter.take((positive, negative), sums, rho);
             }
         }
-        ballot.winners()
+        counter.winners()
     }
 
     /// The position of the class that each row's votes are for; of equals the first.
@@ -189,13 +189,13 @@ mod tests {
         for multiclass in [Multiclass::OneVsOne, Multiclass::OneVsRest] {
             let problems = multiclass.problems(5);
             let values = Array2::from_shape_fn((70, problems.len()), |(i, j)| value(11 * i + j));
-            let mut ballot = Ballot::new(5, 70, multiclass);
+            let mut counter = VoteCounter::new(5, 70, multiclass);
             for (&problem, column) in problems.iter().zip(values.columns()) {
-                ballot.take(problem, &column.mapv(|v| v + 0.3).to_vec(), 0.3);
+                counter.take(problem, &column.mapv(|v| v + 0.3).to_vec(), 0.3);
             }
             let classes = [10, 11, 12, 13, 14];
             let expected = Voting::new(&classes, multiclass).labels(values.view());
-            let winners: Vec<usize> = ballot.winners().iter().map(|at| classes[*at]).collect();
+            let winners: Vec<usize> = counter.winners().iter().map(|at| classes[*at]).collect();
             assert_eq!(winners, expected.to_vec(), "{multiclass:?}");
         }
     }

@@ -9,20 +9,14 @@ use std::ops::Range;
 
 use ndarray::{Array2, Axis};
 
-use crate::gram::between::pairs;
 use crate::gram::sorted::Sorted;
+use crate::gram::sorted::pairs;
 use crate::linalg::few_dimensions::spanned;
-use crate::linalg::scalar::Scalar;
+use crate::screening::block_sizes::{CLASSES_AT_ONCE, FEW_DIMENSIONS, OTHERS_AT_ONCE};
 use crate::screening::margin_rows::{Ranked, Sides, nearest};
 use crate::screening::near_margin::{Classes, NearMargin};
+use crate::smo::SolverScalar;
 
-/// Dimensions in which the first rows are looked for. More find them better and cost more.
-pub(crate) const FEW_DIMENSIONS: usize = 64;
-/// Classes whose pairs with [`OTHERS_AT_ONCE`] others are solved together. Fewer leave the tiles of their products unfilled,
-/// more do not stay in the cache.
-pub(crate) const CLASSES_AT_ONCE: usize = 8;
-/// See [`CLASSES_AT_ONCE`]: so few that their rows near margins stay in the second cache while the pairs of one class pass.
-pub(crate) const OTHERS_AT_ONCE: usize = 4;
 /// Rows of each class that a pair starts with in the few dimensions.
 const ROWS_ALONG_MEANS: usize = 16;
 
@@ -33,7 +27,7 @@ pub(crate) struct PairsNearMargin<'a, T> {
     along_means: Array2<T>,
 }
 
-impl<'a, T: Scalar> PairsNearMargin<'a, T> {
+impl<'a, T: SolverScalar> PairsNearMargin<'a, T> {
     /// Of these rows, and of the same in [`few_dimensions`].
     pub fn new(sorted: &'a Sorted<T>, few: &'a Sorted<T>) -> Self {
         Self {
@@ -92,13 +86,13 @@ fn to_and_fro(own: Range<usize>, others: Range<usize>) -> Vec<(usize, usize)> {
 }
 
 /// The rows in the few dimensions that some of them span.
-pub(crate) fn few_dimensions<T: Scalar>(sorted: &Sorted<T>) -> Sorted<T> {
+pub(crate) fn few_dimensions<T: SolverScalar>(sorted: &Sorted<T>) -> Sorted<T> {
     let directions = spanned(sorted.points().all().values, FEW_DIMENSIONS);
     sorted.along(directions.view())
 }
 
 /// Products of all rows with the means of the classes: n_rows × n_classes.
-fn along_means<T: Scalar>(sorted: &Sorted<T>) -> Array2<T> {
+fn along_means<T: SolverScalar>(sorted: &Sorted<T>) -> Array2<T> {
     let mut means = Array2::zeros((sorted.ranges().len(), sorted.centre().len()));
     for (range, mut mean) in sorted.ranges().iter().zip(means.rows_mut()) {
         let n = T::of(range.len() as f64);

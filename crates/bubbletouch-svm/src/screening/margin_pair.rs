@@ -2,18 +2,21 @@
 
 use ndarray::Array2;
 
-use crate::active_set::pair_search::{PairGoal, reach_by_equations};
+use super::pair_search::{PairGoal, reach_by_equations};
 use crate::dual::DualSolution;
+use crate::gram::matrix::gather;
+use crate::gram::part::{Part, Workspace};
 use crate::linalg::row_products::{Rows, multiply};
-use crate::linalg::scalar::Scalar;
 use crate::linalg::transposed::write_columns;
 use crate::screening::margin_rows::{Ranked, RankedRow, SIGNS, Sides, find_below, smallest};
-use crate::smo::{Part, Reached, Room, extremes, gather};
+use crate::smo::SolverScalar;
+use crate::smo::reached::Reached;
+use crate::smo::variables::extremes;
 
 /// Rows that join in a round, at least, while rows violate.
-const FEWEST_JOINING: usize = 24;
+const MIN_JOINING: usize = 24;
 /// The share of a pair's rows from which on all take part.
-const MOST_SHARE: f64 = 0.6;
+const MAX_SHARE: f64 = 0.6;
 
 /// Products of a class's rows with each other.
 pub(crate) struct Within<T> {
@@ -21,7 +24,7 @@ pub(crate) struct Within<T> {
     diagonal: Vec<T>,
 }
 
-impl<T: Scalar> Within<T> {
+impl<T: SolverScalar> Within<T> {
     /// Of n × n products, stored row by row.
     pub fn new(products: Array2<T>) -> Self {
         Self {
@@ -41,7 +44,7 @@ impl<T: Scalar> Within<T> {
 }
 
 /// What pairs need in turn, so that its memory is asked for once.
-pub(crate) struct Scratch<'r, T> {
+pub(crate) struct PairWorkspace<'r, T> {
     /// The rows of both classes that take part.
     rows: [Vec<&'r [T]>; 2],
     /// New products across.
@@ -52,7 +55,7 @@ pub(crate) struct Scratch<'r, T> {
     below: Vec<usize>,
 }
 
-impl<T> Default for Scratch<'_, T> {
+impl<T> Default for PairWorkspace<'_, T> {
     fn default() -> Self {
         Self {
             rows: [Vec::new(), Vec::new()],
@@ -83,7 +86,7 @@ pub(crate) struct MarginPair<T> {
     is_solved: bool,
 }
 
-impl<T: Scalar> MarginPair<T> {
+impl<T: SolverScalar> MarginPair<T> {
     /// Two classes of so many rows, of which none takes part.
     pub fn new(classes: [usize; 2], sizes: [usize; 2]) -> Self {
         Self {
@@ -111,11 +114,11 @@ impl<T: Scalar> MarginPair<T> {
         joining: &Sides,
         products: [&[T]; 2],
         (all, starts): (Rows<'r, T>, [usize; 2]),
-        scratch: &mut Scratch<'r, T>,
+        scratch: &mut PairWorkspace<'r, T>,
     ) {
         let before = self.rows.each_ref().map(Vec::len);
         self.take_in(joining, products);
-        let Scratch { rows, across, .. } = scratch;
+        let PairWorkspace { rows, across, .. } = scratch;
         for (side, to) in rows.iter_mut().enumerate() {
             to.clear();
             to.extend(
@@ -167,7 +170,7 @@ impl<T: Scalar> MarginPair<T> {
 
     /// Solves on the rows that take part, from the last solution. `within` holds the products within each class; rows of the
     /// Gram matrix are written into the memory of the last one.
-    pub fn solve(&mut self, within: &[Within<T>], room: &mut Room<T>, goal: PairGoal) {
+    pub fn solve(&mut self, within: &[Within<T>], workspace: &mut Workspace<T>, goal: PairGoal) {
         let (beta, f) = (std::mem::take(&mut self.beta), std::mem::take(&mut self.f));
         let [first, second] = &self.rows;
         let within = self.classes.map(|class| &within[class]);
@@ -186,7 +189,7 @@ impl<T: Scalar> MarginPair<T> {
                 gather(right, within[1].row(second[i]), second);
             }
         };
-        let mut gram = Part::new(diagonal(0).chain(diagonal(1)), write, room);
+        let mut gram = Part::new(diagonal(0).chain(diagonal(1)), write, workspace);
         let labels = self.labels();
         let given = (&labels[..], (beta, f), self.c);
         let (variables, reached) = reach_by_equations(&mut gram, given, goal);
@@ -218,7 +221,7 @@ impl<T: Scalar> MarginPair<T> {
         &self,
         products: [&[T]; 2],
         goal: PairGoal,
-        scratch: &mut Scratch<T>,
+        scratch: &mut PairWorkspace<T>,
     ) -> Option<Sides> {
         let (highest, lowest) = extremes(&self.beta, &self.labels(), &self.f, goal.c);
         let middle = (highest + lowest) / 2.0;
@@ -240,9 +243,9 @@ impl<T: Scalar> MarginPair<T> {
         if violating.is_empty() {
             return None;
         }
-        let n_joining = violating.len().min(FEWEST_JOINING.max(violating.len() / 2));
+        let n_joining = violating.len().min(MIN_JOINING.max(violating.len() / 2));
         let n_all = (products[0].len() + products[1].len()) as f64;
-        if (self.beta.len() + n_joining) as f64 > MOST_SHARE * n_all {
+        if (self.beta.len() + n_joining) as f64 > MAX_SHARE * n_all {
             return Some([0, 1].map(|side| self.outside(side).collect()));
         }
         let mut joining = [0, 1].map(|_| Vec::with_capacity(n_joining));

@@ -1,6 +1,8 @@
 //! One-vs-one problems solved on the rows near their margins.
 
+pub(crate) mod block_sizes;
 pub(crate) mod first_rows;
 pub(crate) mod margin_pair;
 pub(crate) mod margin_rows;
 pub(crate) mod near_margin;
+pub(crate) mod pair_search;

@@ -10,16 +10,17 @@
 
 use std::ops::Range;
 
-use crate::active_set::pair_search::PairGoal;
+use super::pair_search::PairGoal;
 use crate::dual::DualSolution;
+use crate::gram::matrix::Dense;
+use crate::gram::part::Workspace;
 use crate::gram::sorted::Sorted;
 use crate::linalg::products::own_products;
 use crate::linalg::row_products::multiply;
-use crate::linalg::scalar::Scalar;
-use crate::screening::first_rows::{CLASSES_AT_ONCE, FEW_DIMENSIONS, OTHERS_AT_ONCE};
-use crate::screening::margin_pair::{MarginPair, Scratch, Within};
+use crate::screening::block_sizes::{CLASSES_AT_ONCE, FEW_DIMENSIONS, OTHERS_AT_ONCE};
+use crate::screening::margin_pair::{MarginPair, PairWorkspace, Within};
 use crate::screening::margin_rows::{Sides, nearest};
-use crate::smo::{Dense, Room};
+use crate::smo::SolverScalar;
 
 /// Rounds in the few dimensions.
 const FEW_ROUNDS: usize = 2;
@@ -37,7 +38,7 @@ pub(crate) struct Classes<'a, T> {
     within: Vec<Within<T>>,
 }
 
-impl<'a, T: Scalar> Classes<'a, T> {
+impl<'a, T: SolverScalar> Classes<'a, T> {
     /// Of these rows.
     pub fn new(sorted: &'a Sorted<T>) -> Self {
         let within = |range: &Range<usize>| {
@@ -65,8 +66,8 @@ impl<'a, T: Scalar> Classes<'a, T> {
 pub(crate) struct NearMargin<'c, 'a, T> {
     classes: &'c Classes<'a, T>,
     pairs: Vec<MarginPair<T>>,
-    room: Room<T>,
-    scratch: Scratch<'c, T>,
+    workspace: Workspace<T>,
+    scratch: PairWorkspace<'c, T>,
     round: Round<T>,
 }
 
@@ -92,15 +93,15 @@ impl<T> Round<T> {
     }
 }
 
-impl<'c, 'a, T: Scalar> NearMargin<'c, 'a, T> {
+impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
     /// These pairs of classes, not solved yet, on these rows.
     pub fn new(classes: &'c Classes<'a, T>, pairs: &[(usize, usize)], rows: &[Sides]) -> Self {
         let pair = |&(a, b): &(usize, usize)| MarginPair::new([a, b], classes.sizes([a, b]));
         let mut all = Self {
             classes,
             pairs: pairs.iter().map(pair).collect(),
-            room: Room::new(),
-            scratch: Scratch::default(),
+            workspace: Workspace::new(),
+            scratch: PairWorkspace::default(),
             round: Round::default(),
         };
         for (pair, rows) in rows.iter().enumerate() {
@@ -132,7 +133,7 @@ impl<'c, 'a, T: Scalar> NearMargin<'c, 'a, T> {
             tolerance,
             most_iterations: None,
         };
-        self.settle(goal, usize::MAX, |pair, (normal, _), _| {
+        self.solve_rounds(goal, usize::MAX, |pair, (normal, _), _| {
             (pair.solution(), normal.to_vec())
         })
     }
@@ -144,18 +145,18 @@ impl<'c, 'a, T: Scalar> NearMargin<'c, 'a, T> {
             tolerance: ROUGH_TOLERANCE,
             most_iterations: Some(ROUGH_ITERATIONS),
         };
-        self.settle(goal, FEW_ROUNDS, |_, (_, products), scratch| {
+        self.solve_rounds(goal, FEW_ROUNDS, |_, (_, products), scratch| {
             nearest(products, ROWS_NEAR_MARGIN, &mut scratch.ranked)
         })
     }
 
     /// Solves all pairs in rounds, until no row violates the optimality conditions or the rounds are over; what is made of
     /// each pair after its last round.
-    fn settle<R>(
+    fn solve_rounds<R>(
         &mut self,
         goal: PairGoal,
         most_rounds: usize,
-        mut settled: impl FnMut(&mut MarginPair<T>, Found<T>, &mut Scratch<'c, T>) -> R,
+        mut settled: impl FnMut(&mut MarginPair<T>, Found<T>, &mut PairWorkspace<'c, T>) -> R,
     ) -> Vec<R> {
         let mut results = Vec::new();
         results.resize_with(self.pairs.len(), || None);
@@ -194,7 +195,7 @@ impl<'c, 'a, T: Scalar> NearMargin<'c, 'a, T> {
         round.normals.clear();
         let mut sums = vec![0.0; n_features];
         for &pair in pairs {
-            self.pairs[pair].solve(&self.classes.within, &mut self.room, goal);
+            self.pairs[pair].solve(&self.classes.within, &mut self.workspace, goal);
             sums.fill(0.0);
             self.add_normal(pair, &mut sums);
             round.normals.extend(sums.iter().map(|&sum| T::of(sum)));

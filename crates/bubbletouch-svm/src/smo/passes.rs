@@ -4,15 +4,8 @@
 //! Every slice is a whole number of [`LANES`] long ([`padded`]). Each lane keeps its own extreme; where the extreme of all is
 //! gets looked up afterwards, the lowest index of equals, so results do not depend on the processor.
 
+use crate::linalg::lanes::LANES;
 use crate::linalg::scalar::Scalar;
-
-/// Values handled side by side: two vector registers of eight f32, four of four f64.
-pub(super) const LANES: usize = 16;
-
-/// The smallest whole number of lanes that holds n values.
-pub(super) fn padded(n: usize) -> usize {
-    n.next_multiple_of(LANES)
-}
 
 /// The largest of `a + b`. A lane keeps its own; they meet at the end.
 #[inline(always)]

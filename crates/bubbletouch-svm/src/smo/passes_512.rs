@@ -7,10 +7,11 @@ use std::arch::x86_64::{
     _mm512_set1_epi32, _mm512_set1_ps, _mm512_setr_epi32, _mm512_setzero_ps, _mm512_sub_ps,
 };
 
-use super::gram::Gram;
 use super::iterations::{Search, Stop, run_with};
-use super::passes::{Down, LANES};
+use super::passes::Down;
 use super::variables::Variables;
+use crate::gram::matrix::Gram;
+use crate::linalg::lanes::LANES;
 use crate::linalg::vector_registers::{load, store};
 
 /// See [`run_plain`](super::iterations::run_plain). The passes are closures: functions would be called, which takes as long as a

@@ -1,16 +1,16 @@
 //! Where the search for a solution may start.
 
-use super::Smo;
-use super::gram::Gram;
-use super::row_sums::add_row;
+use super::problem::Smo;
+use super::solver_scalar::SolverScalar;
 use super::variables::linear_and_quadratic;
-use crate::linalg::scalar::Scalar;
+use crate::gram::matrix::Gram;
+use crate::gram::row_sums::add_row;
 
 impl<G> Smo<'_, G> {
     /// The same problem, not solved yet, to start from all multipliers at C, as the solution for a small one has them: all
     /// but the surplus of the larger class, where these rows are farthest on their side. From nothing where the objective
     /// is highest before C when all multipliers grow together. `sums` are `K y`.
-    pub fn at_bounds<T: Scalar>(mut self, c: f64, sums: &[f64]) -> Self
+    pub fn at_bounds<T: SolverScalar>(mut self, c: f64, sums: &[f64]) -> Self
     where
         G: Gram<T>,
     {
@@ -74,7 +74,7 @@ impl<G> Smo<'_, G> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::smo::Dense;
+    use crate::gram::matrix::Dense;
     use ndarray::Array2;
 
     /// exp(−γ d²) of points on a line that the classes share; one class is larger by five.
@@ -99,7 +99,7 @@ mod tests {
         assert_eq!(smo.beta.iter().filter(|beta| **beta == 0.0).count(), 5);
         assert!(smo.beta.iter().sum::<f64>().abs() < 1e-12);
         let (beta, f) = (smo.beta.clone(), smo.f.clone());
-        let mut resumed = Smo::going_on(&mut gram, &y, (beta, Vec::new()), 0.1);
+        let mut resumed = Smo::from_start(&mut gram, &y, (beta, Vec::new()), 0.1);
         resumed.f = vec![0.0; f.len()];
         resumed.refresh();
         for (f, expected) in f.iter().zip(&resumed.f) {

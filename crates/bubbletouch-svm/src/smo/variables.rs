@@ -1,6 +1,6 @@
 //! The variables of the dual problem that the solver may move, and one step of two of them.
 
-use super::passes::padded;
+use crate::linalg::lanes::padded;
 use crate::linalg::scalar::Scalar;
 
 /// Variables looked at side by side.

@@ -1,4 +1,4 @@
-//! A start for one fold from the solution of another.
+//! Alpha seeding: a start for one fold from the solution of another.
 //!
 //! Two folds of k share all but 2/k of their rows. The multipliers of rows that one fold trains on and the other does not go
 //! to the most similar rows that it gains [DeCoste, Wagstaff 2000; Wen et al. 2017], so that `Σβ = 0` and the bounds hold as
@@ -8,14 +8,14 @@ use std::ops::Range;
 
 use crate::linalg::scalar::Scalar;
 
-/// The rows of a problem that one fold trains on and another does not.
-pub(crate) struct Exchange {
-    /// For each class those that are lost and those that are gained, ascending.
+/// Rows of a problem that one fold trains on and another does not.
+pub(crate) struct AlphaSeeding {
+    /// Removed and added rows of each class, ascending.
     sides: [(Vec<usize>, Vec<usize>); 2],
 }
 
-impl Exchange {
-    /// From a fold to another, by the labels of all rows, which are 0 where a fold holds one out.
+impl AlphaSeeding {
+    /// Creates the seeding from one fold to another, from the labels of all rows; the label of a row that a fold holds out is 0.
     pub fn new((before, labels): (&[f64], &[f64]), positive: &Range<usize>) -> Self {
         let mut sides = [(); 2].map(|()| (Vec::new(), Vec::new()));
         for (at, (before, label)) in before.iter().zip(labels).enumerate() {
@@ -29,9 +29,9 @@ impl Exchange {
         Self { sides }
     }
 
-    /// β of the one fold for the other; `None` where a multiplier finds no row of its class that has none. `similar` gives the
-    /// kernel values of a row.
-    pub fn moved<'k, T: Scalar>(
+    /// Transfers β to the next fold. Returns `None` if a removed row's multiplier cannot be redistributed: all added rows of its class have one.
+    /// `similar` returns the kernel values of a row.
+    pub fn transfer<'k, T: Scalar>(
         &self,
         beta: &[f64],
         similar: impl Fn(usize) -> &'k [T],
@@ -71,8 +71,8 @@ mod tests {
             (0..8).map(label).collect::<Vec<f64>>()
         };
         let row = |at: usize| &kernel.as_slice().unwrap()[at * 8..][..8];
-        let exchange = Exchange::new((&labels(was), &labels(is)), &(0..4));
-        exchange.moved(beta, row)
+        let seeding = AlphaSeeding::new((&labels(was), &labels(is)), &(0..4));
+        seeding.transfer(beta, row)
     }
 
     #[test]

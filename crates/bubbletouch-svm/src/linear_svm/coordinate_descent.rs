@@ -8,7 +8,7 @@
 use ndarray::{Array2, ArrayView2, s};
 use rand::Rng;
 
-use crate::linear_svm::{LinearSvmParams, Solved};
+use crate::linear_svm::params::LinearSvmParams;
 use crate::{Error, Result};
 
 /// Lanes of the inner products: the rows are padded to a multiple of it. Fewer would leave vector units idle, more
@@ -17,6 +17,15 @@ const LANES: usize = 8;
 
 /// A change of a multiplier, or a gradient, smaller than this is rounding.
 pub(crate) const ROUNDING: f64 = 1e-12;
+
+/// The multipliers of a solved problem, and how the solver ended.
+#[derive(Clone, Debug)]
+pub(crate) struct Solved {
+    /// Signed multipliers: `w = Σ a_i x_i`.
+    pub multipliers: Vec<f64>,
+    pub n_passes: usize,
+    pub is_capped: bool,
+}
 
 /// Training rows with the bias feature appended and padded by zeros: contiguous, in f64.
 #[derive(Clone, Debug)]

@@ -1,21 +1,21 @@
-//! A row less a centre.
+//! Rows minus a centre.
 
 use crate::linalg::scalar::Scalar;
 
 /// Values looked at side by side.
 const LANES: usize = 8;
 
-/// What there is to tell of a row x less the centre c.
-pub(crate) struct Moved {
+/// Norm and projection of a centred row x − c.
+pub(crate) struct CenteredRow {
     /// `|x − c|²`.
     pub norm: f64,
     /// `(x − c)·c`. Far from the origin, `x·c − c·c` would be two large numbers less each other.
     pub along_centre: f64,
 }
 
-/// A row less the centre. Over slices: a walk over ndarray's views is not always made vector instructions of.
+/// Writes a row minus the centre. On slices: the compiler does not always use vector instructions for views of ndarray.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
-pub(crate) fn move_row<T: Scalar>(to: &mut [T], row: &[f64], centre: &[f64]) -> Moved {
+pub(crate) fn center_row<T: Scalar>(to: &mut [T], row: &[f64], centre: &[f64]) -> CenteredRow {
     let (to, last_to) = to.as_chunks_mut::<LANES>();
     let (row, last_row) = row.as_chunks::<LANES>();
     let (centre, last_centre) = centre.as_chunks::<LANES>();
@@ -42,7 +42,7 @@ pub(crate) fn move_row<T: Scalar>(to: &mut [T], row: &[f64], centre: &[f64]) -> 
         norm += moved * moved;
         along_centre += moved * last_centre[at];
     }
-    Moved { norm, along_centre }
+    CenteredRow { norm, along_centre }
 }
 
 #[cfg(test)]
@@ -55,7 +55,7 @@ mod tests {
             let row: Vec<f64> = (0..n).map(|i| (f64::from(i) * 1.7).sin()).collect();
             let centre: Vec<f64> = (0..n).map(|i| (f64::from(i) * 0.3).cos()).collect();
             let mut to = vec![f64::NAN; row.len()];
-            let told = move_row(&mut to, &row, &centre);
+            let told = center_row(&mut to, &row, &centre);
             let expected: Vec<f64> = row.iter().zip(&centre).map(|(x, c)| x - c).collect();
             assert_eq!(to, expected);
             let norm: f64 = expected.iter().map(|x| x * x).sum();

@@ -3,15 +3,15 @@
 use ndarray::{Array2, Axis};
 
 use super::curvatures::InverseCurvatures;
-use super::gram::{Dense, Gram};
-use super::passes::padded;
-use crate::gram::points::Points;
+use super::matrix::{Dense, Gram};
+use crate::gram::centered_rows::CenteredRows;
 use crate::kernel::KernelFunction;
+use crate::linalg::lanes::padded;
 use crate::linalg::scalar::Scalar;
 
 /// A Gram matrix too large to hold: rows are computed when asked for, and the latest kept.
 pub(crate) struct Cached<'a, T> {
-    points: &'a Points<T>,
+    points: &'a CenteredRows<T>,
     kernel: KernelFunction,
     stride: usize,
     diagonal: Vec<T>,
@@ -36,7 +36,7 @@ const BLOCK: usize = 256;
 
 impl<'a, T: Scalar> Cached<'a, T> {
     /// K of these points; kept rows take at most `limit` bytes, but two are always kept.
-    pub fn new(points: &'a Points<T>, kernel: KernelFunction, limit: usize) -> Self {
+    pub fn new(points: &'a CenteredRows<T>, kernel: KernelFunction, limit: usize) -> Self {
         let n = points.len();
         let mut diagonal = points.all().diagonal(&kernel);
         diagonal.resize(padded(n), T::zero());

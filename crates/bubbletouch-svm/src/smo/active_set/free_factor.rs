@@ -5,9 +5,9 @@
 //! depend on each other to within the rounding of the kernel values; whoever steps in turns is not misled by it, since f says
 //! what is left.
 
+use crate::gram::matrix::Gram;
 use crate::linalg::factors::{LANES, Piece, add_product, eliminate, substitute, substitute_back};
 use crate::linalg::scalar::Scalar;
-use crate::smo::Gram;
 
 /// δ as a share of the largest kernel value of a row with itself: above the rounding of kernel values in f32.
 const RIDGE: f64 = 1e-5;
@@ -159,7 +159,7 @@ impl FreeFactor {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::smo::Dense;
+    use crate::gram::matrix::Dense;
     use ndarray::Array2;
 
     const N: usize = 120;

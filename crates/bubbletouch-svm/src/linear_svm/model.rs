@@ -1,45 +1,14 @@
-//! Linear soft-margin SVMs. By default [`svm`](crate) trains them, on a kernel matrix, as it does other kernels.
-//!
-//! With `solver = "coordinate_descent"` and `multiclass = "one_vs_rest"` this file trains them without a kernel matrix: memory n × m, whatever n.
-//! The bias is the weight of an added feature of constant 1, and so is regularised with the others, as in LIBLINEAR
-//! (`intercept_scaling = 1`): centre the features, or expect a bias closer to 0 than the kernel SVM's.
-//!
-//! One-vs-rest: for each class `½|w|² + C Σ_i max(0, 1 − y_i w·x_i)`, by dual coordinate descent.
+//! Linear SVMs trained by coordinate descent, one class against the rest.
 
 use ndarray::{Array1, Array2, ArrayView2, Axis, Zip, s};
 
+use crate::Result;
 use crate::classifiers::class_model::ClassModel;
-use crate::coordinate_descent::{self, Rows};
 use crate::dataset::{Dataset, checked_classes, positions};
 use crate::linear_model::LinearModel;
+use crate::linear_svm::coordinate_descent::{self, Rows};
+use crate::linear_svm::params::LinearSvmParams;
 use crate::streams::Streams;
-use crate::{Error, Result};
-
-/// Passes over the rows after which a solver gives up: scikit-learn's default for LinearSVC.
-pub const MAX_PASSES: usize = 1000;
-
-/// What a linear SVM is trained with.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LinearSvmParams {
-    /// C > 0: what a unit of margin violation costs.
-    pub c: f64,
-    /// The largest violation of the optimality conditions (spread of projected gradients) when the solver stops, in
-    /// units of the margin; above 0. scikit-learn's default for LinearSVC is 1e-4.
-    pub tolerance: f64,
-    /// Passes over the rows after which the solver gives up and says so; at least 1.
-    pub max_passes: usize,
-}
-
-impl Default for LinearSvmParams {
-    /// C = 1, tolerance 1e-3, [`MAX_PASSES`].
-    fn default() -> Self {
-        Self {
-            c: 1.0,
-            tolerance: 1e-3,
-            max_passes: MAX_PASSES,
-        }
-    }
-}
 
 /// How a problem's solver ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,15 +29,6 @@ pub struct LinearSvm {
     classes: Vec<usize>,
     model: LinearModel,
     convergence: Vec<Convergence>,
-}
-
-/// The multipliers of a solved problem, and how the solver ended.
-#[derive(Clone, Debug)]
-pub(crate) struct Solved {
-    /// Signed multipliers: `w = Σ a_i x_i`.
-    pub multipliers: Vec<f64>,
-    pub n_passes: usize,
-    pub is_capped: bool,
 }
 
 impl LinearSvmParams {
@@ -97,19 +57,6 @@ impl LinearSvmParams {
             ends.push((solved.n_passes, solved.is_capped));
         }
         Ok(self.against_rest(data, classes, &label, multipliers, &ends))
-    }
-
-    fn check(&self) -> Result<()> {
-        for (name, value) in [("C", self.c), ("tolerance", self.tolerance)] {
-            if !(value > 0.0 && value.is_finite()) {
-                let allowed = "a finite number above 0 is allowed";
-                return Err(Error::input(name, value, allowed));
-            }
-        }
-        if self.max_passes == 0 {
-            return Err(Error::input("passes", 0, "at least 1 is allowed"));
-        }
-        Ok(())
     }
 
     /// Weights and duality gaps of the binary problems, from their multipliers (n_classes × n_rows).

@@ -9,7 +9,7 @@ use crate::linalg::scalar::Scalar;
 const SMALLEST_CURVATURE: f64 = 1e-12;
 
 /// Rows up to which all are kept: 4 MB of f32.
-const MOST_KEPT: usize = 1000;
+const MAX_KEPT: usize = 1000;
 
 /// The smallest curvature that counts, given the diagonal.
 fn smallest<T: Scalar>(diagonal: &[T]) -> T {
@@ -19,7 +19,7 @@ fn smallest<T: Scalar>(diagonal: &[T]) -> T {
 
 /// Rows of inverse curvatures, kept from when each is first asked for where a matrix has few rows.
 #[derive(Clone, Debug)]
-pub(super) struct InverseCurvatures<T> {
+pub(crate) struct InverseCurvatures<T> {
     values: Vec<T>,
     /// Which rows are kept; empty where none is, and the values are those of the row asked for last.
     is_here: Vec<bool>,
@@ -37,7 +37,7 @@ impl<T: Scalar> InverseCurvatures<T> {
 
     /// Of another matrix of n rows, with this diagonal, padded like a row; in the memory of the last.
     pub fn renew(&mut self, n: usize, diagonal: &[T]) {
-        let n_kept = if n <= MOST_KEPT { n } else { 0 };
+        let n_kept = if n <= MAX_KEPT { n } else { 0 };
         self.is_here.clear();
         self.is_here.resize(n_kept, false);
         let n_values = n_kept.max(1) * diagonal.len();
@@ -92,7 +92,7 @@ mod tests {
     fn inverses_are_those_of_the_definition_whether_kept_or_not_and_never_infinite() {
         let row = |i: usize| (0..16).map(move |j| ((i * 5 + j * 3) as f64 * 1.7).sin());
         let diagonal: Vec<f64> = (0..16).map(|i| 2.0 + f64::from(i)).collect();
-        for n in [16, MOST_KEPT + 1] {
+        for n in [16, MAX_KEPT + 1] {
             let mut inverses = InverseCurvatures::new();
             inverses.renew(n, &diagonal);
             for i in [3, 0, 3, 15, 3] {

@@ -5,7 +5,7 @@ use std::ops::Range;
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, ArrayViewMut2, Axis, s};
 
 use crate::kernel::KernelFunction;
-use crate::linalg::moved_row::{Moved, move_row};
+use crate::linalg::centered_row::{CenteredRow, center_row};
 use crate::linalg::products::multiply;
 use crate::linalg::row_products::Rows;
 use crate::linalg::scalar::Scalar;
@@ -16,14 +16,14 @@ use crate::linalg::scalar::Scalar;
 /// and of a linear decision function only ρ, since the coefficients sum to zero. About the mean, products are small and
 /// keep their digits.
 #[derive(Clone, Debug)]
-pub(crate) struct Points<T> {
+pub(crate) struct CenteredRows<T> {
     /// n × m.
     values: Array2<T>,
     /// `|x|²` per row.
     norms: Array1<T>,
 }
 
-impl<T: Scalar> Points<T> {
+impl<T: Scalar> CenteredRows<T> {
     /// Features (n × m) less the centre (m).
     pub fn new(features: ArrayView2<f64>, centre: ArrayView1<f64>) -> Self {
         Self::of_rows(features.rows().into_iter(), centre)
@@ -41,7 +41,7 @@ impl<T: Scalar> Points<T> {
     pub fn of_rows_and<'a>(
         rows: impl ExactSizeIterator<Item = ArrayView1<'a, f64>>,
         centre: ArrayView1<f64>,
-        mut told: impl FnMut(Moved),
+        mut told: impl FnMut(CenteredRow),
     ) -> Self {
         let n_rows = rows.len();
         let centre = centre.to_vec();
@@ -53,8 +53,8 @@ impl<T: Scalar> Points<T> {
             values.resize(start + centre.len(), T::zero());
             let own = &mut values[start..];
             let moved = match row.as_slice() {
-                Some(row) => move_row(own, row, &centre),
-                None => move_row(own, &row.to_vec(), &centre),
+                Some(row) => center_row(own, row, &centre),
+                None => center_row(own, &row.to_vec(), &centre),
             };
             // Of what is kept, and rounded like products: distances come from both.
             let own = ArrayView1::from(&*own);
@@ -145,7 +145,7 @@ impl<T: Scalar> Points<T> {
     }
 }
 
-/// Some [`Points`].
+/// Some [`CenteredRows`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PointsView<'a, T> {
     /// n × m.
@@ -243,14 +243,14 @@ mod tests {
 
     fn matrix<T: Scalar>(a: &Array2<f64>, b: &Array2<f64>, kernel: &KernelFunction) -> Array2<T> {
         let origin = Array1::zeros(3);
-        let [a, b] = [a, b].map(|rows| Points::<T>::new(rows.view(), origin.view()));
+        let [a, b] = [a, b].map(|rows| CenteredRows::<T>::new(rows.view(), origin.view()));
         a.all().kernel(b.all(), kernel)
     }
 
     #[test]
     fn rows_that_are_kept_are_those_that_are_selected() {
         let rows = Array2::from_shape_fn((6, 3), |(i, j)| (i * 3 + j) as f64);
-        let points = Points::<f64>::new(rows.view(), Array1::zeros(3).view());
+        let points = CenteredRows::<f64>::new(rows.view(), Array1::zeros(3).view());
         for some in [&[0, 1, 2, 3, 4, 5][..], &[1, 2, 5], &[0, 4], &[]] {
             let (kept, selected) = (points.clone().keep(some), points.select(some));
             assert_eq!(kept.values, selected.values);
@@ -262,7 +262,7 @@ mod tests {
     fn the_centre_changes_no_distance() {
         let rows = array![[1e6, 1.0], [1e6 + 1.0, 3.0]];
         let centre = array![1e6, 2.0];
-        let points = Points::<f32>::new(rows.view(), centre.view());
+        let points = CenteredRows::<f32>::new(rows.view(), centre.view());
         let kernel = KernelFunction::Rbf { gamma: 0.5 };
         let values = points.all().kernel(points.all(), &kernel);
         assert!((f64::from(values[[0, 1]]) - (-2.5_f64).exp()).abs() < 1e-7);

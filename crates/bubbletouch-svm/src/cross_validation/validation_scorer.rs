@@ -1,4 +1,4 @@
-//! Which validation rows of a fold are recognised.
+//! Scores of a fold: which of its validation rows are classified correctly.
 //!
 //! What its own class's problems say of a row is known as they are solved. A row that its class wins in each of them is recognised,
 //! whatever the others say: every other class has lost one. The rest are put to the vote of all problems, by the matrix products of
@@ -8,18 +8,18 @@ use std::ops::Range;
 
 use ndarray::{Array2, ArrayView2, Axis};
 
-use crate::Multiclass;
 use crate::cross_validation::fold_path::FoldSolution;
 use crate::gram::product_kernel::ProductKernel;
 use crate::linalg::scalar::Scalar;
+use crate::multiclass::Multiclass;
 use crate::predict::class_weights::{ClassWeights, weighted_sums};
-use crate::predict::voting::Ballot;
+use crate::predict::voting::VoteCounter;
 
 /// Rows put to the vote at once: a bound on the memory of their kernel values.
 const ROWS_AT_ONCE: usize = 512;
 
-/// The validation rows of a fold, and its problems as they are solved.
-pub(crate) struct Judgement<T> {
+/// Scorer of the validation rows of a fold; it takes the problems as they are solved.
+pub(crate) struct ValidationScorer<T> {
     multiclass: Multiclass,
     /// All problems, by the positions of their classes, in the order of [`Multiclass::problems`].
     problems: Vec<(usize, Option<usize>)>,
@@ -38,7 +38,7 @@ pub(crate) struct Judgement<T> {
     n_capped: usize,
 }
 
-impl<T: Scalar> Judgement<T> {
+impl<T: Scalar> ValidationScorer<T> {
     /// Of these validation rows, each with the position of its class, and whether each class is trained on; along so many C. The
     /// rows of all classes lie in these ranges.
     pub fn new(
@@ -141,7 +141,7 @@ impl<T: Scalar> Judgement<T> {
         let sums = weighted_sums(&self.weights[number], values.view(), self.problems.len());
         let between = (self.is_class.len(), self.multiclass);
         let is_class = |class: usize| self.is_class[class];
-        let winners = Ballot::elect(&sums, self.rho.row(number), between, is_class);
+        let winners = VoteCounter::elect(&sums, self.rho.row(number), between, is_class);
         let winners = winners.into_iter().zip(&open);
         let n_elected = winners.filter(|(winner, place)| *winner == self.rows[some[**place]].1);
         some.len() - open.len() + n_elected.count()
@@ -155,7 +155,7 @@ impl<T: Scalar> Judgement<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gram::points::Points;
+    use crate::gram::centered_rows::CenteredRows;
     use crate::kernel::KernelFunction;
     use crate::predict::voting::first_maximum;
     use ndarray::{Array1, Array2};
@@ -187,12 +187,12 @@ mod tests {
         let is_training: Vec<bool> = (0..N).map(|at| at % 4 != 1).collect();
         let class = |at: usize| RANGES.iter().position(|range| range.contains(&at)).unwrap();
         let rows: Vec<(usize, usize)> = (1..N).step_by(4).map(|at| (at, class(at))).collect();
-        let points = Points::new(Array2::zeros((N, 1)).view(), Array1::zeros(1).view());
+        let points = CenteredRows::new(Array2::zeros((N, 1)).view(), Array1::zeros(1).view());
         let kernel_function = KernelFunction::Linear;
         let product_kernel = ProductKernel::new((&points, &RANGES), kernel.view(), kernel_function);
         for multiclass in [Multiclass::OneVsOne, Multiclass::OneVsRest] {
-            let mut judgement =
-                Judgement::new((rows.clone(), &[true; 4]), &RANGES, multiclass, C.len());
+            let mut scorer =
+                ValidationScorer::new((rows.clone(), &[true; 4]), &RANGES, multiclass, C.len());
             // Votes of each row, or values, by C.
             let mut scores = vec![vec![[0.0; 4]; rows.len()]; C.len()];
             for (problem, (positive, negative)) in multiclass.problems(4).into_iter().enumerate() {
@@ -225,7 +225,7 @@ mod tests {
                         rho,
                         is_capped: number == 1,
                     };
-                    judgement.take(problem, &solution);
+                    scorer.take(problem, &solution);
                 }
             }
             let expected: Vec<usize> = scores
@@ -237,13 +237,13 @@ mod tests {
                         .count()
                 })
                 .collect();
-            let found = judgement.n_right(&product_kernel);
+            let found = scorer.n_right(&product_kernel);
             assert_eq!(found, expected, "{multiclass:?}");
             assert!(
                 expected.iter().all(|&n| n > 3 && n < rows.len()),
                 "{expected:?}"
             );
-            assert_eq!(judgement.n_capped(), multiclass.problems(4).len());
+            assert_eq!(scorer.n_capped(), multiclass.problems(4).len());
         }
     }
 }

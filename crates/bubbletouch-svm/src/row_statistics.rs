@@ -1,28 +1,28 @@
-//! What one pass over training rows tells of them.
+//! Mean and size of training rows, found in one pass.
 
 use ndarray::{Array1, ArrayView2};
 
 use crate::Result;
 use crate::dataset::check_features;
-use crate::kernel::KernelFunction;
 
 /// Sums side by side, so that no addition waits for the one before.
 const LANES: usize = 8;
 
-/// Mean and size of training rows (n × m).
+/// Statistics of training rows (n × m).
 #[derive(Clone, Debug)]
-pub(crate) struct Extent {
-    mean: Array1<f64>,
+pub(crate) struct RowStatistics {
+    /// Mean of the rows (m).
+    pub mean: Array1<f64>,
     /// The largest squared length of a row; infinite where it is beyond what a number holds.
     pub largest_norm: f64,
 }
 
-impl Extent {
-    /// Of rows that are finite: one pass finds their extent, and that they are.
+impl RowStatistics {
+    /// Computes the statistics in one pass, and checks that all features are finite.
     ///
     /// # Errors
-    /// No rows or columns, or a NaN or infinite feature, named by row and column.
-    pub fn of(features: ArrayView2<f64>) -> Result<Self> {
+    /// If there are no rows or columns, or a feature is NaN or infinite; the error names its row and column.
+    pub fn new(features: ArrayView2<f64>) -> Result<Self> {
         let mut sums = vec![0.0; features.ncols()];
         let (mut largest_norm, mut all_finite) = (0.0_f64, !features.is_empty());
         for row in features.rows() {
@@ -42,14 +42,6 @@ impl Extent {
             mean: Array1::from(sums) / features.nrows() as f64,
             largest_norm,
         })
-    }
-
-    /// Where kernels are taken about: the mean of the rows where that changes nothing but rounding, else the origin.
-    pub fn centre(&self, kernel: &KernelFunction) -> Array1<f64> {
-        match kernel.has_any_centre() {
-            true => self.mean.clone(),
-            false => Array1::zeros(self.mean.len()),
-        }
     }
 }
 
@@ -84,17 +76,17 @@ mod tests {
     use ndarray::{Array2, Axis, s};
 
     #[test]
-    fn the_extent_is_the_mean_and_the_largest_squared_length() {
+    fn the_statistics_is_the_mean_and_the_largest_squared_length() {
         let all = Array2::from_shape_fn((7, 21), |(i, j)| ((i * 21 + j) as f64 * 1.7).sin());
         for features in [all.view(), all.slice(s![.., ..;2]), all.slice(s![..3, ..8])] {
-            let extent = Extent::of(features).unwrap();
+            let statistics = RowStatistics::new(features).unwrap();
             let mean = features.mean_axis(Axis(0)).unwrap();
             let close = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-15;
-            let centre = extent.centre(&KernelFunction::Linear);
+            let centre = statistics.mean.clone();
             assert!(centre.iter().zip(&mean).all(close));
             let norms = features.rows().into_iter().map(|row| row.dot(&row));
             let largest = norms.fold(0.0, f64::max);
-            assert!((extent.largest_norm - largest).abs() < 1e-13);
+            assert!((statistics.largest_norm - largest).abs() < 1e-13);
         }
     }
 
@@ -102,15 +94,15 @@ mod tests {
     fn what_is_not_finite_is_named_and_what_is_only_large_is_not() {
         let mut features = Array2::from_elem((3, 20), 1e200);
         assert_eq!(
-            Extent::of(features.view()).unwrap().largest_norm,
+            RowStatistics::new(features.view()).unwrap().largest_norm,
             f64::INFINITY
         );
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             features[[1, 17]] = bad;
-            let error = Extent::of(features.view()).unwrap_err().to_string();
+            let error = RowStatistics::new(features.view()).unwrap_err().to_string();
             assert!(error.starts_with("features, row 1, column 17: "), "{error}");
         }
-        assert!(Extent::of(Array2::zeros((0, 3)).view()).is_err());
-        assert!(Extent::of(Array2::zeros((3, 0)).view()).is_err());
+        assert!(RowStatistics::new(Array2::zeros((0, 3)).view()).is_err());
+        assert!(RowStatistics::new(Array2::zeros((3, 0)).view()).is_err());
     }
 }

@@ -1,4 +1,4 @@
-//! The class that wins all its pairs, found without the pairs of the others.
+//! Condorcet winner: the class that wins all its pairs, found without the pairs of the other classes.
 //!
 //! One-vs-one elects the class with most votes. Of n classes, one that wins all its n − 1 pairs is elected whatever the pairs
 //! between others say: each other class has lost one. A knock-out finds it, if there is one, by n − 1 pairs, and it must then
@@ -13,7 +13,7 @@
 use multiversion::multiversion;
 use ndarray::{Array1, ArrayView1, ArrayView2};
 
-use crate::gram::points::Points;
+use crate::gram::centered_rows::CenteredRows;
 use crate::kernel::KernelFunction;
 use crate::linalg::scalar::Scalar;
 use crate::predict::class_weights::ClassWeights;
@@ -59,11 +59,11 @@ impl<T: Scalar> Pairs<T> {
 
     /// The class that certainly wins all its pairs, per row of kernel values (n × n_vectors); `None` where no class does,
     /// or rounding might decide a pair.
-    pub fn unbeaten(&self, kernel_values: ArrayView2<T>) -> Vec<Option<usize>> {
+    pub fn condorcet_winners(&self, kernel_values: ArrayView2<T>) -> Vec<Option<usize>> {
         let rows = kernel_values.rows().into_iter();
         let rows = rows.map(|row| row.to_slice().expect("they lie row by row"));
         rows.map(|kernel_values| {
-            unbeaten(&mut ByKernel {
+            condorcet_winner(&mut ByKernel {
                 pairs: self,
                 kernel_values,
             })
@@ -72,15 +72,15 @@ impl<T: Scalar> Pairs<T> {
     }
 
     /// The same per row (n × m), of a few, by those kernel values with the vectors that it takes.
-    pub fn unbeaten_by_few(
+    pub fn condorcet_winners_by_few(
         &self,
-        rows: &Points<T>,
-        vectors: &Points<T>,
+        rows: &CenteredRows<T>,
+        vectors: &CenteredRows<T>,
         kernel: &KernelFunction,
     ) -> Vec<Option<usize>> {
         let rows = (0..rows.len()).map(|row| rows.row(row));
         rows.map(|row| {
-            unbeaten(&mut ByKernel {
+            condorcet_winner(&mut ByKernel {
                 pairs: self,
                 kernel_values: Asked::new(row, vectors, kernel),
             })
@@ -98,14 +98,14 @@ impl<T: Scalar> Pairs<T> {
 }
 /// The class that certainly wins all its pairs, per row (n × m), by the hyperplanes' normals (n_pairs × m) and ρ of all
 /// pairs of some classes.
-pub(crate) fn unbeaten_by_hyperplanes<'a, T: Scalar>(
+pub(crate) fn condorcet_winners_by_hyperplanes<'a, T: Scalar>(
     n_classes: usize,
     (normals, rho): (ArrayView2<'a, T>, ArrayView1<'a, f64>),
-    rows: &'a Points<T>,
+    rows: &'a CenteredRows<T>,
 ) -> Vec<Option<usize>> {
     let normals = normals.to_slice().expect("normals are stored one by one");
     let of_row = |row| {
-        unbeaten(&mut Hyperplanes {
+        condorcet_winner(&mut Hyperplanes {
             n_classes,
             normals,
             rho,
@@ -160,7 +160,7 @@ impl<T: Scalar, K: KernelValues<T>> Decides<T> for ByKernel<'_, T, K> {
 /// Kernel values that are computed when the first pair asks for them.
 struct Asked<'a, T> {
     kernel: &'a KernelFunction,
-    vectors: &'a Points<T>,
+    vectors: &'a CenteredRows<T>,
     /// The row and its squared norm.
     row: (&'a [T], T),
     /// Per vector.
@@ -174,7 +174,7 @@ struct Asked<'a, T> {
 }
 
 impl<'a, T: Scalar> Asked<'a, T> {
-    fn new(row: (&'a [T], T), vectors: &'a Points<T>, kernel: &'a KernelFunction) -> Self {
+    fn new(row: (&'a [T], T), vectors: &'a CenteredRows<T>, kernel: &'a KernelFunction) -> Self {
         Self {
             kernel,
             vectors,
@@ -240,7 +240,7 @@ impl<T: Scalar> Decides<T> for Hyperplanes<'_, T> {
 }
 
 #[multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
-fn unbeaten<T: Scalar, P: Decides<T>>(pairs: &mut P) -> Option<usize> {
+fn condorcet_winner<T: Scalar, P: Decides<T>>(pairs: &mut P) -> Option<usize> {
     let mut champion = 0;
     for other in 1..pairs.n_classes() {
         if !wins(pairs, (champion, other))? {
@@ -326,7 +326,7 @@ fn sum_and_size<T: Scalar>(terms: &[(u32, T)], kernel_values: &[T]) -> (T, T) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Multiclass;
+    use crate::multiclass::Multiclass;
     use crate::predict::voting::Voting;
     use ndarray::Array2;
 
@@ -378,10 +378,10 @@ mod tests {
         let rows = Array2::from_shape_fn((400, N_CLASSES * N_VECTORS), |(i, j)| {
             (i as f64 * 0.7 + j as f64 * (1.0 + i as f64 * 0.01)).sin() + 0.3
         });
-        let unbeaten = Pairs::new(&weights, &rho).unbeaten(rows.view());
+        let winners = Pairs::new(&weights, &rho).condorcet_winners(rows.view());
         let classes: Vec<usize> = (0..N_CLASSES).collect();
         let voting = Voting::new(&classes, Multiclass::OneVsOne);
-        for (row, winner) in rows.rows().into_iter().zip(&unbeaten) {
+        for (row, winner) in rows.rows().into_iter().zip(&winners) {
             let values = values(&weights, &rho, &row.to_vec());
             let elected = voting.labels(values.view().insert_axis(ndarray::Axis(0)))[0];
             let pairs = Multiclass::OneVsOne.problems(N_CLASSES);
@@ -390,9 +390,9 @@ mod tests {
             });
             assert_eq!(*winner, (!lost).then_some(elected));
         }
-        assert!(unbeaten.iter().any(|winner| winner.is_none()));
+        assert!(winners.iter().any(|winner| winner.is_none()));
         for class in classes {
-            assert!(unbeaten.contains(&Some(class)), "{class} is never elected");
+            assert!(winners.contains(&Some(class)), "{class} is never elected");
         }
     }
 
@@ -412,14 +412,17 @@ mod tests {
         let pairs = Pairs::new(&weights, &rho);
         let centre = Array1::from_elem(n_features, 0.1);
         let [vectors, asking] =
-            [vectors, asking].map(|rows| Points::<f64>::new(rows.view(), centre.view()));
+            [vectors, asking].map(|rows| CenteredRows::<f64>::new(rows.view(), centre.view()));
         for kernel in [
             KernelFunction::Rbf { gamma: 0.2 },
             KernelFunction::Laplacian { gamma: 0.2 },
         ] {
             let values = asking.all().kernel(vectors.all(), &kernel);
-            let expected = pairs.unbeaten(values.view());
-            assert_eq!(pairs.unbeaten_by_few(&asking, &vectors, &kernel), expected);
+            let expected = pairs.condorcet_winners(values.view());
+            assert_eq!(
+                pairs.condorcet_winners_by_few(&asking, &vectors, &kernel),
+                expected
+            );
             assert!(expected.iter().any(|winner| winner.is_none()));
             assert!(expected.iter().any(|winner| *winner > Some(0)));
         }
@@ -433,10 +436,10 @@ mod tests {
         let rows = Array2::ones((1, N_CLASSES * N_VECTORS));
         for (offset, is_open) in [(0.0, true), (1e-15, true), (-1e-15, true), (1e-9, false)] {
             // The first class wins each pair by the offset.
-            let unbeaten = Pairs::new(&weights, &(&tied - offset)).unbeaten(rows.view());
-            assert_eq!(unbeaten, [if is_open { None } else { Some(0) }], "{offset}");
+            let winners = Pairs::new(&weights, &(&tied - offset)).condorcet_winners(rows.view());
+            assert_eq!(winners, [if is_open { None } else { Some(0) }], "{offset}");
         }
-        let unbeaten = Pairs::new(&weights, &tied).unbeaten((&rows * f64::NAN).view());
-        assert_eq!(unbeaten, [None]);
+        let winners = Pairs::new(&weights, &tied).condorcet_winners((&rows * f64::NAN).view());
+        assert_eq!(winners, [None]);
     }
 }

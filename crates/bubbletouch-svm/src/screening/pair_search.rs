@@ -1,8 +1,10 @@
 //! The solver of a pair near its margin: pairs of variables, then equations of those that are free.
 
-use crate::active_set::{ActiveSetGoal, settle};
-use crate::linalg::scalar::Scalar;
-use crate::smo::{Gram, Reached, Smo};
+use crate::gram::matrix::Gram;
+use crate::smo::Smo;
+use crate::smo::SolverScalar;
+use crate::smo::reached::Reached;
+use crate::smo::{ActiveSetGoal, solve_by_active_set};
 
 /// The violation of the optimality conditions from which on the way goes by equations.
 const EQUATIONS_FROM: f64 = 0.03;
@@ -23,7 +25,7 @@ pub(crate) type State = (Vec<f64>, Vec<f64>);
 
 /// Goes from a state, with the labels of its rows and the C that it belongs to, to what is asked for: roughly by pairs of
 /// variables, then by equations, and by pairs where those left something.
-pub(crate) fn reach_by_equations<T: Scalar, G: Gram<T>>(
+pub(crate) fn reach_by_equations<T: SolverScalar, G: Gram<T>>(
     gram: &mut G,
     (labels, state, c): (&[f64], State, f64),
     goal: PairGoal,
@@ -41,7 +43,7 @@ pub(crate) fn reach_by_equations<T: Scalar, G: Gram<T>>(
         tolerance: goal.tolerance,
         most_ways: labels.len() as u64,
     };
-    let n_ways = settle(gram, labels, (&mut beta, &mut f), by_equations);
+    let n_ways = solve_by_active_set(gram, labels, (&mut beta, &mut f), by_equations);
     let (state, last) = reach(gram, (labels, (beta, f), goal.c), goal);
     let n_iterations = first.n_iterations + n_ways + last.n_iterations;
     let reached = Reached {
@@ -51,14 +53,14 @@ pub(crate) fn reach_by_equations<T: Scalar, G: Gram<T>>(
     (state, reached)
 }
 
-fn reach<T: Scalar, G: Gram<T>>(
+fn reach<T: SolverScalar, G: Gram<T>>(
     gram: &mut G,
     (labels, state, c): (&[f64], State, f64),
     goal: PairGoal,
 ) -> (State, Reached) {
-    let mut smo = Smo::going_on(gram, labels, state, c);
+    let mut smo = Smo::from_start(gram, labels, state, c);
     if let Some(most_iterations) = goal.most_iterations {
-        smo = smo.of_at_most(most_iterations);
+        smo = smo.with_max_iterations(most_iterations);
     }
     let reached = smo.reach(goal.c, goal.tolerance, |_| None);
     (smo.into_variables(), reached)

@@ -3,8 +3,8 @@
 use ndarray::{ArrayView1, ArrayView2, ArrayViewMut2, s};
 
 use super::curvatures::InverseCurvatures;
-use super::passes::padded;
 use super::row_sums::weighted_sum;
+use crate::linalg::lanes::padded;
 use crate::linalg::scalar::Scalar;
 use crate::linalg::transposed::write_columns;
 

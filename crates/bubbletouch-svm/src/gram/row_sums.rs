@@ -3,7 +3,7 @@
 use crate::linalg::scalar::Scalar;
 
 /// The first n values of `Σ β_j row_j`, in f64.
-pub(super) fn weighted_sum<'a, T: Scalar>(
+pub(crate) fn weighted_sum<'a, T: Scalar>(
     n: usize,
     beta: &[f64],
     row: impl Fn(usize) -> &'a [T],
@@ -38,7 +38,7 @@ fn add_four<T: Scalar>(sums: &mut [f64], rows: &[(&[T], f64); 4]) {
 
 /// Adds β times a row to sums in f64.
 #[multiversion::multiversion(targets("x86_64+avx2+fma"))]
-pub(super) fn add_row<T: Scalar>(sums: &mut [f64], row: &[T], beta: f64) {
+pub(crate) fn add_row<T: Scalar>(sums: &mut [f64], row: &[T], beta: f64) {
     for (sum, value) in sums.iter_mut().zip(row) {
         *sum += beta * value.wide();
     }

@@ -4,22 +4,24 @@
 //! variables rest on a bound, what is left is a system of linear equations: f is to be equal on all free variables, and the sum
 //! of their changes 0. Where that leads beyond a bound, the way ends there and goes on without that variable. Where it does not,
 //! the variable at a bound that violates the optimality conditions most becomes free, until none does. A support vector machine
-//! of few features has few free variables, so that [their equations](crate::active_set::free_factor) are short.
+//! of few features has few free variables, so that [their equations](super::active_set::free_factor) are short.
 
-pub(crate) mod free_factor;
-pub(crate) mod pair_search;
+mod free_factor;
 
-use crate::active_set::free_factor::FreeFactor;
+use free_factor::FreeFactor;
+
+use crate::gram::matrix::Gram;
 use crate::linalg::scalar::Scalar;
-use crate::smo::{Gram, bounds, violation};
+use crate::smo::reached::violation;
+use crate::smo::variables::bounds;
 
 /// Free variables whose equations are solved, at most; others wait until it is their turn.
-const MOST_FREE: usize = 384;
+const MAX_FREE: usize = 384;
 /// Variables that become free together, at most, and how far each is to violate the conditions as a share of the farthest.
-const MOST_ENTERING: usize = 8;
+const MAX_ENTERING: usize = 8;
 const SHARE_OF_FARTHEST: f64 = 0.5;
 /// Times that f may be found to differ on the free variables when it should be equal: rows that depend on each other.
-const MOST_REPEATS: u64 = 8;
+const MAX_REPEATS: u64 = 8;
 
 /// What to go for.
 #[derive(Clone, Copy, Debug)]
@@ -34,7 +36,7 @@ pub(crate) struct ActiveSetGoal {
 
 /// Goes from β of the problem's rows, and `f = y − Kβ`, toward their optimum. How many ways it took; 0 where fewer
 /// than two are free.
-pub(crate) fn settle<T: Scalar, G: Gram<T>>(
+pub(crate) fn solve_by_active_set<T: Scalar, G: Gram<T>>(
     gram: &mut G,
     labels: &[f64],
     (beta, f): (&mut [f64], &mut [f64]),
@@ -46,14 +48,14 @@ pub(crate) fn settle<T: Scalar, G: Gram<T>>(
     let (mut n_ways, mut n_repeats) = (0, 0);
     while n_ways < goal.most_ways {
         // A turn at least, so that there is an end where nothing can move.
-        n_ways += active_set.settle_free(goal.most_ways - n_ways).max(1);
+        n_ways += active_set.solve_free(goal.most_ways - n_ways).max(1);
         active_set.follow(gram);
         if active_set.violation() <= goal.tolerance {
             break;
         }
         let entering = active_set.entering();
         n_repeats += u64::from(entering.is_empty());
-        if n_repeats > MOST_REPEATS || !active_set.join(gram, &entering) {
+        if n_repeats > MAX_REPEATS || !active_set.join(gram, &entering) {
             break;
         }
     }
@@ -88,7 +90,7 @@ impl<'a> ActiveSet<'a> {
             let (lowest, highest) = bounds(labels[i], c);
             beta[i] > lowest && beta[i] < highest
         };
-        let free: Vec<usize> = (0..labels.len()).filter(is_free).take(MOST_FREE).collect();
+        let free: Vec<usize> = (0..labels.len()).filter(is_free).take(MAX_FREE).collect();
         (free.len() > 1).then(|| {
             let mut own = Self {
                 changes: vec![0.0; labels.len()],
@@ -115,7 +117,7 @@ impl<'a> ActiveSet<'a> {
     }
 
     /// Goes to the optimum of the free variables, of which those that meet a bound stay there. How many ways it took.
-    fn settle_free(&mut self, most_ways: u64) -> u64 {
+    fn solve_free(&mut self, most_ways: u64) -> u64 {
         let mut f = self.factor.values(&self.f[..]);
         for n_ways in 0..most_ways {
             let Some((steps, level)) = self.factor.solve(&f) else {
@@ -188,7 +190,7 @@ impl<'a> ActiveSet<'a> {
         let is_far = |&i: &usize| !self.has_place[i] && beyond[i] >= least;
         let mut entering: Vec<usize> = (0..beyond.len()).filter(is_far).collect();
         entering.sort_by(|&i, &j| beyond[j].total_cmp(&beyond[i]));
-        entering.truncate(MOST_ENTERING);
+        entering.truncate(MAX_ENTERING);
         entering
     }
 
@@ -199,7 +201,7 @@ impl<'a> ActiveSet<'a> {
                 // Those that enter come first: what depends on them waits.
                 let free = self.factor.variables().map(|(_, variable)| variable);
                 let all = entering[number..].iter().copied().chain(free);
-                let all: Vec<usize> = all.take(MOST_FREE).collect();
+                let all: Vec<usize> = all.take(MAX_FREE).collect();
                 self.take(gram, &all);
                 return self.has_place[variable];
             }
@@ -212,7 +214,9 @@ impl<'a> ActiveSet<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::smo::{Dense, Smo, extremes};
+    use crate::gram::matrix::Dense;
+    use crate::smo::Smo;
+    use crate::smo::variables::extremes;
     use ndarray::{Array1, Array2};
 
     /// Products of n rows of m features with no pattern, the first half apart from the others.
@@ -253,7 +257,7 @@ mod tests {
         let expected = Smo::new(&mut gram, labels).solve(c, 1e-7).objective;
         let (mut beta, mut f) = (start.clone(), f_of(kernel, &start, labels));
         let before = objective(&beta, &f, labels);
-        let n_ways = settle(&mut gram, labels, (&mut beta, &mut f), goal(c, 1e-7));
+        let n_ways = solve_by_active_set(&mut gram, labels, (&mut beta, &mut f), goal(c, 1e-7));
         assert!(n_ways > 0);
         let found = objective(&beta, &f, labels);
         assert!(found >= before, "{found} {before}");
@@ -293,7 +297,7 @@ mod tests {
     #[test]
     fn of_rows_that_depend_on_each_other_more_are_free_than_there_are_equations() {
         // Three features: no equations for more than four free ones. All are free at first, of the last more than have places.
-        for n in [20, MOST_FREE + 60] {
+        for n in [20, MAX_FREE + 60] {
             let problem = problem(n, 3, 0.1);
             let start = problem.1.iter().map(|y| 0.1 * y).collect();
             assert_settles(&problem, start, 1.0);
@@ -323,7 +327,7 @@ mod tests {
                 most_ways,
                 ..goal(1.0, 1e-9)
             };
-            let n_ways = settle(&mut gram, &labels, (&mut beta, &mut f), goal);
+            let n_ways = solve_by_active_set(&mut gram, &labels, (&mut beta, &mut f), goal);
             assert_eq!(n_ways, most_ways);
             for (f, expected) in f.iter().zip(f_of(&kernel, &beta, &labels)) {
                 assert!((f - expected).abs() < 1e-9, "{f} {expected}");
@@ -331,7 +335,7 @@ mod tests {
         }
         let (mut beta, mut f) = (vec![0.0; 60], labels.clone());
         assert_eq!(
-            settle(&mut gram, &labels, (&mut beta, &mut f), goal(1.0, 1e-9)),
+            solve_by_active_set(&mut gram, &labels, (&mut beta, &mut f), goal(1.0, 1e-9)),
             0
         );
     }

@@ -1,21 +1,21 @@
 //! A Gram matrix whose values are held elsewhere: rows are brought together when the solver first asks for them.
 
 use super::curvatures::InverseCurvatures;
-use super::gram::{Dense, Gram, gather};
-use super::passes::padded;
+use super::matrix::{Dense, Gram, gather};
 use super::row_sums::weighted_sum;
+use crate::linalg::lanes::padded;
 use crate::linalg::scalar::Scalar;
 
-/// Room for the rows of parts, one part after another.
+/// Memory for the rows of parts, reused by one part after another.
 #[derive(Debug)]
-pub(crate) struct Room<T> {
+pub(crate) struct Workspace<T> {
     values: Vec<T>,
     is_here: Vec<bool>,
     diagonal: Vec<T>,
     inverses: InverseCurvatures<T>,
 }
 
-impl<T: Scalar> Room<T> {
+impl<T: Scalar> Workspace<T> {
     pub fn new() -> Self {
         Self {
             values: Vec::new(),
@@ -31,7 +31,7 @@ pub(crate) struct Part<'a, T, F> {
     n: usize,
     stride: usize,
     write: F,
-    room: &'a mut Room<T>,
+    workspace: &'a mut Workspace<T>,
 }
 
 /// K of two classes from the rows of its blocks: within each, and across, those of the first with the second and of the second
@@ -39,7 +39,7 @@ pub(crate) struct Part<'a, T, F> {
 pub(crate) fn part_of_blocks<'a, T: Scalar>(
     within: &'a [Vec<&[T]>; 2],
     across: &'a [Vec<&[T]>; 2],
-    room: &'a mut Room<T>,
+    workspace: &'a mut Workspace<T>,
 ) -> Part<'a, T, impl Fn(usize, &mut [T])> {
     let n_first = within[0].len();
     let diagonal = within.iter().flat_map(|block| {
@@ -61,44 +61,48 @@ pub(crate) fn part_of_blocks<'a, T: Scalar>(
         own.copy_from_slice(within[side][row]);
         other.copy_from_slice(across[side][row]);
     };
-    Part::new(diagonal, write, room)
+    Part::new(diagonal, write, workspace)
 }
 
 impl<'a, T: Scalar, F: FnMut(usize, &mut [T])> Part<'a, T, F> {
     /// Of as many rows as the diagonal has values.
-    pub fn new(diagonal: impl Iterator<Item = T>, write: F, room: &'a mut Room<T>) -> Self {
-        room.diagonal.clear();
-        room.diagonal.extend(diagonal);
-        let n = room.diagonal.len();
+    pub fn new(
+        diagonal: impl Iterator<Item = T>,
+        write: F,
+        workspace: &'a mut Workspace<T>,
+    ) -> Self {
+        workspace.diagonal.clear();
+        workspace.diagonal.extend(diagonal);
+        let n = workspace.diagonal.len();
         let stride = padded(n);
-        room.diagonal.resize(stride, T::zero());
-        room.is_here.clear();
-        room.is_here.resize(n, false);
-        if room.values.len() < n * stride {
-            room.values.resize(n * stride, T::zero());
+        workspace.diagonal.resize(stride, T::zero());
+        workspace.is_here.clear();
+        workspace.is_here.resize(n, false);
+        if workspace.values.len() < n * stride {
+            workspace.values.resize(n * stride, T::zero());
         }
-        room.inverses.renew(n, &room.diagonal);
+        workspace.inverses.renew(n, &workspace.diagonal);
         Self {
             n,
             stride,
             write,
-            room,
+            workspace,
         }
     }
 
     fn bring(&mut self, i: usize) {
-        if self.room.is_here[i] {
+        if self.workspace.is_here[i] {
             return;
         }
-        self.room.is_here[i] = true;
-        let to = &mut self.room.values[i * self.stride..][..self.stride];
+        self.workspace.is_here[i] = true;
+        let to = &mut self.workspace.values[i * self.stride..][..self.stride];
         let (to, padding) = to.split_at_mut(self.n);
         (self.write)(i, to);
         padding.fill(T::zero());
     }
 
     fn at(&self, i: usize) -> &[T] {
-        &self.room.values[i * self.stride..][..self.stride]
+        &self.workspace.values[i * self.stride..][..self.stride]
     }
 }
 
@@ -115,18 +119,18 @@ impl<T: Scalar, F: FnMut(usize, &mut [T])> Gram<T> for Part<'_, T, F> {
 
     fn row_and_diagonal(&mut self, i: usize) -> (&[T], &[T]) {
         self.bring(i);
-        (self.at(i), &self.room.diagonal)
+        (self.at(i), &self.workspace.diagonal)
     }
 
     fn inverse_curvatures(&mut self, i: usize) -> &[T] {
         self.bring(i);
-        let room = &mut *self.room;
-        let row = &room.values[i * self.stride..][..self.stride];
-        room.inverses.of_row(i, row, &room.diagonal)
+        let workspace = &mut *self.workspace;
+        let row = &workspace.values[i * self.stride..][..self.stride];
+        workspace.inverses.of_row(i, row, &workspace.diagonal)
     }
 
     fn smallest_curvature(&self) -> T {
-        self.room.inverses.smallest()
+        self.workspace.inverses.smallest()
     }
 
     fn times(&mut self, beta: &[f64]) -> Vec<f64> {

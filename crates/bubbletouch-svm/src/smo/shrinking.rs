@@ -1,0 +1,29 @@
+//! Shrinking: variables that stay at a bound are left out, and the iterations run on the rest of the Gram matrix.
+
+use super::iterations::{SHRINK_PERIOD, Search, Stop};
+use super::solver_scalar::SolverScalar;
+use super::variables::Variables;
+use crate::gram::matrix::{Dense, Gram};
+
+/// Solves on a part of the Gram matrix, and on parts of this part. Returns β of its variables, each with its index.
+pub(super) fn solve_part<T: SolverScalar>(
+    mut part: Dense<T>,
+    mut variables: Variables<T>,
+    search: &mut Search,
+) -> Vec<(usize, f64)> {
+    let mut indices: Vec<usize> = (0..variables.beta.len()).collect();
+    let mut solved = Vec::new();
+    loop {
+        let stop = T::run(&mut part, &mut variables, search, SHRINK_PERIOD);
+        let beta = indices.iter().zip(&variables.beta);
+        solved.extend(beta.map(|(&index, &beta)| (index, beta)));
+        match stop {
+            Stop::Shrink(keep) => {
+                part = part.part(&keep);
+                variables = variables.select(&keep);
+                indices = keep.iter().map(|&at| indices[at]).collect();
+            }
+            Stop::Done => return solved,
+        }
+    }
+}

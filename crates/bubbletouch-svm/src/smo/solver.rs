@@ -1,0 +1,141 @@
+//! Solution of a binary problem: pairwise steps, checked in f64, and active-set steps where they converge slowly.
+
+use super::active_set::{ActiveSetGoal, solve_by_active_set};
+use super::iterations::{SHRINK_PERIOD, Search, Stop};
+use super::problem::Smo;
+use super::reached::Reached;
+use super::shrinking::solve_part;
+use super::solver_scalar::SolverScalar;
+use super::variables::Variables;
+use crate::dual::DualSolution;
+use crate::gram::matrix::Gram;
+
+/// Pairwise steps before active-set steps, at least. Larger: problems that converge slowly take longer; smaller: equations are solved in vain.
+const MIN_PAIR_STEPS: u64 = 10_000;
+/// The same for each row.
+const PAIR_STEPS_PER_ROW: u64 = 20;
+/// Times that f64 may find a violation after convergence in the precision of the matrix. Larger: rounding is followed in vain; smaller: solutions miss
+/// their tolerance.
+const MAX_REFRESHES: usize = 30;
+
+impl<G> Smo<'_, G> {
+    /// Solves for this C, starting from the solution of the last one, to a violation of the optimality conditions of at most
+    /// `tolerance`.
+    pub fn solve<T: SolverScalar>(&mut self, c: f64, tolerance: f64) -> DualSolution
+    where
+        G: Gram<T>,
+    {
+        self.solve_or_from(c, tolerance, |_| None)
+    }
+
+    /// [`solve`](Self::solve), or from another start that C allows, β and its f, if the objective is higher there.
+    pub fn solve_or_from<T: SolverScalar>(
+        &mut self,
+        c: f64,
+        tolerance: f64,
+        other: impl FnOnce(&mut G) -> Option<(Vec<f64>, Vec<f64>)>,
+    ) -> DualSolution
+    where
+        G: Gram<T>,
+    {
+        let reached = self.reach(c, tolerance, other);
+        let variables = (&self.beta[..], self.y, &self.f[..]);
+        DualSolution {
+            coefficients: self.beta.clone(),
+            ..reached.solution(variables, c)
+        }
+    }
+
+    /// [`solve_or_from`](Self::solve_or_from), without what a solution says.
+    pub fn reach<T: SolverScalar>(
+        &mut self,
+        c: f64,
+        tolerance: f64,
+        other: impl FnOnce(&mut G) -> Option<(Vec<f64>, Vec<f64>)>,
+    ) -> Reached
+    where
+        G: Gram<T>,
+    {
+        let mut search = Search::new(self.max_iterations, tolerance);
+        if !self.is_summed && self.violation(c) <= tolerance {
+            self.refresh();
+        }
+        // Where no multiplier was kept down by its bound, a larger C changes nothing: β stays as it is.
+        let stays = self.c <= c && self.violation(c) <= tolerance;
+        if !stays {
+            self.stretch(c);
+            if let Some(other) = other(self.gram) {
+                self.prefer(other);
+            }
+        }
+        let is_solved = stays || self.violation(c) <= tolerance || self.search(c, &mut search);
+        self.c = c;
+        Reached {
+            is_solved,
+            n_iterations: search.n_iterations,
+        }
+    }
+
+    /// Searches until the tolerance is reached or iterations run out; returns whether it was reached.
+    fn search<T: SolverScalar>(&mut self, c: f64, search: &mut Search) -> bool
+    where
+        G: Gram<T>,
+    {
+        let max_iterations = search.max_iterations;
+        let pair_steps = MIN_PAIR_STEPS.max(PAIR_STEPS_PER_ROW * self.y.len() as u64);
+        let (mut n_refreshes, mut is_first) = (0, true);
+        while n_refreshes < MAX_REFRESHES {
+            let before = self.beta.clone();
+            search.max_iterations = max_iterations.min(search.n_iterations + pair_steps);
+            self.search_once(c, search, is_first);
+            is_first = false;
+            if self.is_summed {
+                self.follow(before);
+            } else {
+                self.refresh();
+            }
+            if self.violation(c) <= search.tolerance {
+                return true;
+            }
+            if search.n_iterations >= max_iterations {
+                return false;
+            }
+            if search.n_iterations >= search.max_iterations {
+                // Pairwise steps converge slowly here.
+                let goal = ActiveSetGoal {
+                    c,
+                    tolerance: search.tolerance,
+                    most_ways: self.y.len() as u64,
+                };
+                let variables = (&mut self.beta[..], &mut self.f[..]);
+                search.n_iterations += solve_by_active_set(self.gram, self.y, variables, goal);
+            } else {
+                n_refreshes += 1;
+            }
+        }
+        false
+    }
+
+    /// Searches among all variables, roughly where most are soon left out: what was left out should be looked at again before
+    /// much work goes on.
+    fn search_once<T: SolverScalar>(&mut self, c: f64, search: &mut Search, is_first: bool)
+    where
+        G: Gram<T>,
+    {
+        let mut all = Variables::<T>::new(&self.beta, self.y, &self.f, c);
+        let first_look = if is_first { SHRINK_PERIOD } else { 0 };
+        let stop = T::run(self.gram, &mut all, search, first_look);
+        self.beta.copy_from_slice(&all.beta);
+        if let Stop::Shrink(indices) = &stop {
+            let part = self.gram.part(indices);
+            let tolerance = search.tolerance;
+            if is_first {
+                search.tolerance *= 10.0;
+            }
+            let beta = solve_part(part, all.select(indices), search);
+            search.tolerance = tolerance;
+            beta.into_iter()
+                .for_each(|(at, value)| self.beta[indices[at]] = value);
+        }
+    }
+}

@@ -1,0 +1,220 @@
+//! Parameters of soft-margin SVMs, and their training.
+
+use std::borrow::Cow;
+
+use linfa::DatasetBase;
+use linfa::traits::Fit;
+use ndarray::{Array1, Array2, ArrayView1};
+use serde::{Deserialize, Serialize};
+
+use crate::dataset::{Dataset, check_labels, distinct};
+use crate::gram::sorted::Sorted;
+use crate::kernel::{Kernel, KernelFunction};
+use crate::multiclass::Multiclass;
+use crate::precision::Precision;
+use crate::predict::decision::DecisionFunctions;
+use crate::predict::svm_model::{Decision, SvmModel};
+use crate::row_statistics::RowStatistics;
+use crate::smo::SolverScalar;
+use crate::training::Goal;
+use crate::{Error, Result};
+
+/// Solver of the binary problems.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
+)]
+#[serde(rename_all = "snake_case")]
+pub enum Solver {
+    /// Sequential minimal optimisation on shared Gram matrices.
+    #[default]
+    Smo,
+    /// Dual coordinate descent: linear kernel and one-vs-rest, with a regularised bias (LIBLINEAR's problem); see
+    /// [`linear_svm`](crate::linear_svm).
+    CoordinateDescent,
+}
+
+/// Rows below which kernel values are always f64: it costs nothing that a person would notice.
+const SINGLE_FROM_ROWS: usize = 1000;
+/// The smallest tolerance that f32 kernel values can be trusted with.
+const SINGLE_TOLERANCE: f64 = 1e-4;
+/// The largest C · K(x, x), and the largest K(x, x), for f32: rounding of K, 6e-8 of it, is multiplied by coefficients of at
+/// most C.
+const SINGLE_MOST: f64 = 1e5;
+/// Bytes of kernel values held at once, unless asked otherwise: one-vs-rest on 16,384 rows in f32.
+pub const DEFAULT_MEMORY_BYTES: usize = 2 << 30;
+
+/// Parameters of a soft-margin SVM. Implements linfa's [`Fit`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SvmParams {
+    /// The kernel.
+    pub kernel: Kernel,
+    /// Combination of binary classifiers.
+    pub multiclass: Multiclass,
+    /// C > 0: what a unit of margin violation costs. Larger fits the training rows more closely and trains longer.
+    /// A binary problem may take up to 10 million iterations, or 100 a row.
+    pub c: f64,
+    /// How far the optimality (KKT) conditions may be violated when the solver stops, in units of the decision value;
+    /// above 0. LIBSVM's default is 1e-3.
+    pub tolerance: f64,
+    /// Solver of the binary problems.
+    pub solver: Solver,
+    /// Most bytes of kernel values held at once. Where they do not fit, rows are computed when asked
+    /// for and the latest kept: slower, the same solution.
+    pub memory_bytes: usize,
+}
+
+impl Default for SvmParams {
+    /// Linear, one-vs-one, C = 1, tolerance 1e-3, our own solver within 2 GiB.
+    fn default() -> Self {
+        Self {
+            kernel: Kernel::Linear,
+            multiclass: Multiclass::OneVsOne,
+            c: 1.0,
+            tolerance: 1e-3,
+            solver: Solver::Smo,
+            memory_bytes: DEFAULT_MEMORY_BYTES,
+        }
+    }
+}
+
+/// Rows, their classes, the kernel, and where it is taken about.
+type Sorting<'a> = (
+    &'a Dataset,
+    &'a [usize],
+    KernelFunction,
+    ArrayView1<'a, f64>,
+);
+
+impl SvmParams {
+    /// Trains on labelled measurements.
+    ///
+    /// Deterministic. Binary problems come in ascending order of classes: for one-vs-one (0, 1), (0, 2), …, (1, 2), …
+    ///
+    /// # Errors
+    /// C, tolerance or a kernel parameter out of range; empty data, a NaN or infinite feature (named by row and
+    /// column), another number of labels than rows, a single class; what the [`Solver`] does not do.
+    pub fn train(&self, data: &Dataset) -> Result<SvmModel> {
+        let mut models = self.train_path(data, &[self.c])?;
+        Ok(models.swap_remove(0))
+    }
+
+    /// Trains for several C (in place of `self.c`) from the same kernel values, each solution starting from that of the
+    /// next smaller C; the models come in the order asked.
+    ///
+    /// # Errors
+    /// As [`train`](Self::train).
+    pub fn train_path(&self, data: &Dataset, path: &[f64]) -> Result<Vec<SvmModel>> {
+        self.check(path)?;
+        let statistics = RowStatistics::new(data.records.view())?;
+        check_labels(data.records.nrows(), data.targets.view())?;
+        let classes = distinct(data.targets.view());
+        if classes.len() < 2 {
+            return Err(Error::input(
+                "labels",
+                format!("the single class {}", classes[0]),
+                "at least two classes are needed",
+            ));
+        }
+        let kernel = self.kernel.resolve(data.records.view(), &statistics)?;
+        let mut ascending = path.to_vec();
+        ascending.sort_by(f64::total_cmp);
+        ascending.dedup();
+        let centre = kernel.centre(&statistics);
+        let goal = Goal {
+            path: &ascending,
+            tolerance: self.tolerance,
+            memory: self.memory_bytes,
+        };
+        let trained = self.train_smo((data, &classes, kernel, centre.view()), goal);
+        if ascending == path {
+            return Ok(trained);
+        }
+        let at = |c: f64| ascending.partition_point(|&other| other < c);
+        Ok(path.iter().map(|&c| trained[at(c)].clone()).collect())
+    }
+
+    fn train_smo(&self, sorting: Sorting, goal: Goal) -> Vec<SvmModel> {
+        let (data, classes, kernel, centre) = sorting;
+        let n_rows = data.records.nrows();
+        if !self.needs_double(n_rows, kernel, goal.path, 0.0) {
+            let sorted = Sorted::<f32>::new(data, classes, kernel, centre);
+            if !self.needs_double(n_rows, kernel, goal.path, sorted.farthest()) {
+                return self.solve_sorted(sorted, goal);
+            }
+        }
+        let sorted = Sorted::<f64>::new(data, classes, kernel, centre);
+        self.solve_sorted(sorted, goal)
+    }
+
+    /// Returns whether kernel values need f64: for few rows, where f64 costs nothing; for a tolerance near the rounding of f32; or where coefficients
+    /// multiply this rounding. `farthest` is the square of the largest distance of a row from the centre.
+    pub(crate) fn needs_double(
+        &self,
+        n_rows: usize,
+        kernel: KernelFunction,
+        path: &[f64],
+        farthest: f64,
+    ) -> bool {
+        let Some(largest) = kernel.largest_in_single(farthest) else {
+            return true;
+        };
+        let c = path.iter().copied().fold(0.0, f64::max);
+        n_rows < SINGLE_FROM_ROWS
+            || self.tolerance < SINGLE_TOLERANCE
+            || c * largest > SINGLE_MOST
+            || largest > SINGLE_MOST
+    }
+
+    fn solve_sorted<T: SolverScalar>(&self, sorted: Sorted<T>, goal: Goal) -> Vec<SvmModel>
+    where
+        Decision: From<DecisionFunctions<T>>,
+    {
+        let trained = match self.multiclass {
+            Multiclass::OneVsOne => sorted.one_vs_one(goal),
+            _ => sorted.one_vs_rest(goal),
+        };
+        let mut trained = trained.into_iter();
+        // The last model may have the rows.
+        let last = trained.next_back();
+        let mut models: Vec<SvmModel> = trained
+            .map(|trained| SvmModel::new(Cow::Borrowed(&sorted), self.multiclass, trained))
+            .collect();
+        models.extend(
+            last.map(|trained| SvmModel::new(Cow::Owned(sorted), self.multiclass, trained)),
+        );
+        models
+    }
+
+    /// Refuses what no data set could be trained with.
+    pub(crate) fn check(&self, path: &[f64]) -> Result<()> {
+        if path.is_empty() {
+            return Err(Error::input("C", "none", "at least one is needed"));
+        }
+        let penalties = path.iter().map(|&c| ("C", c));
+        for (name, value) in penalties.chain([("tolerance", self.tolerance)]) {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(Error::input(
+                    name,
+                    value,
+                    "a finite number above 0 is allowed",
+                ));
+            }
+        }
+        if self.solver == Solver::CoordinateDescent {
+            return Err(Error::input(
+                "solver",
+                "coordinate_descent",
+                "smo solves the dual problem of a kernel; coordinate_descent is for linear SVMs, one-vs-rest",
+            ));
+        }
+        Ok(())
+    }
+}
+
+impl<F: Precision> Fit<Array2<F>, Array1<usize>, Error> for SvmParams {
+    type Object = SvmModel;
+
+    fn fit(&self, dataset: &DatasetBase<Array2<F>, Array1<usize>>) -> Result<SvmModel> {
+        self.train(&F::double(dataset))
+    }
+}
