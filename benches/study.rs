@@ -105,7 +105,7 @@ fn say(what: &str, seconds: f64, n: usize) {
 }
 
 fn journal(folder: &Path, name: &str) -> Result<Journal> {
-    let identity = Identity::new(name.to_owned(), Default::default(), &[]);
+    let identity = Identity::new(name.to_owned(), Default::default(), Default::default());
     Journal::open(&folder.join(format!("{name}_{JOURNAL_FILE}")), &identity)
 }
 

@@ -90,5 +90,6 @@ fn is_interrupted(study: &dyn AnyStudy, journal: &Path) -> bool {
     let Ok(Some((begun, journal))) = Journal::read(journal) else {
         return false;
     };
-    begun.differences(study.identity()).is_empty() && study.n_pending(Part::All, &journal) > 0
+    let differences = study.identity().differences((&begun, &journal));
+    differences.is_empty() && study.n_pending(Part::All, &journal) > 0
 }

@@ -86,7 +86,8 @@ fn is_done(study: &dyn AnyStudy, folder: &Path, shard: Shard) -> Result<bool> {
         let Some((begun, journal)) = Journal::read(&path)? else {
             continue;
         };
-        begun.check_same(study.identity(), &path.display().to_string())?;
+        let place = path.display().to_string();
+        study.identity().check_same((&begun, &journal), &place)?;
         match &mut known {
             Some(known) => known.take_from(journal)?,
             None => known = Some(journal),

@@ -2,6 +2,46 @@
 
 use crate::mesh::TriangleMesh;
 use sha2::{Digest, Sha256};
+use std::fmt;
+use std::ops::Deref;
+use std::sync::OnceLock;
+
+/// A value that is too large for a key. Its `Debug` form is the SHA-256 of its bytes, computed when it is first asked for.
+#[derive(Clone)]
+pub struct Hashed<T> {
+    value: T,
+    bytes: fn(&T) -> Vec<u8>,
+    hash: OnceLock<String>,
+}
+
+impl<T> Hashed<T> {
+    /// A value with the function that returns its bytes, which are equal for equal values only.
+    pub fn new(value: T, bytes: fn(&T) -> Vec<u8>) -> Self {
+        let hash = OnceLock::new();
+        Self { value, bytes, hash }
+    }
+}
+
+impl<T> Deref for Hashed<T> {
+    type Target = T;
+
+    fn deref(&self) -> &T {
+        &self.value
+    }
+}
+
+impl<T: PartialEq> PartialEq for Hashed<T> {
+    fn eq(&self, other: &Self) -> bool {
+        self.value == other.value
+    }
+}
+
+impl<T> fmt::Debug for Hashed<T> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let hash = || sha256((self.bytes)(&self.value));
+        f.write_str(self.hash.get_or_init(hash))
+    }
+}
 
 /// The hash of bytes or a text, in 64 hexadecimal digits.
 pub fn sha256(bytes: impl AsRef<[u8]>) -> String {
@@ -14,6 +54,15 @@ pub fn short_hash(said: impl AsRef<[u8]>, n_digits: usize) -> String {
     let mut digits = sha256(said);
     digits.truncate(n_digits);
     digits
+}
+
+/// Whole numbers, bit by bit, after their count.
+pub fn bytes_of_counts<'a>(numbers: impl ExactSizeIterator<Item = &'a usize>) -> Vec<u8> {
+    let n = numbers.len();
+    let numbers = std::iter::once(n).chain(numbers.copied());
+    numbers
+        .flat_map(|number| (number as u64).to_le_bytes())
+        .collect()
 }
 
 /// Numbers, bit by bit.

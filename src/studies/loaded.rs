@@ -1,6 +1,6 @@
 //! A study of a kind, for those who do not know which.
 
-use crate::engine::journal::identity::Identity;
+use crate::engine::journal::identity::{Identity, SameStudy};
 use crate::engine::journal::journal_file::Journal;
 use crate::engine::program::PROGRAM;
 use crate::engine::progress::{Progress, Silent};
@@ -21,7 +21,7 @@ use crate::report::study_folder::{files_with, first_found, words_of};
 use crate::studies::any_study::{AnyStudy, Outcome};
 use crate::studies::ceiling::{threads_within, within_memory};
 use crate::studies::source::Source;
-use crate::studies::study::{Facts, Findings, Study, run_items};
+use crate::studies::study::{Facts, Findings, Resumes, Study, run_items};
 use crate::studies::verified::same_rows;
 use crate::table::{File, Table};
 use crate::toml_numbers::with_line;
@@ -29,6 +29,7 @@ use rand::seq::SliceRandom;
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Work items that failed.
 pub(super) const FAILURES: File<ItemFailure> = File::new(FAILURES_FILE, "What failed, and why", "");
@@ -38,7 +39,7 @@ pub struct Loaded<K> {
     pub(super) kind: K,
     facts: Facts,
     identity: Identity,
-    pub(super) items: Vec<WorkItem>,
+    pub(super) items: Arc<[WorkItem]>,
     /// Most bytes to hold.
     memory: Option<u64>,
 }
@@ -54,9 +55,14 @@ impl<K: Study> Loaded<K> {
         threads_within(&kind.scale(), source.memory)?;
         let facts = kind.facts()?;
         let (toml, content) = (facts.toml.clone(), facts.content.clone());
+        let items: Arc<[WorkItem]> = kind.work_items().into();
+        let same = match K::ABOUT.resumes {
+            Resumes::ButFor(keys) => SameStudy::ButFor(keys),
+            Resumes::SharedWork => SameStudy::SharesWork(items.clone()),
+        };
         Ok(Self {
-            identity: Identity::new(toml, content, K::ABOUT.may_change),
-            items: kind.work_items(),
+            identity: Identity::new(toml, content, same),
+            items,
             memory: source.memory,
             facts,
             kind,

@@ -22,7 +22,9 @@ pub mod whole_body;
 pub use crate::studies::any_study::{AnyStudy, Outcome};
 pub use crate::studies::loaded::Loaded;
 pub use crate::studies::source::Source;
-pub use crate::studies::study::{About, AnyFile, Facts, Findings, Study, TableFiles, run_whole};
+pub use crate::studies::study::{
+    About, AnyFile, Facts, Findings, Resumes, Study, TableFiles, run_whole,
+};
 
 use crate::studies::groups::{found_and_cost, grouped};
 

@@ -20,9 +20,17 @@ pub struct About {
     pub table: &'static str,
     /// In words: `a study that …`.
     pub words: &'static str,
-    /// Keys, with all below them, that may change while finished work is kept: they are words, or they say which work there is and
-    /// not what comes of any of it, since each work item goes by all that it depends on.
-    pub may_change: &'static [&'static str],
+    /// Which studies go on with each other's work.
+    pub resumes: Resumes,
+}
+
+/// Which studies of a kind go on with each other's work.
+#[derive(Clone, Copy, Debug)]
+pub enum Resumes {
+    /// Studies that differ at most in these keys, with all below them: words, or keys that tell which work there is and not what comes of any of it.
+    ButFor(&'static [&'static str]),
+    /// Studies that share work items with results: the name of an item is made of all its inputs.
+    SharedWork,
 }
 
 /// What a study's file says, and what that is about.

@@ -524,7 +524,7 @@ fn journals() {
     let identity = Identity::new(
         "seed = 1\n[skin]\npitch_mm = 2.0\n".to_owned(),
         Default::default(),
-        &[],
+        Default::default(),
     );
     let journal = Journal::open(&path, &identity).unwrap();
     journal.keep("cell 0, trial 0", &vec![0.5, 1.5]).unwrap();

@@ -295,6 +295,28 @@ fn a_study_that_has_more_trials_and_values_keeps_its_cells_and_comes_out_as_if_r
 }
 
 #[test]
+fn keys_that_a_cell_does_not_use_keep_its_work_and_others_are_refused() {
+    let case = case();
+    // Trees of another classifier, and an array whose finer pitch changes what is noted of objects, not the objects.
+    let more = STUDY
+        .replace("[\"linear_svm\",", "[\"random_forest\", \"linear_svm\",")
+        .replace("[4.0, 8.0]", "[2.0, 4.0, 8.0]")
+        + "n_trees = 5\n";
+    assert_grows(&case, (&more, 66, 64 * 9 / 4 + 3));
+    for (key, value) in [("scaling", "\"none\""), ("test_fraction", "0.5")] {
+        case.file("other.toml", format!("{STUDY}{key} = {value}\n"));
+        let output = case.run(&["run", "other.toml", "--out", "whole"]);
+        assert_eq!(output.status.code(), Some(2));
+        let error = said(&output);
+        let expected = format!("recognition.{key}: was ");
+        assert!(
+            error.contains(&expected) && error.contains(value),
+            "{error}"
+        );
+    }
+}
+
+#[test]
 fn a_c_more_trains_only_those_again_that_start_from_one_another() {
     let case = case();
     let more = STUDY.to_owned() + "c = [0.1, 1.0]\n";

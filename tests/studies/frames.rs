@@ -334,7 +334,7 @@ fn over_the_folds_each_touch_is_tested_exactly_once() {
     for keys in ["folds = 3", "folds = 3\nkeep_together = \"pose\""] {
         let study = with_recognition(keys);
         let n_rows = study.sweep.labels.len();
-        let divisions: Vec<&[Split]> = study.sweep.splits.chunks(3).collect();
+        let divisions: Vec<_> = study.sweep.splits.chunks(3).collect();
         assert_eq!(divisions.len(), 2);
         for folds in &divisions {
             let mut tested: Vec<usize> = folds.iter().flat_map(|f| f.test.clone()).collect();

@@ -57,7 +57,8 @@ fn tenths_of_mm(metres: f64) -> usize {
 fn sides(split: &str, check: impl Fn(usize, &[&Touch], &[&Touch])) {
     let study = Study::new(&with_split(split));
     let touches: Vec<&Touch> = study.touched.iter().flat_map(|t| &t.touches).collect();
-    for (trial, Split { train, test }) in study.sweep.splits.iter().enumerate() {
+    for (trial, split) in study.sweep.splits.iter().enumerate() {
+        let Split { train, test } = &**split;
         let mut all = [train.clone(), test.clone()].concat();
         all.sort_unstable();
         all.dedup();

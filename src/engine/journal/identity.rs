@@ -1,15 +1,15 @@
 //! What a study's results depend on.
 
+use super::journal_file::Journal;
+use crate::engine::work_items::WorkItem;
 use crate::error::{Error, Result};
 use crate::inputs::toml_value::is_at;
 use crate::toml_text;
 use serde::{Deserialize, Serialize};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
+use std::sync::Arc;
 
 /// Everything that decides the bytes of a study's tables.
-///
-/// Two of them are the same study if they differ at most in keys that may change: axes that only say which work
-/// there is, and words.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Identity {
     /// Program and version.
@@ -20,46 +20,78 @@ pub struct Identity {
     pub study: String,
     /// SHA-256 of what each object is made of, by its name.
     pub objects: BTreeMap<String, String>,
-    /// Keys of the study, with all below them, that may change while it stays the same; unknown of one that was read.
+    /// Which other studies are the same; unknown of an identity that was read.
     #[serde(skip)]
-    may_change: &'static [&'static str],
+    same: SameStudy,
+}
+
+/// Which studies of the same program and objects go on with each other's work.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum SameStudy {
+    /// Studies that differ at most in these keys, with all below them.
+    ButFor(&'static [&'static str]),
+    /// Studies whose journal has a result of these work items. Their names are made of all inputs, so that a study takes no result of another for its own; a
+    /// study that shares no result is refused because its tables would replace all that there are.
+    SharesWork(Arc<[WorkItem]>),
+}
+
+impl Default for SameStudy {
+    fn default() -> Self {
+        Self::ButFor(&[])
+    }
+}
+
+impl SameStudy {
+    /// Whether a study with a journal may differ in a key from this one.
+    fn may_differ(&self, journal: &Journal) -> Box<dyn Fn(&str) -> bool> {
+        match self {
+            Self::ButFor(keys) => Box::new(|key| keys.iter().any(|name| is_at(key, name))),
+            Self::SharesWork(items) => {
+                let known = items.iter().filter_map(|item| {
+                    let key = journal.known_key(&item.key())?;
+                    Some((key, item.is_result))
+                });
+                let known: HashSet<(&str, bool)> = known.collect();
+                let shares = known.iter().any(|(_, is_result)| *is_result);
+                let is_same = shares || known.len() == journal.n_known();
+                Box::new(move |_| is_same)
+            }
+        }
+    }
 }
 
 impl Identity {
-    /// Of a study as it is written out, for this program; some of its keys may change.
-    pub fn new(
-        study: String,
-        objects: BTreeMap<String, String>,
-        may_change: &'static [&'static str],
-    ) -> Self {
+    /// The identity of a study as it is written out, for this program.
+    pub fn new(study: String, objects: BTreeMap<String, String>, same: SameStudy) -> Self {
         Self {
             program: crate::engine::program::PROGRAM.to_owned(),
             source: crate::engine::program::SOURCE.to_owned(),
             study,
             objects,
-            may_change,
+            same,
         }
     }
 
-    /// What another one, of a study that is here, has that this one has not, and the reverse, a line each.
-    pub fn differences(&self, other: &Self) -> Vec<String> {
-        let [ours, theirs] = [self, other].map(|identity| identity.facts(other.may_change));
+    /// Returns the differences between the study that a journal was begun with and this one, a line each.
+    pub fn differences(&self, (begun, journal): (&Self, &Journal)) -> Vec<String> {
+        let may_differ = self.same.may_differ(journal);
+        let [theirs, ours] = [begun, self].map(|identity| identity.facts(&may_differ));
         let mut names: BTreeSet<&String> = ours.keys().chain(theirs.keys()).collect();
         names.retain(|name| ours.get(*name) != theirs.get(*name));
         let words = |value: Option<&String>| value.map_or("nothing".to_owned(), String::clone);
         let line = |name: &String| {
-            let (was, is) = (words(ours.get(name)), words(theirs.get(name)));
+            let (was, is) = (words(theirs.get(name)), words(ours.get(name)));
             format!("{name}: was {was}, is {is}")
         };
         names.into_iter().map(line).collect()
     }
 
-    /// Whether the other is the same study; `place` is where this one stands.
+    /// Checks that this study goes on with a journal; `place` is the journal's.
     ///
     /// # Errors
-    /// It is not; the error says what differs.
-    pub fn check_same(&self, other: &Self, place: &str) -> Result<()> {
-        let differences = self.differences(other);
+    /// If the journal was begun with another study; the error lists the differences.
+    pub fn check_same(&self, of: (&Self, &Journal), place: &str) -> Result<()> {
+        let differences = self.differences(of);
         if differences.is_empty() {
             return Ok(());
         }
@@ -71,13 +103,13 @@ impl Identity {
         ))
     }
 
-    /// All that counts, by name: of the study the values of its keys, but for those that may change.
-    fn facts(&self, may_change: &[&str]) -> BTreeMap<String, String> {
+    /// Returns what the identity consists of, by name: the values of the study's keys, but for those that may differ, the program and the objects.
+    fn facts(&self, may_differ: impl Fn(&str) -> bool) -> BTreeMap<String, String> {
         let mut facts = BTreeMap::new();
         if let Some(table) = toml_text::table(&self.study) {
             add_keys("", &table, &mut facts);
         }
-        facts.retain(|key, _| !may_change.iter().any(|name| is_at(key, name)));
+        facts.retain(|key, _| !may_differ(key));
         facts.insert("program".to_owned(), self.program.clone());
         facts.insert("program's sources".to_owned(), self.source.clone());
         let objects = self.objects.iter();
@@ -108,7 +140,8 @@ mod tests {
             let objects = objects
                 .iter()
                 .map(|(name, hash)| (name.to_string(), hash.to_string()));
-            Identity::new(study.to_owned(), objects.collect(), &["question"])
+            let same = SameStudy::ButFor(&["question"]);
+            Identity::new(study.to_owned(), objects.collect(), same)
         };
         let old = identity(
             "question = \"a\"\nseed = 1\n[skin]\npitch_mm = [1.0, 2.0]\nstiffness_n_per_m = 100.0",
@@ -123,9 +156,10 @@ mod tests {
             "skin.stiffness_n_per_m: was 100.0, is 200.0",
             "skin.stroke_mm: was nothing, is 5.0",
         ];
-        assert_eq!(old.differences(&new), expected);
-        assert!(old.check_same(&old.clone(), "x").is_ok());
-        let said = old.check_same(&new, "results/x").unwrap_err();
+        let journal = Journal::none();
+        assert_eq!(new.differences((&old, journal)), expected);
+        assert!(old.check_same((&old, journal), "x").is_ok());
+        let said = new.check_same((&old, journal), "results/x").unwrap_err();
         assert_eq!(said.exit_code(), 2);
         assert!(said.to_string().contains(expected[0]), "{said}");
     }
@@ -133,13 +167,13 @@ mod tests {
     #[test]
     fn words_and_axes_of_a_study_leave_it_the_same() {
         let identity = |study: &str| {
-            let may_change = &["question", "trials", "skin.pitch_mm", "report"];
-            Identity::new(study.to_owned(), BTreeMap::new(), may_change)
+            let same = SameStudy::ButFor(&["question", "trials", "skin.pitch_mm", "report"]);
+            Identity::new(study.to_owned(), BTreeMap::new(), same)
         };
         let old = identity("question = \"a\"\ntrials = 1\n[skin]\npitch_mm = 2.0");
         let new = identity(
             "question = \"b\"\ntrials = 2\n[skin]\npitch_mm = [1.0, 2.0]\n[report]\nsamples = [\"mug\"]",
         );
-        assert!(old.check_same(&new, "x").is_ok());
+        assert!(new.check_same((&old, Journal::none()), "x").is_ok());
     }
 }

@@ -56,7 +56,7 @@ impl Journal {
         let (mut file, bytes) = read_locked(path)?;
         let (begun, mut journal) = Self::of_bytes(path, &bytes)?;
         if let Some(begun) = &begun {
-            begun.check_same(identity, &path.display().to_string())?;
+            identity.check_same((begun, &journal), &path.display().to_string())?;
         }
         let n_whole = journal.before.n_whole as u64;
         let cut = file
@@ -114,6 +114,17 @@ impl Journal {
     /// What was kept under a key before this journal was opened; `None` too for a record of another kind.
     pub fn get<R: DeserializeOwned>(&self, key: &str) -> Option<R> {
         serde_json::from_str(self.before.records.get(key)?.get()).ok()
+    }
+
+    /// Returns a key as the journal has it; `None` if it has no record of that key.
+    pub(super) fn known_key(&self, key: &str) -> Option<&str> {
+        let found = self.before.records.get_key_value(key);
+        found.map(|(known, _)| &known[..])
+    }
+
+    /// Returns the number of keys that it had when it was opened.
+    pub(super) fn n_known(&self) -> usize {
+        self.before.records.len()
     }
 
     /// Keeps a record: when this returns, the end of the process cannot lose it.

@@ -11,6 +11,6 @@ pub(crate) mod journal_file;
 pub(crate) mod line;
 pub(crate) mod set_aside;
 
-pub use crate::engine::journal::identity::Identity;
+pub use crate::engine::journal::identity::{Identity, SameStudy};
 pub use crate::engine::journal::journal_file::{JOURNAL_FILE, Journal};
 pub use crate::engine::journal::set_aside::{check_set_aside, set_aside};

@@ -6,9 +6,9 @@ use crate::inputs::content_hash::short_hash;
 const CONTENT_DIGITS: usize = 16;
 
 /// A item of a study's work.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WorkItem {
-    /// What it is called; no two items of a study share a name.
+    /// The name. Items of one name have the same rows.
     pub name: String,
     /// What its rows depend on beside its name and the keys of the study that may not change; nothing
     /// where these say all. Its number is no part of either: a study may have more items the next time.
@@ -16,6 +16,8 @@ pub struct WorkItem {
     /// Number of its group, from 0 without gaps: items of a group share what has to be made before them, so that one shard does all of
     /// them as long as there is a group for every shard.
     pub group: usize,
+    /// Whether the rows are results. If not, the item makes what results need, and a study that shares no more than such items is another study.
+    pub is_result: bool,
 }
 
 impl WorkItem {
@@ -25,6 +27,7 @@ impl WorkItem {
             name,
             content: String::new(),
             group,
+            is_result: true,
         }
     }
 

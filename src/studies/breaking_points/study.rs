@@ -21,7 +21,7 @@ use crate::studies::recognition::tables::summary::{grouped_tests, summarise};
 use crate::studies::recognition::tables::tabulate::share_columns;
 use crate::studies::recognition::touches::drawn_touches::draw_touches;
 use crate::studies::source::Source;
-use crate::studies::study::{About, Facts, Findings, Study, TableFiles};
+use crate::studies::study::{About, Facts, Findings, Resumes, Study, TableFiles};
 use crate::studies::{found_and_cost, grouped};
 use crate::table::{File, Table};
 use rayon::prelude::*;
@@ -112,7 +112,7 @@ impl Study for BreakingPointsStudy {
     const ABOUT: About = About {
         table: "breaking_points",
         words: "a study of where recognition breaks",
-        may_change: &["question", "expected", "breaking_points"],
+        resumes: Resumes::ButFor(&["question", "expected", "breaking_points"]),
     };
     const TABLES: TableFiles = TableFiles::always(&[&ACCURACY, &SUMMARY, &BREAKS, &TIMING]);
 

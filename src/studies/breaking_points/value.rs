@@ -3,6 +3,7 @@
 use crate::engine::progress::Silent;
 use crate::error::{Error, Result};
 use crate::inputs::objects_spec::ObjectsSpec;
+use crate::learning::classifiers::ClassifierKind;
 use crate::objects::Object;
 use crate::random::Seed;
 use crate::studies::breaking_points::plan::{PlannedValue, PlannedWay};
@@ -14,9 +15,9 @@ use crate::studies::recognition::measurements::measurement::{
     Measurements, SensedBy, measure_group,
 };
 use crate::studies::recognition::plan::plan::Plan;
-use crate::studies::recognition::rows::cell::Cell;
 use crate::studies::recognition::sweep::sweep::Sweep;
 use crate::studies::recognition::touches::drawn_touches::{TouchedObject, draw_touches};
+use crate::studies::recognition::training::evaluation_inputs::FamilyInputs;
 use crate::studies::recognition::training::trial::{Evaluation, Trial};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -56,7 +57,8 @@ impl<'a> World<'a> {
             &self.frames,
         );
         let n_measurements = group.projected()[0];
-        let inputs = group.inputs(self.plan, &self.sweep);
+        let inputs = group.inputs(self.plan);
+        let trial = inputs.trial(&self.sweep, trial);
         measure_group(&inputs, touches, trial, (n_measurements, sensed))
     }
 
@@ -93,7 +95,11 @@ pub(super) fn evaluate(
     if let Some(tested) = &tested {
         learned.check_alike(tested)?;
     }
-    let families: Vec<&[Cell]> = learned.sweep.groups[0].families().collect();
+    let (plan, sweep) = (learned.plan, &learned.sweep);
+    let families = sweep.groups[0].families();
+    let families: Vec<(ClassifierKind, FamilyInputs)> = families
+        .map(|cells| (cells[0].classifier, FamilyInputs::new(plan, sweep, cells)))
+        .collect();
     // Of each classifier, trial by trial.
     let mut found: Vec<Vec<Evaluation>> = vec![Vec::new(); families.len()];
     for number in 0..value.learned.spec.trials {
@@ -102,25 +108,23 @@ pub(super) fn evaluate(
         let of_tested = of_tested.map(|world| world.measure(number, Some(&measurements.sensed)));
         let of_tested = of_tested.transpose()?;
         let trial = Trial {
-            plan: learned.plan,
-            sweep: &learned.sweep,
+            inputs: sweep.trial(plan, number)?,
             measurements: &measurements,
             tested: of_tested.as_ref().unwrap_or(&measurements),
-            number,
         };
         let pairs = families.par_iter().zip(&mut found);
-        pairs.try_for_each(|(family, found)| -> Result<()> {
+        pairs.try_for_each(|((_, family), found)| -> Result<()> {
             found.extend(trial.evaluate(family)?);
             Ok(())
         })?;
     }
     let (mut rows, mut groups) = (Vec::new(), Vec::new());
-    for (family, found) in families.iter().zip(found) {
+    for ((classifier, _), found) in families.iter().zip(found) {
         let cell = WayCell {
             way: way.name.clone(),
             touches: way.touches,
             value: value.value,
-            classifier: family[0].classifier,
+            classifier: *classifier,
         };
         for evaluation in found {
             rows.push((cell.clone(), evaluation.score, evaluation.time));

@@ -16,7 +16,7 @@ use crate::studies::object_detail::spec::ObjectDetailStudySpec;
 use crate::studies::object_detail::summary::{costs, summary};
 use crate::studies::object_detail::variants::levels;
 use crate::studies::source::Source;
-use crate::studies::study::{About, Facts, Findings, Study, TableFiles};
+use crate::studies::study::{About, Facts, Findings, Resumes, Study, TableFiles};
 use crate::table::{File, Table};
 use rayon::prelude::*;
 use std::path::PathBuf;
@@ -98,11 +98,11 @@ impl Study for ObjectDetailStudy {
     const ABOUT: About = About {
         table: "object_detail",
         words: "a study of how detailed objects are",
-        may_change: &[
+        resumes: Resumes::ButFor(&[
             "question",
             "expected",
             "object_detail.recognition.classifiers",
-        ],
+        ]),
     };
     const TABLES: TableFiles = TableFiles::Listed {
         always: &[&DETAIL, &SUMMARY, &TIMING, &COST],

@@ -21,7 +21,7 @@ use crate::studies::reconstruction::score::pareto;
 use crate::studies::reconstruction::spec::ReconstructionStudySpec;
 use crate::studies::reconstruction::touches::Touches;
 use crate::studies::source::Source;
-use crate::studies::study::{About, Facts, Findings, Study, TableFiles};
+use crate::studies::study::{About, Facts, Findings, Resumes, Study, TableFiles};
 use crate::table::{File, Table};
 use std::collections::BTreeMap;
 
@@ -59,7 +59,7 @@ impl Study for ReconstructionStudy {
     const ABOUT: About = About {
         table: "reconstruction",
         words: "a study that reconstructs frames",
-        may_change: &[
+        resumes: Resumes::ButFor(&[
             "question",
             "expected",
             "signal.noise_std_full_scale",
@@ -70,7 +70,7 @@ impl Study for ReconstructionStudy {
             "sensing.measurements",
             "reconstruction.solver",
             "reconstruction.dictionary",
-        ],
+        ]),
     };
     const TABLES: TableFiles = TableFiles::always(&[&CELLS, &ENSEMBLES, &TIMING, &PARETO]);
 

@@ -13,7 +13,7 @@ use crate::studies::stability::rows::{
     Joints, Outcome, StabilityCell, StabilityRow, StabilityScore, StabilitySummary, StabilityTime,
 };
 use crate::studies::stability::spec::{StabilityScene, StabilityStudySpec};
-use crate::studies::study::{About, Facts, Findings, Study, TableFiles};
+use crate::studies::study::{About, Facts, Findings, Resumes, Study, TableFiles};
 use crate::studies::{found_and_cost, grouped};
 use crate::table::{File, Table};
 use rayon::prelude::*;
@@ -41,7 +41,7 @@ impl Study for StabilityPlan {
     const ABOUT: About = About {
         table: "stability",
         words: "a study of where contact methods break",
-        may_change: &["question", "expected", "stability.parts"],
+        resumes: Resumes::ButFor(&["question", "expected", "stability.parts"]),
     };
     const TABLES: TableFiles = TableFiles::always(&[&CELLS, &SUMMARY, &TIMING, &JOINTS]);
 

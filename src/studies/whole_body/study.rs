@@ -11,7 +11,7 @@ use crate::inputs::units::MM;
 use crate::objects::SphereUnion;
 use crate::report::study_content::Beyond;
 use crate::studies::source::Source;
-use crate::studies::study::{About, Facts, Findings, Study, TableFiles};
+use crate::studies::study::{About, Facts, Findings, Resumes, Study, TableFiles};
 use crate::studies::whole_body::drive::{Drive, Posture};
 use crate::studies::whole_body::ladders::{Rung, climb, rungs};
 use crate::studies::whole_body::objects::of_scene;
@@ -50,7 +50,7 @@ impl Study for WholeBodyPlan {
     const ABOUT: About = About {
         table: "whole_body",
         words: "a study of a whole body of skin",
-        may_change: &[
+        resumes: Resumes::ButFor(&[
             "question",
             "expected",
             "whole_body.scenes",
@@ -58,7 +58,7 @@ impl Study for WholeBodyPlan {
             "whole_body.ladders.touched_at_taxels",
             "whole_body.ladders.touched",
             "whole_body.ladders.spheres",
-        ],
+        ]),
     };
     const TABLES: TableFiles =
         TableFiles::always(&[&CASES, &RECOGNITION, &SENSED, &TIMING, &STEPS]);

@@ -25,6 +25,7 @@ use crate::studies::recognition::plan::group::Group;
 use crate::studies::recognition::rows::cell::Cell;
 use crate::studies::recognition::spec::study::RecognitionSpec;
 use crate::studies::recognition::sweep::sweep::{StudyPart, Sweep};
+use crate::studies::recognition::training::evaluation_inputs::FamilyInputs;
 use crate::studies::recognition::training::trial::learned_rows;
 use bubbletouch_svm::dataset::{Dataset, dataset, rows};
 use bubbletouch_svm::split::Split;
@@ -87,7 +88,9 @@ impl StudyPart {
     ) -> Result<FeatureSet> {
         let (plan, sweep) = (&self.plan, &self.sweep);
         let (group, cell) = find(sweep, cell)?;
-        let split = sweep.split(plan, cell, trial)?;
+        let inputs = sweep.trial(plan, trial)?;
+        let family = FamilyInputs::new(plan, sweep, std::slice::from_ref(cell));
+        let split = inputs.split(&family)?;
         // As the run does it: nested measurements are the leading ones of the largest m.
         let n_projected = match group.ensemble.is_prefix_nested() {
             true => group.projected()[0],
@@ -95,8 +98,9 @@ impl StudyPart {
         };
         let of = (group, n_projected);
         let measured = self.measured(of, trial, ("touch", progress))?;
-        let labels = sweep.learned_labels(plan, (cell, trial), &split)?;
-        let (trained, trained_labels) = learned_rows(&measured, cell, &split.train, &labels);
+        let labels = inputs.learned_labels(&family, &split)?;
+        let (trained, trained_labels) =
+            learned_rows(&measured, &family.rows, &split.train, &labels);
         // All readings of all touches, then copies of those that train.
         let touches: Vec<usize> = (0..labels.len()).collect();
         let read = measured.readings(&touches);
@@ -114,7 +118,7 @@ impl StudyPart {
             classes: (0..n_classes).map(KeyValue::Integer).collect(),
             groups: groups.map(|groups| groups.select(Axis(0), &touched)),
             data: dataset(
-                measured.features(cell, &rows),
+                measured.features(&family.rows, &rows),
                 of_read.chain(of_copies).collect(),
             )?,
             split: Split {
@@ -148,7 +152,8 @@ impl StudyPart {
         frames: &Frames,
         (trial, n_measurements): (usize, usize),
     ) -> Result<Measurements> {
-        let inputs = group.inputs(&self.plan, &self.sweep);
+        let inputs = group.inputs(&self.plan);
+        let trial = inputs.trial(&self.sweep, trial);
         let touches = (self.touched.as_ref() as _, frames);
         measure_group(&inputs, touches, trial, (n_measurements, None))
     }

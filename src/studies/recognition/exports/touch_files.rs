@@ -104,8 +104,8 @@ impl ReadFrames {
         (cell, trial): (usize, usize),
         progress: &dyn Progress,
     ) -> Result<Self> {
-        let (group, cell) = find(&part.sweep, cell)?;
-        part.sweep.split(&part.plan, cell, trial)?;
+        let (group, _) = find(&part.sweep, cell)?;
+        part.sweep.trial(&part.plan, trial)?;
         // What the identity measures are the frames themselves.
         let identity = Group {
             ensemble: Ensemble::Identity,

@@ -9,12 +9,14 @@ use crate::studies::recognition::frames::kept::Frames;
 use crate::studies::recognition::frames::reading::{Reading, TouchToRead, measure};
 use crate::studies::recognition::frames::touch_set::TouchSet;
 use crate::studies::recognition::measurements::images::Images;
-use crate::studies::recognition::measurements::measurement_inputs::MeasurementInputs;
+use crate::studies::recognition::measurements::measurement_inputs::{
+    MeasuredTrial, MeasurementInputs,
+};
 use crate::studies::recognition::measurements::tilted_copies::TiltedCopies;
 use crate::studies::recognition::plan::taxel_array::skin;
 use crate::studies::recognition::plan::trials::projection_of;
-use crate::studies::recognition::rows::cell::Cell;
 use crate::studies::recognition::rows::image_features::FeaturesOfImages;
+use crate::studies::recognition::rows::row_inputs::RowInputs;
 use crate::studies::recognition::sweep::learned_frames::learned_touches;
 use ndarray::{Array1, Array2, ArrayViewMut2, s};
 use std::sync::Arc;
@@ -59,40 +61,40 @@ impl Measurements {
         numbers.collect()
     }
 
-    /// What a cell learns from these touches (by number): n × F·m, the leading m measurements of each frame, made into
-    /// the cell's features; or what the cell makes of them over time.
-    pub fn features(&self, cell: &Cell, touches: &[usize]) -> Array2<f64> {
-        let mut rows = Array2::zeros((touches.len(), cell.n_features()));
-        let Some(over_time) = cell.over_time else {
-            self.read_into(cell, touches, rows.view_mut());
+    /// Returns the features of these touches (by number), n × F·m: of the leading m measurements of each frame, or what is made of these over
+    /// time.
+    pub fn features(&self, inputs: &RowInputs, touches: &[usize]) -> Array2<f64> {
+        let mut rows = Array2::zeros((touches.len(), inputs.n_features()));
+        let Some(over_time) = inputs.over_time else {
+            self.read_into(inputs, touches, rows.view_mut());
             return rows;
         };
         // One touch at a time, since all frames of all touches may be many.
-        let m = cell.n_frame_features();
+        let m = inputs.n_frame_features();
         let mut frames = Array2::zeros((1, self.n_frames * m));
         for (row, touch) in rows.outer_iter_mut().zip(touches) {
-            self.read_into(cell, &[*touch], frames.view_mut());
+            self.read_into(inputs, &[*touch], frames.view_mut());
             let frames = frames.view().into_shape_with_order((self.n_frames, m));
             over_time.write(frames.expect("F frames of m"), row);
         }
         rows
     }
 
-    /// What a cell learns from beside these training touches: the numbers of their tilted copies, which follow those of all readings. The
-    /// first copy of each touch, then the second of each.
-    pub fn copies(&self, cell: &Cell, train: &[usize]) -> Vec<usize> {
-        let (Some(copies), Some(n_copies)) = (&self.copies, cell.tilted_copies) else {
+    /// Returns the numbers of the tilted copies of these training touches, which follow those of all readings. The first copy of each touch comes
+    /// first, then the second of each.
+    pub fn copies(&self, inputs: &RowInputs, train: &[usize]) -> Vec<usize> {
+        let Some(copies) = &self.copies else {
             return Vec::new();
         };
         let n_read = self.values.nrows() / self.n_frames.max(1);
-        let rows = copies.rows(train, n_copies);
+        let rows = copies.rows(train, inputs.n_copies);
         rows.map(|row| n_read + row).collect()
     }
 
-    /// All frames of some touches one after the other, as the cell's kind of features: n × F·m.
-    fn read_into(&self, cell: &Cell, touches: &[usize], mut rows: ArrayViewMut2<f64>) {
-        let m = cell.measurements;
-        if let Some(wanted) = cell.of_images() {
+    /// Writes the features of all frames of some touches, one after the other: n × F·m.
+    fn read_into(&self, inputs: &RowInputs, touches: &[usize], mut rows: ArrayViewMut2<f64>) {
+        let m = inputs.measurements;
+        if let Some(wanted) = inputs.of_images() {
             let mut made = self.of_images.iter();
             let made = made.find(|(known, _)| *known == wanted);
             let (_, made) = made.expect("features of all cells of the group");
@@ -108,7 +110,7 @@ impl Measurements {
             }
         }
         let of_ones = self.of_ones.slice(s![..m]);
-        cell.features.apply(rows, of_ones);
+        inputs.features.apply(rows, of_ones);
     }
 }
 
@@ -120,19 +122,19 @@ impl Measurements {
 pub fn measure_group(
     inputs: &MeasurementInputs,
     (touched, frames): (&dyn TouchSet, &Frames),
-    trial: usize,
+    trial: MeasuredTrial,
     (n_measurements, sensed): (usize, Option<&Arc<SensedBy>>),
 ) -> Result<Measurements> {
     let array = inputs.array;
     let seed = Seed::new(inputs.seed);
-    let skins = skins(inputs, trial as u64);
+    let skins = skins(inputs, trial.number as u64);
     let chains = |skin| array.chains(skin, |skin| inputs.signal.steps(skin));
     let chains = skins.iter().map(chains).collect::<Result<Vec<_>>>()?;
-    let signal = seed.named("signal").numbered(trial as u64);
+    let signal = seed.named("signal").numbered(trial.number as u64);
     let n_frames = frames.facts.n_frames;
     let mut touches = touched.to_read(inputs.speed, n_frames, &signal);
     if skins.len() > 1 {
-        for &touch in &inputs.split(trial).test {
+        for &touch in &trial.split().test {
             touches[touch].skin = skins.len() - 1;
         }
     }
@@ -171,8 +173,8 @@ pub fn measure_group(
     let of_images = match &sensed.images {
         None => Vec::new(),
         Some(images) => {
-            let train = (&inputs.split(trial).train[..], touched.classes().len());
-            copies = tilted_copies(inputs, train, chains[0][0].full_scale(), trial);
+            let train = (&trial.split().train[..], touched.classes().len());
+            copies = tilted_copies(inputs, train, chains[0][0].full_scale(), trial.number);
             let mut wanted = inputs.of_images.clone();
             wanted.retain(|one| images.is_of(one.measurements));
             let made = images.features((values.view(), n_frames), &wanted, copies.as_ref());
@@ -212,12 +214,12 @@ fn tilted_copies(
 fn sensed_by(
     inputs: &MeasurementInputs,
     (whole, frames, touches): (Reading, &Frames, &[TouchToRead]),
-    trial: usize,
+    trial: MeasuredTrial,
     n_measurements: usize,
 ) -> Result<SensedBy> {
     let array = inputs.array;
     let shape = array.frame_shape();
-    let drawn = projection_of(inputs.projections_per_split, trial) as u64;
+    let drawn = projection_of(inputs.projections_per_split, trial.number) as u64;
     let drawn = Seed::new(inputs.seed).named("projection").numbered(drawn);
     if !inputs.learns() {
         let projection = Projection::new(inputs.ensemble, shape, n_measurements, &drawn)?;
@@ -228,14 +230,14 @@ fn sensed_by(
     }
     // Of whole touches, so many that their frames are enough; the split has one of each object in turn.
     let n_touches = learned_touches(frames.facts.n_frames);
-    let learned = inputs.split(trial).train.iter().take(n_touches);
+    let learned = trial.split().train.iter().take(n_touches);
     let learned: Vec<TouchToRead> = learned.map(|&touch| touches[touch]).collect();
     let (training, _) = measure(whole, frames, &learned)?;
     let learn = |m| Projection::learned(inputs.ensemble, shape, m, (training.view(), &drawn));
     let projection = learn(n_measurements)?;
     let mut images = None;
     if !inputs.of_images.is_empty() {
-        let untouched = untouched(whole, trial, inputs.seed);
+        let untouched = untouched(whole, trial.number, inputs.seed);
         let readings = Readings {
             training: training.view(),
             untouched: untouched.view(),

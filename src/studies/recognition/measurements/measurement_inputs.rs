@@ -4,17 +4,18 @@
 //! whose inputs have the same [key](MeasurementInputs::key) share their measurements. The key is made of the derived `Debug` form of all fields: a field
 //! that is added is part of the key.
 
-use crate::inputs::sensor_errors::TestedOn;
+use crate::inputs::content_hash::Hashed;
+use crate::inputs::sensor_errors::{Strengths, TestedOn, all_strengths};
 use crate::random::Seed;
 use crate::sensing::Ensemble;
-use crate::signal::{Noise, NoiseUnit, SignalStep};
+use crate::signal::{Noise, NoiseUnit, SignalStep, Strength};
 use crate::studies::recognition::plan::group::Group;
 use crate::studies::recognition::plan::plan::Plan;
 use crate::studies::recognition::plan::signal::Condition;
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
+use crate::studies::recognition::rows::cell::Cell;
 use crate::studies::recognition::rows::image_features::FeaturesOfImages;
 use crate::studies::recognition::spec::signal::StepSpec;
-use crate::studies::recognition::sweep::splits::Splits;
 use crate::studies::recognition::sweep::sweep::Sweep;
 use bubbletouch_svm::split::Split;
 
@@ -30,7 +31,7 @@ pub struct MeasurementInputs<'a> {
     /// Approach speed at the moment of reading, m/s.
     pub speed: f64,
     /// What happens to the signal.
-    pub signal: SignalInputs<'a>,
+    pub signal: SignalInputs,
     /// The skin that test touches are made with.
     pub tested_on: TestedOn,
     /// How measurements are made.
@@ -43,17 +44,24 @@ pub struct MeasurementInputs<'a> {
     pub of_images: Vec<FeaturesOfImages>,
     /// Tilted copies of training touches, if any.
     pub copies: Option<CopyInputs>,
-    /// The splits of all trials, if the measurements depend on them: where something is learned from training touches, or test touches are made with
-    /// another skin.
-    pub splits: Option<Splits<'a>>,
 }
 
-/// Inputs of the steps of a signal.
+/// Inputs of the measurements that belong to one trial.
 #[derive(Clone, Copy, Debug)]
-pub struct SignalInputs<'a> {
+pub struct MeasuredTrial<'a> {
+    /// Number of the trial.
+    pub number: usize,
+    /// The trial's split, if the measurements depend on it: where something is learned from training touches, or test touches are made with
+    /// another skin.
+    pub split: Option<&'a Hashed<Split>>,
+}
+
+/// Inputs of the steps of a signal. A step without strength changes no reading and is none of them.
+#[derive(Clone, Debug)]
+pub struct SignalInputs {
     /// The steps, in their order.
-    pub steps: &'a [StepSpec],
-    /// Unit of the noise.
+    pub steps: Vec<StepSpec>,
+    /// Unit of the noise; the full scale if there is no noise.
     pub noise_unit: NoiseUnit,
     /// How strong each step is.
     pub condition: Condition,
@@ -76,13 +84,11 @@ impl MeasurementInputs<'_> {
         format!("{self:?}")
     }
 
-    /// Returns the split of a trial.
-    ///
-    /// # Panics
-    /// If the inputs have no splits, because nothing that is measured depends on them.
-    pub fn split(&self, trial: usize) -> &Split {
-        let splits = self.splits.as_ref();
-        &splits.expect("measurements that depend on splits").all[trial]
+    /// Returns the inputs that belong to a trial of a sweep.
+    pub fn trial<'s>(&self, sweep: &'s Sweep, number: usize) -> MeasuredTrial<'s> {
+        let depends = self.learns() || self.tested_on != TestedOn::SameSkin;
+        let split = depends.then(|| &sweep.splits[number]);
+        MeasuredTrial { number, split }
     }
 
     /// Whether anything is learned from training touches before they are measured.
@@ -96,6 +102,16 @@ impl MeasurementInputs<'_> {
     }
 }
 
+impl MeasuredTrial<'_> {
+    /// Returns the split.
+    ///
+    /// # Panics
+    /// If there is none, because nothing that is measured depends on it.
+    pub fn split(&self) -> &Split {
+        self.split.expect("measurements that depend on a split")
+    }
+}
+
 fn counts(of_images: &[FeaturesOfImages]) -> Vec<usize> {
     let mut counts: Vec<usize> = of_images.iter().map(|one| one.measurements).collect();
     counts.sort_unstable();
@@ -103,7 +119,7 @@ fn counts(of_images: &[FeaturesOfImages]) -> Vec<usize> {
     counts
 }
 
-impl SignalInputs<'_> {
+impl SignalInputs {
     /// Returns the steps of a skin.
     pub fn steps(&self, skin: &Seed) -> Vec<SignalStep> {
         let condition = &self.condition;
@@ -124,17 +140,47 @@ impl SignalInputs<'_> {
 
 impl Group {
     /// Returns the inputs of the group's signal.
-    pub fn signal<'a>(&self, plan: &'a Plan) -> SignalInputs<'a> {
+    pub fn signal(&self, plan: &Plan) -> SignalInputs {
+        let condition = self.condition;
+        let is_active = |step: &&StepSpec| match step {
+            StepSpec::Force => true,
+            StepSpec::Noise => condition.noise != 0.0,
+            StepSpec::Smoothing => condition.smoothing != 0.0,
+            StepSpec::Error(error) => condition.strengths.present().any(|(own, ..)| own == *error),
+        };
+        // A strength that the study does not have is none.
+        let with_zero = |strengths: Strengths, (_, strength): (_, &Strength)| {
+            let value = strengths.of(strength.key).unwrap_or(0.0);
+            strengths.with(strength.key, Some(value))
+        };
+        let steps = plan.spec.signal.steps.iter();
         SignalInputs {
-            steps: &plan.spec.signal.steps,
-            noise_unit: plan.noise_unit,
+            steps: steps.filter(is_active).copied().collect(),
+            noise_unit: match condition.noise == 0.0 {
+                true => NoiseUnit::FullScale,
+                false => plan.noise_unit,
+            },
+            condition: Condition {
+                strengths: all_strengths().fold(condition.strengths, with_zero),
+                ..condition
+            },
+        }
+    }
+
+    /// Returns the group with some of its cells alone.
+    pub fn with_cells(&self, cells: &[Cell]) -> Self {
+        Self {
+            array: self.array,
+            frames: self.frames,
             condition: self.condition,
+            tested_on: self.tested_on,
+            ensemble: self.ensemble,
+            cells: cells.to_vec(),
         }
     }
 
     /// Returns the inputs of the group's measurements.
-    pub fn inputs<'a>(&self, plan: &'a Plan, sweep: &'a Sweep) -> MeasurementInputs<'a> {
-        let depends = self.learns() || self.tested_on != TestedOn::SameSkin;
+    pub fn inputs<'a>(&self, plan: &'a Plan) -> MeasurementInputs<'a> {
         MeasurementInputs {
             array: &plan.arrays[self.array],
             seed: plan.spec.seed,
@@ -147,7 +193,6 @@ impl Group {
             n_readings: self.n_readings(plan),
             of_images: self.features_of_images(),
             copies: self.copies(plan),
-            splits: depends.then(|| sweep.drawn_splits()),
         }
     }
 

@@ -40,11 +40,6 @@ impl Group {
         self.cells.chunk_by(move |a, b| family(a) == family(b))
     }
 
-    /// The cells of a family by fit: those with the same C, of which the first speaks for all.
-    pub fn fits(family: &[Cell]) -> impl Iterator<Item = &[Cell]> {
-        family.chunk_by(|a, b| a.c == b.c)
-    }
-
     /// How many times each touch is read.
     pub fn n_readings(&self, plan: &Plan) -> usize {
         let asked = plan.spec.recognition.training_readings.unwrap_or(1);

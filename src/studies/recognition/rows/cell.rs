@@ -8,6 +8,7 @@ use crate::learning::evaluation::next_touch::NextTouch;
 use crate::sensing::Ensemble;
 use crate::signal::NoiseUnit;
 use crate::studies::recognition::rows::image_features::FeaturesOfImages;
+use crate::studies::recognition::rows::row_inputs::RowInputs;
 use crate::table::{Column, Columns, Role, Scale};
 use bubbletouch_sim::features::Features;
 use serde::ser::SerializeStruct;
@@ -166,26 +167,28 @@ impl Columns for Cell {
 }
 
 impl Cell {
-    /// Numbers that each of its frames is told by.
-    pub fn n_frame_features(&self) -> usize {
-        self.features.n_values(self.measurements, self.image_shape)
+    /// Returns the inputs of its features.
+    pub fn rows(&self) -> RowInputs {
+        let is_of_images = self.features.of_image().is_some();
+        RowInputs {
+            image_shape: self.image_shape,
+            measurements: self.measurements,
+            frames: self.frames,
+            over_time: self.over_time,
+            features: self.features,
+            foremost_full_scale: self.foremost_full_scale.filter(|_| is_of_images),
+            n_copies: self.tilted_copies.unwrap_or(0),
+        }
     }
 
     /// What it learns from, where that is made of images.
     pub(crate) fn of_images(&self) -> Option<FeaturesOfImages> {
-        Some(FeaturesOfImages {
-            join: self.features.of_image()?,
-            foremost: self.foremost_full_scale,
-            measurements: self.measurements,
-        })
+        self.rows().of_images()
     }
 
     /// Numbers that a touch is told by.
     pub fn n_features(&self) -> usize {
-        let (n_frames, m) = (self.frames, self.n_frame_features());
-        let all = n_frames * m;
-        self.over_time
-            .map_or(all, |kind| kind.n_features(n_frames, m))
+        self.rows().n_features()
     }
 }
 

@@ -3,4 +3,5 @@
 pub mod cell;
 pub mod conditions;
 pub mod image_features;
+pub mod row_inputs;
 pub mod table_rows;

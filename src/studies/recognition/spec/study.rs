@@ -72,19 +72,12 @@ pub struct StudySpec {
     pub axes: StudyAxes,
 }
 
-/// Words, and keys that are axes where they stand: what may change while finished work is kept, since each work item goes by all that it
-/// depends on. Of `[signal]` all keys but the steps are axes.
-pub(crate) const MAY_CHANGE: &[&str] = &[
-    "question",
-    "expected",
-    "report",
-    "axes",
-    "trials",
+/// Keys that are axes where they stand: they take a list there, and are put there from `[axes]`. Of `[signal]` all keys but the steps are axes.
+const AXES_IN_PLACE: &[&str] = &[
     "skin.pitch_mm",
     "skin.size_mm",
     "skin.taxels",
     "touches.frames",
-    "signal",
     "sensing.ensemble",
     "sensing.ratio",
     "sensing.measurements",
@@ -105,7 +98,7 @@ pub(crate) const MAY_CHANGE: &[&str] = &[
 const AXIS_RULES: AxisRules = AxisRules {
     in_place: |key| match key.strip_prefix("signal.") {
         Some(key) => !matches!(key, "steps" | "combine"),
-        None => key.contains('.') && MAY_CHANGE.contains(&key),
+        None => AXES_IN_PLACE.contains(&key),
     },
     refused: &[
         "question",
@@ -290,7 +283,7 @@ impl StudySpec {
         };
         let table = toml::Table::try_from(without_seed);
         let table = table.expect("every other field of a study has a TOML form");
-        let keys = MAY_CHANGE.iter().filter(|key| key.contains('.'));
+        let keys = AXES_IN_PLACE.iter();
         keys.chain(&["signal.tested_on"]).map(move |key| {
             let values = value_at(&table, key).and_then(toml::Value::as_array);
             (*key, values.map_or(1, Vec::len))

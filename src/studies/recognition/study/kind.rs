@@ -12,10 +12,10 @@ use crate::studies::recognition::spec::study::StudySpec;
 use crate::studies::recognition::study::load::load_study;
 use crate::studies::recognition::study::rows::RecognitionRows;
 use crate::studies::recognition::study::study::{Family, RecognitionStudy};
-use crate::studies::recognition::sweep::cell_content::family_name;
 use crate::studies::recognition::sweep::sweep::StudyPart;
+use crate::studies::recognition::training::evaluation_inputs::{FamilyInputs, family_name};
 use crate::studies::source::Source;
-use crate::studies::study::{About, Facts, Findings, Study, TableFiles};
+use crate::studies::study::{About, Facts, Findings, Resumes, Study, TableFiles};
 use crate::table::{ChartSpec, Table};
 
 /// Where the intervals of accuracies stand.
@@ -62,7 +62,7 @@ impl Study for RecognitionStudy {
     const ABOUT: About = About {
         table: "recognition",
         words: "a study that recognises objects",
-        may_change: crate::studies::recognition::spec::study::MAY_CHANGE,
+        resumes: Resumes::SharedWork,
     };
 
     const TABLES: TableFiles = TableFiles::Own {
@@ -77,7 +77,10 @@ impl Study for RecognitionStudy {
 
     fn facts(&self) -> Result<Facts> {
         let spec = &self.first().plan.spec;
-        let is_grouped = |part: &StudyPart| part.sweep.test_groups(&part.plan, 0, &[]).is_some();
+        let is_grouped = |part: &StudyPart| {
+            let trial = part.sweep.trial(&part.plan, 0);
+            trial.is_ok_and(|trial| trial.test_groups(&[]).is_some())
+        };
         let accuracies = match self.parts().iter().any(is_grouped) {
             true => BY_GROUPS,
             false if spec.recognition.folds.is_some() => BY_FOLDS,
@@ -96,21 +99,38 @@ impl Study for RecognitionStudy {
     /// Trial by trial all families, group by group; then the touches of each array.
     fn work_items(&self) -> Vec<WorkItem> {
         let families = 0..self.families.len();
-        let of_family = |family| {
+        let of_family = |family: usize| {
             let (part, cells) = self.family(family);
-            family_name(&part.plan, cells)
+            let number = self.families[family].group;
+            let touches = &self.touch_sets[self.groups[number].touches].content;
+            let of = (self.group(number).1, &touches[..]);
+            let inputs = FamilyInputs::new(&part.plan, &part.sweep, cells);
+            family_name(&part.plan, of, &inputs, cells)
         };
         let families: Vec<String> = families.map(of_family).collect();
         let mut items = Vec::with_capacity(self.n_trials() * families.len());
         for trial in 0..self.n_trials() {
+            let of_part = |StudyPart { plan, sweep, .. }: &StudyPart| {
+                let inputs = sweep.trial(plan, trial);
+                inputs.expect("a trial of the study").name()
+            };
+            let trials: Vec<String> = self.parts().iter().map(of_part).collect();
             for (family, name) in self.families.iter().zip(&families) {
                 let group = trial * self.groups.len() + family.group;
-                let name = format!("{name}, trial {trial}");
-                items.push(WorkItem::new(name, group));
+                let trial = &trials[self.groups[family.group].part];
+                items.push(WorkItem::new(format!("{name}, {trial}"), group));
             }
         }
-        for touches in &self.touch_sets {
-            items.push(WorkItem::new(touches.name.clone(), touches.group));
+        for (number, touches) in self.touch_sets.iter().enumerate() {
+            let (_, array, n_frames) = self.on(number);
+            let ((ny, nx), pitch) = (array.shape(), array.pitch());
+            let content = &touches.content;
+            let name =
+                format!("touches of {n_frames} frames on {nx}x{ny} taxels at {pitch} m, {content}");
+            items.push(WorkItem {
+                is_result: false,
+                ..WorkItem::new(name, touches.group)
+            });
         }
         items
     }

@@ -7,6 +7,7 @@ use crate::studies::recognition::frames::kept::Frames;
 use crate::studies::recognition::measurements::measurement::Measurements;
 use crate::studies::recognition::study::rows::{CellRow, RecognitionRows, TouchRow};
 use crate::studies::recognition::study::study::{RecognitionStudy, in_frames};
+use crate::studies::recognition::training::evaluation_inputs::FamilyInputs;
 use crate::studies::recognition::training::trial::Trial;
 use rayon::prelude::*;
 use std::cmp::Reverse;
@@ -181,13 +182,12 @@ impl Job<'_> {
     fn evaluate(&self, family: usize, measurements: &Measurements) -> Result<Vec<CellRow>> {
         let (part, cells) = self.study.family(family);
         let trial = Trial {
-            plan: &part.plan,
-            sweep: &part.sweep,
+            inputs: part.sweep.trial(&part.plan, self.trial)?,
             measurements,
             tested: measurements,
-            number: self.trial,
         };
-        let evaluations = trial.evaluate(cells)?.into_iter();
+        let family = FamilyInputs::new(&part.plan, &part.sweep, cells);
+        let evaluations = trial.evaluate(&family)?.into_iter();
         let rows = evaluations.map(|evaluation| CellRow {
             at: (0, 0),
             evaluation,

@@ -47,8 +47,8 @@ pub struct RecognitionStudy {
 pub(crate) struct Touches {
     /// The first group that reads them.
     pub group: usize,
-    /// What they are called as a work item: the same for the same touches of the same study.
-    pub name: String,
+    /// Hash of all that they are made of, beside the files of objects.
+    pub content: String,
 }
 
 /// A group of a part.
@@ -124,17 +124,21 @@ impl RecognitionStudy {
         let mut known_touches: HashMap<String, usize> = HashMap::new();
         let mut known_groups: HashMap<String, usize> = HashMap::new();
         for (part, StudyPart { plan, sweep, .. }) in self.parts.iter().enumerate() {
-            let touched = TouchInputs::of(plan).key();
+            let touched = TouchInputs::of(plan).content();
             for (place, group) in sweep.groups.iter().enumerate() {
                 let (array, number) = (&plan.arrays[group.array], self.groups.len());
                 let content = format!("{touched} {array:?} {}", group.frames);
-                let name = touches_name(array, group.frames, &content);
-                let touches = *known_touches.entry(content).or_insert_with(|| {
+                let content = short_hash(content, DIGITS);
+                let touches = known_touches.entry(content.clone()).or_insert_with(|| {
                     let group = number;
-                    self.touch_sets.push(Touches { group, name });
+                    self.touch_sets.push(Touches { group, content });
                     self.touch_sets.len() - 1
                 });
-                let content = format!("{touches} {}", group.inputs(plan, sweep).key());
+                let touches = *touches;
+                let inputs = group.inputs(plan);
+                let trials = (0..plan.spec.trials).map(|trial| inputs.trial(sweep, trial));
+                let splits: Vec<_> = trials.map_while(|trial| trial.split).collect();
+                let content = format!("{touches} {} {splits:?}", inputs.key());
                 self.groups.push(PlacedGroup {
                     part,
                     place,
@@ -284,12 +288,8 @@ impl RecognitionStudy {
     }
 }
 
-/// What touches are called as a work item.
-fn touches_name(array: &TaxelArray, n_frames: usize, content: &str) -> String {
-    let ((ny, nx), content) = (array.shape(), short_hash(content, 12));
-    let pitch = array.pitch();
-    format!("touches of {n_frames} frames on {nx}x{ny} taxels at {pitch} m, {content}")
-}
+/// Hexadecimal digits of the hash of touches. Fewer: two sets of touches may be taken for each other.
+const DIGITS: usize = 24;
 
 impl RecognitionStudy {
     /// Runs all of it at once, keeps nothing, and ends at the first work item that fails.

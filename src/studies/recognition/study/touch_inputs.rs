@@ -33,4 +33,16 @@ impl<'a> TouchInputs<'a> {
     pub fn key(&self) -> String {
         format!("{self:?}")
     }
+
+    /// Returns a text that is equal for equal touches only. The arrays' pitch and size decide which objects are refused or noted, and nothing of
+    /// a touch: an axis of arrays may be extended.
+    pub fn content(&self) -> String {
+        let objects = ObjectsSpec {
+            pitch: None,
+            sizes: None,
+            ..self.objects.clone()
+        };
+        let objects = &objects;
+        TouchInputs { objects, ..*self }.key()
+    }
 }

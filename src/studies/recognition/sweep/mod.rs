@@ -1,6 +1,5 @@
 //! The splits and configurations of a study.
 
-pub(crate) mod cell_content;
 pub(crate) mod learned_frames;
 pub mod splits;
 pub mod sweep;

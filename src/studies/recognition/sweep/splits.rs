@@ -12,7 +12,6 @@ use crate::world::Touch;
 use bubbletouch_svm::split::Split;
 use ndarray::Array1;
 use std::collections::{HashMap, HashSet};
-use std::fmt;
 
 /// The split of all touches in a trial: the one that is given, or of those that are placed, by their poses, or by groups (`keys`), or of each alone.
 ///
@@ -125,19 +124,4 @@ fn fewest_per_object<'a>(
         counts.into_iter().min().unwrap_or(0)
     });
     fewest.min().unwrap_or(0)
-}
-
-/// The splits of all trials; the `Debug` form is their hash.
-#[derive(Clone, Copy)]
-pub struct Splits<'a> {
-    /// One split a trial.
-    pub all: &'a [Split],
-    /// SHA-256 of all of them.
-    pub hash: &'a str,
-}
-
-impl fmt::Debug for Splits<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(self.hash)
-    }
 }

@@ -11,10 +11,9 @@
 use crate::engine::axes::AxisValues;
 use crate::engine::axis::Axis;
 use crate::error::{Error, Result};
-use crate::inputs::content_hash::sha256;
+use crate::inputs::content_hash::{Hashed, bytes_of_counts, bytes_of_numbers};
 use crate::inputs::units::millimetres;
 use crate::learning::classifiers::ClassifierKind;
-use crate::learning::data::spoiled::{mislabelled, with_imbalance};
 use crate::learning::evaluation::next_touch::Poses;
 use crate::random::Seed;
 use crate::studies::recognition::frames::samples::named_samples;
@@ -24,11 +23,11 @@ use crate::studies::recognition::plan::plan::Plan;
 use crate::studies::recognition::plan::taxel_array::skin;
 use crate::studies::recognition::rows::cell::Cell;
 use crate::studies::recognition::sweep::learned_frames::learned_touches;
-use crate::studies::recognition::sweep::splits::{Splits, draw_split, first_equal, train_touches};
+use crate::studies::recognition::sweep::splits::{draw_split, first_equal, train_touches};
 use crate::studies::recognition::touches::scaled_poses::scaled_poses;
 use bubbletouch_svm::split::Split;
 use ndarray::Array1;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 /// Loops within loops: the first changes slowest.
 macro_rules! nested {
@@ -50,17 +49,15 @@ pub struct Sweep {
     /// Groups, array by array.
     pub groups: Vec<Group>,
     /// One split a trial, of all touches.
-    pub splits: Vec<Split>,
+    pub splits: Vec<Hashed<Split>>,
     /// For each trial the first trial with the same split, itself if there is none before.
     pub first_equal: Vec<usize>,
-    /// Hash of all splits, once something depends on it.
-    splits_hash: OnceLock<String>,
     /// The object of every touch, by its number.
-    pub labels: Array1<usize>,
+    pub labels: Hashed<Array1<usize>>,
     /// The group of every touch, when the study keeps groups together.
-    pub group_keys: Option<Array1<usize>>,
+    pub group_keys: Option<Hashed<Array1<usize>>>,
     /// Where every touch is made, when the study chooses by that.
-    pub poses: Option<Poses>,
+    pub poses: Option<Hashed<Poses>>,
 }
 
 /// What is run of one combination of a study's own axes.
@@ -110,11 +107,10 @@ impl Sweep {
         let mut sweep = Self {
             groups: Vec::new(),
             first_equal: first_equal(&splits),
-            splits_hash: OnceLock::new(),
-            splits,
-            labels,
-            group_keys: keys,
-            poses: is_chosen.then(|| scaled_poses(&plan.placement, &poses)),
+            splits: splits.into_iter().map(hashed_split).collect(),
+            labels: hashed_numbers(labels),
+            group_keys: keys.map(hashed_numbers),
+            poses: is_chosen.then(|| hashed_poses(scaled_poses(&plan.placement, &poses))),
         };
         nested! {
             array in 0..plan.arrays.len();
@@ -143,87 +139,6 @@ impl Sweep {
             cell.cell += first;
             cell.variant.clone_from(variant);
         }
-    }
-
-    /// A trial's split, with no more training touches an object than the cell allows, and with its imbalance.
-    ///
-    /// # Errors
-    /// A trial that the study does not have.
-    pub fn split(&self, plan: &Plan, cell: &Cell, trial: usize) -> Result<Split> {
-        if trial >= self.splits.len() {
-            let last = self.splits.len() - 1;
-            let allowed = format!("0 to {last}, the study's trials");
-            return Err(Error::input("trial", trial, allowed));
-        }
-        let split = &self.splits[trial];
-        let split = match plan.spec.recognition.train_touches {
-            None => split.clone(),
-            Some(_) => split.at_most(self.labels.view(), cell.train_touches)?,
-        };
-        match cell.class_imbalance {
-            None => Ok(split),
-            Some(ratio) => with_imbalance(
-                &split,
-                self.labels.view(),
-                ratio,
-                &training_stream(plan, trial),
-            ),
-        }
-    }
-
-    /// Returns the splits of all trials with their hash.
-    pub fn drawn_splits(&self) -> Splits<'_> {
-        let bytes = |rows: &[usize]| -> Vec<u8> {
-            let numbers = [rows.len()].into_iter().chain(rows.iter().copied());
-            numbers.flat_map(|row| (row as u64).to_le_bytes()).collect()
-        };
-        let of_split = |split: &Split| sha256([bytes(&split.train), bytes(&split.test)].concat());
-        let hash = || sha256(self.splits.iter().map(of_split).collect::<String>());
-        Splits {
-            all: &self.splits,
-            hash: self.splits_hash.get_or_init(hash),
-        }
-    }
-
-    /// Returns the number of the first split that has the same touches as a trial's, or `None` if the trial's split is the first.
-    pub fn repeated_split(&self, plan: &Plan, trial: usize) -> Option<usize> {
-        let first = plan.spec.split_of(self.first_equal[trial]);
-        (first != plan.spec.split_of(trial)).then_some(first)
-    }
-
-    /// The group of each of a trial's test touches, where whole groups are held out.
-    pub fn test_groups(&self, plan: &Plan, trial: usize, test: &[usize]) -> Option<Vec<usize>> {
-        let split = plan.spec.recognition.split;
-        match (
-            split.tested_block(plan.spec.split_of(trial)),
-            &self.group_keys,
-        ) {
-            (Some(block), _) => Some(vec![block; test.len()]),
-            (None, Some(keys)) => Some(test.iter().map(|&touch| keys[touch]).collect()),
-            (None, None) => None,
-        }
-    }
-
-    /// The label of every touch as a cell learns it in a trial: some of the split's training touches may have another
-    /// object's.
-    ///
-    /// # Errors
-    /// A fraction that is not from 0 to 1.
-    pub fn learned_labels(
-        &self,
-        plan: &Plan,
-        (cell, trial): (&Cell, usize),
-        split: &Split,
-    ) -> Result<Array1<usize>> {
-        let mut labels = self.labels.clone();
-        if let Some(fraction) = cell.mislabelled_fraction {
-            let right = labels.select(ndarray::Axis(0), &split.train);
-            let wrong = mislabelled(right.view(), fraction, &training_stream(plan, trial))?;
-            for (&row, label) in split.train.iter().zip(wrong) {
-                labels[row] = label;
-            }
-        }
-        Ok(labels)
     }
 
     /// All cells, in their order.
@@ -332,8 +247,21 @@ impl Sweep {
     }
 }
 
-/// What a trial's training rows are spoiled with.
-fn training_stream(plan: &Plan, trial: usize) -> Seed {
-    let seed = Seed::new(plan.spec.seed).named("training rows");
-    seed.numbered(trial as u64)
+fn hashed_split(split: Split) -> Hashed<Split> {
+    Hashed::new(split, |split| {
+        let sides = [&split.train, &split.test];
+        sides.map(|rows| bytes_of_counts(rows.iter())).concat()
+    })
+}
+
+fn hashed_numbers(numbers: Array1<usize>) -> Hashed<Array1<usize>> {
+    Hashed::new(numbers, |numbers| bytes_of_counts(numbers.iter()))
+}
+
+fn hashed_poses(poses: Poses) -> Hashed<Poses> {
+    Hashed::new(poses, |poses| {
+        let turns = format!("{:?} {:?}", poses.turns, poses.coordinates.dim());
+        let coordinates = bytes_of_numbers(poses.coordinates.iter().copied());
+        [turns.into_bytes(), coordinates].concat()
+    })
 }

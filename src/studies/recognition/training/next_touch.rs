@@ -4,76 +4,73 @@ use crate::error::Result;
 use crate::learning::evaluation::next_touch::{
     AnswerModel, NextTouch, PoseAnswers, most_informative, sequence,
 };
-use crate::studies::recognition::rows::cell::Cell;
+use crate::studies::recognition::training::evaluation_inputs::{
+    Decision, FamilyInputs, TrialInputs,
+};
 use crate::studies::recognition::training::training::{Fitted, Training};
-use crate::studies::recognition::training::trial::{AnsweredTouches, Trial};
+use crate::studies::recognition::training::trial::AnsweredTouches;
 use bubbletouch_svm::split::Split;
 use rayon::prelude::*;
 
-impl Trial<'_> {
-    /// How training touches are answered by classifiers trained as a fitted one that have not learned them.
-    pub(crate) fn answer_model(
-        &self,
-        training: &Training,
-        fitted: &Fitted,
-        split: &Split,
-    ) -> Result<Option<AnswerModel<'_>>> {
-        let Some(poses) = &self.sweep.poses else {
-            return Ok(None);
-        };
-        let answers = training.held_out_answers(fitted)?.into_iter();
-        let touches = split.train.iter().zip(&training.data.targets).zip(answers);
-        let touches: Vec<_> = touches
-            .map(|((touch, object), answer)| (*touch, *object, answer))
-            .collect();
-        let n_objects = self.sweep.labels.iter().max().map_or(0, |last| last + 1);
-        Ok(Some(AnswerModel::new(poses, &touches, n_objects)))
-    }
+/// How training touches are answered by classifiers trained as a fitted one that have not learned them.
+pub(super) fn answer_model<'a>(
+    (trial, family): (&TrialInputs, &FamilyInputs<'a>),
+    training: &Training,
+    (fitted, split): (&Fitted, &Split),
+) -> Result<Option<AnswerModel<'a>>> {
+    let Some(poses) = family.poses else {
+        return Ok(None);
+    };
+    let answers = training.held_out_answers(fitted)?.into_iter();
+    let touches = split.train.iter().zip(&training.data.targets).zip(answers);
+    let touches: Vec<_> = touches
+        .map(|((touch, object), answer)| (*touch, *object, answer))
+        .collect();
+    Ok(Some(AnswerModel::new(poses, &touches, trial.n_objects())))
+}
 
-    /// Random groups of k touches (places among the test touches, class by class), or as many sequences with the same first touches whose others are
-    /// chosen among all test touches of the object.
-    pub(crate) fn choose_touches(
-        &self,
-        cell: &Cell,
-        answered: &AnsweredTouches,
-        groups: Vec<Vec<usize>>,
-    ) -> Vec<Vec<usize>> {
-        let (next, poses) = match (cell.next_touch, &self.sweep.poses) {
-            (None | Some(NextTouch::Random), _) | (_, None) => return groups,
-            (Some(next), Some(poses)) => (next, poses),
+/// Random groups of k touches (places among the test touches, class by class), or as many sequences with the same first touches whose others are
+/// chosen among all test touches of the object.
+pub(super) fn choose_touches(
+    (family, cell): (&FamilyInputs, &Decision),
+    answered: &AnsweredTouches,
+    groups: Vec<Vec<usize>>,
+) -> Vec<Vec<usize>> {
+    let (next, poses) = match (cell.next_touch, family.poses) {
+        (NextTouch::Random, _) | (_, None) => return groups,
+        (next, Some(poses)) => (next, poses),
+    };
+    let (truth, touches) = (&answered.test.targets, answered.touches);
+    let model = answered.model.as_ref();
+    let singles: Vec<Vec<usize>> = (0..truth.len()).map(|place| vec![place]).collect();
+    let answers = (answered.decide)(&singles);
+    let of_object = |groups: &&[Vec<usize>]| -> Vec<Vec<usize>> {
+        let object = truth[groups[0][0]];
+        let places = (0..truth.len()).filter(|&place| truth[place] == object);
+        let places: Vec<usize> = places.collect();
+        let touches: Vec<usize> = places.iter().map(|&place| touches[place]).collect();
+        let answers: Vec<usize> = places.iter().map(|&place| answers[place]).collect();
+        let poses = poses.select(&touches);
+        // All choices of an object look at the same poses.
+        let told: Vec<PoseAnswers> = match (next, model) {
+            (NextTouch::MostInformative, Some(model)) => {
+                touches.iter().map(|&touch| model.at(touch)).collect()
+            }
+            _ => Vec::new(),
         };
-        let (truth, touches) = (&answered.test.targets, answered.touches);
-        let model = answered.model.as_ref();
-        let singles: Vec<Vec<usize>> = (0..truth.len()).map(|place| vec![place]).collect();
-        let answers = (answered.decide)(&singles);
-        let of_object = |groups: &&[Vec<usize>]| -> Vec<Vec<usize>> {
-            let object = truth[groups[0][0]];
-            let places = (0..truth.len()).filter(|&place| truth[place] == object);
-            let places: Vec<usize> = places.collect();
-            let touches: Vec<usize> = places.iter().map(|&place| touches[place]).collect();
-            let answers: Vec<usize> = places.iter().map(|&place| answers[place]).collect();
-            let poses = poses.select(&touches);
-            // All choices of an object look at the same poses.
-            let told: Vec<PoseAnswers> = match (next, model) {
-                (NextTouch::MostInformative, Some(model)) => {
-                    touches.iter().map(|&touch| model.at(touch)).collect()
-                }
-                _ => Vec::new(),
-            };
-            let next = |made: &[usize], left: &[usize]| match told.is_empty() {
-                true => poses.farthest(made, left),
-                false => most_informative((&told, &answers), made, left),
-            };
-            let chosen = groups.iter().map(|group| {
-                let first = places.partition_point(|&place| place < group[0]);
-                let chosen = sequence((first, group.len()), places.len(), next);
-                chosen.into_iter().map(|touch| places[touch]).collect()
-            });
-            chosen.collect()
+        let next = |made: &[usize], left: &[usize]| match told.is_empty() {
+            true => poses.farthest(made, left),
+            false => most_informative((&told, &answers), made, left),
         };
-        let of_objects = groups.chunk_by(|a, b| truth[a[0]] == truth[b[0]]);
-        let of_objects: Vec<&[Vec<usize>]> = of_objects.collect();
-        let chosen: Vec<_> = of_objects.par_iter().map(of_object).collect();
-        chosen.concat()
-    }
+        let chosen = groups.iter().map(|group| {
+            let first = places.partition_point(|&place| place < group[0]);
+            let chosen = sequence((first, group.len()), places.len(), next);
+            chosen.into_iter().map(|touch| places[touch]).collect()
+        });
+        chosen.collect()
+    };
+    let of_objects = groups.chunk_by(|a, b| truth[a[0]] == truth[b[0]]);
+    let of_objects: Vec<&[Vec<usize>]> = of_objects.collect();
+    let chosen: Vec<_> = of_objects.par_iter().map(of_object).collect();
+    chosen.concat()
 }

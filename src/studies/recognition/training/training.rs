@@ -2,12 +2,11 @@
 
 use crate::error::Result;
 use crate::inputs::memory::GIB;
-use crate::learning::classifiers::ClassifierKind;
 use crate::learning::classifiers::classifier::{Classifier, Cost};
 use crate::learning::classifiers::trained_classifier::TrainedClassifier;
 use crate::learning::data::split::{group_k_fold, stratified_k_fold};
 use crate::random::Seed;
-use crate::studies::recognition::spec::study::RecognitionSpec;
+use crate::studies::recognition::training::evaluation_inputs::TrainingInputs;
 use bubbletouch_svm::DEFAULT_MEMORY_BYTES;
 use bubbletouch_svm::cross_validation::choice::Candidates;
 use bubbletouch_svm::dataset::{Dataset, rows};
@@ -19,10 +18,8 @@ use std::time::Instant;
 
 /// The training rows of a family in one trial, and what they are trained with.
 pub struct Training<'a> {
-    /// The study's keys.
-    pub recognition: &'a RecognitionSpec,
-    /// Which classifier.
-    pub kind: ClassifierKind,
+    /// The classifier, and how its C and γ are chosen.
+    pub inputs: &'a TrainingInputs,
     /// Training rows in drawing order, one of each object in turn: first readings, then further ones, then tilted copies.
     pub data: Dataset,
     /// How many of them are first readings: the others take no part in a choice of C or γ.
@@ -59,13 +56,13 @@ impl Training<'_> {
     }
 
     fn chooses_gamma(&self) -> bool {
-        self.kind.has_gamma() && self.recognition.choose_gamma.is_some()
+        self.inputs.gamma_grid.is_some()
     }
 
     /// For several C that are given: what they share is computed once, and its time told to each in equal parts.
     fn train_path(&self, path: &[f64]) -> Result<Vec<Fitted>> {
         let start = Instant::now();
-        let classifier = self.classifier();
+        let classifier = &self.inputs.classifier;
         let trained = classifier.train_path(&self.data, path, &self.seed)?;
         let gamma = self.gamma()?;
         let fit_s = start.elapsed().as_secs_f64() / path.len() as f64;
@@ -81,16 +78,17 @@ impl Training<'_> {
     /// With this C, or one that is chosen, or none; and a γ that may be chosen.
     fn train(&self, c: Option<f64>) -> Result<Fitted> {
         let start = Instant::now();
-        let classifier = self.classifier();
-        let (classifier, gamma) = if self.kind.has_c() {
-            let given = c.map(|c| vec![c]).or(self.recognition.choose_c.clone());
+        let classifier = &self.inputs.classifier;
+        let kind = classifier.kind;
+        let (classifier, gamma) = if kind.has_c() {
+            let given = c.map(|c| vec![c]).or(self.inputs.c_grid.clone());
             let candidates = Candidates {
                 c: given.unwrap_or_default(),
-                gamma_scales: self.recognition.choose_gamma.clone().unwrap_or_default(),
+                gamma_scales: self.inputs.gamma_grid.clone().unwrap_or_default(),
             };
-            let (c, classifier) = self.choose(classifier, &candidates)?;
+            let (c, classifier) = self.choose(classifier.clone(), &candidates)?;
             let mut trained = classifier.train_path(&self.data, &[c], &self.seed)?;
-            let gamma = number(classifier.gamma).filter(|_| self.kind.has_gamma());
+            let gamma = number(classifier.gamma).filter(|_| kind.has_gamma());
             (trained.swap_remove(0), gamma)
         } else {
             (classifier.train(&self.data, &self.seed)?, None)
@@ -135,11 +133,11 @@ impl Training<'_> {
     /// What a fold or a training refuses.
     pub(crate) fn held_out_answers(&self, like: &Fitted) -> Result<Vec<usize>> {
         let n_first = self.n_first;
-        let usual = self.classifier();
+        let usual = &self.inputs.classifier;
         let classifier = Classifier {
             c: like.c.map_or(usual.c.clone(), Cost::Fixed),
             gamma: like.gamma.map_or(usual.gamma, Gamma::Value),
-            ..usual
+            ..usual.clone()
         };
         let mut answers = vec![0; n_first];
         let first: Vec<usize> = (0..n_first).collect();
@@ -159,20 +157,22 @@ impl Training<'_> {
 
     /// The γ of a classifier that has one, where it is not chosen.
     fn gamma(&self) -> Result<Option<f64>> {
-        let kernel = self.kind.about().kernel.filter(|_| self.kind.has_gamma());
-        let Some(kernel) = kernel.map(|kernel| kernel(&self.classifier())) else {
+        let classifier = &self.inputs.classifier;
+        let kernel = classifier.kind.about().kernel;
+        let kernel = kernel.filter(|_| classifier.kind.has_gamma());
+        let Some(kernel) = kernel.map(|kernel| kernel(classifier)) else {
             return Ok(None);
         };
         let records = self.data.records.view();
-        let scaled = self.recognition.scaling.fit(records)?.apply(records)?;
+        let scaled = classifier.scaling.fit(records)?.apply(records)?;
         let scale = || kernel.gamma_scale(scaled.view());
-        Ok(Some(self.recognition.gamma.unwrap_or_else(scale)))
+        Ok(Some(number(classifier.gamma).unwrap_or_else(scale)))
     }
 
     /// Returns the training rows that take part in a choice: of each object at most so many, the first ones, all of them first readings. A fold that holds
     /// out a touch would else learn another reading of the touch.
     fn choosing_rows(&self) -> Vec<usize> {
-        let most = self.recognition.choose_touches.unwrap_or(usize::MAX);
+        let most = self.inputs.choose_touches.unwrap_or(usize::MAX);
         let mut n_chosen: HashMap<usize, usize> = HashMap::new();
         let takes_part = |row: &usize| {
             let n_chosen = n_chosen.entry(self.data.targets[*row]).or_default();
@@ -185,31 +185,13 @@ impl Training<'_> {
     /// Splits some training rows once more, in positions within `rows`. What stays together in the study's split stays together here.
     fn folds(&self, rows: &[usize]) -> Result<Vec<Split>> {
         let labels = self.data.targets.select(Axis(0), rows);
-        let k = self.recognition.n_choice_folds();
+        let k = self.inputs.n_folds.expect("folds of a choice");
         match &self.group_keys {
             None => stratified_k_fold(labels.view(), k, &self.seed),
             Some(keys) => {
                 let keys = keys.select(Axis(0), rows);
                 group_k_fold(labels.view(), keys.view(), k, &self.seed)
             }
-        }
-    }
-
-    fn classifier(&self) -> Classifier {
-        let recognition = self.recognition;
-        let usual = Classifier::new(self.kind);
-        Classifier {
-            scaling: recognition.scaling,
-            multiclass: recognition.multiclass,
-            solver: recognition.solver,
-            gamma: recognition.gamma.map_or(Gamma::Scale, Gamma::Value),
-            coef0: recognition.coef0,
-            degree: recognition.degree,
-            n_neighbours: recognition.n_neighbours.unwrap_or(usual.n_neighbours),
-            n_trees: recognition.n_trees.unwrap_or(usual.n_trees),
-            max_depth: recognition.max_depth,
-            memory_bytes: solver_memory(recognition.solver_memory_gib),
-            ..usual
         }
     }
 }

@@ -3,16 +3,16 @@
 use crate::error::Result;
 use crate::learning::evaluation::fusion::{fuse_rows, fuse_scores};
 use crate::learning::evaluation::metrics::ConfusionMatrix;
-use crate::learning::evaluation::next_touch::{AnswerModel, NextTouch};
-use crate::random::Seed;
+use crate::learning::evaluation::next_touch::AnswerModel;
 use crate::statistics::grouped::{GroupCount, GroupedTest, count_groups, interval_of};
 use crate::statistics::p_status::CONFIDENCE;
 use crate::studies::recognition::measurements::measurement::Measurements;
-use crate::studies::recognition::plan::group::Group;
-use crate::studies::recognition::plan::plan::Plan;
-use crate::studies::recognition::rows::cell::Cell;
+use crate::studies::recognition::rows::row_inputs::RowInputs;
 use crate::studies::recognition::rows::table_rows::{TrialScore, TrialTime};
-use crate::studies::recognition::sweep::sweep::Sweep;
+use crate::studies::recognition::training::evaluation_inputs::{
+    Decision, FamilyInputs, TrialInputs,
+};
+use crate::studies::recognition::training::next_touch::{answer_model, choose_touches};
 use crate::studies::recognition::training::training::{Fitted, Training};
 use bubbletouch_svm::dataset::{Dataset, dataset};
 use bubbletouch_svm::split::Split;
@@ -38,16 +38,12 @@ pub struct Evaluation {
 /// What the evaluations of a group share in a trial.
 #[derive(Clone, Copy)]
 pub struct Trial<'a> {
-    /// The study.
-    pub plan: &'a Plan,
-    /// Labels, splits and groups.
-    pub sweep: &'a Sweep,
+    /// Labels, split and groups.
+    pub inputs: TrialInputs<'a>,
     /// Measurements of all touches, at least the cell's m a frame.
     pub measurements: &'a Measurements,
     /// The same of what test touches are: the measurements themselves, unless something has changed since they were learned from.
     pub tested: &'a Measurements,
-    /// Number of the trial.
-    pub number: usize,
 }
 
 /// Test touches, answered by one fit.
@@ -69,12 +65,8 @@ pub(crate) struct AnsweredTouches<'a> {
 /// One label for each group of touches.
 pub(crate) type Decide<'a> = Box<dyn Fn(&[Vec<usize>]) -> Array1<usize> + 'a>;
 
-fn is_informed(cell: &Cell) -> bool {
-    cell.next_touch == Some(NextTouch::MostInformative)
-}
-
 /// How a fit decides on test touches of its cells.
-fn decider<'a>(fitted: &'a Fitted, test: &Dataset, cells: &[Cell]) -> Result<Decide<'a>> {
+fn decider<'a>(fitted: &'a Fitted, test: &Dataset, cells: &[Decision]) -> Result<Decide<'a>> {
     let (classifier, features) = (&fitted.classifier, test.records.view());
     // Labels are all that is needed where touches are decided on one by one, and less work.
     if cells.iter().all(|cell| cell.fused_touches == 1) {
@@ -90,16 +82,16 @@ fn decider<'a>(fitted: &'a Fitted, test: &Dataset, cells: &[Cell]) -> Result<Dec
 
 impl Trial<'_> {
     /// Fits and tests the cells of a [family](crate::studies::recognition::plan::group::Group::families) on their leading measurements, in their order.
-    pub fn evaluate(&self, family: &[Cell]) -> Result<Vec<Evaluation>> {
-        let split = self.sweep.split(self.plan, &family[0], self.number)?;
-        let training = self.training(&family[0], &split)?;
-        let labels = self.sweep.labels.select(Axis(0), &split.test);
-        let test = dataset(self.tested.features(&family[0], &split.test), labels)?;
-        let groups = self.sweep.test_groups(self.plan, self.number, &split.test);
-        let same_fit: Vec<&[Cell]> = Group::fits(family).collect();
+    pub fn evaluate(&self, family: &FamilyInputs) -> Result<Vec<Evaluation>> {
+        let split = self.inputs.split(family)?;
+        let training = self.training(family, &split)?;
+        let labels = self.inputs.labels.select(Axis(0), &split.test);
+        let test = dataset(self.tested.features(&family.rows, &split.test), labels)?;
+        let groups = self.inputs.test_groups(&split.test);
+        let same_fit: Vec<&[Decision]> = family.fits().collect();
         let penalties: Vec<Option<f64>> = same_fit.iter().map(|cells| cells[0].c).collect();
         let fitted = training.train_all(&penalties)?;
-        let mut evaluations = Vec::with_capacity(family.len());
+        let mut evaluations = Vec::with_capacity(family.decisions.len());
         for (fitted, cells) in fitted.iter().zip(same_fit) {
             let start = Instant::now();
             let mut answered = AnsweredTouches {
@@ -113,34 +105,35 @@ impl Trial<'_> {
                 model: None,
                 model_s: 0.0,
             };
-            if cells.iter().any(is_informed) {
+            if cells.iter().any(Decision::is_informed) {
                 let start = Instant::now();
-                answered.model = self.answer_model(&training, fitted, &split)?;
+                answered.model = answer_model((&self.inputs, family), &training, (fitted, &split))?;
                 answered.model_s = start.elapsed().as_secs_f64();
             }
             for cell in cells {
-                evaluations.push(self.decide(cell, &answered)?);
+                evaluations.push(self.decide((family, cell), &answered)?);
             }
         }
         Ok(evaluations)
     }
 
     /// One label for each group of the cell's k test touches.
-    fn decide(&self, cell: &Cell, answered: &AnsweredTouches) -> Result<Evaluation> {
+    fn decide(
+        &self,
+        (family, cell): (&FamilyInputs, &Decision),
+        answered: &AnsweredTouches,
+    ) -> Result<Evaluation> {
         let truth = &answered.test.targets;
-        let seed = self.seed("fused_touches");
+        let seed = self.inputs.stream("fused_touches");
         let start = Instant::now();
         let mut rows = fuse_rows(truth.view(), cell.fused_touches, &seed);
-        rows.groups = self.choose_touches(cell, answered, rows.groups);
+        rows.groups = choose_touches((family, cell), answered, rows.groups);
         let predicted = (answered.decide)(&rows.groups);
         let predict_s = answered.answer_s + start.elapsed().as_secs_f64();
         let truth = rows.groups.iter().map(|group| truth[group[0]]).collect();
         let truth: Array1<usize> = truth;
-        let n_objects = self.sweep.labels.iter().max().map_or(0, |last| last + 1);
+        let n_objects = self.inputs.n_objects();
         let matrix = ConfusionMatrix::new(truth.view(), predicted.view(), n_objects)?;
-        let spec = &self.plan.spec;
-        // Only where they say more than the trial's number.
-        let is_crossed = spec.projections_per_split.is_some();
         let counts = matrix.counts.indexed_iter();
         let counts = counts.filter(|(_, count)| **count > 0);
         let groups = answered.groups.map_or_else(Vec::new, |groups| {
@@ -161,10 +154,10 @@ impl Trial<'_> {
         let (interval, n_groups) = interval_of([n_correct, n_rows], tested.as_slice(), CONFIDENCE)?;
         Ok(Evaluation {
             score: TrialScore {
-                trial: self.number,
-                split: is_crossed.then(|| spec.split_of(self.number)),
-                projection: is_crossed.then(|| spec.projection_of(self.number)),
-                distinct_split: self.sweep.repeated_split(self.plan, self.number),
+                trial: self.inputs.number,
+                split: self.inputs.crossed.map(|(split, _)| split),
+                projection: self.inputs.crossed.map(|(_, projection)| projection),
+                distinct_split: self.inputs.distinct_split,
                 n_train: answered.n_train,
                 n_test: n_rows,
                 n_left_out: rows.n_left_out,
@@ -179,9 +172,9 @@ impl Trial<'_> {
                 n_capped: answered.fitted.classifier.n_capped(),
             },
             time: TrialTime {
-                trial: self.number,
+                trial: self.inputs.number,
                 fit_s: answered.fitted.fit_s
-                    + if is_informed(cell) {
+                    + if cell.is_informed() {
                         answered.model_s
                     } else {
                         0.0
@@ -196,36 +189,29 @@ impl Trial<'_> {
         })
     }
 
-    fn training(&self, cell: &Cell, split: &Split) -> Result<Training<'_>> {
-        let keys = self.sweep.group_keys.as_ref();
-        let of = (cell, self.number);
-        let labels = self.sweep.learned_labels(self.plan, of, split)?;
-        let (rows, labels) = learned_rows(self.measurements, cell, &split.train, &labels);
+    fn training<'f>(&self, family: &'f FamilyInputs, split: &Split) -> Result<Training<'f>> {
+        let keys = self.inputs.group_keys;
+        let labels = self.inputs.learned_labels(family, split)?;
+        let (rows, labels) = learned_rows(self.measurements, &family.rows, &split.train, &labels);
         Ok(Training {
-            recognition: &self.plan.spec.recognition,
-            kind: cell.classifier,
-            data: dataset(self.measurements.features(cell, &rows), labels)?,
+            inputs: &family.training,
+            data: dataset(self.measurements.features(&family.rows, &rows), labels)?,
             n_first: split.train.len(),
             group_keys: keys.map(|keys| keys.select(Axis(0), &split.train)),
-            seed: self.seed("validation"),
+            seed: self.inputs.stream("validation"),
         })
-    }
-
-    fn seed(&self, name: &str) -> Seed {
-        let seed = Seed::new(self.plan.spec.seed).named(name);
-        seed.numbered(self.number as u64)
     }
 }
 
-/// What a cell learns from: all readings of these training touches, then their tilted copies, and the labels of all.
+/// Returns the rows that are learned: all readings of these training touches, then their tilted copies, and the labels of all.
 pub(crate) fn learned_rows(
     measurements: &Measurements,
-    cell: &Cell,
+    inputs: &RowInputs,
     train: &[usize],
     labels: &Array1<usize>,
 ) -> (Vec<usize>, Array1<usize>) {
     let mut rows = measurements.readings(train);
-    rows.extend(measurements.copies(cell, train));
+    rows.extend(measurements.copies(inputs, train));
     // Readings and copies alike are of all touches in turn.
     let touches = train.iter().cycle().take(rows.len());
     let labels = touches.map(|&touch| labels[touch]).collect();

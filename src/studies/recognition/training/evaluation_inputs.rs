@@ -1,0 +1,281 @@
+//! Inputs of the evaluation of a family of cells in a trial, beside the family's measurements.
+//!
+//! [`Trial::evaluate`](crate::studies::recognition::training::trial::Trial::evaluate) takes these inputs and no plan, so it cannot read a value of a study that is not among them.
+//! A work item is named after the `Debug` form of these inputs and of the [inputs of its measurements](crate::studies::recognition::measurements::measurement_inputs): a field that is
+//! added is part of the name.
+
+use crate::error::{Error, Result};
+use crate::inputs::content_hash::{Hashed, short_hash};
+use crate::learning::classifiers::ClassifierKind;
+use crate::learning::classifiers::classifier::Classifier;
+use crate::learning::classifiers::parameters::PARAMETERS;
+use crate::learning::data::spoiled::{mislabelled, with_imbalance};
+use crate::learning::evaluation::next_touch::{NextTouch, Poses};
+use crate::random::Seed;
+use crate::studies::recognition::plan::group::Group;
+use crate::studies::recognition::plan::plan::Plan;
+use crate::studies::recognition::rows::cell::Cell;
+use crate::studies::recognition::rows::row_inputs::RowInputs;
+use crate::studies::recognition::spec::study::RecognitionSpec;
+use crate::studies::recognition::sweep::sweep::Sweep;
+use crate::studies::recognition::training::training::solver_memory;
+use bubbletouch_svm::kernel::Gamma;
+use bubbletouch_svm::split::Split;
+use ndarray::{Array1, Axis};
+
+/// Hexadecimal digits of a hash in a name. Fewer: two work items may be taken for each other.
+const DIGITS: usize = 24;
+
+/// Inputs that the families of a trial share.
+#[derive(Clone, Copy, Debug)]
+pub struct TrialInputs<'a> {
+    /// Root of all randomness.
+    pub seed: u64,
+    /// Number of the trial.
+    pub number: usize,
+    /// Numbers of the split and of the projection, if each split meets several projections.
+    pub crossed: Option<(usize, usize)>,
+    /// The split of all touches.
+    pub split: &'a Hashed<Split>,
+    /// Number of the first split with the same touches; `None` if this split is the first.
+    pub distinct_split: Option<usize>,
+    /// Number of the block of poses that the trial tests, of a split by blocks.
+    pub tested_block: Option<usize>,
+    /// The object of every touch, by its number.
+    pub labels: &'a Hashed<Array1<usize>>,
+    /// The group of every touch, if the study keeps groups together.
+    pub group_keys: Option<&'a Hashed<Array1<usize>>>,
+}
+
+/// Inputs that the trials of a family share.
+#[derive(Clone, Debug)]
+pub struct FamilyInputs<'a> {
+    /// Rows of features.
+    pub rows: RowInputs,
+    /// Training touches of each object, at most; `None`: all of the split.
+    pub train_touches: Option<usize>,
+    /// Fraction of training touches with another object's label.
+    pub mislabelled_fraction: Option<f64>,
+    /// How many times as many training touches the most frequent object has as the rarest.
+    pub class_imbalance: Option<f64>,
+    /// The classifier, and how its C and γ are chosen.
+    pub training: TrainingInputs,
+    /// The cells, in their order; those with the same C follow each other.
+    pub decisions: Vec<Decision>,
+    /// Where every touch is made, if any cell chooses touches by their poses.
+    pub poses: Option<&'a Hashed<Poses>>,
+}
+
+/// Inputs of the training of a classifier. Parameters that the classifier does not use are the usual ones.
+#[derive(Clone, Debug)]
+pub struct TrainingInputs {
+    /// The classifier; C is that of each [`Decision`].
+    pub classifier: Classifier,
+    /// Candidates of C, if C is chosen.
+    pub c_grid: Option<Vec<f64>>,
+    /// Candidates of γ, as multiples of 'scale', if γ is chosen.
+    pub gamma_grid: Option<Vec<f64>>,
+    /// Training touches of each object that take part in a choice, at most; `None`: all.
+    pub choose_touches: Option<usize>,
+    /// Number of folds, if any are needed.
+    pub n_folds: Option<usize>,
+}
+
+/// What the cells of a family differ in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Decision {
+    /// C; `None`: chosen, or the classifier has none.
+    pub c: Option<f64>,
+    /// Test touches that are decided on together.
+    pub fused_touches: usize,
+    /// How the touches after the first of these are chosen.
+    pub next_touch: NextTouch,
+}
+
+impl TrialInputs<'_> {
+    /// Returns the name of the trial: equal for equal inputs only.
+    pub fn name(&self) -> String {
+        let Self { number, .. } = self;
+        format!("trial {number} {}", short_hash(format!("{self:?}"), DIGITS))
+    }
+
+    /// Returns a named stream of random numbers of the trial.
+    pub fn stream(&self, name: &str) -> Seed {
+        let seed = Seed::new(self.seed).named(name);
+        seed.numbered(self.number as u64)
+    }
+
+    /// Returns the split of a family: with no more training touches of an object than it allows, and with its imbalance.
+    ///
+    /// # Errors
+    /// If an object is left without training touches.
+    pub fn split(&self, family: &FamilyInputs) -> Result<Split> {
+        let labels = self.labels.view();
+        let split = match family.train_touches {
+            None => (**self.split).clone(),
+            Some(n) => self.split.at_most(labels, n)?,
+        };
+        match family.class_imbalance {
+            None => Ok(split),
+            Some(ratio) => with_imbalance(&split, labels, ratio, &self.stream("training rows")),
+        }
+    }
+
+    /// Returns the label of every touch as a family learns it: some of the split's training touches may have another object's.
+    ///
+    /// # Errors
+    /// If the fraction is not from 0 to 1.
+    pub fn learned_labels(&self, family: &FamilyInputs, split: &Split) -> Result<Array1<usize>> {
+        let mut labels = (**self.labels).clone();
+        if let Some(fraction) = family.mislabelled_fraction {
+            let right = labels.select(Axis(0), &split.train);
+            let wrong = mislabelled(right.view(), fraction, &self.stream("training rows"))?;
+            for (&row, label) in split.train.iter().zip(wrong) {
+                labels[row] = label;
+            }
+        }
+        Ok(labels)
+    }
+
+    /// Returns the group of each test touch, if whole groups are held out.
+    pub fn test_groups(&self, test: &[usize]) -> Option<Vec<usize>> {
+        match (self.tested_block, self.group_keys) {
+            (Some(block), _) => Some(vec![block; test.len()]),
+            (None, Some(keys)) => Some(test.iter().map(|&touch| keys[touch]).collect()),
+            (None, None) => None,
+        }
+    }
+
+    /// Returns the number of objects.
+    pub fn n_objects(&self) -> usize {
+        self.labels.iter().max().map_or(0, |last| last + 1)
+    }
+}
+
+impl<'a> FamilyInputs<'a> {
+    /// Returns the inputs of a [family](Group::families) of cells, at least one.
+    pub fn new(plan: &Plan, sweep: &'a Sweep, family: &[Cell]) -> Self {
+        let recognition = &plan.spec.recognition;
+        let decisions = family.iter().map(|cell| Decision {
+            c: cell.c,
+            fused_touches: cell.fused_touches,
+            next_touch: cell.next_touch.unwrap_or_default(),
+        });
+        let decisions: Vec<Decision> = decisions.collect();
+        let has = |wanted: fn(&Decision) -> bool| decisions.iter().any(wanted);
+        let cell = &family[0];
+        let train_touches = recognition.train_touches.as_ref();
+        let poses = sweep.poses.as_ref();
+        Self {
+            rows: cell.rows(),
+            train_touches: train_touches.map(|_| cell.train_touches),
+            mislabelled_fraction: cell.mislabelled_fraction,
+            class_imbalance: cell.class_imbalance,
+            training: TrainingInputs::new(recognition, cell.classifier, has(Decision::is_informed)),
+            poses: poses.filter(|_| has(|decision| decision.next_touch != NextTouch::Random)),
+            decisions,
+        }
+    }
+
+    /// Returns the decisions by fit: those with the same C.
+    pub fn fits(&self) -> impl Iterator<Item = &[Decision]> {
+        self.decisions.chunk_by(|a, b| a.c == b.c)
+    }
+}
+
+impl Decision {
+    /// Whether touches are chosen by the answers to training touches.
+    pub fn is_informed(&self) -> bool {
+        self.next_touch == NextTouch::MostInformative
+    }
+}
+
+impl TrainingInputs {
+    fn new(recognition: &RecognitionSpec, kind: ClassifierKind, is_informed: bool) -> Self {
+        let is_used = |key: &str| {
+            let mut parameters = PARAMETERS.iter().filter(|known| known.keys.contains(&key));
+            parameters.any(|parameter| (parameter.is_used)(kind))
+        };
+        let usual = Classifier::new(kind);
+        macro_rules! used {
+            ($key:ident = $value:expr) => {
+                match is_used(stringify!($key)) {
+                    true => $value,
+                    false => usual.$key,
+                }
+            };
+        }
+        let solver_memory = solver_memory(recognition.solver_memory_gib);
+        let classifier = Classifier {
+            scaling: recognition.scaling,
+            multiclass: used!(multiclass = recognition.multiclass),
+            solver: used!(solver = recognition.solver),
+            gamma: used!(gamma = recognition.gamma.map_or(Gamma::Scale, Gamma::Value)),
+            coef0: used!(coef0 = recognition.coef0),
+            degree: used!(degree = recognition.degree),
+            n_neighbours: used!(
+                n_neighbours = recognition.n_neighbours.unwrap_or(usual.n_neighbours)
+            ),
+            n_trees: used!(n_trees = recognition.n_trees.unwrap_or(usual.n_trees)),
+            max_depth: used!(max_depth = recognition.max_depth),
+            memory_bytes: match is_used("solver_memory_gib") {
+                true => solver_memory,
+                false => usual.memory_bytes,
+            },
+            ..usual
+        };
+        let c_grid = recognition.choose_c.clone();
+        let c_grid = c_grid.filter(|_| is_used("choose_c"));
+        let gamma_grid = recognition.choose_gamma.clone();
+        let gamma_grid = gamma_grid.filter(|_| is_used("choose_gamma"));
+        let is_chosen = c_grid.is_some() || gamma_grid.is_some();
+        Self {
+            choose_touches: recognition.choose_touches.filter(|_| is_chosen),
+            n_folds: (is_chosen || is_informed).then(|| recognition.n_choice_folds()),
+            classifier,
+            c_grid,
+            gamma_grid,
+        }
+    }
+}
+
+/// Returns the name of a [family](Group::families) of touches with a name: equal for equal inputs only. Measurements of a family are those that it would
+/// have alone.
+pub fn family_name(
+    plan: &Plan,
+    (group, touches): (&Group, &str),
+    inputs: &FamilyInputs,
+    family: &[Cell],
+) -> String {
+    let alone = group.with_cells(family);
+    let measured = alone.inputs(plan);
+    short_hash(format!("{touches} {measured:?} {inputs:?}"), DIGITS)
+}
+
+impl Sweep {
+    /// Returns the inputs that the families of a trial share.
+    ///
+    /// # Errors
+    /// If the study does not have the trial.
+    pub fn trial(&self, plan: &Plan, number: usize) -> Result<TrialInputs<'_>> {
+        let Some(split) = self.splits.get(number) else {
+            let last = self.splits.len() - 1;
+            let allowed = format!("0 to {last}, the study's trials");
+            return Err(Error::input("trial", number, allowed));
+        };
+        let spec = &plan.spec;
+        let is_crossed = spec.projections_per_split.is_some();
+        let of_split = spec.split_of(number);
+        let first = spec.split_of(self.first_equal[number]);
+        Ok(TrialInputs {
+            seed: spec.seed,
+            number,
+            crossed: is_crossed.then(|| (of_split, spec.projection_of(number))),
+            split,
+            distinct_split: (first != of_split).then_some(first),
+            tested_block: spec.recognition.split.tested_block(of_split),
+            labels: &self.labels,
+            group_keys: self.group_keys.as_ref(),
+        })
+    }
+}
