@@ -6,7 +6,7 @@ use crate::errors::{bad_input, exception, guarded};
 use crate::patch::Patch;
 use bubbletouch::random::Seed;
 use bubbletouch::signal::{
-    self, MOST_STRENGTHS, Noise, NoiseUnit, Quantity, Recording, SENSOR_ERRORS, Scratch,
+    self, MAX_STRENGTHS, Noise, NoiseUnit, Quantity, Recording, SENSOR_ERRORS, Scratch,
     SensorError, SignalStep,
 };
 use numpy::IntoPyArray;
@@ -26,7 +26,7 @@ pub struct Step {
 #[derive(Clone)]
 enum Kind {
     Plain(SignalStep),
-    Error(SensorError, [f64; MOST_STRENGTHS]),
+    Error(SensorError, [f64; MAX_STRENGTHS]),
 }
 
 impl Step {
@@ -97,7 +97,7 @@ impl Step {
         let known = error.about().strengths;
         let keys: Vec<&str> = known.iter().map(|strength| strength.key).collect();
         let keys = keys.join(", ");
-        let mut values = [0.0; MOST_STRENGTHS];
+        let mut values = [0.0; MAX_STRENGTHS];
         let mut call = format!("error({name:?}");
         for (key, value) in strengths.into_iter().flatten() {
             let (key, value): (String, f64) = (key.extract()?, value.extract()?);

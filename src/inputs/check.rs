@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::inputs::memory::{check_memory, machine_memory};
 use crate::inputs::toml_value::{number, value_at};
 use crate::inputs::units::{MM, MOST_FRAMES, MOST_SIDE, millimetres};
-use crate::world::MOST_TOUCHES;
+use crate::world::MAX_TOUCHES;
 use serde::Serialize;
 use std::borrow::Cow;
 
@@ -103,7 +103,7 @@ const GAMMA: Range = Range::Of(|c| positive(c) && c <= 1e9, "above 0, 1e-12 to 1
 const COEF0: Range = Range::Of(|c| (0.0..=1e6).contains(&c), "0 to 1e6");
 
 /// So many touches an object.
-pub const TOUCHES: Range = Range::Count(1, MOST_TOUCHES);
+pub const TOUCHES: Range = Range::Count(1, MAX_TOUCHES);
 
 /// The keys of the tables that kinds of study share, and what their numbers may be. A list has values, and none twice.
 const KEYS: [(&str, Range); 59] = [

@@ -1,7 +1,7 @@
 //! Sensor errors as a study has them: their strengths, and which skin tests.
 
 use crate::random::Seed;
-use crate::signal::{MOST_STRENGTHS, NoiseUnit, SENSOR_ERRORS, SensorError, SignalStep, Strength};
+use crate::signal::{MAX_STRENGTHS, NoiseUnit, SENSOR_ERRORS, SensorError, SignalStep, Strength};
 use crate::table::{Column, Role, Scale};
 use serde::{Deserialize, Serialize};
 use std::sync::LazyLock;
@@ -86,7 +86,7 @@ impl Strengths {
 
     /// The step of an error at these strengths.
     pub(crate) fn step(&self, error: SensorError, skin: &Seed) -> SignalStep {
-        let mut strengths = [0.0; MOST_STRENGTHS];
+        let mut strengths = [0.0; MAX_STRENGTHS];
         for (to, strength) in strengths.iter_mut().zip(error.about().strengths) {
             *to = self.of(strength.key).unwrap_or(0.0);
         }

@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::inputs::check::not_negative;
 use crate::inputs::sensor_errors::{NOISES, all_strengths};
 use crate::random::Seed;
-use crate::signal::{Chain, MOST_STRENGTHS, Noise, Quantity, Recording, Scratch, SignalStep};
+use crate::signal::{Chain, MAX_STRENGTHS, Noise, Quantity, Recording, Scratch, SignalStep};
 use crate::spelling::nearest_names;
 use crate::world::Patch;
 use std::collections::BTreeMap;
@@ -125,7 +125,7 @@ impl Reader<'_> {
             let allowed = "steps that read each frame alone (studies have all)";
             return Err(self.check.error(key, given, allowed));
         }
-        let mut strengths = [0.0; MOST_STRENGTHS];
+        let mut strengths = [0.0; MAX_STRENGTHS];
         for (name, &value) in given {
             let mut all = about.strengths.iter();
             let Some(place) = all.position(|strength| strength.key == name) else {

@@ -14,6 +14,16 @@
 //! | [`sensing`] | frames → compressed measurements, and back |
 //! | [`features`] | frames → features that do not change with place, turn or pressure |
 //!
+//! A stage imports only from stages above it in this table and from the rooms that serve all:
+//!
+//! | module | contents |
+//! |---|---|
+//! | [`geometry`], [`random`], [`error`] | poses and boxes; named random streams; errors |
+//! | [`text`] | readers of numbers, names and TOML, with errors that name the line |
+//! | [`statistics`] | quantiles, confidence intervals |
+//! | [`files`] | files that are complete or absent; paths in study files |
+//! | [`frame_coding`] | frames as bytes |
+//!
 //! # A touch
 //!
 //! ```

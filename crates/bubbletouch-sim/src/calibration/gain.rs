@@ -16,9 +16,9 @@ const PRESSED: [f64; 2] = [0.05, 0.97];
 /// The same in standard deviations of the noise, at least.
 const ABOVE_NOISE: f64 = 10.0;
 /// Frames of either half in which a taxel and its neighbours are well pressed, at least.
-const FEWEST_FRAMES: usize = 3;
+const MIN_FRAMES: usize = 3;
 /// Taxels of which gains are known, at least: their spread errs by a tenth with 50.
-const FEWEST_TAXELS: usize = 50;
+const MIN_TAXELS: usize = 50;
 /// Sweeps of Gauss and Seidel. Fewer leave gains that differ over the array.
 const N_SWEEPS: usize = 200;
 
@@ -43,11 +43,11 @@ impl Gains {
             .map(|taxel| halves(skin, touched, taxel, pressed))
             .collect();
         let known = halves.iter().flatten().count();
-        if known < FEWEST_TAXELS {
+        if known < MIN_TAXELS {
             return Self {
                 spread: Estimate::unknown(format!(
                     "only {known} taxels are well pressed together with all of their neighbours in {} frames or more",
-                    2 * FEWEST_FRAMES
+                    2 * MIN_FRAMES
                 )),
                 of_taxels: Array1::ones(halves.len()),
             };
@@ -83,7 +83,7 @@ fn halves(
             halves[frame % 2].push(five[0].ln() - 0.25 * around.sum::<f64>());
         }
     }
-    let is_known = halves.iter().all(|half| half.len() >= FEWEST_FRAMES);
+    let is_known = halves.iter().all(|half| half.len() >= MIN_FRAMES);
     is_known.then(|| halves.map(|mut half| median(&mut half)))
 }
 

@@ -17,7 +17,7 @@ const FEWEST: usize = 20;
 /// Shares of frames above the least reading from which on, and up to which, a clipped zero is computed. Wider ends lie on too few frames.
 const CLIPPED: [f64; 2] = [0.3, 0.98];
 /// Share of runs that must be clear of the least reading for the others to be left out.
-const ENOUGH_CLEAR: f64 = 0.1;
+const SUFFICIENT_CLEAR: f64 = 0.1;
 
 /// What untouched frames say of a taxel in a run of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,7 +69,7 @@ impl<'a> Untouched<'a> {
         };
         let runs = Array2::from_shape_fn((n_runs, skin.n_taxels()), of);
         let n_clear = runs.iter().filter(|run| matches!(run, Zero::Clear(_)));
-        let is_clear = n_clear.count() as f64 >= ENOUGH_CLEAR * runs.len() as f64;
+        let is_clear = n_clear.count() as f64 >= SUFFICIENT_CLEAR * runs.len() as f64;
         let times = (0..n_runs).map(|run| {
             let times = skin
                 .untouched_times

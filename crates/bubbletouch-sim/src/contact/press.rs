@@ -287,7 +287,7 @@ fn to_force(
     }
 }
 
-/// The deflections of [`press_with_contacts`] alone, where nobody wants to know what touches what.
+/// Presses as [`press_with_contacts`](super::press_with_contacts) does, without recording contacts.
 ///
 /// # Panics
 /// If there are not as many poses as objects.

@@ -49,7 +49,7 @@ impl Group {
 }
 
 /// Newton's method ends after a step for each taxel at the latest; a handful are usual.
-const MOST_NEWTON_STEPS: usize = 100;
+const MAX_NEWTON_STEPS: usize = 100;
 
 impl ImplicitEuler {
     /// At rest.
@@ -115,7 +115,7 @@ impl ImplicitEuler {
         let inertia = balls.mass / (dt * dt);
         let aim = balls.aim;
         let mut travel = aim;
-        for _ in 0..MOST_NEWTON_STEPS {
+        for _ in 0..MAX_NEWTON_STEPS {
             let (mut slope, mut toward) = (inertia, inertia * aim);
             let taxels = system.starts().iter().zip(&self.free).zip(&self.stiffness);
             for ((start, free), a) in taxels {

@@ -14,7 +14,7 @@ pub struct SizeLimits {
 }
 
 /// Sides of an array: of an object that is longer, a touch meets less than a hundredth of a face.
-const MOST_SIDES: f64 = 10.0;
+const MAX_SIDES: f64 = 10.0;
 /// Objects of this length are looked at by small arrays, too: furniture, a person's arm; metres.
 const ALWAYS_ALLOWED: f64 = 1.0;
 
@@ -37,7 +37,7 @@ impl SizeLimits {
             .into_iter()
             .fold(none, |limits, (side, radius)| Self {
                 smallest: limits.smallest.min(radius),
-                largest: limits.largest.max(MOST_SIDES * side),
+                largest: limits.largest.max(MAX_SIDES * side),
             })
     }
 

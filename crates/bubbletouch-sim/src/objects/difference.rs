@@ -17,7 +17,7 @@ use glam::DVec3;
 /// surface of a part must be smaller before it is plain that nothing is there.
 const GROWTH: f64 = 0.01;
 /// Cells that are looked at for each sphere that is allowed, at most.
-const MOST_CELLS: usize = 4 * MAX_SPHERES;
+const MAX_CELLS: usize = 4 * MAX_SPHERES;
 /// Spheres that were made last and may cover another cell.
 const LAST_SPHERES: usize = 24;
 
@@ -71,7 +71,7 @@ impl Covering<'_> {
         let mut cells = patch.cells();
         while let Some(cell) = cells.pop() {
             self.n_cells += 1;
-            if self.balls.len() > MAX_SPHERES || self.n_cells > MOST_CELLS {
+            if self.balls.len() > MAX_SPHERES || self.n_cells > MAX_CELLS {
                 return None;
             }
             let places = cell.places().map(|place| {

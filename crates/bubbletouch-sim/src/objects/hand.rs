@@ -147,7 +147,7 @@ impl Hand {
     pub fn solid(&self) -> Result<Solid> {
         self.check()?;
         let parts = self.strands().into_iter().map(|balls| {
-            let shape = Shape::Strand {
+            let shape = Shape::SphereSweep {
                 points: balls.iter().map(|ball| ball.center).collect(),
                 diameters: balls.iter().map(|ball| 2.0 * ball.radius).collect(),
             };

@@ -4,7 +4,7 @@
 //! radius r, swollen by e/2: no point of it lies more than e/2 outside. Such a sphere comes within e of every surface point p
 //! with |p − c| ≤ r + h, h = 3e/2; the feet are chosen so that these reaches cover the whole surface. On a flat face a ball
 //! reaches sqrt(h(2r + h)) around its foot, so large balls are few; at a right-angled edge it must have r ≤ h/(√2 − 1) to
-//! reach the edge. Each form has its own closed layout of feet (`block`, `lathe`, `strand`, `torus`), or cells that are split
+//! reach the edge. Each form has its own closed layout of feet (`block`, `lathe`, `sphere_sweep`, `torus`), or cells that are split
 //! until they are covered (`prism`).
 //!
 //! Where shapes are subtracted, cells of all surfaces are split in that way (`difference`).

@@ -77,11 +77,11 @@ pub enum Shape {
         /// Along z.
         height: f64,
     },
-    /// A ball swept along a broken line, its diameter changing evenly from point to point: handles, rings, bananas.
-    Strand {
-        /// Where the line goes; closed when the last ball is the first.
+    /// A ball swept along a broken line; its diameter changes linearly between points: handles, rings, bananas.
+    SphereSweep {
+        /// Points of the line; the sweep is closed if the last ball equals the first.
         points: Vec<DVec3>,
-        /// The ball's diameter at each point.
+        /// Diameter of the ball at each point.
         diameters: Vec<f64>,
     },
 }
@@ -268,7 +268,7 @@ impl Shape {
                 positive("across_flats", *across_flats)?;
                 positive("height", *height)
             }
-            Shape::Strand { points, diameters } => wording.strand(points, diameters),
+            Shape::SphereSweep { points, diameters } => wording.strand(points, diameters),
         }
     }
 }

@@ -4,7 +4,7 @@ use super::block::Block;
 use super::fit::Fit;
 use super::lathe::Lathe;
 use super::prism::Prism;
-use super::strand::Strand;
+use super::sphere_sweep::SphereSweep;
 use super::surface_patch::SurfacePatch;
 use super::torus::Torus;
 use super::{Shape, Sphere};
@@ -42,7 +42,7 @@ enum Kernel {
     Lathe(Lathe),
     Prism(Prism),
     Torus(Torus),
-    Strand(Strand),
+    SphereSweep(SphereSweep),
 }
 
 /// Smallest gap of a turned polygon, as a share of its size: intervals on its edges are known to 1e-9 of an edge. The rim of a sharp
@@ -85,7 +85,7 @@ impl Part {
             Kernel::Lathe(lathe) => lathe.distance(point),
             Kernel::Prism(prism) => prism.distance(point),
             Kernel::Torus(torus) => torus.distance(point),
-            Kernel::Strand(strand) => strand.distance(point),
+            Kernel::SphereSweep(strand) => strand.distance(point),
         }
     }
 
@@ -97,7 +97,7 @@ impl Part {
             Kernel::Lathe(lathe) => lathe.support(inside),
             Kernel::Prism(prism) => prism.support(inside),
             Kernel::Torus(torus) => torus.support(inside),
-            Kernel::Strand(strand) => strand.support(inside),
+            Kernel::SphereSweep(strand) => strand.support(inside),
         };
         support + self.pose.translation.dot(direction)
     }
@@ -117,7 +117,7 @@ impl Part {
             Kernel::Lathe(lathe) => lathe.pack(fit, &mut spheres),
             Kernel::Prism(prism) => prism.pack(fit, &mut spheres),
             Kernel::Torus(torus) => torus.pack(fit, &mut spheres),
-            Kernel::Strand(strand) => strand.pack(fit, &mut spheres),
+            Kernel::SphereSweep(strand) => strand.pack(fit, &mut spheres),
         }
         for sphere in &mut spheres {
             sphere.center = self.pose.transform_point(sphere.center);
@@ -132,7 +132,7 @@ impl Part {
             Kernel::Lathe(lathe) => lathe.patches(),
             Kernel::Prism(prism) => prism.patches(),
             Kernel::Torus(torus) => torus.patches(),
-            Kernel::Strand(strand) => strand.patches(),
+            Kernel::SphereSweep(strand) => strand.patches(),
         };
         let moved = patches.into_iter().map(|patch| patch.moved(&self.pose));
         moved.collect()
@@ -146,7 +146,7 @@ impl Part {
             Kernel::Lathe(lathe) => lathe.surface_points(spacing, &mut points),
             Kernel::Prism(prism) => prism.surface_points(spacing, &mut points),
             Kernel::Torus(torus) => torus.surface_points(spacing, &mut points),
-            Kernel::Strand(strand) => strand.surface_points(spacing, &mut points),
+            Kernel::SphereSweep(strand) => strand.surface_points(spacing, &mut points),
         }
         for point in &mut points {
             *point = self.pose.transform_point(*point);
@@ -326,7 +326,7 @@ fn kernel(shape: &Shape) -> Kernel {
             ref outline,
             thickness,
         } => Kernel::Prism(Prism::new(outline, thickness)),
-        Shape::Strand {
+        Shape::SphereSweep {
             ref points,
             ref diameters,
         } => strand(points, diameters),
@@ -351,7 +351,7 @@ fn strand(points: &[DVec3], diameters: &[f64]) -> Kernel {
         let radius = 0.5 * diameter;
         Sphere { center, radius }
     });
-    Kernel::Strand(Strand {
+    Kernel::SphereSweep(SphereSweep {
         balls: balls.collect(),
     })
 }

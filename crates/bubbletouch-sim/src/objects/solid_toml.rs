@@ -51,7 +51,7 @@ enum ShapeName {
     Lathe,
     Prism,
     HexagonalPrism,
-    Strand,
+    SphereSweep,
 }
 
 impl WrittenPart {
@@ -103,7 +103,7 @@ impl WrittenPart {
             ShapeName::Lathe => "lathe",
             ShapeName::Prism => "prism",
             ShapeName::HexagonalPrism => "hexagonal_prism",
-            ShapeName::Strand => "strand",
+            ShapeName::SphereSweep => "strand",
         }
     }
 
@@ -156,10 +156,10 @@ impl WrittenPart {
                 across_flats: metres(&mut self.across_flats_mm, "across_flats_mm")?,
                 height: metres(&mut self.height_mm, "height_mm")?,
             },
-            ShapeName::Strand => {
+            ShapeName::SphereSweep => {
                 let points = taken(&mut self.points_mm, "points_mm")?.into_iter();
                 let diameters = taken(&mut self.diameters_mm, "diameters_mm")?.into_iter();
-                Shape::Strand {
+                Shape::SphereSweep {
                     points: points.map(metres3).collect(),
                     diameters: diameters.map(|d| d * MM).collect(),
                 }

@@ -4,7 +4,7 @@ use super::Sphere;
 use glam::{DVec3, DVec4};
 
 /// Spheres in a cluster, at most. More: spheres are looked at in vain; fewer: clusters are.
-pub(crate) const MOST_IN_CLUSTER: usize = 16;
+pub(crate) const MAX_IN_CLUSTER: usize = 16;
 
 /// The spheres of an object in clusters: near each other and about as large. The same spheres always give the same clusters.
 #[derive(Clone, Debug)]
@@ -54,7 +54,7 @@ impl SphereClusters {
             rest = behind;
         }
         let padded = |of: fn(&Sphere) -> f64| {
-            let behind = [0.0; MOST_IN_CLUSTER];
+            let behind = [0.0; MAX_IN_CLUSTER];
             spheres.iter().map(of).chain(behind).collect()
         };
         Self {
@@ -109,9 +109,9 @@ impl SphereClusters {
 pub(crate) struct Cluster<'a> {
     pub n_spheres: usize,
     /// x, y, z in the object's frame, metres.
-    pub centers: [&'a [f64; MOST_IN_CLUSTER]; 3],
+    pub centers: [&'a [f64; MAX_IN_CLUSTER]; 3],
     /// Metres.
-    pub radii: &'a [f64; MOST_IN_CLUSTER],
+    pub radii: &'a [f64; MAX_IN_CLUSTER],
 }
 
 impl Cluster<'_> {
@@ -127,7 +127,7 @@ impl Cluster<'_> {
 }
 
 #[inline(always)]
-fn lanes(values: &[f64]) -> &[f64; MOST_IN_CLUSTER] {
+fn lanes(values: &[f64]) -> &[f64; MAX_IN_CLUSTER] {
     values.first_chunk().expect("values are padded")
 }
 
@@ -189,7 +189,7 @@ impl Extent {
 
 /// Halves spheres across the longest side of where their centres are, or by their size if that differs more, until few are left.
 fn cut(spheres: &mut [(u32, Sphere)], sizes: &mut Vec<usize>) {
-    if spheres.len() <= MOST_IN_CLUSTER {
+    if spheres.len() <= MAX_IN_CLUSTER {
         sizes.push(spheres.len());
         return;
     }
@@ -230,7 +230,7 @@ mod tests {
                 let its: Vec<Sphere> = (0..its.n_spheres).map(|k| its.at(k)).collect();
                 let numbers = clusters.numbers(cluster).iter();
                 assert!(numbers.map(|&n| &spheres[n as usize]).eq(&its));
-                assert!((1..=MOST_IN_CLUSTER).contains(&its.len()));
+                assert!((1..=MAX_IN_CLUSTER).contains(&its.len()));
                 assert!(its.iter().all(|sphere| is_inside(sphere, &ball)));
                 found.extend(its);
             }

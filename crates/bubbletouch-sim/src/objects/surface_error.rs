@@ -1,6 +1,6 @@
 //! How far a union of spheres is from the solid that it stands for: measured, not promised.
 
-use super::strand::sphere_points;
+use super::sphere_sweep::sphere_points;
 use super::{Solid, Sphere, SphereUnion};
 use glam::DVec3;
 

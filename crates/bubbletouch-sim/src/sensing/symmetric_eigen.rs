@@ -6,7 +6,7 @@
 use ndarray::{Array1, Array2, ArrayView2};
 
 /// QL steps on one eigenvalue before giving up; EISPACK allows 30, and 3 are usual.
-const MOST_STEPS: usize = 60;
+const MAX_STEPS: usize = 60;
 
 /// Eigenvalues, ascending, and eigenvectors, one a row in the same order, orthonormal.
 pub(super) fn symmetric_eigen(a: ArrayView2<f64>) -> (Array1<f64>, Array2<f64>) {
@@ -70,7 +70,7 @@ fn tridiagonalise(a: &mut Array2<f64>) -> (Vec<f64>, Vec<f64>) {
 fn diagonalise(d: &mut [f64], e: &mut [f64], vectors: &mut Array2<f64>) {
     let n = d.len();
     for l in 0..n {
-        for _ in 0..MOST_STEPS {
+        for _ in 0..MAX_STEPS {
             let small = |i: usize| e[i].abs() <= f64::EPSILON * (d[i].abs() + d[i + 1].abs());
             let m = (l..n - 1).find(|&i| small(i)).unwrap_or(n - 1);
             if m == l {

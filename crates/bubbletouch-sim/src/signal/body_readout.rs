@@ -10,7 +10,7 @@
 
 use super::noise::NoiseByNumber;
 use super::taxel_effect::{CHUNK, Chunk, TaxelEffect};
-use super::{MOST_STRENGTHS, Moment, Quantity, SENSOR_ERRORS, SensorError, SignalStep};
+use super::{MAX_STRENGTHS, Moment, Quantity, SENSOR_ERRORS, SensorError, SignalStep};
 use crate::error::{Error, Result};
 use crate::random::Seed;
 use crate::whole_body::{BodyState, WholeBody};
@@ -267,7 +267,7 @@ fn refused(step: &str, why: &str) -> Error {
 
 fn taxel_effect(
     error: SensorError,
-    strengths: &[f64; MOST_STRENGTHS],
+    strengths: &[f64; MAX_STRENGTHS],
     full_scale: f64,
     skin: &Seed,
 ) -> Result<Arc<dyn TaxelEffect>> {

@@ -70,7 +70,7 @@ pub use force::force;
 pub use noise::{Noise, NoiseUnit};
 pub use quantisation::Quantisation;
 pub use quantity::Quantity;
-pub use sensor_error::{Effect, ErrorAbout, MOST_STRENGTHS, Prepare, Skin, Strength, TouchRead};
+pub use sensor_error::{Effect, ErrorAbout, MAX_STRENGTHS, Prepare, Skin, Strength, TouchRead};
 pub use smoothing::Smoothing;
 pub use step::SignalStep;
 pub use taxel_effect::Moment;

@@ -26,19 +26,19 @@ pub struct Strength {
 }
 
 /// Checks strengths of which at least one is not zero, and prepares what they do to the signal of a skin.
-pub type Prepare = fn(&[f64; MOST_STRENGTHS], &Skin) -> Result<Box<dyn Effect>>;
+pub type Prepare = fn(&[f64; MAX_STRENGTHS], &Skin) -> Result<Box<dyn Effect>>;
 
 /// Prepares an error for the taxels of a whole body, from allowed strengths of which at least one is not zero, the full scale (metres or
 /// newtons) and the key of its draws.
 pub type PrepareByTaxel =
-    fn(&[f64; MOST_STRENGTHS], f64, CounterKey) -> Result<Box<dyn TaxelEffect>>;
+    fn(&[f64; MAX_STRENGTHS], f64, CounterKey) -> Result<Box<dyn TaxelEffect>>;
 
 /// A sensor error.
 #[derive(Debug)]
 pub struct ErrorAbout {
     /// The word of `signal.steps`.
     pub step: &'static str,
-    /// How strong it is: one number, or [two](MOST_STRENGTHS), shares of one whole that are at most 1 together.
+    /// How strong it is: one number, or [two](MAX_STRENGTHS), shares of one whole that are at most 1 together.
     pub strengths: &'static [Strength],
     /// Whether it belongs to a skin: another skin of the same make has another of it.
     pub is_of_skin: bool,
@@ -57,7 +57,7 @@ pub struct ErrorAbout {
 }
 
 /// Strengths of an error, at most.
-pub const MOST_STRENGTHS: usize = 2;
+pub const MAX_STRENGTHS: usize = 2;
 
 /// Whose signal it is.
 #[derive(Clone, Copy, Debug)]

@@ -1,6 +1,6 @@
 //! The steps that a chain can have.
 
-use super::{MOST_STRENGTHS, Noise, SENSOR_ERRORS, SensorError};
+use super::{MAX_STRENGTHS, Noise, SENSOR_ERRORS, SensorError};
 use crate::random::Seed;
 
 /// One step from deflections to frames, as a study names it.
@@ -20,7 +20,7 @@ pub enum SignalStep {
         /// Which.
         error: SensorError,
         /// Its [strengths](super::ErrorAbout::strengths), zero or more.
-        strengths: [f64; MOST_STRENGTHS],
+        strengths: [f64; MAX_STRENGTHS],
         /// The name of the skin that it belongs to.
         skin: Seed,
     },
@@ -36,7 +36,7 @@ impl SignalStep {
 impl SensorError {
     /// The step that does it at some strengths, those that are not given being zero, of the skin of a name.
     pub fn step(self, given: &[f64], skin: Seed) -> SignalStep {
-        let mut strengths = [0.0; MOST_STRENGTHS];
+        let mut strengths = [0.0; MAX_STRENGTHS];
         strengths[..given.len()].copy_from_slice(given);
         SignalStep::Error {
             error: self,

@@ -10,7 +10,7 @@ use crate::world::{Neighbours, Patch};
 /// The kernel's reach in widths.
 const TRUNCATE: f64 = 4.0;
 /// Weights, at most: a gigabyte.
-const MOST_WEIGHTS: usize = 1 << 26;
+const MAX_WEIGHTS: usize = 1 << 26;
 
 /// A smoothing of one width, prepared for one skin.
 #[derive(Debug)]
@@ -41,7 +41,7 @@ impl SurfaceSmoothing {
         };
         for taxel in 0..skin.n_taxels() {
             let mut near = neighbours.within(skin, taxel, TRUNCATE * width);
-            if smoothing.taxels.len() + near.len() > MOST_WEIGHTS {
+            if smoothing.taxels.len() + near.len() > MAX_WEIGHTS {
                 return Err(refused(
                     "fewer than 67,108,864 pairs of taxels within four widths",
                 ));

@@ -10,7 +10,7 @@ use toml_parser::lexer::TokenKind;
 
 /// Brackets open at once, at most. The reader knows a limit of its own (80), but forgets it where text is broken, and calls itself for
 /// each bracket: thousands of them are the end of a thread's stack.
-const MOST_OPEN: usize = 200;
+const MAX_OPEN: usize = 200;
 
 /// What a text says; the error names `place` (the file), line and column.
 ///
@@ -59,12 +59,12 @@ pub fn check_brackets(place: &str, text: &str) -> Result<()> {
             _ => {}
         }
         let n_open = open[0] + open[1];
-        if n_open > MOST_OPEN {
+        if n_open > MAX_OPEN {
             let line = line_of(text, token.span().start());
             return Err(Error::input(
                 format!("{place}:{line}"),
                 format!("{n_open} brackets that are still open"),
-                format!("at most {MOST_OPEN}"),
+                format!("at most {MAX_OPEN}"),
             ));
         }
     }

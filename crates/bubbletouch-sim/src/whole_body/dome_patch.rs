@@ -29,6 +29,7 @@ impl DomePatch {
     }
 
     /// Where the taxels rest.
+    #[inline]
     pub fn dome(&self) -> &Dome {
         &self.dome
     }
@@ -39,6 +40,7 @@ impl DomePatch {
     }
 
     /// Above which t a taxel is pushed, metres.
+    #[inline]
     pub fn least_along(&self, power: f64) -> f64 {
         let radius = self.dome.radius();
         match power {

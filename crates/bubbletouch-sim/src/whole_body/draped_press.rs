@@ -9,7 +9,7 @@ use crate::contact::law::{beats, indent, squares_in_front};
 use glam::DVec3;
 
 /// Levels of balls, at most: eight times as many taxels with each.
-const MOST_LEVELS: usize = 10;
+const MAX_LEVELS: usize = 10;
 
 impl Pushed for DrapedPatch {
     #[inline(always)]
@@ -67,13 +67,13 @@ struct Descent<'a> {
     /// The level that is looked at.
     level: usize,
     /// The block of each level down to it, and which of its balls are still to come.
-    blocks: [(usize, LanesBelow); MOST_LEVELS],
+    blocks: [(usize, LanesBelow); MAX_LEVELS],
 }
 
 impl<'a> Descent<'a> {
     #[inline(always)]
     fn new(levels: &'a [Vec<Balls>], center: DVec3, reach: f64) -> Self {
-        let mut blocks = [(0, LanesBelow::default()); MOST_LEVELS];
+        let mut blocks = [(0, LanesBelow::default()); MAX_LEVELS];
         blocks[0].1 = levels[0][0].near(center, reach);
         Self {
             levels,

@@ -1,7 +1,7 @@
 //! Eight at a time: what is near a sphere is looked for among blocks of eight balls, and taxels are pushed by eight.
 
 use crate::contact::LanesBelow;
-use crate::objects::{ClusterBounds, MOST_IN_CLUSTER, Sphere, SphereClusters};
+use crate::objects::{ClusterBounds, MAX_IN_CLUSTER, Sphere, SphereClusters};
 use glam::{DMat3, DVec3};
 
 /// Taxels in a block, and balls: f64 lanes of 512 bits. More: taxels beside small spheres are computed in vain; fewer: blocks are
@@ -124,7 +124,7 @@ impl View {
     pub fn spheres(&self, object: &SphereClusters, cluster: usize) -> Placed {
         let cluster = object.of(cluster);
         let [x, y, z] = cluster.centers;
-        let zeros = [0.0; MOST_IN_CLUSTER];
+        let zeros = [0.0; MAX_IN_CLUSTER];
         let mut placed = Placed {
             x: zeros,
             y: zeros,
@@ -132,7 +132,7 @@ impl View {
             reaches: zeros,
             gaps: zeros,
         };
-        for k in 0..MOST_IN_CLUSTER {
+        for k in 0..MAX_IN_CLUSTER {
             let center = self.at(DVec3::new(x[k], y[k], z[k]));
             let reach = cluster.radii[k] + self.taxel_radius;
             let gap = self.gap(center, reach);
@@ -148,13 +148,13 @@ impl View {
 
 /// The spheres of a cluster in a patch, coordinate by coordinate, metres.
 pub(super) struct Placed {
-    x: [f64; MOST_IN_CLUSTER],
-    y: [f64; MOST_IN_CLUSTER],
-    z: [f64; MOST_IN_CLUSTER],
+    x: [f64; MAX_IN_CLUSTER],
+    y: [f64; MAX_IN_CLUSTER],
+    z: [f64; MAX_IN_CLUSTER],
     /// S.
-    reaches: [f64; MOST_IN_CLUSTER],
+    reaches: [f64; MAX_IN_CLUSTER],
     /// Below zero of those that may touch the patch.
-    gaps: [f64; MOST_IN_CLUSTER],
+    gaps: [f64; MAX_IN_CLUSTER],
 }
 
 impl Placed {

@@ -32,7 +32,7 @@ mod trajectory;
 
 pub use human_touch::{HandState, HumanTouch, TOUCH_KINDS, TouchKind, TouchRanges};
 pub(crate) use layouts::Rule;
-pub use layouts::{ArrayLayout, Dome, DomeRing, DrapeRegion, Extrusion, Layout, MOST_TAXELS};
+pub use layouts::{ArrayLayout, Dome, DomeRing, DrapeRegion, Extrusion, Layout, MAX_TAXELS};
 pub use motion::{Interpolation, JointTrajectory, Motion, PoseTrajectory};
 pub use neighbours::Neighbours;
 pub use patch::Patch;
@@ -47,5 +47,5 @@ pub use robot::{
 pub use shear::{Shear, Shears};
 pub use taxel::{Grid, Taxel};
 pub(crate) use taxel_tree::{LEAF, Leaf, Node, PlacedTaxel, TaxelTree};
-pub use touches::{MOST_TOUCHES, TouchSource, touches};
+pub use touches::{MAX_TOUCHES, TouchSource, touches};
 pub use trajectory::{Phase, VelocityPlan};

@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_2;
 
 /// The most touches of one object; far above any study, it turns a slip in a list into an error before memory runs out.
-pub const MOST_TOUCHES: usize = 10_000_000;
+pub const MAX_TOUCHES: usize = 10_000_000;
 
 /// The touches of one object, by the rules of [`Placement`], made one at a time: a list of millions needs no memory.
 #[derive(Clone, Debug)]
@@ -93,19 +93,19 @@ fn order(
     let is_uniform = |(_, spread): &&(_, &Spread)| matches!(spread, Spread::Uniform { .. });
     if let Some((axis, _)) = spreads.iter().find(is_uniform) {
         return match count {
-            Some(count @ 1..=MOST_TOUCHES) => Ok(Order::Drawn(count)),
-            Some(count) => Err(count_error(count, MOST_TOUCHES)),
+            Some(count @ 1..=MAX_TOUCHES) => Ok(Order::Drawn(count)),
+            Some(count) => Err(count_error(count, MAX_TOUCHES)),
             None => {
                 let given = format!("no number, with {} spread uniformly", axis.name());
-                Err(count_error(given, MOST_TOUCHES))
+                Err(count_error(given, MAX_TOUCHES))
             }
         };
     }
     let sizes = values(spreads).map(<[f64]>::len).into_iter();
     let n_combinations = sizes.fold(n_rests, usize::saturating_mul);
-    let most = n_combinations.min(MOST_TOUCHES);
+    let most = n_combinations.min(MAX_TOUCHES);
     match count {
-        None if n_combinations <= MOST_TOUCHES => Ok(Order::Product(n_combinations)),
+        None if n_combinations <= MAX_TOUCHES => Ok(Order::Product(n_combinations)),
         Some(count) if (1..=most).contains(&count) => Ok(Order::Chosen(without_replacement(
             n_combinations,
             count,

@@ -12,27 +12,28 @@ use super::shear_springs::{self, Spring};
 use super::symmetric::{Symmetric, norm};
 use glam::DVec3;
 
-/// Poses looked at for each body, at most: one that rolls across a whole skin takes some hundreds.
+/// Poses evaluated per body, at most; a body that rolls across a whole skin takes some hundreds. Larger: problems that do not converge take longer;
+/// smaller: long rolls do not converge.
 const MAX_STEPS: usize = 4000;
 /// Rounds of multipliers, at most; three to six are usual.
 const MAX_ROUNDS: usize = 40;
-/// Imbalance at which a pose is at rest; ten times less than is promised.
-const AT_REST: f64 = 1e-7;
-/// Imbalance that a pose at rest never has more of, even where flanks are so steep that nothing nearby is better.
-const PROMISED: f64 = 1e-6;
-/// [Looseness](super::energy::Energy::complementarity_residual) of ties and stops at which a pose is at rest.
-const TIGHT: f64 = 1e-7;
-/// The same that one never has more of: where so many stops carry that steeper sides come to what rounding makes of them.
-const ENOUGH: f64 = 1e-5;
-/// Steps up to this share of the farthest are foreseen with all contacts that they make.
+/// Imbalance at which a pose is at rest; ten times less than the accepted one.
+const TARGET_IMBALANCE: f64 = 1e-7;
+/// Largest imbalance of a pose at rest, also where flanks are so steep that no nearby pose is better.
+const ACCEPTED_IMBALANCE: f64 = 1e-6;
+/// [Complementarity residual](super::energy::Energy::complementarity_residual) at which a pose is at rest.
+const TARGET_RESIDUAL: f64 = 1e-7;
+/// Largest complementarity residual of a pose at rest, also where many stops carry and rounding limits their stiffness.
+const ACCEPTED_RESIDUAL: f64 = 1e-5;
+/// Longest step, relative to the farthest, for which all contacts that it makes are gathered. Larger: more pairs; smaller: more steps.
 const NEARBY: f64 = 0.04;
-/// Smoothing of ties as a share of the largest deflection, and of the one under which a taxel carries all the weight.
+/// Smoothing of ties, relative to the largest deflection and to the deflection at which a taxel carries all the weight.
 const SMOOTHING: f64 = 1e-2;
-/// The least smoothing, in last bits of the object's size.
+/// Least smoothing, in units of rounding of the object's size.
 const LAST_BITS: f64 = 64.0;
-/// Rounds in which ties and stops are made steeper, at most: five to the so many-th is what f64 has room for.
-const MOST_TIGHTENED: usize = 12;
-/// Places closer than this share of the object's size and way are the same.
+/// Rounds in which ties and stops become steeper by a factor of 5, at most: f64 has no digits for more.
+const MAX_TIGHTENINGS: usize = 12;
+/// Distance below which two places are the same, relative to size and travel of the object.
 const SAME_PLACE: f64 = 1e-15;
 
 /// Memory of descents, reused; the multipliers of one descent start the next one.
@@ -49,7 +50,7 @@ pub(super) struct DescentWorkspace {
 /// Bodies on their way down.
 pub(super) struct Descent<'a, 'b> {
     pub workspace: &'b mut DescentWorkspace,
-    /// What is known of the forces inside taxels gets better from round to round.
+    /// Bodies, ground, and the multipliers of the round.
     pub scene: Scene<'a>,
     /// No step is longer, metres.
     pub farthest: f64,
@@ -58,18 +59,18 @@ pub(super) struct Descent<'a, 'b> {
     pub n_steps: usize,
 }
 
-/// How a descent ended.
+/// Result of a descent.
 pub(super) enum End {
-    /// All are at rest.
+    /// All bodies are at rest.
     Rest,
-    /// There is nothing below these any more.
+    /// Nothing is below these bodies.
     Endless(Vec<usize>),
-    /// Neither within the largest number of steps.
+    /// The step limit was reached.
     Exhausted,
 }
 
 impl<'a, 'b> Descent<'a, 'b> {
-    /// Of at least one body.
+    /// Creates the descent of at least one body.
     pub fn new(
         workspace: &'b mut DescentWorkspace,
         bodies: Vec<Body<'a>>,
@@ -122,11 +123,14 @@ impl<'a, 'b> Descent<'a, 'b> {
             } = &mut self.scene;
             let now = &self.workspace.now;
             let change = shear_springs::renew(springs, bodies, (&now.pairs, &now.loads));
-            if change <= AT_REST && self.is_at_rest(AT_REST, TIGHT) {
+            if change <= TARGET_IMBALANCE && self.is_at_rest(TARGET_IMBALANCE, TARGET_RESIDUAL) {
                 return End::Rest;
             }
             let now = self.complementarity_residual();
-            if now < least && change <= PROMISED && self.is_at_rest(PROMISED, ENOUGH) {
+            if now < least
+                && change <= ACCEPTED_IMBALANCE
+                && self.is_at_rest(ACCEPTED_IMBALANCE, ACCEPTED_RESIDUAL)
+            {
                 (best, least) = (Some(self.scene.clone()), now);
             }
             let Some(deepest) = self.deepest() else {
@@ -140,7 +144,9 @@ impl<'a, 'b> Descent<'a, 'b> {
                 smoothness.smoothing = smoothness.smoothing.min(SMOOTHING * deepest);
             }
             // Where the energy bends down between ties, multipliers need steeper sides to converge.
-            if now > TIGHT.max(0.25 * complementarity_residual) && n_tightened < MOST_TIGHTENED {
+            if now > TARGET_RESIDUAL.max(0.25 * complementarity_residual)
+                && n_tightened < MAX_TIGHTENINGS
+            {
                 n_tightened += 1;
                 smoothness.tighten(0.2);
                 smoothness.stop_stiffness *= 5.0;
@@ -207,7 +213,7 @@ impl<'a, 'b> Descent<'a, 'b> {
             let length = norm(&step.motion);
             if length <= self.same_place() {
                 // Where the reach has come to nothing too soon, the next round sees farther.
-                if slope > AT_REST {
+                if slope > TARGET_IMBALANCE {
                     self.reach = self.nearby();
                 }
                 return End::Rest;
@@ -228,7 +234,7 @@ impl<'a, 'b> Descent<'a, 'b> {
     fn best(&mut self) -> Option<(f64, Step)> {
         let (gradient, hessian) = self.derivatives();
         let slope = self.scene.slope(&gradient);
-        if slope <= 0.1 * AT_REST && hessian.is_convex() {
+        if slope <= 0.1 * TARGET_IMBALANCE && hessian.is_convex() {
             return None;
         }
         let DescentWorkspace { now, model, .. } = &mut *self.workspace;
@@ -294,7 +300,7 @@ impl<'a, 'b> Descent<'a, 'b> {
         })
     }
 
-    /// Bodies go a way together, not deeper into what is below than to where they are no worse off.
+    /// Lowers a group of bodies together until the energy stops decreasing.
     fn fall(&mut self, loose: &Loose, mut way: DVec3) {
         let weights = loose
             .bodies

@@ -4,7 +4,7 @@ use super::deflection_grid::{BLOCK, DeflectionGrid, WIDE};
 use super::lines::GridLines;
 use crate::contact::law::{self, beats, indent};
 use crate::geometry::Pose;
-use crate::objects::{Cluster, ClusterBounds, MOST_IN_CLUSTER, Sphere};
+use crate::objects::{Cluster, ClusterBounds, MAX_IN_CLUSTER, Sphere};
 use glam::{DMat3, DVec3};
 use std::ops::Range;
 
@@ -79,9 +79,9 @@ impl View {
 
     /// Travels before which the spheres of a cluster meet no taxel, metres.
     #[inline(always)]
-    pub fn starts(&self, cluster: &Cluster) -> [f64; MOST_IN_CLUSTER] {
+    pub fn starts(&self, cluster: &Cluster) -> [f64; MAX_IN_CLUSTER] {
         let [x, y, z] = cluster.centers;
-        let mut starts = [f64::INFINITY; MOST_IN_CLUSTER];
+        let mut starts = [f64::INFINITY; MAX_IN_CLUSTER];
         for (k, start) in starts.iter_mut().enumerate() {
             let center = DVec3::new(x[k], y[k], z[k]);
             let reach = self.taxel_radius + cluster.radii[k];

@@ -70,7 +70,7 @@ impl<'a> Approach<'a> {
             "one pose an object"
         );
         let [_, end] = meeting(self.patch, objects, patch_from_objects, self.direction)?;
-        // There everything is past that is on the way.
+        // There everything is past that is on the path.
         let mut farthest = 0.0;
         for (object, pose) in objects.iter().zip(patch_from_objects) {
             let pose = Pose {
@@ -174,8 +174,8 @@ impl<'a> Approach<'a> {
     ) -> Option<Contact> {
         let first = self.first_contact(objects, patch_from_objects);
         let travels = first.map(|first| [first, first + depth]);
-        let mut way = self.way(objects, patch_from_objects, workspace);
-        way.press_and_slide(travels, slide, friction)
+        let mut path = self.path(objects, patch_from_objects, workspace);
+        path.press_and_slide(travels, slide, friction)
     }
 
     /// The deflections alone, from one travel to another; `None` of none. Those of taxels along the direction need no steps: each is pushed in as far
@@ -187,17 +187,17 @@ impl<'a> Approach<'a> {
         travels: Option<[f64; 2]>,
         workspace: &mut Workspace,
     ) -> Option<Contact> {
-        let mut way = self.way(objects, patch_from_objects, workspace);
-        way.contacts = ContactRequest::None;
+        let mut path = self.path(objects, patch_from_objects, workspace);
+        path.contacts = ContactRequest::None;
         match travels {
             Some([_, travel]) if self.travelling().is_flat => {
-                Some(way.press_through(&self.travelling().taxels, travel))
+                Some(path.press_through(&self.travelling().taxels, travel))
             }
-            _ => way.press_and_slide(travels, DVec3::ZERO, None),
+            _ => path.press_and_slide(travels, DVec3::ZERO, None),
         }
     }
 
-    pub(crate) fn way<'w>(
+    pub(crate) fn path<'w>(
         &'w self,
         objects: &'w [Model],
         patch_from_objects: &'w [Pose],

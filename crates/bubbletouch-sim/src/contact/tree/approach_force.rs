@@ -34,8 +34,8 @@ impl Approach<'_> {
     ) -> Result<Option<Contact>> {
         positive("touch force", force, "N")?;
         workspace.hold([]);
-        let mut way = self.way(objects, patch_from_objects, workspace);
-        let pressed = way.go(force);
+        let mut path = self.path(objects, patch_from_objects, workspace);
+        let pressed = path.go(force);
         workspace.hold([]);
         pressed
     }

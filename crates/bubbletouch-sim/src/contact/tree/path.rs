@@ -1,4 +1,4 @@
-//! A patch on its way along a line past objects.
+//! The path of a patch along a line past objects, in steps.
 
 use super::press::{self, press_with_contacts};
 use crate::contact::{Contact, FrictionState, NormalForce, Workspace};
@@ -8,16 +8,16 @@ use crate::objects::Model;
 use crate::world::{Patch, Taxel, TaxelTree};
 use glam::DVec3;
 
-/// Steps in which the way is looked at are this part of the shortest stroke. Larger: a short peak of the force may be jumped
-/// over, and small spheres may pass through; smaller: more presses in vain.
+/// Length of a step relative to the shortest stroke. Larger: a short peak of the force may be missed, and small spheres may pass through; smaller:
+/// more presses in vain.
 const STEP: f64 = 0.5;
 /// With friction a step is this part of the smallest taxel's radius, too. Larger: what comes into contact within a step has dragged less
 /// than it should; smaller: more presses for no more than a hundredth of the shear.
 const FRICTION_STEP: f64 = 0.25;
-/// At most so many steps a way: of strokes far shorter than the way they become longer.
-const MOST_STEPS: f64 = 4096.0;
+/// Steps of a path, at most; steps become longer where strokes are far shorter than the path.
+const MAX_STEPS: f64 = 4096.0;
 
-/// A patch, and where the objects are before it goes along a direction (unit, in the patch frame).
+/// A patch, and the poses of the objects before it moves along a direction (unit, in the patch frame).
 pub(crate) struct ApproachPath<'a> {
     pub patch: &'a Patch,
     pub objects: &'a [Model],
@@ -27,11 +27,12 @@ pub(crate) struct ApproachPath<'a> {
     pub workspace: &'a mut Workspace,
 }
 
-/// Whether anybody asks what touches what.
+/// Whether a press records contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum ContactRequest {
-    /// At the end of the way.
+    /// At the end of the path.
     AtEnd,
+    /// Never.
     None,
 }
 
@@ -39,7 +40,7 @@ impl Patch {
     /// In how many steps a part of a way past objects is looked at; its length in metres.
     pub fn n_steps(&self, length: f64) -> usize {
         let step = STEP * self.least(|taxel| taxel.stroke);
-        (length / step).ceil().clamp(1.0, MOST_STEPS) as usize
+        (length / step).ceil().clamp(1.0, MAX_STEPS) as usize
     }
 
     fn least(&self, of: fn(&Taxel) -> f64) -> f64 {
@@ -66,7 +67,7 @@ impl ApproachPath<'_> {
         let step = FRICTION_STEP * self.patch.least(|taxel| taxel.radius);
         // A whole number of steps is not one more for the last bit of a length.
         let n_steps = (length / step * (1.0 - 1e-9)).ceil();
-        let n_steps = n_steps.clamp(1.0, MOST_STEPS) as usize;
+        let n_steps = n_steps.clamp(1.0, MAX_STEPS) as usize;
         n_steps.max(self.patch.n_steps(length))
     }
 
@@ -75,7 +76,7 @@ impl ApproachPath<'_> {
         self.press_at(travel * self.direction)
     }
 
-    /// Presses where the patch is after it has moved (metres, in the patch frame), which is the objects' motion the other way.
+    /// Presses where the patch is after it has moved (metres, in the patch frame), which is the objects' motion the other path.
     pub fn press_at(&mut self, moved: DVec3) -> Contact {
         self.at(moved, press_with_contacts)
     }

@@ -209,7 +209,7 @@ pub(crate) fn stop(patch: &Patch, workspace: &mut Workspace) -> Contact {
 ///
 /// What is behind the substrate does not count (the contact stage's title page has the rule), for each taxel by itself: so what a forearm
 /// rests on does not press on its other side. What has gone far past the stroke lies there, too, unless it is known how it came
-/// ([`press_to_depth`]). A single part decides each touched taxel; where two need the same, the object that comes first, and of a union the first of its spheres.
+/// ([`press_to_depth`](crate::contact::press_to_depth)). A single part decides each touched taxel; where two need the same, the object that comes first, and of a union the first of its spheres.
 ///
 /// ```
 /// use bubbletouch_sim::contact::{Workspace, press_with_contacts, spring_load};

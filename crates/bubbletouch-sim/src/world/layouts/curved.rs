@@ -21,7 +21,7 @@ impl Layout {
     ///   shorter than 0.75 pitches has one ring or column, in its middle.
     ///
     /// # Errors
-    /// The error names an argument out of its range, or a layout of more than [`MOST_TAXELS`](crate::world::MOST_TAXELS).
+    /// The error names an argument out of its range, or a layout of more than [`MAX_TAXELS`](crate::world::MAX_TAXELS).
     pub fn cylinder(radius: f64, length: f64, arc: f64, pitch: f64) -> Result<Self> {
         Ok(Self::from(Extrusion::cylinder(radius, length, arc, pitch)?))
     }
@@ -45,7 +45,7 @@ impl Layout {
     ///   smaller than 0.75 pitches from its pole to its end is the one taxel at its pole.
     ///
     /// # Errors
-    /// The error names an argument out of its range, or a layout of more than [`MOST_TAXELS`](crate::world::MOST_TAXELS).
+    /// The error names an argument out of its range, or a layout of more than [`MAX_TAXELS`](crate::world::MAX_TAXELS).
     pub fn sphere_cap(radius: f64, half_angle: f64, pitch: f64) -> Result<Self> {
         positive("taxel pitch", pitch, "m")?;
         positive("cap radius", radius, "m")?;
@@ -87,7 +87,7 @@ mod tests {
             let pitch = if n == 64 * 64 { 4e-3 } else { 2e-3 };
             let layout = Layout::cylinder(radius, length, arc, pitch).unwrap();
             assert_eq!(layout.n_taxels(), n);
-            for distance in nearest_distances(&layout) {
+            for distance in nearest_distances(layout.centers()) {
                 assert!(
                     (distance / pitch - 1.0).abs() < 0.05,
                     "{distance} for {pitch}"
@@ -111,7 +111,7 @@ mod tests {
         for (half_angle, radius) in [(0.5 * PI, 0.02), (1.0, 0.05), (PI, 0.03), (0.1, 0.2)] {
             let pitch = 2e-3;
             let layout = Layout::sphere_cap(radius, half_angle, pitch).unwrap();
-            for distance in nearest_distances(&layout) {
+            for distance in nearest_distances(layout.centers()) {
                 let share = distance / pitch;
                 assert!(
                     (0.9..1.1).contains(&share),

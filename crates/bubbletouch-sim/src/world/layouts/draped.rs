@@ -17,7 +17,7 @@ const LEAST: f64 = 0.83;
 /// surface between two pieces may be farther from a taxel than a pitch (0.83 + 2/3 of this).
 const PIECE: f64 = 0.25;
 /// Pieces of surface, at most: some 100,000 taxels, in 2 GB. The bound also holds for triangles that are long but have no area.
-const MOST_PIECES: usize = 1 << 24;
+const MAX_PIECES: usize = 1 << 24;
 /// Below this cosine between their normals two pieces are the two sides of a sheet, and do not keep each other's taxels away.
 const OPPOSED: f64 = -0.5;
 
@@ -129,7 +129,7 @@ struct Piece {
 fn pieces(mesh: &TriangleMesh, longest_edge: f64) -> Option<Vec<Piece>> {
     // An equilateral triangle is the largest piece there can be.
     let largest = 0.25 * 3f64.sqrt() * longest_edge * longest_edge;
-    if mesh.area() / largest > MOST_PIECES as f64 {
+    if mesh.area() / largest > MAX_PIECES as f64 {
         return None;
     }
     let mut pieces = Vec::new();
@@ -146,7 +146,7 @@ fn pieces(mesh: &TriangleMesh, longest_edge: f64) -> Option<Vec<Piece>> {
                 waiting.extend([second, first]);
                 continue;
             }
-            if pieces.len() == MOST_PIECES {
+            if pieces.len() == MAX_PIECES {
                 return None;
             }
             pieces.push(Piece {

@@ -16,7 +16,7 @@ impl Layout {
     ///
     /// # Errors
     /// The error names a pitch that is not positive, or a number of taxels that is zero or beyond
-    /// [`MOST_TAXELS`](crate::world::MOST_TAXELS).
+    /// [`MAX_TAXELS`](crate::world::MAX_TAXELS).
     pub fn hexagonal(nx: usize, ny: usize, pitch: f64) -> Result<Self> {
         positive("taxel pitch", pitch, "m")?;
         check_count("hexagonal layout", nx as f64 * ny as f64)?;
@@ -38,7 +38,7 @@ impl Layout {
     /// neighbours of each taxel are exactly `pitch` metres away; row by row.
     ///
     /// # Errors
-    /// The error names a length that is not positive, or a disc of more than [`MOST_TAXELS`](crate::world::MOST_TAXELS). A
+    /// The error names a length that is not positive, or a disc of more than [`MAX_TAXELS`](crate::world::MAX_TAXELS). A
     /// radius below the pitch leaves the one taxel in the middle.
     pub fn disc(radius: f64, pitch: f64) -> Result<Self> {
         positive("taxel pitch", pitch, "m")?;
@@ -72,7 +72,7 @@ impl Layout {
     ///
     /// # Errors
     /// The error names a length that is not positive, radii that are not in ascending order, or a ring of more than
-    /// [`MOST_TAXELS`](crate::world::MOST_TAXELS).
+    /// [`MAX_TAXELS`](crate::world::MAX_TAXELS).
     pub fn annulus(inner: f64, outer: f64, pitch: f64) -> Result<Self> {
         positive("taxel pitch", pitch, "m")?;
         positive("annulus inner radius", inner, "m")?;
@@ -109,7 +109,7 @@ mod tests {
             Layout::disc(0.02, 2e-3).unwrap(),
         ];
         for layout in layouts {
-            for distance in nearest_distances(&layout) {
+            for distance in nearest_distances(layout.centers()) {
                 assert!((distance - 2e-3).abs() < 1e-15, "{distance}");
             }
             let centers = || layout.centers().iter().copied();
@@ -136,7 +136,7 @@ mod tests {
         for (inner, outer) in [(5e-3, 20e-3), (5e-3, 8.4e-3), (3e-3, 3.2e-3), (4e-3, 4e-3)] {
             let pitch = 2e-3;
             let layout = Layout::annulus(inner, outer, pitch).unwrap();
-            for distance in nearest_distances(&layout) {
+            for distance in nearest_distances(layout.centers()) {
                 let share = distance / pitch;
                 assert!((0.75..1.1).contains(&share), "{inner} {outer}: {share}");
             }

@@ -3,17 +3,17 @@
 use crate::error::{Error, Result};
 
 /// Taxels of one layout, at most: more is a pitch in the wrong unit, and a hundred bytes each.
-pub const MOST_TAXELS: usize = 1 << 22;
+pub const MAX_TAXELS: usize = 1 << 22;
 
-/// Refuses layouts without taxels, and those with more than [`MOST_TAXELS`]; `about`: how many there will be.
+/// Refuses layouts without taxels, and those with more than [`MAX_TAXELS`]; `about`: how many there will be.
 pub(super) fn check_count(place: &str, about: f64) -> Result<()> {
-    if about >= 1.0 && about <= MOST_TAXELS as f64 {
+    if about >= 1.0 && about <= MAX_TAXELS as f64 {
         return Ok(());
     }
     Err(Error::input(
         place,
         format!("{about:.0} taxels"),
-        format!("1 to {MOST_TAXELS}"),
+        format!("1 to {MAX_TAXELS}"),
     ))
 }
 

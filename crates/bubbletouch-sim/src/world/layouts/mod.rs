@@ -29,4 +29,4 @@ pub use drape_region::DrapeRegion;
 pub use extrusion::Extrusion;
 pub use layout::Layout;
 pub(crate) use layout::Rule;
-pub use limits::MOST_TAXELS;
+pub use limits::MAX_TAXELS;

@@ -44,8 +44,7 @@ pub(crate) fn ends_of_steps(n: usize) -> impl Iterator<Item = f64> + Clone {
 
 /// Of each taxel of a layout the distance to its nearest neighbour.
 #[cfg(test)]
-pub(crate) fn nearest_distances(layout: &crate::world::Layout) -> Vec<f64> {
-    let centers = layout.centers();
+pub(super) fn nearest_distances(centers: &[DVec3]) -> Vec<f64> {
     let nearest = |i: usize| {
         let others = centers.iter().enumerate().filter(|&(j, _)| j != i);
         let distances = others.map(|(_, other)| other.distance(centers[i]));

@@ -5,7 +5,7 @@
 //!    the barrier along a smooth path between two minima, which follows the valley of a lying can where the mesh hops across
 //!    it.
 
-use super::descent::settle;
+use super::descent::descend;
 use super::support::Support;
 use glam::{DQuat, DVec3};
 
@@ -30,7 +30,7 @@ pub(crate) fn basins(support: &Support, barrier: f64) -> Vec<Basin> {
     let passes = mesh_passes(support, &label);
     let mut merging = Merging::new(support);
     merging.merge(&passes, barrier);
-    merging.settle(support, &label);
+    merging.descend_minima(support, &label);
     for halvings in [0, VALLEY_HALVINGS] {
         let smooth = merging.smooth_passes(support, &passes, barrier, halvings);
         merging.merge(&smooth, barrier);
@@ -146,12 +146,12 @@ impl Merging {
 
     /// Moves each minimum from its mesh direction to the true local minimum. One that ends in another basin's directions has
     /// rolled there without a rise: the two are one.
-    fn settle(&mut self, support: &Support, label: &[usize]) {
+    fn descend_minima(&mut self, support: &Support, label: &[usize]) {
         let mut roots: Vec<_> = label.iter().map(|&label| self.root(label)).collect();
         roots.sort_unstable();
         roots.dedup();
         for &root in &roots {
-            let down = settle(support, self.minimum[root].0);
+            let down = descend(support, self.minimum[root].0);
             self.minimum[root] = (down, support.height(down));
         }
         for root in roots {
@@ -219,7 +219,7 @@ fn valley_pass(support: &Support, ends: (DVec3, DVec3), enough: f64, halvings: u
     if halvings == 0 || direct < enough {
         return direct;
     }
-    let middle = settle(support, (from + to).normalize_or(from));
+    let middle = descend(support, (from + to).normalize_or(from));
     let arrived = |end: DVec3| end.angle_between(middle) < SAME_DIRECTION;
     if arrived(from) || arrived(to) {
         return direct;

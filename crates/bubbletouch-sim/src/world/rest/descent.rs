@@ -18,7 +18,7 @@ const LEAST_GAIN: f64 = 1e-14;
 const MAX_STEPS: usize = 200;
 
 /// The local minimum that `start` rolls to; unit vectors. The height never rises on the way.
-pub(crate) fn settle(support: &Support, start: DVec3) -> DVec3 {
+pub(crate) fn descend(support: &Support, start: DVec3) -> DVec3 {
     let mut down = start;
     let mut height = support.height(down);
     let mut reach = FIRST_REACH;
@@ -199,7 +199,7 @@ mod tests {
         let union = SphereUnion::new(centers.into_iter().map(sphere).collect()).unwrap();
         let support = Support::about(DVec3::ZERO, union.spheres());
         for start in support.directions.iter().step_by(101) {
-            let end = settle(&support, *start);
+            let end = descend(&support, *start);
             assert!(support.height(end) <= support.height(*start));
             assert!((end.length() - 1.0).abs() < 1e-12);
         }

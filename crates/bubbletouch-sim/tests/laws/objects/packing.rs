@@ -55,7 +55,7 @@ fn random_shape(rng: &mut impl Rng) -> Shape {
             inner_diameter: a,
             height: c,
         },
-        8 => Shape::Strand {
+        8 => Shape::SphereSweep {
             points: vec![DVec3::ZERO, DVec3::new(a, b, c), DVec3::new(-b, c, a)],
             diameters: vec![c, a, b],
         },

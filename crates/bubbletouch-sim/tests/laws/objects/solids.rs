@@ -79,7 +79,7 @@ fn one_of_each() -> Vec<Shape> {
             across_flats: 13. * MM,
             height: 6.5 * MM,
         },
-        Shape::Strand {
+        Shape::SphereSweep {
             points: vec![DVec3::ZERO, DVec3::new(30., 0., 0.) * MM],
             diameters: vec![12. * MM, 6. * MM],
         },
@@ -413,14 +413,14 @@ fn dimensions_out_of_range_are_refused_by_name() {
             "outline: corner 3, which is not finite",
         ),
         (
-            Shape::Strand {
+            Shape::SphereSweep {
                 points: vec![DVec3::ZERO],
                 diameters: vec![],
             },
             "diameters: 1 points and 0 diameters",
         ),
         (
-            Shape::Strand {
+            Shape::SphereSweep {
                 points: vec![DVec3::ZERO; 2],
                 diameters: vec![1.; 2],
             },

@@ -6,9 +6,9 @@ use super::surface_patch::{SurfacePatch, frame};
 use crate::geometry::Pose;
 use glam::{DVec2, DVec3};
 
-/// The convex hull of each two neighbouring balls, all together.
+/// Sphere swept along a broken line: the union of the convex hulls of neighbouring balls.
 #[derive(Clone, Debug)]
-pub(super) struct Strand {
+pub(super) struct SphereSweep {
     /// Centres and radii, at least one.
     pub balls: Vec<Sphere>,
 }
@@ -85,7 +85,7 @@ impl Hull {
     }
 }
 
-impl Strand {
+impl SphereSweep {
     fn hulls(&self) -> impl Iterator<Item = Hull> {
         self.balls
             .windows(2)
