@@ -22,149 +22,103 @@ const OVER_TIME: &[(&str, &str)] = &[
 ];
 const CHOSEN: &[(&str, &str)] = &[("", "chosen")];
 
+/// Declares the configuration of a cell: each parameter with its type, its column, and when the column is there. Struct, columns and rows in files follow from
+/// this one list, in its order.
+macro_rules! configuration {
+    ($(#[$of_cell:meta])* pub struct $cell:ident {
+        $($(#[$of_field:meta])* $field:ident: $type:ty => $how:ident $(($role:ident, $words:literal, $unit:literal, $scale:ident))? $(named $names:expr)?;)*
+    }) => {
+        $(#[$of_cell])*
+        #[derive(Clone, Debug, PartialEq)]
+        pub struct $cell {
+            $($(#[$of_field])* pub $field: $type,)*
+        }
+
+        impl Serialize for $cell {
+            fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                let n_fields = Self::columns().len() + self.variant.values.len();
+                let mut row = serializer.serialize_struct("Cell", n_fields)?;
+                $($how::write(&self.$field, stringify!($field), &mut row)?;)*
+                row.end()
+            }
+        }
+
+        /// All columns except those of the axes that a study names itself.
+        impl Columns for $cell {
+            fn columns() -> Vec<Column> {
+                let mut columns = Vec::new();
+                $(
+                    #[allow(unused_mut, unused_assignments)]
+                    let mut column: Option<Column> = None;
+                    $(column = Some(Column::new(stringify!($field), Role::$role, $words, $unit, Scale::$scale));)?
+                    $(column = column.map(|column| column.named($names));)?
+                    $how::columns(column, &mut columns);
+                )*
+                columns
+            }
+        }
+    };
+}
+
+configuration! {
 /// The settings of one cell of a sweep: every axis at one value.
-#[derive(Clone, Debug, PartialEq)]
 pub struct Cell {
     /// Number of the cell, from 0, in sweep order.
-    pub cell: usize,
+    cell: usize => always (Note, "cell", "", Linear);
     /// Millimetres between taxels.
-    pub pitch_mm: f64,
+    pitch_mm: f64 => always (Choice, "pitch", "mm", Linear);
     /// Taxel columns.
-    pub nx: usize,
+    nx: usize => always (Note, "taxels along x", "", Linear);
     /// Taxel rows.
-    pub ny: usize,
+    ny: usize => always (Note, "taxels along y", "", Linear);
     /// Rows and columns of its images.
-    pub image_shape: (usize, usize),
+    image_shape: (usize, usize) => hidden;
     /// Side length of the array along x: nx × pitch.
-    pub size_mm: f64,
+    size_mm: f64 => always (Choice, "array size", "mm", Linear);
     /// Noise standard deviation, in `noise_unit`.
-    pub noise_std: f64,
+    noise_std: f64 => always (Condition, "noise", "%", Share);
     /// What `noise_std` is measured in.
-    pub noise_unit: NoiseUnit,
+    noise_unit: NoiseUnit => always (Note, "noise unit", "", Words);
     /// Standard deviation of the Gaussian smoothing, millimetres; 0 for none.
-    pub smoothing_mm: f64,
+    smoothing_mm: f64 => always (Choice, "smoothing", "mm", Linear);
     /// How strong each sensor error is: a column for each strength that the study has.
-    pub strengths: Strengths,
+    strengths: Strengths => each_strength;
     /// The skin that test touches are made with; only if the study has the key.
-    pub tested_on: Option<TestedOn>,
+    tested_on: Option<TestedOn> => if_given (Condition, "tested on", "", Words);
     /// How measurements are made.
-    pub ensemble: Ensemble,
+    ensemble: Ensemble => always (Choice, "ensemble", "", Words) named Ensemble::NAMES;
     /// Measurements a frame, m.
-    pub measurements: usize,
+    measurements: usize => always (Choice, "m", "", Log);
     /// Compression ratio n / m.
-    pub ratio: f64,
+    ratio: f64 => always (Choice, "compression", ":1", Log);
     /// Frames a touch, F: a row of features has F · m values.
-    pub frames: usize,
+    frames: usize => always (Choice, "frames a touch", "", Log);
     /// What is made of the frames, if not all of them one after the other; only if the study has the key.
-    pub over_time: Option<OverTime>,
+    over_time: Option<OverTime> => if_given (Choice, "over time", "", Words) named OVER_TIME;
     /// What is made of the measurements.
-    pub features: Features,
+    features: Features => always (Choice, "features", "", Words) named Features::NAMES;
     /// How far behind the foremost point features of images see, as a fraction of the full scale, 1 of all others; only if the study
     /// has the key.
-    pub foremost_full_scale: Option<f64>,
+    foremost_full_scale: Option<f64> => if_given (Choice, "foremost", "%", Share);
     /// Copies of each training touch, tilted at random; only if the study has the key.
-    pub tilted_copies: Option<usize>,
+    tilted_copies: Option<usize> => if_given (Choice, "tilted copies", "", Linear);
     /// Which classifier.
-    pub classifier: ClassifierKind,
+    classifier: ClassifierKind => always (Choice, "classifier", "", Words) named ClassifierKind::NAMES;
     /// Soft-margin penalty C; empty when it is chosen by cross-validation, or when the classifier has none.
-    pub c: Option<f64>,
+    c: Option<f64> => always (Choice, "C", "", Log) named CHOSEN;
     /// Training touches an object, at most.
-    pub train_touches: usize,
+    train_touches: usize => always (Choice, "training touches", "", Log);
     /// Fraction of them with another object's label; only if the study has the key.
-    pub mislabelled_fraction: Option<f64>,
+    mislabelled_fraction: Option<f64> => if_given (Condition, "mislabelled", "%", Share);
     /// How many times as many the most frequent object has as the rarest; only if the study has the key.
-    pub class_imbalance: Option<f64>,
+    class_imbalance: Option<f64> => if_given (Condition, "class imbalance", ":1", Log);
     /// Test touches of an object that are decided on together, by the sum of their scores.
-    pub fused_touches: usize,
+    fused_touches: usize => always (Choice, "touches fused", "", Log);
     /// How the touches after the first of these are chosen; only if the study has the key.
-    pub next_touch: Option<NextTouch>,
+    next_touch: Option<NextTouch> => if_given (Choice, "next touch", "", Words);
     /// Where it is on the study's own axes: a column for each.
-    pub variant: AxisValues,
-}
-
-/// In the order of its columns; what a study does not have is left out.
-impl Serialize for Cell {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let n_fields = Self::columns().len() + self.variant.values.len();
-        let mut row = serializer.serialize_struct("Cell", n_fields)?;
-        macro_rules! put {
-            ($($field:ident),*) => {$(
-                row.serialize_field(stringify!($field), &self.$field)?;
-            )*};
-        }
-        macro_rules! put_if_there {
-            ($($field:ident),*) => {$(
-                if let Some(value) = &self.$field {
-                    row.serialize_field(stringify!($field), value)?;
-                }
-            )*};
-        }
-        put!(cell, pitch_mm, nx, ny, size_mm);
-        put!(noise_std, noise_unit, smoothing_mm);
-        for (_, strength, value) in self.strengths.given() {
-            match strength.is_whole {
-                true => row.serialize_field(strength.key, &(value as u64))?,
-                false => row.serialize_field(strength.key, &value)?,
-            }
-        }
-        put_if_there!(tested_on);
-        put!(ensemble, measurements, ratio, frames);
-        put_if_there!(over_time);
-        put!(features);
-        put_if_there!(foremost_full_scale, tilted_copies);
-        put!(classifier, c, train_touches);
-        put_if_there!(mislabelled_fraction, class_imbalance);
-        put!(fused_touches);
-        put_if_there!(next_touch);
-        for axis in self.variant.values.iter() {
-            if let Cow::Borrowed(name) = axis.column.name {
-                row.serialize_field(name, &axis.value)?;
-            }
-        }
-        row.end()
-    }
-}
-
-/// All but those of the axes that a study names itself.
-impl Columns for Cell {
-    fn columns() -> Vec<Column> {
-        use Role::{Choice, Condition, Note};
-        use Scale::{Linear, Log, Share, Words};
-        let mut columns = vec![
-            Column::new("cell", Note, "cell", "", Linear),
-            Column::new("pitch_mm", Choice, "pitch", "mm", Linear),
-            // The pitch and the size say them.
-            Column::new("nx", Note, "taxels along x", "", Linear),
-            Column::new("ny", Note, "taxels along y", "", Linear),
-            Column::new("size_mm", Choice, "array size", "mm", Linear),
-            Column::new("noise_std", Condition, "noise", "%", Share),
-            Column::new("noise_unit", Note, "noise unit", "", Words),
-            Column::new("smoothing_mm", Choice, "smoothing", "mm", Linear),
-        ];
-        columns.extend_from_slice(strength_columns());
-        columns.extend([
-            Column::new("tested_on", Condition, "tested on", "", Words).optional(),
-            Column::new("ensemble", Choice, "ensemble", "", Words).named(Ensemble::NAMES),
-            Column::new("measurements", Choice, "m", "", Log),
-            Column::new("ratio", Choice, "compression", ":1", Log),
-            Column::new("frames", Choice, "frames a touch", "", Log),
-            Column::new("over_time", Choice, "over time", "", Words)
-                .named(OVER_TIME)
-                .optional(),
-            Column::new("features", Choice, "features", "", Words).named(Features::NAMES),
-            Column::new("foremost_full_scale", Choice, "foremost", "%", Share).optional(),
-            Column::new("tilted_copies", Choice, "tilted copies", "", Linear).optional(),
-            Column::new("classifier", Choice, "classifier", "", Words).named(ClassifierKind::NAMES),
-            Column::new("c", Choice, "C", "", Log).named(CHOSEN),
-            Column::new("train_touches", Choice, "training touches", "", Log),
-            Column::new("mislabelled_fraction", Condition, "mislabelled", "%", Share).optional(),
-            Column::new("class_imbalance", Condition, "class imbalance", ":1", Log).optional(),
-            Column::new("fused_touches", Choice, "touches fused", "", Log),
-            Column::new("next_touch", Choice, "next touch", "", Words).optional(),
-        ]);
-        columns
-    }
-}
+    variant: AxisValues => each_axis;
+} }
 
 impl Cell {
     /// Returns the inputs of its features.
@@ -189,6 +143,97 @@ impl Cell {
     /// Numbers that a touch is told by.
     pub fn n_features(&self) -> usize {
         self.rows().n_features()
+    }
+}
+
+/// Parameters with a column in every study.
+mod always {
+    use super::*;
+
+    pub fn columns(column: Option<Column>, columns: &mut Vec<Column>) {
+        columns.extend(column);
+    }
+
+    pub fn write<R: SerializeStruct>(
+        value: &impl Serialize,
+        name: &'static str,
+        row: &mut R,
+    ) -> Result<(), R::Error> {
+        row.serialize_field(name, value)
+    }
+}
+
+/// Parameters with a column in studies that have their key.
+mod if_given {
+    use super::*;
+
+    pub fn columns(column: Option<Column>, columns: &mut Vec<Column>) {
+        columns.extend(column.map(Column::optional));
+    }
+
+    pub fn write<R: SerializeStruct>(
+        value: &Option<impl Serialize>,
+        name: &'static str,
+        row: &mut R,
+    ) -> Result<(), R::Error> {
+        match value {
+            Some(value) => row.serialize_field(name, value),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Parameters that follow from others and have no column.
+mod hidden {
+    use super::*;
+
+    pub fn columns(_: Option<Column>, _: &mut Vec<Column>) {}
+
+    pub fn write<T, R: SerializeStruct>(_: &T, _: &str, _: &mut R) -> Result<(), R::Error> {
+        Ok(())
+    }
+}
+
+/// A column for each strength of a sensor error that the study has.
+mod each_strength {
+    use super::*;
+
+    pub fn columns(_: Option<Column>, columns: &mut Vec<Column>) {
+        columns.extend_from_slice(strength_columns());
+    }
+
+    pub fn write<R: SerializeStruct>(
+        strengths: &Strengths,
+        _: &str,
+        row: &mut R,
+    ) -> Result<(), R::Error> {
+        for (_, strength, value) in strengths.given() {
+            match strength.is_whole {
+                true => row.serialize_field(strength.key, &(value as u64))?,
+                false => row.serialize_field(strength.key, &value)?,
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A column for each axis that the study names itself.
+mod each_axis {
+    use super::*;
+
+    pub fn columns(_: Option<Column>, _: &mut Vec<Column>) {}
+
+    pub fn write<R: SerializeStruct>(
+        axes: &AxisValues,
+        _: &str,
+        row: &mut R,
+    ) -> Result<(), R::Error> {
+        for axis in axes.values.iter() {
+            if let Cow::Borrowed(name) = axis.column.name {
+                row.serialize_field(name, &axis.value)?;
+            }
+        }
+        Ok(())
     }
 }
 
