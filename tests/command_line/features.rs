@@ -102,7 +102,7 @@ fn training_on_the_files_gives_the_accuracy_of_the_run() {
 }
 
 #[test]
-fn the_library_reads_what_the_command_writes_and_threads_change_no_byte() {
+fn the_library_reads_what_the_command_writes_at_any_number_of_threads() {
     let case = Case::new();
     case.file("study.toml", STUDY);
     for threads in ["1", "3"] {

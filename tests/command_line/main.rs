@@ -8,12 +8,12 @@ mod chart_tables;
 mod command;
 #[path = "../../crates/bubbletouch-sim/tests/laws/fixtures/counting.rs"]
 mod counting;
-#[path = "../fixtures/kinds/mod.rs"]
-mod kinds;
 #[path = "../../crates/bubbletouch-sim/tests/laws/fixtures/reference_data.rs"]
 mod reference_data;
 #[path = "../fixtures/report_synthetic/mod.rs"]
 mod report_synthetic;
+#[path = "../fixtures/browser/shown.rs"]
+mod shown;
 #[path = "../fixtures/recording/mod.rs"]
 mod stored;
 #[path = "../fixtures/study/mod.rs"]

@@ -1,5 +1,7 @@
-//! Long runs: kill and resume, shards, merge, job arrays; and readers of files that meet hostile bytes.
+//! Every kind of study; long runs: kill and resume, shards, merge, job arrays; and readers of files that meet hostile bytes.
 
+#[path = "../fixtures/browser/mod.rs"]
+mod browser;
 #[path = "../fixtures/command/mod.rs"]
 mod command;
 #[path = "../../crates/bubbletouch-sim/tests/laws/fixtures/counting.rs"]
@@ -13,6 +15,7 @@ mod kinds;
 #[path = "../fixtures/study/mod.rs"]
 mod study;
 
+mod every_kind;
 mod fuzz;
 mod hostile;
 mod pieces;

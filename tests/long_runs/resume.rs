@@ -44,7 +44,7 @@ fn a_journal_whose_tail_is_torn_loses_its_last_line_and_nothing_else() {
     let journal = case.path("whole/journal.jsonl");
     let bytes = fs::read(&journal).unwrap();
     let mut rng = ChaCha8Rng::seed_from_u64(9);
-    for round in 0..6 {
+    for round in 0..4 {
         let n = match round {
             0 => 0,
             1 => 10,
@@ -258,21 +258,19 @@ fn assert_grows(case: &Case, (more, n_before, n_all): (&str, usize, usize)) {
         "--threads",
         "3",
     ]);
-    for threads in ["1", "3"] {
-        let folder = format!("grown_{threads}_{n_all}");
-        fs::create_dir(case.path(&folder)).unwrap();
-        let journal = case.path(&folder).join("journal.jsonl");
-        fs::copy(case.path("whole/journal.jsonl"), journal).unwrap();
-        let run = ["run", "more.toml", "--out", &folder, "--threads", threads];
-        let (_, error) = case.succeeds(&run);
-        let going_on = format!("going on: {n_before} of {n_all} work items");
-        assert!(error.contains(&going_on), "{error}");
-        for name in REPEATABLE.iter().chain(&["limits.csv"]) {
-            let read = |folder: &str| fs::read(case.path(folder).join(name)).unwrap();
-            assert!(read("fresh") == read(&folder), "{folder}/{name}");
-        }
-        case.succeeds(&["verify", &folder, "--cells", "20"]);
+    let folder = format!("grown_{n_all}");
+    fs::create_dir(case.path(&folder)).unwrap();
+    let journal = case.path(&folder).join("journal.jsonl");
+    fs::copy(case.path("whole/journal.jsonl"), journal).unwrap();
+    let run = ["run", "more.toml", "--out", &folder, "--threads", "1"];
+    let (_, error) = case.succeeds(&run);
+    let going_on = format!("going on: {n_before} of {n_all} work items");
+    assert!(error.contains(&going_on), "{error}");
+    for name in REPEATABLE.iter().chain(&["limits.csv"]) {
+        let read = |folder: &str| fs::read(case.path(folder).join(name)).unwrap();
+        assert!(read("fresh") == read(&folder), "{folder}/{name}");
     }
+    case.succeeds(&["verify", &folder, "--cells", "5"]);
 }
 
 #[test]
@@ -281,14 +279,11 @@ fn a_study_that_has_more_trials_and_values_keeps_its_cells_and_comes_out_as_if_r
     let more = STUDY
         .replace("trials = 2", "trials = 3")
         .replace("What is left", "How much is left")
-        .replace("[4.0, 8.0]", "[16.0, 4.0, 8.0]")
         .replace(
             "[0.05, 0.2]",
             "[0.05, 0.1, 0.2]\nsteps = [\"crosstalk\", \"noise\"]\ncrosstalk = [0.1, 0.0]",
-        )
-        .replace("ratio = [4, 16]", "ratio = [2, 4, 16]")
-        .replace("[\"linear_svm\",", "[\"k_nearest\", \"linear_svm\",");
-    assert_grows(&case, (&more, 66, 3 * 3 * 3 * 2 * 3 * 3 * 2 + 3));
+        );
+    assert_grows(&case, (&more, 66, 3 * 2 * 3 * 2 * 2 * 2 * 2 + 2));
     // Fewer are no less the same.
     let fewer = STUDY.replace("[0.05, 0.2]", "0.2");
     assert_grows(&case, (&fewer, 34, 34));
@@ -404,8 +399,8 @@ fn a_cell_that_fails_is_recorded_and_the_others_are_done() {
 #[test]
 fn more_shards_than_groups_from_folders_of_their_own_make_the_same_tables() {
     let case = case();
-    for index in 1..=40 {
-        let (shard, folder) = (format!("{index}/40"), format!("machine_{}", index % 2));
+    for index in 1..=20 {
+        let (shard, folder) = (format!("{index}/20"), format!("machine_{}", index % 2));
         case.succeeds(&["run", "study.toml", "--out", &folder, "--shard", &shard]);
     }
     case.succeeds(&[

@@ -660,7 +660,7 @@ fn forces_of_a_frame_sum_to_the_wrench_on_every_layout_for_every_kind_of_object(
         ("object = \"mug\"\nsurface_error_mm = 3.0", 5.0),
         ("spheres = \"two.csv\"\nunit = \"m\"", 20.0),
         (
-            "mesh = \"cube.obj\"\nunit = \"cm\"\nmodel = \"packed\"\nsurface_error_mm = 0.5",
+            "mesh = \"cube.obj\"\nunit = \"cm\"\nmodel = \"packed\"\nsurface_error_mm = 2.0",
             10.0,
         ),
         ("mesh = \"cube.obj\"\nunit = \"cm\"\nmodel = \"mesh\"", 10.0),

@@ -80,7 +80,7 @@ fn objects_that_touch_within_what_their_spheres_stand_out_are_read_and_so_are_th
     let cube = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n\
         f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
     fs::write(folder.path().join("cube.obj"), cube).unwrap();
-    let cube = "mesh = \"cube.obj\"\nunit = \"cm\"\nmodel = \"packed\"\nsurface_error_mm = 0.5";
+    let cube = "mesh = \"cube.obj\"\nunit = \"cm\"\nmodel = \"packed\"\nsurface_error_mm = 2.0";
     // One cube upon the other, and balls in a cup-like ring, apart by rounding.
     let stack = [
         ("low", cube, [0.0, 0.0, 9.0], FREE),

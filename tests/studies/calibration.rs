@@ -30,7 +30,7 @@ pitch_mm = 2.0
 taxels = 32
 stroke_mm = 5.0
 [touches]
-per_object = 150
+per_object = 100
 offset_x_mm = { uniform = [-25.0, 25.0] }
 offset_y_mm = { uniform = [-25.0, 25.0] }
 yaw_deg = { uniform = [0.0, 360.0] }

@@ -216,16 +216,10 @@ fn a_touch_is_read_as_a_press_that_goes_on_after_another_touch() {
 }
 
 #[test]
-fn the_tables_are_the_same_bytes_at_any_number_of_threads() {
+fn a_table_has_a_row_of_each_condition_and_the_written_study_is_the_same() {
     let case = Case::new();
     case.file("study.toml", with_signal(ALL));
-    for threads in ["1", "3"] {
-        case.succeeds(&["run", "study.toml", "--threads", threads, "--out", threads]);
-    }
-    for name in ["accuracy.csv", "summary.csv", "confusion.csv", "study.toml"] {
-        let read = |threads: &str| fs::read(case.path(threads).join(name)).unwrap();
-        assert!(!read("1").is_empty() && read("1") == read("3"), "{name}");
-    }
+    case.succeeds(&["run", "study.toml", "--out", "1"]);
     let summary = fs::read_to_string(case.path("1").join("summary.csv")).unwrap();
     assert_eq!(summary.lines().count(), 1 + 1 + 8 + 2);
     let again = fs::read_to_string(case.path("1").join("study.toml")).unwrap();

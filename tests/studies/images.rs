@@ -86,6 +86,7 @@ fn what_is_learned_for_images_does_not_know_test_touches() {
     let sensed = "ensemble = \"principal_components\"\nmeasurements = 8";
     let text = STUDY.replace("ensemble = \"identity\"", sensed);
     let text = text.replace("trials = 1", "trials = 2");
+    let text = text.replace("per_object = 40", "per_object = 8");
     let [set, other] = [0, 1].map(|trial| features(&text, 1, trial));
     // Another split: the same touches measure otherwise, by what was learned from others.
     assert_ne!(set.split.test, other.split.test);

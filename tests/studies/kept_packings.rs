@@ -18,13 +18,13 @@ fn a_folder_gives_back_what_was_packed_and_knows_what_from() {
     let folder = tempfile::tempdir().unwrap();
     let surface = Surface::new(cuboid(DVec3::new(4.0, 3.0, 2.0) * MM));
     let pack = |tolerance| kept(folder.path(), &surface, tolerance).unwrap();
-    let (first, again, finer) = (pack(0.3 * MM), pack(0.3 * MM), pack(0.2 * MM));
+    let (first, again, finer) = (pack(0.6 * MM), pack(0.6 * MM), pack(0.4 * MM));
     let was_kept = [&first, &again, &finer].map(|packed| packed.was_kept);
     assert_eq!(was_kept, [false, true, false]);
     assert_eq!(first.spheres, again.spheres);
     assert_ne!(first.spheres, finer.spheres);
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
-    let path = |mesh| packing_path(folder.path(), mesh, 0.3 * MM);
+    let path = |mesh| packing_path(folder.path(), mesh, 0.6 * MM);
     let other = cuboid(DVec3::new(4.0, 3.0, 2.1) * MM);
     assert_ne!(path(surface.mesh()), path(&other));
 }
@@ -33,9 +33,9 @@ fn a_folder_gives_back_what_was_packed_and_knows_what_from() {
 fn a_kept_packing_that_is_damaged_in_any_way_is_made_again() {
     let folder = tempfile::tempdir().unwrap();
     let surface = Surface::new(cuboid(DVec3::new(4.0, 3.0, 2.0) * MM));
-    let pack = || kept(folder.path(), &surface, 0.3 * MM);
+    let pack = || kept(folder.path(), &surface, 0.6 * MM);
     let fresh = pack().unwrap().spheres;
-    let path = packing_path(folder.path(), surface.mesh(), 0.3 * MM);
+    let path = packing_path(folder.path(), surface.mesh(), 0.6 * MM);
     let whole = std::fs::read(&path).unwrap();
     assert!(pack().unwrap().was_kept);
     let lines: Vec<&[u8]> = whole.split_inclusive(|&byte| byte == b'\n').collect();

@@ -42,7 +42,7 @@ classifier = ["linear_svm", "k_nearest"]
 c = [0.1, 1.0]
 "#;
 
-/// 4,800 touches of 16,384 taxels, which would take 310 MB if all taxels were kept.
+/// 3,200 touches of 16,384 taxels, which would take 210 MB if all taxels were kept.
 const LARGE: &str = r#"
 question = "?"
 trials = 1
@@ -56,7 +56,7 @@ taxels = 128
 stroke_mm = 5.0
 
 [touches]
-per_object = 300
+per_object = 200
 offset_x_mm = { uniform = [-20.0, 20.0] }
 offset_y_mm = { uniform = [-20.0, 20.0] }
 depth_mm = { uniform = [1.0, 3.0] }
@@ -88,7 +88,7 @@ fn a_study_stays_below_its_ceiling_and_finds_the_same() {
     case.file("large.toml", LARGE);
     let least = least_gib(&case, "large.toml");
     let ceiling = least.parse::<f64>().unwrap() * f64::from(1 << 30);
-    assert!(ceiling < 0.6e9, "{least} GiB");
+    assert!(ceiling < 0.5e9, "{least} GiB");
     case.succeeds(&["run", "large.toml", "--out", "free", "--quiet"]);
     let out = [
         "run",
@@ -224,12 +224,12 @@ fn cells(values: [usize; 3]) -> String {
 fn a_study_is_planned_in_time_that_grows_as_its_cells_do_and_more_than_a_million_are_refused() {
     let case = Case::new();
     // Ratios near 1 name few different m of 64 taxels.
-    case.file("large.toml", cells([500, 400, 1]));
+    case.file("large.toml", cells([250, 200, 1]));
     let start = Instant::now();
     let (said, _) = case.succeeds(&["plan", "large.toml"]);
-    assert!(said.contains("200001, of 200000 configurations"), "{said}");
+    assert!(said.contains("50001, of 50000 configurations"), "{said}");
     // With every group counting all cells before it, minutes.
-    assert!(start.elapsed() < Duration::from_secs(20));
+    assert!(start.elapsed() < Duration::from_secs(10));
     case.file("huge.toml", cells([1000, 1001, 1]));
     case.file("endless.toml", cells([10_000, 10_000, 30]));
     for command in ["plan", "run"] {

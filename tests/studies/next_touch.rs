@@ -1,6 +1,5 @@
 //! The next touch as an axis of a study: against choosing by hand, touch by touch.
 
-use crate::command::Case;
 use crate::study::{Study, laid_out, trials_of};
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::ClassifierKind;
@@ -172,17 +171,6 @@ fn each_choice_scores_what_a_robot_that_makes_it_touch_by_touch_does() {
     };
     assert_ne!(random(&[1, 4]), random(&[2, 5]));
     assert_ne!(random(&[1, 4]), random(&[3, 6]));
-}
-
-#[test]
-fn choices_are_the_same_bytes_at_any_number_of_threads() {
-    let case = Case::new();
-    case.file("study.toml", with(&format!("{ALL}\nfused_touches = 3")));
-    let accuracy = ["1", "5"].map(|threads| {
-        case.succeeds(&["run", "study.toml", "--threads", threads, "--out", threads]);
-        std::fs::read(case.path(threads).join("accuracy.csv")).unwrap()
-    });
-    assert!(!accuracy[0].is_empty() && accuracy[0] == accuracy[1]);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! The quickstart's committed results, computed again.
+//! The first trial of the quickstart's committed results, computed again.
 
 use crate::study::Study;
 use bubbletouch::report::csv_tables::read_rows;
@@ -22,7 +22,10 @@ fn the_quickstart_still_gives_its_committed_results() {
     }
     let committed: Vec<TrialScore> = read_rows(&committed).unwrap();
     let text = fs::read_to_string(root.join("experiments/quickstart.toml")).unwrap();
+    assert!(text.contains("\ntrials = 4\n"));
+    let text = text.replace("\ntrials = 4\n", "\ntrials = 1\n");
     let computed = Study::new(&text).run().accuracy;
+    let committed: Vec<TrialScore> = committed.into_iter().filter(|s| s.trial == 0).collect();
     assert_eq!(computed.len(), committed.len());
     for ((cell, score), old) in computed.iter().zip(&committed) {
         assert_eq!(

@@ -12,7 +12,7 @@ sets = ["balls"]
 names = ["golf", "tennis", "baseball"]
 
 [touches]
-per_object = 10
+per_object = 6
 offset_x_mm = { uniform = [-6.0, 6.0] }
 offset_y_mm = { uniform = [-6.0, 6.0] }
 depth_mm = { uniform = [1.0, 7.0] }
@@ -21,7 +21,7 @@ depth_mm = { uniform = [1.0, 7.0] }
 const HUMAN: &str = r#"
 [human_touch]
 kinds = ["tap", "stroke", "grab"]
-per_kind = 8
+per_kind = 5
 frames_hz = 10.0
 duration_s = 2.5
 "#;
@@ -190,17 +190,17 @@ fn shear_in_a_file_of_its_own_is_joined_to_the_frames() {
     let case = Case::new();
     let head = "question = \"?\"\ntrials = 2\n";
     let skin = format!("{SKIN}sensed = \"shear\"\nfriction = 0.5\n");
-    let touched = PRESSED.replace("per_object = 10", "per_object = 10\nframes = 2");
+    let touched = PRESSED.replace("per_object = 6", "per_object = 6\nframes = 2");
     case.file("study.toml", format!("{head}{touched}{skin}{LEARNED}"));
     case.succeeds(&["touches", "study.toml", "--out", "touches"]);
     let frames: Array4<f32> = read_npy(case.path("touches/frames.npy")).unwrap();
     let shear: Array5<f32> = read_npy(case.path("touches/shear.npy")).unwrap();
     let all = concatenate![Axis(2), frames.clone().insert_axis(Axis(2)), shear];
     write_npy(&case.path("touches/all.npy"), &all).unwrap();
-    // The first six touches of each class train.
+    // The first four touches of each class train.
     let part = |is_test: bool| -> Vec<usize> {
-        (0..30)
-            .filter(|touch| (touch % 10 >= 6) == is_test)
+        (0..18)
+            .filter(|touch| (touch % 6 >= 4) == is_test)
             .collect()
     };
     for (set, is_test) in [("a", false), ("b", true)] {
@@ -209,7 +209,7 @@ fn shear_in_a_file_of_its_own_is_joined_to_the_frames() {
         write_npy(&path("frames"), &frames.select(Axis(0), &touches)).unwrap();
         write_npy(&path("shear"), &shear.select(Axis(0), &touches)).unwrap();
         write_npy(&path("all"), &all.select(Axis(0), &touches)).unwrap();
-        write_integers(&path("labels"), touches.iter().map(|touch| touch / 10)).unwrap();
+        write_integers(&path("labels"), touches.iter().map(|touch| touch / 6)).unwrap();
     }
     let skin = "[skin]\npitch_mm = 4.0\nstroke_mm = 5.0\nsensed = \"shear\"\nfriction = 0.5\n";
     let study = |keys: &str, skin: &str| {
@@ -254,11 +254,11 @@ fn shear_in_a_file_of_its_own_is_joined_to_the_frames() {
     for (keys, words) in [
         (
             format!("frames frames, shear frames, {labels}"),
-            "frames.npy: an array of shape [30, 2, 8, 8]; shape [30, 2, 2, 8, 8] (\"n t c y x\")",
+            "frames.npy: an array of shape [18, 2, 8, 8]; shape [18, 2, 2, 8, 8] (\"n t c y x\")",
         ),
         (
             format!("frames frames, shear shear_a, {labels}"),
-            "shear_a.npy: an array of shape [18, 2, 2, 8, 8]; shape [30, 2, 2, 8, 8]",
+            "shear_a.npy: an array of shape [12, 2, 2, 8, 8]; shape [18, 2, 2, 8, 8]",
         ),
         (
             format!("{sets}, shear shear_a, {test}"),

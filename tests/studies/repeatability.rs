@@ -1,53 +1,10 @@
-//! What a study's tables depend on: its text and its seed; not threads, not other cells, not other objects.
+//! What a study's tables depend on: its text and its seed; not other cells, not other objects.
 
 use crate::command::Case;
+use crate::kinds::Kind;
 use crate::study::{Study, trials_of};
 use bubbletouch::study::{sample_frames, simulate_array};
-use std::collections::BTreeSet;
 use std::fs;
-
-/// Several arrays, frames, ensembles (one of them not nested, one learned), ratios, features, classifiers and fused touches; C and γ are
-/// chosen, and offsets stay together.
-const WIDE: &str = r#"
-question = "Do threads matter?"
-seed = 7
-trials = 2
-
-[objects]
-sets = ["household"]
-names = ["mug", "banana", "scissors", "power_drill"]
-surface_error_mm = 1.0
-
-[skin]
-pitch_mm = [4.0, 8.0]
-size_mm = 64.0
-stroke_mm = 5.0
-
-[touches]
-per_object = 24
-offset_x_mm = [-8.0, 0.0, 8.0]
-offset_y_mm = [-8.0, 0.0, 8.0]
-yaw_deg = { grid = [0.0, 40.0, 3] }
-depth_mm = [2.0, 3.0]
-frames = [1, 2]
-
-[signal]
-noise_std_full_scale = 0.2
-smoothing_mm = 6.0
-
-[sensing]
-ensemble = ["gaussian", "block_average", "principal_components"]
-ratio = [8, 16]
-
-[recognition]
-features = ["raw", "centred_unit_norm", "fourier_mellin+descriptors"]
-classifier = ["linear_svm", "rbf_svm"]
-choose_c = [0.1, 1.0, 10.0]
-choose_gamma = [0.5, 2.0]
-fused_touches = [1, 2]
-train_touches = 12
-keep_together = "offset"
-"#;
 
 /// The tables that hold no times, and the study as it was run.
 const REPEATABLE: [&str; 5] = [
@@ -59,40 +16,11 @@ const REPEATABLE: [&str; 5] = [
 ];
 
 #[test]
-fn the_tables_are_the_same_bytes_at_any_number_of_threads() {
-    let case = Case::new();
-    case.file("study.toml", WIDE);
-    for threads in ["1", "2", "7"] {
-        let out = format!("threads_{threads}");
-        case.succeeds(&["run", "study.toml", "--threads", threads, "--out", &out]);
-    }
-    let read = |folder: &str, name: &str| fs::read(case.path(folder).join(name)).unwrap();
-    for name in REPEATABLE {
-        let one = read("threads_1", name);
-        assert!(!one.is_empty(), "{name}");
-        assert!(one == read("threads_2", name), "{name} with 2 threads");
-        assert!(one == read("threads_7", name), "{name} with 7 threads");
-    }
-    // A table of equal numbers would be the same for no reason.
-    let mut rows = csv::Reader::from_path(case.path("threads_1/accuracy.csv")).unwrap();
-    let column = rows
-        .headers()
-        .unwrap()
-        .iter()
-        .position(|h| h == "n_correct");
-    let scores: BTreeSet<String> = rows
-        .records()
-        .map(|row| row.unwrap()[column.unwrap()].to_owned())
-        .collect();
-    assert!(scores.len() > 5, "different scores: {scores:?}");
-}
-
-#[test]
 fn another_seed_is_another_experiment_and_the_study_that_it_wrote_down_repeats_it() {
     let case = Case::new();
-    case.file("study.toml", WIDE);
+    case.file("study.toml", Kind::CHOICES.study);
     case.succeeds(&["run", "study.toml", "--out", "seven"]);
-    case.succeeds(&["run", "study.toml", "--seed", "8", "--out", "eight"]);
+    case.succeeds(&["run", "study.toml", "--seed", "2019", "--out", "eight"]);
     case.succeeds(&["run", "eight/study.toml", "--out", "again"]);
     let read = |folder: &str, name: &str| fs::read(case.path(folder).join(name)).unwrap();
     assert!(read("seven", "accuracy.csv") != read("eight", "accuracy.csv"));

@@ -1,8 +1,8 @@
 //! The page of a study of recognition in a browser: what it answers to the mouse and to the keyboard.
 
-use crate::browser::shown::{Shown, html, show};
 use crate::browser::{ARROW_RIGHT, Browser};
 use crate::report_synthetic::{about, noise_cells, quickstart_cells, tables};
+use crate::shown::{Shown, html, show};
 use bubbletouch::report::advice::{Asked, Offers};
 use bubbletouch::studies::recognition::charts::tables_of;
 use std::thread::sleep;

@@ -1,10 +1,10 @@
 //! The page in a browser: on a phone, in the dark, on paper, for those who listen, without script, with ten thousand cells.
 
 use crate::browser::Browser;
-use crate::browser::shown::{Shown, html, show};
 use crate::report_synthetic::{
     about, add_headlines, many_cells, quickstart_cells, tables, ten_thousand_cells,
 };
+use crate::shown::{Shown, html, show};
 use bubbletouch::study::table::Tables;
 use serde_json::json;
 use std::io::Write;

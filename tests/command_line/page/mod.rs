@@ -2,7 +2,6 @@
 
 mod asked;
 mod charts;
-mod every_kind;
 mod everywhere;
 mod pareto;
 mod pictures;

@@ -1,9 +1,9 @@
 //! What people read of a study of recognition: the terminal table, the answer and the page.
 
-use crate::browser::shown::html;
 use crate::report_synthetic::{
     ReportPage, about, add_headlines, cell, many_cells, noise_cells, quickstart_cells, tables,
 };
+use crate::shown::html;
 use bubbletouch::report::page::StudyAbout;
 use bubbletouch::studies::recognition::charts::{answers, tables_of, words};
 use bubbletouch::study::table::{Cell, Limit, Tables};

@@ -2,28 +2,7 @@
 
 use crate::command::Case;
 use crate::kinds::Kind;
-use bubbletouch::kinds::read_tables;
-use bubbletouch::table::Table;
 use std::fs;
-
-/// Kinds whose tables have choices with a value and a cost, and a cost and a value to ask for.
-const OFFERING: [(Kind, &str, &str, &str); 5] = [
-    (Kind::RECOGNITION, "cells.csv", "accuracy", "measurements"),
-    (Kind::AXES, "cells.csv", "accuracy", "decision_time"),
-    (Kind::RECONSTRUCTION, "pareto.csv", "error", "us_per_frame"),
-    (
-        Kind::OBJECT_DETAIL,
-        "object_detail_cost.csv",
-        "error_median_mm",
-        "us_per_touch_median",
-    ),
-    (
-        Kind::WHOLE_BODY,
-        "recognition.csv",
-        "accuracy",
-        "bytes_per_taxel",
-    ),
-];
 
 fn json(case: &Case, arguments: &[&str]) -> serde_json::Value {
     let (said, _) = case.succeeds(&[&["advise", "found", "--json"], arguments].concat());
@@ -35,75 +14,6 @@ fn refused(case: &Case, arguments: &[&str]) -> String {
     let error = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2), "{arguments:?}: {error}");
     error
-}
-
-#[test]
-fn every_kind_that_offers_choices_is_asked_by_the_roles_of_its_columns() {
-    for (kind, file, value, cost) in OFFERING {
-        let case = kind.case();
-        case.succeeds(&["run", "study.toml", "--out", "found"]);
-        let asked = ["--value", value, "--cost", cost];
-        let advice = json(&case, &[&asked[..], &["--budget", "1e12"]].concat());
-        assert_eq!(
-            (&advice["table"], &advice["value"]),
-            (&file.into(), &value.into())
-        );
-        let cost_column = advice["cost"].as_str().unwrap().to_owned();
-        let (_, tables) = read_tables(&case.path("found")).unwrap();
-        let table = tables.iter().find(|table| table.file == file).unwrap();
-        let best = best_of_each_condition(table, value);
-        let answers = advice["answers"].as_array().unwrap();
-        assert_eq!(answers.len(), best.len(), "{file}: {advice}");
-        for (answer, best) in answers.iter().zip(&best) {
-            let choice = &answer["choice"];
-            assert_eq!(choice[value].as_f64(), Some(*best), "{file}");
-            assert!(answer["next_up"].is_null(), "{file}");
-            // Who asks for what the best gives is answered by something as good that costs no more.
-            let reach = best.to_string();
-            let again = json(&case, &[&asked[..], &["--reach", &reach]].concat());
-            let again = again["answers"].as_array().unwrap();
-            let place = answers.iter().position(|other| other == answer).unwrap();
-            assert_eq!(again[place]["choice"][value], choice[value], "{file}");
-            assert_eq!(again[place]["choice"][&cost_column], choice[&cost_column]);
-        }
-        let error = refused(
-            &case,
-            &["advise", "found", "--budget", "1", "--cost", "colour"],
-        );
-        assert!(error.contains("--cost: colour; one of"), "{error}");
-        if best.len() > 1 {
-            let worst = json(
-                &case,
-                &[&asked[..], &["--budget", "1e12", "--worst"]].concat(),
-            );
-            assert_eq!(worst["answers"].as_array().unwrap().len(), 1, "{file}");
-        }
-    }
-}
-
-/// In the order in which conditions first come.
-fn best_of_each_condition(table: &Table, value: &str) -> Vec<f64> {
-    use bubbletouch::table::{Better, Role};
-    let (column, _) = table.column(value).unwrap();
-    let wants_less = column.role == Role::Value(Better::Less);
-    let conditions = table.groups(&table.of_role(Role::Condition), 0..table.n_rows);
-    let best = |rows: &Vec<usize>| {
-        let values = rows.iter().map(|&row| table.number(value, row));
-        values
-            .filter(|value| value.is_finite())
-            .reduce(|a, b| if wants_less { a.min(b) } else { a.max(b) })
-    };
-    conditions.iter().filter_map(best).collect()
-}
-
-#[test]
-fn a_kind_without_choices_that_cost_something_says_so() {
-    for kind in [Kind::STABILITY, Kind::BREAKING_POINTS] {
-        let case = kind.case();
-        case.succeeds(&["run", "study.toml", "--out", "found"]);
-        let error = refused(&case, &["advise", "found", "--budget", "1"]);
-        assert!(error.contains("no table offers choices"), "{error}");
-    }
 }
 
 #[test]
@@ -132,79 +42,6 @@ fn axes_of_a_study_are_choices_that_are_advised_and_settings_that_are_compared()
         "{said}"
     );
     assert!(said.contains("accuracy: 2 the same, 0 better"), "{said}");
-}
-
-/// What `compare` writes.
-#[derive(serde::Deserialize)]
-struct Moved {
-    table: String,
-    column: String,
-    row: usize,
-    n_trials: usize,
-    second: f64,
-    difference: f64,
-    moved: String,
-}
-
-fn compared(case: &Case, folders: [&str; 2]) -> (String, Vec<Moved>) {
-    let [first, second] = folders;
-    let arguments = [
-        "compare",
-        first,
-        second,
-        "--out",
-        "moved.csv",
-        "--html",
-        "moved.html",
-    ];
-    let (said, _) = case.succeeds(&arguments);
-    let mut rows = csv::Reader::from_path(case.path("moved.csv")).unwrap();
-    (said, rows.deserialize().map(|row| row.unwrap()).collect())
-}
-
-#[test]
-fn two_folders_of_every_kind_stand_side_by_side() {
-    for kind in Kind::ALL {
-        let case = kind.case();
-        let (old, new) = match kind.change {
-            // As many touches, since these are a setting.
-            ("per_object = 24", ..) => ("[0.0, 360.0]", "[0.0, 90.0]"),
-            (old, new, _) => (old, new),
-        };
-        assert!(kind.study.contains(old));
-        case.file("changed.toml", kind.study.replacen(old, new, 1));
-        case.succeeds(&["run", "study.toml", "--out", "found"]);
-        case.succeeds(&["run", "changed.toml", "--out", "changed"]);
-        let (said, same) = compared(&case, ["found", "found"]);
-        assert!(
-            !same.is_empty() && said.contains("0 in the first alone, 0 in the"),
-            "{said}"
-        );
-        assert!(
-            same.iter()
-                .all(|row| row.difference == 0.0 && row.moved == "same")
-        );
-        let (said, moved) = compared(&case, ["found", "changed"]);
-        assert!(said.contains("settings are in both runs"), "{said}");
-        let (_, tables) = read_tables(&case.path("changed")).unwrap();
-        let mut told: Vec<(&str, &str)> = Vec::new();
-        for row in &moved {
-            let table = tables.iter().find(|table| table.file == row.table).unwrap();
-            if row.n_trials == 1 {
-                let stands = table.number(&row.column, row.row);
-                assert_eq!(row.second, stands, "{}: {}", row.table, row.column);
-            }
-            let what = (&row.table[..], &row.column[..]);
-            if !told.contains(&what) {
-                told.push(what);
-            }
-        }
-        // Values, and costs apart from them.
-        assert!(told.len() > 1, "{told:?}");
-        assert!(said.contains("times that of the first run"), "{said}");
-        let page = fs::read_to_string(case.path("moved.html")).unwrap();
-        assert!(page.contains("in both runs") && page.contains("Costs of both runs"));
-    }
 }
 
 #[test]

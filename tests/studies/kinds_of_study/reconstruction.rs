@@ -51,17 +51,11 @@ fn rows<T: serde::de::DeserializeOwned>(case: &Case, name: &str) -> Vec<T> {
 }
 
 #[test]
-fn the_tables_are_the_same_bytes_at_any_number_of_threads_and_hold_every_cell() {
+fn the_tables_hold_every_cell_and_the_written_study_gives_them_again() {
     let case = Case::new();
     case.file("study.toml", SMALL);
-    for threads in ["1", "3"] {
-        case.succeeds(&["run", "study.toml", "--threads", threads, "--out", threads]);
-    }
+    case.succeeds(&["run", "study.toml", "--out", "1"]);
     let read = |folder: &str, name: &str| fs::read(case.path(folder).join(name)).unwrap();
-    for name in ["reconstruction.csv", "ensembles.csv", "study.toml"] {
-        assert!(!read("1", name).is_empty());
-        assert!(read("1", name) == read("3", name), "{name}");
-    }
     case.succeeds(&["run", "1/study.toml", "--out", "again"]);
     assert!(read("1", "reconstruction.csv") == read("again", "reconstruction.csv"));
 

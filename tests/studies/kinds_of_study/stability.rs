@@ -44,24 +44,11 @@ dt_s = [5e-4, 5e-2]
 "#;
 
 #[test]
-fn ours_is_right_everywhere_the_others_break_where_they_must_and_threads_change_no_byte() {
+fn ours_is_right_everywhere_and_the_others_break_where_they_must() {
     let case = Case::new();
     case.file("study.toml", QUICK);
-    let (said, _) = case.succeeds(&["run", "study.toml", "--threads", "1", "--out", "1"]);
+    let (said, _) = case.succeeds(&["run", "study.toml", "--out", "1"]);
     assert!(said.contains("quasi-static"), "{said}");
-    case.succeeds(&["run", "study.toml", "--threads", "2", "--out", "2"]);
-    let read = |folder: &str, name: &str| fs::read(case.path(folder).join(name)).unwrap();
-    for name in [
-        "stability.csv",
-        "stability_summary.csv",
-        "stability_rest.svg",
-        "stability_press.svg",
-        "stability_plunger.svg",
-        "study.toml",
-    ] {
-        assert!(!read("1", name).is_empty());
-        assert!(read("1", name) == read("2", name), "{name}");
-    }
     let path = case.path("1/stability.csv");
     let cells: Vec<StabilityCell> = read_rows(&path).unwrap();
     let scores: Vec<StabilityScore> = read_rows(&path).unwrap();
@@ -111,7 +98,7 @@ fn ours_is_right_everywhere_the_others_break_where_they_must_and_threads_change_
         ];
         assert_eq!(kinds.iter().sum::<usize>(), row.n_cells);
     }
-    let svg = String::from_utf8(read("1", "stability_rest.svg")).unwrap();
+    let svg = fs::read_to_string(case.path("1/stability_rest.svg")).unwrap();
     assert!(svg.contains("limit of an explicit spring") && svg.contains("taxel mass"));
 }
 

@@ -93,34 +93,14 @@ fn case(study: &str) -> Case {
 }
 
 #[test]
-fn tables_but_for_times_are_the_same_bytes_at_any_number_of_threads_and_obey_their_laws() {
+fn tables_obey_their_laws() {
     let case = case(STUDY);
     let (said, _) = case.succeeds(&["run", "study.toml", "--threads", "1", "--out", "1"]);
     assert!(
         said.contains("From touch to answer on 18118 taxels") && said.contains("bytes a taxel"),
         "{said}"
     );
-    let quiet = [
-        "run",
-        "study.toml",
-        "--threads",
-        "2",
-        "--out",
-        "2",
-        "--quiet",
-    ];
-    assert_eq!(case.succeeds(&quiet), (String::new(), String::new()));
-    let read = |folder: &str, name: &str| fs::read(case.path(folder).join(name)).unwrap();
-    for name in [
-        "whole_body.csv",
-        "sensed.csv",
-        "recognition.csv",
-        "study.toml",
-        "touched.png",
-    ] {
-        assert!(!read("1", name).is_empty());
-        assert!(read("1", name) == read("2", name), "{name}");
-    }
+    let read = |name: &str| fs::read_to_string(case.path("1").join(name)).unwrap();
     let cases: Vec<BodyCase> = read_rows(&case.path("1/whole_body.csv")).unwrap();
     let counts: Vec<BodyCount> = read_rows(&case.path("1/whole_body.csv")).unwrap();
     // 900 of 2,000 taxels are too many for a sheet.
@@ -193,10 +173,10 @@ fn tables_but_for_times_are_the_same_bytes_at_any_number_of_threads_and_obey_the
         "time_by_spheres",
         "time_by_stage",
     ] {
-        let svg = String::from_utf8(read("1", &format!("{chart}.svg"))).unwrap();
+        let svg = read(&format!("{chart}.svg"));
         assert!(svg.contains("time of a step") && svg.contains("a millisecond"));
     }
-    let page = String::from_utf8(read("1", "report.html")).unwrap();
+    let page = read("report.html");
     assert!(page.contains("What does a post of skin cost?") && page.contains("timing.csv"));
     assert!(!page.contains("{{") && !page.contains("(no value"));
 }

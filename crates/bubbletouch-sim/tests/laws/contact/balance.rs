@@ -409,8 +409,8 @@ fn assert_lowest(
 }
 
 #[test]
-fn a_thousand_objects_settle_or_leave() {
-    let tried: Vec<Option<usize>> = (0..1000_u64)
+fn random_objects_settle_or_leave() {
+    let tried: Vec<Option<usize>> = (0..150_u64)
         .into_par_iter()
         .map(|case| {
             let mut rng = Seed::new(case).named("free objects").rng();
@@ -454,10 +454,10 @@ fn a_thousand_objects_settle_or_leave() {
         })
         .collect();
     let settled: Vec<usize> = tried.into_iter().flatten().collect();
-    assert!((300..980).contains(&settled.len()), "{}", settled.len());
+    assert!((45..148).contains(&settled.len()), "{}", settled.len());
     // The others rest on stops, or taxels stand beside them.
     let n_tried: usize = settled.iter().sum();
-    assert!(n_tried > 2000, "{n_tried}");
+    assert!(n_tried > 300, "{n_tried}");
 }
 
 #[test]

@@ -558,7 +558,7 @@ fn all_settle_or_leave(cases: std::ops::Range<u64>, n_others: usize) {
 
 #[test]
 fn random_scenes_of_several_objects_settle_or_leave() {
-    all_settle_or_leave(0..80, 0);
+    all_settle_or_leave(0..24, 0);
 }
 
 /// But for those that find no rest and say so, and those where a small sphere of a scan came through between taxels: it counts as behind

@@ -1,7 +1,7 @@
 //! The built-in objects: what they are, where they stand, how well their spheres fit; and catalogue files that are wrong.
 
 use bubbletouch_sim::geometry::Pose;
-use bubbletouch_sim::objects::{Catalogue, Shape, Solid, SphereUnion, surface_error};
+use bubbletouch_sim::objects::{Catalogue, Entry, Shape, Solid, SphereUnion, surface_error};
 use bubbletouch_sim::random::Seed;
 use glam::{DQuat, DVec3};
 use rand::Rng;
@@ -96,14 +96,20 @@ fn every_object_rests_on_the_table_in_the_middle() {
     }
 }
 
+/// The spheres of an object at two surface errors, metres.
+fn packed(entry: &Entry) -> [(f64, SphereUnion); 2] {
+    [0.5 * MM, 0.25 * MM].map(|tolerance| {
+        let model = entry.build(tolerance).unwrap().model;
+        (tolerance, model.spheres().unwrap().clone())
+    })
+}
+
 #[test]
 fn every_object_packs_within_its_surface_error() {
     for entry in Catalogue::builtin().unwrap().entries() {
-        for tolerance in [0.5 * MM, 0.25 * MM] {
-            let model = entry.build(tolerance).unwrap().model;
-            let union = model.spheres().unwrap();
-            let spacing = entry.solid.bounds().size().max_element() / 60.0;
-            let error = surface_error(&entry.solid, union, spacing);
+        for (tolerance, union) in packed(entry) {
+            let spacing = entry.solid.bounds().size().max_element() / 40.0;
+            let error = surface_error(&entry.solid, &union, spacing);
             assert!(
                 error.protrusion <= 0.5 * tolerance && error.gap <= tolerance,
                 "{} at {tolerance}: {error:?}",
@@ -171,11 +177,9 @@ fn spheres_are_as_often_above_the_surface_as_below_it() {
     let means = Mutex::new(Vec::new());
     let catalogue = Catalogue::builtin().unwrap();
     catalogue.entries().par_iter().for_each(|entry| {
-        for tolerance in [0.5 * MM, 0.25 * MM] {
+        for (tolerance, union) in packed(entry) {
             let what = format!("{} at {tolerance}", entry.name);
-            let model = entry.build(tolerance).unwrap().model;
-            let union = model.spheres().unwrap();
-            let [of_solid, of_spheres] = first_hits(&entry.solid, union, 300);
+            let [of_solid, of_spheres] = first_hits(&entry.solid, &union, 300);
             // Heights of the spheres over the solid: at points of the solid, and at points of the spheres.
             let above = |point: &DVec3| {
                 let spheres = union.spheres().iter();
@@ -393,7 +397,7 @@ fn an_unusable_surface_error_is_refused() {
             assert!(error.starts_with("surface error: "), "{error}");
         }
     }
-    for name in ["soup_can", "cracker_box", "scissors", "plate"] {
+    for name in ["soup_can", "scissors"] {
         let error = catalogue.object(name).unwrap().build(1e-8).unwrap_err();
         assert!(
             error.to_string().contains("more than 2000000 spheres"),

@@ -64,9 +64,7 @@ fn spheres_are_within_the_tolerance_of_every_shape_inside_and_outside() {
         ("torus", torus()),
     ];
     for (what, mesh) in shapes {
-        for tolerance in [0.6 * MM, 0.4 * MM] {
-            assert_packs(mesh.clone(), Body::Solid, tolerance, what);
-        }
+        assert_packs(mesh, Body::Solid, 0.7 * MM, what);
     }
 }
 
@@ -78,7 +76,7 @@ fn a_tolerance_larger_than_the_object_takes_one_sphere() {
 
 #[test]
 fn a_box_takes_more_than_its_edges_need_and_less_than_two_and_a_half_times_that() {
-    let (e, size) = (0.3 * MM, MM * DVec3::new(15.0, 12.0, 10.0));
+    let (e, size) = (0.5 * MM, MM * DVec3::new(15.0, 12.0, 10.0));
     let n = assert_packs(cuboid(0.5 * size), Body::Solid, e, "box");
     let edges = 4.0 * (size.x + size.y + size.z);
     let bound = edges / (32f64.sqrt() * e);
@@ -91,7 +89,7 @@ fn a_box_takes_more_than_its_edges_need_and_less_than_two_and_a_half_times_that(
 #[test]
 fn a_smaller_tolerance_never_gives_a_larger_error() {
     let surface = Surface::new(torus());
-    let chain = DetailChain::pack(&surface, Body::Solid, &[0.3 * MM, 0.8 * MM, 0.5 * MM]).unwrap();
+    let chain = DetailChain::pack(&surface, Body::Solid, &[0.6 * MM, 1.4 * MM, 0.9 * MM]).unwrap();
     let errors: Vec<_> = chain
         .packings()
         .iter()
@@ -128,7 +126,7 @@ fn the_number_of_threads_changes_no_bit() {
     let packed = |n_threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads);
         let pool = pool.build().unwrap();
-        pool.install(|| DetailChain::pack(&surface, Body::Solid, &[0.8 * MM, 0.5 * MM]).unwrap())
+        pool.install(|| DetailChain::pack(&surface, Body::Solid, &[1.4 * MM, 1.0 * MM]).unwrap())
     };
     assert_eq!(packed(1), packed(7));
 }
@@ -139,11 +137,11 @@ fn a_rigid_motion_changes_the_number_of_spheres_little() {
         DQuat::from_scaled_axis(DVec3::new(0.3, 1.1, -0.7)),
         DVec3::splat(0.2),
     );
-    let here = assert_packs(tube(), Body::Solid, 0.4 * MM, "tube");
+    let here = assert_packs(tube(), Body::Solid, 0.8 * MM, "tube");
     let there = assert_packs(
         tube().moved(&motion),
         Body::Solid,
-        0.4 * MM,
+        0.8 * MM,
         "tube elsewhere",
     );
     assert!(
@@ -156,19 +154,19 @@ fn a_rigid_motion_changes_the_number_of_spheres_little() {
 fn faces_inside_other_parts_take_no_spheres() {
     let large = cuboid(DVec3::splat(5.0 * MM));
     let inside = cuboid(DVec3::splat(3.0 * MM));
-    let alone = assert_packs(large.clone(), Body::Solid, 0.5 * MM, "box");
+    let alone = assert_packs(large.clone(), Body::Solid, MM, "box");
     let both = together(&[large.clone(), inside]);
     let error = packing_error(
         &Surface::new(both.clone()),
         Body::Solid,
-        &pack_mesh(&Surface::new(large), Body::Solid, 0.5 * MM)
+        &pack_mesh(&Surface::new(large), Body::Solid, MM)
             .unwrap()
             .spheres,
         10_000,
     );
     assert!((error.buried_share - 9.0 / 34.0).abs() < 1e-3, "{error:?}");
     let surface = Surface::new(both);
-    let packing = pack_mesh(&surface, Body::Solid, 0.5 * MM).unwrap();
+    let packing = pack_mesh(&surface, Body::Solid, MM).unwrap();
     // The inner box still bounds how large balls are.
     assert!(packing.spheres.n_spheres() < 2 * alone);
     assert!(
@@ -231,16 +229,13 @@ fn judge(what: &str, mesh: TriangleMesh, tolerance: f64, n_points: usize) -> (us
 fn parts_that_overlap_pack_within_the_tolerance_of_their_union() {
     let few = [
         "plate with posts",
-        "bars with tops in one plane, turned",
         "lid on its box, face on face",
-        "marbles",
         "rod through the wall of a hollow box",
-        "links that cut each other",
         "heap of boxes",
     ];
     let objects = crate::overlapping::objects().into_par_iter();
     let chosen = objects.filter(|(what, _)| few.contains(what));
-    let n = chosen.map(|(what, mesh)| judge(what, mesh, 0.5 * MM, 3000));
+    let n = chosen.map(|(what, mesh)| judge(what, mesh, 1.2 * MM, 1500));
     assert_eq!(n.count(), few.len());
 }
 
@@ -258,7 +253,7 @@ fn all_parts_that_overlap_pack_within_the_tolerance_of_their_union() {
 
 #[test]
 fn small_holes_are_closed_on_request_and_wide_ones_stay() {
-    let whole = icosphere(10.0 * MM, 3);
+    let whole = icosphere(10.0 * MM, 2);
     let without = |gone: &[usize]| {
         let kept = whole.triangles().iter().enumerate();
         let kept = kept.filter(|(t, _)| !gone.contains(t)).map(|(_, t)| *t);
@@ -272,11 +267,11 @@ fn small_holes_are_closed_on_request_and_wide_ones_stay() {
     assert!(MeshReport::new(&closed.mesh).is_solid());
     let [volume, before] = [&closed.mesh, &whole].map(|mesh| mesh.volume_and_centroid().0);
     assert!((volume - before).abs() < 1e-12 * before);
-    judge("ball with a closed hole", closed.mesh, MM, 2000);
+    judge("ball with a closed hole", closed.mesh, 2.0 * MM, 1000);
     let wide = open.with_holes_closed(0.99 * edge).unwrap();
     assert_eq!((wide.widths.len(), &wide.mesh), (0, &open));
     // Two holes; and one whose border passes a corner twice.
-    let far = without(&[0, 700]).with_holes_closed(MM * 5.0).unwrap();
+    let far = without(&[0, 200]).with_holes_closed(MM * 6.0).unwrap();
     assert_eq!(far.widths.len(), 2);
     assert!(MeshReport::new(&far.mesh).is_solid());
     let corner = whole.triangles()[100][0];
@@ -288,10 +283,15 @@ fn small_holes_are_closed_on_request_and_wide_ones_stay() {
         whole.triangles()[t].iter().filter(shared).count() == 1
     });
     let twice = without(&[around[0], apart.unwrap()]);
-    let closed = twice.with_holes_closed(MM * 9.0).unwrap();
+    let closed = twice.with_holes_closed(MM * 15.0).unwrap();
     assert_eq!(closed.widths.len(), 1);
     assert!(MeshReport::new(&closed.mesh).is_watertight());
-    judge("ball with a closed double hole", closed.mesh, MM, 2000);
+    judge(
+        "ball with a closed double hole",
+        closed.mesh,
+        2.0 * MM,
+        1000,
+    );
     for width in [-1.0, f64::NAN] {
         assert_eq!(whole.with_holes_closed(width).unwrap_err().exit_code(), 2);
     }

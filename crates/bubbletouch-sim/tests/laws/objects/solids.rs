@@ -189,7 +189,7 @@ fn a_nut_has_a_hole_that_no_sphere_closes() {
         let solid = nut(hole);
         // No membrane closes it, either.
         assert!(solid.distance(DVec3::new(1., 0., 3.25) * MM) > 0.0);
-        for tolerance in [0.5 * MM, 0.25 * MM, 0.05 * MM] {
+        for tolerance in [0.5 * MM, 0.1 * MM] {
             let union = pack(&solid, tolerance).unwrap();
             let error = surface_error(&solid, &union, 0.1 * MM);
             assert!(
@@ -223,7 +223,7 @@ fn a_nut_has_a_hole_that_no_sphere_closes() {
 fn whatever_is_subtracted_the_rest_packs_within_the_tolerance() {
     let shapes = one_of_each();
     let mut n_packed = 0;
-    for case in 0..60 {
+    for case in 0..24 {
         let mut rng = Seed::new(5).named("difference").numbered(case).rng();
         let mut parts = |n| -> Vec<Part> {
             let part = |_| {
@@ -245,7 +245,7 @@ fn whatever_is_subtracted_the_rest_packs_within_the_tolerance() {
         );
         n_packed += 1;
     }
-    assert!(n_packed > 50, "{n_packed}");
+    assert!(n_packed > 20, "{n_packed}");
 }
 
 #[test]

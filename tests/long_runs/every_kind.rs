@@ -1,0 +1,321 @@
+//! The laws of every kind of study, each checked on the results of one small study of the kind.
+
+use crate::browser::Browser;
+use crate::command::Case;
+use crate::faults::{said, sha256};
+use crate::kinds::Kind;
+use crate::pieces::{Faults, planned};
+use bubbletouch::kinds::read_tables;
+use bubbletouch::table::{Better, Role, Table};
+use serde_json::Value;
+use std::collections::HashMap;
+use std::fs;
+use std::path::Path;
+
+/// A table with choices, and its columns of a value and of a cost.
+type Choices = (&'static str, &'static str, &'static str);
+
+/// Checks all laws; `choices` is `None` for a kind without choices that have a cost.
+fn obeys_all_laws(kind: Kind, choices: Option<Choices>) {
+    let whole = Faults::of(kind);
+    let case = &whole.case;
+    whole.has_the_work_items_that_its_plan_counts();
+    whole.has_the_same_tables_in_shards_at_any_number_of_threads();
+    match choices {
+        Some(choices) => is_advised(case, choices),
+        None => {
+            let error = refused(case, &["advise", "whole", "--budget", "1"]);
+            assert!(error.contains("no table offers choices"), "{error}");
+        }
+    }
+    whole.is_compared_with_a_changed_study();
+    has_tables_that_sort_and_can_be_searched(case);
+    whole.is_verified_until_a_number_is_changed();
+}
+
+macro_rules! every_kind {
+    ($($name:ident: $kind:ident, $choices:expr;)*) => {
+        $(#[test]
+        fn $name() {
+            obeys_all_laws(Kind::$kind, $choices);
+        })*
+    };
+}
+
+every_kind! {
+    a_study_of_recognition_obeys_all_laws: RECOGNITION, Some(("cells.csv", "accuracy", "measurements"));
+    a_study_with_axes_of_its_own_obeys_all_laws: AXES, Some(("cells.csv", "accuracy", "decision_time"));
+    a_study_of_reconstruction_obeys_all_laws: RECONSTRUCTION, Some(("pareto.csv", "error", "us_per_frame"));
+    a_study_of_object_detail_obeys_all_laws: OBJECT_DETAIL,
+        Some(("object_detail_cost.csv", "error_median_mm", "us_per_touch_median"));
+    a_study_of_a_whole_body_obeys_all_laws: WHOLE_BODY, Some(("recognition.csv", "accuracy", "bytes_per_taxel"));
+    a_study_of_stability_obeys_all_laws: STABILITY, None;
+    a_study_of_breaking_points_obeys_all_laws: BREAKING_POINTS, None;
+}
+
+#[test]
+fn sensor_errors_choices_and_touches_over_time_give_the_same_tables_in_shards_at_any_number_of_threads()
+ {
+    for kind in [Kind::ERRORS, Kind::CHOICES, Kind::HUMAN] {
+        Faults::of(kind).has_the_same_tables_in_shards_at_any_number_of_threads();
+    }
+}
+
+fn refused(case: &Case, arguments: &[&str]) -> String {
+    let output = case.run(arguments);
+    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    said(&output)
+}
+
+impl Faults {
+    fn has_the_work_items_that_its_plan_counts(&self) {
+        let plan = ["plan", "study.toml", "--threads", "1"];
+        let (said, error) = self.case.succeeds(&plan);
+        assert!(
+            said.starts_with("study: ") && error.is_empty(),
+            "{said}{error}"
+        );
+        assert!(!self.case.path("results").exists(), "a plan writes nothing");
+        for word in ["objects", "touches", "memory"] {
+            assert!(!planned(&said, word).is_empty(), "{said}");
+        }
+        let memory = planned(&said, "memory").join(" ");
+        assert!(memory.ends_with("on 1 thread"), "{said}");
+        let n_items = format!("{},", self.n_pieces());
+        assert_eq!(planned(&said, "items")[0], n_items, "{said}");
+    }
+
+    /// Three shards at 1, 2 and 7 threads, merged, against one run at as many threads as the machine has.
+    fn has_the_same_tables_in_shards_at_any_number_of_threads(&self) {
+        for (shard, threads) in [("2/3", "1"), ("1/3", "2"), ("3/3", "7")] {
+            refused(&self.case, &["merge", "study.toml", "--out", "parts"]);
+            let run = ["run", "study.toml", "--out", "parts", "--shard", shard];
+            self.case
+                .succeeds(&[&run[..], &["--threads", threads]].concat());
+        }
+        self.case
+            .succeeds(&["merge", "study.toml", "--out", "parts"]);
+        self.assert_same_tables("parts");
+    }
+
+    /// A folder beside itself, and beside that of a changed study.
+    fn is_compared_with_a_changed_study(&self) {
+        let (old, new) = match self.kind.change {
+            // As many touches, since their number is a setting.
+            ("per_object = 24", ..) => ("[0.0, 360.0]", "[0.0, 90.0]"),
+            (old, new, _) => (old, new),
+        };
+        let case = &self.case;
+        assert!(self.kind.study.contains(old));
+        case.file("changed.toml", self.kind.study.replacen(old, new, 1));
+        case.succeeds(&["run", "changed.toml", "--out", "changed"]);
+        let (said, same) = compared(case, ["whole", "whole"]);
+        assert!(
+            !same.is_empty() && said.contains("0 in the first alone, 0 in the"),
+            "{said}"
+        );
+        let is_same = |row: &Moved| row.difference == 0.0 && row.moved == "same";
+        assert!(same.iter().all(is_same));
+        let (said, moved) = compared(case, ["whole", "changed"]);
+        assert!(said.contains("settings are in both runs"), "{said}");
+        let (_, tables) = read_tables(&case.path("changed")).unwrap();
+        let mut columns: Vec<(&str, &str)> = Vec::new();
+        for row in &moved {
+            let table = tables.iter().find(|table| table.file == row.table).unwrap();
+            if row.n_trials == 1 {
+                let value = table.number(&row.column, row.row);
+                assert_eq!(row.second, value, "{}: {}", row.table, row.column);
+            }
+            let column = (&row.table[..], &row.column[..]);
+            if !columns.contains(&column) {
+                columns.push(column);
+            }
+        }
+        // Values, and costs apart from them.
+        assert!(columns.len() > 1, "{columns:?}");
+        assert!(said.contains("times that of the first run"), "{said}");
+        let page = fs::read_to_string(case.path("moved.html")).unwrap();
+        assert!(page.contains("in both runs") && page.contains("Costs of both runs"));
+    }
+
+    fn is_verified_until_a_number_is_changed(&self) {
+        let n = self.n_pieces();
+        let (output, _) =
+            self.case
+                .succeeds(&["verify", "whole", "--cells", &n.min(5).to_string()]);
+        let expected = format!("{} of {n} work items ran again", n.min(5));
+        assert!(output.contains(&expected), "{output}");
+        let path = self.case.path("whole").join(self.kind.repeatable[0]);
+        let manifest = self.case.path("whole/manifest.json");
+        let text = fs::read_to_string(&path).unwrap();
+        let changed = text.replacen(['1', '2', '3'], "4", 60);
+        fs::write(&path, &changed).unwrap();
+        let all = ["verify", "whole", "--cells", &n.to_string()];
+        let error = refused(&self.case, &all);
+        assert!(error.contains("was changed after its run"), "{error}");
+        // If the manifest was changed as well, only running the work items again shows it.
+        let written = fs::read_to_string(&manifest).unwrap();
+        let [before, after] = [&text, &changed].map(|text| sha256(text.as_bytes()));
+        fs::write(&manifest, written.replace(&before, &after)).unwrap();
+        let error = refused(&self.case, &all);
+        assert!(error.contains("again it is"), "{error}");
+    }
+}
+
+fn advice(case: &Case, arguments: &[&str]) -> Value {
+    let (said, _) = case.succeeds(&[&["advise", "whole", "--json"], arguments].concat());
+    serde_json::from_str(&said).unwrap()
+}
+
+/// The advisor finds the choices by the roles of the columns, and gives the best of each condition.
+fn is_advised(case: &Case, (file, value, cost): Choices) {
+    let columns = ["--value", value, "--cost", cost];
+    let all = advice(case, &[&columns[..], &["--budget", "1e12"]].concat());
+    assert_eq!(
+        (&all["table"], &all["value"]),
+        (&file.into(), &value.into())
+    );
+    let cost_column = all["cost"].as_str().unwrap().to_owned();
+    let (_, tables) = read_tables(&case.path("whole")).unwrap();
+    let table = tables.iter().find(|table| table.file == file).unwrap();
+    let best = best_of_each_condition(table, value);
+    let answers = all["answers"].as_array().unwrap();
+    assert_eq!(answers.len(), best.len(), "{file}: {all}");
+    for (place, (answer, best)) in answers.iter().zip(&best).enumerate() {
+        let choice = &answer["choice"];
+        assert_eq!(choice[value].as_f64(), Some(*best), "{file}");
+        assert!(answer["next_up"].is_null(), "{file}");
+        // The requirement of the best value leads to a choice as good that costs no more.
+        let reach = best.to_string();
+        let again = advice(case, &[&columns[..], &["--reach", &reach]].concat());
+        let again = &again["answers"][place]["choice"];
+        assert_eq!(again[value], choice[value], "{file}");
+        assert_eq!(again[&cost_column], choice[&cost_column]);
+    }
+    let colour = ["advise", "whole", "--budget", "1", "--cost", "colour"];
+    let error = refused(case, &colour);
+    assert!(error.contains("--cost: colour; one of"), "{error}");
+    if best.len() > 1 {
+        let worst = [&columns[..], &["--budget", "1e12", "--worst"]].concat();
+        let worst = advice(case, &worst);
+        assert_eq!(worst["answers"].as_array().unwrap().len(), 1, "{file}");
+    }
+}
+
+/// In the order in which conditions first come.
+fn best_of_each_condition(table: &Table, value: &str) -> Vec<f64> {
+    let (column, _) = table.column(value).unwrap();
+    let wants_less = column.role == Role::Value(Better::Less);
+    let conditions = table.groups(&table.of_role(Role::Condition), 0..table.n_rows);
+    let best = |rows: &Vec<usize>| {
+        let values = rows.iter().map(|&row| table.number(value, row));
+        values
+            .filter(|value| value.is_finite())
+            .reduce(|a, b| if wants_less { a.min(b) } else { a.max(b) })
+    };
+    conditions.iter().filter_map(best).collect()
+}
+
+/// What `compare` writes.
+#[derive(serde::Deserialize)]
+struct Moved {
+    table: String,
+    column: String,
+    row: usize,
+    n_trials: usize,
+    second: f64,
+    difference: f64,
+    moved: String,
+}
+
+fn compared(case: &Case, [first, second]: [&str; 2]) -> (String, Vec<Moved>) {
+    let files = ["--out", "moved.csv", "--html", "moved.html"];
+    let (said, _) = case.succeeds(&[&["compare", first, second], &files[..]].concat());
+    let mut rows = csv::Reader::from_path(case.path("moved.csv")).unwrap();
+    (said, rows.deserialize().map(|row| row.unwrap()).collect())
+}
+
+/// Sorts a table by each of its columns, twice, and searches it for its first cell; returns the rows that are shown each time.
+const TRIED: &str = r#"
+    const tried = (table) => {
+        const shown = () => [...table.tBodies[0].rows].filter((row) => !row.hidden).map((row) => Number(row.dataset.row));
+        const all = shown();
+        const sorts = [...table.querySelectorAll("th")].map((head) => {
+            const turn = () => { head.querySelector("button").click(); return [head.getAttribute("aria-sort"), shown()]; };
+            return { column: head.title, isNumber: !head.classList.contains("word"), turns: [turn(), turn()] };
+        });
+        const below = table.parentNode.nextElementSibling;
+        const search = below.querySelector("input");
+        const find = (text) => {
+            search.value = text;
+            search.dispatchEvent(new Event("input"));
+            return [shown().length, below.querySelector("[role=status]").textContent];
+        };
+        const words = table.tBodies[0].rows[0].textContent.slice(0, 12);
+        return { file: table.dataset.table, n: all.length, sorts, found: find(words), none: find("no cell has this"), again: find("") };
+    };
+    return [...document.querySelectorAll("table[data-table]")].map(tried);
+"#;
+
+/// In a browser; not checked without one.
+fn has_tables_that_sort_and_can_be_searched(case: &Case) {
+    let Some(browser) = Browser::start() else {
+        return;
+    };
+    browser.open(&case.path("whole/report.html"));
+    let tried = browser.run(TRIED);
+    let mut n_sorted = 0;
+    for table in tried.as_array().unwrap() {
+        let file = table["file"].as_str().unwrap();
+        // A table that is made of others has no file.
+        let path = case.path(&format!("whole/{file}"));
+        let rows = path.exists().then(|| csv_rows(&path));
+        for sort in table["sorts"].as_array().unwrap() {
+            check_sorted(file, sort, rows.as_deref());
+            n_sorted += 1;
+        }
+        let n = table["n"].as_u64().unwrap();
+        let said = |n_shown| serde_json::json!([n_shown, format!("{n_shown} of {n} rows")]);
+        assert!(table["found"][0].as_u64() > Some(0), "{file}");
+        let found = (&table["none"], &table["again"]);
+        assert_eq!(found, (&said(0), &said(n)), "{file}");
+    }
+    assert!(n_sorted > 8, "{n_sorted}");
+    browser.check_quiet();
+}
+
+/// Rows by the names of their columns.
+fn csv_rows(path: &Path) -> Vec<HashMap<String, String>> {
+    let rows = csv::Reader::from_path(path).unwrap().into_deserialize();
+    rows.map(Result::unwrap).collect()
+}
+
+/// Up in one turn and down in the other, and rows without a number last in both.
+fn check_sorted(file: &str, sort: &Value, rows: Option<&[HashMap<String, String>]>) {
+    let column = sort["column"].as_str().unwrap();
+    let turns = sort["turns"].as_array().unwrap();
+    let mut orders: Vec<&str> = turns.iter().map(|turn| turn[0].as_str().unwrap()).collect();
+    orders.sort_unstable();
+    assert_eq!(orders, ["ascending", "descending"], "{file}, {column}");
+    let (true, Some(rows)) = (sort["isNumber"] == true, rows) else {
+        return;
+    };
+    for turn in turns {
+        let shown = turn[1].as_array().unwrap().iter();
+        let numbers = shown.map(|row| {
+            let text = &rows[row.as_u64().unwrap() as usize][column];
+            text.parse::<f64>().unwrap_or(f64::NAN)
+        });
+        let numbers: Vec<f64> = numbers.collect();
+        let is_up = turn[0] == "ascending";
+        for pair in numbers.windows(2) {
+            let (a, b) = if is_up {
+                (pair[0], pair[1])
+            } else {
+                (pair[1], pair[0])
+            };
+            let is_in_order = a <= b || pair[1].is_nan();
+            assert!(is_in_order, "{file}, {column}: {numbers:?}");
+        }
+    }
+}
