@@ -155,7 +155,6 @@
 #![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
 
 pub mod engine;
-pub mod file_path;
 pub mod guide;
 pub mod inputs;
 pub mod kinds;

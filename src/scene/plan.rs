@@ -9,7 +9,7 @@ use super::reader::{MM, Reader};
 use super::spec::SceneSpec;
 use crate::contact::equilibrium::HalfSpace;
 use crate::error::{Error, Result};
-use crate::file_path::with_absolute_paths;
+use crate::files::with_absolute_paths;
 use crate::inputs::check::{Check, not_negative, positive};
 use crate::inputs::objects_spec::ModelSpec;
 use crate::objects::Model;

@@ -7,7 +7,7 @@ pub use super::spec_motion::*;
 pub use super::spec_object::*;
 pub use super::spec_patch::*;
 use crate::error::Result;
-use crate::file_path::FilePath;
+use crate::files::FilePath;
 use crate::toml_text;
 use serde::{Deserialize, Serialize};
 

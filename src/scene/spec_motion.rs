@@ -1,6 +1,6 @@
 //! Poses and motions in a scene file.
 
-use crate::file_path::FilePath;
+use crate::files::FilePath;
 use crate::world::Interpolation;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

@@ -1,7 +1,7 @@
 //! Objects as they are written: `[[objects]]`.
 
 use super::numbers::Numbers;
-use crate::file_path::FilePath;
+use crate::files::FilePath;
 use crate::inputs::objects_spec::ModelSpec;
 use crate::mesh::LengthUnit;
 use crate::scene::spec_motion::{MotionSpec, PoseSpec};

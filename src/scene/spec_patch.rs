@@ -1,7 +1,7 @@
 //! Skin as it is written: `[[patches]]`.
 
 use super::numbers::Numbers;
-use crate::file_path::FilePath;
+use crate::files::FilePath;
 use crate::mesh::LengthUnit;
 use crate::scene::spec_motion::PoseSpec;
 use crate::world::ShapeRole;

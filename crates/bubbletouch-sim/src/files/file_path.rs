@@ -1,6 +1,8 @@
 //! Paths in a study or scene file: relative to that file, absolute where the file is written out.
 
+use crate::error::Error;
 use crate::text::note::note;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::cell::RefCell;
 use std::ops::Deref;
@@ -9,6 +11,8 @@ use std::path::{Path, PathBuf};
 thread_local! {
     /// Folder of the file that this thread parses; `None`: paths stay as they are written.
     static FOLDER: RefCell<Option<PathBuf>> = const { RefCell::new(None) };
+    /// Folder of the file whose specification this thread makes absolute ([`with_absolute_paths`]).
+    static FOLDER_OF_COPY: RefCell<Option<PathBuf>> = const { RefCell::new(None) };
 }
 
 /// Path of a file or a folder that a study file names.
@@ -72,8 +76,9 @@ impl FilePath {
     }
 }
 
-impl From<PathBuf> for FilePath {
-    fn from(path: PathBuf) -> Self {
+impl<P: Into<PathBuf>> From<P> for FilePath {
+    fn from(path: P) -> Self {
+        let path = path.into();
         Self {
             written: path.clone(),
             resolved: path,
@@ -103,8 +108,38 @@ impl<'de> Deserialize<'de> for FilePath {
 
 impl Serialize for FilePath {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        self.absolute().serialize(serializer)
+        FOLDER_OF_COPY.with_borrow(|folder| match folder {
+            Some(folder) => {
+                let path = folder.join(&self.resolved);
+                std::path::absolute(&path)
+                    .unwrap_or(path)
+                    .serialize(serializer)
+            }
+            None => self.absolute().serialize(serializer),
+        })
     }
+}
+
+/// Returns the same specification with every [`FilePath`] in it absolute; relative ones are taken from `folder`. The specification is copied through
+/// TOML, and each path is joined as it is written, so that no key can be forgotten.
+///
+/// # Errors
+/// If the specification of `place` has no form in TOML, such as a whole number above 2⁶³ − 1.
+pub fn with_absolute_paths<T: Serialize + DeserializeOwned>(
+    place: &str,
+    spec: &T,
+    folder: &Path,
+) -> crate::Result<T> {
+    FOLDER_OF_COPY.set(Some(folder.to_owned()));
+    let written = toml::Value::try_from(spec);
+    FOLDER_OF_COPY.set(None);
+    let copied = written
+        .map_err(|error| error.to_string())
+        .and_then(|written| {
+            let read: Result<T, _> = written.try_into();
+            read.map_err(|error| error.to_string())
+        });
+    copied.map_err(|error| Error::input(place, error, "what TOML can hold"))
 }
 
 /// Deserializes a path; while a file is parsed with a folder, to an absolute path.
@@ -143,7 +178,7 @@ pub enum SetName {
 impl From<&str> for SetName {
     fn from(name: &str) -> Self {
         match name.ends_with(".toml") {
-            true => Self::File(PathBuf::from(name).into()),
+            true => Self::File(name.into()),
             false => Self::BuiltIn(name.to_owned()),
         }
     }
@@ -196,5 +231,44 @@ mod tests {
         // Outside, nothing is known of a folder.
         let spec: Spec = toml::from_str(text).unwrap();
         assert_eq!(&*spec.mesh, Path::new("a/b.obj"));
+    }
+
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    struct Inner {
+        number: f64,
+        files: Vec<FilePath>,
+    }
+
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    struct Outer {
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        path: Option<FilePath>,
+        inner: Inner,
+        word: String,
+    }
+
+    #[test]
+    fn every_path_of_the_type_becomes_absolute_and_nothing_else_changes() {
+        let spec = Outer {
+            path: Some("a/b.toml".into()),
+            inner: Inner {
+                number: 0.1 + 0.2,
+                files: vec!["c.ply".into(), "/d.ply".into()],
+            },
+            word: "e.ply".to_owned(),
+        };
+        let folder = Path::new("/of/the/file");
+        let absolute = with_absolute_paths("s.toml", &spec, folder).unwrap();
+        let expected = Outer {
+            path: Some("/of/the/file/a/b.toml".into()),
+            inner: Inner {
+                number: 0.1 + 0.2,
+                files: vec!["/of/the/file/c.ply".into(), "/d.ply".into()],
+            },
+            word: "e.ply".to_owned(),
+        };
+        assert_eq!(absolute, expected);
+        let again = with_absolute_paths("s.toml", &absolute, Path::new("/elsewhere")).unwrap();
+        assert_eq!(again, expected);
     }
 }
