@@ -3,6 +3,7 @@
 //! What comes in is looked at as float64, whatever real type it has; a copy is made only of other types and of strided arrays.
 
 use crate::errors::bad_input;
+use bubbletouch::geometry::Aabb;
 use glam::DVec3;
 use ndarray::{Array2, ArrayViewD};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
@@ -166,4 +167,10 @@ pub fn to_column<T: numpy::Element>(
     values: impl IntoIterator<Item = T>,
 ) -> Bound<'_, PyArray1<T>> {
     values.into_iter().collect::<Vec<T>>().into_pyarray(py)
+}
+
+/// Returns the corners of a box, `[[min], [max]]`, metres.
+pub fn corners<'py>(py: Python<'py>, bounds: &Aabb) -> Bound<'py, PyArray2<f64>> {
+    let corners: [DVec3; 2] = [bounds.min, bounds.max];
+    to_rows(py, corners.into_iter())
 }

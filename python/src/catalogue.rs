@@ -1,7 +1,7 @@
 //! `Catalogue` and `Solid`: named objects as parametric solids with real dimensions.
 
+use crate::arrays::corners;
 use crate::errors::{check_readable, exception, guarded};
-use crate::model::corners;
 use crate::sphere_union::SphereUnion;
 use crate::threads::aside;
 use bubbletouch::objects::{self, Entry};

@@ -10,6 +10,8 @@ mod contacts;
 mod errors;
 mod goal;
 mod jacobian;
+mod kernel_pace;
+mod length_unit;
 mod mesh;
 mod model;
 mod patch;
@@ -39,6 +41,8 @@ mod _core {
     #[pymodule_export]
     use errors::{_panic, InternalError};
     #[pymodule_export]
+    use kernel_pace::_kernel_pace;
+    #[pymodule_export]
     use mesh::Mesh;
     #[pymodule_export]
     use patch::Patch;
@@ -46,8 +50,6 @@ mod _core {
     use picture::write_frame;
     #[pymodule_export]
     use placement::touch_poses;
-    #[pymodule_export]
-    use press::_kernel_pace;
     #[pymodule_export]
     use projection::Projection;
     #[pymodule_export]

@@ -1,8 +1,8 @@
 //! `Mesh`: triangles.
 
-use crate::arrays::{numbers, points, shape_of, to_rows};
+use crate::arrays::{corners, numbers, points, shape_of, to_rows};
 use crate::errors::{bad_input, check_readable, exception, guarded};
-use crate::model::{corners, unit_of};
+use crate::length_unit::unit_of;
 use crate::sphere_union::SphereUnion;
 use crate::threads::aside;
 use bubbletouch::mesh::{Orientation, SizeLimits, Surface, TriangleMesh};

@@ -51,16 +51,6 @@ impl Patch {
         &self.patch
     }
 
-    /// Sides of a frame.
-    pub fn sides(&self) -> &[usize] {
-        &self.shape
-    }
-
-    /// What presses work in.
-    pub fn spare(&self) -> &Spare<Workspace> {
-        &self.spare
-    }
-
     /// A property of the taxels: one number if all are equal, otherwise one each.
     fn property<'py>(
         &self,
@@ -440,7 +430,11 @@ impl Patch {
             let goal = crate::goal::Goal::of(depth, travel, force)?;
             crate::press::press(
                 py,
-                self,
+                crate::press::PatchToPress {
+                    patch: &self.patch,
+                    sides: &self.shape,
+                    spare: &self.spare,
+                },
                 (object, poses, goal),
                 (out, dtype),
                 threads,

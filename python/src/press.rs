@@ -1,15 +1,15 @@
 //! Presses in batches, written into a NumPy array.
 
 use crate::arrays::shape_of;
-use crate::batch::{for_each, n_threads};
+use crate::batch::{Spare, for_each, n_threads};
 use crate::contacts::{Contacts, OfPose};
 use crate::errors::{bad_input, exception};
 use crate::goal::Goal;
 use crate::jacobian;
 use crate::model::model_of;
-use crate::patch::Patch;
 use crate::poses::Poses;
 use bubbletouch::contact::{Row, Workspace};
+use bubbletouch::world;
 use glam::DVec3;
 use numpy::{
     Element, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods,
@@ -19,7 +19,6 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyTuple;
 use std::sync::Mutex;
-use std::time::Instant;
 
 /// What frames can be made of.
 trait Real: Element + Copy + Default + Send + Sync {
@@ -47,13 +46,24 @@ pub struct Wanted {
     pub jacobian: bool,
 }
 
+/// A patch, the shape of its frames, and workspaces for threads.
+#[derive(Clone, Copy)]
+pub struct PatchToPress<'a> {
+    /// The patch.
+    pub patch: &'a world::Patch,
+    /// Sides of a frame: (ny, nx) of a grid, otherwise (n_taxels,).
+    pub sides: &'a [usize],
+    /// Workspaces that presses reuse.
+    pub spare: &'a Spare<Workspace>,
+}
+
 /// Frames of deflections, or frames and what else is wanted, contacts first.
 ///
 /// # Errors
 /// What is wrong with the arguments; a force that cannot be reached, by its pose; Ctrl-C.
 pub fn press<'py>(
     py: Python<'py>,
-    patch: &Patch,
+    patch: PatchToPress,
     (object, poses, goal): (&Bound<'py, PyAny>, &Bound<'py, PyAny>, Goal),
     (out, dtype): (Option<&Bound<'py, PyAny>>, Option<&Bound<'py, PyAny>>),
     threads: Option<i64>,
@@ -62,7 +72,7 @@ pub fn press<'py>(
     let given = Poses::of("poses", poses)?;
     goal.check(given.poses.len())?;
     if wanted.jacobian {
-        jacobian::check(goal.kind(), patch.inner())?;
+        jacobian::check(goal.kind(), patch.patch)?;
     }
     let batch = Batch {
         patch,
@@ -72,7 +82,7 @@ pub fn press<'py>(
         threads: n_threads(threads)?,
         wanted,
     };
-    let mut shape = batch.patch.sides().to_vec();
+    let mut shape = batch.patch.sides.to_vec();
     if !batch.given.is_one {
         shape.insert(0, batch.given.poses.len());
     }
@@ -113,7 +123,7 @@ fn zeros<'py>(py: Python<'py>) -> PyResult<&'py Bound<'py, PyAny>> {
 }
 
 struct Batch<'a, 'py> {
-    patch: &'a Patch,
+    patch: PatchToPress<'a>,
     object: &'a Bound<'py, PyAny>,
     given: Poses,
     goal: Goal,
@@ -188,7 +198,7 @@ impl<'py> Batch<'_, 'py> {
         changes: Option<&mut [f64]>,
     ) -> PyResult<Option<Contacts>> {
         let model = model_of("object", self.object)?;
-        let (patch, goal, poses) = (self.patch.inner(), &self.goal, &self.given.poses);
+        let (patch, goal, poses) = (self.patch.patch, &self.goal, &self.given.poses);
         let (is_one, wanted) = (self.given.is_one, self.wanted);
         let named = |number: usize, error: bubbletouch::Error| {
             let place = if is_one {
@@ -232,7 +242,7 @@ impl<'py> Batch<'_, 'py> {
                 frames.zip(changes.map(Some)).collect()
             }
         };
-        let spare = self.patch.spare();
+        let spare = self.patch.spare;
         for_each(py, items, self.threads, spare, Workspace::new, work)?;
         if !wanted.contacts {
             return Ok(None);
@@ -251,34 +261,4 @@ fn check_out<T: Element>(array: &Bound<PyArrayDyn<T>>, shape: &[usize]) -> PyRes
         return Err(bad_input("out", "a strided array", "a C-contiguous one"));
     }
     Ok(())
-}
-
-/// Taxel readings a second of the kernel alone, one thread, nothing written anywhere: what presses into arrays are measured against.
-#[pyfunction]
-pub fn _kernel_pace(
-    py: Python,
-    patch: &Bound<Patch>,
-    object: &Bound<PyAny>,
-    poses: &Bound<PyAny>,
-    depth: &Bound<PyAny>,
-    seconds: f64,
-) -> PyResult<f64> {
-    let poses = Poses::of("poses", poses)?.poses;
-    let goal = Goal::of(Some(depth), None, None)?;
-    goal.check(poses.len())?;
-    let (patch, model) = (patch.get().inner(), model_of("object", object)?);
-    py.detach(|| {
-        let mut workspace = Workspace::new();
-        let start = Instant::now();
-        let mut n_readings = 0;
-        while start.elapsed().as_secs_f64() < seconds {
-            for (number, pose) in poses.iter().enumerate() {
-                let press = goal.of_pose(number, patch, (model, pose));
-                press.deflect(&mut workspace).map_err(exception)?;
-                std::hint::black_box(workspace.deflections());
-                n_readings += patch.n_taxels();
-            }
-        }
-        Ok(n_readings as f64 / start.elapsed().as_secs_f64())
-    })
 }

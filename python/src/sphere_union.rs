@@ -1,8 +1,8 @@
 //! `SphereUnion`: rigid spheres.
 
-use crate::arrays::{each, points, to_column, to_rows};
+use crate::arrays::{corners, each, points, to_column, to_rows};
 use crate::errors::{check_folder, check_readable, exception, guarded};
-use crate::model::{corners, unit_of};
+use crate::length_unit::unit_of;
 use bubbletouch::files::write_whole;
 use bubbletouch::mesh::SizeLimits;
 use bubbletouch::objects::{self, Model, Sphere, write_spheres};

@@ -85,7 +85,7 @@ impl Part {
             Kernel::Lathe(lathe) => lathe.distance(point),
             Kernel::Prism(prism) => prism.distance(point),
             Kernel::Torus(torus) => torus.distance(point),
-            Kernel::SphereSweep(strand) => strand.distance(point),
+            Kernel::SphereSweep(sweep) => sweep.distance(point),
         }
     }
 
@@ -97,7 +97,7 @@ impl Part {
             Kernel::Lathe(lathe) => lathe.support(inside),
             Kernel::Prism(prism) => prism.support(inside),
             Kernel::Torus(torus) => torus.support(inside),
-            Kernel::SphereSweep(strand) => strand.support(inside),
+            Kernel::SphereSweep(sweep) => sweep.support(inside),
         };
         support + self.pose.translation.dot(direction)
     }
@@ -117,7 +117,7 @@ impl Part {
             Kernel::Lathe(lathe) => lathe.pack(fit, &mut spheres),
             Kernel::Prism(prism) => prism.pack(fit, &mut spheres),
             Kernel::Torus(torus) => torus.pack(fit, &mut spheres),
-            Kernel::SphereSweep(strand) => strand.pack(fit, &mut spheres),
+            Kernel::SphereSweep(sweep) => sweep.pack(fit, &mut spheres),
         }
         for sphere in &mut spheres {
             sphere.center = self.pose.transform_point(sphere.center);
@@ -132,7 +132,7 @@ impl Part {
             Kernel::Lathe(lathe) => lathe.patches(),
             Kernel::Prism(prism) => prism.patches(),
             Kernel::Torus(torus) => torus.patches(),
-            Kernel::SphereSweep(strand) => strand.patches(),
+            Kernel::SphereSweep(sweep) => sweep.patches(),
         };
         let moved = patches.into_iter().map(|patch| patch.moved(&self.pose));
         moved.collect()
@@ -146,7 +146,7 @@ impl Part {
             Kernel::Lathe(lathe) => lathe.surface_points(spacing, &mut points),
             Kernel::Prism(prism) => prism.surface_points(spacing, &mut points),
             Kernel::Torus(torus) => torus.surface_points(spacing, &mut points),
-            Kernel::SphereSweep(strand) => strand.surface_points(spacing, &mut points),
+            Kernel::SphereSweep(sweep) => sweep.surface_points(spacing, &mut points),
         }
         for point in &mut points {
             *point = self.pose.transform_point(*point);

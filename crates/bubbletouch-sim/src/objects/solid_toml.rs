@@ -51,6 +51,7 @@ enum ShapeName {
     Lathe,
     Prism,
     HexagonalPrism,
+    #[serde(rename = "strand")]
     SphereSweep,
 }
 

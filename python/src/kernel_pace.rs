@@ -1,0 +1,40 @@
+//! Pace of the press kernel alone.
+
+use crate::errors::exception;
+use crate::goal::Goal;
+use crate::model::model_of;
+use crate::patch::Patch;
+use crate::poses::Poses;
+use bubbletouch::contact::Workspace;
+use pyo3::prelude::*;
+use std::time::Instant;
+
+/// Taxel readings a second of the kernel alone, one thread, nothing written anywhere: what presses into arrays are measured against.
+#[pyfunction]
+pub fn _kernel_pace(
+    py: Python,
+    patch: &Bound<Patch>,
+    object: &Bound<PyAny>,
+    poses: &Bound<PyAny>,
+    depth: &Bound<PyAny>,
+    seconds: f64,
+) -> PyResult<f64> {
+    let poses = Poses::of("poses", poses)?.poses;
+    let goal = Goal::of(Some(depth), None, None)?;
+    goal.check(poses.len())?;
+    let (patch, model) = (patch.get().inner(), model_of("object", object)?);
+    py.detach(|| {
+        let mut workspace = Workspace::new();
+        let start = Instant::now();
+        let mut n_readings = 0;
+        while start.elapsed().as_secs_f64() < seconds {
+            for (number, pose) in poses.iter().enumerate() {
+                let press = goal.of_pose(number, patch, (model, pose));
+                press.deflect(&mut workspace).map_err(exception)?;
+                std::hint::black_box(workspace.deflections());
+                n_readings += patch.n_taxels();
+            }
+        }
+        Ok(n_readings as f64 / start.elapsed().as_secs_f64())
+    })
+}
