@@ -38,6 +38,8 @@ struct DataSet<'a> {
     array: &'a TaxelArray,
     n_frames: usize,
     axes: &'a AxisValues,
+    /// Whether only test touches are made so.
+    is_tested: bool,
     /// Folder below the output folder; empty if there is one data set.
     folder: String,
 }
@@ -106,7 +108,12 @@ pub fn touches(args: &Args) -> Result<()> {
 fn data_sets<'a>(plans: &'a [(AxisValues, Plan)], read: Option<&ReadFrames>) -> Vec<DataSet<'a>> {
     let mut sets = Vec::new();
     let mut known = HashSet::new();
-    for (axes, plan) in plans {
+    let own = |(axes, plan): &'a (AxisValues, Plan)| {
+        let tested = plan.tested.as_deref().filter(|_| read.is_none());
+        let tested = tested.map(|tested| (axes, tested, true));
+        std::iter::once((axes, plan, false)).chain(tested)
+    };
+    for (axes, plan, is_tested) in plans.iter().flat_map(own) {
         let arrays = plan.arrays.iter().enumerate();
         let is_asked = |&(number, _): &(usize, _)| read.is_none_or(|read| read.array == number);
         for (_, array) in arrays.filter(is_asked) {
@@ -122,6 +129,7 @@ fn data_sets<'a>(plans: &'a [(AxisValues, Plan)], read: Option<&ReadFrames>) -> 
                         array,
                         n_frames,
                         axes,
+                        is_tested,
                         folder,
                     });
                 }
@@ -150,9 +158,10 @@ fn folder_parts(set: &DataSet) -> Vec<String> {
     let array = format!("{nx}x{ny}_at_{pitch_mm}_mm");
     let axes = set.axes.values.iter().map(|axis| {
         let value = match &axis.value {
-            toml::Value::Float(number) => number.to_string(),
-            toml::Value::String(text) => text.clone(),
-            value => value.to_string(),
+            None => "none".to_owned(),
+            Some(toml::Value::Float(number)) => number.to_string(),
+            Some(toml::Value::String(text)) => text.clone(),
+            Some(value) => value.to_string(),
         };
         let plain = |c: char| {
             if c.is_alphanumeric() || "._-".contains(c) {
@@ -165,7 +174,11 @@ fn folder_parts(set: &DataSet) -> Vec<String> {
         name.chars().map(plain).collect()
     });
     let frames = format!("{}_frames", set.n_frames);
-    [array, frames].into_iter().chain(axes).collect()
+    let side = if set.is_tested { "test" } else { "training" };
+    [array, frames, side.to_owned()]
+        .into_iter()
+        .chain(axes)
+        .collect()
 }
 
 /// Adds a number to names of folders that several sets have: arrays of the same shape and pitch may differ in what a name does not tell.

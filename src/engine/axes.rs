@@ -6,11 +6,14 @@
 //! "skin.stiffness_n_per_m" = [500.0, 2000.0]
 //! ```
 //! The key stands here in place of its own table. Each combination is a study of its own, checked as any study is; a key that takes a list
-//! where it stands is an axis there, and may be written in either place.
+//! where it stands is an axis there, and may be written in either place. `"touches.offset_{x,y}_mm"` sets two keys together.
+//!
+//! With `combine = "one_at_a_time"` the study runs as its tables are, and from there each axis alone goes through its values. The keys may then have values
+//! in their tables, too.
 
 use crate::error::{Error, Result};
 use crate::inputs::check::MOST_VALUES;
-use crate::inputs::toml_value::{is_at, number};
+use crate::inputs::toml_value::{is_at, number, value_at};
 use crate::table::{Column, Role, Scale};
 use crate::toml_lines::line_of;
 use crate::toml_text::{check_brackets, check_numbers};
@@ -30,15 +33,33 @@ pub struct AxisRules {
     pub refused: &'static [&'static str],
 }
 
+/// How axes are combined.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CombineSpec {
+    /// All combinations of their values.
+    #[default]
+    All,
+    /// The first values of all axes (of `[axes]`: the study as its tables are), and from there each axis alone through its values.
+    OneAtATime,
+}
+
 /// The axes that a study names itself, the first changing slowest.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct StudyAxes(pub Vec<StudyAxis>);
+pub struct StudyAxes {
+    /// In the order in which they are written.
+    pub axes: Vec<StudyAxis>,
+    /// How they are combined.
+    pub combine: CombineSpec,
+}
 
 /// A key and its values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StudyAxis {
-    /// Its path: `touches.depth_mm`.
+    /// Its path: `touches.depth_mm`, or `touches.offset_{x,y}_mm` of two keys.
     pub key: String,
+    /// Whether a column of every configuration has its values already.
+    pub has_column: bool,
     /// At least one, each once.
     pub values: Vec<toml::Value>,
     /// The line of the file on which it stands; none of an axis that no file has.
@@ -55,16 +76,22 @@ pub struct AxisValues {
 }
 
 impl AxisValues {
-    /// Of a combination, in tables whose columns are these.
-    pub fn new(number: usize, columns: &[Column], values: &[toml::Value]) -> Self {
+    /// Returns the values of a combination in tables that have these [columns](StudyAxes::columns).
+    pub fn new(
+        number: usize,
+        (axes, columns): (&StudyAxes, &[Column]),
+        values: &[Option<toml::Value>],
+    ) -> Self {
         use toml::Value::{Boolean, Float, Integer, String};
-        let values = columns.iter().zip(values);
-        let values = values.map(|(column, value)| AxisValue {
+        let axes = axes.axes.iter().zip(values);
+        let shown = axes.filter(|(axis, _)| !axis.has_column);
+        let values = columns.iter().zip(shown);
+        let values = values.map(|(column, (_, value))| AxisValue {
             column: column.clone(),
-            value: match value {
+            value: value.as_ref().map(|value| match value {
                 Integer(_) | Float(_) | Boolean(_) | String(_) => value.clone(),
                 other => other.to_string().into(),
-            },
+            }),
         });
         Self {
             number,
@@ -78,8 +105,8 @@ impl AxisValues {
 pub struct AxisValue {
     /// What the axis is.
     pub column: Column,
-    /// A number, a truth value, or a text; a list or a table is the text of it.
-    pub value: toml::Value,
+    /// A number, a truth value, or a text; a list or a table is the text of it. `None` if another axis is varied and the key has no such value.
+    pub value: Option<toml::Value>,
 }
 
 /// The table in which the last key of a path stands, made with those on the way where there is none, and that key; none through something
@@ -142,26 +169,44 @@ pub fn read<S: DeserializeOwned>(
     }
     // In the order in which they are written.
     found.sort_by_key(|(_, start, _)| *start);
-    let mut axes = StudyAxes::default();
+    let mut axes = StudyAxes {
+        combine: take_combine(place, text, &mut found)?,
+        ..StudyAxes::default()
+    };
     for (key, start, value) in found {
         let line = line_of(text, start);
         let axis = StudyAxis {
             values: list(place, text, &value)?,
+            has_column: (rules.in_place)(&key),
             key,
             line: Some(line),
         };
         axis.check(place, rules)?;
-        let is_in_place = (rules.in_place)(&axis.key);
+        if axes.combine == CombineSpec::OneAtATime {
+            let keys = axis.keys();
+            let has_value = |key: &String| {
+                find(table.get_ref(), key).is_some_and(|own| own.as_array().is_none())
+            };
+            if axis.has_column && !keys.iter().all(has_value) {
+                let allowed =
+                    "one value in its table, from which the axes are varied one at a time";
+                return Err(axis.error(place, "none or several values in its table", allowed));
+            }
+            axes.axes.push(axis);
+            continue;
+        }
         let value = match value.into_inner() {
-            DeValue::Array(values) if !is_in_place => values[0].clone(),
+            DeValue::Array(values) if !axis.has_column => values[0].clone(),
             list => Spanned::new(0..0, list),
         };
-        if insert(table.get_mut(), &axis.key, (start, value)).is_none() {
-            let given = "given here and in its table";
-            return Err(axis.error(place, given, "one of the two"));
+        for key in axis.keys() {
+            if insert(table.get_mut(), &key, (start, value.clone())).is_none() {
+                let given = "given here and in its table";
+                return Err(axis.error(place, given, "one of the two"));
+            }
         }
-        if !is_in_place {
-            axes.0.push(axis);
+        if !axis.has_column {
+            axes.axes.push(axis);
         }
     }
     let study = S::deserialize(toml::Deserializer::from(table)).map_err(said)?;
@@ -184,6 +229,20 @@ fn leaves<'i>(
     }
 }
 
+/// Removes `combine` from the keys of `[axes]` and returns its value.
+fn take_combine(
+    place: &str,
+    text: &str,
+    found: &mut Vec<(String, usize, Spanned<DeValue>)>,
+) -> Result<CombineSpec> {
+    let Some(index) = found.iter().position(|(key, ..)| key == "combine") else {
+        return Ok(CombineSpec::default());
+    };
+    let (_, _, value) = found.remove(index);
+    let value = toml::de::ValueDeserializer::from(value);
+    CombineSpec::deserialize(value).map_err(|error| Error::toml(place, text, &error))
+}
+
 /// The values of a list; of anything else none.
 fn list(place: &str, text: &str, value: &Spanned<DeValue>) -> Result<Vec<toml::Value>> {
     let DeValue::Array(values) = value.get_ref() else {
@@ -194,6 +253,14 @@ fn list(place: &str, text: &str, value: &Spanned<DeValue>) -> Result<Vec<toml::V
         toml::Value::deserialize(value).map_err(|error| Error::toml(place, text, &error))
     });
     values.collect()
+}
+
+/// Returns the value at a path.
+fn find<'t, 'i>(table: &'t DeTable<'i>, key: &str) -> Option<&'t DeValue<'i>> {
+    match key.split_once('.') {
+        None => table.get(key).map(Spanned::get_ref),
+        Some((first, rest)) => find(table.get(first)?.get_ref().as_table()?, rest),
+    }
 }
 
 /// Puts a value, written from `start` on, at a path where none is; `None` if there is one, or no table on the way.
@@ -222,15 +289,16 @@ impl StudyAxis {
     }
 
     fn check(&self, place: &str, rules: AxisRules) -> Result<()> {
+        let keys = self.keys();
         let refused = rules.refused.iter();
-        let refused = refused.copied().find(|name| is_at(&self.key, name));
-        let same = |one: &toml::Value, other: &toml::Value| match (number(one), number(other)) {
-            (Some(one), Some(other)) => one == other,
-            _ => one == other,
-        };
+        let refused = refused
+            .copied()
+            .find(|name| keys.iter().any(|key| is_at(key, name)));
+        let is_path =
+            |key: &String| !key.split('.').any(str::is_empty) && !key.contains(['{', '}']);
         let twice = self.values.iter().enumerate().find(|(place, value)| {
             let before = self.values[..*place].iter();
-            before.take(MOST_VALUES).any(|other| same(other, value))
+            before.take(MOST_VALUES).any(|other| is_same(other, value))
         });
         let n = self.values.len();
         let (given, allowed) = match (refused, twice) {
@@ -238,9 +306,9 @@ impl StudyAxis {
                 format!("{key} as an axis"),
                 "a key that may differ within a study",
             ),
-            _ if self.key.split('.').any(str::is_empty) => (
+            _ if !keys.iter().all(is_path) => (
                 "no path".to_owned(),
-                "the path of a key: \"skin.stroke_mm\"",
+                "the path of a key: \"skin.stroke_mm\", or of several: \"touches.offset_{x,y}_mm\"",
             ),
             _ if n == 0 => (
                 "no list of values".to_owned(),
@@ -253,16 +321,43 @@ impl StudyAxis {
         Err(self.error(place, given, allowed))
     }
 
-    /// The key alone, without its tables.
-    fn last(&self) -> &str {
-        self.key.rsplit('.').next().unwrap_or(&self.key)
+    /// Returns the paths of the keys that take each value: more than one if the key lists several in braces.
+    pub fn keys(&self) -> Vec<String> {
+        let parts = self.key.split_once('{').and_then(|(start, rest)| {
+            let (names, end) = rest.split_once('}')?;
+            Some((start, names.split(','), end))
+        });
+        match parts {
+            None => vec![self.key.clone()],
+            Some((start, names, end)) => {
+                let keys = names.map(|name| format!("{start}{}{end}", name.trim()));
+                keys.collect()
+            }
+        }
+    }
+
+    /// Returns the path without braces, and without what only says how a value is spread.
+    fn path(&self) -> String {
+        let path = self.key.replace(['{', '}', ',', ' '], "");
+        path.strip_suffix(".within").unwrap_or(&path).to_owned()
+    }
+
+    /// Returns the name of its column, if nothing else has it: the key without its tables; of a key of test touches with `test_`.
+    fn name(&self) -> String {
+        let path = self.path();
+        let last = path.rsplit('.').next().unwrap_or(&path);
+        match path.starts_with(OF_TESTS) {
+            true => format!("test_{last}"),
+            false => last.to_owned(),
+        }
     }
 
     /// Its column in tables of results, where the names of others are taken.
     pub fn column(&self, is_taken: impl Fn(&str) -> bool) -> Column {
-        let last = self.last();
+        let last = self.name();
+        let last = &last[..];
         let name = match is_taken(last) {
-            true => self.key.replace('.', "_"),
+            true => self.path().replace('.', "_"),
             false => last.to_owned(),
         };
         // It lives as long as the program, as names that are written there do: those of a row's fields must.
@@ -282,11 +377,27 @@ impl StudyAxis {
         Column::new(name, self.role(), words, unit, scale(numbers)).optional()
     }
 
+    /// Returns the value that a study has at its key; `None` if it has none, or none of the kind of its values.
+    fn own(&self, study: &toml::Table) -> Option<toml::Value> {
+        let own = value_at(study, self.keys().first()?)?;
+        let is_number = self.values.iter().all(|value| number(value).is_some());
+        (!is_number || number(own).is_some()).then(|| own.clone())
+    }
+
+    /// Whether a study has a value at all of its keys.
+    fn is_at(&self, study: &toml::Table, value: &toml::Value) -> bool {
+        let has = |key: &String| value_at(study, key).is_some_and(|own| is_same(own, value));
+        self.keys().iter().all(has)
+    }
+
     fn role(&self) -> Role {
         let known = ROLES.iter().find(|(start, _)| self.key.starts_with(start));
         known.map_or(Role::Choice, |(_, role)| *role)
     }
 }
+
+/// Beginning of the keys that test touches have instead of the study's.
+const OF_TESTS: &str = "test.";
 
 /// Words of keys whose last word says too little.
 const WORDS: [(&str, &str); 3] = [
@@ -317,7 +428,8 @@ const UNITS: [(&str, &str); 15] = [
 /// Roles by the beginnings of keys; all others are choices. How deep, how far along, how often and how fast one presses is chosen; where the
 /// object lies, how it is turned and how slippery it is is not. How touches are split, in which groups, and what was recorded is a condition of the
 /// experiment: a designer who could choose the split would choose the easiest.
-const ROLES: [(&str, Role); 18] = [
+const ROLES: [(&str, Role); 19] = [
+    (OF_TESTS, Role::Condition),
     ("seed", Role::Subject),
     ("recorded.", Role::Condition),
     ("recognition.split", Role::Condition),
@@ -339,16 +451,26 @@ const ROLES: [(&str, Role); 18] = [
 ];
 
 /// From this ratio of the largest to the smallest on, numbers lie along an axis by their logarithm. Larger, and the small ones of a sweep
-/// by powers of two lie on each other; smaller, and evenly spread ones look uneven.
+/// by powers of two lie on each other; smaller, and evenly spread ones look uneven. A zero stands apart.
 const LOG_FROM: f64 = 16.0;
+
+/// Whether two values are the same; 1 and 1.0 are.
+fn is_same(one: &toml::Value, other: &toml::Value) -> bool {
+    match (number(one), number(other)) {
+        (Some(one), Some(other)) => one == other,
+        _ => one == other,
+    }
+}
 
 fn scale(numbers: Option<Vec<f64>>) -> Scale {
     let Some(numbers) = numbers else {
         return Scale::Words;
     };
-    let least = numbers.iter().copied().fold(f64::INFINITY, f64::min);
+    let positive = numbers.iter().copied().filter(|&number| number > 0.0);
+    let least = positive.fold(f64::INFINITY, f64::min);
     let most = numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    match least > 0.0 && most / least >= LOG_FROM {
+    let is_negative = numbers.iter().any(|&number| number < 0.0);
+    match !is_negative && most / least >= LOG_FROM {
         true => Scale::Log,
         false => Scale::Linear,
     }
@@ -357,36 +479,53 @@ fn scale(numbers: Option<Vec<f64>>) -> Scale {
 impl StudyAxes {
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        self.axes.is_empty()
     }
 
     /// Whether a key is one of them.
     pub fn has(&self, key: &str) -> bool {
-        self.0.iter().any(|axis| axis.key == key)
+        let mut axes = self.axes.iter();
+        axes.any(|axis| axis.keys().iter().any(|own| own == key))
     }
 
-    /// The column of each, where the names of others are taken.
+    /// Returns the columns of axes that have none in every configuration, where the names of others are taken.
     pub fn columns(&self, is_taken: impl Fn(&str) -> bool) -> Vec<Column> {
         let column = |axis: &StudyAxis| {
-            let alike = self.0.iter().filter(|other| other.last() == axis.last());
+            let alike = self.axes.iter().filter(|other| other.name() == axis.name());
             let is_shared = alike.count() > 1;
             axis.column(|name| is_shared || is_taken(name))
         };
-        self.0.iter().map(column).collect()
+        let shown = self.axes.iter().filter(|axis| !axis.has_column);
+        shown.map(column).collect()
     }
 
     /// How many combinations of values there are.
     pub fn n_combinations(&self) -> f64 {
-        self.0.iter().map(|axis| axis.values.len() as f64).product()
+        let lengths = self.axes.iter().map(|axis| axis.values.len() as f64);
+        match self.combine {
+            CombineSpec::All => lengths.product(),
+            CombineSpec::OneAtATime => 1.0 + lengths.sum::<f64>(),
+        }
     }
 
-    /// Every combination of a value of each axis, the first axis changing slowest.
-    pub fn combinations(&self) -> Vec<Vec<toml::Value>> {
+    /// Returns every combination of a value of each axis, the first axis changing slowest; `None` where the axis is left as `study` has it.
+    fn combinations(&self, study: &toml::Table) -> Vec<Vec<Option<toml::Value>>> {
+        if self.combine == CombineSpec::OneAtATime {
+            let mut all = vec![vec![None; self.axes.len()]];
+            for (place, axis) in self.axes.iter().enumerate() {
+                let others = axis.values.iter().filter(|value| !axis.is_at(study, value));
+                all.extend(others.map(|value| {
+                    let mut values = vec![None; self.axes.len()];
+                    values[place] = Some(value.clone());
+                    values
+                }));
+            }
+            return all;
+        }
         let mut all = vec![Vec::new()];
-        for axis in &self.0 {
-            let longer = all.iter().flat_map(|values: &Vec<toml::Value>| {
-                let with =
-                    |value: &toml::Value| [&values[..], std::slice::from_ref(value)].concat();
+        for axis in &self.axes {
+            let longer = all.iter().flat_map(|values: &Vec<Option<toml::Value>>| {
+                let with = |value: &toml::Value| [&values[..], &[Some(value.clone())]].concat();
                 axis.values.iter().map(with)
             });
             all = longer.collect();
@@ -394,7 +533,8 @@ impl StudyAxes {
         all
     }
 
-    /// Each combination of values with the study that has it: `study` with these at the axes' keys.
+    /// Returns each combination of values with the study that has it: `study` with these at the axes' keys. Of an axis that is left as the study has it, the
+    /// value is the study's own.
     ///
     /// # Errors
     /// A value that the study's reader refuses; the error names the axis.
@@ -402,13 +542,19 @@ impl StudyAxes {
         &self,
         place: &str,
         study: &S,
-    ) -> Result<Vec<(Vec<toml::Value>, S)>> {
-        let table = toml::Table::try_from(study).expect("every field of a study has a TOML form");
-        let all = self.combinations().into_iter().map(|values| {
-            let mut table = table.clone();
-            for (axis, value) in self.0.iter().zip(&values) {
-                let with = with_value(&table, &axis.key, value.clone());
-                table = with.map_err(|error| axis.error(place, value, error))?;
+    ) -> Result<Vec<(Vec<Option<toml::Value>>, S)>> {
+        let base = toml::Table::try_from(study).expect("every field of a study has a TOML form");
+        let all = self.combinations(&base).into_iter().map(|mut values| {
+            let mut table = base.clone();
+            for (axis, value) in self.axes.iter().zip(&mut values) {
+                let Some(value) = value else {
+                    *value = axis.own(&base);
+                    continue;
+                };
+                for key in axis.keys() {
+                    let with = with_value(&table, &key, value.clone());
+                    table = with.map_err(|error| axis.error(place, &*value, error))?;
+                }
             }
             let study = table.try_into();
             let study = study.map_err(|error: toml::de::Error| {
@@ -421,9 +567,13 @@ impl StudyAxes {
     }
 
     /// What is said of a combination that a check refuses: first the axes whose keys the check speaks of, or all of them.
-    pub fn refused(&self, place: &str, values: &[toml::Value], said: &str) -> Error {
-        let all = || self.0.iter().zip(values);
-        let mut named: Vec<_> = all().filter(|(axis, _)| said.contains(&axis.key)).collect();
+    pub fn refused(&self, place: &str, values: &[Option<toml::Value>], said: &str) -> Error {
+        let all = || {
+            let axes = self.axes.iter().zip(values);
+            axes.filter_map(|(axis, value)| Some((axis, value.as_ref()?)))
+        };
+        let names = |axis: &StudyAxis| axis.keys().iter().any(|key| said.contains(key));
+        let mut named: Vec<_> = all().filter(|(axis, _)| names(axis)).collect();
         if named.is_empty() {
             named = all().collect();
         }
@@ -446,12 +596,19 @@ pub fn to_toml<S: Serialize>(study: &S, axes: &StudyAxes) -> String {
     }
     let mut table = toml::Table::try_from(study).expect(HAS_FORM);
     let mut lines = "\n[axes]\n".to_owned();
-    for StudyAxis { key, values, .. } in &axes.0 {
-        if let Some((inner, last)) = table_at(&mut table, key) {
-            inner.remove(last);
+    if axes.combine == CombineSpec::OneAtATime {
+        lines.push_str("combine = \"one_at_a_time\"\n");
+    }
+    for axis in &axes.axes {
+        for key in axis.keys() {
+            if axes.combine == CombineSpec::All
+                && let Some((inner, last)) = table_at(&mut table, &key)
+            {
+                inner.remove(last);
+            }
         }
-        let values = toml::Value::Array(values.clone());
-        lines.push_str(&format!("{:?} = {values}\n", key));
+        let values = toml::Value::Array(axis.values.clone());
+        lines.push_str(&format!("{:?} = {values}\n", axis.key));
     }
     toml::to_string(&table).expect(HAS_FORM) + &lines
 }
@@ -517,7 +674,7 @@ mod tests {
         let text = to_toml(&study, &axes);
         let (again, same) = read::<Study>("s.toml", &text, RULES).unwrap();
         let keys = |axes: &StudyAxes| -> Vec<(String, Vec<toml::Value>)> {
-            let axes = axes.0.iter();
+            let axes = axes.axes.iter();
             axes.map(|axis| (axis.key.clone(), axis.values.clone()))
                 .collect()
         };
@@ -590,6 +747,7 @@ mod tests {
             let axis = StudyAxis {
                 key: key.to_owned(),
                 values: table["v"].as_array().unwrap().clone(),
+                has_column: false,
                 line: None,
             };
             axis.column(|name| name == "frames")

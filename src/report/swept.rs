@@ -190,7 +190,7 @@ impl<'a> Swept<'a> {
         let is_absent = |setting: &Setting| {
             let mut one_at_a_time = self.one_at_a_time.iter();
             one_at_a_time.any(|one| one.column.name == setting.column.name)
-                && setting.data.value(row) == Some(Value::Number(0.0))
+                && matches!(setting.data.value(row), None | Some(Value::Number(0.0)))
         };
         let said = conditions.iter().filter(|one| !is_absent(one));
         let said: Vec<String> = said.map(|one| one.phrase(row)).collect();
@@ -229,19 +229,21 @@ pub fn without<'a>(settings: &[Setting<'a>], one: &Setting) -> Vec<Setting<'a>> 
         .collect()
 }
 
-/// The numbers of the signal, where each row leaves the first row's value of at most one of them.
+/// Returns all numbers, or else those of the signal, if each row leaves the first row's value of at most one of them.
 fn one_at_a_time<'a>(free: &[Setting<'a>], rows: &[usize]) -> Vec<Setting<'a>> {
-    let is_signal = |setting: &&Setting| {
-        setting.is_number()
-            && (setting.column.role == Role::Condition || setting.column.name == "smoothing_mm")
+    let is_signal = |setting: &Setting| {
+        setting.column.role == Role::Condition || setting.column.name == "smoothing_mm"
     };
-    let signal: Vec<Setting> = free.iter().filter(is_signal).copied().collect();
-    let leaves = |row: usize| {
-        let left = signal.iter().filter(|one| one.varies(&[rows[0], row]));
-        left.count()
+    let numbers = free.iter().copied().filter(Setting::is_number);
+    let numbers: Vec<Setting> = numbers.collect();
+    let signal = numbers.iter().copied().filter(is_signal).collect();
+    let is_one_at_a_time = |settings: &Vec<Setting>| {
+        let leaves = |row: usize| {
+            let left = settings.iter().filter(|one| one.varies(&[rows[0], row]));
+            left.count()
+        };
+        settings.len() > 1 && rows.iter().all(|&row| leaves(row) <= 1)
     };
-    match signal.len() > 1 && rows.iter().all(|&row| leaves(row) <= 1) {
-        true => signal,
-        false => Vec::new(),
-    }
+    let found = [numbers, signal].into_iter().find(is_one_at_a_time);
+    found.unwrap_or_default()
 }

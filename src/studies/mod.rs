@@ -4,7 +4,6 @@
 //! ([`Study`]). [`AnyStudy`] is what all commands see of a study: whatever can be done with one kind can be done with all.
 
 pub(crate) mod any_study;
-pub mod breaking_points;
 pub(crate) mod ceiling;
 pub(crate) mod groups;
 pub(crate) mod loaded;
@@ -48,7 +47,6 @@ struct Entry {
 
 /// All kinds.
 const KINDS: &[Entry] = &[
-    entry::<breaking_points::BreakingPointsStudy>(),
     entry::<object_detail::ObjectDetailStudy>(),
     entry::<reconstruction::ReconstructionStudy>(),
     entry::<stability::StabilityPlan>(),
@@ -143,11 +141,18 @@ pub fn read_failures(folder: &Path) -> Result<Option<Table>> {
 }
 
 /// Tables of studies of a kind that exists no more, and what takes its place.
-const REMOVED: [(&str, &str); 1] = [(
-    "speed_accuracy",
-    "a recognition study (pareto.csv: accuracy and its time), [object_detail] (error and time of models of objects) or [stability] \
-     (engines and time steps)",
-)];
+const REMOVED: [(&str, &str); 2] = [
+    (
+        "speed_accuracy",
+        "a recognition study (pareto.csv: accuracy and its time), [object_detail] (error and time of models of objects) or [stability] \
+         (engines and time steps)",
+    ),
+    (
+        "breaking_points",
+        "a recognition study with the same keys in [axes] and combine = \"one_at_a_time\" (\"test.touches.depth_mm\" drives test touches alone); \
+         robustness.csv says where half of the accuracy is lost",
+    ),
+];
 
 /// Refuses a study of a kind that exists no more.
 fn check_removed(place: &str, text: &str) -> Result<()> {

@@ -69,7 +69,7 @@ impl Rule {
 pub struct Shown {
     /// The column.
     pub column: String,
-    /// Its value.
+    /// Its value; an empty word where it has none.
     pub value: Value,
 }
 

@@ -50,7 +50,7 @@ every_kind! {
         Some(("object_detail_cost.csv", "error_median_mm", "us_per_touch_median"));
     a_study_of_a_whole_body_obeys_all_laws: WHOLE_BODY, Some(("recognition.csv", "accuracy", "bytes_per_taxel"));
     a_study_of_stability_obeys_all_laws: STABILITY, None;
-    a_study_of_breaking_points_obeys_all_laws: BREAKING_POINTS, None;
+    a_study_with_test_touches_of_their_own_obeys_all_laws: TEST_TOUCHES, Some(("cells.csv", "accuracy", "decision_time"));
 }
 
 #[test]

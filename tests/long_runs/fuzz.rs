@@ -3,7 +3,6 @@
 use crate::fuzzing::{SOON, Target};
 use bubbletouch::geometry::Pose;
 use bubbletouch::kinds;
-use bubbletouch::kinds::breaking_points::BreakingPointsSpec;
 use bubbletouch::kinds::object_detail::{ObjectDetailPlan, ObjectDetailStudySpec};
 use bubbletouch::kinds::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
 use bubbletouch::kinds::stability::{StabilityPlan, StabilityStudySpec};
@@ -118,7 +117,6 @@ fn read_study(input: &[u8]) -> Result<()> {
             let spec = ObjectDetailStudySpec::parse(PLACE, text)?;
             ObjectDetailPlan::new(PLACE, spec).map(drop)
         }
-        Some("breaking_points") => BreakingPointsSpec::parse(PLACE, text).map(drop),
         Some("reconstruction") => {
             let spec = ReconstructionStudySpec::parse(PLACE, text)?;
             ReconstructionPlan::new(PLACE, spec).map(drop)

@@ -6,7 +6,6 @@
 
 use crate::command::Case;
 use crate::kinds::Kind;
-use bubbletouch::kinds::breaking_points::BreakingPointsSpec;
 use bubbletouch::kinds::object_detail::ObjectDetailStudySpec;
 use bubbletouch::kinds::reconstruction::ReconstructionStudySpec;
 use bubbletouch::kinds::stability::StabilityStudySpec;
@@ -108,11 +107,6 @@ fn files() -> Vec<File> {
         ),
         kind("whole_body", Kind::WHOLE_BODY, reader::<WholeBodyStudySpec>),
         kind("stability", Kind::STABILITY, reader::<StabilityStudySpec>),
-        kind(
-            "breaking_points",
-            Kind::BREAKING_POINTS,
-            reader::<BreakingPointsSpec>,
-        ),
         File {
             name: "scene",
             text: SCENE.to_owned(),

@@ -297,46 +297,7 @@ through_all_faults! {
     #[ignore = "`.ci/long engine`"] a_study_of_reconstruction_goes_through_all_faults: RECONSTRUCTION;
     #[ignore = "`.ci/long engine`"] a_study_of_object_detail_goes_through_all_faults: OBJECT_DETAIL;
     #[ignore = "`.ci/long engine`"] a_study_of_a_whole_body_goes_through_all_faults: WHOLE_BODY;
-    #[ignore = "`.ci/long engine`"] a_study_of_breaking_points_goes_through_all_faults: BREAKING_POINTS;
-}
-
-#[test]
-fn a_piece_that_fails_is_recorded_and_the_others_are_done() {
-    // Of 12 touches an object, none is left to learn from where one kind is a thousand times as rare.
-    let failing = Kind {
-        study: crate::kinds::IMBALANCED,
-        ..Kind::BREAKING_POINTS
-    };
-    let case = failing.case();
-    let output = case.run(&["run", "study.toml", "--out", "failing"]);
-    assert_eq!(output.status.code(), Some(1));
-    let error = said(&output);
-    assert!(
-        error.contains("failures.csv: 1 of 4 work items failed"),
-        "{error}"
-    );
-    let rows = |name: &str| fs::read_to_string(case.path("failing").join(name)).unwrap();
-    let failures = rows("failures.csv");
-    assert_eq!(failures.lines().count(), 1 + 1);
-    assert!(failures.contains("imbalance at 1000"), "{failures}");
-    assert!(
-        failures.contains("key recognition.class_imbalance"),
-        "{failures}"
-    );
-    assert_eq!(rows("summary.csv").lines().count(), 1 + 3);
-    // It is tried again, the others are not.
-    let again = case.run(&["run", "study.toml", "--out", "failing"]);
-    assert_eq!(again.status.code(), Some(1));
-    assert_eq!(pieces(&case.path("failing/journal.jsonl")).len(), 4 + 1);
-    let (output, _) = case.succeeds(&["verify", "failing"]);
-    assert!(output.contains("3 of 4 work items"), "{output}");
-    let strict = case.run(&["run", "study.toml", "--out", "strict", "--fail-fast"]);
-    assert_eq!(strict.status.code(), Some(2));
-    assert!(
-        said(&strict).contains("way imbalance at 1000"),
-        "{}",
-        said(&strict)
-    );
+    #[ignore = "`.ci/long engine`"] a_study_with_test_touches_of_their_own_goes_through_all_faults: TEST_TOUCHES;
 }
 
 #[test]
@@ -447,12 +408,12 @@ fn counts_that_no_memory_holds_are_refused_before_it_is_taken_in_studies_of_ever
             "whole_body.ladders.taxels_at_touch",
         ),
         (
-            Kind::BREAKING_POINTS,
+            Kind::TEST_TOUCHES,
             "per_object = 24",
             "per_object",
             "touches.per_object",
         ),
-        (Kind::BREAKING_POINTS, "trials = 2", "trials", "trials"),
+        (Kind::TEST_TOUCHES, "trials = 2", "trials", "trials"),
     ];
     for (kind, line, name, key) in cases {
         let case = kind.case();

@@ -1,7 +1,6 @@
 //! The experiments that come with the crate: they say what they ask, and they can run.
 
 use bubbletouch::kinds;
-use bubbletouch::kinds::breaking_points::{BreakingPointsPlan, BreakingPointsSpec};
 use bubbletouch::kinds::object_detail::{ObjectDetailPlan, ObjectDetailStudySpec};
 use bubbletouch::kinds::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
 use bubbletouch::kinds::stability::{StabilityPlan, StabilityStudySpec};
@@ -77,13 +76,6 @@ fn every_experiment_can_run() {
             assert!(!spec.question.is_empty() && !spec.expected.is_empty());
             let plan = ReconstructionPlan::new(&place, spec).unwrap();
             assert!(plan.cells().len() > 1, "{place} compares something");
-            continue;
-        }
-        if table == Some("breaking_points") {
-            let spec = BreakingPointsSpec::parse(&place, &text).unwrap();
-            assert!(!spec.question.is_empty() && !spec.expected.is_empty());
-            let plan = BreakingPointsPlan::new(&place, spec).unwrap();
-            assert!(plan.ways.len() > 1, "{place} compares something");
             continue;
         }
         if table == Some("stability") {

@@ -36,4 +36,5 @@ mod recorded_law;
 mod repeatability;
 mod sensor_error_names;
 mod shear;
+mod test_touches;
 mod variance;

@@ -4,7 +4,7 @@ use super::scale::Scale;
 use crate::error::{Error, Result};
 use crate::report::pictures::drawing::Drawing;
 use crate::report::swept::Setting;
-use crate::table::{Along, At, ChartSpec, Data, Mark, Role, Scale as Spacing, Table};
+use crate::table::{Along, At, ChartSpec, Data, Mark, Role, Scale as Spacing, Table, Value};
 use std::collections::{HashMap, HashSet};
 
 /// Lines up to which bands do not hide each other; more lines get a whisker at each point.
@@ -80,7 +80,8 @@ impl<'a> View<'a> {
         let mut rows: Vec<usize> = (0..table.n_rows).collect();
         for shown in &spec.shown {
             let data = column(&shown.column)?.data;
-            rows.retain(|&row| data.value(row).as_ref() == Some(&shown.value));
+            let absent = || Value::from("");
+            rows.retain(|&row| data.value(row).unwrap_or_else(absent) == shown.value);
         }
         let groups = |names: &[String]| -> Result<Groups> {
             let settings: Result<Vec<Setting>> = names.iter().map(|name| column(name)).collect();

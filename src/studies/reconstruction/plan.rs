@@ -1,5 +1,6 @@
 //! A reconstruction study that can run: every key checked, every unit SI.
 
+use crate::engine::axes::CombineSpec;
 use crate::engine::work_items::shared::Shared;
 use crate::error::Result;
 use crate::inputs::check::{COUNT, Check, Range};
@@ -8,7 +9,7 @@ use crate::random::Seed;
 use crate::sensing::{Basis, Dictionary, Effort, Ensemble, Projection, Solver};
 use crate::signal::{Noise, NoiseUnit, Quantity, SignalStep};
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
-use crate::studies::recognition::spec::signal::{CombineSpec, SignalSpec, StepSpec};
+use crate::studies::recognition::spec::signal::{SignalSpec, StepSpec};
 use crate::studies::recognition::sweep::sweep::nested;
 use crate::studies::reconstruction::rows::ReconstructionCell;
 use crate::studies::reconstruction::spec::{ReconstructionSpec, ReconstructionStudySpec};

@@ -9,7 +9,7 @@ use crate::sensing::{Basis, Dictionary, Ensemble};
 use crate::signal::{Chain, Noise, NoiseUnit};
 use crate::studies::recognition::frames::kept::Frames;
 use crate::studies::recognition::frames::reading::{
-    Reading, TouchToRead, measure, touches_to_read,
+    ReadSkin, Reading, TouchToRead, measure, touches_to_read,
 };
 use crate::studies::recognition::frames::simulation::simulate_array;
 use crate::studies::recognition::frames::touch_set::TouchSet;
@@ -111,19 +111,19 @@ fn read(
     rows: &[usize],
     noise: Option<f64>,
 ) -> Result<Array2<f64>> {
-    let chains = [vec![Chain::new(
-        &plan.signal_steps(noise),
-        plan.array.patch(),
-    )?]];
-    let projection = plan.projection(Ensemble::Identity, 1)?;
-    let reading = Reading {
-        chains: &chains,
-        projection: &projection,
+    let skin = ReadSkin {
+        chains: vec![Chain::new(&plan.signal_steps(noise), plan.array.patch())?],
         taxel: *plan.array.taxel(),
         speed: plan.speed,
+        frames,
+    };
+    let projection = plan.projection(Ensemble::Identity, 1)?;
+    let reading = Reading {
+        skins: &[skin],
+        projection: &projection,
     };
     let touches: Vec<TouchToRead> = rows.iter().map(|&row| touches[row]).collect();
-    Ok(measure(reading, frames, &touches)?.0)
+    Ok(measure(reading, &touches)?.0)
 }
 
 /// The first test touch of a few objects spread over the list.

@@ -47,15 +47,12 @@ fn axes_of_a_study_are_choices_that_are_advised_and_settings_that_are_compared()
 #[test]
 fn studies_of_two_kinds_have_nothing_to_compare() {
     let case = Case::new();
-    for (folder, kind) in [("a", Kind::STABILITY), ("b", Kind::BREAKING_POINTS)] {
+    for (folder, kind) in [("a", Kind::STABILITY), ("b", Kind::TEST_TOUCHES)] {
         case.file(&format!("{folder}.toml"), kind.study);
         case.succeeds(&["run", &format!("{folder}.toml"), "--out", folder]);
     }
     let error = refused(&case, &["compare", "a", "b"]);
-    assert!(
-        error.contains("where recognition breaks; a folder of"),
-        "{error}"
-    );
+    assert!(error.contains("recognises objects; a folder of"), "{error}");
 }
 
 #[test]

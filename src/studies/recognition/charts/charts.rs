@@ -9,7 +9,7 @@ use crate::studies::recognition::charts::filled::filled;
 use crate::studies::recognition::charts::tables::{
     CELLS, CHANCE, OVER_FOLDS, OVER_TRIAL, note_of_groups,
 };
-use crate::table::{Along, At, ChartSpec, Mark, Role, Rule, Table, Value};
+use crate::table::{Along, At, ChartSpec, Mark, Role, Rule, Shown, Table, Value};
 use std::cmp::Reverse;
 
 /// Classifiers from which on a study is about choosing one.
@@ -88,10 +88,15 @@ fn accuracy_charts(cells: &Table, chart: &ChartSpec) -> Vec<ChartSpec> {
             let mut others = others.iter();
             others.all(|other| other.data.key(*row) == other.data.key(0))
         };
-        let rows: Vec<usize> = all.iter().copied().filter(is_first).collect();
-        let others = others.iter().map(|other| &other.column.name);
+        let has_value = |row: &usize| setting.data.value(*row).is_some();
+        let rows = all.iter().copied().filter(is_first);
+        let rows: Vec<usize> = rows.filter(has_value).collect();
+        let first = |other: &Setting| Shown {
+            column: other.column.name.to_string(),
+            value: other.data.value(0).unwrap_or_else(|| Value::from("")),
+        };
         let chart = ChartSpec {
-            shown: others.filter_map(|name| cells.shown(name, 0)).collect(),
+            shown: others.iter().map(first).collect(),
             ..chart.clone()
         };
         charts_along(cells, &chart, Some(*setting), &rows)

@@ -31,7 +31,7 @@ row! {
 pub struct Robustness {
     /// Number of the design's most accurate configuration along the condition: a row of `summary.csv`.
     cell: usize => Subject: Linear;
-    /// The design: settings that vary in the study, but for the condition.
+    /// The design: settings that vary among the designs along the condition.
     design: String => Subject;
     /// The column of the condition.
     condition: String => Subject;
@@ -213,7 +213,6 @@ fn rows_of_interval(accuracy: f64, width: f64) -> f64 {
 /// A row that has no form in a file.
 pub(super) fn robustness(summary: &Table, confusion: &Table) -> Result<Option<Table>> {
     let all: Vec<usize> = (0..summary.n_rows).collect();
-    let settings = Swept::of(summary, &all).free;
     let mut curves = Vec::new();
     for condition in summary.of_role(Role::Condition) {
         let Some((column, Data::Numbers(values))) = summary.column(condition) else {
@@ -234,8 +233,18 @@ pub(super) fn robustness(summary: &Table, confusion: &Table) -> Result<Option<Ta
         }
     }
     let n_objects = ObjectCounts::new(confusion);
-    let rows = curves.par_iter().flat_map_iter(|(condition, along)| {
-        both_sides(summary, &n_objects, (condition, along), &settings)
+    let of_condition = curves.chunk_by(|a, b| a.0 == b.0);
+    let rows = of_condition.flat_map(|curves| {
+        let rows: Vec<usize> = curves
+            .iter()
+            .flat_map(|(_, along)| along)
+            .copied()
+            .collect();
+        let settings = Swept::of(summary, &rows).free;
+        let rows = curves.par_iter().flat_map_iter(|(condition, along)| {
+            both_sides(summary, &n_objects, (condition, along), &settings)
+        });
+        rows.collect::<Vec<_>>()
     });
     let rows: Vec<Robustness> = rows.collect();
     match rows.is_empty() {

@@ -11,7 +11,7 @@
 //! | `cell.toml` | the settings of the cell and the trial |
 //! | `manifest.json` | the files of the folder; only files that it lists are ever replaced |
 
-use crate::engine::progress::Progress;
+use crate::engine::progress::{Progress, Silent};
 use crate::error::{Error, Result};
 use crate::files::{CsvFile, DataFolder, write_bytes};
 use crate::inputs::arrays::read_matrix;
@@ -138,24 +138,28 @@ impl StudyPart {
         let array = &self.plan.arrays[group.array];
         let n_touches = self.sweep.labels.len() as u64;
         progress.stage(&format!("{stage} {}", array.describe()), n_touches);
-        let on = (array, group.frames);
-        let touched = self.touched.as_ref();
-        let frames = touched.simulate(on, progress);
-        self.measure(group, &frames, (trial, n_measurements))
+        let frames = self.touched.simulate((array, group.frames), progress);
+        let tested = self.plan.tested.as_ref().map(|plan| {
+            let array = &plan.arrays[group.array];
+            self.tested.simulate((array, group.frames), &Silent)
+        });
+        let tested = tested.as_ref().unwrap_or(&frames);
+        self.measure(group, [&frames, tested], (trial, n_measurements))
     }
 
-    /// Reads and measures the frames of a group in a trial. Runs and exports share this path: what is learned for measurements is learned from the
+    /// Reads and measures the frames of a group in a trial, those of touches that are learned and those of touches that are tested. Runs and exports share this path: what is learned for measurements is learned from the
     /// training touches of the whole split, however few of them a cell learns from.
     pub(crate) fn measure(
         &self,
         group: &Group,
-        frames: &Frames,
+        [frames, tested]: [&Frames; 2],
         (trial, n_measurements): (usize, usize),
     ) -> Result<Measurements> {
         let inputs = group.inputs(&self.plan);
         let trial = inputs.trial(&self.sweep, trial);
         let touches = (self.touched.as_ref() as _, frames);
-        measure_group(&inputs, touches, trial, (n_measurements, None))
+        let tested = (self.tested.as_ref() as _, tested);
+        measure_group(&inputs, touches, tested, (trial, n_measurements))
     }
 
     /// Writes the measurements of one cell in one trial into a folder that exists, claimed for [`FEATURE_FILES`].

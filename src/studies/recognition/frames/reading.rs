@@ -14,23 +14,32 @@ use std::time::Instant;
 /// Frames measured together: one matrix product. Fixed, so that results do not depend on the number of threads.
 const BLOCK: usize = 128;
 
-/// What a reading is made with, the same for all frames.
+/// Inputs of a reading.
 #[derive(Clone, Copy)]
 pub struct Reading<'a> {
-    /// The signal of each channel, of each skin that touches are made with.
-    pub chains: &'a [Vec<Chain>],
+    /// The skins that touches are made with. All have frames of the same shape.
+    pub skins: &'a [ReadSkin<'a>],
     /// The ensemble's matrix.
     pub projection: &'a Projection,
+}
+
+/// A skin, and the frames of touches that are made with it.
+#[derive(Clone, Debug)]
+pub struct ReadSkin<'a> {
+    /// The signal of each channel.
+    pub chains: Vec<Chain>,
     /// The taxels that were pressed.
     pub taxel: Taxel,
     /// Approach speed at the moment of reading, m/s.
     pub speed: f64,
+    /// Frames of the touches.
+    pub frames: &'a Frames,
 }
 
 /// A touch to read.
 #[derive(Clone, Copy, Debug)]
 pub struct TouchToRead {
-    /// Its number: its frames are those from `number · F` on.
+    /// Its number: its frames are those of its skin from `number · F` on.
     pub number: usize,
     /// Its name: what its own randomness is drawn from.
     pub seed: Seed,
@@ -38,7 +47,7 @@ pub struct TouchToRead {
     pub interval: Option<f64>,
     /// The number of the touch that came before it; `None` for a fresh skin.
     pub before: Option<usize>,
-    /// The number of its skin among the reading's chains.
+    /// The index of its skin in the reading.
     pub skin: usize,
 }
 
@@ -67,12 +76,8 @@ pub fn touches_to_read<'a>(
 ///
 /// # Errors
 /// Frames that are in a file cannot be read.
-pub fn measure(
-    reading: Reading,
-    frames: &Frames,
-    touches: &[TouchToRead],
-) -> Result<(Array2<f64>, f64)> {
-    let (n_touches, n_frames) = (touches.len(), frames.facts.n_frames);
+pub fn measure(reading: Reading, touches: &[TouchToRead]) -> Result<(Array2<f64>, f64)> {
+    let (n_touches, n_frames) = (touches.len(), reading.skins[0].frames.facts.n_frames);
     let block = (BLOCK / n_frames.max(1)).max(1);
     let n_measurements = reading.projection.n_measurements();
     let mut values = Array2::zeros((n_touches * n_frames, n_measurements));
@@ -82,7 +87,7 @@ pub fn measure(
         .zip(touches.par_chunks(block))
         .map_init(Working::default, |working, (out, touches)| {
             let start = Instant::now();
-            measure_block(reading, frames, touches, working, out)?;
+            measure_block(reading, touches, working, out)?;
             Ok(start.elapsed().as_secs_f64())
         })
         .collect::<Result<Vec<_>>>()?
@@ -107,35 +112,38 @@ struct Working {
 /// Reads some touches, F frames each.
 fn measure_block(
     reading: Reading,
-    kept: &Frames,
     touches: &[TouchToRead],
     working: &mut Working,
     out: ArrayViewMut2<f64>,
 ) -> Result<()> {
-    let (n_frames, n_values) = (kept.facts.n_frames, kept.n_values);
+    let first = reading.skins[0].frames;
+    let (n_frames, n_values) = (first.facts.n_frames, first.n_values);
     let mut frames = std::mem::take(&mut working.frames);
     // Whatever is there of another block is read over.
     frames.resize(touches.len() * n_frames * n_values, 0.0);
     let of_touches = frames.chunks_exact_mut(n_frames * n_values);
     for (touch, frames) in touches.iter().zip(of_touches) {
+        let skin = &reading.skins[touch.skin];
         for (frame, row) in frames.chunks_exact_mut(n_values).enumerate() {
-            kept.read(touch.number * n_frames + frame, row);
+            skin.frames.read(touch.number * n_frames + frame, row);
         }
-        let before = touch.before.filter(|_| remembers(&reading, touch));
+        let remembers = skin.chains.iter().any(Chain::remembers);
+        let before = touch.before.filter(|_| remembers);
         if let Some(before) = before {
             working.deepest.resize(n_values, 0.0);
-            kept.read((before + 1) * n_frames - 1, &mut working.deepest);
+            let last = (before + 1) * n_frames - 1;
+            skin.frames.read(last, &mut working.deepest);
         }
         let touch = TouchToRead { before, ..*touch };
-        match (before, &reading.chains[touch.skin][..]) {
+        match (before, &skin.chains[..]) {
             (None, [chain]) => {
-                let rates = rates_of(frames, &reading.taxel, reading.speed, &mut working.rates);
+                let rates = rates_of(frames, &skin.taxel, skin.speed, &mut working.rates);
                 let recording = recording(frames, (rates, 0), &touch);
                 chain.apply_recording(recording, &touch.seed, &mut working.scratch);
             }
             (_, chains) => {
                 for channel in 0..chains.len() {
-                    read_channel(&reading, (&touch, channel), frames, working);
+                    read_channel(skin, (&touch, channel), frames, working);
                 }
             }
         }
@@ -161,19 +169,14 @@ fn recording<'a>(
     }
 }
 
-/// Whether what came before a touch changes what is read of it.
-fn remembers(reading: &Reading, touch: &TouchToRead) -> bool {
-    reading.chains[touch.skin].iter().any(Chain::remembers)
-}
-
 /// Reads one channel of a touch's frames, in place.
 fn read_channel(
-    reading: &Reading,
+    skin: &ReadSkin,
     (touch, channel): (&TouchToRead, usize),
     frames: &mut [f64],
     working: &mut Working,
 ) {
-    let chains = &reading.chains[touch.skin];
+    let chains = &skin.chains;
     let n_taxels = chains[channel].n_taxels();
     let taxels = channel * n_taxels..(channel + 1) * n_taxels;
     let Working {
@@ -194,7 +197,7 @@ fn read_channel(
     for frame in frames.chunks_exact(n_values) {
         with_history.extend_from_slice(&frame[taxels.clone()]);
     }
-    let rates = rates_of(with_history, &reading.taxel, reading.speed, rates);
+    let rates = rates_of(with_history, &skin.taxel, skin.speed, rates);
     let recording = recording(with_history, (rates, n_before), touch);
     let named = of_channel(&touch.seed, channel);
     chains[channel].apply_recording(recording, &named, scratch);

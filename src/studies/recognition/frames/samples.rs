@@ -1,5 +1,6 @@
 //! Sample touches for the eye: what the array feels of a few objects, noise included.
 
+use crate::engine::axes::CombineSpec;
 use crate::engine::progress::Silent;
 use crate::error::{Error, Result};
 use crate::inputs::sensor_errors::strength_columns;
@@ -7,13 +8,13 @@ use crate::random::Seed;
 use crate::report::pictures::snapshots::Snapshots;
 use crate::sensing::{Ensemble, Projection};
 use crate::signal::{Chain, SensorError, SignalStep, Strength};
-use crate::studies::recognition::frames::reading::{Reading, measure, touches_to_read};
+use crate::studies::recognition::frames::reading::{ReadSkin, Reading, measure, touches_to_read};
 use crate::studies::recognition::frames::simulation::simulate_array;
 use crate::studies::recognition::frames::touch_set::{Samples, TouchSet};
 use crate::studies::recognition::plan::group::Group;
 use crate::studies::recognition::plan::plan::Plan;
 use crate::studies::recognition::plan::taxel_array::skin;
-use crate::studies::recognition::spec::signal::{CombineSpec, StepSpec};
+use crate::studies::recognition::spec::signal::StepSpec;
 use crate::studies::recognition::touches::drawn_touches::TouchedObject;
 use ndarray::{Array2, ArrayView1};
 
@@ -99,18 +100,22 @@ fn read(
     for touch in &mut touches {
         touch.before = Some(before);
     }
+    let skin = ReadSkin {
+        chains: chains(plan, group)?,
+        taxel: *array.taxel(),
+        speed: plan.speed,
+        frames: &frames,
+    };
     let reading = Reading {
-        chains: &[chains(plan, group)?],
+        skins: &[skin],
         projection: &Projection::new(
             Ensemble::Identity,
             array.frame_shape(),
             array.n_values(),
             &seed,
         )?,
-        taxel: *array.taxel(),
-        speed: plan.speed,
     };
-    let (values, _) = measure(reading, &frames, &touches)?;
+    let (values, _) = measure(reading, &touches)?;
     let cells = array.picture_cells();
     let frame = |row: ArrayView1<f64>| cells.mapv(|taxel| taxel.map_or(0.0, |taxel| row[taxel]));
     Ok(values.outer_iter().map(frame).collect())

@@ -6,11 +6,11 @@ use crate::random::Seed;
 use crate::sensing::{Ensemble, Projection, Readings};
 use crate::signal::Scratch;
 use crate::studies::recognition::frames::kept::Frames;
-use crate::studies::recognition::frames::reading::{Reading, TouchToRead, measure};
+use crate::studies::recognition::frames::reading::{ReadSkin, Reading, TouchToRead, measure};
 use crate::studies::recognition::frames::touch_set::TouchSet;
 use crate::studies::recognition::measurements::images::Images;
 use crate::studies::recognition::measurements::measurement_inputs::{
-    MeasuredTrial, MeasurementInputs,
+    MeasuredTrial, MeasurementInputs, TestInputs,
 };
 use crate::studies::recognition::measurements::tilted_copies::TiltedCopies;
 use crate::studies::recognition::plan::taxel_array::skin;
@@ -19,7 +19,6 @@ use crate::studies::recognition::rows::image_features::FeaturesOfImages;
 use crate::studies::recognition::rows::row_inputs::RowInputs;
 use crate::studies::recognition::sweep::learned_frames::learned_touches;
 use ndarray::{Array1, Array2, ArrayViewMut2, s};
-use std::sync::Arc;
 
 /// Measurements of all touches of a group of cells. Where each is read several times, the first readings of all touches come first, then the second ones
 /// of all: reading r of a touch has the number r · n_touches + touch.
@@ -33,8 +32,6 @@ pub struct Measurements {
     pub n_frames: usize,
     /// Φ1 (m): what a frame of ones measures.
     pub of_ones: Array1<f64>,
-    /// Φ, and how images are made of measurements.
-    pub sensed: Arc<SensedBy>,
     /// Features of images, n_touches × F·k each; below them those of tilted copies.
     pub of_images: Vec<(FeaturesOfImages, Array2<f64>)>,
     /// What was copied.
@@ -114,28 +111,33 @@ impl Measurements {
     }
 }
 
-/// Reads and projects all frames of a group in one trial, to a number of measurements among those of the inputs. Φ and all that is learned for
-/// features is the trial's own, or `sensed` by another.
+/// Touches with their frames.
+pub type MadeTouches<'a> = (&'a dyn TouchSet, &'a Frames);
+
+/// Reads and projects all frames of a group in one trial, to a number of measurements among those of the inputs. If test touches are made in another way than
+/// training touches, `tested` has as many of them in the same order; the trial's test touches are then read from there.
 ///
 /// # Errors
 /// What a signal step or the projection refuses.
 pub fn measure_group(
     inputs: &MeasurementInputs,
-    (touched, frames): (&dyn TouchSet, &Frames),
-    trial: MeasuredTrial,
-    (n_measurements, sensed): (usize, Option<&Arc<SensedBy>>),
+    (touched, frames): MadeTouches,
+    tested: MadeTouches,
+    (trial, n_measurements): (MeasuredTrial, usize),
 ) -> Result<Measurements> {
     let array = inputs.array;
     let seed = Seed::new(inputs.seed);
-    let skins = skins(inputs, trial.number as u64);
-    let chains = |skin| array.chains(skin, |skin| inputs.signal.steps(skin));
-    let chains = skins.iter().map(chains).collect::<Result<Vec<_>>>()?;
+    let skins = skins(inputs, (frames, tested.1), trial.number as u64)?;
     let signal = seed.named("signal").numbered(trial.number as u64);
     let n_frames = frames.facts.n_frames;
     let mut touches = touched.to_read(inputs.speed, n_frames, &signal);
-    if skins.len() > 1 {
+    if let [_, skin] = &skins[..] {
+        let of_test = tested.0.to_read(skin.speed, n_frames, &signal);
         for &touch in &trial.split().test {
-            touches[touch].skin = skins.len() - 1;
+            touches[touch] = TouchToRead {
+                skin: 1,
+                ..of_test[touch]
+            };
         }
     }
     let n_touches = touches.len();
@@ -152,29 +154,21 @@ pub fn measure_group(
         &seed,
     )?;
     let reading = Reading {
-        chains: &chains,
+        skins: &skins,
         projection: &whole,
-        taxel: *array.taxel(),
-        speed: inputs.speed,
     };
-    let sensed = match sensed {
-        Some(sensed) => Arc::clone(sensed),
-        None => {
-            let read = (reading, frames, &touches[..]);
-            Arc::new(sensed_by(inputs, read, trial, n_measurements)?)
-        }
-    };
+    let sensed = sensed_by(inputs, (reading, &touches), trial, n_measurements)?;
     let reading = Reading {
         projection: &sensed.projection,
         ..reading
     };
-    let (values, cpu_s) = measure(reading, frames, &touches)?;
+    let (values, cpu_s) = measure(reading, &touches)?;
     let mut copies = None;
     let of_images = match &sensed.images {
         None => Vec::new(),
         Some(images) => {
             let train = (&trial.split().train[..], touched.classes().len());
-            copies = tilted_copies(inputs, train, chains[0][0].full_scale(), trial.number);
+            copies = tilted_copies(inputs, train, skins[0].chains[0].full_scale(), trial.number);
             let mut wanted = inputs.of_images.clone();
             wanted.retain(|one| images.is_of(one.measurements));
             let made = images.features((values.view(), n_frames), &wanted, copies.as_ref());
@@ -187,7 +181,6 @@ pub fn measure_group(
         n_touches,
         n_frames,
         of_ones: sensed.projection.measure(ones.view()).row(0).to_owned(),
-        sensed,
         of_images,
         copies,
         cpu_s,
@@ -213,7 +206,7 @@ fn tilted_copies(
 /// Draws Φ in a trial, or learns it, and what makes images of measurements, from training touches.
 fn sensed_by(
     inputs: &MeasurementInputs,
-    (whole, frames, touches): (Reading, &Frames, &[TouchToRead]),
+    (whole, touches): (Reading, &[TouchToRead]),
     trial: MeasuredTrial,
     n_measurements: usize,
 ) -> Result<SensedBy> {
@@ -229,10 +222,10 @@ fn sensed_by(
         });
     }
     // Of whole touches, so many that their frames are enough; the split has one of each object in turn.
-    let n_touches = learned_touches(frames.facts.n_frames);
+    let n_touches = learned_touches(whole.skins[0].frames.facts.n_frames);
     let learned = trial.split().train.iter().take(n_touches);
     let learned: Vec<TouchToRead> = learned.map(|&touch| touches[touch]).collect();
-    let (training, _) = measure(whole, frames, &learned)?;
+    let (training, _) = measure(whole, &learned)?;
     let learn = |m| Projection::learned(inputs.ensemble, shape, m, (training.view(), &drawn));
     let projection = learn(n_measurements)?;
     let mut images = None;
@@ -250,7 +243,7 @@ fn sensed_by(
             false => learn(m),
         });
         let projections = projections.collect::<Result<Vec<_>>>()?;
-        let full_scale = whole.chains[0][0].full_scale();
+        let full_scale = whole.skins[0].chains[0].full_scale();
         images = Some(Images::new(
             &projections,
             (array, full_scale),
@@ -272,16 +265,37 @@ fn untouched(whole: Reading, trial: usize, seed: u64) -> Array2<f64> {
     for (number, mut row) in readings.outer_iter_mut().enumerate() {
         let frame = row.as_slice_mut().expect("rows are whole");
         let named = seed.numbered(number as u64);
-        whole.chains[0][0].apply(frame, None, &named, &mut scratch);
+        whole.skins[0].chains[0].apply(frame, None, &named, &mut scratch);
     }
     readings
 }
 
-/// The skin of training touches, and that of test touches if it is another.
-fn skins(inputs: &MeasurementInputs, trial: u64) -> Vec<Seed> {
+/// Returns the skin of training touches, then that of test touches if anything differs for them.
+fn skins<'a>(
+    inputs: &MeasurementInputs,
+    (learned, tested): (&'a Frames, &'a Frames),
+    trial: u64,
+) -> Result<Vec<ReadSkin<'a>>> {
+    let make = |seed: Seed, differing: Option<&TestInputs>, frames| -> Result<ReadSkin<'a>> {
+        let (array, signal, speed) = match differing {
+            Some(test) => (test.array, &test.signal, test.speed),
+            None => (inputs.array, &inputs.signal, inputs.speed),
+        };
+        Ok(ReadSkin {
+            chains: array.chains(&seed, |skin| signal.steps(skin))?,
+            taxel: *array.taxel(),
+            speed,
+            frames,
+        })
+    };
     let first = skin(&Seed::new(inputs.seed), inputs.array);
-    match inputs.tested_on {
-        TestedOn::SameSkin => vec![first],
-        TestedOn::AnotherSkin => vec![first, first.named("another").numbered(trial)],
+    let of_test = match inputs.tested_on {
+        TestedOn::SameSkin => first,
+        TestedOn::AnotherSkin => first.named("another").numbered(trial),
+    };
+    let mut skins = vec![make(first, None, learned)?];
+    if inputs.has_own_test() {
+        skins.push(make(of_test, inputs.test.as_ref(), tested)?);
     }
+    Ok(skins)
 }

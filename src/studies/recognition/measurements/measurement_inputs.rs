@@ -34,6 +34,8 @@ pub struct MeasurementInputs<'a> {
     pub signal: SignalInputs,
     /// The skin that test touches are made with.
     pub tested_on: TestedOn,
+    /// What test touches have instead of the inputs above, if the study has `[test]`.
+    pub test: Option<TestInputs<'a>>,
     /// How measurements are made.
     pub ensemble: Ensemble,
     /// Numbers of measurements that projections are made for, each at most once, ascending.
@@ -44,6 +46,17 @@ pub struct MeasurementInputs<'a> {
     pub of_images: Vec<FeaturesOfImages>,
     /// Tilted copies of training touches, if any.
     pub copies: Option<CopyInputs>,
+}
+
+/// Inputs of the measurements of test touches that differ from those of training touches.
+#[derive(Clone, Debug)]
+pub struct TestInputs<'a> {
+    /// The array that is pressed; its frames have the shape of those that are learned.
+    pub array: &'a TaxelArray,
+    /// Approach speed at the moment of reading, m/s.
+    pub speed: f64,
+    /// What happens to the signal.
+    pub signal: SignalInputs,
 }
 
 /// Inputs of the measurements that belong to one trial.
@@ -86,7 +99,7 @@ impl MeasurementInputs<'_> {
 
     /// Returns the inputs that belong to a trial of a sweep.
     pub fn trial<'s>(&self, sweep: &'s Sweep, number: usize) -> MeasuredTrial<'s> {
-        let depends = self.learns() || self.tested_on != TestedOn::SameSkin;
+        let depends = self.learns() || self.has_own_test();
         let split = depends.then(|| &sweep.splits[number]);
         MeasuredTrial { number, split }
     }
@@ -94,6 +107,11 @@ impl MeasurementInputs<'_> {
     /// Whether anything is learned from training touches before they are measured.
     pub fn learns(&self) -> bool {
         self.ensemble.is_learned() || !self.of_images.is_empty()
+    }
+
+    /// Whether test touches are read in another way than training touches.
+    pub fn has_own_test(&self) -> bool {
+        self.test.is_some() || self.tested_on != TestedOn::SameSkin
     }
 
     /// Returns the numbers of measurements that images are made of, each once, ascending.
@@ -138,33 +156,37 @@ impl SignalInputs {
     }
 }
 
+/// Returns the inputs of a plan's signal in a condition.
+fn signal_inputs(plan: &Plan, condition: Condition) -> SignalInputs {
+    let is_active = |step: &&StepSpec| match step {
+        StepSpec::Force => true,
+        StepSpec::Noise => condition.noise != 0.0,
+        StepSpec::Smoothing => condition.smoothing != 0.0,
+        StepSpec::Error(error) => condition.strengths.present().any(|(own, ..)| own == *error),
+    };
+    // A strength that the study does not have is none.
+    let with_zero = |strengths: Strengths, (_, strength): (_, &Strength)| {
+        let value = strengths.of(strength.key).unwrap_or(0.0);
+        strengths.with(strength.key, Some(value))
+    };
+    let steps = plan.spec.signal.steps.iter();
+    SignalInputs {
+        steps: steps.filter(is_active).copied().collect(),
+        noise_unit: match condition.noise == 0.0 {
+            true => NoiseUnit::FullScale,
+            false => plan.noise_unit,
+        },
+        condition: Condition {
+            strengths: all_strengths().fold(condition.strengths, with_zero),
+            ..condition
+        },
+    }
+}
+
 impl Group {
     /// Returns the inputs of the group's signal.
     pub fn signal(&self, plan: &Plan) -> SignalInputs {
-        let condition = self.condition;
-        let is_active = |step: &&StepSpec| match step {
-            StepSpec::Force => true,
-            StepSpec::Noise => condition.noise != 0.0,
-            StepSpec::Smoothing => condition.smoothing != 0.0,
-            StepSpec::Error(error) => condition.strengths.present().any(|(own, ..)| own == *error),
-        };
-        // A strength that the study does not have is none.
-        let with_zero = |strengths: Strengths, (_, strength): (_, &Strength)| {
-            let value = strengths.of(strength.key).unwrap_or(0.0);
-            strengths.with(strength.key, Some(value))
-        };
-        let steps = plan.spec.signal.steps.iter();
-        SignalInputs {
-            steps: steps.filter(is_active).copied().collect(),
-            noise_unit: match condition.noise == 0.0 {
-                true => NoiseUnit::FullScale,
-                false => plan.noise_unit,
-            },
-            condition: Condition {
-                strengths: all_strengths().fold(condition.strengths, with_zero),
-                ..condition
-            },
-        }
+        signal_inputs(plan, self.condition)
     }
 
     /// Returns the group with some of its cells alone.
@@ -181,6 +203,14 @@ impl Group {
 
     /// Returns the inputs of the group's measurements.
     pub fn inputs<'a>(&self, plan: &'a Plan) -> MeasurementInputs<'a> {
+        let test = plan.tested.as_deref().map(|tested| {
+            let condition = plan.tested_condition(self.condition);
+            TestInputs {
+                array: &tested.arrays[self.array],
+                speed: tested.speed,
+                signal: signal_inputs(tested, condition),
+            }
+        });
         MeasurementInputs {
             array: &plan.arrays[self.array],
             seed: plan.spec.seed,
@@ -188,6 +218,7 @@ impl Group {
             speed: plan.speed,
             signal: self.signal(plan),
             tested_on: self.tested_on,
+            test,
             ensemble: self.ensemble,
             projected: self.projected(),
             n_readings: self.n_readings(plan),

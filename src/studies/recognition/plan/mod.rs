@@ -11,4 +11,5 @@ pub mod sensed;
 pub(crate) mod shear;
 pub mod signal;
 pub mod taxel_array;
+pub mod tested;
 pub mod trials;

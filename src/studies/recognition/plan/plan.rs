@@ -16,6 +16,7 @@ use crate::studies::recognition::spec::scene::{SpreadSpec, TouchesSpec};
 use crate::studies::recognition::spec::study::StudySpec;
 use crate::world::Placement;
 use std::collections::HashSet;
+use std::sync::Arc;
 
 /// Trials of a study, at most: each has its split in memory before the first runs.
 pub(crate) const MOST_TRIALS: usize = 100_000;
@@ -46,6 +47,8 @@ pub struct Plan {
     pub frames: Vec<usize>,
     /// What stays on one side of a split.
     pub keep_together: Option<KeepTogether>,
+    /// The plan of test touches, if the study has `[test]`: all but its touches and their signal is of no account.
+    pub tested: Option<Arc<Plan>>,
 }
 
 impl Plan {
@@ -101,8 +104,9 @@ impl Plan {
         check.next_touch(&spec)?;
         check.folds(&spec)?;
         check.repeats(&spec)?;
-        let plan = Self {
+        let mut plan = Self {
             speed,
+            tested: None,
             keep_together: spec.recognition.kept_together(),
             arrays,
             placement,
@@ -111,6 +115,7 @@ impl Plan {
             spec,
         };
         check.configurations(plan.n_cells())?;
+        plan.tested = check.tested(&plan)?;
         Ok(plan)
     }
 
@@ -133,7 +138,7 @@ impl Plan {
             };
             let plan = Self::new(place, study);
             let plan = plan.map_err(|error| axes.refused(place, &values, &error.to_string()))?;
-            Ok((AxisValues::new(number, &columns, &values), plan))
+            Ok((AxisValues::new(number, (&axes, &columns), &values), plan))
         });
         let plans = plans.collect::<Result<Vec<_>>>()?;
         check.configurations(plans.iter().map(|(_, plan)| plan.n_cells()).sum())?;

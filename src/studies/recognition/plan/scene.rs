@@ -225,6 +225,12 @@ impl Check<'_> {
             _ => (f64::is_finite, "finite numbers"),
         };
         let values = match *spread {
+            SpreadSpec::Range(RangeSpec::Within(0.0)) => vec![0.0],
+            SpreadSpec::Range(RangeSpec::Within(half_width)) => {
+                let is_allowed = |half_width: f64| half_width.is_finite() && half_width >= 0.0;
+                self.value(key, half_width, is_allowed, "within zero or more")?;
+                vec![-half_width, half_width]
+            }
             SpreadSpec::Range(RangeSpec::Uniform(low, high)) => vec![low, high],
             SpreadSpec::Range(RangeSpec::Grid(first, last, count)) => {
                 self.count(key, count, MOST_VALUES)?;
@@ -237,7 +243,14 @@ impl Check<'_> {
         for &value in &values {
             self.value(key, value, is_allowed, allowed)?;
         }
-        if let SpreadSpec::Range(RangeSpec::Uniform(low, high)) = *spread {
+        let ends = match *spread {
+            SpreadSpec::Range(RangeSpec::Uniform(low, high)) => Some((low, high)),
+            SpreadSpec::Range(RangeSpec::Within(half_width)) if half_width > 0.0 => {
+                Some((-half_width, half_width))
+            }
+            _ => None,
+        };
+        if let Some((low, high)) = ends {
             if low >= high {
                 let given = format!("uniform from {low} to {high}");
                 return Err(self.error(key, given, "low below high"));

@@ -1,5 +1,6 @@
 //! The checks of `[signal]`, and the conditions that its axes make.
 
+use crate::engine::axes::CombineSpec;
 use crate::engine::axis::Axis;
 use crate::error::Result;
 use crate::inputs::check::{Check, Range};
@@ -8,7 +9,7 @@ use crate::inputs::units::MM;
 use crate::signal::{NoiseUnit, SENSOR_ERRORS, Strength};
 use crate::studies::recognition::plan::plan::Plan;
 use crate::studies::recognition::spec::scene::{SensedSpec, TouchesSpec};
-use crate::studies::recognition::spec::signal::{CombineSpec, SignalAxis, SignalSpec, StepSpec};
+use crate::studies::recognition::spec::signal::{SignalAxis, SignalSpec, StepSpec};
 
 /// One value for each axis of the signal.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -189,7 +190,7 @@ impl Condition {
     }
 
     /// The same with another value on an axis.
-    fn with(mut self, (key, step): (&str, StepSpec), value: f64) -> Self {
+    pub(crate) fn with(mut self, (key, step): (&str, StepSpec), value: f64) -> Self {
         match step {
             StepSpec::Noise => self.noise = value,
             StepSpec::Smoothing => self.smoothing = value * MM,

@@ -126,14 +126,14 @@ pub enum SensedSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(
     untagged,
-    expecting = "expected a number, a list, { grid = [first, last, count] } or { uniform = [low, high] }"
+    expecting = "expected a number, a list, { grid = [first, last, count] }, { uniform = [low, high] } or { within = half_width }"
 )]
 pub enum SpreadSpec {
     /// `yaw_deg = 30.0`
     One(f64),
     /// `yaw_deg = [0.0, 10.0, 20.0]`: all of them in each configuration, as no axis.
     List(Vec<f64>),
-    /// `yaw_deg = { grid = [0.0, 50.0, 6] }` or `{ uniform = [0.0, 360.0] }`
+    /// `yaw_deg = { grid = [0.0, 50.0, 6] }`, `{ uniform = [0.0, 360.0] }` or `{ within = 15.0 }`
     Range(RangeSpec),
 }
 
@@ -145,6 +145,8 @@ pub enum RangeSpec {
     Grid(f64, f64, usize),
     /// Drawn uniformly between two values.
     Uniform(f64, f64),
+    /// Drawn uniformly between a value below zero and as much above; 0: always zero.
+    Within(f64),
 }
 
 fn zero() -> SpreadSpec {

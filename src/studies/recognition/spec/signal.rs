@@ -1,5 +1,6 @@
 //! What happens to a frame, as it is written: `[signal]`.
 
+use crate::engine::axes::CombineSpec;
 use crate::engine::axis::Axis;
 use crate::inputs::defaults::is_default;
 use crate::inputs::sensor_errors::{NOISES, TestedOn, all_strengths};
@@ -73,17 +74,6 @@ impl Serialize for SignalAxes {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_map(self.given().map(|(key, _, axis)| (key, axis)))
     }
-}
-
-/// How axes are combined.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum CombineSpec {
-    /// All combinations of their values.
-    #[default]
-    All,
-    /// The first values of all axes, and from there each axis alone through its other values.
-    OneAtATime,
 }
 
 /// A step of the signal stage.

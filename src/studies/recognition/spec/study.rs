@@ -64,6 +64,9 @@ pub struct StudySpec {
     pub sensing: SensingSpec,
     /// How objects are recognised.
     pub recognition: RecognitionSpec,
+    /// Keys of `[objects]`, `[skin]`, `[touches]` and `[signal]` that test touches have instead of the study's: `test.touches.depth_mm`.
+    #[serde(default, skip_serializing_if = "toml::Table::is_empty")]
+    pub test: toml::Table,
     /// What the report shows.
     #[serde(default)]
     pub report: ReportSpec,

@@ -102,7 +102,12 @@ impl Study for RecognitionStudy {
         let of_family = |family: usize| {
             let (part, cells) = self.family(family);
             let number = self.families[family].group;
-            let touches = &self.touch_sets[self.groups[number].touches].content;
+            let placed = &self.groups[number];
+            let content = |touches: usize| &self.touch_sets[touches].content[..];
+            let touches = match placed.touches == placed.tested {
+                true => content(placed.touches).to_owned(),
+                false => format!("{} {}", content(placed.touches), content(placed.tested)),
+            };
             let of = (self.group(number).1, &touches[..]);
             let inputs = FamilyInputs::new(&part.plan, &part.sweep, cells);
             family_name(&part.plan, of, &inputs, cells)

@@ -11,15 +11,15 @@ impl RecognitionStudy {
     pub(crate) fn limits(&self, fits: &[(Cell, TrialScore)], rows: &[TouchRow]) -> Vec<Limit> {
         // The deepest frame is the same however many come before it.
         let is_counted = |row: &&TouchRow| {
-            let (part, _, n_frames) = self.on(row.on);
-            row.is_made && n_frames == part.plan.frames[0]
+            let (_, _, n_frames) = self.on(row.on);
+            row.is_made && n_frames == self.first_frames(row.on)
         };
         let made: Vec<&TouchRow> = rows.iter().filter(is_counted).collect();
         let sum = |count: fn(&TouchRow) -> usize| made.iter().map(|row| count(row)).sum();
         let n_touches = sum(|row| row.n_touches);
         let deeper = made.iter().map(|row| {
-            let (part, array, _) = self.on(row.on);
-            part.touched.n_deeper_than(array.taxel().stroke)
+            let (touched, array, _) = self.on(row.on);
+            touched.n_deeper_than(array.taxel().stroke)
         });
         let n_deeper: usize = deeper.sum();
         let n_capped = fits.iter().filter(|(_, score)| score.n_capped > 0).count();

@@ -33,7 +33,7 @@ pub fn read_plans(source: &Source) -> Result<Vec<(AxisValues, Plan)>> {
     let folder = source.objects.is_none().then(|| source.folder.clone());
     let mut spec = with_folder(folder.clone(), parse)?;
     if let Some(seed) = source.seed
-        && spec.axes.0.iter().any(|axis| axis.key == "seed")
+        && spec.axes.has("seed")
     {
         let allowed = "no such option: the seed is an axis of the study";
         return Err(Error::input("--seed", seed, allowed));
@@ -73,14 +73,13 @@ impl RecognitionStudy {
     ) -> Result<Self> {
         let (mut objects, mut has_noted) = (HashMap::new(), false);
         let mut drawn: HashMap<String, Arc<dyn TouchSet + Send>> = HashMap::new();
-        let mut variants = Vec::with_capacity(plans.len());
-        for (variant, plan) in plans {
-            let inputs = TouchInputs::of(&plan);
+        let mut draw = |plan: &Plan| -> Result<Arc<dyn TouchSet + Send>> {
+            let inputs = TouchInputs::of(plan);
             let (content, seed) = (inputs.key(), Seed::new(inputs.seed));
             let touched: Arc<dyn TouchSet + Send> = if let Some(known) = drawn.get(&content) {
                 known.clone()
             } else if let Some(human) = inputs.human_touch {
-                check_touches(&plan, human.kinds.len(), ceiling)?;
+                check_touches(plan, human.kinds.len(), ceiling)?;
                 Arc::new(HumanTouches::draw(human, &seed)?)
             } else if let Some(recorded) = inputs.recorded {
                 Arc::new(RecordedFrames::read(recorded, ceiling)?)
@@ -91,9 +90,9 @@ impl RecognitionStudy {
                     Entry::Vacant(new) => new.insert(load_objects(inputs.objects, packings)?),
                 };
                 if !has_noted {
-                    has_noted = note_shear_ripple(&plan, objects)?;
+                    has_noted = note_shear_ripple(plan, objects)?;
                 }
-                check_touches(&plan, objects.len(), ceiling)?;
+                check_touches(plan, objects.len(), ceiling)?;
                 let n_touches = inputs.placement.n_touches() * objects.len() as f64;
                 if let Some(slow) = slow_splits(n_touches, plan.spec.trials) {
                     note(format_args!("{place}: {slow}"));
@@ -102,8 +101,17 @@ impl RecognitionStudy {
                 Arc::new(drawn.map_err(|error| error.under(format!("{place}, ")))?)
             };
             drawn.insert(content, touched.clone());
-            variants.push((variant, plan, touched));
-        }
+            Ok(touched)
+        };
+        let variants = plans.into_iter().map(|(variant, plan)| {
+            let touched = draw(&plan)?;
+            let tested = plan
+                .tested
+                .as_deref()
+                .map_or(Ok(touched.clone()), &mut draw)?;
+            Ok((variant, plan, [touched, tested]))
+        });
+        let variants = variants.collect::<Result<Vec<_>>>()?;
         Self::of_variants(variants).map_err(|error| error.under(format!("{place}, ")))
     }
 }

@@ -11,7 +11,7 @@ use crate::studies::recognition::training::evaluation_inputs::FamilyInputs;
 use crate::studies::recognition::training::trial::Trial;
 use rayon::prelude::*;
 use std::cmp::Reverse;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What is measured once in a trial, and those of the families that learn from it that are left.
 pub(crate) struct Job<'a> {
@@ -27,6 +27,7 @@ impl RecognitionStudy {
     pub(crate) fn measure_all(&self, left: &PendingItems<RecognitionRows>) -> Result<()> {
         for part in self.parts() {
             part.touched.prepare();
+            part.tested.prepare();
         }
         let mut jobs = self.jobs_left(left);
         // Most frames first: the items that learn from them take longest.
@@ -41,8 +42,20 @@ impl RecognitionStudy {
             let n_items: usize = jobs.iter().map(n_items).sum();
             left.progress.stage("work items", n_items as u64);
         }
-        jobs.into_iter()
-            .try_for_each(|(touches, jobs)| self.on_touches(left, touches, jobs))
+        let mut told = BTreeSet::new();
+        // Touches that are tested only are made with those that are learned.
+        let (learned, others): (Vec<_>, _) =
+            jobs.into_iter().partition(|(_, jobs)| !jobs.is_empty());
+        learned
+            .into_iter()
+            .try_for_each(|(touches, jobs)| self.on_touches(left, touches, jobs, &mut told))?;
+        others.into_iter().try_for_each(|(touches, _)| {
+            let is_told = told.contains(&touches);
+            match is_told {
+                true => Ok(()),
+                false => self.make(left, touches, &[], &mut told).map(drop),
+            }
+        })
     }
 
     /// Whether the study has axes of its own.
@@ -96,49 +109,81 @@ impl RecognitionStudy {
         jobs
     }
 
-    /// Does what is left of some touches.
+    /// Does the pending work items that learn from some touches, those with the same test touches together.
     fn on_touches(
         &self,
         left: &PendingItems<RecognitionRows>,
         on: usize,
         jobs: Vec<Job>,
+        told: &mut BTreeSet<usize>,
     ) -> Result<()> {
+        let Some(frames) = self.make(left, on, &jobs, told)? else {
+            return Ok(());
+        };
+        let mut by_tested: BTreeMap<usize, Vec<Job>> = BTreeMap::new();
+        for job in jobs {
+            let tested = self.groups[job.group].tested;
+            by_tested.entry(tested).or_default().push(job);
+        }
+        for (tested, jobs) in by_tested {
+            let run = |tested: &Frames| {
+                let frames = [&frames, tested];
+                jobs.par_iter().try_for_each(|job| job.run(left, frames))
+            };
+            if tested == on {
+                run(&frames)?;
+            } else if let Some(tested) = self.make(left, tested, &jobs, told)? {
+                run(&tested)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Makes touches for jobs, and finishes their work item if that is not `told` already. Returns `None` if they cannot be made; the jobs have failed then.
+    fn make(
+        &self,
+        left: &PendingItems<RecognitionRows>,
+        on: usize,
+        jobs: &[Job],
+        told: &mut BTreeSet<usize>,
+    ) -> Result<Option<Frames>> {
         let touches = self.touches_item(on);
-        let (part, array, n_frames) = self.on(on);
+        let (touched, array, n_frames) = self.on(on);
+        let n_touches = touched.labels().len();
         let mut need: Vec<usize> = jobs.iter().flat_map(Job::items).collect();
         let n_families = need.len();
-        need.push(touches);
+        let is_new = told.insert(on);
+        need.extend(is_new.then_some(touches));
         let stage = |name: &str, total: usize| {
             let stage = in_frames(&format!("{name} {}", array.describe()), n_frames);
             left.progress.stage(&stage, total as u64);
         };
-        let mut touched: &dyn Progress = &Silent;
+        let mut progress: &dyn Progress = &Silent;
         if !self.has_axes() {
-            stage("touch", part.sweep.labels.len());
-            touched = left.progress;
+            stage("touch", n_touches);
+            progress = left.progress;
         }
-        let make = || {
-            let on = (array, n_frames);
-            Ok(part.touched.simulate(on, touched))
-        };
+        let make = || Ok(touched.simulate((array, n_frames), progress));
         let Some(frames) = left.prepare(&need, make)? else {
-            return Ok(());
+            return Ok(None);
         };
         if !self.has_axes() {
-            stage("recognise", n_families + 1);
+            stage("recognise", n_families + usize::from(is_new));
         }
-        left.finish(touches, || {
-            let row = TouchRow {
-                is_made: true,
-                n_touches: part.sweep.labels.len(),
-                n_missed: frames.facts.n_missed,
-                n_saturated: frames.facts.n_saturated,
-                cpu_s: frames.facts.cpu_s,
-                on: 0,
-            };
-            Ok((Vec::new(), vec![row]))
-        })?;
-        jobs.par_iter().try_for_each(|job| job.run(left, &frames))
+        if is_new {
+            left.finish(touches, || {
+                let row = TouchRow {
+                    is_made: true,
+                    n_touches,
+                    n_missed: frames.facts.n_missed,
+                    n_saturated: frames.facts.n_saturated,
+                    cpu_s: frames.facts.cpu_s,
+                    on: 0,
+                };
+                Ok((Vec::new(), vec![row]))
+            })?;
+        }
+        Ok(Some(frames))
     }
 }
 
@@ -150,7 +195,7 @@ impl Job<'_> {
     }
 
     /// Measures, then evaluates the families.
-    fn run(&self, left: &PendingItems<RecognitionRows>, frames: &Frames) -> Result<()> {
+    fn run(&self, left: &PendingItems<RecognitionRows>, frames: [&Frames; 2]) -> Result<()> {
         let need: Vec<usize> = self.items().collect();
         let measured = left.prepare(&need, || self.measure(frames))?;
         let cpu_s = measured.as_ref().map_or(0.0, |measured| measured.cpu_s);
@@ -174,7 +219,7 @@ impl Job<'_> {
         })
     }
 
-    fn measure(&self, frames: &Frames) -> Result<Measurements> {
+    fn measure(&self, frames: [&Frames; 2]) -> Result<Measurements> {
         let (part, group) = self.study.group(self.group);
         part.measure(group, frames, (self.trial, self.n_measurements))
     }
@@ -184,7 +229,6 @@ impl Job<'_> {
         let trial = Trial {
             inputs: part.sweep.trial(&part.plan, self.trial)?,
             measurements,
-            tested: measurements,
         };
         let family = FamilyInputs::new(&part.plan, &part.sweep, cells);
         let evaluations = trial.evaluate(&family)?.into_iter();

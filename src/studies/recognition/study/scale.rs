@@ -49,7 +49,10 @@ pub fn recognition_scale(study: &RecognitionStudy) -> Scale {
             |family: &[Cell]| family_bytes(&part.plan, &family[0], n_test, (n_classes, n_read));
         largest(group.families().map(bytes))
     };
-    let frames = largest(groups().map(|g| n_frames(g) * (most_bytes(n_values(g)) + 16) as f64));
+    // Test touches of their own are held beside those that are learned.
+    let n_made = |(part, _): Placed| 1.0 + f64::from(u8::from(part.plan.tested.is_some()));
+    let frames = groups().map(|g| n_made(g) * n_frames(g) * (most_bytes(n_values(g)) + 16) as f64);
+    let frames = largest(frames);
     let first = study.first();
     let n_touches = first.sweep.labels.len();
     Scale {

@@ -47,6 +47,8 @@ pub struct RecognitionStudy {
 pub(crate) struct Touches {
     /// The first group that reads them.
     pub group: usize,
+    /// Whether that group reads them as test touches only.
+    is_tested: bool,
     /// Hash of all that they are made of, beside the files of objects.
     pub content: String,
 }
@@ -59,6 +61,8 @@ pub(crate) struct PlacedGroup {
     place: usize,
     /// Its touches.
     pub touches: usize,
+    /// Its test touches; the same number unless the study has `[test]`.
+    pub tested: usize,
     /// The first group that reads and measures the same.
     pub measured_as: usize,
 }
@@ -75,15 +79,25 @@ impl RecognitionStudy {
     /// # Errors
     /// Objects or touches that are too few, or are shown without being there.
     pub fn new(plan: Plan, touched: Box<dyn TouchSet + Send>) -> Result<Self> {
-        Self::of_variants(vec![(AxisValues::default(), plan, touched.into())])
+        if plan.tested.is_some() {
+            let allowed = "RecognitionStudy::load, which draws test touches too";
+            return Err(Error::input(
+                "key test",
+                "touches of training alone",
+                allowed,
+            ));
+        }
+        let touched: Arc<dyn TouchSet + Send> = touched.into();
+        let touched = [touched.clone(), touched];
+        Self::of_variants(vec![(AxisValues::default(), plan, touched)])
     }
 
-    /// The same of all combinations of a study's own axes.
+    /// Lays out all combinations of a study's own axes, each with the touches that are learned and those that are tested.
     ///
     /// # Errors
     /// Those of [`new`](Self::new).
     pub fn of_variants(
-        variants: Vec<(AxisValues, Plan, Arc<dyn TouchSet + Send>)>,
+        variants: Vec<(AxisValues, Plan, [Arc<dyn TouchSet + Send>; 2])>,
     ) -> Result<Self> {
         let mut study = Self {
             parts: Vec::with_capacity(variants.len()),
@@ -94,13 +108,15 @@ impl RecognitionStudy {
             families: Vec::new(),
         };
         let mut n_cells = 0;
-        for (variant, plan, touched) in variants {
+        for (variant, plan, [touched, tested]) in variants {
+            check_counterparts(touched.as_ref(), tested.as_ref())?;
             let mut sweep = Sweep::new(&plan, touched.as_ref())?;
             sweep.place(n_cells, &variant);
             n_cells += sweep.n_cells();
             study.parts.push(StudyPart {
                 plan,
                 touched,
+                tested,
                 sweep,
             });
         }
@@ -124,25 +140,34 @@ impl RecognitionStudy {
         let mut known_touches: HashMap<String, usize> = HashMap::new();
         let mut known_groups: HashMap<String, usize> = HashMap::new();
         for (part, StudyPart { plan, sweep, .. }) in self.parts.iter().enumerate() {
-            let touched = TouchInputs::of(plan).content();
+            let touched = [plan, plan.tested.as_deref().unwrap_or(plan)];
+            let touched = touched.map(|plan| (plan, TouchInputs::of(plan).content()));
             for (place, group) in sweep.groups.iter().enumerate() {
-                let (array, number) = (&plan.arrays[group.array], self.groups.len());
-                let content = format!("{touched} {array:?} {}", group.frames);
-                let content = short_hash(content, DIGITS);
-                let touches = known_touches.entry(content.clone()).or_insert_with(|| {
-                    let group = number;
-                    self.touch_sets.push(Touches { group, content });
-                    self.touch_sets.len() - 1
-                });
-                let touches = *touches;
+                let number = self.groups.len();
+                let mut place_touches = |of: usize| {
+                    let (plan, touched) = &touched[of];
+                    let array = &plan.arrays[group.array];
+                    let content = format!("{touched} {array:?} {}", group.frames);
+                    let content = short_hash(content, DIGITS);
+                    *known_touches.entry(content.clone()).or_insert_with(|| {
+                        self.touch_sets.push(Touches {
+                            group: number,
+                            is_tested: of > 0,
+                            content,
+                        });
+                        self.touch_sets.len() - 1
+                    })
+                };
+                let [touches, tested] = [0, 1].map(&mut place_touches);
                 let inputs = group.inputs(plan);
                 let trials = (0..plan.spec.trials).map(|trial| inputs.trial(sweep, trial));
                 let splits: Vec<_> = trials.map_while(|trial| trial.split).collect();
-                let content = format!("{touches} {} {splits:?}", inputs.key());
+                let content = format!("{touches} {tested} {} {splits:?}", inputs.key());
                 self.groups.push(PlacedGroup {
                     part,
                     place,
                     touches,
+                    tested,
                     measured_as: *known_groups.entry(content).or_insert(number),
                 });
                 let mut start = 0;
@@ -200,7 +225,10 @@ impl RecognitionStudy {
     /// A file of an object cannot be read.
     pub fn content(&self) -> Result<BTreeMap<String, String>> {
         let mut all = BTreeMap::new();
-        let specs = self.parts.iter().map(|part| &part.plan.spec);
+        let plans = self.parts.iter().map(|part| &part.plan);
+        let specs =
+            plans.flat_map(|plan| [Some(&plan.spec), plan.tested.as_ref().map(|t| &t.spec)]);
+        let specs = specs.flatten();
         let mut made_of: Vec<(&ObjectsSpec, &Option<RecordedSpec>)> =
             specs.map(|spec| (&spec.objects, &spec.recorded)).collect();
         made_of.dedup();
@@ -253,10 +281,22 @@ impl RecognitionStudy {
         (self.groups[group].part, *array, *frames)
     }
 
-    /// What is touched, and on what.
-    pub(crate) fn on(&self, touches: usize) -> (&StudyPart, &TaxelArray, usize) {
-        let (part, group) = self.group(self.touch_sets[touches].group);
-        (part, &part.plan.arrays[group.array], group.frames)
+    /// Returns what is touched, on what array, and the number of frames.
+    pub(crate) fn on(&self, touches: usize) -> (&dyn TouchSet, &TaxelArray, usize) {
+        let Touches {
+            group, is_tested, ..
+        } = self.touch_sets[touches];
+        let (part, group) = self.group(group);
+        let (plan, touched) = match (&part.plan.tested, is_tested) {
+            (Some(tested), true) => (tested.as_ref(), part.tested.as_ref()),
+            _ => (&part.plan, part.touched.as_ref()),
+        };
+        (touched, &plan.arrays[group.array], group.frames)
+    }
+
+    /// Returns the number of frames that the first values of the axes of some touches have.
+    pub(crate) fn first_frames(&self, touches: usize) -> usize {
+        self.group(self.touch_sets[touches].group).0.plan.frames[0]
     }
 
     /// What it took to make and to measure touches.
@@ -286,6 +326,27 @@ impl RecognitionStudy {
         }
         stages
     }
+}
+
+/// Refuses test touches that are not one for one those of the study.
+fn check_counterparts(touched: &dyn TouchSet, tested: &dyn TouchSet) -> Result<()> {
+    let (learned, shown) = (touched.classes(), tested.classes());
+    if learned == shown {
+        return Ok(());
+    }
+    let said = |classes: &[(&str, usize)]| {
+        let said = classes.iter().map(|(name, n)| format!("{n} of {name}"));
+        said.collect::<Vec<_>>().join(", ")
+    };
+    let allowed = format!(
+        "as many of each object as the study has: {}",
+        said(&learned)
+    );
+    Err(Error::input(
+        "key test",
+        format!("touches: {}", said(&shown)),
+        allowed,
+    ))
 }
 
 /// Hexadecimal digits of the hash of touches. Fewer: two sets of touches may be taken for each other.

@@ -66,6 +66,8 @@ pub struct StudyPart {
     pub plan: Plan,
     /// What is touched; the same for parts that touch the same.
     pub touched: Arc<dyn TouchSet + Send>,
+    /// Test touches, with the numbers of the touches above; those themselves unless the study has `[test]`.
+    pub tested: Arc<dyn TouchSet + Send>,
     /// Splits and cells.
     pub sweep: Sweep,
 }

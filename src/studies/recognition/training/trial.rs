@@ -42,8 +42,6 @@ pub struct Trial<'a> {
     pub inputs: TrialInputs<'a>,
     /// Measurements of all touches, at least the cell's m a frame.
     pub measurements: &'a Measurements,
-    /// The same of what test touches are: the measurements themselves, unless something has changed since they were learned from.
-    pub tested: &'a Measurements,
 }
 
 /// Test touches, answered by one fit.
@@ -86,7 +84,10 @@ impl Trial<'_> {
         let split = self.inputs.split(family)?;
         let training = self.training(family, &split)?;
         let labels = self.inputs.labels.select(Axis(0), &split.test);
-        let test = dataset(self.tested.features(&family.rows, &split.test), labels)?;
+        let test = dataset(
+            self.measurements.features(&family.rows, &split.test),
+            labels,
+        )?;
         let groups = self.inputs.test_groups(&split.test);
         let same_fit: Vec<&[Decision]> = family.fits().collect();
         let penalties: Vec<Option<f64>> = same_fit.iter().map(|cells| cells[0].c).collect();

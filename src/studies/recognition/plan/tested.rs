@@ -1,0 +1,170 @@
+//! `[test]`: keys that test touches have instead of the study's.
+//!
+//! ```toml
+//! [test]
+//! touches.depth_mm = 1.0                             # instead of touches.depth_mm
+//! signal.steps = ["noise", "smoothing", "faults"]    # a taxel that is dead in tests only
+//! [axes]
+//! "test.signal.dead_fraction" = [0.0, 0.1, 0.2]
+//! ```
+//! The study with these keys in place of its own is planned as any study is. Its touches have the numbers of the study's touches, so splits are those of
+//! the study; projections, features and classifiers are learned from the study's training touches.
+
+use crate::engine::axis::Axis;
+use crate::error::{Error, Result};
+use crate::inputs::check::Check;
+use crate::inputs::sensor_errors::NOISES;
+use crate::studies::recognition::plan::plan::Plan;
+use crate::studies::recognition::plan::signal::Condition;
+use crate::studies::recognition::spec::signal::SignalAxis;
+use crate::studies::recognition::spec::study::StudySpec;
+use std::sync::Arc;
+use toml::{Table, Value};
+
+/// Tables of which test touches may have keys of their own, in studies that place objects and in others.
+const TABLES: &[&str] = &["objects", "skin", "touches", "signal"];
+const TABLES_OF_OTHERS: &[&str] = &["signal"];
+
+/// Keys that test touches share with training touches.
+const SHARED: [&str; 4] = [
+    "touches.per_object",
+    "touches.frames",
+    "signal.tested_on",
+    "signal.combine",
+];
+
+impl Check<'_> {
+    /// Returns the plan of test touches, or `None` if they are made as training touches are. `plan`: the study without `[test]`.
+    ///
+    /// # Errors
+    /// If a key cannot differ for test touches or is out of its range, or if a taxel of the test touches has no counterpart in training touches.
+    pub fn tested(&self, plan: &Plan) -> Result<Option<Arc<Plan>>> {
+        let spec = &plan.spec;
+        if spec.test.is_empty() {
+            return Ok(None);
+        }
+        let tables = match spec.places_objects() {
+            true => TABLES,
+            false => TABLES_OF_OTHERS,
+        };
+        if spec.test.contains_key("touches") && spec.recognition.chosen_next().next().is_some() {
+            let given = "given where touches are chosen by their poses (recognition.next_touch)";
+            return Err(self.error("test.touches", given, "other tables of [test]"));
+        }
+        let mut study = Table::try_from(StudySpec {
+            // A seed of the command line may be larger than TOML's numbers.
+            seed: 0,
+            test: Table::new(),
+            ..spec.clone()
+        })
+        .expect("every other field of a study has a TOML form");
+        for (name, keys) in &spec.test {
+            let Value::Table(keys) = keys else {
+                let allowed = format!("a table: {}", tables.join(", "));
+                return Err(self.error(&format!("test.{name}"), keys, allowed));
+            };
+            if !tables.contains(&&name[..]) {
+                let allowed = format!("keys of {} of this study", tables.join(", "));
+                return Err(self.error(&format!("test.{name}"), "given for test touches", allowed));
+            }
+            let own = study
+                .entry(&name[..])
+                .or_insert_with(|| Table::new().into());
+            let Value::Table(own) = own else { continue };
+            for (key, value) in keys {
+                let path = format!("{name}.{key}");
+                if SHARED.contains(&&path[..]) {
+                    let allowed = format!("{path}, which training and test touches share");
+                    return Err(self.error(&format!("test.{path}"), value, allowed));
+                }
+                let is_noise = |key: &str| NOISES.iter().any(|(noise, _)| *noise == key);
+                if is_noise(key) {
+                    own.retain(|other, _| !is_noise(other));
+                }
+                own.insert(key.clone(), value.clone());
+            }
+        }
+        let tested = study.try_into().map_err(|error: toml::de::Error| {
+            let said = error.message().trim().replace('\n', " ");
+            self.error("test", said, "keys and values of the study")
+        })?;
+        let seed = spec.seed;
+        let tested = Plan::new(self.place, StudySpec { seed, ..tested });
+        let tested = tested.map_err(|error| self.under_test(error, &spec.test))?;
+        self.check_alike(plan, &tested)?;
+        Ok(Some(Arc::new(tested)))
+    }
+
+    /// Returns the error with the key as it is written in `[test]`, if it names a key of that table.
+    fn under_test(&self, error: Error, test: &Table) -> Error {
+        let Error::Input {
+            place,
+            given,
+            allowed,
+        } = &error
+        else {
+            return error;
+        };
+        let (start, key) = match place.split_once("key ") {
+            Some((start, key)) => (start, key),
+            None => return error,
+        };
+        let is_of_test = key.split_once('.').is_some_and(|(table, key)| {
+            let keys = test.get(table).and_then(Value::as_table);
+            keys.is_some_and(|keys| keys.keys().any(|own| key.starts_with(&own[..])))
+        });
+        match is_of_test {
+            true => Error::input(format!("{start}key test.{key}"), given, allowed),
+            false => Error::input(format!("{place} of test touches"), given, allowed),
+        }
+    }
+
+    /// Refuses test touches whose frames are not those that are learned, taxel by taxel, and lists where the axis belongs to the study.
+    fn check_alike(&self, plan: &Plan, tested: &Plan) -> Result<()> {
+        let shapes = |plan: &Plan| -> Vec<_> {
+            let arrays = plan.arrays.iter();
+            arrays
+                .map(|array| (array.shape(), array.n_values()))
+                .collect()
+        };
+        let (learned, shown) = (shapes(plan), shapes(tested));
+        if learned != shown {
+            let taxels = |shapes: &[((usize, usize), usize)]| {
+                let sizes = shapes.iter().map(|((ny, nx), _)| format!("{nx} x {ny}"));
+                sizes.collect::<Vec<_>>().join(", ")
+            };
+            let (given, allowed) = (taxels(&shown), taxels(&learned));
+            let allowed = format!("the taxels that are learned, {allowed}, with the same readings");
+            return Err(self.error("test.skin", format!("{given} taxels"), allowed));
+        }
+        for (key, _, axis) in tested.own_signal(&plan.spec.test) {
+            if let Axis::Many(values) = axis {
+                let path = format!("test.signal.{key}");
+                let given = format!("a list of {} values", values.len());
+                let allowed = format!("one value, or several as an axis: [axes] \"{path}\"");
+                return Err(self.error(&path, given, allowed));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Plan {
+    /// Returns the axes of the signal of test touches that `test` has.
+    fn own_signal<'a>(&'a self, test: &'a Table) -> impl Iterator<Item = &'a SignalAxis> {
+        let own = test.get("signal").and_then(Value::as_table);
+        let given = self.spec.signal.axes.given();
+        given.filter(move |(key, ..)| own.is_some_and(|own| own.contains_key(*key)))
+    }
+
+    /// Returns the condition of the signal of test touches where training touches have `learned`.
+    pub fn tested_condition(&self, learned: Condition) -> Condition {
+        let Some(tested) = &self.tested else {
+            return learned;
+        };
+        let own = tested.own_signal(&self.spec.test);
+        own.fold(learned, |condition, (key, step, axis)| {
+            condition.with((key, *step), axis.values()[0])
+        })
+    }
+}
