@@ -268,8 +268,8 @@ impl Args {
         let seed = Seed::new(self.seed).named("validation");
         let (labels, k) = (training.targets.view(), self.choose_folds.unwrap_or(5));
         match groups {
-            None => stratified_k_fold(labels, k, &seed),
-            Some(groups) => group_k_fold(labels, groups.view(), k, &seed),
+            None => Ok(stratified_k_fold(labels, k, &seed)?),
+            Some(groups) => Ok(group_k_fold(labels, groups.view(), k, &seed)?),
         }
     }
 

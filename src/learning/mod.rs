@@ -6,6 +6,7 @@
 //! | [`classifiers`] | training rows → trained classifiers of any kind |
 //! | [`evaluation`] | predicted labels → confusion matrices, fused decisions, the next touch |
 
-pub mod classifiers;
 pub mod data;
 pub mod evaluation;
+
+pub use bubbletouch_svm::classifiers;

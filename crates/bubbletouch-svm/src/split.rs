@@ -1,9 +1,15 @@
-//! Rows to train on and rows to test on.
+//! Which rows train and which test: seeded splits, stratified by class, or keeping whole groups apart.
+//!
+//! Every split puts every class into `train` and `test`, and every row exactly once into one of them ([`given_hold_out`] may leave rows out).
+//! Rows are drawn by named streams (one per class), so one class's split does not depend on the others' rows.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use ndarray::ArrayView1;
+use rand::seq::SliceRandom;
 
+use crate::dataset::check_labels;
+use crate::streams::DynStreams;
 use crate::{Error, Result};
 
 /// Rows to train on and rows to test on, by index.
@@ -58,4 +64,304 @@ impl Split {
             test,
         }
     }
+}
+
+/// Where a row belongs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// It is learned from.
+    Train,
+    /// It is tested.
+    Test,
+    /// Neither.
+    LeftOut,
+}
+
+/// Stratified hold-out: of each class's n rows, `test_fraction · n` rounded (1 to n − 1) are tested.
+///
+/// # Errors
+/// A fraction outside 0 < f < 1, or a class with a single row.
+pub fn stratified_hold_out(
+    labels: ArrayView1<usize>,
+    test_fraction: f64,
+    seed: &dyn DynStreams,
+) -> Result<Split> {
+    check_fraction(test_fraction)?;
+    let mut sides = vec![Side::Train; labels.len()];
+    let drawn = draw_rows(labels, seed);
+    for (class, rows) in &drawn {
+        check_class_size(*class, rows.len(), 2)?;
+        for &row in &rows[..share(rows.len(), test_fraction)] {
+            sides[row] = Side::Test;
+        }
+    }
+    split(labels, &drawn, &sides)
+}
+
+/// Hold-out of given rows: one side a row. Only the order of training rows is drawn.
+///
+/// # Errors
+/// Another number of sides than labels, or a class that is left with no training or no test row.
+pub fn given_hold_out(
+    labels: ArrayView1<usize>,
+    sides: &[Side],
+    seed: &dyn DynStreams,
+) -> Result<Split> {
+    if sides.len() != labels.len() {
+        let allowed = format!("{}, one a label", labels.len());
+        return Err(Error::input("sides of a split", sides.len(), allowed));
+    }
+    split(labels, &draw_rows(labels, seed), sides)
+}
+
+/// Stratified k-fold: k splits whose test rows are disjoint and cover all rows; a class's rows, and all rows, spread
+/// over the folds as evenly as can be (counts differ by at most 1).
+///
+/// # Errors
+/// k below 2, or a class with fewer than k rows.
+pub fn stratified_k_fold(
+    labels: ArrayView1<usize>,
+    k: usize,
+    seed: &dyn DynStreams,
+) -> Result<Vec<Split>> {
+    check_folds(k)?;
+    let drawn = draw_rows(labels, seed);
+    let mut fold_of = vec![0; labels.len()];
+    let mut next = 0;
+    for (class, rows) in &drawn {
+        check_class_size(*class, rows.len(), k)?;
+        for &row in rows {
+            fold_of[row] = next % k;
+            next += 1;
+        }
+    }
+    folds(labels, &drawn, &fold_of, k)
+}
+
+/// Group hold-out: whole groups (a pose, an offset, all copies of one touch) are tested, none of their rows trained on.
+///
+/// Groups that hold the same set of classes form a stratum; of its n groups, `test_fraction · n` rounded (1 to n − 1)
+/// are tested. Strata of a single group are pooled. `groups` holds one number per row.
+///
+/// # Errors
+/// A fraction outside 0 < f < 1, another number of groups than labels, or a class that is left with no training or no
+/// test row.
+pub fn group_hold_out(
+    labels: ArrayView1<usize>,
+    groups: ArrayView1<usize>,
+    test_fraction: f64,
+    seed: &dyn DynStreams,
+) -> Result<Split> {
+    check_fraction(test_fraction)?;
+    check_labels(labels.len(), groups)?;
+    let mut is_test_group = BTreeMap::new();
+    for (stratum, mut members) in strata(labels, groups).into_iter().enumerate() {
+        let stream = seed.named("groups").numbered(stratum as u64);
+        members.shuffle(&mut stream.rng());
+        let n_test = share(members.len(), test_fraction);
+        for (rank, group) in members.into_iter().enumerate() {
+            is_test_group.insert(group, rank < n_test);
+        }
+    }
+    let sides = groups.iter().map(|group| side(is_test_group[group]));
+    let sides: Vec<Side> = sides.collect();
+    split(labels, &draw_rows(labels, seed), &sides)
+}
+
+/// Group k-fold: k splits whose test rows are disjoint and cover all rows, each group tested in exactly one fold.
+///
+/// Groups go in random order, larger ones first, to the fold that holds the fewest rows so far.
+///
+/// # Errors
+/// k below 2, fewer than k groups, another number of groups than labels, or a class that is left with no training or
+/// no test row in some fold.
+pub fn group_k_fold(
+    labels: ArrayView1<usize>,
+    groups: ArrayView1<usize>,
+    k: usize,
+    seed: &dyn DynStreams,
+) -> Result<Vec<Split>> {
+    check_folds(k)?;
+    check_labels(labels.len(), groups)?;
+    let mut sizes = BTreeMap::<usize, usize>::new();
+    for &group in groups {
+        *sizes.entry(group).or_default() += 1;
+    }
+    if sizes.len() < k {
+        return Err(Error::input(
+            "folds",
+            k,
+            format!("at most the number of groups, {}, is allowed", sizes.len()),
+        ));
+    }
+    let n_groups = sizes.len();
+    check_groups_of_classes(labels, groups, k)?;
+    let mut order: Vec<(usize, usize)> = sizes.into_iter().collect();
+    order.shuffle(&mut seed.named("groups").rng());
+    order.sort_by_key(|&(_, size)| std::cmp::Reverse(size));
+    let mut n_rows = vec![0; k];
+    let mut fold_of_group = BTreeMap::new();
+    for (group, size) in order {
+        let fold = (0..k).min_by_key(|&fold| n_rows[fold]).unwrap_or(0);
+        n_rows[fold] += size;
+        fold_of_group.insert(group, fold);
+    }
+    let fold_of: Vec<usize> = groups.iter().map(|group| fold_of_group[group]).collect();
+    folds(labels, &draw_rows(labels, seed), &fold_of, k).map_err(
+        |Error { place, given, .. }| {
+            let place = format!("folds, {place}");
+            let given = format!("{given} in a fold of the {k} that {n_groups} groups make");
+            let allowed =
+                "every class needs at least one of each in every fold: fewer folds, or more groups";
+            Error::input(place, given, allowed)
+        },
+    )
+}
+
+/// Refuses k folds if a class has rows in fewer than k groups: a fold would have no test row of that class.
+fn check_groups_of_classes(
+    labels: ArrayView1<usize>,
+    groups: ArrayView1<usize>,
+    k: usize,
+) -> Result<()> {
+    let mut groups_of = BTreeMap::<usize, BTreeSet<usize>>::new();
+    for (&class, &group) in labels.iter().zip(groups) {
+        groups_of.entry(class).or_default().insert(group);
+    }
+    let fewest = groups_of.iter().min_by_key(|(_, groups)| groups.len());
+    match fewest {
+        Some((class, found)) if found.len() < k => {
+            let n = found.len();
+            let given = format!("{k} folds, but class {class} has rows in only {n} groups");
+            let allowed = format!("at most {n} folds: each needs a test group of every class");
+            Err(Error::input("folds", given, allowed))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Each class's rows, shuffled by the class's own stream.
+fn draw_rows(labels: ArrayView1<usize>, seed: &dyn DynStreams) -> BTreeMap<usize, Vec<usize>> {
+    let mut drawn = BTreeMap::<usize, Vec<usize>>::new();
+    for (row, &class) in labels.iter().enumerate() {
+        drawn.entry(class).or_default().push(row);
+    }
+    for (&class, rows) in &mut drawn {
+        rows.shuffle(&mut seed.named("class").numbered(class as u64).rng());
+    }
+    drawn
+}
+
+/// Groups by the set of classes they hold; strata of one group are pooled into the last.
+fn strata(labels: ArrayView1<usize>, groups: ArrayView1<usize>) -> Vec<Vec<usize>> {
+    let mut classes_of = BTreeMap::<usize, Vec<usize>>::new();
+    for (&class, &group) in labels.iter().zip(groups) {
+        classes_of.entry(group).or_default().push(class);
+    }
+    let mut by_classes = BTreeMap::<Vec<usize>, Vec<usize>>::new();
+    for (group, mut classes) in classes_of {
+        classes.sort_unstable();
+        classes.dedup();
+        by_classes.entry(classes).or_default().push(group);
+    }
+    let (mut strata, single): (Vec<_>, Vec<_>) = by_classes
+        .into_values()
+        .partition(|members| members.len() > 1);
+    let pooled: Vec<usize> = single.into_iter().flatten().collect();
+    if !pooled.is_empty() {
+        strata.push(pooled);
+    }
+    strata
+}
+
+/// How many of `n` are tested: `n · fraction` rounded, but at least 1 and at most n − 1.
+fn share(n: usize, fraction: f64) -> usize {
+    ((n as f64 * fraction).round() as usize).clamp(1.min(n - 1), n - 1)
+}
+
+fn folds(
+    labels: ArrayView1<usize>,
+    drawn: &BTreeMap<usize, Vec<usize>>,
+    fold_of: &[usize],
+    k: usize,
+) -> Result<Vec<Split>> {
+    (0..k)
+        .map(|fold| {
+            let sides: Vec<Side> = fold_of.iter().map(|&f| side(f == fold)).collect();
+            split(labels, drawn, &sides)
+        })
+        .collect()
+}
+
+fn side(is_test: bool) -> Side {
+    match is_test {
+        true => Side::Test,
+        false => Side::Train,
+    }
+}
+
+/// The split in its stated order; refuses one that leaves a class without a training or without a test row.
+fn split(
+    labels: ArrayView1<usize>,
+    drawn: &BTreeMap<usize, Vec<usize>>,
+    sides: &[Side],
+) -> Result<Split> {
+    let mut ranked = Vec::new();
+    for (&class, rows) in drawn {
+        let on = |side: Side| rows.iter().copied().filter(move |&row| sides[row] == side);
+        let train: Vec<usize> = on(Side::Train).collect();
+        let n_test = on(Side::Test).count();
+        if train.is_empty() || n_test == 0 {
+            return Err(Error::input(
+                format!("split, class {class}"),
+                format!("{} training and {n_test} test rows", train.len()),
+                "every class needs at least one of each: more rows, more groups or another fraction",
+            ));
+        }
+        ranked.extend(train.into_iter().enumerate());
+    }
+    // The sort is stable: within a rank the classes stay ascending.
+    ranked.sort_by_key(|&(rank, _)| rank);
+    if ranked.is_empty() {
+        return Err(Error::input(
+            "labels",
+            "no rows",
+            "at least two rows are needed",
+        ));
+    }
+    Ok(Split {
+        train: ranked.into_iter().map(|(_, row)| row).collect(),
+        test: (0..labels.len())
+            .filter(|&row| sides[row] == Side::Test)
+            .collect(),
+    })
+}
+
+fn check_fraction(test_fraction: f64) -> Result<()> {
+    if test_fraction > 0.0 && test_fraction < 1.0 {
+        return Ok(());
+    }
+    Err(Error::input(
+        "test fraction",
+        test_fraction,
+        "a number between 0 and 1, both excluded, is allowed",
+    ))
+}
+
+fn check_folds(k: usize) -> Result<()> {
+    if k >= 2 {
+        return Ok(());
+    }
+    Err(Error::input("folds", k, "2 or more are allowed"))
+}
+
+fn check_class_size(class: usize, n_rows: usize, at_least: usize) -> Result<()> {
+    if n_rows >= at_least {
+        return Ok(());
+    }
+    Err(Error::input(
+        format!("labels, class {class}"),
+        format!("{n_rows} rows"),
+        format!("at least {at_least} rows are needed for this split"),
+    ))
 }

@@ -4,7 +4,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 /// A name of random streams that grows by words and numbers, such as `tree 3 rows`.
-pub trait Streams: Copy {
+pub trait Streams: Copy + 'static {
     /// Returns the name with this word appended.
     fn named(&self, word: &str) -> Self;
 
@@ -13,6 +13,32 @@ pub trait Streams: Copy {
 
     /// Returns the generator of this name's stream, at its start.
     fn rng(&self) -> ChaCha8Rng;
+}
+
+/// Random streams behind a pointer, so that training is compiled once, in this crate, for every type of [`Streams`].
+pub trait DynStreams {
+    /// Returns the name with this word appended.
+    fn named(&self, word: &str) -> Box<dyn DynStreams>;
+
+    /// Returns the name with this number appended.
+    fn numbered(&self, number: u64) -> Box<dyn DynStreams>;
+
+    /// Returns the generator of this name's stream, at its start.
+    fn rng(&self) -> ChaCha8Rng;
+}
+
+impl<S: Streams> DynStreams for S {
+    fn named(&self, word: &str) -> Box<dyn DynStreams> {
+        Box::new(Streams::named(self, word))
+    }
+
+    fn numbered(&self, number: u64) -> Box<dyn DynStreams> {
+        Box::new(Streams::numbered(self, number))
+    }
+
+    fn rng(&self) -> ChaCha8Rng {
+        Streams::rng(self)
+    }
 }
 
 /// The streams of a seed: words and numbers are hashed into it (FNV-1a).

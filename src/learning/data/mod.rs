@@ -1,6 +1,5 @@
 //! Labelled rows: which train and which test, on which scale, and what is wrong with them.
 
-pub use bubbletouch_svm::{dataset, scaling};
+pub use bubbletouch_svm::{dataset, scaling, split};
 pub mod over_time;
-pub mod split;
 pub mod spoiled;

@@ -229,5 +229,5 @@ fn whatever_implements_linfas_traits_plugs_in() {
         error.to_string(),
         "C: -1; a finite number above 0 is allowed"
     );
-    assert!(matches!(error, Error::Input { .. }));
+    assert!(matches!(Error::from(error), Error::Input { .. }));
 }

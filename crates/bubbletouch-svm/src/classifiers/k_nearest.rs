@@ -7,7 +7,9 @@
 //! nominates: every row that rounding could have kept out of the k nearest is measured again by `Σ (a − b)²`, and the
 //! neighbours are those of a search one pair at a time, exactly. (Far from the origin many are nominated: scale features.)
 
+use crate::classifiers::classifier_about::ClassifierAbout;
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis};
+use std::sync::Arc;
 
 use crate::classifiers::class_model::{ClassModel, log_vote_shares};
 use crate::dataset::{Dataset, check_width, checked_classes, positions};
@@ -143,3 +145,10 @@ impl ClassModel for KNearest {
 fn squared_distance(a: ArrayView1<f64>, b: ArrayView1<f64>) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
 }
+
+pub(crate) const ABOUT: ClassifierAbout = ClassifierAbout {
+    has_neighbours: true,
+    ..ClassifierAbout::new("k nearest neighbours", |classifier, scaled, _, _| {
+        Ok(Arc::new(KNearest::train(scaled, classifier.n_neighbours)?))
+    })
+};

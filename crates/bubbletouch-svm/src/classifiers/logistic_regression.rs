@@ -7,7 +7,9 @@
 //! each row's: where scores of rows differ by more than 34, probabilities and gradients are wrong and it stops short in
 //! silence (600 rows, 5 classes, C = 1,000: objective 46.6, where C = 1 reaches 9.8).
 
+use crate::classifiers::classifier_about::ClassifierAbout;
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis, s};
+use std::sync::Arc;
 
 use crate::classifiers::class_model::{ClassModel, log_priors};
 use crate::classifiers::lbfgs::minimise;
@@ -180,3 +182,15 @@ fn normalise(values: &mut Array2<f64>) {
         row -= max + sum.ln();
     }
 }
+
+pub(crate) const ABOUT: ClassifierAbout = ClassifierAbout {
+    has_c: true,
+    ..ClassifierAbout::new("logistic regression", |classifier, scaled, c, _| {
+        let params = LogisticParams {
+            c,
+            tolerance: 0.1 * classifier.tolerance,
+            ..LogisticParams::default()
+        };
+        Ok(Arc::new(params.train(scaled)?))
+    })
+};

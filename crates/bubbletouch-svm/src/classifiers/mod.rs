@@ -1,11 +1,30 @@
-//! Classifiers without a kernel that repeat exactly: the same rows and seed give the same model on every machine.
+//! Classifiers by name, each trained and asked the same way: SVMs of all kernels, and classifiers without a kernel.
+//!
+//! Equal rows and equal seeds give equal models on every machine. [`Classifier`](classifier::Classifier) holds the options of any kind.
 
+use serde::{Deserialize, Serialize};
+
+#[macro_use]
+mod classifier_about;
 pub mod class_model;
-pub mod k_nearest;
+pub mod classifier;
 pub(crate) mod lbfgs;
-pub mod logistic_regression;
-pub mod naive_bayes;
-pub mod nearest_centroid;
-pub mod random_forest;
+pub mod parameters;
 pub(crate) mod ranked;
+pub mod trained_classifier;
 pub(crate) mod tree;
+
+pub use classifier_about::{ClassifierAbout, Train};
+
+// Everything that a study may say of a classifier follows from its line here and from the file that it names.
+classifiers! {
+    LinearSvm linear_svm "Soft-margin SVM, linear kernel.";
+    RbfSvm rbf_svm "Soft-margin SVM, Gaussian kernel `exp(−γ|x − z|²)`.";
+    LaplacianSvm laplacian_svm "Soft-margin SVM, Laplacian kernel `exp(−γ|x − z|₁)`.";
+    PolynomialSvm polynomial_svm "Soft-margin SVM, polynomial kernel `(γ x·z + c₀)^d`.";
+    LogisticRegression logistic_regression "Multinomial [logistic regression](logistic_regression).";
+    KNearest k_nearest "[k nearest neighbours](k_nearest).";
+    NearestCentroid nearest_centroid "The class whose mean is nearest: [nearest centroid](nearest_centroid).";
+    NaiveBayes naive_bayes "Gaussian [naive Bayes](naive_bayes).";
+    RandomForest random_forest "A [random forest](random_forest).";
+}

@@ -3,9 +3,11 @@
 //! linfa's own prediction is not used: it takes the winner of a tie by the order of a `HashMap`, and normalises
 //! probabilities without taking the largest out first (with 64 features all underflow to 0). Its joint log-likelihoods are right.
 
+use crate::classifiers::classifier_about::ClassifierAbout;
 use linfa::traits::Fit;
 use linfa_bayes::{GaussianNb, NaiveBayes as _};
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2};
+use std::sync::Arc;
 
 use crate::classifiers::class_model::{ClassModel, log_priors};
 use crate::dataset::{Dataset, check_width, checked_classes};
@@ -81,3 +83,7 @@ impl ClassModel for NaiveBayes {
         Some(self.log_prior.view())
     }
 }
+
+pub(crate) const ABOUT: ClassifierAbout = ClassifierAbout::new("naive Bayes", |_, scaled, _, _| {
+    Ok(Arc::new(NaiveBayes::train(scaled)?))
+});

@@ -6,8 +6,10 @@
 
 use crate::Result;
 use crate::classifiers::class_model::ClassModel;
+use crate::classifiers::classifier_about::ClassifierAbout;
 use crate::dataset::{Dataset, check_width, checked_classes};
 use ndarray::{Array2, ArrayView2, Axis};
+use std::sync::Arc;
 
 /// The mean of each class.
 #[derive(Clone, Debug)]
@@ -62,6 +64,11 @@ impl ClassModel for NearestCentroid {
         Ok(scores)
     }
 }
+
+pub(crate) const ABOUT: ClassifierAbout =
+    ClassifierAbout::new("nearest centroid", |_, scaled, _, _| {
+        Ok(Arc::new(NearestCentroid::train(scaled)?))
+    });
 
 #[cfg(test)]
 mod tests {

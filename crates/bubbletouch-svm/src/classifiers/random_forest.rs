@@ -4,14 +4,16 @@
 //! Differs from linfa-ensemble 0.8.1, because that grows the trees of linfa-trees 0.8.1 (which sums impurities in f32 in the order of a `HashMap`, so
 //! two trainings on the same rows differ), breaks ties of votes by the order of a `HashMap`, and draws features once a tree.
 
+use crate::classifiers::classifier_about::ClassifierAbout;
 use ndarray::{Array2, ArrayView2};
 use rand::Rng;
+use std::sync::Arc;
 
 use crate::classifiers::class_model::{ClassModel, log_vote_shares};
 use crate::classifiers::ranked::Ranked;
 use crate::classifiers::tree::{Growth, Tree, check_depth};
 use crate::dataset::{Dataset, check_width, checked_classes, positions};
-use crate::streams::Streams;
+use crate::streams::DynStreams;
 use crate::{Error, Result};
 
 /// A trained forest. Scores are the logarithms of smoothed shares of its trees' votes.
@@ -33,7 +35,7 @@ impl RandomForest {
         data: &Dataset,
         n_trees: usize,
         max_depth: Option<usize>,
-        seed: &impl Streams,
+        seed: &dyn DynStreams,
     ) -> Result<Self> {
         let classes = checked_classes(data)?;
         check_depth(max_depth)?;
@@ -58,7 +60,7 @@ impl RandomForest {
                     &label,
                     classes.len(),
                     rows,
-                    &seed.named("features"),
+                    &*seed.named("features"),
                 )
             })
             .collect();
@@ -91,3 +93,13 @@ impl ClassModel for RandomForest {
         Ok(log_vote_shares(votes))
     }
 }
+
+pub(crate) const ABOUT: ClassifierAbout = ClassifierAbout {
+    has_trees: true,
+    has_depth: true,
+    ..ClassifierAbout::new("random forest", |classifier, scaled, _, seed| {
+        let (n_trees, depth) = (classifier.n_trees, classifier.max_depth);
+        let forest = RandomForest::train(scaled, n_trees, depth, &*seed.named("forest"))?;
+        Ok(Arc::new(forest))
+    })
+};

@@ -9,10 +9,11 @@
 //! whatever the unit, and visits every row and feature at every node.
 
 use crate::classifiers::ranked::Ranked;
-use crate::streams::Streams;
+use crate::streams::DynStreams;
 use crate::{Error, Result};
 use ndarray::ArrayView1;
 use rand::Rng;
+use rand_chacha::ChaCha8Rng;
 
 /// Refuses a tree without splits.
 pub(crate) fn check_depth(max_depth: Option<usize>) -> Result<()> {
@@ -94,7 +95,7 @@ impl Growth {
         label: &[usize],
         n_classes: usize,
         mut rows: Vec<u32>,
-        seed: &impl Streams,
+        seed: &dyn DynStreams,
     ) -> Tree {
         debug_assert_eq!(label.len(), ranked.n_rows());
         let mut rng = seed.rng();
@@ -142,7 +143,7 @@ impl Growth {
         grower: &mut Grower,
         rows: &[u32],
         features: &mut [usize],
-        rng: &mut impl Rng,
+        rng: &mut ChaCha8Rng,
     ) -> Option<Split> {
         let mut best: Option<Split> = None;
         let mut n_varying = 0;

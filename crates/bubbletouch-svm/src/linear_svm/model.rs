@@ -8,7 +8,7 @@ use crate::dataset::{Dataset, checked_classes, positions};
 use crate::linear_model::LinearModel;
 use crate::linear_svm::coordinate_descent::{self, Rows};
 use crate::linear_svm::params::LinearSvmParams;
-use crate::streams::Streams;
+use crate::streams::DynStreams;
 
 /// How a problem's solver ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,7 +37,7 @@ impl LinearSvmParams {
     /// # Errors
     /// C, tolerance or cap out of range, empty data, a NaN or infinite feature or one whose square overflows, another
     /// number of labels than rows, or a single class.
-    pub fn train(&self, data: &Dataset, seed: &impl Streams) -> Result<LinearSvm> {
+    pub fn train(&self, data: &Dataset, seed: &dyn DynStreams) -> Result<LinearSvm> {
         self.check()?;
         let classes = checked_classes(data)?;
         let rows = Rows::new(data.records.view())?;

@@ -1,7 +1,7 @@
 //! From frames to objects, and which touches train and which test: the checks of `[sensing]` and `[recognition]`.
 
 use crate::engine::axis::Axis;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::inputs::check::Check;
 use crate::inputs::units::MM;
 use crate::learning::classifiers::classifier::Classifier;
@@ -138,7 +138,7 @@ impl Check<'_> {
             let place = format!("{}, key recognition.", self.place);
             classifier
                 .check_solver()
-                .map_err(|error| error.under(place))?;
+                .map_err(|error| Error::from(error).under(place))?;
         }
         Ok(())
     }

@@ -32,20 +32,24 @@ pub fn draw_split(
     if let Some(sides) = given_sides {
         // All trials have the one split that is given; fewer training touches are drawn anew in each.
         let drawn = recognition.train_touches.as_ref().map_or(0, |_| trial);
-        return given_hold_out(labels, sides, &seed.numbered(drawn as u64));
+        return Ok(given_hold_out(labels, sides, &seed.numbered(drawn as u64))?);
     }
     if recognition.split != PoseSplit::Random {
         let sides = recognition.split.sides(poses, trial)?;
-        return given_hold_out(labels, &sides, &seed.numbered(trial as u64));
+        return Ok(given_hold_out(
+            labels,
+            &sides,
+            &seed.numbered(trial as u64),
+        )?);
     }
     let seed = seed.numbered((trial / n_folds) as u64);
     let mut folds = match (recognition.folds, keys) {
-        (None, None) => return stratified_hold_out(labels, fraction, &seed),
-        (None, Some(keys)) => return group_hold_out(labels, keys.view(), fraction, &seed),
+        (None, None) => return Ok(stratified_hold_out(labels, fraction, &seed)?),
+        (None, Some(keys)) => return Ok(group_hold_out(labels, keys.view(), fraction, &seed)?),
         (Some(k), None) => stratified_k_fold(labels, k, &seed)?,
         (Some(k), Some(keys)) => {
             let folds = group_k_fold(labels, keys.view(), k, &seed);
-            folds.map_err(|error| error.under("key recognition.folds: "))?
+            folds.map_err(|error| Error::from(error).under("key recognition.folds: "))?
         }
     };
     Ok(folds.swap_remove(trial % n_folds))

@@ -187,10 +187,10 @@ impl Training<'_> {
         let labels = self.data.targets.select(Axis(0), rows);
         let k = self.inputs.n_folds.expect("folds of a choice");
         match &self.group_keys {
-            None => stratified_k_fold(labels.view(), k, &self.seed),
+            None => Ok(stratified_k_fold(labels.view(), k, &self.seed)?),
             Some(keys) => {
                 let keys = keys.select(Axis(0), rows);
-                group_k_fold(labels.view(), keys.view(), k, &self.seed)
+                Ok(group_k_fold(labels.view(), keys.view(), k, &self.seed)?)
             }
         }
     }

@@ -1,12 +1,12 @@
 //! What a kind of classifier says of itself.
 
+use crate::classifiers::ClassifierKind;
+use crate::classifiers::class_model::ClassModel;
+use crate::classifiers::classifier::Classifier;
+use crate::dataset::Dataset;
 use crate::error::Result;
-use crate::learning::classifiers::ClassifierKind;
-use crate::learning::classifiers::classifier::Classifier;
-use crate::random::Seed;
-use bubbletouch_svm::classifiers::class_model::ClassModel;
-use bubbletouch_svm::dataset::Dataset;
-use bubbletouch_svm::kernel::Kernel;
+use crate::kernel::Kernel;
+use crate::streams::DynStreams;
 use std::fmt;
 use std::sync::Arc;
 
@@ -33,7 +33,7 @@ pub struct ClassifierAbout {
 }
 
 /// What trains a classifier without a kernel.
-pub type Train = fn(&Classifier, &Dataset, f64, &Seed) -> Result<Arc<dyn ClassModel>>;
+pub type Train = fn(&Classifier, &Dataset, f64, &dyn DynStreams) -> Result<Arc<dyn ClassModel>>;
 
 impl ClassifierAbout {
     /// Describes a classifier without parameters.

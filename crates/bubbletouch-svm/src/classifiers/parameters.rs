@@ -1,6 +1,6 @@
 //! Hyper-parameters that only some classifiers use: a study or a command that sets one for other classifiers is refused.
 
-use crate::learning::classifiers::ClassifierKind;
+use crate::classifiers::ClassifierKind;
 
 /// A hyper-parameter of some classifiers.
 pub struct Parameter {

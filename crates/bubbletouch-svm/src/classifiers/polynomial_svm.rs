@@ -1,7 +1,7 @@
-//! Soft-margin SVM of a polynomial kernel; see [`svm`](bubbletouch_svm).
+//! Soft-margin SVM of a polynomial kernel; see [`svm`](crate).
 
-use crate::learning::classifiers::classifier_about::ClassifierAbout;
-use bubbletouch_svm::kernel::Kernel;
+use crate::classifiers::classifier_about::ClassifierAbout;
+use crate::kernel::Kernel;
 
 pub(crate) const ABOUT: ClassifierAbout = ClassifierAbout {
     has_degree: true,

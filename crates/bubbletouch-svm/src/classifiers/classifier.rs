@@ -11,21 +11,21 @@ use linfa::traits::{Fit, PredictInplace};
 use ndarray::{Array1, Array2};
 use serde::{Deserialize, Serialize};
 
-use crate::learning::classifiers::ClassifierKind;
-use crate::learning::classifiers::trained_classifier::Model;
-use crate::learning::data::split::stratified_k_fold;
-use crate::random::Seed;
+use crate::classifiers::ClassifierKind;
+use crate::classifiers::class_model::ClassModel;
+use crate::classifiers::trained_classifier::Model;
+use crate::cross_validation::choice::{Candidates, Chosen, choose, choose_c};
+use crate::dataset::{Dataset, rows};
+use crate::kernel::Gamma;
+use crate::linear_svm::LinearSvmParams;
+use crate::scaling::{FittedScaling, Scaling};
+use crate::split::Split;
+use crate::split::stratified_k_fold;
+use crate::streams::DynStreams;
+use crate::{DEFAULT_MEMORY_BYTES, Multiclass, Solver, SvmParams};
 use crate::{Error, Result};
-use bubbletouch_svm::classifiers::class_model::ClassModel;
-use bubbletouch_svm::cross_validation::choice::{Candidates, Chosen, choose, choose_c};
-use bubbletouch_svm::dataset::{Dataset, rows};
-use bubbletouch_svm::kernel::Gamma;
-use bubbletouch_svm::linear_svm::LinearSvmParams;
-use bubbletouch_svm::scaling::{FittedScaling, Scaling};
-use bubbletouch_svm::split::Split;
-use bubbletouch_svm::{DEFAULT_MEMORY_BYTES, Multiclass, Solver, SvmParams};
 
-pub use crate::learning::classifiers::trained_classifier::TrainedClassifier;
+pub use crate::classifiers::trained_classifier::TrainedClassifier;
 
 /// The C of a soft-margin SVM or a logistic regression: given, or chosen by cross-validation of the training rows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -100,11 +100,11 @@ impl Classifier {
     ///
     /// # Errors
     /// Parameters out of range, or data that the kind's training or [`stratified_k_fold`] refuses.
-    pub fn train(&self, training: &Dataset, seed: &Seed) -> Result<TrainedClassifier> {
+    pub fn train(&self, training: &Dataset, seed: &dyn DynStreams) -> Result<TrainedClassifier> {
         let folds = match &self.c {
             Cost::Chosen(_) if self.kind.has_c() => {
                 let labels = training.targets.view();
-                stratified_k_fold(labels, FOLDS, &seed.named("validation"))?
+                stratified_k_fold(labels, FOLDS, &*seed.named("validation"))?
             }
             _ => Vec::new(),
         };
@@ -121,7 +121,7 @@ impl Classifier {
         &self,
         training: &Dataset,
         folds: &[Split],
-        seed: &Seed,
+        seed: &dyn DynStreams,
     ) -> Result<TrainedClassifier> {
         match &self.c {
             Cost::Chosen(candidates) if self.kind.has_c() => {
@@ -146,7 +146,7 @@ impl Classifier {
         training: &Dataset,
         folds: &[Split],
         candidates: &Candidates,
-        seed: &Seed,
+        seed: &dyn DynStreams,
     ) -> Result<Chosen> {
         let (_, scaled) = self.scaled(training)?;
         if let Some(params) = self.kernel_svm(1.0) {
@@ -171,7 +171,11 @@ impl Classifier {
     }
 
     /// With the C that was given, if the kind has one.
-    fn train_without_choice(&self, training: &Dataset, seed: &Seed) -> Result<TrainedClassifier> {
+    fn train_without_choice(
+        &self,
+        training: &Dataset,
+        seed: &dyn DynStreams,
+    ) -> Result<TrainedClassifier> {
         let c = match self.c {
             Cost::Fixed(c) if self.kind.has_c() => Some(c),
             _ => None,
@@ -187,7 +191,7 @@ impl Classifier {
         &self,
         training: &Dataset,
         path: &[f64],
-        seed: &Seed,
+        seed: &dyn DynStreams,
     ) -> Result<Vec<TrainedClassifier>> {
         if !self.kind.has_c() {
             let given = format!("for {:?}", self.kind);
@@ -227,7 +231,7 @@ impl Classifier {
         training: &Dataset,
         c: Option<f64>,
         chosen: Option<Chosen>,
-        seed: &Seed,
+        seed: &dyn DynStreams,
     ) -> Result<TrainedClassifier> {
         let (scaling, scaled) = self.scaled(training)?;
         let model = self.train_model(&scaled, c, seed)?;
@@ -235,7 +239,12 @@ impl Classifier {
     }
 
     /// The model on scaled rows.
-    fn train_model(&self, scaled: &Dataset, c: Option<f64>, seed: &Seed) -> Result<Model> {
+    fn train_model(
+        &self,
+        scaled: &Dataset,
+        c: Option<f64>,
+        seed: &dyn DynStreams,
+    ) -> Result<Model> {
         let c = c.unwrap_or(1.0);
         Ok(match self.kernel_svm(c) {
             Some(params) => Model::Svm(Box::new(params.train(scaled)?)),
@@ -248,10 +257,10 @@ impl Classifier {
         &self,
         scaled: &Dataset,
         c: f64,
-        seed: &Seed,
+        seed: &dyn DynStreams,
     ) -> Result<Arc<dyn ClassModel>> {
         let seed = seed.named("descent");
-        Ok(Arc::new(self.linear_svm(c)?.train(scaled, &seed)?))
+        Ok(Arc::new(self.linear_svm(c)?.train(scaled, &*seed)?))
     }
 
     /// What the kernel SVM is trained with, if that is what the options ask for.
@@ -298,9 +307,9 @@ impl Classifier {
 impl Fit<Array2<f64>, Array1<usize>, Error> for Classifier {
     type Object = TrainedClassifier;
 
-    /// [`Classifier::train`] with the validation split of seed 0.
+    /// [`Classifier::train`] with the seed 0_u64.
     fn fit(&self, training: &Dataset) -> Result<TrainedClassifier> {
-        self.train(training, &Seed::new(0))
+        self.train(training, &0_u64)
     }
 }
 
@@ -331,7 +340,7 @@ fn own_or_wrapped(error: impl std::error::Error + 'static) -> Error {
         Ok(own) => return *own,
         Err(error) => error,
     };
-    match error.downcast::<bubbletouch_svm::Error>() {
+    match error.downcast::<crate::Error>() {
         Ok(of_svm) => (*of_svm).into(),
         Err(other) => Error::input("classifier", other, "see its documentation"),
     }

@@ -6,10 +6,10 @@ use linfa::traits::PredictInplace;
 use ndarray::{Array1, Array2, ArrayBase, ArrayView2, Data, Ix2};
 
 use crate::Result;
-use bubbletouch_svm::classifiers::class_model::ClassModel;
-use bubbletouch_svm::cross_validation::choice::Chosen;
-use bubbletouch_svm::predict::svm_model::SvmModel;
-use bubbletouch_svm::scaling::FittedScaling;
+use crate::classifiers::class_model::ClassModel;
+use crate::cross_validation::choice::Chosen;
+use crate::predict::svm_model::SvmModel;
+use crate::scaling::FittedScaling;
 
 /// A trained classifier: scaling and model.
 #[derive(Clone, Debug)]
