@@ -27,7 +27,7 @@ pub fn merge(args: &Args) -> Result<()> {
         for path in shard_journals(folder)? {
             n_journals += 1;
             if let Some((begun, shard)) = Journal::read(&path)? {
-                identity.check_same((&begun, &shard), &path.display().to_string())?;
+                identity.check_same((&begun, shard.records()), &path.display().to_string())?;
                 journal.take_from(shard)?;
             }
         }

@@ -90,6 +90,6 @@ fn is_interrupted(study: &dyn AnyStudy, journal: &Path) -> bool {
     let Ok(Some((begun, journal))) = Journal::read(journal) else {
         return false;
     };
-    let differences = study.identity().differences((&begun, &journal));
+    let differences = study.identity().differences((&begun, journal.records()));
     differences.is_empty() && study.n_pending(Part::All, &journal) > 0
 }

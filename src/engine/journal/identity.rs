@@ -1,6 +1,6 @@
 //! What a study's results depend on.
 
-use super::journal_file::Journal;
+use super::line::Records;
 use crate::engine::work_items::WorkItem;
 use crate::error::{Error, Result};
 use crate::inputs::toml_value::is_at;
@@ -43,17 +43,17 @@ impl Default for SameStudy {
 
 impl SameStudy {
     /// Whether a study with a journal may differ in a key from this one.
-    fn may_differ(&self, journal: &Journal) -> Box<dyn Fn(&str) -> bool> {
+    fn may_differ(&self, records: &Records) -> Box<dyn Fn(&str) -> bool> {
         match self {
             Self::ButFor(keys) => Box::new(|key| keys.iter().any(|name| is_at(key, name))),
             Self::SharesWork(items) => {
                 let known = items.iter().filter_map(|item| {
-                    let key = journal.known_key(&item.key())?;
-                    Some((key, item.is_result))
+                    let (key, _) = records.get_key_value(&item.key())?;
+                    Some((&key[..], item.is_result))
                 });
                 let known: HashSet<(&str, bool)> = known.collect();
                 let shares = known.iter().any(|(_, is_result)| *is_result);
-                let is_same = shares || known.len() == journal.n_known();
+                let is_same = shares || known.len() == records.len();
                 Box::new(move |_| is_same)
             }
         }
@@ -73,8 +73,8 @@ impl Identity {
     }
 
     /// Returns the differences between the study that a journal was begun with and this one, a line each.
-    pub fn differences(&self, (begun, journal): (&Self, &Journal)) -> Vec<String> {
-        let may_differ = self.same.may_differ(journal);
+    pub fn differences(&self, (begun, records): (&Self, &Records)) -> Vec<String> {
+        let may_differ = self.same.may_differ(records);
         let [theirs, ours] = [begun, self].map(|identity| identity.facts(&may_differ));
         let mut names: BTreeSet<&String> = ours.keys().chain(theirs.keys()).collect();
         names.retain(|name| ours.get(*name) != theirs.get(*name));
@@ -90,7 +90,7 @@ impl Identity {
     ///
     /// # Errors
     /// If the journal was begun with another study; the error lists the differences.
-    pub fn check_same(&self, of: (&Self, &Journal), place: &str) -> Result<()> {
+    pub fn check_same(&self, of: (&Self, &Records), place: &str) -> Result<()> {
         let differences = self.differences(of);
         if differences.is_empty() {
             return Ok(());
@@ -156,10 +156,10 @@ mod tests {
             "skin.stiffness_n_per_m: was 100.0, is 200.0",
             "skin.stroke_mm: was nothing, is 5.0",
         ];
-        let journal = Journal::none();
-        assert_eq!(new.differences((&old, journal)), expected);
-        assert!(old.check_same((&old, journal), "x").is_ok());
-        let said = new.check_same((&old, journal), "results/x").unwrap_err();
+        let records = &Records::default();
+        assert_eq!(new.differences((&old, records)), expected);
+        assert!(old.check_same((&old, records), "x").is_ok());
+        let said = new.check_same((&old, records), "results/x").unwrap_err();
         assert_eq!(said.exit_code(), 2);
         assert!(said.to_string().contains(expected[0]), "{said}");
     }
@@ -174,6 +174,6 @@ mod tests {
         let new = identity(
             "question = \"b\"\ntrials = 2\n[skin]\npitch_mm = [1.0, 2.0]\n[report]\nsamples = [\"mug\"]",
         );
-        assert!(new.check_same((&old, Journal::none()), "x").is_ok());
+        assert!(new.check_same((&old, &Records::default()), "x").is_ok());
     }
 }

@@ -1,7 +1,7 @@
 //! The journal of a run: one file, one writer at a time.
 
 use crate::engine::journal::identity::Identity;
-use crate::engine::journal::line::{Decoded, NO_STUDY, decode, encode};
+use crate::engine::journal::line::{Decoded, NO_STUDY, Records, decode, encode};
 use crate::error::{Error, Result};
 use serde::Serialize;
 use serde::de::{DeserializeOwned, IgnoredAny};
@@ -56,7 +56,7 @@ impl Journal {
         let (mut file, bytes) = read_locked(path)?;
         let (begun, mut journal) = Self::of_bytes(path, &bytes)?;
         if let Some(begun) = &begun {
-            identity.check_same((begun, &journal), &path.display().to_string())?;
+            identity.check_same((begun, journal.records()), &path.display().to_string())?;
         }
         let n_whole = journal.before.n_whole as u64;
         let cut = file
@@ -116,15 +116,9 @@ impl Journal {
         serde_json::from_str(self.before.records.get(key)?.get()).ok()
     }
 
-    /// Returns a key as the journal has it; `None` if it has no record of that key.
-    pub(super) fn known_key(&self, key: &str) -> Option<&str> {
-        let found = self.before.records.get_key_value(key);
-        found.map(|(known, _)| &known[..])
-    }
-
-    /// Returns the number of keys that it had when it was opened.
-    pub(super) fn n_known(&self) -> usize {
-        self.before.records.len()
+    /// Returns the records that the journal had when it was opened, by key.
+    pub fn records(&self) -> &Records {
+        &self.before.records
     }
 
     /// Keeps a record: when this returns, the end of the process cannot lose it.

@@ -13,4 +13,5 @@ pub(crate) mod set_aside;
 
 pub use crate::engine::journal::identity::{Identity, SameStudy};
 pub use crate::engine::journal::journal_file::{JOURNAL_FILE, Journal};
+pub use crate::engine::journal::line::Records;
 pub use crate::engine::journal::set_aside::{check_set_aside, set_aside};

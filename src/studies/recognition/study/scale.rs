@@ -9,7 +9,7 @@ use crate::studies::recognition::rows::cell::Cell;
 use crate::studies::recognition::study::study::RecognitionStudy;
 use crate::studies::recognition::sweep::learned_frames::WITH_COPIES;
 use crate::studies::recognition::sweep::sweep::StudyPart;
-use crate::studies::recognition::training::training::solver_memory;
+use crate::studies::recognition::training::evaluation_inputs::solver_memory;
 use bubbletouch_sim::frame_coding::most_bytes;
 use bubbletouch_svm::{Multiclass, Solver};
 

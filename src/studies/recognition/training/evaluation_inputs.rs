@@ -6,6 +6,7 @@
 
 use crate::error::{Error, Result};
 use crate::inputs::content_hash::{Hashed, short_hash};
+use crate::inputs::memory::GIB;
 use crate::learning::classifiers::ClassifierKind;
 use crate::learning::classifiers::classifier::Classifier;
 use crate::learning::classifiers::parameters::PARAMETERS;
@@ -18,7 +19,7 @@ use crate::studies::recognition::rows::cell::Cell;
 use crate::studies::recognition::rows::row_inputs::RowInputs;
 use crate::studies::recognition::spec::study::RecognitionSpec;
 use crate::studies::recognition::sweep::sweep::Sweep;
-use crate::studies::recognition::training::training::solver_memory;
+use bubbletouch_svm::DEFAULT_MEMORY_BYTES;
 use bubbletouch_svm::kernel::Gamma;
 use bubbletouch_svm::split::Split;
 use ndarray::{Array1, Axis};
@@ -278,4 +279,9 @@ impl Sweep {
             group_keys: self.group_keys.as_ref(),
         })
     }
+}
+
+/// Most bytes of kernel values that a solver holds.
+pub fn solver_memory(gib: Option<f64>) -> usize {
+    gib.map_or(DEFAULT_MEMORY_BYTES, |gib| (gib * GIB) as usize)
 }

@@ -8,7 +8,8 @@ use crate::studies::recognition::training::evaluation_inputs::{
     Decision, FamilyInputs, TrialInputs,
 };
 use crate::studies::recognition::training::training::{Fitted, Training};
-use crate::studies::recognition::training::trial::AnsweredTouches;
+use crate::studies::recognition::training::trial::Decide;
+use bubbletouch_svm::dataset::Dataset;
 use bubbletouch_svm::split::Split;
 use rayon::prelude::*;
 
@@ -73,4 +74,20 @@ pub(super) fn choose_touches(
     let of_objects: Vec<&[Vec<usize>]> = of_objects.collect();
     let chosen: Vec<_> = of_objects.par_iter().map(of_object).collect();
     chosen.concat()
+}
+
+/// Test touches, answered by one fit.
+pub(super) struct AnsweredTouches<'a> {
+    pub(super) fitted: &'a Fitted,
+    pub(super) test: &'a Dataset,
+    /// Their numbers.
+    pub(super) touches: &'a [usize],
+    /// The group of each of them.
+    pub(super) groups: Option<&'a [usize]>,
+    pub(super) decide: Decide<'a>,
+    pub(super) answer_s: f64,
+    pub(super) n_train: usize,
+    /// What touches are expected to be answered, where any cell goes by that, and the seconds to learn it.
+    pub(super) model: Option<AnswerModel<'a>>,
+    pub(super) model_s: f64,
 }

@@ -1,13 +1,11 @@
 //! Training of a family of cells: the same rows and features, one fit for each C.
 
 use crate::error::Result;
-use crate::inputs::memory::GIB;
 use crate::learning::classifiers::classifier::{Classifier, Cost};
 use crate::learning::classifiers::trained_classifier::TrainedClassifier;
 use crate::learning::data::split::{group_k_fold, stratified_k_fold};
 use crate::random::Seed;
 use crate::studies::recognition::training::evaluation_inputs::TrainingInputs;
-use bubbletouch_svm::DEFAULT_MEMORY_BYTES;
 use bubbletouch_svm::cross_validation::choice::Candidates;
 use bubbletouch_svm::dataset::{Dataset, rows};
 use bubbletouch_svm::kernel::Gamma;
@@ -202,9 +200,4 @@ fn number(gamma: Gamma) -> Option<f64> {
         Gamma::Value(gamma) => Some(gamma),
         Gamma::Scale => None,
     }
-}
-
-/// Most bytes of kernel values that a solver holds.
-pub fn solver_memory(gib: Option<f64>) -> usize {
-    gib.map_or(DEFAULT_MEMORY_BYTES, |gib| (gib * GIB) as usize)
 }

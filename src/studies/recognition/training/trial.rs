@@ -3,7 +3,6 @@
 use crate::error::Result;
 use crate::learning::evaluation::fusion::{fuse_rows, fuse_scores};
 use crate::learning::evaluation::metrics::ConfusionMatrix;
-use crate::learning::evaluation::next_touch::AnswerModel;
 use crate::statistics::grouped::{GroupCount, GroupedTest, count_groups, interval_of};
 use crate::statistics::p_status::CONFIDENCE;
 use crate::studies::recognition::measurements::measurement::Measurements;
@@ -12,6 +11,7 @@ use crate::studies::recognition::rows::table_rows::{TrialScore, TrialTime};
 use crate::studies::recognition::training::evaluation_inputs::{
     Decision, FamilyInputs, TrialInputs,
 };
+use crate::studies::recognition::training::next_touch::AnsweredTouches;
 use crate::studies::recognition::training::next_touch::{answer_model, choose_touches};
 use crate::studies::recognition::training::training::{Fitted, Training};
 use bubbletouch_svm::dataset::{Dataset, dataset};
@@ -42,22 +42,6 @@ pub struct Trial<'a> {
     pub inputs: TrialInputs<'a>,
     /// Measurements of all touches, at least the cell's m a frame.
     pub measurements: &'a Measurements,
-}
-
-/// Test touches, answered by one fit.
-pub(crate) struct AnsweredTouches<'a> {
-    fitted: &'a Fitted,
-    pub test: &'a Dataset,
-    /// Their numbers.
-    pub touches: &'a [usize],
-    /// The group of each of them.
-    groups: Option<&'a [usize]>,
-    pub decide: Decide<'a>,
-    answer_s: f64,
-    n_train: usize,
-    /// What touches are expected to be answered, where any cell goes by that, and the seconds to learn it.
-    pub model: Option<AnswerModel<'a>>,
-    model_s: f64,
 }
 
 /// One label for each group of touches.
