@@ -8,9 +8,9 @@ use crate::studies::recognition::training::evaluation_inputs::{
     Decision, FamilyInputs, TrialInputs,
 };
 use crate::studies::recognition::training::training::{Fitted, Training};
-use crate::studies::recognition::training::trial::Decide;
 use bubbletouch_svm::dataset::Dataset;
 use bubbletouch_svm::split::Split;
+use ndarray::Array1;
 use rayon::prelude::*;
 
 /// How training touches are answered by classifiers trained as a fitted one that have not learned them.
@@ -91,3 +91,6 @@ pub(super) struct AnsweredTouches<'a> {
     pub(super) model: Option<AnswerModel<'a>>,
     pub(super) model_s: f64,
 }
+
+/// One label for each group of touches.
+pub(crate) type Decide<'a> = Box<dyn Fn(&[Vec<usize>]) -> Array1<usize> + 'a>;

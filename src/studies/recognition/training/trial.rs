@@ -12,6 +12,7 @@ use crate::studies::recognition::training::evaluation_inputs::{
     Decision, FamilyInputs, TrialInputs,
 };
 use crate::studies::recognition::training::next_touch::AnsweredTouches;
+use crate::studies::recognition::training::next_touch::Decide;
 use crate::studies::recognition::training::next_touch::{answer_model, choose_touches};
 use crate::studies::recognition::training::training::{Fitted, Training};
 use bubbletouch_svm::dataset::{Dataset, dataset};
@@ -43,9 +44,6 @@ pub struct Trial<'a> {
     /// Measurements of all touches, at least the cell's m a frame.
     pub measurements: &'a Measurements,
 }
-
-/// One label for each group of touches.
-pub(crate) type Decide<'a> = Box<dyn Fn(&[Vec<usize>]) -> Array1<usize> + 'a>;
 
 /// How a fit decides on test touches of its cells.
 fn decider<'a>(fitted: &'a Fitted, test: &Dataset, cells: &[Decision]) -> Result<Decide<'a>> {
