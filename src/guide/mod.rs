@@ -63,5 +63,8 @@ pub mod benchmarks {}
 #[doc = include_str!("../../guide/experiments.md")]
 pub mod experiments {}
 
+#[doc = include_str!("../../guide/architecture.md")]
+pub mod architecture {}
+
 #[doc = include_str!("../../guide/adding.md")]
 pub mod adding {}
