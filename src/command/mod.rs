@@ -44,9 +44,8 @@ enum Command {
     /// Run a study: simulate, compress, recognise; write tables, charts and a report
     ///
     /// A table of its file says of which kind it is: [recognition] (which object is touched), [reconstruction] (how exactly frames are
-    /// reconstructed from measurements), [object_detail] (how detailed models of objects must be), [breaking_points] (at which noise,
-    /// pitch ... recognition fails), [whole_body] (what a body of millions of taxels costs) or [stability] (at which settings contact
-    /// methods fail).
+    /// reconstructed from measurements), [object_detail] (how detailed models of objects must be), [whole_body] (what a body of
+    /// millions of taxels costs) or [stability] (at which settings contact methods fail).
     Run(run::Args),
     /// Put the shards of a study together, and write its tables, charts and report
     Merge(merge::Args),

@@ -119,14 +119,20 @@ fn the_advisor_reads_a_study_that_recognises_objects() {
         assert!(error.contains(wanted), "{arguments:?}: {error}");
     }
     fs::create_dir(case.path("old")).unwrap();
-    case.file("old/study.toml", "question = \"?\"\n[speed_accuracy]\n");
-    for arguments in [
-        &["run", "old/study.toml"][..],
-        &["advise", "old", "--accuracy", "0.5"],
+    for (table, key) in [
+        ("[speed_accuracy]", "speed_accuracy"),
+        ("[[breaking_points]]", "breaking_points"),
     ] {
-        let error = refused(&case, arguments);
-        let wanted = "key speed_accuracy: a kind of study that exists no more; a recognition study";
-        assert!(error.contains(wanted), "{error}");
+        case.file("old/study.toml", format!("question = \"?\"\n{table}\n"));
+        for arguments in [
+            &["run", "old/study.toml"][..],
+            &["advise", "old", "--accuracy", "0.5"],
+        ] {
+            let error = refused(&case, arguments);
+            let wanted =
+                format!("key {key}: a kind of study that exists no more; a recognition study");
+            assert!(error.contains(&wanted), "{error}");
+        }
     }
 }
 

@@ -40,7 +40,7 @@ pub struct Robustness {
     /// The value at which the accuracy is highest.
     clean_at: f64 => Note "most accurate at": Linear;
     /// The highest mean accuracy.
-    clean_accuracy: f64 => Value(More) "accuracy there": Share;
+    clean_accuracy: f64 => Note "accuracy there": Share;
     /// One in the number of objects.
     chance: f64 => Note: Share;
     /// `chance + (clean_accuracy − chance) / 2`.
@@ -56,7 +56,7 @@ pub struct Robustness {
     /// The last value.
     end: f64 => Note "last value": Linear;
     /// The mean accuracy there.
-    accuracy_at_end: f64 => Value(More) "accuracy at the last value": Share;
+    accuracy_at_end: f64 => Note "accuracy at the last value": Share;
 } }
 
 /// A direction along an axis.
