@@ -459,8 +459,7 @@ fn the_manifest_has_the_units_of_all_channels() {
     let case = Case::new();
     let (study, _) = AXES.split_once("[axes]").unwrap();
     let study = study.replace("per_object = 20", "per_object = 20\ndepth_mm = 3.0");
-    let skin =
-        "stroke_mm = 5.0\nsensed = \"shear\"\nfriction = 0.4\nshear_stiffness_n_per_m = 300.0";
+    let skin = "stroke_mm = 5.0\nsensed = \"shear\"";
     case.file("shear.toml", study.replace("stroke_mm = 5.0", skin));
     let units = |folder: &str, name: &str| {
         let text = std::fs::read_to_string(case.path(folder).join("manifest.json")).unwrap();

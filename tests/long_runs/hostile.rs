@@ -84,13 +84,18 @@ fn files() -> Vec<File> {
             &recognition(
                 "size_mm = 64.0",
                 frames,
-                "noise_std_full_scale = 0.1\nsmoothing_mm = 2.0",
+                "steps = [\"scan\", \"noise\", \"smoothing\"]\nscan_time_ms = 5.0\nnoise_std_full_scale = 0.1\nsmoothing_mm = 2.0",
                 SVM,
             ),
         ),
         study(
             "chosen",
-            &recognition("taxels = 8\ndamping_n_s_per_m = 0.1", "", ERRORS, CHOSEN),
+            &recognition(
+                "taxels = 8\nsensed = \"force\"\ndamping_n_s_per_m = 0.1",
+                "speed_mm_per_s = 10.0",
+                ERRORS,
+                CHOSEN,
+            ),
         ),
         study("shear", &recognition(shear, slides, "steps = []", svm)),
         study("human", HUMAN),

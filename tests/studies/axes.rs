@@ -97,7 +97,8 @@ fn what_does_not_change_is_made_once() {
     let learning = format!("{alone}recognition.scaling = [\"standard\", \"none\"]");
     assert_eq!(stages(&learning), once);
     // Touches are the same, and measured for each value.
-    let signal = format!("{alone}touches.speed_mm_per_s = [0.0, 5.0]");
+    let signal =
+        format!("{alone}skin.damping_n_s_per_m = [0.1]\ntouches.speed_mm_per_s = [0.0, 5.0]");
     assert_eq!(
         stages(&signal),
         [("simulate".to_owned(), 36), ("measure".to_owned(), 4 * 36)]

@@ -130,8 +130,7 @@ fn a_depth_changes_no_feature_of_what_is_behind_the_foremost_point() {
 
 #[test]
 fn shear_has_no_image() {
-    let shear =
-        "stroke_mm = 5.0\nsensed = \"shear\"\nfriction = 0.5\nshear_stiffness_n_per_m = 50.0";
+    let shear = "stroke_mm = 5.0\nsensed = \"shear\"";
     let spec = StudySpec::parse("study.toml", &STUDY.replace("stroke_mm = 5.0", shear)).unwrap();
     let said = Plan::new("study.toml", spec).unwrap_err().to_string();
     for words in [

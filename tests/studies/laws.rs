@@ -353,7 +353,10 @@ fn more_readings_change_the_training_rows_if_and_only_if_the_error_is_random_by_
         let features = |readings: usize| {
             let keys = format!("training_readings = {readings}");
             let text = study(&signal, "ensemble = \"identity\"", &keys);
-            let motion = "frames = 2\nspeed_mm_per_s = 20.0\n";
+            let motion = match about.needs_motion {
+                true => "frames = 2\nspeed_mm_per_s = 20.0\n",
+                false => "frames = 2\n",
+            };
             let text = text.replace("depth_mm", &format!("{motion}depth_mm"));
             let study = laid_out(&text).unwrap();
             study.first().features((0, 0), &Silent).unwrap()

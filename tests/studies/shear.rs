@@ -193,7 +193,11 @@ fn what_contradicts_itself_is_refused_by_its_key() {
         ),
         (
             with("slide_mm = 3.0\n", ""),
-            "study.toml, key touches.slide_deg: given; slide_mm beside it",
+            "study.toml, key touches.slide_deg: given; slide_mm above 0 beside it",
+        ),
+        (
+            with("slide_mm = 3.0\nslide_deg = 30.0\n", ""),
+            "study.toml, key skin.friction: 0.4, but tips stay where they first touch; a touches.slide_mm above 0 or a curved skin.layout beside it",
         ),
         (
             with("per_object", "speed_mm_per_s = 5.0\nper_object"),

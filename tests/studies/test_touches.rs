@@ -92,8 +92,8 @@ fn test_rows_are_those_of_the_study_with_the_keys_in_place_and_training_rows_are
             ("", ""),
         ),
         (
-            "touches.tilt_x_deg.within = 20.0\ntouches.speed_mm_per_s = 5.0",
-            format!("{TOUCHES}\ntilt_x_deg = {{ uniform = [-20.0, 20.0] }}\nspeed_mm_per_s = 5.0"),
+            "touches.tilt_x_deg.within = 20.0",
+            format!("{TOUCHES}\ntilt_x_deg = {{ uniform = [-20.0, 20.0] }}"),
             SIGNAL.to_owned(),
             ("", ""),
         ),

@@ -1,7 +1,8 @@
-//! Law: the order of configurations and the name of the study file change nothing but the order of rows.
+//! Law: the order of configurations and objects, and the names of objects, change nothing but the order of rows and names.
 
 use super::generator::{GeneratedStudy, Generator, n_studies};
 use super::outcome::{rows, run, sorted_without};
+use crate::command::Case;
 use bubbletouch::study::progress::Silent;
 use toml::Value;
 
@@ -67,5 +68,58 @@ fn the_order_of_objects_changes_no_touch() {
                 .any(|(_, frames)| frames.iter().any(|&value| value > 0.0))
         );
         assert!(ahead == back, "{}", study.text());
+    }
+}
+
+/// The study of three balls with these names and listed poses: nothing is drawn by an object's name.
+fn of_own_balls(case: &Case, study: &GeneratedStudy, names: [&str; 3]) -> GeneratedStudy {
+    let balls = names.iter().zip([40.0, 44.0, 60.0]).map(|(name, diameter)| {
+        format!(
+            "[[object]]\nname = \"{name}\"\nsource = \"?\"\n[[object.part]]\nshape = \"ball\"\ndiameter_mm = {diameter:?}\n"
+        )
+    });
+    let file = case.file(&format!("{}.toml", names[0]), balls.collect::<String>());
+    let mut study = study.clone();
+    for table in ["objects", "signal"] {
+        study.table.remove(table);
+    }
+    let listed = |values: &[f64]| values.iter().map(|&v| v.into()).collect::<Vec<Value>>();
+    study
+        .without("touches.per_object")
+        .without("touches.speed_mm_per_s")
+        .without("skin.damping_n_s_per_m")
+        .without("skin.stiffness_n_per_m")
+        .without("recognition.training_readings")
+        .with(
+            "objects.sets",
+            vec![Value::from(file.display().to_string())],
+        )
+        .with("signal.steps", Vec::<Value>::new())
+        .with("touches.offset_x_mm", listed(&[-4.0, 0.0, 5.0]))
+        .with("touches.offset_y_mm", listed(&[-3.0, 0.0, 2.0, 6.0]))
+        .with("touches.yaw_deg", listed(&[0.0, 30.0]))
+}
+
+#[test]
+fn the_names_of_objects_change_nothing_but_names() {
+    const NAMES: [&str; 3] = ["first", "second", "third"];
+    const OTHERS: [&str; 3] = ["zeta", "alpha", "mu"];
+    for number in 0..n_studies() {
+        let case = Case::new();
+        let mut generator = Generator::new("names of objects", number);
+        let study = generator.study(|study| {
+            let own = of_own_balls(&case, study, NAMES).load();
+            own.is_ok_and(|own| run(&own).is_ok())
+        });
+        let tables = |names| run(&of_own_balls(&case, &study, names).load().unwrap()).unwrap();
+        let (first, others) = (tables(NAMES), tables(OTHERS));
+        for table in ["accuracy.csv", "summary.csv", "confusion.csv"] {
+            let mut renamed = String::from_utf8(others[table].clone()).unwrap();
+            for (name, other) in NAMES.iter().zip(OTHERS) {
+                renamed = renamed.replace(other, name);
+            }
+            let expected = String::from_utf8(first[table].clone()).unwrap();
+            assert_eq!(renamed, expected, "{table} of\n{}", study.text());
+        }
     }
 }

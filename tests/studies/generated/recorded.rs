@@ -28,6 +28,8 @@ fn of_human_touches(study: &GeneratedStudy) -> GeneratedStudy {
     let kinds = ["tap", "stroke", "grab"].map(Value::from);
     study
         .without("skin.damping_n_s_per_m")
+        .without("skin.sensed")
+        .without("skin.friction")
         .with("skin.pitch_mm", 12.0)
         .with("skin.stroke_mm", 6.0)
         .with("human_touch.kinds", kinds.to_vec())

@@ -1,7 +1,7 @@
 //! Law: repeating a trial never makes a claim stronger.
 
-use super::generator::{Generator, n_studies};
-use super::outcome::{Row, rows, run};
+use super::generator::{GeneratedStudy, Generator, n_studies};
+use super::outcome::{Row, Tables, rows, run};
 use toml::Value;
 
 /// Smallest ratio of the widths of two intervals that counts as the same width. Each trial orders the training rows anew, which moves single answers; ten
@@ -17,7 +17,7 @@ fn trials_that_are_the_same_make_no_claim_stronger() {
     for number_of_study in 0..n_studies() {
         let mut generator = Generator::new("repeated trials", number_of_study);
         // Two fixed splits and nothing drawn by trial: every second trial is the same.
-        let fixed = |study: &super::generator::GeneratedStudy| {
+        let fixed = |study: &GeneratedStudy| {
             let yaws: Vec<Value> = [0.0, 20.0, 40.0, 60.0].map(Value::from).to_vec();
             let classifiers = ["linear_svm", "nearest_centroid"].map(Value::from);
             let mut study = study
@@ -38,31 +38,27 @@ fn trials_that_are_the_same_make_no_claim_stronger() {
             study.with("signal.steps", Vec::<Value>::new())
         };
         let study = fixed(&generator.study(|study| fixed(study).load().is_ok()));
-        let of_trials = |n: i64| {
-            let tables = run(&study.with("trials", n).load().unwrap()).unwrap();
-            (
-                rows(&tables["comparison.csv"]),
-                rows(&tables["summary.csv"]),
-            )
-        };
-        let (two, many) = (of_trials(2), of_trials(20));
-        for (few, many) in two.0.iter().zip(&many.0) {
-            let p = [few, many].map(|row| number(row, "p_value").unwrap_or(1.0));
-            assert!(p[1] >= p[0] - 1e-12, "p {p:?} of\n{}", study.text());
-        }
-        for (few, many) in two.1.iter().zip(&many.1) {
-            for [low, high] in [
-                ["accuracy_low", "accuracy_high"],
-                ["bootstrap_low", "bootstrap_high"],
-            ] {
-                let width = |row: &Row| Some(number(row, high)? - number(row, low)?);
-                if let (Some(few), Some(many)) = (width(few), width(many)) {
-                    assert!(
-                        many >= SAME * few,
-                        "{low}: {few} and {many} of\n{}",
-                        study.text()
-                    );
-                }
+        let of_trials = |n: i64| run(&study.with("trials", n).load().unwrap()).unwrap();
+        assert_no_stronger(&of_trials(2), &of_trials(20), &study);
+    }
+}
+
+/// Asserts that no p-value is smaller and no interval narrower with more repetitions of the same.
+fn assert_no_stronger(few: &Tables, many: &Tables, study: &GeneratedStudy) {
+    let of = |name: &str| rows(&few[name]).into_iter().zip(rows(&many[name]));
+    for (few, many) in of("comparison.csv") {
+        let p = [few, many].map(|row| number(&row, "p_value").unwrap_or(1.0));
+        assert!(p[1] >= p[0] - 1e-9, "p {p:?} of\n{}", study.text());
+    }
+    for (few, many) in of("summary.csv") {
+        for [low, high] in [
+            ["accuracy_low", "accuracy_high"],
+            ["bootstrap_low", "bootstrap_high"],
+        ] {
+            let width = |row: &Row| Some(number(row, high)? - number(row, low)?);
+            if let (Some(few), Some(many)) = (width(&few), width(&many)) {
+                let widths = format!("{low}: {few} and {many}");
+                assert!(many >= SAME * few, "{widths} of\n{}", study.text());
             }
         }
     }

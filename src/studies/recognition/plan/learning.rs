@@ -28,8 +28,7 @@ const ONE_OF: [[&str; 2]; 3] = [
 ];
 
 /// Keys that belong beside one of others.
-const BESIDE: [(&str, &[&str]); 5] = [
-    ("choose_folds", &["choose_c", "choose_gamma", "next_touch"]),
+const BESIDE: [(&str, &[&str]); 4] = [
     ("choose_touches", &["choose_c", "choose_gamma"]),
     ("tilted_copies_deg", &["tilted_copies"]),
     ("keep_together_mm", &["keep_together"]),
@@ -100,6 +99,14 @@ impl Check<'_> {
         }
         // With folds there may be no rows of the rarest objects for them.
         let is_open = recognition.choose_c.is_some() || recognition.choose_gamma.is_some();
+        if let Some(folds) = recognition.choose_folds
+            && !is_open
+            && !recognition.is_informed()
+        {
+            let given = format!("{folds}, but nothing is chosen by folds");
+            let allowed = "choose_c, choose_gamma or next_touch = \"most_informative\" beside it";
+            return Err(self.error("recognition.choose_folds", given, allowed));
+        }
         let folded = match (is_open, recognition.is_informed()) {
             (true, _) => Some(("choose_c or choose_gamma", "a given c and gamma")),
             (_, true) => Some(("next_touch = \"most_informative\"", "another next_touch")),

@@ -13,3 +13,4 @@ pub mod signal;
 pub mod taxel_array;
 pub mod tested;
 pub mod trials;
+pub(crate) mod unused_keys;

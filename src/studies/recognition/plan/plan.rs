@@ -56,7 +56,17 @@ impl Plan {
     ///
     /// # Errors
     /// The error names `place` (the file) and the first key that is out of its range.
-    pub fn new(place: &str, mut spec: StudySpec) -> Result<Self> {
+    pub fn new(place: &str, spec: StudySpec) -> Result<Self> {
+        let plan = Self::with_any_keys(place, spec)?;
+        Check { place }.unused_keys(&plan.spec)?;
+        Ok(plan)
+    }
+
+    /// Checks a study as [`new`](Self::new) does, but for keys that cannot act.
+    ///
+    /// # Errors
+    /// The error names `place` (the file) and the first key that is out of its range.
+    pub(crate) fn with_any_keys(place: &str, mut spec: StudySpec) -> Result<Self> {
         let check = Check { place };
         check.count("trials", spec.trials, MOST_TRIALS)?;
         check.layout(&spec)?;

@@ -16,10 +16,10 @@ impl Check<'_> {
     pub fn shear(&self, spec: &StudySpec) -> Result<()> {
         self.of_sensed(spec)?;
         let touches = &spec.touches;
-        if touches.slide_deg.is_some() && touches.slide_mm.is_none() {
-            return Err(self.error("touches.slide_deg", "given", "slide_mm beside it"));
-        }
         let slides = touches.slide_mm.is_some_and(|slide| slide > 0.0);
+        if touches.slide_deg.is_some() && !slides && !spec.axes.has("touches.slide_mm") {
+            return Err(self.error("touches.slide_deg", "given", "slide_mm above 0 beside it"));
+        }
         let reads_shear = spec.skin.sensed == Some(SensedSpec::Shear);
         if touches.speed_mm_per_s > 0.0 && (slides || reads_shear) {
             let allowed = "0 where skin.sensed is shear, and where touches slide";
@@ -34,9 +34,6 @@ impl Check<'_> {
         if spec.human_touch.is_some() && skin.sensed.is_some() {
             let allowed = "no such key in a study of human touches";
             return Err(self.error("skin.sensed", "given", allowed));
-        }
-        if sensed == SensedSpec::Shear && skin.friction.is_none() {
-            return Err(self.error("skin.sensed", "shear", "skin.friction beside it"));
         }
         let of_shear = [
             ("skin.friction", skin.friction),

@@ -89,7 +89,7 @@ impl Check<'_> {
             self.error("test", said, "keys and values of the study")
         })?;
         let seed = spec.seed;
-        let tested = Plan::new(self.place, StudySpec { seed, ..tested });
+        let tested = Plan::with_any_keys(self.place, StudySpec { seed, ..tested });
         let tested = tested.map_err(|error| self.under_test(error, &spec.test))?;
         self.check_alike(plan, &tested)?;
         Ok(Some(Arc::new(tested)))

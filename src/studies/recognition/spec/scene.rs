@@ -22,9 +22,10 @@ pub struct SkinSpec {
     pub curvature_radius_mm: Option<f64>,
     /// What each taxel reads: `deflection` (when left out), `force` along its axis, or `shear`, which is this and the two forces across it.
     pub sensed: Option<SensedSpec>,
-    /// μ between the taxels' tips and what they touch, beside `sensed = "shear"`.
+    /// μ between the taxels' tips and what they touch, beside `sensed = "shear"`, if tips go along the object: in a slide, or on a curved layout. A tip
+    /// of a flat array that is pressed straight on stays where it first touches.
     pub friction: Option<f64>,
-    /// k_t, N/m: how stiff the tips are across their axes, beside `sensed = "shear"`; as stiff as along them when left out.
+    /// k_t, N/m: how stiff the tips are across their axes, beside `friction`; as stiff as along them when left out.
     pub shear_stiffness_n_per_m: Option<f64>,
     /// ρ, mm; half the pitch when left out.
     pub taxel_radius_mm: Option<f64>,
