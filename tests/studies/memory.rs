@@ -229,7 +229,7 @@ fn a_study_is_planned_in_time_that_grows_as_its_cells_do_and_more_than_a_million
     let (said, _) = case.succeeds(&["plan", "large.toml"]);
     assert!(said.contains("50001, of 50000 configurations"), "{said}");
     // With every group counting all cells before it, minutes.
-    assert!(start.elapsed() < Duration::from_secs(10));
+    assert!(start.elapsed() < Duration::from_secs(20));
     case.file("huge.toml", cells([1000, 1001, 1]));
     case.file("endless.toml", cells([10_000, 10_000, 30]));
     for command in ["plan", "run"] {

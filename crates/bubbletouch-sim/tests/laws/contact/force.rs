@@ -12,7 +12,6 @@ use bubbletouch_sim::world::{Grid, Layout, Patch, Taxel, Taxels};
 use glam::{DQuat, DVec3};
 use rand::Rng;
 
-use crate::counting::allocations;
 use crate::mesh_shapes::{cuboid, icosphere};
 use crate::random_scenes::{TAXEL, direction, rng};
 
@@ -376,46 +375,6 @@ fn a_skin_moved_to_a_force_carries_it_and_first_there() {
 }
 
 #[test]
-fn a_flat_skin_goes_as_far_as_the_grid_kernel() {
-    let (mut workspace, mut grid_workspace) = (Workspace::new(), Workspace::new());
-    let mut n_found = 0;
-    for case in 0..100 {
-        let (scene, mut poses) = random_scene("both", case);
-        for pose in &mut poses {
-            pose.translation.z += 0.15;
-        }
-        let Some(force) = reachable_force(&scene, &poses, case) else {
-            continue;
-        };
-        let grid = press_to_force(
-            &scene.patch,
-            &scene.objects,
-            &poses,
-            force,
-            &mut grid_workspace,
-        )
-        .unwrap();
-        let skin = scene.patch.clone();
-        let objects = &scene.objects;
-        let found = Approach::new(&skin, DVec3::Z).unwrap().press_to_force(
-            objects,
-            &poses,
-            force,
-            &mut workspace,
-        );
-        let (a, b) = (grid.unwrap(), found.unwrap().unwrap());
-        let at_most = 1e-15 + 1e-12 * force / TAXEL.stiffness;
-        assert!(
-            (a.travel - b.travel).abs() < at_most,
-            "case {case}: {a:?} {b:?}"
-        );
-        assert_eq!(a.n_touched, b.n_touched);
-        n_found += 1;
-    }
-    assert!(n_found > 50, "{n_found}");
-}
-
-#[test]
 fn ways_that_miss_or_cannot_be_gone_are_told_apart() {
     let grid = Grid {
         nx: 4,
@@ -454,30 +413,4 @@ fn ways_that_miss_or_cannot_be_gone_are_told_apart() {
         said.starts_with("touch force: 9 N; up to 8.000000 N, where the patch has gone 7"),
         "{said}"
     );
-}
-
-#[test]
-fn touches_to_a_force_after_the_first_allocate_nothing() {
-    let grid = Grid {
-        nx: 32,
-        ny: 32,
-        pitch: 2e-3,
-    };
-    let scene = ball_over(grid, 0.03);
-    let mut workspace = Workspace::new();
-    let mut allocated = |force: f64| {
-        allocations(|| {
-            let contact = press_to_force(
-                &scene.patch,
-                &scene.objects,
-                &[Pose::IDENTITY],
-                force,
-                &mut workspace,
-            );
-            assert!(contact.unwrap().is_some());
-        })
-    };
-    assert!(allocated(20.0) > 0);
-    let later = (1..50).map(|k| allocated(f64::from(k)));
-    assert_eq!(later.sum::<usize>(), 0);
 }

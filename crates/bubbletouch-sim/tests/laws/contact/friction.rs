@@ -351,32 +351,6 @@ fn on_closed_ways_friction_only_takes_energy() {
 }
 
 #[test]
-fn a_rigid_motion_of_the_world_changes_nothing() {
-    let mut rng = rng("world", 0);
-    let mut world = || {
-        let turn = DQuat::from_scaled_axis(3.0 * direction(&mut rng));
-        Pose::new(turn, direction(&mut rng))
-    };
-    let worlds: Vec<Pose> = (0..13).map(|_| world()).collect();
-    let flat_ball = || Bench::new(flat(14, 2e-3), vec![ball(0.03)], Shears::Equal(SHEAR));
-    let (mut here, mut there) = (flat_ball(), flat_ball());
-    for (k, world) in worlds.iter().enumerate() {
-        let angle = k as f64;
-        let place = DVec3::new(2e-3 * angle.sin(), 1e-3 * angle, 0.0302 - 1e-4 * angle);
-        let pose = Pose::new(DQuat::from_scaled_axis(0.01 * angle * DVec3::ONE), place);
-        here.step(&[pose]);
-        let seen = world.inverse().compose(&world.compose(&pose));
-        there.step(&[seen]);
-        for (a, b) in here.state.force3().iter().zip(there.state.force3()) {
-            assert!(a.distance(*b) < 1e-12, "step {k}: {a} {b}");
-        }
-        let (a, b) = (here.load().on_object, there.load().on_object);
-        assert!(a.force.distance(b.force) < 1e-11 && a.torque.distance(b.torque) < 1e-11);
-    }
-    assert!(here.load().friction.force.length() > 0.1);
-}
-
-#[test]
 fn sliding_the_other_way_gives_mirrored_forces() {
     let slid = |sign: f64| {
         let mut bench = Bench::new(flat(16, 2e-3), vec![ball(0.03)], Shears::Equal(SHEAR));

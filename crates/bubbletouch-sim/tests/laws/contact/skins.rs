@@ -1,10 +1,7 @@
-//! Laws of contact on skins of any shape, against a search along each taxel's axis, the grid kernel, and energy.
+//! Laws of contact on skins of any shape, against a search along each taxel's axis, and mirrored.
 
-use crate::counting::allocations;
 use crate::random_scenes::{TAXEL, direction, random_pose, rng};
-use bubbletouch_sim::contact::{
-    GRAZING, Workspace, press_to_travel, press_with_contacts, spring_load,
-};
+use bubbletouch_sim::contact::{Workspace, press_with_contacts, spring_load};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::objects::{Model, Sphere, SphereUnion};
 use bubbletouch_sim::world::{Grid, Layout, Patch, Taxel, Taxels};
@@ -138,7 +135,7 @@ fn is_on_a_flank(skin: &Patch, taxel: usize, objects: &[Model], share: f64) -> b
 fn every_taxel_stops_where_a_search_along_its_axis_says() {
     let mut workspace = Workspace::new();
     let (mut n_touched, mut n_saturated, mut n_flanks) = (0, 0, 0);
-    for case in 0..140 {
+    for case in 0..70 {
         let (skin, objects, poses) = random_scene("search", case);
         let counts = press_with_contacts(&skin, &objects, &poses, &mut workspace);
         let placed: Vec<Model> = objects
@@ -165,7 +162,7 @@ fn every_taxel_stops_where_a_search_along_its_axis_says() {
         n_saturated += counts.n_saturated;
     }
     assert!(
-        n_touched > 3_000 && n_saturated > 500,
+        n_touched > 1_500 && n_saturated > 250,
         "{n_touched} {n_saturated}"
     );
     assert!(n_flanks < 5, "{n_flanks}");
@@ -209,54 +206,6 @@ fn a_contact_says_what_its_taxel_touches() {
             .filter(|c| c.is_saturated(skin.taxels().at(c.taxel)));
         assert_eq!(saturated.count(), counts.n_saturated);
     }
-}
-
-#[test]
-fn a_flat_grid_is_pressed_exactly_as_by_the_grid_kernel() {
-    let (mut workspace, mut grid_workspace) = (Workspace::new(), Workspace::new());
-    let mut n_touched = 0;
-    for case in 0..400 {
-        let mut rng = rng("grid", case);
-        let grid = Grid {
-            nx: rng.gen_range(1..40),
-            ny: rng.gen_range(1..40),
-            pitch: 10f64.powf(rng.gen_range(-3.5..-2.0)),
-        };
-        let patch = Patch::grid(grid, TAXEL).unwrap();
-        let (objects, poses): (Vec<Model>, Vec<Pose>) = random_objects(&mut rng, &patch)
-            .iter()
-            .map(|object| {
-                let pose = random_pose(&mut rng, 0.3);
-                (moved(object, &pose.inverse()), pose)
-            })
-            .unzip();
-        // From the front all counts: here nothing has come any other way.
-        let behind = -TAXEL.stroke - TAXEL.radius;
-        let is_behind = |(object, pose): (&Model, &Pose)| {
-            let mut spheres = object.spheres().unwrap().spheres().iter();
-            spheres.any(|sphere| pose.transform_point(sphere.center).z < behind)
-        };
-        if objects.iter().zip(&poses).any(is_behind) {
-            continue;
-        }
-        let counts = press_with_contacts(&patch, &objects, &poses, &mut workspace);
-        let expected = press_to_travel(&patch, &objects, &poses, 0.0, &mut grid_workspace);
-        for (got, expected) in workspace
-            .deflections()
-            .iter()
-            .zip(grid_workspace.deflections())
-        {
-            assert_eq!(
-                got.to_bits(),
-                expected.to_bits(),
-                "case {case}: {got} {expected}"
-            );
-        }
-        assert_eq!(counts.n_touched, expected.n_touched);
-        assert_eq!(counts.n_saturated, expected.n_saturated);
-        n_touched += counts.n_touched;
-    }
-    assert!(n_touched > 10_000, "{n_touched}");
 }
 
 #[test]
@@ -457,59 +406,4 @@ fn of_two_spheres_that_push_a_taxel_the_same_the_first_decides() {
         assert_eq!((contact.object, contact.part), (0, 0));
         assert!(contact.normal.x * x < 0.0, "away from the first sphere");
     }
-}
-
-#[test]
-fn grazing_contact_is_counted_and_its_gradient_is_bounded() {
-    let layout = Layout::new(vec![DVec3::ZERO], vec![DVec3::Z]).unwrap();
-    let skin = Patch::new("one", layout, Taxels::Equal(TAXEL)).unwrap();
-    let mut workspace = Workspace::new();
-    let mut press = |cosine: f64| {
-        let radius = 9e-3;
-        let beside = (radius + TAXEL.radius) * (1.0 - cosine * cosine).sqrt();
-        let flank = Sphere {
-            center: DVec3::new(beside, 0.0, -1e-3),
-            radius,
-        };
-        let objects = [SphereUnion::new(vec![flank]).unwrap().into()];
-        let counts = press_with_contacts(&skin, &objects, &[Pose::IDENTITY], &mut workspace);
-        (counts, workspace.contacts()[0])
-    };
-    let (counts, contact) = press(0.5 * GRAZING);
-    assert_eq!(counts.n_touched, 1);
-    assert!(contact.is_grazing());
-    assert!((contact.gradient().length() - 1.0 / GRAZING).abs() < 1e-9);
-    let (counts, contact) = press(2.0 * GRAZING);
-    assert_eq!(counts.n_touched, 1);
-    assert!(!contact.is_grazing());
-    assert!((contact.gradient().length() - 0.5 / GRAZING).abs() < 1e-6);
-}
-
-#[test]
-fn presses_after_the_first_allocate_nothing() {
-    let layout = Layout::cylinder(0.02, 0.05, 3.0, 3e-3).unwrap();
-    let skin = Patch::new("skin", layout, TAXEL).unwrap();
-    let (center, radius) = (DVec3::ZERO, 0.03);
-    let objects = [SphereUnion::new(vec![Sphere { center, radius }])
-        .unwrap()
-        .into()];
-    let pose = Pose::from_translation(0.049 * DVec3::X);
-    let mut workspace = Workspace::new();
-    let mut n_touched = Vec::with_capacity(50);
-    let mut press = |step: u32| {
-        let motion = Pose::from_translation(1e-4 * f64::from(step) * DVec3::X);
-        allocations(|| {
-            let counts =
-                press_with_contacts(&skin, &objects, &[motion.compose(&pose)], &mut workspace);
-            let load = spring_load(&skin, workspace.contacts());
-            n_touched.push(counts.n_touched);
-            assert!(load.spring_force.is_finite());
-        })
-    };
-    assert!(press(0) > 0);
-    assert_eq!((1..50).map(press).sum::<usize>(), 0);
-    assert!(
-        n_touched.iter().any(|&n| n != n_touched[0]),
-        "the presses differ"
-    );
 }

@@ -1,10 +1,12 @@
 //! The laws of contact, for every way to press that there is, on the same random scenes: layouts of all families, spheres from a micrometre to a
 //! metre and meshes, at edges, at the stroke, grazing, and behind the substrate.
 
+use crate::counting::allocations;
 use crate::mesh_shapes::{cuboid, icosphere};
 use crate::random_scenes::{TAXEL, direction, random_pose, rng};
 use bubbletouch_sim::contact::{
-    Workspace, press_at_pose, press_to_travel, press_with_contacts, spring_load, stopping_height,
+    Workspace, press_at_pose, press_to_depth, press_to_force, press_to_travel, press_with_contacts,
+    spring_load, stopping_height,
 };
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::mesh::{Triangle, TriangleMesh};
@@ -466,4 +468,71 @@ fn force_and_torque_are_minus_the_gradient_of_the_energy() {
         }
     }
     assert!(n_checked.iter().all(|&n| n > 40), "{n_checked:?}");
+}
+
+/// Presses an object by a function of the library, with a workspace that was used before; the number of touched taxels.
+type Repeated = fn(&Patch, &[Model], &[Pose], &mut Workspace) -> usize;
+
+const ON_ANY_LAYOUT: [(&str, Repeated); 2] = [
+    ("at a pose", |patch, objects, poses, workspace| {
+        press_at_pose(patch, objects, poses, workspace).n_touched
+    }),
+    ("with contacts", |patch, objects, poses, workspace| {
+        let contact = press_with_contacts(patch, objects, poses, workspace);
+        assert!(
+            spring_load(patch, workspace.contacts())
+                .spring_force
+                .is_finite()
+        );
+        contact.n_touched
+    }),
+];
+
+const ON_FLAT_GRIDS: [(&str, Repeated); 3] = [
+    ("to a travel", |patch, objects, poses, workspace| {
+        press_to_travel(patch, objects, poses, 0.0, workspace).n_touched
+    }),
+    ("to a depth", |patch, objects, poses, workspace| {
+        let contact = press_to_depth(patch, objects, poses, 1e-3, workspace);
+        contact.unwrap().n_touched
+    }),
+    ("to a force", |patch, objects, poses, workspace| {
+        let contact = press_to_force(patch, objects, poses, 0.01, workspace);
+        contact.unwrap().unwrap().n_touched
+    }),
+];
+
+#[test]
+fn presses_after_the_first_allocate_nothing() {
+    let radius = 0.03;
+    let center = DVec3::ZERO;
+    let ball = SphereUnion::new(vec![Sphere { center, radius }]).unwrap();
+    let objects: [Model; 2] = [ball.into(), MeshModel::new(icosphere(radius, 2)).into()];
+    for family in 0..N_FAMILIES {
+        let layout = layout(&mut rng("allocation", family), family);
+        let patch = Patch::new("skin", layout, TAXEL).unwrap();
+        let number = patch.n_taxels() / 2;
+        let (place, axis) = (
+            patch.layout().centers()[number],
+            patch.layout().axes()[number],
+        );
+        let on_flat = if family == 0 { &ON_FLAT_GRIDS[..] } else { &[] };
+        for (object, (name, press)) in objects.iter().flat_map(|object| {
+            let presses = ON_ANY_LAYOUT.iter().chain(on_flat);
+            presses.map(move |press| (std::slice::from_ref(object), press))
+        }) {
+            let mut workspace = Workspace::new();
+            let mut n_touched = Vec::with_capacity(50);
+            let mut allocated = |step: u32| {
+                // Deepest first: later presses touch no more taxels.
+                let height = radius - 2e-3 + 5e-5 * f64::from(step);
+                let pose = [Pose::from_translation(place + height * axis)];
+                allocations(|| n_touched.push(press(&patch, object, &pose, &mut workspace)))
+            };
+            let case = format!("layout {family}, {name}");
+            assert!(allocated(0) > 0, "{case}");
+            assert_eq!((1..50).map(&mut allocated).sum::<usize>(), 0, "{case}");
+            assert!(n_touched[0] > 0, "{case}");
+        }
+    }
 }
