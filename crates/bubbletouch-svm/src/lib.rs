@@ -76,6 +76,7 @@
 #![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
 
 mod binary_problem;
+pub mod class_model;
 pub mod classifiers;
 pub mod cross_validation;
 pub mod dataset;

@@ -11,8 +11,8 @@ use linfa::traits::{Fit, PredictInplace};
 use ndarray::{Array1, Array2};
 use serde::{Deserialize, Serialize};
 
+use crate::class_model::ClassModel;
 use crate::classifiers::ClassifierKind;
-use crate::classifiers::class_model::ClassModel;
 use crate::classifiers::trained_classifier::Model;
 use crate::cross_validation::choice::{Candidates, Chosen, choose, choose_c};
 use crate::dataset::{Dataset, rows};

@@ -1,7 +1,7 @@
 //! What a kind of classifier says of itself.
 
+use crate::class_model::ClassModel;
 use crate::classifiers::ClassifierKind;
-use crate::classifiers::class_model::ClassModel;
 use crate::classifiers::classifier::Classifier;
 use crate::dataset::Dataset;
 use crate::error::Result;

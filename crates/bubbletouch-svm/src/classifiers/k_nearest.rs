@@ -11,7 +11,7 @@ use crate::classifiers::classifier_about::ClassifierAbout;
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis};
 use std::sync::Arc;
 
-use crate::classifiers::class_model::{ClassModel, log_vote_shares};
+use crate::class_model::{ClassModel, log_vote_shares};
 use crate::dataset::{Dataset, check_width, checked_classes, positions};
 use crate::{Error, Result};
 

@@ -11,7 +11,7 @@ use crate::classifiers::classifier_about::ClassifierAbout;
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis, s};
 use std::sync::Arc;
 
-use crate::classifiers::class_model::{ClassModel, log_priors};
+use crate::class_model::{ClassModel, log_priors};
 use crate::classifiers::lbfgs::minimise;
 use crate::dataset::{Dataset, checked_classes, positions};
 use crate::linear_model::LinearModel;

@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 
 #[macro_use]
 mod classifier_about;
-pub mod class_model;
 pub mod classifier;
 pub(crate) mod lbfgs;
 pub mod parameters;
@@ -14,6 +13,7 @@ pub(crate) mod ranked;
 pub mod trained_classifier;
 pub(crate) mod tree;
 
+pub use crate::class_model;
 pub use classifier_about::{ClassifierAbout, Train};
 
 // Everything that a study may say of a classifier follows from its line here and from the file that it names.

@@ -9,7 +9,7 @@ use linfa_bayes::{GaussianNb, NaiveBayes as _};
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2};
 use std::sync::Arc;
 
-use crate::classifiers::class_model::{ClassModel, log_priors};
+use crate::class_model::{ClassModel, log_priors};
 use crate::dataset::{Dataset, check_width, checked_classes};
 use crate::{Error, Result};
 

@@ -5,7 +5,7 @@
 //! over several touches is that of all of them together. Of equal distances the lower label wins, as there.
 
 use crate::Result;
-use crate::classifiers::class_model::ClassModel;
+use crate::class_model::ClassModel;
 use crate::classifiers::classifier_about::ClassifierAbout;
 use crate::dataset::{Dataset, check_width, checked_classes};
 use ndarray::{Array2, ArrayView2, Axis};

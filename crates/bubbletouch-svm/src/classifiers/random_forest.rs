@@ -9,7 +9,7 @@ use ndarray::{Array2, ArrayView2};
 use rand::Rng;
 use std::sync::Arc;
 
-use crate::classifiers::class_model::{ClassModel, log_vote_shares};
+use crate::class_model::{ClassModel, log_vote_shares};
 use crate::classifiers::ranked::Ranked;
 use crate::classifiers::tree::{Growth, Tree, check_depth};
 use crate::dataset::{Dataset, check_width, checked_classes, positions};

@@ -6,7 +6,7 @@ use linfa::traits::PredictInplace;
 use ndarray::{Array1, Array2, ArrayBase, ArrayView2, Data, Ix2};
 
 use crate::Result;
-use crate::classifiers::class_model::ClassModel;
+use crate::class_model::ClassModel;
 use crate::cross_validation::choice::Chosen;
 use crate::predict::svm_model::SvmModel;
 use crate::scaling::FittedScaling;

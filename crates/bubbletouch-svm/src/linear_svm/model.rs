@@ -3,7 +3,7 @@
 use ndarray::{Array1, Array2, ArrayView2, Axis, Zip, s};
 
 use crate::Result;
-use crate::classifiers::class_model::ClassModel;
+use crate::class_model::ClassModel;
 use crate::dataset::{Dataset, checked_classes, positions};
 use crate::linear_model::LinearModel;
 use crate::linear_svm::coordinate_descent::{self, Rows};
