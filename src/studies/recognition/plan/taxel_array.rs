@@ -107,7 +107,7 @@ impl TaxelArray {
 
     /// Whether its taxels lie in straight rows and columns, one pitch apart along the surface.
     pub fn is_image(&self) -> bool {
-        matches!(self.layout, ArrayLayout::Grid | ArrayLayout::Cylinder)
+        self.layout.is_image()
     }
 
     /// Rows and columns of its images, and their pixels' size, metres: a square around all taxels.
@@ -131,15 +131,7 @@ impl TaxelArray {
     /// Where taxels are on a plane, metres: on a flat patch where they are, on a sphere as far along its surface from the middle, in the same direction
     /// (the azimuthal equidistant projection).
     fn chart_places(&self) -> Vec<DVec2> {
-        let radius = self.radius;
-        let place = |center: &DVec3| match self.layout {
-            ArrayLayout::Cap => {
-                let away = center.truncate();
-                let angle = away.length().atan2(center.z + radius);
-                away.normalize_or_zero() * radius * angle
-            }
-            _ => center.truncate(),
-        };
+        let place = |center: &DVec3| self.layout.place_on_plane(*center, self.radius);
         self.patch.layout().centers().iter().map(place).collect()
     }
 

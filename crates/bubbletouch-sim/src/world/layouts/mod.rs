@@ -7,11 +7,11 @@
 //! | `extrusion` | a row repeated along a line ([`Extrusion`]): grids, cylinders |
 //! | `dome`, `curved` | on spheres ([`Dome`]) and other curved surfaces |
 //! | `draped`, `drape_region` | on a mesh, or on a part of a mesh |
-//! | `array` | arrays of equal area and density that can be compared ([`ArrayLayout`]) |
+//! | `arrays` | arrays of equal area and density that can be compared ([`ArrayLayout`]) |
 //! | `order` | the order in which taxels are numbered |
 //! | `ring`, `limits` | rings around an axis, and the checks that all layouts share |
 
-mod array;
+mod arrays;
 mod curved;
 mod dome;
 mod drape_region;
@@ -23,7 +23,7 @@ mod limits;
 mod order;
 mod ring;
 
-pub use array::ArrayLayout;
+pub use arrays::ArrayLayout;
 pub use dome::{Dome, DomeRing};
 pub use drape_region::DrapeRegion;
 pub use extrusion::Extrusion;

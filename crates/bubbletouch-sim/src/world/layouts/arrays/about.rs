@@ -1,0 +1,79 @@
+//! Description of an array layout.
+
+use crate::error::Result;
+use crate::world::{Grid, Layout};
+use glam::{DVec2, DVec3};
+
+/// Description of an array layout.
+pub struct LayoutAbout {
+    /// Name for people.
+    pub words: &'static str,
+    /// Places the taxels on the area of a square grid; the second argument is the radius of curvature, metres.
+    pub taxels: fn(&Grid, f64) -> Result<Layout>,
+    /// Numbers of rows and columns, if taxels are numbered row after row.
+    pub sides: fn(&Grid) -> Option<(usize, usize)>,
+    /// Curvature; `None` for a flat layout.
+    pub curved: Option<Curved>,
+    /// Distance between neighbours in pitches, if it is another length than the pitch.
+    pub neighbour_pitches: Option<f64>,
+    /// Whether the taxels lie in straight rows and columns, one pitch apart along the surface.
+    pub is_image: bool,
+    /// Place of a taxel on a plane, metres, from its centre and the radius of curvature.
+    pub place_on_plane: fn(DVec3, f64) -> DVec2,
+}
+
+/// Curvature of a layout.
+pub struct Curved {
+    /// Smallest radius, metres, for a square array of this side, metres.
+    pub least_radius: fn(f64) -> f64,
+    /// Words for what the layout covers at the smallest radius.
+    pub half: &'static str,
+}
+
+impl LayoutAbout {
+    /// Describes a flat layout without rows.
+    pub const fn new(words: &'static str, taxels: fn(&Grid, f64) -> Result<Layout>) -> Self {
+        Self {
+            words,
+            taxels,
+            sides: |_| None,
+            curved: None,
+            neighbour_pitches: None,
+            is_image: false,
+            place_on_plane: |center, _| center.truncate(),
+        }
+    }
+}
+
+/// Declares the layouts: the name of each, the file that describes it, and its documentation.
+macro_rules! array_layouts {
+    ($($name:ident $file:ident $doc:literal;)*) => {
+        $(mod $file;)*
+
+        /// Layout of the taxels of an array.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+        #[serde(rename_all = "snake_case")]
+        pub enum ArrayLayout {
+            $(#[doc = $doc] $name,)*
+        }
+
+        /// The first layout of the list.
+        impl Default for ArrayLayout {
+            fn default() -> Self {
+                Self::ALL[0]
+            }
+        }
+
+        impl ArrayLayout {
+            /// All layouts.
+            pub const ALL: &[Self] = &[$(Self::$name),*];
+
+            /// Returns the description of the layout.
+            const fn about(self) -> &'static LayoutAbout {
+                match self {
+                    $(Self::$name => &$file::ABOUT,)*
+                }
+            }
+        }
+    };
+}

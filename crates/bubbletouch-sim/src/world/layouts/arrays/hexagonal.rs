@@ -1,0 +1,14 @@
+//! Staggered rows of taxels.
+
+use super::about::LayoutAbout;
+use super::lattice::{NEIGHBOUR, sides};
+use crate::world::Layout;
+
+pub const ABOUT: LayoutAbout = LayoutAbout {
+    sides: |grid| Some(sides(grid.nx)),
+    neighbour_pitches: Some(NEIGHBOUR),
+    ..LayoutAbout::new("hexagonal", |grid, _| {
+        let (rows, columns) = sides(grid.nx);
+        Layout::hexagonal(columns, rows, NEIGHBOUR * grid.pitch)
+    })
+};

@@ -1,0 +1,167 @@
+//! Arrays of taxels that can be compared: one file and one line below for each layout.
+//!
+//! Each has a taxel for each square of a pitch, and together the taxels cover the area of a square grid, n × n pitches. The number of taxels is within a few
+//! per cent of n². In the patch frame the middle is at the origin, with its axis along +z.
+//!
+//! The pitch of an array is the side of a square with the area per taxel, in every layout. In a hexagonal lattice of that density the six
+//! neighbours of a taxel are [farther away](ArrayLayout::neighbour_distance): 2.149 mm at a pitch of 2 mm.
+
+#[macro_use]
+mod about;
+mod lattice;
+
+use crate::error::{Error, Result};
+use crate::world::{Grid, Layout};
+use about::LayoutAbout;
+use glam::{DVec2, DVec3};
+use serde::{Deserialize, Serialize};
+
+// All that the rest of the program knows of a layout follows from its line here and from the file that it names.
+array_layouts! {
+    Grid grid "Rows and columns.";
+    Hexagonal hexagonal "Staggered rows: each taxel has six neighbours, 1.0746 pitches away.";
+    Disc disc "The hexagonal lattice in a circle.";
+    Cylinder cylinder "The grid bent around a cylinder along patch y.";
+    Cap cap "Rings on a sphere, around its pole.";
+}
+
+impl ArrayLayout {
+    /// Returns whether the layout has a radius of curvature.
+    pub fn is_curved(self) -> bool {
+        self.about().curved.is_some()
+    }
+
+    /// Returns whether the taxels lie in straight rows and columns, one pitch apart along the surface.
+    pub fn is_image(self) -> bool {
+        self.about().is_image
+    }
+
+    /// Returns the distance between neighbours in a lattice whose pitch is another length, metres: √(2/√3) pitches in a hexagonal lattice. Returns `None`
+    /// for other layouts, whose neighbours are about a pitch apart.
+    pub fn neighbour_distance(self, pitch: f64) -> Option<f64> {
+        self.about().neighbour_pitches.map(|n| n * pitch)
+    }
+
+    /// Returns the name of the layout for people.
+    pub fn words(self) -> &'static str {
+        self.about().words
+    }
+
+    /// Returns the place of a taxel on a plane, metres: in a flat layout its x and y. `radius` is the radius of curvature.
+    pub fn place_on_plane(self, center: DVec3, radius: f64) -> DVec2 {
+        (self.about().place_on_plane)(center, radius)
+    }
+
+    /// Returns the taxels of the layout in place of those of a square grid (nx = ny). `radius` is the radius of curvature to the rest centres, metres; flat
+    /// layouts ignore it.
+    ///
+    /// # Errors
+    /// If the grid is not square, or if the layout does not fit around the radius: a cylinder at most half around, a cap at most half a sphere.
+    pub fn taxels(self, grid: &Grid, radius: f64) -> Result<Layout> {
+        grid.check()?;
+        let about = self.about();
+        if grid.nx != grid.ny {
+            let given = format!("{} × {} taxels", grid.nx, grid.ny);
+            return Err(Error::input(about.words, given, "as many rows as columns"));
+        }
+        if let Some(curved) = &about.curved {
+            let least = (curved.least_radius)(grid.nx as f64 * grid.pitch);
+            // A layout that fits exactly is not refused for its last bit.
+            if !(radius.is_finite() && radius >= least * (1.0 - 1e-9)) {
+                let given = format!("a radius of {} mm", 1e3 * radius);
+                let half = curved.half;
+                let allowed = format!("at least {:.3} mm, where it is {half}", 1e3 * least);
+                return Err(Error::input(about.words, given, allowed));
+            }
+        }
+        (about.taxels)(grid, radius)
+    }
+
+    /// Returns the numbers of rows and columns if taxels are numbered row after row, else `None`.
+    pub fn sides(self, grid: &Grid) -> Option<(usize, usize)> {
+        (self.about().sides)(grid)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn made(layout: ArrayLayout, n: usize, radius: f64) -> Layout {
+        let pitch = 2e-3;
+        let grid = Grid {
+            nx: n,
+            ny: n,
+            pitch,
+        };
+        layout.taxels(&grid, radius).unwrap()
+    }
+
+    #[test]
+    fn neighbours_of_a_hexagonal_lattice_are_as_far_apart_as_it_says() {
+        for layout in [ArrayLayout::Hexagonal, ArrayLayout::Disc] {
+            let taxels = made(layout, 12, 0.0);
+            let centers = taxels.centers();
+            let distances = centers[1..].iter().map(|other| other.distance(centers[0]));
+            let nearest = distances.fold(f64::INFINITY, f64::min);
+            let distance = layout.neighbour_distance(2e-3).unwrap();
+            assert!((nearest - distance).abs() < 1e-12 && (distance - 2.149e-3).abs() < 1e-6);
+        }
+        assert_eq!(ArrayLayout::Grid.neighbour_distance(2e-3), None);
+    }
+
+    #[test]
+    fn all_have_about_as_many_taxels_with_the_middle_at_the_origin() {
+        for n in [8, 16, 32, 64] {
+            for &layout in ArrayLayout::ALL {
+                let taxels = made(layout, n, 0.06);
+                let share = taxels.n_taxels() as f64 / (n * n) as f64;
+                assert!(
+                    (share - 1.0).abs() < 0.5 / n as f64 + 0.02,
+                    "{layout:?} {n}: {share}"
+                );
+                let centers = taxels.centers().iter();
+                let middle = centers.clone().sum::<DVec3>() / taxels.n_taxels() as f64;
+                assert!(
+                    middle.truncate().length() < 1e-4,
+                    "{layout:?} {n}: {middle}"
+                );
+                let highest = centers.map(|c| c.z).fold(f64::NEG_INFINITY, f64::max);
+                assert!(highest.abs() < 2e-5, "{layout:?} {n}: {highest}");
+                assert!(
+                    taxels.axes().iter().all(|axis| axis.z >= -1e-12),
+                    "{layout:?} {n}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_bent_grid_is_the_grid_in_the_limit_of_a_large_radius() {
+        let flat = made(ArrayLayout::Grid, 12, 0.0);
+        let bent = made(ArrayLayout::Cylinder, 12, 1e3);
+        assert_eq!(bent.n_taxels(), flat.n_taxels());
+        for (bent, flat) in bent.centers().iter().zip(flat.centers()) {
+            assert!(bent.distance(*flat) < 1e-6, "{bent} for {flat}");
+        }
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused() {
+        let grid = Grid {
+            nx: 10,
+            ny: 10,
+            pitch: 2e-3,
+        };
+        let refused =
+            |layout: ArrayLayout, radius| layout.taxels(&grid, radius).unwrap_err().to_string();
+        assert_eq!(
+            refused(ArrayLayout::Cylinder, 5e-3),
+            "cylinder: a radius of 5 mm; at least 6.366 mm, where it is half of the circle"
+        );
+        assert_eq!(
+            refused(ArrayLayout::Cap, 5e-3),
+            "sphere cap: a radius of 5 mm; at least 7.979 mm, where it is half a sphere"
+        );
+    }
+}
