@@ -109,6 +109,30 @@ fn a_key_that_cannot_act_is_refused_with_its_line_by_plan_and_by_run() {
             ["key signal.combine", "noise"],
         ),
         (
+            recognition("\"linear_svm\"", "")
+                .replace("[touches]", "damping_n_s_per_m = 0.5\n[touches]"),
+            ["key skin.damping_n_s_per_m: 0.5", "\"force\" among signal.steps"],
+        ),
+        (
+            recognition("\"linear_svm\"", "")
+                .replace("[touches]", "sensed = \"force\"\ndamping_n_s_per_m = 0.5\n[touches]"),
+            ["key skin.damping_n_s_per_m: 0.5", "touches.speed_mm_per_s above 0"],
+        ),
+        (
+            recognition("\"linear_svm\"", "").replace(
+                "[sensing]",
+                "[signal]\nnoise_std_full_scale = [0.0, 0.1]\ncombine = \"one_at_a_time\"\n[sensing]",
+            ),
+            ["key signal.combine: one_at_a_time", "two axes"],
+        ),
+        (
+            recognition(
+                "\"linear_svm\"",
+                "fused_touches = 2\nnext_touch = \"farthest\"\nchoose_folds = 3",
+            ),
+            ["key recognition.choose_folds: 3", "most_informative"],
+        ),
+        (
             recognition("\"linear_svm\"", "degree = 2"),
             ["x.toml:15, key recognition.degree", "polynomial_svm"],
         ),
