@@ -3,6 +3,5 @@
 mod classifier;
 mod kinds;
 mod limits;
-mod linear;
 mod next_touch;
 mod splits;

@@ -6,5 +6,6 @@ mod hard_cases;
 mod inseparable;
 mod libsvm;
 mod limits;
+mod linear;
 mod svm;
 mod svm_conditions;

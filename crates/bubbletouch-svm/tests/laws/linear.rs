@@ -2,15 +2,15 @@
 //!
 //! Goldens: scikit-learn 1.9.1, `LinearSVC(C=0.5, loss="hinge", dual=True, tol=1e-9, max_iter=10**6)` and `LogisticRegression(tol=1e-10)`, on the rows of [`waves`].
 
-use bubbletouch::random::Seed;
-use bubbletouch::recognition::ClassifierKind;
-use bubbletouch::recognition::classifiers::class_model::ClassModel;
-use bubbletouch::recognition::classifiers::classifier::{Classifier, Cost};
-use bubbletouch::recognition::classifiers::linear_svm::{LinearSvm, LinearSvmParams};
-use bubbletouch::recognition::classifiers::logistic_regression::LogisticParams;
-use bubbletouch::recognition::data::dataset::{Dataset, dataset, rows};
-use bubbletouch::recognition::svm::cross_validation::choice::Candidates;
-use bubbletouch::recognition::svm::{Multiclass, Solver};
+use crate::drawn;
+use bubbletouch_svm::classifiers::ClassifierKind;
+use bubbletouch_svm::classifiers::class_model::ClassModel;
+use bubbletouch_svm::classifiers::classifier::{Classifier, Cost};
+use bubbletouch_svm::classifiers::logistic_regression::LogisticParams;
+use bubbletouch_svm::cross_validation::choice::Candidates;
+use bubbletouch_svm::dataset::{Dataset, dataset, rows};
+use bubbletouch_svm::linear_svm::{LinearSvm, LinearSvmParams};
+use bubbletouch_svm::{Multiclass, Solver};
 use linfa::traits::Fit;
 use ndarray::{Array1, Array2};
 use rand::Rng;
@@ -27,7 +27,7 @@ fn waves() -> Dataset {
 
 /// Overlapping clusters of unequal size.
 fn clusters(n_rows: usize, m: usize, n_classes: usize, seed: u64) -> Dataset {
-    let mut rng = Seed::new(seed).rng();
+    let mut rng = drawn::rng(seed, &["overlapping clusters"]);
     let centres = Array2::from_shape_fn((n_classes, m), |_| rng.gen_range(-1.0..1.0));
     let class = |row: usize| (row % (n_classes + 1)).min(n_classes - 1);
     let features = Array2::from_shape_fn((n_rows, m), |(row, column)| {
@@ -42,7 +42,7 @@ fn train(data: &Dataset, c: f64, tolerance: f64) -> LinearSvm {
         tolerance,
         max_passes: 1_000_000,
     };
-    params.train(data, &Seed::new(5)).unwrap()
+    params.train(data, &5_u64).unwrap()
 }
 
 fn assert_near(found: impl IntoIterator<Item = f64>, expected: &[f64], tolerance: f64) {
@@ -89,7 +89,7 @@ fn one_vs_rest_equals_scikit_learns_linear_svc() {
 fn the_duality_gap_is_never_negative_and_closes_with_the_tolerance() {
     for seed in 0..2 {
         let data = clusters(150, 8, 5, seed);
-        for c in [0.01, 1.0, 30.0] {
+        for c in [0.01, 1.0, 5.0] {
             let gap = |tolerance: f64| {
                 let svm = train(&data, c, tolerance);
                 assert_eq!(svm.n_capped(), 0);
@@ -130,7 +130,7 @@ fn a_pass_cap_that_is_hit_is_counted() {
         tolerance: 1e-9,
         max_passes: 2,
     };
-    let svm = params.train(&data, &Seed::new(0)).unwrap();
+    let svm = params.train(&data, &0_u64).unwrap();
     assert_eq!(svm.n_capped(), 3);
     assert!(svm.convergence().iter().all(|end| end.n_passes == 2));
 }
