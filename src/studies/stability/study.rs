@@ -112,10 +112,14 @@ impl Study for StabilityPlan {
     }
 
     fn findings(&self, tables: &[Table]) -> Result<Findings> {
+        let sources = peer_rows(self)?.1;
+        // Charts of a table carry its note.
+        let mut tables = tables.to_vec();
+        tables[0].note.clone_from(&sources);
         Ok(Findings {
-            charts: self.charts(tables),
-            answers: self.answers(tables),
-            notes: vec![(CELLS.name(), peer_rows(self)?.1)],
+            charts: self.charts(&tables),
+            answers: self.answers(&tables),
+            notes: vec![(CELLS.name(), sources)],
             ..Findings::default()
         })
     }

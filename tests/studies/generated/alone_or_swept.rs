@@ -68,7 +68,11 @@ fn check(
     if let Some((key, values)) = first_axis {
         axes.push((key.to_owned(), values));
     }
+    // Kernel SVMs are solved along C from one solution to the next, to the same tolerance: decisions whose exact value is 0 may differ.
+    let classifier = study.get("recognition.classifier").and_then(Value::as_str);
+    let is_path = classifier.is_some_and(|name| name.ends_with("_svm"));
     let given = AXES.iter().filter(|key| study.get(key).is_some());
+    let given = given.filter(|key| !(is_path && **key == "recognition.c"));
     let mut given: Vec<&str> = given.copied().collect();
     rand::seq::SliceRandom::shuffle(&mut given[..], &mut generator.rng);
     for key in given {
