@@ -226,7 +226,7 @@ fn a_choice_that_cannot_be_made_is_refused_by_its_key() {
         ),
         (
             with("choose_folds = 3"),
-            "key recognition.choose_folds: 3; no such key without",
+            "key recognition.choose_folds: 3, but nothing is chosen by folds",
         ),
         (
             HUMAN.to_owned() + &recorded,
