@@ -36,15 +36,15 @@ pub use crate::studies::recognition::frames::shear_ripple::ShearRipple;
 pub use crate::studies::recognition::frames::simulation::simulate_array;
 pub use crate::studies::recognition::frames::touch_set::{Samples, TouchSet};
 pub use crate::studies::recognition::plan::group::Group;
-pub use crate::studies::recognition::plan::plan::Plan;
 pub use crate::studies::recognition::plan::pose_groups::KeepTogether;
 pub use crate::studies::recognition::plan::sensed::Sensed;
 pub use crate::studies::recognition::plan::signal::Condition;
+pub use crate::studies::recognition::plan::study_plan::Plan;
 pub use crate::studies::recognition::plan::taxel_array;
 pub use crate::studies::recognition::spec::pose_split::PoseSplit;
 pub use crate::studies::recognition::spec::signal::*;
 pub use crate::studies::recognition::spec::study::*;
-pub use crate::studies::recognition::sweep::sweep::{StudyPart, Sweep};
+pub use crate::studies::recognition::sweep::configurations::{StudyPart, Sweep};
 pub use crate::studies::recognition::touches::drawn_touches::{TouchedObject, draw_touches};
 
 /// The rows of the result tables.

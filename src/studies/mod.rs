@@ -32,7 +32,7 @@ use crate::error::{Error, Result};
 use crate::files::{OwnedFiles, RUN, with_folder};
 use crate::inputs::check::Check;
 use crate::report::csv_tables::FAILURES_FILE;
-use crate::studies::recognition::plan::plan::Plan;
+use crate::studies::recognition::plan::study_plan::Plan;
 use crate::table::Table;
 use crate::toml_numbers::with_line;
 use crate::toml_text;

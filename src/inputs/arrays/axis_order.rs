@@ -71,6 +71,9 @@ impl FrameShape {
 
     /// Returns one number of each taxel, row by row, shape (rows · columns), of an array with the axes that taxels have in a file of frames of
     /// the shape `frames`, or of rows × columns, or of a list. The error is the shape that was expected.
+    ///
+    /// # Errors
+    /// If the numbers of the file do not fill the frames; the error is their shape.
     pub fn arrange_taxels(
         &self,
         numbers: ArrayD<f64>,

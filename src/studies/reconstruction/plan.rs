@@ -10,7 +10,7 @@ use crate::sensing::{Basis, Dictionary, Effort, Ensemble, Projection, Solver};
 use crate::signal::{Noise, NoiseUnit, Quantity, SignalStep};
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use crate::studies::recognition::spec::signal::{SignalSpec, StepSpec};
-use crate::studies::recognition::sweep::sweep::nested;
+use crate::studies::recognition::sweep::configurations::nested;
 use crate::studies::reconstruction::rows::ReconstructionCell;
 use crate::studies::reconstruction::spec::{ReconstructionSpec, ReconstructionStudySpec};
 use crate::world::{Grid, Placement};

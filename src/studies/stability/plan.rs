@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::inputs::check::{COUNT, Check, Range};
 use crate::inputs::units::MM;
-use crate::studies::recognition::sweep::sweep::nested;
+use crate::studies::recognition::sweep::configurations::nested;
 use crate::studies::stability::rows::StabilityCell;
 use crate::studies::stability::spec::{
     ContactMethod, StabilityPartSpec, StabilityScene, StabilityStudySpec,

@@ -150,7 +150,7 @@ impl Classifier {
     ) -> Result<Chosen> {
         let (_, scaled) = self.scaled(training)?;
         if let Some(params) = self.kernel_svm(1.0) {
-            return Ok(choose(&params, &scaled, folds, candidates)?);
+            return choose(&params, &scaled, folds, candidates);
         }
         let train = |fitting: &Dataset, c| {
             let model = self.train_model(fitting, Some(c), seed)?;
@@ -336,12 +336,8 @@ where
 /// Our own errors as they are; another crate's as bad input to its classifier.
 fn own_or_wrapped(error: impl std::error::Error + 'static) -> Error {
     let error: Box<dyn std::error::Error> = Box::new(error);
-    let error = match error.downcast::<Error>() {
-        Ok(own) => return *own,
-        Err(error) => error,
-    };
-    match error.downcast::<crate::Error>() {
-        Ok(of_svm) => (*of_svm).into(),
+    match error.downcast::<Error>() {
+        Ok(own) => *own,
         Err(other) => Error::input("classifier", other, "see its documentation"),
     }
 }

@@ -1,13 +1,13 @@
 //! What a study of recognition shows of its tables: charts, sentences, and what its page has beside those of any study.
 
 pub(crate) mod answers;
-pub(crate) mod charts;
 pub(crate) mod filled;
 pub(crate) mod robustness;
 pub(crate) mod sections;
+pub(crate) mod table_charts;
 pub(crate) mod tables;
 
 pub use crate::studies::recognition::charts::answers::{answers, words};
-pub use crate::studies::recognition::charts::charts::charts;
 pub use crate::studies::recognition::charts::sections::sections;
+pub use crate::studies::recognition::charts::table_charts::charts;
 pub use crate::studies::recognition::charts::tables::{CELLS, TABLE_NAMES, read_tables, tables_of};

@@ -24,7 +24,7 @@ use crate::studies::recognition::measurements::measurement::{Measurements, measu
 use crate::studies::recognition::plan::group::Group;
 use crate::studies::recognition::rows::cell::Cell;
 use crate::studies::recognition::spec::study::RecognitionSpec;
-use crate::studies::recognition::sweep::sweep::{StudyPart, Sweep};
+use crate::studies::recognition::sweep::configurations::{StudyPart, Sweep};
 use crate::studies::recognition::training::evaluation_inputs::FamilyInputs;
 use crate::studies::recognition::training::trial::learned_rows;
 use bubbletouch_svm::dataset::{Dataset, dataset, rows};

@@ -30,14 +30,14 @@ use crate::studies::recognition::frames::array_press::{ArrayPress, ArrayWorkspac
 use crate::studies::recognition::frames::human_touches::HumanTouches;
 use crate::studies::recognition::frames::touch_set::TouchSet;
 use crate::studies::recognition::plan::group::Group;
-use crate::studies::recognition::plan::plan::{Plan, as_written};
 use crate::studies::recognition::plan::sensed::Sensed;
+use crate::studies::recognition::plan::study_plan::{Plan, as_written};
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use crate::studies::recognition::spec::human::HumanTouchSpec;
 use crate::studies::recognition::spec::recorded::{PreviousTouch, RecordedSpec};
 use crate::studies::recognition::spec::scene::SkinSpec;
 use crate::studies::recognition::spec::signal::StepSpec;
-use crate::studies::recognition::sweep::sweep::StudyPart;
+use crate::studies::recognition::sweep::configurations::StudyPart;
 use crate::studies::recognition::touches::drawn_touches::touch_stream;
 use crate::world::{ArrayLayout, RestPose, Touch, TouchSource};
 use ndarray::Array2;

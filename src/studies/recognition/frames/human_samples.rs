@@ -8,7 +8,7 @@ use crate::signal::Quantity;
 use crate::studies::recognition::frames::human_touches::{HumanTouches, record_touch};
 use crate::studies::recognition::frames::samples::named_samples;
 use crate::studies::recognition::frames::touch_set::{Samples, TouchSet};
-use crate::studies::recognition::plan::plan::Plan;
+use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use ndarray::Array2;
 use rayon::prelude::*;
@@ -21,6 +21,9 @@ const N_LOOKED_AT: usize = 10;
 
 /// Of the kinds that the study names for its picture (else of all), the firmest of the first touches, at four instants evenly between
 /// those when its first and its last taxel are touched; on the study's finest array, without noise.
+///
+/// # Errors
+/// If the study has no cells, names an unknown kind of touch, or has a skin that cannot be made.
 pub fn human_samples(plan: &Plan, touches: &HumanTouches) -> Result<Samples> {
     let n_taxels = |array: &&TaxelArray| array.n_taxels();
     // The first of several.

@@ -10,7 +10,7 @@ use crate::studies::recognition::frames::kept::Frames;
 use crate::studies::recognition::frames::reading::{TouchToRead, touches_to_read};
 use crate::studies::recognition::frames::touch_set::{Samples, TouchSet};
 use crate::studies::recognition::plan::group::Group;
-use crate::studies::recognition::plan::plan::Plan;
+use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use ndarray::ArrayViewMut2;
 

@@ -23,7 +23,7 @@ use crate::studies::recognition::frames::reading::{TouchToRead, touches_to_read}
 use crate::studies::recognition::frames::samples::spread_samples;
 use crate::studies::recognition::frames::touch_set::{Samples, TouchSet};
 use crate::studies::recognition::plan::group::Group;
-use crate::studies::recognition::plan::plan::Plan;
+use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use crate::studies::recognition::spec::recorded::{PreviousTouch, RecordedSpec, ZeroSpec};
 use ndarray::{Array1, Array2, ArrayView1, ArrayViewMut2, Axis, concatenate};

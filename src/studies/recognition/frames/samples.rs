@@ -12,7 +12,7 @@ use crate::studies::recognition::frames::reading::{ReadSkin, Reading, measure, t
 use crate::studies::recognition::frames::simulation::simulate_array;
 use crate::studies::recognition::frames::touch_set::{Samples, TouchSet};
 use crate::studies::recognition::plan::group::Group;
-use crate::studies::recognition::plan::plan::Plan;
+use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::plan::taxel_array::skin;
 use crate::studies::recognition::spec::signal::StepSpec;
 use crate::studies::recognition::touches::drawn_touches::TouchedObject;

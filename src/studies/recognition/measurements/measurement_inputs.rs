@@ -10,13 +10,13 @@ use crate::random::Seed;
 use crate::sensing::Ensemble;
 use crate::signal::{Noise, NoiseUnit, SignalStep, Strength};
 use crate::studies::recognition::plan::group::Group;
-use crate::studies::recognition::plan::plan::Plan;
 use crate::studies::recognition::plan::signal::Condition;
+use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use crate::studies::recognition::rows::cell::Cell;
 use crate::studies::recognition::rows::image_features::FeaturesOfImages;
 use crate::studies::recognition::spec::signal::StepSpec;
-use crate::studies::recognition::sweep::sweep::Sweep;
+use crate::studies::recognition::sweep::configurations::Sweep;
 use bubbletouch_svm::split::Split;
 
 /// Inputs of the measurements of a group of cells.

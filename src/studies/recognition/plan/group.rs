@@ -2,8 +2,8 @@
 
 use crate::inputs::sensor_errors::TestedOn;
 use crate::sensing::Ensemble;
-use crate::studies::recognition::plan::plan::Plan;
 use crate::studies::recognition::plan::signal::Condition;
+use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::rows::cell::Cell;
 use crate::studies::recognition::rows::image_features::FeaturesOfImages;
 

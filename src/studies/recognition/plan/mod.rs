@@ -3,13 +3,13 @@
 pub mod group;
 pub(crate) mod human;
 pub(crate) mod learning;
-pub mod plan;
 pub mod pose_groups;
 pub(crate) mod recorded;
 pub(crate) mod scene;
 pub mod sensed;
 pub(crate) mod shear;
 pub mod signal;
+pub mod study_plan;
 pub mod taxel_array;
 pub mod tested;
 pub mod trials;

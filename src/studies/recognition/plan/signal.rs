@@ -7,7 +7,7 @@ use crate::inputs::check::{Check, Range};
 use crate::inputs::sensor_errors::{NOISES, Strengths, all_strengths};
 use crate::inputs::units::MM;
 use crate::signal::{NoiseUnit, SENSOR_ERRORS, Strength};
-use crate::studies::recognition::plan::plan::Plan;
+use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::spec::scene::{SensedSpec, TouchesSpec};
 use crate::studies::recognition::spec::signal::{SignalAxis, SignalSpec, StepSpec};
 

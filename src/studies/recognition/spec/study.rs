@@ -1,6 +1,6 @@
 //! A study as it is written: the keys of its TOML file, in the units of its keys.
 //!
-//! Nothing is checked here beyond names and types; [`Plan`](crate::studies::recognition::plan::plan::Plan) does that. An axis takes one value or a list.
+//! Nothing is checked here beyond names and types; [`Plan`](crate::studies::recognition::plan::study_plan::Plan) does that. An axis takes one value or a list.
 
 use crate::engine::axes;
 use crate::engine::axes::{AxisRules, StudyAxes};

@@ -3,8 +3,8 @@
 use crate::report::csv_tables::MISSED_TOUCHES;
 use crate::studies::recognition::rows::cell::Cell;
 use crate::studies::recognition::rows::table_rows::{Limit, TrialScore};
+use crate::studies::recognition::study::recognition_study::RecognitionStudy;
 use crate::studies::recognition::study::rows::TouchRow;
-use crate::studies::recognition::study::study::RecognitionStudy;
 
 impl RecognitionStudy {
     /// Of touches on all arrays, and of fits.

@@ -1,7 +1,7 @@
 //! What the touches of a study depend on.
 
 use crate::inputs::objects_spec::ObjectsSpec;
-use crate::studies::recognition::plan::plan::Plan;
+use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::spec::human::HumanTouchSpec;
 use crate::studies::recognition::spec::recorded::RecordedSpec;
 use crate::world::Placement;

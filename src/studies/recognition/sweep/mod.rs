@@ -1,5 +1,5 @@
 //! The splits and configurations of a study.
 
+pub mod configurations;
 pub(crate) mod learned_frames;
 pub mod splits;
-pub mod sweep;

@@ -6,7 +6,7 @@ use crate::learning::data::split::{
     Side, given_hold_out, group_hold_out, group_k_fold, stratified_hold_out, stratified_k_fold,
 };
 use crate::random::Seed;
-use crate::studies::recognition::plan::plan::Plan;
+use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::spec::pose_split::PoseSplit;
 use crate::world::Touch;
 use bubbletouch_svm::split::Split;
@@ -76,6 +76,9 @@ pub fn first_equal(splits: &[Split]) -> Vec<usize> {
 
 /// The training-touches axis: what is asked for, or all that the smallest training split has for every object. Every object has test touches
 /// for at least one group in every trial, a training touch for each fold where C or γ is chosen, and one at every imbalance.
+///
+/// # Errors
+/// If a split has fewer training touches of an object than the study asks for.
 pub fn train_touches(plan: &Plan, splits: &[Split], labels: &Array1<usize>) -> Result<Vec<usize>> {
     let recognition = &plan.spec.recognition;
     let at_most = |key: &str, given: f64, most: usize, what: &str| {

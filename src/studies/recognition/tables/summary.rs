@@ -20,6 +20,9 @@ type Row = (Cell, TrialScore);
 
 /// Returns one row per cell from one row per cell and trial; the trials of a cell follow each other. `groups` are the groups that the trials tested,
 /// row by row, if there are any. `n_folds` returns the number of folds of a cell's study, 1 without folds.
+///
+/// # Errors
+/// If trials of a cell have no rows.
 pub fn summarise<C: Clone + PartialEq>(
     rows: &[(C, TrialScore)],
     mut groups: &[Vec<GroupCount>],
@@ -109,6 +112,9 @@ fn mean(trials: &[Row], value: fn(&TrialScore) -> f64) -> f64 {
 }
 
 /// Every cell against the one with the highest mean accuracy in its condition (the first of equals), paired trial by trial.
+///
+/// # Errors
+/// If a trial has no training or test rows.
 pub fn compare_with_best(rows: &[Row]) -> Result<Vec<Comparison>> {
     let cells: Vec<&[Row]> = rows.chunk_by(|a, b| a.0.cell == b.0.cell).collect();
     let mut best = vec![0; cells.len()];
@@ -217,6 +223,9 @@ fn rows_of_objects(confusion: &[Confusion], cell: usize) -> BTreeMap<&str, usize
 }
 
 /// What the accuracy of every cell costs, and which cells are worth their cost; both tables have the same rows.
+///
+/// # Errors
+/// If a cell has no form in a table.
 pub fn pareto(rows: &[Row], times: &[(Cell, TrialTime)]) -> Result<Vec<(Cell, Pareto)>> {
     let same_cell = |a: &(Cell, TrialTime), b: &(Cell, TrialTime)| a.0.cell == b.0.cell;
     let mut table: Vec<(Cell, Pareto)> = rows

@@ -14,6 +14,9 @@ use std::collections::BTreeMap;
 
 /// Fills every table but those of stages and of published numbers; `name` returns the class of a label in a cell, `n_folds` the number of folds of a
 /// cell's study, 1 without folds, and `matrices` lists the cells that keep their confusion matrix.
+///
+/// # Errors
+/// If trials of a cell have no rows.
 pub fn tabulate(
     tables: &mut Tables,
     mut scored: Vec<(Cell, Evaluation)>,

@@ -8,6 +8,9 @@ use crate::studies::recognition::rows::cell::Cell;
 use crate::studies::recognition::rows::table_rows::{Source, TrialScore, Variance};
 
 /// Three rows a cell whose trials combine every split with every projection; none for other cells.
+///
+/// # Errors
+/// If the scores of a cell cannot be decomposed.
 pub fn variances(rows: &[(Cell, TrialScore)]) -> Result<Vec<Variance>> {
     let mut table = Vec::new();
     for trials in rows.chunk_by(|a, b| a.0.cell == b.0.cell) {

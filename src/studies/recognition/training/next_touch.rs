@@ -7,7 +7,7 @@ use crate::learning::evaluation::next_touch::{
 use crate::studies::recognition::training::evaluation_inputs::{
     Decision, FamilyInputs, TrialInputs,
 };
-use crate::studies::recognition::training::training::{Fitted, Training};
+use crate::studies::recognition::training::fit::{Fitted, Training};
 use bubbletouch_svm::dataset::Dataset;
 use bubbletouch_svm::split::Split;
 use ndarray::Array1;

@@ -11,10 +11,10 @@ use crate::studies::recognition::rows::table_rows::{TrialScore, TrialTime};
 use crate::studies::recognition::training::evaluation_inputs::{
     Decision, FamilyInputs, TrialInputs,
 };
+use crate::studies::recognition::training::fit::{Fitted, Training};
 use crate::studies::recognition::training::next_touch::AnsweredTouches;
 use crate::studies::recognition::training::next_touch::Decide;
 use crate::studies::recognition::training::next_touch::{answer_model, choose_touches};
-use crate::studies::recognition::training::training::{Fitted, Training};
 use bubbletouch_svm::dataset::{Dataset, dataset};
 use bubbletouch_svm::split::Split;
 use ndarray::{Array1, Axis};
@@ -62,6 +62,9 @@ fn decider<'a>(fitted: &'a Fitted, test: &Dataset, cells: &[Decision]) -> Result
 
 impl Trial<'_> {
     /// Fits and tests the cells of a [family](crate::studies::recognition::plan::group::Group::families) on their leading measurements, in their order.
+    ///
+    /// # Errors
+    /// If rows of the family cannot be made, or its classifier refuses them.
     pub fn evaluate(&self, family: &FamilyInputs) -> Result<Vec<Evaluation>> {
         let split = self.inputs.split(family)?;
         let training = self.training(family, &split)?;

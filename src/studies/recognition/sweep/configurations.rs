@@ -19,7 +19,7 @@ use crate::random::Seed;
 use crate::studies::recognition::frames::samples::named_samples;
 use crate::studies::recognition::frames::touch_set::TouchSet;
 use crate::studies::recognition::plan::group::Group;
-use crate::studies::recognition::plan::plan::Plan;
+use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::plan::taxel_array::skin;
 use crate::studies::recognition::rows::cell::Cell;
 use crate::studies::recognition::sweep::learned_frames::learned_touches;
@@ -33,7 +33,7 @@ use std::sync::Arc;
 macro_rules! nested {
     ($name:pat in $values:expr; $($rest:tt)*) => {
         for $name in $values {
-            $crate::studies::recognition::sweep::sweep::nested!($($rest)*)
+            $crate::studies::recognition::sweep::configurations::nested!($($rest)*)
         }
     };
     ($body:expr) => {

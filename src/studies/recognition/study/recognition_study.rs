@@ -11,7 +11,7 @@ use crate::inputs::objects_spec::ObjectsSpec;
 use crate::inputs::units::millimetres;
 use crate::studies::recognition::frames::touch_set::{Samples, TouchSet};
 use crate::studies::recognition::plan::group::Group;
-use crate::studies::recognition::plan::plan::Plan;
+use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use crate::studies::recognition::rows::cell::Cell;
 use crate::studies::recognition::rows::table_rows::{StageTime, Tables};
@@ -19,13 +19,16 @@ use crate::studies::recognition::spec::recorded::RecordedSpec;
 use crate::studies::recognition::spec::study::ConfusionMatrices;
 use crate::studies::recognition::study::rows::{RecognitionRows, TouchRow};
 use crate::studies::recognition::study::touch_inputs::TouchInputs;
-use crate::studies::recognition::sweep::sweep::{StudyPart, Sweep};
+use crate::studies::recognition::sweep::configurations::{StudyPart, Sweep};
 use crate::studies::recognition::tables::published::{check_published, compare_with_published};
 use crate::studies::recognition::tables::tabulate::tabulate;
 use crate::studies::study::run_whole;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ops::Range;
 use std::sync::Arc;
+
+/// A combination of a study's own axes: their values, the plan, and the touches that are learned and those that are tested.
+pub type StudyVariant = (AxisValues, Plan, [Arc<dyn TouchSet + Send>; 2]);
 
 /// A recognition study that is laid out.
 pub struct RecognitionStudy {
@@ -96,9 +99,7 @@ impl RecognitionStudy {
     ///
     /// # Errors
     /// Those of [`new`](Self::new).
-    pub fn of_variants(
-        variants: Vec<(AxisValues, Plan, [Arc<dyn TouchSet + Send>; 2])>,
-    ) -> Result<Self> {
+    pub fn of_variants(variants: Vec<StudyVariant>) -> Result<Self> {
         let mut study = Self {
             parts: Vec::with_capacity(variants.len()),
             scale: Scale::default(),
