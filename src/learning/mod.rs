@@ -1,6 +1,6 @@
-//! Learning: labelled rows → classifiers and scores. Nothing here knows of touch.
+//! Machine learning on labelled rows: classifiers and scores. This module is independent of touch.
 //!
-//! | room | in → out |
+//! | module | input → output |
 //! |---|---|
 //! | [`data`] | labelled rows → checked data sets, splits, one scale |
 //! | [`classifiers`] | training rows → trained classifiers of any kind |

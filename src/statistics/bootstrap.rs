@@ -1,4 +1,4 @@
-//! Intervals of a mean over trials by the bootstrap.
+//! Bootstrap confidence intervals of a mean over trials.
 
 use crate::quantile::of_sorted;
 use crate::random::Seed;
@@ -9,14 +9,15 @@ use rand::Rng;
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 use std::collections::BTreeMap;
 
-/// Trials below which there is no interval: the resamples of four cannot reach far enough to cover 95 %.
+/// Minimum number of trials for an interval: the resamples of four trials are too few to cover 95 %.
 pub const FEWEST: usize = 5;
 
-/// Resamples. Where there are no more different ones (five trials), each of them once, and nothing is drawn.
+/// Number of resamples. If fewer distinct resamples exist (five trials), each of them is used once and nothing is drawn.
 const RESAMPLES: usize = 4000;
 
-/// How often the 95 % interval of so many trials truly holds their expectation, to a hundredth; none where there is no interval. The least of trials that
-/// are normal and of accuracies of 0.9 and 0.98 at 100 test rows (20,000 draws each): the test `print_the_table_of_the_guide`.
+/// Returns the true coverage of the 95 % interval for `n_trials` trials, rounded to 0.01; `None` if there is no interval. The value is the lowest coverage
+/// among
+/// normal scores and accuracies of 0.9 and 0.98 at 100 test rows (20,000 draws each). Source: the test `print_the_table_of_the_guide`.
 pub fn coverage_of_95(n_trials: usize) -> Option<f64> {
     match n_trials {
         0..FEWEST => None,
@@ -27,28 +28,32 @@ pub fn coverage_of_95(n_trials: usize) -> Option<f64> {
     }
 }
 
-/// Draws resamples once for each number of trials, so that a table of many cells is quick. Draws do not depend on a study's seed:
-/// equal scores have equal intervals, whoever computes them.
+/// Bootstrap with cached resamples, which are drawn once for each number of trials. The draws do not depend on a study's seed, so equal scores always have
+/// equal intervals.
 #[derive(Debug, Default)]
 pub struct Bootstrap {
     drawn: BTreeMap<(&'static str, usize), Vec<u32>>,
 }
 
 impl Bootstrap {
-    /// Bootstrap interval of the mean of `scores`: one row a trial; or splits × projections, for trials that combine each
-    /// of a few splits with each of a few projections.
+    /// Returns the bootstrap interval of the mean of `scores`. The shape is (n_trials, 1), or splits × projections for crossed trials. Returns `None` for
+    /// fewer
+    /// than [`FEWEST`] rows, or for 2 to 4 columns.
     ///
-    /// Rows are drawn with replacement and, if there are several, columns too, independently of the rows (the pigeonhole
-    /// bootstrap: Owen, *The pigeonhole bootstrap*, Annals of Applied Statistics 2007). The ends are percentiles of the
-    /// resampled means, further out than `confidence` says by as much as Student's t is wider than a normal distribution and
-    /// s² wider than the resamples' variance (the expanded percentile interval: Hesterberg, *What teachers should know about
-    /// the bootstrap*, American Statistician 2015): with n the smaller number of rows or columns (rows alone if one column),
-    /// the tail is Φ(−√(n/(n−1)) · t). Plain percentiles of five trials would cover 83 % in place of 95 %.
+    /// Rows are drawn with replacement. If there are several columns, columns are drawn too, independently of the rows (Owen, *The pigeonhole bootstrap*,
+    /// Annals of
+    /// Applied Statistics 2007).
     ///
-    /// `None` for fewer than [`FEWEST`] rows, or for 2 to 4 columns.
+    /// The interval is the expanded percentile interval (Hesterberg, *What teachers should know about the bootstrap*, American Statistician 2015). The
+    /// percentiles of
+    /// the resampled means are moved outwards for two reasons: Student's t is wider than a normal distribution, and s² exceeds the variance of the resamples.
+    /// Let n be
+    /// the smaller number of rows or columns (of rows alone, if there is one column). The tail is Φ(−√(n/(n−1)) · t). Plain percentiles of five trials would
+    /// cover
+    /// 83 % instead of 95 %.
     ///
     /// # Errors
-    /// A score that is not finite, no columns, or a confidence outside 0..1.
+    /// If a score is not finite, there are no columns, or the confidence is outside 0..1.
     pub fn mean(&mut self, scores: ArrayView2<f64>, confidence: f64) -> Result<Option<Interval>> {
         check_confidence(confidence)?;
         if let Some(score) = scores.iter().find(|score| !score.is_finite()) {
@@ -85,7 +90,7 @@ impl Bootstrap {
         }))
     }
 
-    /// Resamples of `n`: which of them each takes, n after n.
+    /// Returns the resamples of `n` trials: consecutive blocks of `n` trial indices.
     fn drawn(&mut self, what: &'static str, n: usize) -> &[u32] {
         self.drawn.entry((what, n)).or_insert_with(|| {
             let n_different = (n as u128).checked_pow(n as u32);
@@ -102,7 +107,7 @@ impl Bootstrap {
     }
 }
 
-/// Every resample of `n` once: the numbers of n digits to the base n.
+/// Returns every resample of `n` trials once: all numbers with n digits in base n.
 fn all_of(n: usize) -> Vec<u32> {
     let digit = |number: usize, place: usize| (number / n.pow(place as u32) % n) as u32;
     (0..n.pow(n as u32))
@@ -131,7 +136,7 @@ fn means_of_blocks(scores: ArrayView2<f64>, rows: &[u32], columns: &[u32]) -> Ve
     resamples.map(mean).collect()
 }
 
-/// The share of resamples left out at either end.
+/// Returns the fraction of resamples cut off at each end.
 fn tail(n: usize, confidence: f64) -> Result<f64> {
     let n = n as f64;
     let student = StudentsT::new(0.0, 1.0, n - 1.0)
@@ -153,7 +158,7 @@ mod tests {
 
     #[test]
     fn five_trials_give_what_all_their_resamples_give_in_numpy() {
-        // NumPy and SciPy: itertools.product(x, repeat=5), means, quantiles at norm.cdf(-sqrt(5/4) t.ppf(0.975, 4)) and 1 − that.
+        // Expected values: itertools.product(x, repeat=5), means, and quantiles at norm.cdf(-sqrt(5/4) t.ppf(0.975, 4)) and 1 minus this (NumPy and SciPy).
         for (scores, low, high) in [
             ([0.91, 0.93, 0.90, 0.94, 0.92], 0.902, 0.938),
             ([0.91, 0.93, 0.70, 0.94, 0.99], 0.742, 0.98),
@@ -175,13 +180,13 @@ mod tests {
         let half = 2.000_995 * error; // t.ppf(0.975, 59) of SciPy
         let found = Bootstrap::default().mean(column(&scores), 0.95);
         let found = found.unwrap().unwrap();
-        // A quantile of 4,000 draws of a normal number: √(p(1 − p)/4000)/φ(2) standard deviations.
+        // Standard error of a quantile of 4,000 normal draws: √(p(1 − p)/4000)/φ(2) standard deviations.
         let of_quantile = error * of_share(0.022, RESAMPLES) / 0.0540;
         assert_expected("low", found.low, mean - half, of_quantile);
         assert_expected("high", found.high, mean + half, of_quantile);
     }
 
-    /// How often the interval of `draw`'s scores holds their expectation.
+    /// Returns how often the interval of the scores of `draw` contains their expectation.
     fn coverage(
         n_draws: usize,
         expected: f64,
@@ -192,13 +197,13 @@ mod tests {
         let holds = (0..n_draws).filter(|_| {
             let interval = bootstrap.mean(draw(&mut rng).view(), 0.95);
             let interval = interval.unwrap().unwrap();
-            // Means of equal scores are rounded.
+            // The means of equal scores have rounding errors.
             interval.low <= expected + 1e-12 && expected - 1e-12 <= interval.high
         });
         holds.count() as f64 / n_draws as f64
     }
 
-    /// Of normal scores, and of accuracies of 0.9 and 0.98 at 100 test rows.
+    /// Returns the coverage for normal scores, and for accuracies of 0.9 and 0.98 at 100 test rows.
     fn coverages(n_draws: usize, n_trials: usize) -> [f64; 3] {
         let of_accuracy = |p: f64| {
             let rows = Binomial::new(100, p).unwrap();
@@ -220,7 +225,7 @@ mod tests {
             let error = of_share(said, N_DRAWS);
             let found = coverages(N_DRAWS, n_trials);
             for held in found {
-                // What is said is rounded.
+                // The tabulated coverage is rounded.
                 let what = format!("{n_trials} trials");
                 assert_at_least(&what, held, said - 0.005, error);
             }
@@ -254,7 +259,7 @@ mod tests {
         }
     }
 
-    /// Scores of crossed trials with standard deviations of split, projection and rest.
+    /// Draws scores of crossed trials with given standard deviations of split, projection and residual.
     fn crossed(
         rng: &mut rand_chacha::ChaCha8Rng,
         (n_splits, n_projections): (usize, usize),

@@ -1,4 +1,4 @@
-//! Is one cell of a study better than another? A paired comparison over trials.
+//! Paired comparison of two configurations of a study over trials.
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
@@ -7,45 +7,45 @@ use crate::{Error, Result};
 use bubbletouch_sim::statistics::interval::{Interval, check_confidence};
 use ndarray::ArrayView2;
 
-/// The difference between two cells' scores over the same trials.
+/// Difference between the scores of two configurations over common trials.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Comparison {
     /// Mean of `a − b`.
     pub mean_difference: f64,
     /// Confidence interval of the mean difference.
     pub interval: Interval,
-    /// Two-sided p-value of 'no difference'.
+    /// Two-sided p-value of the null hypothesis 'no difference'.
     pub p_value: f64,
-    /// The number of trials.
+    /// Number of trials.
     pub n_trials: usize,
 }
 
-/// How a trial splits the touches.
+/// Numbers of training and test touches of a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TrialSize {
-    /// Training rows of a trial.
+    /// Number of training rows.
     pub n_train: usize,
-    /// Test rows of a trial.
+    /// Number of test rows.
     pub n_test: usize,
 }
 
-/// Compares the scores (accuracy or macro-F1) of two cells, trial by trial; `None` for fewer than two trials.
+/// Compares the scores (accuracy or macro-F1) of two configurations, trial by trial. Returns `None` for fewer than two trials.
 ///
-/// The corrected resampled t-test (Nadeau & Bengio, *Inference for the generalization error*, Machine Learning 52,
-/// 2003): with J trials and differences d_j of sample variance s²,
+/// The method is the corrected resampled t-test (Nadeau & Bengio, *Inference for the generalization error*, Machine Learning 52, 2003). With J trials and
+/// differences d_j of sample variance s²,
 ///
 /// `t = mean(d) / sqrt((1/J + n_test/n_train) s²)` with J − 1 degrees of freedom.
 ///
-/// If trials differ in their numbers of rows, as splits by unequal groups do, n_test/n_train is the mean over trials. `sizes` holds one size a trial,
-/// or one for all.
+/// If trials differ in their numbers of rows (splits by unequal groups), n_test/n_train is the mean over trials. `sizes` contains one size per trial, or
+/// one size for all trials.
 ///
-/// Trials split the same touches again and again, so their scores are not independent: the plain paired t-test (1/J
-/// alone) finds differences that are not there. Scores are multiples of about 1/n_test, so s² is taken no smaller than
-/// the variance of such rounding, `1/(12 n_test²)`: equal differences in a few trials do not make certainty.
+/// All trials split one set of touches, so their scores are not independent. The plain paired t-test (1/J alone) would find differences that do not exist.
+/// Scores
+/// are multiples of about 1/n_test, so s² is at least the variance of such rounding, `1/(12 n_test²)`. Equal differences in a few trials are therefore no
+/// proof.
 ///
 /// # Errors
-/// Another number of scores in `a` than in `b`, a score that is not finite, no training or no test rows, or a
-/// confidence outside 0..1.
+/// If `a` and `b` differ in length, a score is not finite, a trial has no training or no test rows, or the confidence is outside 0..1.
 pub fn compare(
     a: &[f64],
     b: &[f64],
@@ -71,18 +71,18 @@ pub fn compare(
     estimate.test(n_trials, confidence).map(Some)
 }
 
-/// The same for trials that combine every one of S splits (rows of `a` and `b`) with every one of P projections (columns);
-/// `None` for fewer than two of either.
+/// Compares two configurations whose trials combine all S splits (rows of `a` and `b`) with all P projections (columns). Returns `None` for fewer than two
+/// splits
+/// or two projections, or if `a` and `b` differ in shape.
 ///
-/// With the mean squares of the differences by splits, projections and the rest, the variance of their mean is
+/// With the mean squares of the differences by splits, projections and residual, the variance of the mean difference is
 ///
 /// `(1/S + n_test/n_train) MS_splits / P  +  max(0, MS_projections − MS_rest) / (S P)`
 ///
-/// so that the answer holds for other splits and for other projections; its degrees of freedom are Satterthwaite's.
+/// The result therefore generalises to other splits and to other projections. The degrees of freedom are Satterthwaite's.
 ///
 /// # Errors
-/// Another number of scores in `a` than in `b`, a score that is not finite, no training or no test rows, or a
-/// confidence outside 0..1.
+/// If `a` and `b` differ in length, a score is not finite, a trial has no training or no test rows, or the confidence is outside 0..1.
 pub fn compare_crossed(
     a: ArrayView2<f64>,
     b: ArrayView2<f64>,
@@ -113,28 +113,30 @@ pub fn compare_crossed(
         let parts = part(of_splits, n_splits - 1.0)
             + part(squares.columns / n_trials, n_projections - 1.0)
             + part(squares.rest / n_trials, squares.rest_freedom() as f64);
-        // No fewer than those of the smaller number of draws.
+        // Lower bound: the degrees of freedom of the smaller number of draws.
         let fewest = (n_splits - 1.0).min(n_projections - 1.0);
         estimate.freedom = part(estimate.variance, parts).max(fewest);
     }
     estimate.test(a.len(), confidence).map(Some)
 }
 
-/// How far from none, in standard deviations between trials, a difference is that practically every trial agrees about.
+/// Size of a difference, in standard deviations between trials, on which practically every trial agrees.
 const AGREED: f64 = 3.0;
-/// Trials that a study may be asked for.
+/// Upper bound of the number of trials that [`trials_needed`] searches.
 const MOST_TRIALS: usize = 1000;
 
-/// The fewest trials (of crossed ones: splits) that can tell anything: with them [`compare`] finds even a difference significant of three
-/// times the standard deviation between trials, one that practically every trial agrees about,
+/// Returns the smallest number of trials J (for crossed trials: splits) that can give a significant result. With J trials, [`compare`] finds a difference of
+/// three
+/// standard deviations between trials significant; practically every trial agrees on such a difference. The condition is
 ///
 /// `t(J − 1) · sqrt(1/J + n_test/n_train) ≤ 3`
 ///
-/// with Student's two-sided quantile t. With three training rows for each test row, these are 4: three trials would need 3.5 standard
-/// deviations, two 11.6. `None` where 1,000 trials are not enough, because the test rows are more than twice the training rows.
+/// with Student's two-sided quantile t. With three training rows for each test row, J is 4: three trials would need 3.5 standard deviations, two 11.6.
+/// Returns
+/// `None` if 1,000 trials are not enough, because there are more than twice as many test rows as training rows.
 ///
 /// # Errors
-/// No training or no test rows, or a confidence outside 0..1.
+/// If a trial has no training or no test rows, or the confidence is outside 0..1.
 pub fn trials_needed(sizes: &[TrialSize], confidence: f64) -> Result<Option<usize>> {
     check(&[], &[], sizes)?;
     check_confidence(confidence)?;
@@ -143,7 +145,7 @@ pub fn trials_needed(sizes: &[TrialSize], confidence: f64) -> Result<Option<usiz
         let quantile = student(n - 1.0)?.inverse_cdf(0.5 + 0.5 * confidence);
         Ok(quantile * (1.0 / n + overlap(sizes)).sqrt() <= AGREED)
     };
-    // What the most are too few for, fewer are too.
+    // If the maximum is too few, every smaller number is too few.
     if !is_enough(MOST_TRIALS)? {
         return Ok(None);
     }
@@ -155,7 +157,7 @@ pub fn trials_needed(sizes: &[TrialSize], confidence: f64) -> Result<Option<usiz
     Ok(Some(MOST_TRIALS))
 }
 
-/// Returns the mean of n_test / n_train: what trials that share their touches add to the variance of their mean.
+/// Returns the mean of n_test / n_train: the correction of the variance for trials that share touches.
 fn overlap(sizes: &[TrialSize]) -> f64 {
     mean_of(sizes, |size| size.n_test as f64 / size.n_train as f64)
 }
@@ -168,14 +170,14 @@ fn rounding(sizes: &[TrialSize]) -> f64 {
     })
 }
 
-/// Returns the mean of a value over trials; of equal values that value, without rounding.
+/// Returns the mean of a value over trials; exact, without rounding, if all values are equal.
 fn mean_of(sizes: &[TrialSize], value: impl Fn(&TrialSize) -> f64) -> f64 {
     let first = value(&sizes[0]);
     let above: f64 = sizes.iter().map(|size| value(size) - first).sum();
     first + above / sizes.len() as f64
 }
 
-/// A mean difference, its variance, and the degrees of freedom of that.
+/// A mean difference, its variance, and the degrees of freedom of the variance.
 struct Estimate {
     mean: f64,
     variance: f64,
@@ -243,7 +245,7 @@ mod tests {
 
     #[test]
     fn the_comparison_is_the_formula_evaluated_with_scipy() {
-        // SciPy 1.17.1's Student t in the formula above. The plain paired t-test (ttest_rel) says p = 0.034.
+        // Expected values: the formula above with Student's t of SciPy 1.17.1. The plain paired t-test (ttest_rel) gives p = 0.034.
         let a = [0.91, 0.93, 0.90, 0.94, 0.92];
         let b = [0.88, 0.92, 0.89, 0.90, 0.91];
         let comparison = compare(&a, &b, &[SIZE], 0.95).unwrap().unwrap();
@@ -263,7 +265,7 @@ mod tests {
                 .map(|k| 0.3 + if k % 2 == 0 { step } else { -step })
                 .collect();
             if n % 2 == 1 {
-                // An odd one in the middle, and the others further out.
+                // An odd number of trials: the middle value equals the mean, and the others are further apart.
                 let wider = 0.1;
                 a = (0..n).map(|k| 0.3 + wider * [1.0, -1.0][k % 2]).collect();
                 a[n - 1] = 0.3;
@@ -299,7 +301,7 @@ mod tests {
 
     #[test]
     fn the_crossed_comparison_is_the_formula_evaluated_with_scipy() {
-        // SciPy 1.17.1's Student t in the formula above.
+        // Expected values: the formula above with Student's t of SciPy 1.17.1.
         let a = array![
             [0.80, 0.82, 0.78],
             [0.84, 0.88, 0.83],
@@ -328,7 +330,7 @@ mod tests {
 
     #[test]
     fn crossed_trials_that_differ_by_nothing_are_told_apart_as_seldom_as_it_should() {
-        // Few test rows for many training rows, so that the overlap is nothing.
+        // Few test rows for many training rows, so that the overlap is negligible.
         let size = TrialSize {
             n_train: 1_000_000,
             n_test: 100,
@@ -354,7 +356,7 @@ mod tests {
             let share = alarms.count() as f64 / n as f64;
             let what = format!("{split}, {projection}");
             assert_at_most(&what, share, 0.05, of_share(0.05, n));
-            // Degrees of freedom are no fewer than those of the smaller number of draws, which is on the safe side.
+            // The lower bound of the degrees of freedom makes the test conservative.
             assert!(share > 0.01, "{what}: {share}");
         }
     }
@@ -396,11 +398,11 @@ mod tests {
             (found.interval.high - mean - half).abs() < 1e-9,
             "{found:?}"
         );
-        // Whichever trial is the first.
+        // The order of the trials does not matter.
         let mut turned = unequal;
         turned.reverse();
         assert!((test(&turned).p_value - found.p_value).abs() < 1e-12);
-        // Equal sizes are one size.
+        // Equal sizes are equivalent to one common size.
         assert_eq!(test(&[SIZE; 4]), test(&[SIZE]));
         assert!(compare(&a, &b, &[], 0.95).is_err());
     }

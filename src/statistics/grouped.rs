@@ -1,24 +1,29 @@
-//! The interval of an accuracy whose test rows are held out in groups: of a pose, a yaw, a grasp, a day.
+//! Confidence intervals of an accuracy whose test rows are held out in groups: all rows of a pose, a yaw, a grasp or a day.
 //!
-//! Rows of a group are right or wrong together, so n of them say less than n independent ones. What the interval is of is how accuracies differ between
-//! groups [Abadie et al., *When should you adjust standard errors for clustering?*, Quarterly Journal of Economics 138, 2023: where whole groups are
-//! drawn]. With T tests of the accuracy θ = 1/T Σ_t c_t/n_t, group g has in each n_gt rows, of which c_gt are right, and
+//! Outcomes of one group are correlated, so n rows of few groups contain less information than n independent rows. The interval describes how the accuracy
+//! differs between groups. Source: Abadie et al., *When should you adjust standard errors for clustering?*, Quarterly Journal of Economics 138, 2023 (whole
+//! groups are sampled). The accuracy over T tests is θ = 1/T Σ_t c_t/n_t. In test t, group g has n_gt rows, of which c_gt are correct. Then
 //!
 //! ```text
 //! w_g = 1/T Σ_t n_gt/n_t     e_g = 1/T Σ_t (c_gt − θ n_gt)/n_t
 //! V   = G/(G − 1) Σ_g e_g²   the cluster-robust variance of θ
 //! D   = n V / θ(1 − θ)       the design effect, at least 1
-//! M   = n Σ w_g² / (Σ w_g)²  the design effect of groups whose rows are all right or all wrong together
-//! D*  = (k D + M)/(k + 1)    k = n min(θ, 1 − θ): rows of the rarer outcome
+//! M   = n Σ w_g² / (Σ w_g)²  the design effect if all rows of a group have one outcome
+//! D*  = (k D + M)/(k + 1)    k = n min(θ, 1 − θ): number of rows with the rarer outcome
 //! ```
 //!
-//! The interval is [Wilson's](Interval::wilson) of n/D* rows [Rao and Scott, *A simple method for the analysis of clustered binary data*, Biometrics 48,
-//! 1992: counts divided by the design effect are as those of independent rows], with Student's t of G − 1 degrees of freedom in the place of the normal
-//! quantile [Korn and Graubard, *Confidence intervals for proportions with small expected number of positive counts estimated from survey data*,
-//! Survey Methodology 24, 1998]. Differs from them: D*, because few errors cannot tell whether errors come in groups. Without any, D is unknown, and the
-//! rows count as one a group; each error that is seen adds to what D is believed of.
+//! The interval is [Wilson's interval](Interval::wilson) for n/D* rows, with Student's t of G − 1 degrees of freedom instead of the normal quantile.
 //!
-//! Several tests are of splits of the same touches, so a group that is tested again is the same group: n counts the rows of each group once.
+//! - Counts divided by the design effect behave as counts of independent rows: Rao and Scott, *A simple method for the analysis of clustered binary data*,
+//!   Biometrics 48, 1992.
+//! - Student's t: Korn and Graubard, *Confidence intervals for proportions with small expected number of positive counts estimated from survey data*, Survey
+//!   Methodology 24, 1998.
+//!
+//! Differs from both sources: D* replaces D, because a few errors cannot show whether errors are clustered. Without errors, D is unknown, and each group
+//! counts
+//! as one row. Each observed error increases the weight of D.
+//!
+//! Several tests may split one set of touches, so a group can be tested several times. The number n counts the rows of each group once.
 
 use crate::{Error, Result};
 use bubbletouch_sim::statistics::interval::{Interval, check_confidence};
@@ -26,22 +31,22 @@ use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 use std::collections::BTreeMap;
 
-/// Groups below which an interval says little: Student's t of three degrees of freedom is 3.2 in the place of 2.
+/// Number of groups below which an interval is uninformative: Student's t of three degrees of freedom is 3.2, where the normal quantile is 2.
 pub const FEW_GROUPS: usize = 5;
 
-/// The rows of one group in one test.
+/// Counts of the rows of one group in one test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(from = "[usize; 3]", into = "[usize; 3]")]
 pub struct GroupCount {
     /// Number of the group.
     pub group: usize,
-    /// Its test rows. A row of several groups (a decision on touches of several groups) counts in each of them, which makes intervals wider.
+    /// Number of the group's test rows. A row of several groups (a decision on touches of several groups) counts in each group, which widens intervals.
     pub n_rows: usize,
-    /// Those that were recognised.
+    /// Number of correctly recognised rows.
     pub n_correct: usize,
 }
 
-/// As it is kept: short, since there may be as many as touches.
+/// Serialises a count as an array, to save space: there may be as many counts as touches.
 impl From<GroupCount> for [usize; 3] {
     fn from(count: GroupCount) -> Self {
         [count.group, count.n_rows, count.n_correct]
@@ -58,18 +63,18 @@ impl From<[usize; 3]> for GroupCount {
     }
 }
 
-/// A test of whole groups.
+/// A test on whole groups of rows.
 #[derive(Clone, Copy, Debug)]
 pub struct GroupedTest<'a> {
-    /// Test rows.
+    /// Number of test rows.
     pub n_rows: usize,
-    /// Those that were recognised.
+    /// Number of correctly recognised rows.
     pub n_correct: usize,
-    /// The same group by group, each group once.
+    /// Counts of each group; each group appears once.
     pub groups: &'a [GroupCount],
 }
 
-/// Of each group that was tested, how many of some rows there are and how many of them are right, by number.
+/// Counts the rows and the correct rows of each group; returns the counts in ascending order of the group number.
 pub fn count_groups(rows: impl IntoIterator<Item = (usize, bool)>) -> Vec<GroupCount> {
     let mut counts = BTreeMap::new();
     for (group, is_correct) in rows {
@@ -86,10 +91,10 @@ pub fn count_groups(rows: impl IntoIterator<Item = (usize, bool)>) -> Vec<GroupC
     counts.collect()
 }
 
-/// The interval of the mean accuracy of some tests at a confidence, such as 0.95, and the number of groups it comes from. Of a single group it is 0 to 1.
+/// Returns the confidence interval of the mean accuracy of `tests`, and the number of groups. For a single group, the interval is 0 to 1.
 ///
 /// # Errors
-/// No tests, a test without rows or groups, more correct than rows, or a confidence outside 0..1.
+/// If there are no tests, a test has no rows or no groups, more rows are correct than exist, or the confidence is outside 0..1.
 pub fn interval_of_groups(tests: &[GroupedTest], confidence: f64) -> Result<(Interval, usize)> {
     check_confidence(confidence)?;
     let Clustered {
@@ -109,11 +114,12 @@ pub fn interval_of_groups(tests: &[GroupedTest], confidence: f64) -> Result<(Int
     Ok((interval, n_groups))
 }
 
-/// Returns the number of independent rows that say as much as the rows of all groups: n/D*, less what Student's t is wider than a normal distribution at
-/// this confidence. Of one group none.
+/// Returns the effective number of independent rows: n/D*, reduced by the squared ratio of the normal quantile to Student's quantile at this confidence.
+/// Returns
+/// 0 for a single group.
 ///
 /// # Errors
-/// Those of [`interval_of_groups`].
+/// Returns the errors of [`interval_of_groups`].
 pub fn independent_rows(tests: &[GroupedTest], confidence: f64) -> Result<f64> {
     check_confidence(confidence)?;
     let Clustered {
@@ -126,17 +132,17 @@ pub fn independent_rows(tests: &[GroupedTest], confidence: f64) -> Result<f64> {
     Ok(n_rows * (normal.inverse_cdf(tail) / student.inverse_cdf(tail)).powi(2))
 }
 
-/// What tests of groups say together.
+/// Pooled statistics of all tests; the symbols are defined in the module documentation.
 struct Clustered {
-    /// θ.
+    /// Mean accuracy θ.
     share: f64,
-    /// n/D*.
+    /// Effective number of rows n/D*.
     n_rows: f64,
-    /// G.
+    /// Number of groups G.
     n_groups: usize,
 }
 
-/// Student's t of G − 1 degrees of freedom; `None` of a single group.
+/// Returns Student's t distribution with G − 1 degrees of freedom; `None` for a single group.
 fn student(n_groups: usize) -> Option<StudentsT> {
     StudentsT::new(0.0, 1.0, n_groups as f64 - 1.0).ok()
 }
@@ -154,7 +160,7 @@ fn clustered(tests: &[GroupedTest]) -> Result<Clustered> {
         tests.iter().map(value).sum::<f64>() / tests.len() as f64
     };
     let share = mean(&|test| test.n_correct as f64 / test.n_rows as f64);
-    // w_g, e_g, and the rows of a group, counted once.
+    // Per group: weight w_g, error e_g, and number of rows counted once.
     let mut groups = BTreeMap::<usize, (f64, f64, usize)>::new();
     for test in tests {
         let scale = 1.0 / (test.n_rows * tests.len()) as f64;
@@ -192,11 +198,12 @@ fn clustered(tests: &[GroupedTest]) -> Result<Clustered> {
     })
 }
 
-/// The interval of an accuracy: Wilson's of so many right of some rows where there are no tests of groups, else [that of the groups](interval_of_groups)
-/// and their number.
+/// Returns the interval of an accuracy and the number of groups. Without grouped tests, the interval is Wilson's for `n_correct` of `n_rows` and the number
+/// is
+/// `None`. With grouped tests, [`interval_of_groups`] computes both.
 ///
 /// # Errors
-/// Those of [`Interval::wilson`] and [`interval_of_groups`].
+/// Returns the errors of [`Interval::wilson`] and [`interval_of_groups`].
 pub fn interval_of(
     [n_correct, n_rows]: [usize; 2],
     tests: &[GroupedTest],
@@ -258,7 +265,7 @@ mod tests {
 
     #[test]
     fn intervals_are_the_formula_evaluated_with_numpy_and_scipy() {
-        // The formula above in NumPy 2.4.6 with SciPy's Student t.
+        // Expected values: the formula of the module documentation in NumPy 2.4.6 with SciPy's Student t.
         for (groups, low, high) in [
             (
                 &[(9, 10), (7, 10), (10, 10), (4, 10), (10, 10), (8, 10)][..],
@@ -280,7 +287,7 @@ mod tests {
         }
     }
 
-    /// G groups of m rows whose outcomes have this correlation: beta-binomial.
+    /// Draws G groups of m rows with correlated outcomes from a beta-binomial distribution.
     fn draw(
         rng: &mut ChaCha8Rng,
         (n_groups, n_rows): (usize, usize),
@@ -304,7 +311,7 @@ mod tests {
         (0..n_groups).map(group).collect()
     }
 
-    /// What share of intervals holds the accuracy, by groups and by rows, and the mean width of both.
+    /// Returns the coverage and the mean width of intervals by groups and of intervals by rows.
     fn coverage(sizes: (usize, usize), of: (f64, f64), rng: &mut ChaCha8Rng) -> [(f64, f64); 2] {
         let mut found = [(0.0, 0.0); 2];
         for _ in 0..N_DRAWS {
@@ -332,9 +339,9 @@ mod tests {
                     let what = format!("{n_groups} groups, {accuracy}, {correlation}");
                     let found = coverage((n_groups, 20), (accuracy, correlation), &mut rng);
                     let [by_groups, by_rows] = found.map(|(held, _)| held);
-                    // Score intervals of shares near 1 hold 0.93 (those of independent rows, too).
+                    // For accuracies near 1, score intervals cover only 0.93, also for independent rows.
                     assert_at_least(&what, by_groups, 0.93, of_share(0.93, N_DRAWS));
-                    // 20 rows of correlation 0.3 are worth three.
+                    // 20 rows of correlation 0.3 carry as much information as three independent rows.
                     if correlation == 0.3 && accuracy < 0.95 {
                         assert_at_most(&what, by_rows, 0.65, of_share(0.65, N_DRAWS));
                     }
@@ -347,10 +354,11 @@ mod tests {
     fn rows_that_are_independent_lose_little_by_coming_in_groups() {
         let mut rng = Seed::new(30).rng();
         let [(_, by_groups), (_, by_rows)] = coverage((40, 20), (0.6, 0.0), &mut rng);
-        // Student's t of 39 degrees of freedom is 3.2 % wider. The design effect spreads by √(2/39) about 1 and is taken no smaller: 0.09 more on
-        // average; that of no errors weighs as one of the 320 that there are: 0.06 more.
+        // Student's t of 39 degrees of freedom is 3.2 % wider. The estimated design effect has standard deviation √(2/39) and a lower bound of 1, which adds
+        // 0.09 on
+        // average. The prior design effect of one row a group has weight 1 in 321, which adds 0.06.
         let expected = 1.032 * f64::sqrt(1.0 + 0.09 + 19.0 / 321.0);
-        // Each width spreads by half of what the design effect spreads.
+        // The relative standard error of the width is half of the relative standard error of the design effect.
         let standard_error = of_mean(0.5 * f64::sqrt(2.0 / 39.0), N_DRAWS);
         assert_at_most("width", by_groups / by_rows, expected, standard_error);
     }
@@ -368,7 +376,7 @@ mod tests {
         turned.reverse();
         let turned = interval_of_groups(&[test(&turned)], 0.95).unwrap();
         near(turned.0.low, once.0.low);
-        // Each group in a test of its own: the same groups, of which every one weighs as much as the others.
+        // Each group forms a test of its own, so all groups have equal weights.
         let apart: Vec<GroupedTest> = groups.chunks(1).map(test).collect();
         assert_eq!(interval_of_groups(&apart, 0.95).unwrap().1, 5);
         let equal = counts(&[(3, 4), (2, 4), (4, 4), (1, 4), (4, 4), (3, 4)]);

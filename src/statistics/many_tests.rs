@@ -1,7 +1,7 @@
-//! Several tests at once.
+//! Correction of p-values for multiple tests.
 
-/// p-values of several tests, corrected so that the chance of any false alarm among all of them stays that of one [Holm,
-/// *A simple sequentially rejective multiple test procedure*, 1979], in the same order.
+/// Corrects the p-values of several tests, in input order. The probability of any false positive among all tests stays that of a single test. Source: Holm,
+/// *A simple sequentially rejective multiple test procedure*, 1979.
 pub fn holm(p_values: &[f64]) -> Vec<f64> {
     let n = p_values.len();
     let mut order: Vec<usize> = (0..n).collect();
@@ -9,14 +9,14 @@ pub fn holm(p_values: &[f64]) -> Vec<f64> {
     let mut corrected = vec![0.0; n];
     let mut highest: f64 = 0.0;
     for (rank, &test) in order.iter().enumerate() {
-        // Never below that of a test that was surer.
+        // A corrected p-value is at least that of every test with a smaller p-value.
         highest = highest.max(((n - rank) as f64 * p_values[test]).min(1.0));
         corrected[test] = highest;
     }
     corrected
 }
 
-/// The same where some tests have no p-value: they do not count.
+/// Corrects the p-values of several tests with [`holm`]; tests without a p-value do not count and stay `None`.
 pub fn holm_of_some(p_values: &[Option<f64>]) -> Vec<Option<f64>> {
     let known: Vec<f64> = p_values.iter().flatten().copied().collect();
     let mut corrected = holm(&known).into_iter();
@@ -30,7 +30,8 @@ mod tests {
 
     #[test]
     fn holms_correction_is_that_of_r() {
-        // p.adjust(c(0.01, 0.04, 0.03, 0.005, 0.6), "holm") in R: each p times how many are left, never falling, at most 1.
+        // Expected values: p.adjust(c(0.01, 0.04, 0.03, 0.005, 0.6), "holm") in R. Each p is multiplied by the number of remaining tests, never falls, and is
+        // at most 1.
         let corrected = holm(&[0.01, 0.04, 0.03, 0.005, 0.6]);
         for (value, expected) in corrected.iter().zip([0.04, 0.09, 0.09, 0.025, 0.6]) {
             assert!((value - expected).abs() < 1e-15, "{corrected:?}");

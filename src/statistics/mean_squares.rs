@@ -1,9 +1,9 @@
-//! The analysis of variance of a two-way table.
+//! Two-way analysis of variance.
 
 use crate::{Error, Result};
 use ndarray::{ArrayView2, Axis};
 
-/// Mean squares of a two-way table with one score a place.
+/// Mean squares of a two-way table with one score per entry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MeanSquares {
     pub mean: f64,

@@ -1,4 +1,4 @@
-//! How sure scores are: intervals, comparisons, and what each source of chance brings.
+//! Uncertainty of scores: confidence intervals, comparisons, and variance components.
 
 pub mod bootstrap;
 pub mod comparison;

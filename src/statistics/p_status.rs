@@ -1,19 +1,19 @@
-//! The confidence of intervals in tables, and whether a comparison has a p-value.
+//! Confidence level of the intervals in tables, and the status of p-values.
 
 use serde::{Deserialize, Serialize};
 
-/// Confidence of every interval in the tables.
+/// Confidence level of every interval in the tables.
 pub const CONFIDENCE: f64 = 0.95;
 
-/// Whether a comparison has a p-value.
+/// Status of the p-value of a comparison.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PStatus {
-    /// It has; so have all tables of earlier versions.
+    /// The comparison has a p-value. Default, because tables of earlier versions contain no status.
     #[default]
     Tested,
-    /// Too few trials: the test could call next to no difference significant.
+    /// Too few trials: hardly any difference could be significant.
     TooFewTrials,
-    /// Crossed trials of which some failed.
+    /// Some of the crossed trials failed.
     TrialsMissing,
 }

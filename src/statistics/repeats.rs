@@ -1,4 +1,4 @@
-//! What a trial draws anew: a split and a projection of its own, or every split with every projection.
+//! Scores of repeated trials. A trial draws a split and a projection of its own, or the trials combine every split with every projection.
 
 use crate::error::Result;
 use crate::statistics::comparison::{
@@ -12,27 +12,26 @@ use std::collections::{BTreeSet, HashMap};
 /// A score of one trial.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Repeat {
-    /// The trial, from 0.
+    /// Number of the trial, from 0.
     pub trial: usize,
-    /// The number of its split: equal for trials with the same training and test touches.
+    /// Number of the split: equal for trials with equal training and test touches.
     pub split: usize,
-    /// The number of its projection, where trials combine every split with every projection.
+    /// Number of the projection, if the trials combine every split with every projection.
     pub projection: Option<usize>,
-    /// What it scored.
+    /// Score of the trial.
     pub score: f64,
-    /// Its touches, where a table says how many.
+    /// Numbers of training and test touches, if known.
     pub size: Option<TrialSize>,
 }
 
 impl Repeat {
-    /// What makes it another than other trials.
+    /// Returns the split and the projection, which distinguish this trial from others.
     fn place(&self) -> (usize, Option<usize>) {
         (self.split, self.projection)
     }
 }
 
-/// Returns the scores of trials in which those of one split and projection are one: their mean. A trial that repeats a split says nothing about other
-/// splits.
+/// Averages the scores of trials with equal split and projection. A repeated split contains no information about other splits, so it counts as one trial.
 fn merged(trials: &[Repeat], place: impl Fn(usize) -> (usize, Option<usize>)) -> Vec<Repeat> {
     let mut known: HashMap<_, usize> = HashMap::new();
     let mut groups: Vec<Vec<Repeat>> = Vec::new();
@@ -45,7 +44,7 @@ fn merged(trials: &[Repeat], place: impl Fn(usize) -> (usize, Option<usize>)) ->
     }
     let groups = groups.into_iter().map(|group| {
         let first = group[0];
-        // Of equal scores their value, without rounding.
+        // The mean of equal scores is exact, without rounding.
         let above: f64 = group.iter().map(|trial| trial.score - first.score).sum();
         Repeat {
             score: first.score + above / group.len() as f64,
@@ -55,8 +54,8 @@ fn merged(trials: &[Repeat], place: impl Fn(usize) -> (usize, Option<usize>)) ->
     groups.collect()
 }
 
-/// Returns the scores of a configuration: one row a split, of which repeated ones are one; or splits × projections where they are crossed, `None` if some
-/// of those are missing.
+/// Returns the scores of a configuration. If the trials are crossed, the shape is splits × projections, and the result is `None` if some trials are missing.
+/// Otherwise the shape is (n_splits, 1); repeated splits are averaged.
 pub fn scores(trials: &[Repeat]) -> Option<Array2<f64>> {
     let mut ordered = merged(trials, |number| trials[number].place());
     if ordered.iter().any(|trial| trial.projection.is_none()) {
@@ -70,30 +69,30 @@ pub fn scores(trials: &[Repeat]) -> Option<Array2<f64>> {
     Array2::from_shape_vec((splits.len(), projections.len()), values).ok()
 }
 
-/// What a test of two cells says.
+/// Result of a significance test of two configurations.
 pub struct Tested {
-    /// Whether there is a p-value.
+    /// Status of the p-value.
     pub p_status: PStatus,
-    /// It.
+    /// The p-value of the null hypothesis 'no difference'.
     pub p_value: Option<f64>,
-    /// Of the difference.
+    /// Confidence interval of the difference.
     pub interval: Option<Interval>,
-    /// Trials from which on there is one: where they are crossed, all projections of so many splits.
+    /// Number of trials needed for a p-value. For crossed trials, the number of splits needed times the number of projections.
     pub n_needed: Option<usize>,
 }
 
-/// Scores of two configurations, in the trials that both have; trials of one split (and one projection) are one.
+/// Scores of two configurations in the trials that both have; trials with equal split and projection are averaged.
 pub struct Paired {
     ours: Vec<Repeat>,
     theirs: Vec<Repeat>,
-    /// Sizes of the trials of ours that are paired, or of all of ours if none is; `None` if a size is unknown.
+    /// Sizes of the paired trials of the first configuration, or of all its trials if none is paired; `None` if a size is unknown.
     sizes: Option<Vec<TrialSize>>,
-    /// Whether several trials had one split.
+    /// Whether several trials share a split.
     has_repeats: bool,
 }
 
 impl Paired {
-    /// The trials of two configurations by their numbers.
+    /// Pairs the trials of two configurations by trial number.
     pub fn of(all_ours: &[Repeat], theirs: &[Repeat]) -> Self {
         let pairs = all_ours.iter().filter_map(|ours| {
             let theirs = theirs.iter().find(|theirs| theirs.trial == ours.trial);
@@ -107,7 +106,7 @@ impl Paired {
                 .collect::<BTreeSet<_>>()
                 .len()
         };
-        // A table of an earlier version does not say which splits are the same.
+        // Tables of earlier versions do not contain the numbers of shared splits.
         let (n_ours, n_theirs) = (n_places(&ours), n_places(&theirs));
         let places = if n_ours <= n_theirs { &ours } else { &theirs };
         let merge = |trials: &[Repeat]| merged(trials, |number| places[number].place());
@@ -125,22 +124,22 @@ impl Paired {
         }
     }
 
-    /// How many trials both have, of which those of one split are one.
+    /// Returns the number of paired trials; trials with equal split and projection count as one.
     pub fn n_trials(&self) -> usize {
         self.ours.len()
     }
 
-    /// Mean scores in these trials, ours and theirs; NaN if there are none.
+    /// Returns the mean scores of the first and the second configuration over the paired trials; NaN if there are no pairs.
     pub fn means(&self) -> (f64, f64) {
         let mean =
             |trials: &[Repeat]| trials.iter().map(|t| t.score).sum::<f64>() / trials.len() as f64;
         (mean(&self.ours), mean(&self.theirs))
     }
 
-    /// Returns the test of no difference, by how the trials split the touches; `None` where nothing says how.
+    /// Tests whether the configurations differ. Returns `None` if the sizes of the trials are unknown.
     ///
     /// # Errors
-    /// A trial without training or test rows.
+    /// If a trial has no training or no test rows.
     pub fn tested(&self) -> Result<Option<Tested>> {
         let Some(sizes) = self.sizes.as_ref().filter(|sizes| !sizes.is_empty()) else {
             return Ok(None);
@@ -150,7 +149,7 @@ impl Paired {
         let is_enough = n_needed.is_some_and(|needed| splits.len() >= needed);
         let n_projections = (self.ours.len() / splits.len().max(1)).max(1);
         let test = self.test(sizes)?;
-        // More trials would repeat the same splits.
+        // Further trials would repeat the splits that exist.
         let is_final = self.has_repeats && !is_enough;
         Ok(Some(Tested {
             p_status: match (&test, is_enough) {
@@ -166,7 +165,7 @@ impl Paired {
         }))
     }
 
-    /// Ours less theirs; `None` for a single trial, and for crossed trials of which some are missing.
+    /// Compares the first configuration with the second; `None` for a single trial, or if crossed trials are missing.
     fn test(&self, sizes: &[TrialSize]) -> Result<Option<Comparison>> {
         let (Some(ours), Some(theirs)) = (scores(&self.ours), scores(&self.theirs)) else {
             return Ok(None);
@@ -201,7 +200,7 @@ mod tests {
         let own = [0, 1, 2].map(|t| trial(t, (t, None)));
         let expected = ndarray::array![[0.0], [0.1], [0.2]];
         assert_eq!(scores(&own), Some(expected));
-        // Splits 0, 1, 2 come twice.
+        // Splits 0, 1 and 2 occur twice.
         let repeated = [0, 1, 2, 3, 4, 5].map(|t| trial(t, (t % 3, None)));
         let expected = ndarray::array![[0.15], [0.25], [0.35]];
         assert!(
@@ -211,7 +210,7 @@ mod tests {
         );
     }
 
-    /// Duplicating trials never makes a claim stronger.
+    /// Duplicated trials must not increase the significance.
     #[test]
     fn trials_that_repeat_splits_are_no_further_trials() {
         let trial = |trial: usize, score: f64| Repeat {
@@ -235,7 +234,7 @@ mod tests {
         assert_eq!(often.p_status, PStatus::TooFewTrials);
         assert_eq!((often.p_value, often.n_needed), (None, None));
         assert_eq!(often.interval, twice.interval);
-        // Without repetition further trials help.
+        // Without repeated splits, further trials increase the power of the test.
         assert_eq!(twice.n_needed, Some(4));
     }
 }

@@ -1,4 +1,4 @@
-//! How much of the spread of scores each source of chance brings: variance components of crossed trials.
+//! Variance components of crossed trials: the contribution of each random source to the variance of scores.
 
 use crate::statistics::mean_squares::MeanSquares;
 use crate::{Error, Result};
@@ -6,52 +6,52 @@ use bubbletouch_sim::statistics::interval::{Interval, check_confidence};
 use ndarray::ArrayView2;
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
 
-/// What one source of chance adds to the variance of a score.
+/// Contribution of one random source to the variance of a score.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Component {
-    /// How many of it were drawn; of the rest: scores.
+    /// Number of levels drawn (splits or projections); for the residual, the number of scores.
     pub n_levels: usize,
-    /// Degrees of freedom of its mean square.
+    /// Degrees of freedom of the mean square.
     pub degrees_of_freedom: usize,
-    /// Mean square.
+    /// Mean square of the source.
     pub mean_square: f64,
-    /// Unbiased estimate of its variance; below zero by chance if it is small.
+    /// Unbiased estimate of the variance; negative by chance if the variance is small.
     pub estimate: f64,
-    /// Confidence interval of its variance, not below zero.
+    /// Confidence interval of the variance, at least 0.
     pub interval: Interval,
-    /// p-value of 'it adds nothing'; `None` for the rest.
+    /// p-value of the null hypothesis 'the variance is 0'; `None` for the residual.
     pub p_value: Option<f64>,
 }
 
 impl Component {
-    /// The estimate, or zero if that is below: a variance.
+    /// Returns the estimated variance; negative estimates are replaced by 0.
     pub fn variance(&self) -> f64 {
         self.estimate.max(0.0)
     }
 }
 
-/// Components of scores where every split meets every projection once.
+/// Variance components of scores where every split is combined once with every projection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Components {
-    /// Of the rows: splits.
+    /// Component of the rows: splits.
     pub rows: Component,
-    /// Of the columns: projections.
+    /// Component of the columns: projections.
     pub columns: Component,
-    /// What is left: what is drawn for each score alone, and what a row and a column do together.
+    /// Residual: independent noise of each score, and the interaction of row and column.
     pub rest: Component,
 }
 
-/// Estimates the components of `scores` (n_rows × n_columns) in the model y_rc = μ + a_r + b_c + e_rc, all effects random and
-/// independent.
+/// Estimates the variance components of `scores` (n_rows × n_columns) in the model y_rc = μ + a_r + b_c + e_rc. All effects are random and independent.
 ///
-/// Method of moments (analysis of variance; Searle, Casella, McCulloch, *Variance components*, 1992, chapter 4): with the
-/// mean squares of rows, columns and the rest, σ²_a = (MS_a − MS_e) / n_columns, σ²_b = (MS_b − MS_e) / n_rows, σ²_e = MS_e.
-/// Intervals: exact for the rest (χ²); of σ²_a and σ²_b by modified large samples (Ting, Burdick, Graybill, Jeyaratnam, Lu,
-/// *Confidence intervals on linear combinations of variance components that are unrestricted in sign*, 1990). p-values: F test
-/// of MS_a / MS_e.
+/// Method of moments (Searle, Casella, McCulloch, *Variance components*, 1992, chapter 4), with the mean squares of rows, columns and residual:
+/// σ²_a = (MS_a − MS_e) / n_columns, σ²_b = (MS_b − MS_e) / n_rows, σ²_e = MS_e.
+///
+/// The interval of the residual is exact (χ²). The intervals of σ²_a and σ²_b use modified large samples. Source: Ting, Burdick, Graybill, Jeyaratnam, Lu,
+/// *Confidence intervals on linear combinations of variance components that are unrestricted in sign*, 1990. The p-values are F tests of MS_a / MS_e and
+/// MS_b / MS_e.
 ///
 /// # Errors
-/// Fewer than two rows or columns, a score that is not finite, or a confidence outside 0..1.
+/// If there are fewer than two rows or columns, a score is not finite, or the confidence is outside 0..1.
 pub fn components(scores: ArrayView2<f64>, confidence: f64) -> Result<Components> {
     check_confidence(confidence)?;
     let squares = MeanSquares::of(scores)?;
@@ -71,7 +71,7 @@ pub fn components(scores: ArrayView2<f64>, confidence: f64) -> Result<Components
 }
 
 impl MeanSquares {
-    /// The component of an effect with this mean square and so many levels, each in `n_each` scores.
+    /// Returns the component of an effect with mean square `mean_square` and `n_levels` levels, each in `n_each` scores.
     fn effect(
         &self,
         mean_square: f64,
@@ -111,7 +111,8 @@ impl MeanSquares {
     }
 }
 
-/// Interval of the difference of the expectations of two independent mean squares: modified large samples, in the notation of
+/// Returns the confidence interval of the difference of two expected mean squares, which are independent. The method is modified large samples, in the
+/// notation of
 /// Burdick and Graybill, *Confidence intervals on variance components*, 1992, section 3.3.
 fn difference_interval(
     (first, second): (f64, f64),
@@ -120,7 +121,7 @@ fn difference_interval(
 ) -> Result<Interval> {
     let tail = 0.5 - 0.5 * confidence;
     let f = fisher(freedom)?;
-    // χ² over its degrees of freedom: F with infinitely many below.
+    // χ² divided by its degrees of freedom: the F distribution with infinitely many denominator degrees of freedom.
     let far =
         |n: usize, share: f64| -> Result<f64> { Ok(chi_squared(n)?.inverse_cdf(share) / n as f64) };
     let g1 = 1.0 - 1.0 / far(freedom.0, 1.0 - tail)?;
@@ -166,7 +167,7 @@ mod tests {
 
     #[test]
     fn components_are_those_of_scipy() {
-        // The formulas with SciPy 1.17.1's f and chi2.
+        // Expected values: the formulas with f and chi2 of SciPy 1.17.1.
         let scores = array![
             [0.80, 0.82, 0.78],
             [0.84, 0.88, 0.83],
@@ -190,14 +191,14 @@ mod tests {
         close(rest.interval.high, 0.001010228159424386);
         close(rows.interval.low, 0.00026350883717337676);
         close(rows.interval.high, 0.01521337325718295);
-        // −6.4e-5 in SciPy: a variance is not below zero.
+        // SciPy's formula gives −6.4e-5; a variance is not negative.
         assert_eq!(columns.interval.low, 0.0);
         close(columns.interval.high, 0.009566254812384241);
         let levels = [rows, columns, rest].map(|c| (c.n_levels, c.degrees_of_freedom));
         assert_eq!(levels, [(4, 3), (3, 2), (12, 6)]);
     }
 
-    /// Scores with standard deviations of rows, columns and rest.
+    /// Draws scores with given standard deviations of rows, columns and residual.
     fn draw(
         rng: &mut ChaCha8Rng,
         (n_rows, n_columns): (usize, usize),
@@ -233,11 +234,11 @@ mod tests {
             for k in 0..3 {
                 let what = format!("{std:?}, {k}");
                 let (mean, variance) = (sums[k] / n as f64, std[k] * std[k]);
-                // An estimate spreads by √(2/df) (variance + rest / levels) at these sizes.
+                // At these sizes, the standard deviation of an estimate is √(2/df) (variance + residual / levels).
                 let spread = (variance + std[2] * std[2] / 5.0) * (2.0f64 / 4.0).sqrt();
                 assert_expected(&what, mean, variance, of_mean(spread, n));
                 let share = held[k] as f64 / n as f64;
-                // That of the rest is exact; the others hold too often where a component is small.
+                // The interval of the residual is exact; the other intervals cover too often if the component is small.
                 assert_at_least(&what, share, 0.95, of_share(0.95, n));
                 let most = [0.985, 0.985, 0.95][k];
                 assert_at_most(&what, share, most, of_share(most, n));
@@ -271,7 +272,7 @@ mod tests {
 
     #[test]
     fn an_estimate_below_zero_stands_as_it_is_and_is_a_variance_of_zero() {
-        // Rows cancel: their means are equal, the rest is not.
+        // The rows have equal means, but a residual remains.
         let scores = array![
             [0.0, 1.0, 2.0],
             [2.0, 1.0, 0.0],
@@ -291,7 +292,7 @@ mod tests {
             assert_eq!((component.estimate, component.interval.high), (0.0, 0.0));
         }
         assert_eq!(found.rows.p_value, Some(1.0));
-        // Only the rows differ: nothing is left to chance.
+        // Only the rows differ: the residual is 0.
         let scores = Array2::from_shape_fn((3, 4), |(row, _)| row as f64);
         let found = components(scores.view(), 0.95).unwrap();
         assert_eq!((found.rows.estimate, found.rows.p_value), (1.0, Some(0.0)));

@@ -1,4 +1,4 @@
-//! Labelled rows: which train and which test, on which scale, and what is wrong with them.
+//! Labelled rows: data sets, splits, scaling, and deliberate defects of training data.
 
 pub use bubbletouch_svm::{dataset, scaling, split};
 pub mod over_time;

@@ -1,55 +1,58 @@
-//! Over time: what is made of the measured frames of a touch.
+//! Temporal features: features of the sequence of measured frames of a touch.
 //!
-//! A touch is F frames of m measurements, y_t. Random measurements keep distances between frames nearly as they are
-//! (Johnson and Lindenstrauss), so how strongly, how long, how often and how steadily a skin is touched can be told from
-//! measurements alone; no taxel need be known. The **level** of a frame is ‖y_t‖.
+//! A touch is a sequence of F frames y_t of m measurements each. Random measurements approximately preserve distances between frames (Johnson and
+//! Lindenstrauss).
+//! The strength, duration, number and steadiness of contacts can therefore be computed from measurements, without reconstructing taxels. The **level** of a
+//! frame
+//! is ‖y_t‖.
 //!
-//! The **course** of a touch, ten numbers whatever m is. A frame is in contact where the level is more than half of the way from its
-//! lowest to its highest; `ŷ = y / ‖y‖` is a frame's pattern.
+//! The **course** of a touch consists of ten numbers for any m. A frame is in contact if its level is above the midpoint between the lowest and highest level
+//! of
+//! the touch. The pattern of a frame is `ŷ = y / ‖y‖`.
 //!
-//! | number | of |
+//! | number | definition |
 //! |---|---|
 //! | 1 | highest level |
-//! | 2 | mean level of the frames in contact, relative to the highest |
-//! | 3 | frames in contact, relative to F |
-//! | 4 | contacts: runs of frames in contact |
-//! | 5 | the longest of them, relative to F |
-//! | 6, 7 | from the first frame in contact to the highest, and from there to the last, relative to F |
-//! | 8 | Σ of changes of level from frame to frame, relative to the highest |
-//! | 9 | Σ ‖ŷ_{t+1} − ŷ_t‖ over neighbouring frames in contact: the way of the pattern |
-//! | 10 | ‖ŷ_last − ŷ_first‖ of the frames in contact: how far the pattern has come |
+//! | 2 | mean level of the frames in contact, divided by the highest level |
+//! | 3 | number of frames in contact, divided by F |
+//! | 4 | number of contacts: runs of frames in contact |
+//! | 5 | length of the longest contact, divided by F |
+//! | 6, 7 | frames from the first contact to the highest level, and from there to the last contact, divided by F |
+//! | 8 | Σ of absolute changes of level between successive frames, divided by the highest level |
+//! | 9 | Σ ‖ŷ_{t+1} − ŷ_t‖ over successive frames in contact: path length of the pattern |
+//! | 10 | ‖ŷ_last − ŷ_first‖ of the frames in contact: net change of the pattern |
 //!
-//! A recording whose level is the same everywhere has no contact: numbers 2 to 10 are 0.
+//! If all frames have one level, there is no contact, and numbers 2 to 10 are 0.
 
 use crate::error::{Error, Result};
 use ndarray::{ArrayView2, ArrayViewMut1, Axis};
 use serde::{Deserialize, Serialize};
 
-/// What a touch's frames become before they are scaled and learned.
+/// Temporal features computed from the frames of a touch, before scaling and training.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum OverTime {
-    /// The frame of the highest level (the first of several): m numbers.
+    /// Frame of the highest level (the first, if several are equal): m numbers.
     Deepest,
-    /// k frames evenly in time, the first and the last among them (of one, the middle): k · m.
+    /// k frames at even intervals, including the first and the last (for k = 1, the middle frame): k · m numbers.
     Stacked(usize),
-    /// Mean, standard deviation and largest absolute value over time of each measurement: 3 m.
+    /// Mean, standard deviation and largest absolute value of each measurement over time: 3 m numbers.
     Moments,
-    /// The ten numbers of the course.
+    /// Course of the touch: ten numbers.
     Course,
-    /// Moments, then course: 3 m + 10.
+    /// Moments, followed by the course: 3 m + 10 numbers.
     Summarised,
 }
 
-/// Numbers of a course.
+/// Number of features of a course.
 const N_COURSE: usize = 10;
 
-/// How far above its lowest level, relative to its highest, a touch is in contact. Lower, and noise counts as contact; higher, and the
-/// weaker contacts of a pat do not.
+/// Threshold of contact, as a fraction of the range from the lowest to the highest level. If lower, noise counts as contact; if higher, weak contacts are
+/// missed.
 const CONTACT_LEVEL: f64 = 0.5;
 
 impl OverTime {
-    /// How many numbers it makes of F frames of m.
+    /// Returns the number of features computed from F frames of m measurements.
     pub fn n_features(self, n_frames: usize, m: usize) -> usize {
         match self {
             Self::Deepest => m,
@@ -60,10 +63,10 @@ impl OverTime {
         }
     }
 
-    /// Makes them of one touch: F × m frames, F at least 1.
+    /// Writes the features of one touch into `row`. `frames` has shape F × m, with F at least 1.
     ///
     /// # Panics
-    /// If `row` is not as long as [`n_features`](Self::n_features) says.
+    /// If the length of `row` differs from [`n_features`](Self::n_features).
     pub fn write(self, frames: ArrayView2<f64>, mut row: ArrayViewMut1<f64>) {
         let (n_frames, m) = frames.dim();
         assert_eq!(row.len(), self.n_features(n_frames, m));
@@ -86,7 +89,7 @@ impl OverTime {
     }
 }
 
-/// The frame of part `part` of k.
+/// Returns the index of frame number `part` of k evenly spaced frames.
 fn evenly(part: usize, k: usize, n_frames: usize) -> usize {
     match k {
         1 => (n_frames - 1) / 2,
@@ -99,7 +102,7 @@ fn levels(frames: ArrayView2<f64>) -> Vec<f64> {
     rows.map(|frame| frame.dot(&frame).sqrt()).collect()
 }
 
-/// The first of the highest.
+/// Returns the index of the highest level; the first, if several are equal.
 fn highest(levels: &[f64]) -> usize {
     let mut best = 0;
     for (frame, &level) in levels.iter().enumerate() {
@@ -207,7 +210,7 @@ mod tests {
         row.to_vec()
     }
 
-    /// Levels over time, all in one measurement but for the fourth frame.
+    /// A touch whose frames have one non-zero measurement each, except the fourth frame.
     fn touch() -> Array2<f64> {
         array![
             [0.0, 0.0],

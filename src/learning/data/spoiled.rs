@@ -1,4 +1,4 @@
-//! Training rows that are not as they should be: labels that are wrong, and classes that are rare.
+//! Deliberate defects of training data: wrong labels and class imbalance.
 
 use crate::random::Seed;
 use crate::{Error, Result};
@@ -8,12 +8,14 @@ use rand::Rng;
 use rand::seq::SliceRandom;
 use std::collections::BTreeMap;
 
-/// Labels of which a fraction (0 to 1, of each class alike, rounded to whole rows) are another class's, any other as likely.
+/// Returns labels of which a given fraction (0 to 1) is wrong. In each class, the number of wrong labels is the fraction of its rows, rounded to whole rows.
+/// A wrong
+/// label is drawn uniformly from the other classes.
 ///
-/// More wrong labels of the same seed include the fewer. Of a single class none can be wrong.
+/// For one seed, the wrong labels of a smaller fraction are a subset of those of a larger fraction. With a single class, no label is changed.
 ///
 /// # Errors
-/// A fraction that is not from 0 to 1.
+/// If the fraction is outside 0 to 1.
 pub fn mislabelled(labels: ArrayView1<usize>, fraction: f64, seed: &Seed) -> Result<Array1<usize>> {
     if !(0.0..=1.0).contains(&fraction) {
         return Err(Error::input(
@@ -40,13 +42,14 @@ pub fn mislabelled(labels: ArrayView1<usize>, fraction: f64, seed: &Seed) -> Res
     Ok(wrong)
 }
 
-/// The split with classes that are rarer and rarer: of K classes in random order the r-th (from 0) keeps the leading
-/// n · ratio^(−r / (K − 1)) of its training rows, rounded, n being the fewest training rows of any class. So the first has
-/// `ratio` times as many as the last: the long tail of Cui et al., *Class-balanced loss based on effective number of
-/// samples*, 2019. The test rows stay.
+/// Returns the split with long-tailed training classes (Cui et al., *Class-balanced loss based on effective number of samples*, 2019). The K classes are put
+/// in random
+/// order. Class r (from 0) keeps its first n · ratio^(−r / (K − 1)) training rows, rounded, where n is the smallest number of training rows of any class. The
+/// first
+/// class therefore has `ratio` times as many rows as the last class. The test rows are unchanged.
 ///
 /// # Errors
-/// A ratio below 1 or not finite, or one that leaves a class without a row (above 2 n).
+/// If the ratio is below 1 or not finite, or leaves a class without a row (above 2 n).
 pub fn with_imbalance(
     split: &Split,
     labels: ArrayView1<usize>,
@@ -121,7 +124,7 @@ mod tests {
             }
             before = wrong;
         }
-        // All wrong, each of the four others about as often: a quarter of the 400 rows of other classes.
+        // All labels are wrong; each of the four other classes receives about a quarter of the 400 rows.
         for class in 0..5 {
             let n = before.iter().filter(|&&label| label == 3 * class).count();
             assert_expected("label", n as f64, 100.0, 400.0 * of_share(0.25, 400));

@@ -1,7 +1,8 @@
-//! Several touches of one object, decided on together: a robot can touch again.
+//! Fusion of several touches of one object into one decision.
 //!
-//! The scores of k touches are summed, and one label is decided for all of them. For scores that are logarithms of
-//! probabilities this is the decision of independent witnesses; for an SVM's decision values it is the vote of margins.
+//! The scores of k touches are summed, and one label is decided for the sum. If scores are log-probabilities, this is the decision for independent
+//! observations. If
+//! scores are decision values of an SVM, this is a vote weighted by margins.
 
 use std::collections::BTreeMap;
 
@@ -10,22 +11,21 @@ use rand::seq::SliceRandom;
 
 use crate::random::Seed;
 
-/// Rows that are decided on together.
+/// Groups of rows with one decision per group.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FusedRows {
-    /// Groups of k positions within the rows, each of one class; class by class, disjoint.
+    /// Groups of k row positions. All rows of a group have one class; groups are ordered by class and disjoint.
     pub groups: Vec<Vec<usize>>,
-    /// Rows that filled no whole group.
+    /// Number of rows left over because they do not fill a whole group.
     pub n_left_out: usize,
 }
 
-/// Groups rows of the same label at random, k to a group; one touch a group, in the order of the rows, for k = 1.
+/// Groups rows of equal label at random, k rows per group. For k = 1, each row is a group, in the order of the rows.
 ///
-/// Each class's rows are shuffled by its own stream of `seed` and cut into groups, so a class's groups do not depend on the
-/// other classes' rows.
+/// The rows of each class are shuffled by a separate stream of `seed` and cut into groups. The groups of a class therefore do not depend on other classes.
 ///
 /// # Panics
-/// For k = 0.
+/// If k is 0.
 pub fn fuse_rows(labels: ArrayView1<usize>, k: usize, seed: &Seed) -> FusedRows {
     assert!(k > 0, "at least one row a group");
     if k == 1 {
@@ -51,7 +51,7 @@ pub fn fuse_rows(labels: ArrayView1<usize>, k: usize, seed: &Seed) -> FusedRows 
     fused
 }
 
-/// The summed scores of each group (n_groups × n_scores) from those of each row (n_rows × n_scores).
+/// Sums the scores of each group: shape (n_rows × n_scores) to shape (n_groups × n_scores).
 pub fn fuse_scores(scores: ArrayView2<f64>, groups: &[Vec<usize>]) -> Array2<f64> {
     let mut sums = Array2::zeros((groups.len(), scores.ncols()));
     for (mut sum, group) in sums.outer_iter_mut().zip(groups) {
@@ -94,7 +94,7 @@ mod tests {
         let all = fuse_rows(labels().view(), 3, &Seed::new(1)).groups;
         assert_eq!(fuse_rows(labels().view(), 3, &Seed::new(1)).groups, all);
         assert_ne!(fuse_rows(labels().view(), 3, &Seed::new(2)).groups, all);
-        // Only the rows of class 1, at their old places.
+        // Only the rows of class 1, at unchanged positions.
         let rows: Vec<usize> = (0..36).filter(|&row| labels()[row] == 1).collect();
         let alone = fuse_rows(Array1::ones(rows.len()).view(), 3, &Seed::new(1)).groups;
         let moved: Vec<Vec<usize>> = alone

@@ -5,7 +5,7 @@ use ndarray::{Array1, Array2, ArrayView1, Axis};
 use crate::{Error, Result};
 use bubbletouch_svm::dataset::check_labels;
 
-/// How often each class was taken for each: row = true class, column = predicted class.
+/// Confusion matrix: the number of rows of each true class (row) predicted as each class (column).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ConfusionMatrix {
     /// Counts of test rows, n_classes × n_classes.
@@ -16,7 +16,7 @@ impl ConfusionMatrix {
     /// Counts predictions.
     ///
     /// # Errors
-    /// No rows, another number of predictions than true labels, or a label of `n_classes` or above.
+    /// If there are no rows, the numbers of predictions and true labels differ, or a label is `n_classes` or above.
     pub fn new(
         truth: ArrayView1<usize>,
         predicted: ArrayView1<usize>,
@@ -40,40 +40,40 @@ impl ConfusionMatrix {
         Ok(Self { counts })
     }
 
-    /// The number of rows counted.
+    /// Returns the number of rows.
     pub fn n_rows(&self) -> usize {
         self.counts.sum()
     }
 
-    /// The number of rows predicted right.
+    /// Returns the number of correctly predicted rows.
     pub fn n_correct(&self) -> usize {
         self.counts.diag().sum()
     }
 
-    /// The share of rows predicted right, 0..=1.
+    /// Returns the fraction of correctly predicted rows, 0..=1.
     pub fn accuracy(&self) -> f64 {
         self.n_correct() as f64 / self.n_rows() as f64
     }
 
-    /// Per class (n_classes): of the rows predicted as it, the share that are it; 0 if none was.
+    /// Returns the precision of each class (n_classes): correct predictions divided by all predictions of the class; 0 if there are none.
     pub fn precision(&self) -> Array1<f64> {
         shares(self.counts.diag(), &self.counts.sum_axis(Axis(0)))
     }
 
-    /// Per class (n_classes): of its rows, the share predicted as it; 0 if it has none.
+    /// Returns the recall of each class (n_classes): correct predictions divided by all rows of the class; 0 if there are none.
     pub fn recall(&self) -> Array1<f64> {
         shares(self.counts.diag(), &self.counts.sum_axis(Axis(1)))
     }
 
-    /// Per class (n_classes): `2 · right / (true + predicted)`, the harmonic mean of precision and recall; 0 if the
-    /// class occurs in neither.
+    /// Returns the F1 score of each class (n_classes): `2 · correct / (true + predicted)`, the harmonic mean of precision and recall. The score is 0 if the
+    /// class does
+    /// not occur.
     pub fn f1(&self) -> Array1<f64> {
         let occurrences = self.counts.sum_axis(Axis(0)) + self.counts.sum_axis(Axis(1));
         shares(self.counts.diag(), &occurrences) * 2.0
     }
 
-    /// The mean F1 over the classes that occur, as truth or as prediction (scikit-learn's `f1_score(average="macro",
-    /// zero_division=0)`).
+    /// Returns the mean F1 score over the classes that occur, as truth or as prediction (scikit-learn's `f1_score(average="macro", zero_division=0)`).
     pub fn macro_f1(&self) -> f64 {
         let occurrences = self.counts.sum_axis(Axis(0)) + self.counts.sum_axis(Axis(1));
         let n_occurring = occurrences.iter().filter(|&&count| count > 0).count();

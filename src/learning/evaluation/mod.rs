@@ -1,4 +1,4 @@
-//! What predicted labels are worth, of one touch and of several.
+//! Evaluation of predicted labels: metrics, fusion of touches, and choice of the next touch.
 
 pub mod fusion;
 pub mod metrics;
