@@ -1,12 +1,12 @@
-//! What the taxels of a whole body read, each by itself: the cost follows those that somebody asks for.
+//! Readings of the taxels of a whole body, computed taxel by taxel; the cost is proportional to the number of taxels that are read.
 //!
-//! A [`Chain`](super::Chain) draws the noise of a frame taxel after taxel, so two million taxels cost two million normal numbers a frame. Here
-//! the noise of a taxel at a frame, its zero at a time, its gain and its fault are [draws by number](crate::random::CounterKey): functions of the
-//! skin's name, the taxel, the frame and the time. What a taxel reads is the same whether it is read alone, with those that are
-//! touched, or with all of its patch.
+//! A [`Chain`](super::Chain) draws the noise of a frame taxel after taxel, so two million taxels cost two million normal numbers per frame.
+//! A [`BodyReadout`] computes noise, zeros, gains and faults with [counter-based random numbers](crate::random::CounterKey).
+//! These are functions of the skin's name, the taxel, the frame and the time. A taxel therefore reads the same value alone,
+//! among the touched taxels, or with its whole patch.
 //!
-//! Steps and strengths are those of a chain, with the same distributions and other draws. A sensor error can be read so if its description has
-//! [`by_taxel`](super::ErrorAbout::by_taxel).
+//! Steps and strengths have the same meaning and distributions as in a chain, but different random draws. A sensor error is supported
+//! if its description has [`by_taxel`](super::ErrorAbout::by_taxel).
 
 use super::noise::NoiseByNumber;
 use super::taxel_effect::{CHUNK, Chunk, TaxelEffect};
@@ -18,10 +18,10 @@ use crate::world::Taxel;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Taxels from which on threads share the reading. Less is done before a second thread is awake.
+/// Number of taxels from which on a reading uses several threads. With fewer taxels, starting a second thread takes longer than the reading.
 pub const WORTH_THREADS: usize = 4 * CHUNK;
 
-/// The electronics of a body: checked steps, prepared for its patches.
+/// Signal steps of a whole body, checked and prepared for its patches.
 ///
 /// ```
 /// use bubbletouch_sim::geometry::Pose;
@@ -61,23 +61,23 @@ pub const WORTH_THREADS: usize = 4 * CHUNK;
 #[derive(Clone, Debug)]
 pub struct BodyReadout {
     begins: Quantity,
-    /// Of each patch.
+    /// Prepared steps, one list per patch.
     steps: Vec<Vec<Arc<dyn TaxelEffect>>>,
-    /// The number of each patch's first taxel, and how many taxels there are.
+    /// Index of the first taxel of each patch, followed by the total number of taxels.
     firsts: Vec<usize>,
 }
 
-/// What some taxels of a body read; reused, so that a reading allocates nothing once the largest touch has been seen.
+/// Readings of selected taxels of a body. A reused instance allocates no memory if no touch is larger than earlier ones.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BodyReading {
-    /// Their numbers, ascending.
+    /// Taxel indices in the body, ascending.
     pub taxels: Vec<usize>,
-    /// What each reads, metres or newtons.
+    /// Readings of `taxels`, metres or newtons.
     pub values: Vec<f64>,
 }
 
 impl BodyReading {
-    /// Number and value.
+    /// Returns pairs of taxel index and reading.
     pub fn iter(&self) -> impl Iterator<Item = (usize, f64)> {
         let values = self.values.iter().copied();
         self.taxels.iter().copied().zip(values)
@@ -85,12 +85,12 @@ impl BodyReading {
 }
 
 impl BodyReadout {
-    /// Checks the steps in their order and prepares them for each patch: [`Force`](SignalStep::Force) as the first or not at all, then noise and
-    /// sensor errors that each taxel has by itself. `noise` names the noise of all frames.
+    /// Checks the steps in their order and prepares them for each patch. [`Force`](SignalStep::Force) must be the first step or absent;
+    /// noise and sensor errors must be independent between taxels. `noise` seeds the noise of all frames.
     ///
     /// # Errors
-    /// A step that needs other taxels or other frames; force that is not the first; a strength out of its range; a unit of noise that the
-    /// readings do not have by then.
+    /// If a step depends on other taxels or other frames, if force is not the first step, or if a strength is out of range.
+    /// If the unit of the noise does not fit the readings at this step.
     pub fn new(steps: &[SignalStep], body: &WholeBody, noise: &Seed) -> Result<Self> {
         let is_force = steps.first() == Some(&SignalStep::Force);
         let begins = match is_force {
@@ -108,16 +108,16 @@ impl BodyReadout {
         })
     }
 
-    /// What readings are.
+    /// Returns the quantity of the readings.
     pub fn quantity(&self) -> Quantity {
         self.begins
     }
 
-    /// Reads the taxels that the last press has deflected, ascending. Others read their noise, zero and fault; to see these, ask for
-    /// [a patch](Self::read_patch) or [any taxels](Self::read).
+    /// Reads the taxels that the last press deflected, in ascending order. Other taxels also have noise, zeros and faults; use
+    /// [`read_patch`](Self::read_patch) or [`read`](Self::read) to obtain their readings.
     ///
     /// # Panics
-    /// If the body is another one, or the time is not from 0 to 1.
+    /// If `body` has another number of taxels, or the time is not from 0 to 1.
     pub fn read_touched(
         &self,
         body: &WholeBody,
@@ -143,10 +143,10 @@ impl BodyReadout {
         self.read(&reading.taxels, moment, &mut reading.values);
     }
 
-    /// Reads all taxels of a patch, n_taxels, in the order of its layout.
+    /// Writes the readings of all taxels of a patch, shape (n_taxels,), in the order of the layout.
     ///
     /// # Panics
-    /// If the body is another one, there is no such patch, there is not one value for each of its taxels, or the time is not from 0 to 1.
+    /// If `body` has another number of taxels, if the patch does not exist, or if the time is not from 0 to 1.
     pub fn read_patch(
         &self,
         body: &WholeBody,
@@ -169,11 +169,11 @@ impl BodyReadout {
         self.read(&numbers.collect::<Vec<_>>(), moment, values);
     }
 
-    /// Changes what taxels feel (metres or newtons, 0 where nothing touches them) to what they read; any taxels in any order. The result does
+    /// Replaces true values (metres or newtons, 0 on untouched taxels) by readings, for any taxels in any order. The result does
     /// not depend on the number of threads.
     ///
     /// # Panics
-    /// If there is not one value for each taxel, there is no such taxel, or the time is not from 0 to 1.
+    /// If there is not one value per taxel, if a taxel does not exist, or if the time is not from 0 to 1.
     pub fn read(&self, taxels: &[usize], moment: Moment, values: &mut [f64]) {
         assert_eq!(taxels.len(), values.len(), "one value for each taxel");
         assert!(
@@ -215,7 +215,7 @@ impl BodyReadout {
     }
 }
 
-/// The steps in the unit of a patch; those of no strength are left out.
+/// Prepares the steps in the units of one patch; steps of zero strength are left out.
 fn prepare(
     steps: &[SignalStep],
     quantity: Quantity,
@@ -251,7 +251,7 @@ fn prepare(
     Ok(prepared)
 }
 
-/// Why a step is refused.
+/// Reason in the error for a step that needs other taxels or frames.
 const OF_OTHERS: &str = "which needs other taxels or other frames";
 
 fn refused(step: &str, why: &str) -> Error {

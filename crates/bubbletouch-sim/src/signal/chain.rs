@@ -27,37 +27,39 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub struct Chain {
     steps: Vec<Prepared>,
-    /// Leading steps that a touch's history passes through, the last of them one that remembers it; 0 if none does.
+    /// Number of leading steps that also process the history of a touch; the last of them depends on earlier frames. 0 if no step depends on
+    /// history.
     n_remembering: usize,
     n_taxels: usize,
     taxel: Taxel,
     quantity: Quantity,
-    /// Whether values are of either sign.
+    /// Whether values have a sign (shear forces); otherwise they are zero or positive.
     is_signed: bool,
     scratch_len: usize,
 }
 
-/// What a patch feels during a touch, and what of it the chain can know.
+/// Input of the signal chain: the deflections of one touch, with the metadata that its steps need.
 #[derive(Debug)]
 pub struct Recording<'a> {
-    /// Deflections (metres), frame after frame in the order of time, ny × nx each; they become what is read.
+    /// Deflections, metres, shape (n_frames, n_taxels), frames in the order of time. The chain replaces them by the readings.
     pub frames: &'a mut [f64],
-    /// δ̇ in m/s, one for each deflection; `None` when the patch is at rest. Only force reads it.
+    /// Rates of deflection δ̇, m/s, one per deflection; `None` if the patch is at rest. Only the force step uses them.
     pub rates: Option<&'a [f64]>,
-    /// Leading frames that came before the touch: they are remembered (if the chain [remembers](Chain::remembers)), but
-    /// not read, and hold nothing of meaning afterwards.
+    /// Number of leading frames that came before the touch. If the chain [depends on history](Chain::remembers), they change the readings of the
+    /// touch.
+    /// Their own values have no meaning after the chain.
     pub n_before: usize,
-    /// Seconds between frames; `None` when the press waits at each frame until it is read.
+    /// Time between frames, seconds; `None` if the press stops at each frame until all taxels are read.
     pub interval: Option<f64>,
-    /// The share of the session that has gone, 0 to 1; `None` for a touch of a session whose touches come in any order: its name decides.
+    /// Elapsed fraction of the session, 0 to 1. If `None`, the touch has a random time that depends on its seed.
     pub time: Option<f64>,
 }
 
-/// Working memory of [`Chain::apply`]: one per thread, any chain; it grows to the largest frame it has seen.
+/// Working memory of [`Chain::apply`]: one per thread, usable with any chain. The memory grows to the size that the largest chain needs.
 #[derive(Clone, Debug, Default)]
 pub struct Scratch(Vec<f64>);
 
-/// A step with its units resolved and its weights computed.
+/// Signal step with resolved units and computed weights.
 #[derive(Clone, Debug)]
 enum Prepared {
     Force,
@@ -65,7 +67,7 @@ enum Prepared {
         std: f64,
         place: u64,
     },
-    /// A smoothing or a sensor error.
+    /// Smoothing or sensor error.
     Effect(Arc<dyn Effect>),
 }
 
@@ -73,32 +75,33 @@ impl Chain {
     /// Checks the steps in their order and prepares them for the layout and the taxels of a patch.
     ///
     /// # Errors
-    /// Force listed twice; a noise level or unit that the frame does not have by then (see [`Noise::std_of`](super::Noise::std_of)); a
-    /// strength out of its step's range (see each step's own type); taxels that do not read alike; a step that this layout cannot have.
+    /// If force is listed twice, or a noise level or its unit does not fit the frame at this step (see [`Noise::std_of`](super::Noise::std_of)).
+    /// If a strength is out of range (see the type of each step), if the taxels differ in stroke, stiffness or damping, or if the layout does not
+    /// support a step.
     pub fn new(steps: &[SignalStep], patch: &Patch) -> Result<Self> {
         Self::of(steps, patch, Quantity::Deflection)
     }
 
-    /// The same of frames that are something else than deflections when they come.
+    /// Prepares a chain for frames whose initial quantity is `quantity` instead of deflection.
     ///
     /// # Errors
-    /// Those of [`new`](Self::new).
+    /// If the arguments are invalid, as for [`new`](Self::new).
     pub fn of(steps: &[SignalStep], patch: &Patch, quantity: Quantity) -> Result<Self> {
         Self::prepared(steps, patch, quantity, false)
     }
 
-    /// The same of forces across the axes of taxels that read these too: newtons of either sign, with the full scale of those along the axes.
-    /// They are forces from the first step on, so [`Force`](SignalStep::Force) leaves them as they are.
+    /// Prepares a chain for shear forces: newtons of either sign. The full scale equals the full scale of the normal force.
+    /// The frames are forces from the start, so [`Force`](SignalStep::Force) has no effect.
     ///
     /// # Errors
-    /// Those of [`new`](Self::new).
+    /// If the arguments are invalid, as for [`new`](Self::new).
     pub fn of_shear(steps: &[SignalStep], patch: &Patch) -> Result<Self> {
         let mut steps = steps.to_vec();
         steps.retain(|step| *step != SignalStep::Force);
         Self::prepared(&steps, patch, Quantity::Force, true)
     }
 
-    /// The most that a taxel reads: its stroke, or the force at it; of what the frames are when the chain has read them.
+    /// Returns the full scale of the output: the stroke in metres, or the force at the stroke in newtons.
     pub fn full_scale(&self) -> f64 {
         self.quantity.full_scale(&self.taxel)
     }
@@ -131,22 +134,22 @@ impl Chain {
         Ok(chain)
     }
 
-    /// What the frames are after the chain.
+    /// Returns the quantity of the output frames.
     pub fn quantity(&self) -> Quantity {
         self.quantity
     }
 
-    /// Whether what came before a touch changes what is read of it.
+    /// Returns whether the frames before a touch change its readings.
     pub fn remembers(&self) -> bool {
         self.n_remembering > 0
     }
 
-    /// Turns the deflections of a touch that is read once, at rest or at one moment, into its frame, in place.
+    /// Converts the deflections of a touch with a single frame to readings, in place.
     ///
-    /// As [`apply_recording`](Self::apply_recording) of the one frame (metres, ny × nx, row after row), with nothing before it.
+    /// Equivalent to [`apply_recording`](Self::apply_recording) with one frame (metres, ny × nx, row after row) and no history.
     ///
     /// # Panics
-    /// When the frame or the rates do not have one number for each taxel.
+    /// If the frame or the rates do not have one number per taxel.
     pub fn apply(
         &self,
         frame: &mut [f64],
@@ -165,14 +168,14 @@ impl Chain {
         self.apply_recording(recording, touch, scratch);
     }
 
-    /// Turns the deflections of a touch into its frames, in place.
+    /// Converts the deflections of a touch to readings, in place.
     ///
-    /// `touch` names the touch's own streams: its last frame has its name, and those before it have names of their own, so
-    /// the last reading's noise is the same however many come before. Nothing is allocated once `scratch` has seen a
-    /// frame of this size.
+    /// `touch` seeds the random streams of the touch. The last frame uses `touch` itself and earlier frames use derived seeds.
+    /// The noise of the last frame therefore does not depend on the number of frames before it.
+    /// The function allocates no memory if `scratch` has already been used with this chain.
     ///
     /// # Panics
-    /// When the frames are not whole, or none is left after those that came before, or there is not one rate for each value.
+    /// If a frame is incomplete, if there are no frames after the leading `n_before`, or if there is not one rate per value.
     pub fn apply_recording(&self, recording: Recording, touch: &Seed, scratch: &mut Scratch) {
         let Recording { frames, rates, .. } = recording;
         let first = recording.n_before * self.n_taxels();
@@ -184,7 +187,7 @@ impl Chain {
             scratch.0.resize(self.scratch_len, 0.0);
         }
         for (place, step) in self.steps.iter().enumerate() {
-            // Nobody remembers the history after the last step that does.
+            // The history is not needed after the last step that depends on it.
             let from = if place < self.n_remembering { 0 } else { first };
             let rates = rates.map(|rates| &rates[from..]);
             let n_before = (first - from) / self.n_taxels();
@@ -224,12 +227,12 @@ impl Chain {
         }
     }
 
-    /// Values of a frame.
+    /// Returns the number of values in a frame.
     pub fn n_taxels(&self) -> usize {
         self.n_taxels
     }
 
-    /// The step for frames as they are by now; none if it has no strength.
+    /// Prepares one step for the current quantity of the frames; returns `None` if all its strengths are zero.
     fn prepare(
         &mut self,
         step: &SignalStep,
@@ -289,10 +292,10 @@ impl Chain {
     }
 }
 
-/// What every taxel of a patch is, but for its radius.
+/// Returns the common properties of the taxels of a patch; the radii may differ.
 ///
 /// # Errors
-/// Taxels that differ in stroke, stiffness or damping: a share of the full scale would be another one of each.
+/// If taxels differ in stroke, stiffness or damping; a fraction of the full scale would differ between them.
 fn read_alike(patch: &Patch) -> Result<Taxel> {
     let reads = |taxel: &Taxel| (taxel.stroke, taxel.stiffness, taxel.damping);
     let first = *patch.taxels().at(0);
@@ -307,7 +310,7 @@ fn read_alike(patch: &Patch) -> Result<Taxel> {
     }
 }
 
-/// What a frame of a touch is named: the last one as the touch.
+/// Returns the seed of a frame of a touch; the last frame has the seed of the touch.
 fn frame_seed(touch: &Seed, frame: usize, n_frames: usize) -> Seed {
     match frame + 1 == n_frames {
         true => *touch,

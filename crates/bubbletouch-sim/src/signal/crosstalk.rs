@@ -1,17 +1,17 @@
-//! Crosstalk: what a taxel feels leaks to its neighbours.
+//! Crosstalk: a fraction of each taxel's value leaks to its neighbours.
 //!
 //! xᵢ ← (1 − κ) xᵢ + κ/4 (x_left + x_right + x_above + x_below): a fraction κ of each value leaks, a quarter of it to each of
-//! the four neighbours; what would leak over the edge stays where it is. Rows and columns of this operator sum to 1: an
-//! even pressure is read as it is, and the sum over the array is kept, as when a cover or a shared wire spreads a load
-//! but adds none. Four neighbours and not eight, because coupling falls with distance: a diagonal one gets its share by
-//! leaking twice.
+//! the four neighbours. At an edge the missing neighbour is replaced by the taxel itself. Rows and columns of this operator sum to 1: a
+//! uniform pressure is unchanged, and the sum over the array is conserved, as if a cover or a shared wire distributed the load.
+//! Only four of the eight neighbours are coupled directly, because coupling decreases with distance; values reach a diagonal
+//! neighbour through two steps.
 
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use crate::error::Result;
 use crate::text::in_range::fraction;
 use crate::world::{Grid, Neighbours};
 
-/// A leak, prepared for one grid.
+/// Crosstalk, prepared for one grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crosstalk {
     nx: usize,
@@ -20,10 +20,10 @@ pub struct Crosstalk {
 }
 
 impl Crosstalk {
-    /// Prepares the fraction κ (0 to 1) of its value that a taxel leaks.
+    /// Prepares crosstalk with the leaking fraction κ, 0 to 1.
     ///
     /// # Errors
-    /// A fraction that is not from 0 to 1.
+    /// If the fraction is not from 0 to 1.
     pub fn new(leak: f64, grid: &Grid) -> Result<Self> {
         Ok(Self {
             nx: grid.nx,
@@ -32,10 +32,10 @@ impl Crosstalk {
         })
     }
 
-    /// Spreads a frame of ny × nx values in place.
+    /// Applies the crosstalk to a frame of ny × nx values in place.
     ///
     /// # Panics
-    /// When the frame has another size, or the scratch is shorter than the frame.
+    /// If the frame has another size, or the scratch is shorter than the frame.
     pub fn spread(&self, frame: &mut [f64], scratch: &mut [f64]) {
         assert_eq!(frame.len(), self.nx * self.ny, "one value for each taxel");
         let felt = &mut scratch[..frame.len()];
@@ -70,7 +70,7 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
     )
 };
 
-/// A leak to the neighbours on a skin that is no grid.
+/// Crosstalk between neighbours on a skin that is no grid.
 #[derive(Debug)]
 struct SurfaceLeak {
     leak: f64,

@@ -1,15 +1,15 @@
-//! Offset drift: a zero that wanders, taxel by taxel.
+//! Offset drift: the zero of each taxel changes randomly over a session.
 //!
-//! The zero of a taxel is a random walk over the time t of a session, 0 when it begins (the skin has just been zeroed) and
-//! of standard deviation σ when it ends: xᵢ ← xᵢ + σ Wᵢ(t), W a Wiener process, the usual model of a sensor's wandering
-//! bias. It is computed from its Karhunen–Loève expansion
+//! The zero of a taxel is a random walk over the time t of a session. The zero is 0 at the beginning (the skin has just been zeroed) and
+//! has the standard deviation σ at the end: xᵢ ← xᵢ + σ Wᵢ(t), W a Wiener process, the usual model of a sensor's bias instability.
+//! The walk is computed from its Karhunen–Loève expansion
 //!
 //! W(t) = c Σₖ ξₖ √2 sin((k − ½) π t) / ((k − ½) π),  ξₖ ~ N(0, 1),  k = 1 … 64,
 //!
-//! so the zero at any time is known without the times before it, and touches need no order. 64 terms hold 99.7 % of the
-//! variance; c makes the variance at the end σ² exactly.
+//! The zero at any time can be computed without earlier times, so touches need no order. 64 terms contain 99.7 % of the
+//! variance; the factor c makes the variance at the end exactly σ².
 //!
-//! A [`BodyReadout`](super::BodyReadout) draws by number instead: there W is linear between 2⁶ + 1 equally spaced times of the session.
+//! A [`BodyReadout`](super::BodyReadout) uses counter-based random numbers; its W is linear between 2⁶ + 1 equally spaced times of the session.
 
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use super::taxel_effect::{Chunk, Moment, TaxelEffect};
@@ -20,23 +20,26 @@ use rand::Rng;
 use rand_distr::StandardNormal;
 use std::f64::consts::{PI, SQRT_2};
 
-/// Terms of the expansion. With fewer the zeros of all taxels move in so few ways that a classifier learns to ignore them,
-/// which those of a true walk do not let it (with 8, a linear one shrugs off any drift); more cost time and memory.
+/// Number of terms of the expansion. If it is smaller, the zeros of all taxels vary in a space of few dimensions, which a classifier can learn to
+/// ignore
+/// (with 8 terms, drift of any strength hardly affects a linear classifier); a real walk does not allow this. If it is larger, time and memory
+/// increase.
 const N_MODES: usize = 64;
 
-/// The wandering zeros of a skin, at any time of its session.
+/// Drifting zeros of a skin, at any time of its session.
 #[derive(Clone, Debug)]
 struct Zeros {
     n_taxels: usize,
-    /// ξ, mode after mode, one for each taxel.
+    /// Coefficients ξ, mode after mode, one per taxel.
     coefficients: Vec<f64>,
-    /// The amplitude of each mode, in the frame's unit.
+    /// Amplitude of each mode, in the unit of the frame.
     amplitudes: Vec<f64>,
 }
 
 impl Zeros {
-    /// Of a skin whose frames have this full scale (in their own unit), of which `std` is the fraction that zeros wander by until the session
-    /// ends. Skins that differ in `std` alone wander alike. The error is a negative or non-finite `std`.
+    /// Draws the drift of a skin. `full_scale` is in the unit of the frames; `std` is the standard deviation of the zeros at the end of the
+    /// session, as a
+    /// fraction of the full scale. The pattern does not depend on `std`. Returns an error if `std` is negative or not finite.
     fn of(std: f64, skin: &Seed, n_taxels: usize, full_scale: f64) -> Result<Self> {
         not_negative("drift std", std, "")?;
         let usual: Vec<f64> = (0..N_MODES).map(|mode| SQRT_2 / frequency(mode)).collect();
@@ -54,7 +57,7 @@ impl Zeros {
         })
     }
 
-    /// Writes the zeros at a time of the session (0 its beginning, 1 its end), one for each taxel.
+    /// Writes the zero of each taxel at a time of the session (0 is its beginning, 1 its end).
     fn at(&self, time: f64, zeros: &mut [f64]) {
         zeros.fill(0.0);
         let modes = self.coefficients.chunks_exact(self.n_taxels);
@@ -67,12 +70,12 @@ impl Zeros {
     }
 }
 
-/// When a touch happens: touches come in random order, evenly over the session.
+/// Returns the random time of a touch in the session, uniform in [0, 1).
 fn time_of(touch: &Seed) -> f64 {
     touch.named("time").rng().r#gen()
 }
 
-/// (k − ½) π for the mode's number from 0.
+/// Returns (k − ½) π for the mode with the index k − 1.
 fn frequency(mode: usize) -> f64 {
     (mode as f64 + 0.5) * PI
 }
@@ -119,10 +122,10 @@ impl Effect for Zeros {
     }
 }
 
-/// Halvings of the session in the draws by number: 2⁶ pieces, as many numbers a taxel as [`N_MODES`].
+/// Number of times that the session is halved for counter-based draws: 2⁶ intervals, as many random numbers per taxel as [`N_MODES`].
 const N_HALVINGS: u32 = 6;
 
-/// Zeros drawn by the taxels' numbers: σ W(t), with σ in the frame's unit.
+/// Drift with counter-based random numbers: zeros σ W(t), σ in the unit of the frame.
 #[derive(Debug)]
 struct ZerosByNumber {
     key: CounterKey,

@@ -1,9 +1,9 @@
-//! Faults: taxels that are dead (they read 0) and taxels that are stuck (they read one level whatever they feel).
+//! Faults: dead taxels read 0, and stuck taxels read a constant level.
 //!
-//! Which taxels, and at which levels, belongs to the skin. Taxels fail in one random order of the skin, the dead from its
-//! front and the stuck from its back: a skin with more faults has all those of a skin with fewer.
+//! The faulty taxels and their levels are fixed for a skin. Taxels fail in a random order: dead taxels are taken from its beginning and stuck
+//! taxels from its end. The faulty taxels at a lower fraction are therefore a subset of those at a higher fraction.
 //!
-//! In a [`BodyReadout`](super::BodyReadout) each taxel fails independently: the fractions are probabilities there.
+//! In a [`BodyReadout`](super::BodyReadout) each taxel fails independently, and the fractions are probabilities.
 
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use super::taxel_effect::{CHUNK, Chunk, Moment, TaxelEffect};
@@ -13,13 +13,13 @@ use crate::text::in_range::fraction;
 use rand::Rng;
 use rand::seq::SliceRandom;
 
-/// What each taxel at fault reads in place of what it feels.
+/// Indices and constant readings of the faulty taxels.
 #[derive(Debug)]
 struct Levels(Vec<(usize, f64)>);
 
 impl Levels {
-    /// Of a skin: the dead, then the stuck, whose levels are drawn evenly from all that they can read, the least to the largest value. The
-    /// fractions are rounded to whole taxels; the error is one that is not from 0 to 1, or a sum above 1.
+    /// Draws the faults of a skin: dead taxels, then stuck taxels with levels uniform between the lowest and the largest value.
+    /// The fractions are rounded to whole taxels. Returns an error if a fraction is not from 0 to 1, or their sum exceeds 1.
     fn of(
         [dead, stuck]: [f64; 2],
         skin: &Seed,
@@ -45,7 +45,7 @@ impl Levels {
     }
 }
 
-/// No taxel is dead and stuck.
+/// Returns an error if the sum of the fractions exceeds 1; a taxel cannot be both dead and stuck.
 fn check_together(dead: f64, stuck: f64) -> Result<()> {
     if dead + stuck <= 1.0 {
         return Ok(());
@@ -91,7 +91,7 @@ impl Effect for Levels {
     }
 }
 
-/// Faults drawn by the taxels' numbers: 0 with probability `dead`, a level of its own up to `full_scale` with probability `stuck`.
+/// Faults with counter-based random numbers: a taxel reads 0 with probability `dead`, and a level up to `full_scale` with probability `stuck`.
 #[derive(Debug)]
 struct FaultsByNumber {
     key: CounterKey,

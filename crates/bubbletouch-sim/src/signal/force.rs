@@ -1,16 +1,16 @@
-//! Force from deflection and its rate.
+//! Forces from deflections and their rates.
 
 use crate::world::Taxel;
 
-/// Replaces deflections (metres) by the forces that press the taxels in (newtons): f = max(0, k δ + c δ̇) where δ > 0,
+/// Replaces deflections (metres) by normal forces (newtons): f = max(0, k δ + c δ̇) where δ > 0,
 /// else 0 \[BT\].
 ///
-/// `rate` is δ̇ in m/s, one per taxel; `None` when the patch is at rest. A taxel that relaxes with nothing on it obeys
-/// k δ + c δ̇ = 0, and after a step of finite length (1 + a) e⁻ᵃ ≤ 1 with a = k Δt / c keeps its backward difference at or
-/// below that: the maximum gives it no force, so no list of contacts is needed.
+/// `rate` is δ̇ in m/s, one per taxel; `None` if the patch is at rest. A free taxel relaxes with
+/// k δ + c δ̇ = 0. After a step of length Δt, its backward difference gives k δ + c δ̇ ≤ 0, because (1 + a) e⁻ᵃ ≤ 1 with a = k Δt / c.
+/// The maximum therefore sets its force to 0, and no list of contacts is needed.
 ///
 /// # Panics
-/// When `rate` is not as long as `frame`.
+/// If `rate` and `frame` differ in length.
 pub fn force(frame: &mut [f64], rate: Option<&[f64]>, taxel: &Taxel) {
     let Some(rate) = rate else {
         for value in frame {

@@ -1,7 +1,7 @@
-//! Gain mismatch: each taxel its own sensitivity.
+//! Gain mismatch: each taxel has its own sensitivity.
 //!
 //! xᵢ ← gᵢ xᵢ with gᵢ = exp(s zᵢ − s²/2), zᵢ ~ N(0, 1), s² = ln(1 + std²): log-normal gains of mean 1 and standard
-//! deviation `std`, above zero at any strength. Imaging calls this fixed-pattern noise, \[SD\] mismatching.
+//! deviation `std`, positive at any strength. The effect is called fixed-pattern noise in imaging and mismatching in \[SD\].
 
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use super::taxel_effect::{Chunk, Moment, TaxelEffect};
@@ -11,9 +11,9 @@ use crate::text::in_range::not_negative;
 use rand::Rng;
 use rand_distr::StandardNormal;
 
-/// One gain for each taxel of a skin, the same in every touch. Skins that differ in `std` alone share the pattern.
+/// Returns one gain per taxel of a skin, constant over all touches. The pattern does not depend on `std`.
 ///
-/// The error is a negative or non-finite `std`.
+/// Returns an error if `std` is negative or not finite.
 fn gains(std: f64, skin: &Seed, n_taxels: usize) -> Result<Vec<f64>> {
     let variance = not_negative("gain std", std, "")?.powi(2).ln_1p();
     let mut rng = skin.named("gain").rng();
@@ -46,7 +46,7 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
     )
 };
 
-/// One gain for each taxel.
+/// One gain per taxel.
 #[derive(Debug)]
 struct Gains(Vec<f64>);
 
@@ -60,7 +60,7 @@ impl Effect for Gains {
     }
 }
 
-/// Gains drawn by the taxels' numbers: exp(s z − s²/2).
+/// Gains exp(s z − s²/2) with counter-based random numbers z.
 #[derive(Debug)]
 struct GainsByNumber {
     key: CounterKey,

@@ -1,38 +1,37 @@
-//! Hysteresis: a taxel that is let go reads more than one that is pressed to the same depth.
+//! Hysteresis: during unloading, a taxel reads a higher value than during loading at equal depth.
 //!
 //! A Prandtl–Ishlinskii model, as fitted to tactile sensors \[GPI\]: y = (1 − 4w) x + w Σⱼ Pⱼ[x], the sum over eight play
-//! operators of thresholds rⱼ = (j − ½) X/8, X the full scale. A play follows its input at a distance of at most r,
-//! Pⱼ ← max(x − rⱼ, min(x + rⱼ, Pⱼ)), and rests at 0. It does not know how fast the input moves, only where it turned.
+//! operators of thresholds rⱼ = (j − ½) X/8, X the full scale. A play operator follows its input at a distance of at most r,
+//! Pⱼ ← max(x − rⱼ, min(x + rⱼ, Pⱼ)), and starts at 0. The model is rate-independent: only the turning points of the input matter.
 //!
-//! - A fresh taxel that is pressed in follows y = (1 − 4w) x + w Σ max(0, x − rⱼ), from 0 to X at the full scale: what a
-//!   direct press of a fresh skin reads, a fixed curve without any history.
-//! - Between 0 and X it goes around a closed loop: w X wide in its middle, of area 11/16 w X².
-//! - A taxel that was pressed and let go does not return to 0: it keeps 2 w X after a full press and a quarter of that
-//!   after one of half the depth, until it is pressed deeper. So what a touch reads depends on the touches before it. (Skins that
-//!   recover with time lie between this and a fresh skin.)
+//! - First loading of a fresh taxel follows y = (1 − 4w) x + w Σ max(0, x − rⱼ), a fixed curve without history that reaches X at the full scale.
+//! - Cycles between 0 and X form a closed loop of width w X in its middle and area 11/16 w X².
+//! - A taxel does not return to 0 after a press. The residual is 2 w X after a full press and a quarter of that
+//!   after a press of half the depth, until the taxel is pressed deeper. The readings of a touch therefore depend on the touches before it.
+//!   (Skins that recover with time lie between this model and a fresh skin.)
 
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use crate::error::{Error, Result};
 
-/// Play operators. Fewer make a cornered loop; more cost time.
+/// Number of play operators. If it is smaller, the loop has visible corners; if it is larger, the cost increases.
 const N_PLAYS: usize = 8;
-/// The widest loop that leaves every weight positive: beyond it, reading would fall while the load grows.
+/// Largest loop width for which all weights are positive. Above it, the reading would fall while the load increases.
 const MAX_WIDTH: f64 = 0.25;
 
-/// A hysteresis of one width, prepared for frames of one full scale.
+/// Hysteresis of one width, prepared for frames of one full scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hysteresis {
-    /// w.
+    /// Loop width w, a fraction of the full scale.
     width: f64,
-    /// rⱼ, in the frame's unit.
+    /// Thresholds rⱼ, in the unit of the frame.
     thresholds: [f64; N_PLAYS],
 }
 
 impl Hysteresis {
-    /// Prepares a loop of a width (fraction of the full scale, 0 to 0.25), for frames of this full scale in their own unit.
+    /// Prepares a loop of a width (fraction of the full scale, 0 to 0.25). `full_scale` is in the unit of the frames.
     ///
     /// # Errors
-    /// A width that is not from 0 to 0.25.
+    /// If the width is not from 0 to 0.25.
     pub fn new(width: f64, full_scale: f64) -> Result<Self> {
         if !(0.0..=MAX_WIDTH).contains(&width) {
             let allowed = format!("a fraction of the full scale, 0 to {MAX_WIDTH}");
@@ -45,10 +44,10 @@ impl Hysteresis {
         })
     }
 
-    /// Replaces what fresh taxels feel, frame after frame of n_taxels values in the order of time, by what they read.
+    /// Replaces true values by readings of fresh taxels. `frames` has n_taxels values per frame, frames in the order of time.
     ///
     /// # Panics
-    /// When `n_taxels` is zero or the frames are not whole.
+    /// If `n_taxels` is zero or a frame is incomplete.
     pub fn follow(&self, frames: &mut [f64], n_taxels: usize) {
         assert!(
             frames.len().is_multiple_of(n_taxels),

@@ -1,16 +1,18 @@
-//! Matrix readout: resistive taxels at the crossings of rows and columns are read through lines that they share.
+//! Matrix readout: resistive taxels at the crossings of rows and columns are read through shared lines.
 //!
-//! A taxel conducts in proportion to what it feels: g = x/X, where X is the full scale and a fully pressed taxel conducts 1. A reader puts 1 V
-//! on one row, holds all other lines at 0 V, and takes the current of one column; each line has a resistance ε of its own (wire and
-//! switch), in parts of that of a fully pressed taxel, which is why the taxels of a line are not independent \[DA\]. With t = 1/ε the voltages v
-//! of all lines obey A v = t eᵢ,
+//! The conductance of a taxel is proportional to its value: g = x/X, where X is the full scale; a fully pressed taxel has conductance 1.
+//! The electronics apply 1 V to one row, hold all other lines at 0 V, and measure the current of one column. Each line (wire and
+//! switch) has a resistance ε, relative to that of a fully pressed taxel. The readings of taxels on one line therefore depend on each other \[DA\].
+//! With t = 1/ε the voltages v of all lines obey A v = t eᵢ,
 //!
 //! A = ⎡ diag(t + Σⱼ gᵢⱼ)       −G        ⎤  and what is read is  xᵢⱼ ← X t² (A⁻¹)ᵢⱼ,
 //!     ⎣       −Gᵀ        diag(t + Σᵢ gᵢⱼ) ⎦
 //!
-//! exactly, for all rows i and columns j. Two things show: a taxel whose lines carry much reads too little, and where three corners of a
-//! rectangle are pressed the fourth reads too (a ghost). With ε = 0 each taxel is read as it is. A value below zero (noise came before)
-//! conducts nothing and stays.
+//! exactly, for all rows i and columns j. There are two visible effects. A taxel reads too little if its lines carry large currents. If three
+//! corners of a
+//! rectangle are pressed, the fourth corner also has a reading (a ghost). With ε = 0 the readings are exact. A value below zero (due to earlier
+//! noise)
+//! has zero conductance and is kept.
 //!
 //! \[DA\] D'Alessio, *Measurement errors in the scanning of piezoresistive sensors arrays*, Sensors and Actuators A 72, 1999.
 
@@ -19,23 +21,23 @@ use crate::error::{Error, Result};
 use crate::text::in_range::not_negative;
 use crate::world::Grid;
 
-/// A reader of one line resistance, prepared for one grid and full scale.
+/// Matrix readout of one line resistance, prepared for one grid and full scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MatrixReadout {
     nx: usize,
     ny: usize,
-    /// ε.
+    /// Line resistance ε.
     resistance: f64,
-    /// X, in the frame's unit.
+    /// Full scale X, in the unit of the frame.
     full_scale: f64,
 }
 
 impl MatrixReadout {
-    /// Prepares lines of a resistance ε (zero or more, in parts of that of a fully pressed taxel), for frames of this full scale in their own
-    /// unit.
+    /// Prepares a readout with line resistance ε (zero or more, relative to the resistance of a fully pressed taxel).
+    /// `full_scale` is in the unit of the frames.
     ///
     /// # Errors
-    /// A resistance that is negative or not finite.
+    /// If the resistance is negative or not finite.
     pub fn new(resistance: f64, full_scale: f64, grid: &Grid) -> Result<Self> {
         Ok(Self {
             nx: grid.nx,
@@ -45,10 +47,10 @@ impl MatrixReadout {
         })
     }
 
-    /// Replaces what a frame of ny × nx taxels feels, in place, by what is read.
+    /// Replaces the true values of a frame of ny × nx taxels by readings, in place.
     ///
     /// # Panics
-    /// When the frame has another size, or the scratch has fewer than nx (nx + 2) numbers.
+    /// If the frame has another size, or the scratch has fewer than nx (nx + 2) numbers.
     pub fn read(&self, frame: &mut [f64], scratch: &mut [f64]) {
         assert_eq!(frame.len(), self.nx * self.ny, "one value for each taxel");
         if self.resistance == 0.0 {
@@ -59,7 +61,7 @@ impl MatrixReadout {
         let (schur, rest) = scratch.split_at_mut(self.nx * self.nx);
         let (currents, row) = rest.split_at_mut(self.nx);
         let row = &mut row[..self.nx];
-        // What is left of A when the rows are eliminated: diag(t + Σᵢ gᵢⱼ) − Gᵀ diag(t + Σⱼ gᵢⱼ)⁻¹ G.
+        // Schur complement of A after elimination of the rows: diag(t + Σᵢ gᵢⱼ) − Gᵀ diag(t + Σⱼ gᵢⱼ)⁻¹ G.
         schur.fill(0.0);
         currents.fill(0.0);
         for values in frame.chunks_exact(self.nx) {
@@ -96,8 +98,8 @@ impl MatrixReadout {
     }
 }
 
-/// The Cholesky factor L of a symmetric matrix whose diagonal outweighs each row, in place of its lower triangle. (One matrix of a line a column
-/// each frame: a crate for it would be the larger part.)
+/// Computes the Cholesky factor L of a symmetric, diagonally dominant matrix, in place of its lower triangle.
+/// There is one nx × nx matrix per frame, so a linear-algebra crate is not needed.
 fn factorise(matrix: &mut [f64], n: usize) {
     for a in 0..n {
         let (above, row) = matrix.split_at_mut(a * n);
@@ -124,7 +126,7 @@ fn solve(factor: &[f64], b: &mut [f64]) {
     }
 }
 
-/// Of the leading numbers that both have.
+/// Returns the dot product over the length of the shorter slice.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -1,8 +1,8 @@
 //! Signal: deflections → frames.
 //!
 //! A [`Chain`] is a list of [`SignalStep`]s, applied to one frame at a time in the order in which the study lists them.
-//! A frame is one number per taxel: ny × nx on a grid, row = patch y, ascending, stored row after row; else in the order of the layout.
-//! Crosstalk and smoothing go over the [neighbours](crate::world::Neighbours) of a layout that is no grid; a matrix readout needs a grid.
+//! A frame has one number per taxel: shape ny × nx on a grid, row = patch y, ascending, stored row after row; otherwise in the order of the layout.
+//! On a layout that is no grid, crosstalk and smoothing use the [neighbours](crate::world::Neighbours); a matrix readout needs a grid.
 //!
 //! | step | equation | symbols |
 //! |---|---|---|
@@ -19,24 +19,27 @@
 //! | [`PinkNoise`](SensorError::PinkNoise) | xᵢ ← xᵢ + σ pᵢ, p of a 1/f spectrum in the order of reading | σ of the full scale |
 //! | [`Quantisation`](SensorError::Quantisation) | x ← q round(x / q), clipped to the full scale | b bits |
 //!
-//! The others are what real skins do to a signal: what \[SD\] calls mismatching, drift, hysteresis and crosstalk, and
-//! what readers add. A step of no strength is exactly as if it were not listed. A chain that follows the signal's way
-//! lists them as above, noise after drift: the material first, then what each taxel is read at, the converter last.
+//! Smoothing is a filter; the steps below it are sensor errors of real skins: mismatching, drift, hysteresis and crosstalk \[SD\], and errors of
+//! the readout
+//! electronics. A step of zero strength has no effect. The table has the physical order: first the material, then the readout of each taxel,
+//! then the converter. Noise belongs after drift.
 //!
-//! **Units.** A chain starts from deflections in metres. `Force` turns them into newtons, once. [`Noise`] turns its
-//! standard deviation into whichever unit the frame has by then; so does each step with a fraction of the full scale.
+//! **Units.** A chain starts from deflections in metres. `Force` converts them to newtons and may occur once. [`Noise`] converts its
+//! standard deviation to the current unit of the frame; so does each step whose strength is a fraction of the full scale.
 //!
-//! **Randomness.** The draws z belong to a touch (a [`Seed`](crate::random::Seed)) and to the place among the chain's noise steps, never to
-//! the level σ: two chains that differ in σ alone add the same pattern, louder or quieter, so a sweep over noise
-//! compares like with like. What belongs to one piece of hardware and is the same in each touch (gains, the drift's walk,
-//! faults) has the `skin`'s name and is drawn in [`Chain::new`]; what changes from touch to touch is drawn in
-//! [`Chain::apply`]. There too, strengths share their pattern.
+//! **Randomness.** The draws z depend on the touch (a [`Seed`](crate::random::Seed)) and on the position among the noise steps of the chain,
+//! but not on the level σ. Two chains that differ only in σ add the same pattern with another amplitude, so a sweep over noise compares paired
+//! frames.
+//! Properties of one piece of hardware (gains, the drift's walk, faults) are constant over all touches: they depend on the `skin`'s seed and are
+//! drawn
+//! in [`Chain::new`]. Errors that change from touch to touch are drawn in [`Chain::apply`]. Their patterns do not depend on the strengths either.
 //!
-//! **Whole bodies.** A [`BodyReadout`] has the steps that each taxel takes by itself, with draws by number in the place of streams: it reads
-//! the touched taxels of millions, and nobody pays for the others.
+//! **Whole bodies.** A [`BodyReadout`] supports the steps that act on each taxel independently. It uses counter-based random numbers instead of
+//! streams,
+//! so the touched taxels among millions are read at a cost proportional to their number.
 //!
-//! **Time.** A touch is a [`Recording`]: frames in the order of time, which hysteresis and scan order connect. A frame alone is a
-//! recording of one: read at rest, by a skin that nothing has touched before.
+//! **Time.** A touch is a [`Recording`]: frames in the order of time. Hysteresis and scan order depend on several frames. A single frame is
+//! a recording of one frame, read at rest, by a skin without earlier touches.
 
 mod body_readout;
 mod chain;
@@ -50,7 +53,7 @@ mod step;
 mod surface_smoothing;
 mod taxel_effect;
 
-// Everything that a study may say of a sensor error follows from its line here and from the file that it names.
+// The properties of a sensor error follow from its line here and from the module that the line names.
 sensor_errors! {
     Hysteresis hysteresis "Loading and unloading read differently.";
     Crosstalk crosstalk "Values leak to the neighbours.";

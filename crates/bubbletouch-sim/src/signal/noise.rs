@@ -10,11 +10,11 @@ use rand::Rng;
 use rand_distr::StandardNormal;
 use serde::{Deserialize, Serialize};
 
-/// What a noise standard deviation is measured in.
+/// Unit of a noise standard deviation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum NoiseUnit {
-    /// A fraction of the full scale: the stroke, or the stroke times the stiffness for forces.
+    /// Fraction of the full scale: the stroke for deflections, the stroke times the stiffness for forces.
     FullScale,
     /// Millimetres of deflection.
     Mm,
@@ -25,17 +25,17 @@ pub enum NoiseUnit {
 /// Independent zero-mean Gaussian noise on every taxel, touched or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noise {
-    /// σ in the unit beside it; zero or positive.
+    /// Standard deviation σ, in `unit`; zero or positive.
     pub std: f64,
     /// The unit of `std`.
     pub unit: NoiseUnit,
 }
 
 impl Noise {
-    /// σ in the frame's own unit: metres for deflections, newtons for forces.
+    /// Returns σ in the unit of the frame: metres for deflections, newtons for forces.
     ///
     /// # Errors
-    /// A negative or non-finite `std`; millimetres asked of forces; newtons asked of deflections.
+    /// If `std` is negative or not finite; if its unit is millimetres for forces or newtons for deflections.
     pub fn std_of(&self, quantity: Quantity, taxel: &Taxel) -> Result<f64> {
         not_negative("noise std", self.std, "")?;
         match (self.unit, quantity) {
@@ -59,7 +59,7 @@ impl Noise {
     }
 }
 
-/// Adds σ zᵢ to each value, with z from the stream's start: the same z for every σ. σ = 0 draws nothing.
+/// Adds σ zᵢ to each value. z is drawn from the start of the stream and does not depend on σ. σ = 0 draws nothing.
 pub(super) fn add_normal(frame: &mut [f64], std: f64, stream: &Seed) {
     if std == 0.0 {
         return;
@@ -71,7 +71,7 @@ pub(super) fn add_normal(frame: &mut [f64], std: f64, stream: &Seed) {
     }
 }
 
-/// Noise drawn by the numbers of taxels and frames; σ in the frame's unit.
+/// Noise with counter-based random numbers, indexed by taxel and frame; σ in the unit of the frame.
 #[derive(Debug)]
 pub(super) struct NoiseByNumber {
     pub key: CounterKey,

@@ -1,14 +1,14 @@
-//! Pink noise: the 1/f noise of an amplifier that reads the taxels one after another.
+//! Pink noise: 1/f noise of an amplifier that reads the taxels one after another.
 //!
-//! Row after row and frame after frame, reading r of a touch gets xᵣ ← xᵣ + σ pᵣ, p of variance 1 and of a power spectrum that falls as
-//! 1/f over K octaves of frequency, from that of the readings down. It is the sum that Voss and McCartney make: K sources, source k drawn
-//! anew every 2ᵏ readings and held between,
+//! Readings are numbered row after row and frame after frame. Reading r of a touch becomes xᵣ ← xᵣ + σ pᵣ, where p has variance 1 and a power
+//! spectrum proportional to 1/f over K octaves below the readings' frequency. p is the sum of Voss and McCartney: source k of K sources is
+//! redrawn every 2ᵏ readings and constant in between,
 //!
 //! p = K^(−½) Σₖ zₖ,  E pᵣ pᵣ₊ₗ = K⁻¹ Σₖ max(0, 1 − l/2ᵏ),  k = 0 … K − 1.
 //!
-//! Neighbours in the order of reading err alike, which neither an average over the array nor smoothing takes away as it does with white
-//! noise. Readings are counted back from the last one, and each source begins within its hold at a time of the touch's own: the noise of
-//! the last frame is the same however many come before it.
+//! Readings that are adjacent in time have correlated errors, so averaging and smoothing reduce them less than white noise.
+//! Readings are counted back from the last one, and each source starts at a random phase of its hold time. The noise of
+//! the last frame therefore does not depend on the number of frames before it.
 
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use crate::random::Seed;
@@ -16,7 +16,8 @@ use crate::text::in_range::not_negative;
 use rand::Rng;
 use rand_distr::StandardNormal;
 
-/// K. The slowest source is held for half a million readings: longer than a touch of most arrays. With fewer, slow noise is missing.
+/// Number of sources K. The slowest source is constant for half a million readings, longer than a touch of most arrays. If it is smaller, slow
+/// noise is missing.
 const N_SOURCES: usize = 20;
 
 pub(super) const ABOUT: ErrorAbout = ErrorAbout {
@@ -35,7 +36,7 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
     )
 };
 
-/// σ, in the frame's unit.
+/// Pink noise of one standard deviation σ, in the unit of the frame.
 #[derive(Debug)]
 struct PinkNoise {
     std: f64,
@@ -55,7 +56,7 @@ fn stream(touch: &Seed, source: usize) -> Seed {
     touch.named("pink noise").numbered(source as u64)
 }
 
-/// Adds a source that holds each of its values for so many readings, the first for some of them.
+/// Adds one source, redrawn every `hold` readings counted back from the end; the last hold has a random length of 1 to `hold` readings.
 fn add_held(readings: &mut [f64], scale: f64, hold: usize, stream: &Seed) {
     let mut rng = stream.rng();
     let first = rng.gen_range(1..=hold);

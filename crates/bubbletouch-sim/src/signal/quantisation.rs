@@ -1,29 +1,29 @@
-//! Quantisation: an analogue-to-digital converter of so many bits over the full scale.
+//! Quantisation: an analogue-to-digital converter with b bits over the full scale.
 //!
-//! x ← q round(min(max(x, 0), X) / q), q = X / (2ᵇ − 1): 2ᵇ codes from 0 to the full scale X, both included, or from −X to X where values have
-//! a sign. What is outside reads as the nearest end: a converter clips as well as it rounds.
+//! x ← q round(min(max(x, 0), X) / q), q = X / (2ᵇ − 1): 2ᵇ codes from 0 to the full scale X, both included, or from −X to X if values have
+//! a sign. Values outside the range are clipped to its nearest end.
 
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use super::taxel_effect::{Chunk, Moment, TaxelEffect};
 use crate::error::{Error, Result};
 
-/// The most bits. A finer step is below anything that a touch could change.
+/// Maximum number of bits. A finer step is smaller than any effect of a touch.
 const MAX_BITS: u32 = 24;
 
-/// A converter, prepared for frames of one range.
+/// Converter, prepared for frames of one range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantisation {
     least: f64,
     span: f64,
-    /// The last code, 2ᵇ − 1.
+    /// Largest code, 2ᵇ − 1.
     last: f64,
 }
 
 impl Quantisation {
-    /// A converter of 1 to 24 bits for frames from the least to the largest value, in their own unit.
+    /// Prepares a converter of 1 to 24 bits. `least` and `largest` are the limits of the range, in the unit of the frames.
     ///
     /// # Errors
-    /// Another number of bits.
+    /// If the number of bits is not from 1 to 24.
     pub fn new(bits: u32, [least, largest]: [f64; 2]) -> Result<Self> {
         if !(1..=MAX_BITS).contains(&bits) {
             let allowed = format!("1 to {MAX_BITS}, or 0 for no converter");

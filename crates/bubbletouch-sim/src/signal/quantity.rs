@@ -13,7 +13,7 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// Shown value = stored value × this: deflections are shown in millimetres.
+    /// Returns the factor from stored to displayed values: 1000 for deflections (metres to millimetres), 1 for forces.
     pub fn factor(self) -> f64 {
         match self {
             Self::Deflection => 1e3,
@@ -21,7 +21,7 @@ impl Quantity {
         }
     }
 
-    /// The value of a taxel at its stroke: metres or newtons.
+    /// Returns the value of a taxel at its stroke: metres or newtons.
     pub fn full_scale(self, taxel: &Taxel) -> f64 {
         match self {
             Self::Deflection => taxel.stroke,
@@ -29,7 +29,7 @@ impl Quantity {
         }
     }
 
-    /// The unit of the shown value.
+    /// Returns the unit of displayed values.
     pub fn unit(self) -> &'static str {
         match self {
             Self::Deflection => "mm",
@@ -37,7 +37,7 @@ impl Quantity {
         }
     }
 
-    /// The name of the shown value.
+    /// Returns the name of the quantity in charts.
     pub fn name(self) -> &'static str {
         match self {
             Self::Deflection => "deflection",

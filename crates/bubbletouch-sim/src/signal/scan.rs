@@ -1,34 +1,34 @@
-//! Scan order: taxels are read one after another while the press goes on.
+//! Scan order: taxels are read one after another while the press continues.
 //!
-//! Row after row and in a row taxel after taxel, taxel i of n is read τᵢ = T i/n after the first one, T the scan time of the
-//! array. A frame that begins at time t therefore holds xᵢ(t + τᵢ): the later a taxel is read, the deeper it is pressed.
-//! Between the frames of a touch the press is interpolated linearly; after the last one it rests. So a touch of one frame,
-//! and the last frame of any touch, is read at rest and not changed; nor is a touch that waits at each depth.
+//! Taxels are read row after row. Taxel i of n is read τᵢ = T i/n after the first one, T the scan time of the
+//! array. A frame that begins at time t contains xᵢ(t + τᵢ): taxels that are read later are pressed deeper.
+//! Between the frames of a touch the values are interpolated linearly. After the last frame the press is at rest. The last frame
+//! of a touch, and a touch of a single frame, are therefore unchanged; so is a touch whose press stops at each depth.
 
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use crate::error::Result;
 use crate::text::in_range::not_negative;
 
-/// A scan of one duration.
+/// Scan of one duration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scan {
     seconds: f64,
 }
 
 impl Scan {
-    /// A scan that takes so many seconds, zero or more.
+    /// Prepares a scan of a duration in seconds, zero or more.
     ///
     /// # Errors
-    /// A negative or non-finite time.
+    /// If the time is negative or not finite.
     pub fn new(seconds: f64) -> Result<Self> {
         not_negative("scan time", seconds, "")?;
         Ok(Self { seconds })
     }
 
-    /// Reads the frames (n_taxels values each, `interval` seconds apart) as a scan does, in place.
+    /// Applies the scan to frames of n_taxels values each, `interval` seconds apart, in place.
     ///
     /// # Panics
-    /// When `n_taxels` is zero or the frames are not whole.
+    /// If `n_taxels` is zero or a frame is incomplete.
     pub fn read_late(&self, frames: &mut [f64], n_taxels: usize, interval: f64) {
         assert!(
             frames.len().is_multiple_of(n_taxels),
@@ -37,7 +37,7 @@ impl Scan {
         let last = frames.len() / n_taxels - 1;
         for taxel in 0..n_taxels {
             let late = self.seconds / interval * taxel as f64 / n_taxels as f64;
-            // Each frame needs itself and later ones, which still hold what was felt.
+            // A frame needs itself and later frames, which still contain the true values.
             for frame in 0..last {
                 let time = (frame as f64 + late).min(last as f64);
                 let before = (time as usize).min(last - 1);

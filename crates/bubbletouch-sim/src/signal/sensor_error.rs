@@ -1,4 +1,4 @@
-//! What a sensor error says of itself: its step, its strengths, what it belongs to, what it costs, and how it is made.
+//! Description of a sensor error: its step, its strengths, its dependencies and its constructor.
 
 use super::taxel_effect::TaxelEffect;
 use crate::error::Result;
@@ -6,99 +6,99 @@ use crate::random::{CounterKey, Seed};
 use crate::world::Patch;
 use std::fmt::Debug;
 
-/// A number that says how strong a sensor error is; zero is none of it.
+/// Strength parameter of a sensor error; zero disables the error.
 #[derive(Debug)]
 pub struct Strength {
-    /// The key of `[signal]` and the column of tables.
+    /// Key in `[signal]` and name of the table column.
     pub key: &'static str,
-    /// What people call it, before a value: `gain mismatch`.
+    /// Name in texts, before a value: `gain mismatch`.
     pub words: &'static str,
-    /// Of the value: `ms`; `%` of a share of one.
+    /// Unit of the value, such as `ms`; `%` for a fraction.
     pub unit: &'static str,
-    /// Whether it is a whole number.
+    /// Whether the value must be an integer.
     pub is_whole: bool,
-    /// Whether a value is possible.
+    /// Returns whether a value is allowed.
     pub is_allowed: fn(f64) -> bool,
-    /// What is, in words.
+    /// Allowed values, in words.
     pub allowed: &'static str,
-    /// What people call values that are more than numbers: `0`, `none`.
+    /// Names of special values: a number and its name, such as `0` and `none`.
     pub names: &'static [(&'static str, &'static str)],
 }
 
-/// Checks strengths of which at least one is not zero, and prepares what they do to the signal of a skin.
+/// Constructor of a sensor error: checks the strengths, at least one of them nonzero, and prepares the effect on the signal of a skin.
 pub type Prepare = fn(&[f64; MAX_STRENGTHS], &Skin) -> Result<Box<dyn Effect>>;
 
-/// Prepares an error for the taxels of a whole body, from allowed strengths of which at least one is not zero, the full scale (metres or
-/// newtons) and the key of its draws.
+/// Constructor of a sensor error for the taxels of a whole body. Arguments: allowed strengths, at least one of them nonzero; the full scale
+/// in metres or newtons; the key of the random draws.
 pub type PrepareByTaxel =
     fn(&[f64; MAX_STRENGTHS], f64, CounterKey) -> Result<Box<dyn TaxelEffect>>;
 
-/// A sensor error.
+/// Description of a sensor error.
 #[derive(Debug)]
 pub struct ErrorAbout {
-    /// The word of `signal.steps`.
+    /// Name of the step in `signal.steps`.
     pub step: &'static str,
-    /// How strong it is: one number, or [two](MAX_STRENGTHS), shares of one whole that are at most 1 together.
+    /// Strength parameters: one, or [two](MAX_STRENGTHS) fractions whose sum is at most 1.
     pub strengths: &'static [Strength],
-    /// Whether it belongs to a skin: another skin of the same make has another of it.
+    /// Whether the error is a fixed property of a skin; another skin of the same type has different random values.
     pub is_of_skin: bool,
     /// Whether two readings of one touch on one skin differ.
     pub is_random_by_reading: bool,
-    /// Whether what a touch reads depends on the touches before it.
+    /// Whether the readings of a touch depend on the touches before it.
     pub remembers: bool,
-    /// Whether it shows only in frames that the press moves through.
+    /// Whether the error is visible only if frames are read while the press moves.
     pub needs_motion: bool,
-    /// Whether the error depends on where the taxels are: on their neighbours, or on rows and columns.
+    /// Whether the error depends on the positions of the taxels: on their neighbours, or on rows and columns.
     pub needs_places: bool,
-    /// Checks strengths of which at least one is not zero, and prepares what they do.
+    /// Checks the strengths, at least one of them nonzero, and prepares the effect.
     pub prepare: Prepare,
     /// Prepares the error for a [`BodyReadout`](super::BodyReadout); `None` if it depends on other taxels or on other frames.
     pub by_taxel: Option<PrepareByTaxel>,
 }
 
-/// Strengths of an error, at most.
+/// Maximum number of strength parameters of a sensor error.
 pub const MAX_STRENGTHS: usize = 2;
 
-/// Whose signal it is.
+/// Skin for which a sensor error is prepared.
 #[derive(Clone, Copy, Debug)]
 pub struct Skin<'a> {
-    /// Its taxels.
+    /// Patch with the taxels of the skin.
     pub patch: &'a Patch,
-    /// The value of a taxel at its stroke: metres, or newtons.
+    /// Value of a taxel at its stroke, metres or newtons.
     pub full_scale: f64,
-    /// The least value that it reads: zero, or minus the full scale of values that have a sign.
+    /// Lowest possible reading: zero, or minus the full scale if values have a sign.
     pub least: f64,
-    /// The name of the piece of hardware, the same in each touch.
+    /// Seed of this piece of hardware; it is constant over all touches.
     pub name: Seed,
 }
 
-/// What a prepared error does to frames.
+/// Prepared sensor error or smoothing, applied to frames.
 pub trait Effect: Debug + Send + Sync {
-    /// Numbers of working memory that [`apply`](Self::apply) needs.
+    /// Number of values of working memory that [`apply`](Self::apply) needs.
     fn scratch_len(&self) -> usize {
         0
     }
 
-    /// Changes frames of n_taxels values each, one after the other in time. Nothing is allocated.
+    /// Applies the effect to frames of n_taxels values each, in the order of time. Must not allocate memory.
     fn apply(&self, frames: &mut [f64], touch: &TouchRead, scratch: &mut [f64]);
 }
 
-/// How the frames of a touch are read.
+/// Metadata of a touch: how its frames are read.
 #[derive(Clone, Copy, Debug)]
 pub struct TouchRead<'a> {
-    /// Values of a frame.
+    /// Number of values in a frame.
     pub n_taxels: usize,
-    /// Leading frames that came before the touch.
+    /// Number of leading frames that came before the touch.
     pub n_before: usize,
-    /// Seconds between frames; `None` when the press waits at each until it is read.
+    /// Time between frames, seconds; `None` if the press stops at each frame until all taxels are read.
     pub interval: Option<f64>,
-    /// The share of the session that has gone, 0 to 1; `None` when the touch's name decides.
+    /// Elapsed fraction of the session, 0 to 1; if `None`, the time is random and depends on `seed`.
     pub time: Option<f64>,
-    /// The touch's own name.
+    /// Seed of the touch.
     pub seed: &'a Seed,
 }
 
-/// Their keys tell them apart.
+/// Two strength parameters are equal if their keys are equal.
 impl PartialEq for Strength {
     fn eq(&self, other: &Self) -> bool {
         self.key == other.key
@@ -106,7 +106,7 @@ impl PartialEq for Strength {
 }
 
 impl ErrorAbout {
-    /// Describes an error of a light cost that belongs to no skin, reads a touch the same way each time, and remembers nothing.
+    /// Describes an error with default properties: not a property of a skin, not random between readings, and independent of history.
     pub(super) const fn new(
         step: &'static str,
         strengths: &'static [Strength],
@@ -127,7 +127,7 @@ impl ErrorAbout {
 }
 
 impl Strength {
-    /// A fraction of something, from 0 to 1.
+    /// Describes a strength that is a fraction from 0 to 1.
     pub(super) const fn fraction(key: &'static str, words: &'static str) -> Self {
         Self {
             key,
@@ -140,7 +140,7 @@ impl Strength {
         }
     }
 
-    /// A share of one without an end.
+    /// Describes a strength that is a fraction without an upper bound.
     pub(super) const fn share(
         key: &'static str,
         words: &'static str,
@@ -154,22 +154,22 @@ impl Strength {
     }
 }
 
-/// Says of each sensor error which file tells of it; the order is that of the tables' columns.
+/// Declares the sensor errors and the module of each; their order is the order of the table columns.
 macro_rules! sensor_errors {
     ($($name:ident $file:ident $doc:literal;)*) => {
         $(mod $file;)*
 
-        /// What real skins and their readers do to a signal.
+        /// Sensor errors of real skins and their electronics.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum SensorError {
             $(#[doc = $doc] $name,)*
         }
 
-        /// All of them.
+        /// All sensor errors.
         pub const SENSOR_ERRORS: &[SensorError] = &[$(SensorError::$name),*];
 
         impl SensorError {
-            /// What it says of itself.
+            /// Returns the description of the sensor error.
             pub const fn about(self) -> &'static ErrorAbout {
                 match self {
                     $(Self::$name => &$file::ABOUT,)*

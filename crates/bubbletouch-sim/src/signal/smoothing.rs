@@ -1,36 +1,36 @@
 //! Separable Gaussian smoothing of a physical width.
 //!
-//! G(t) ∝ exp(−½ (t p / w)²) for whole taxel steps |t| ≤ ⌊4 w/p + ½⌋, normalised to sum 1, along y and then along x; w is
-//! the width (σ) and p the pitch in metres, so one w means the same patch of skin at every pitch. Beyond its edge the frame
-//! is mirrored, edge taxel included (d c b a | a b c d | d c b a). Truncation and mirror are those of
-//! `scipy.ndimage.gaussian_filter` by default.
+//! G(t) ∝ exp(−½ (t p / w)²) for whole taxel steps |t| ≤ ⌊4 w/p + ½⌋, normalised to sum 1, along y and then along x. w is
+//! the width (σ) and p the pitch, both in metres, so w covers an equal area of skin at every pitch. Beyond its edge the frame
+//! is mirrored, edge taxel included (d c b a | a b c d | d c b a). Truncation and mirroring equal the defaults of
+//! `scipy.ndimage.gaussian_filter`.
 
 use super::sensor_error::{Effect, TouchRead};
 use crate::error::{Error, Result};
 use crate::world::Grid;
 use multiversion::multiversion;
 
-/// The kernel's reach in widths.
+/// Radius of the kernel, in widths.
 const TRUNCATE: f64 = 4.0;
-/// The widest smoothing in taxel pitches; far above any array, it bounds the time to sum the kernel (about 50 ms).
+/// Largest width in taxel pitches. The limit is far above the size of any array and bounds the time to sum the kernel (about 50 ms).
 const MAX_WIDTH_PITCHES: f64 = 1e6;
 
-/// A smoothing of one width, prepared for one grid.
+/// Gaussian smoothing of one width, prepared for one grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Smoothing {
     nx: usize,
     ny: usize,
-    /// Tap weights at distances 0, 1, … along x; the mirror is already folded in, so at most nx + 1.
+    /// Kernel weights at distances 0, 1, … along x, with the mirroring folded in: at most nx + 1.
     taps_x: Vec<f64>,
-    /// The same along y, at most ny + 1.
+    /// Kernel weights along y, at most ny + 1.
     taps_y: Vec<f64>,
 }
 
 impl Smoothing {
-    /// Prepares a width (σ, metres, zero or positive) for a grid. Width 0 changes nothing.
+    /// Prepares a width (σ, metres, zero or positive) for a grid. Width 0 has no effect.
     ///
     /// # Errors
-    /// A negative or non-finite width; one above a million pitches.
+    /// If the width is negative, not finite or above a million pitches.
     pub fn new(width: f64, grid: &Grid) -> Result<Self> {
         grid.check()?;
         let width_pitches = width / grid.pitch;
@@ -86,7 +86,7 @@ impl Effect for Smoothing {
     }
 }
 
-/// Each output row is a weighted sum of whole input rows, taken in mirrored pairs so that a flipped frame gives the
+/// Smooths along y. Each output row is a weighted sum of input rows, added in mirrored pairs: a flipped frame gives the
 /// flipped result bit by bit.
 fn smooth_columns(frame: &[f64], out: &mut [f64], nx: usize, taps: &[f64]) {
     let ny = frame.len() / nx;
@@ -126,7 +126,7 @@ fn start(out: &mut [f64], values: &[f64], tap: f64) {
     }
 }
 
-/// Adds what taxels on both sides weigh.
+/// Adds `tap` times the sum of two rows at equal distances on both sides.
 #[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn add_pair(out: &mut [f64], (a, b): (&[f64], &[f64]), tap: f64) {
     let n = out.len();
@@ -136,14 +136,14 @@ fn add_pair(out: &mut [f64], (a, b): (&[f64], &[f64]), tap: f64) {
     }
 }
 
-/// The taxel that stands at any whole position of the mirrored, endlessly repeated line of n.
+/// Returns the index of the taxel at any integer position of a line of n taxels that is mirrored and repeated endlessly.
 fn mirrored(position: isize, n: usize) -> usize {
     let wrapped = position.rem_euclid(2 * n as isize) as usize;
     wrapped.min(2 * n - 1 - wrapped)
 }
 
-/// The tap weights at distances 0, 1, …, with those beyond n folded back: the mirrored line repeats every 2n taxels, so
-/// a tap at distance t reads what the tap at t mod 2n reads. However wide the kernel, at most n + 1 taps are left.
+/// Returns the kernel weights at distances 0, 1, …, folded to at most n + 1 weights. The mirrored line repeats every 2n taxels, so
+/// the weight at distance t is added to the weight at t mod 2n.
 fn folded_taps(width_pitches: f64, n: usize) -> Vec<f64> {
     let reach = (TRUNCATE * width_pitches + 0.5) as usize;
     let weight = |t: usize| (-0.5 * (t as f64 / width_pitches).powi(2)).exp();
@@ -155,7 +155,7 @@ fn folded_taps(width_pitches: f64, n: usize) -> Vec<f64> {
         sum += 2.0 * weight;
         let wrapped = t % (2 * n);
         let distance = wrapped.min(2 * n - wrapped);
-        // Distance 0 is one taxel that both taps of the pair read; every other distance keeps its pair.
+        // At distance 0 both taps of the pair read one taxel; every other distance keeps its pair.
         taps[distance] += if distance == 0 { 2.0 * weight } else { weight };
     }
     for tap in &mut taps {

@@ -1,40 +1,40 @@
-//! The steps that a chain can have.
+//! Steps of a signal chain.
 
 use super::{MAX_STRENGTHS, Noise, SENSOR_ERRORS, SensorError};
 use crate::random::Seed;
 
-/// One step from deflections to frames, as a study names it.
+/// One step of the signal chain, as a study lists it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SignalStep {
-    /// Deflections become forces.
+    /// Converts deflections to forces.
     Force,
-    /// Gaussian noise is added.
+    /// Adds Gaussian noise.
     Noise(Noise),
-    /// The frame is smoothed.
+    /// Smooths the frame.
     Smoothing {
         /// σ of the Gaussian, metres, zero or positive.
         width: f64,
     },
-    /// A sensor error.
+    /// Applies a sensor error.
     Error {
-        /// Which.
+        /// Type of the error.
         error: SensorError,
-        /// Its [strengths](super::ErrorAbout::strengths), zero or more.
+        /// Values of its [strengths](super::ErrorAbout::strengths), zero or positive.
         strengths: [f64; MAX_STRENGTHS],
-        /// The name of the skin that it belongs to.
+        /// Seed of the skin that has the error.
         skin: Seed,
     },
 }
 
 impl SignalStep {
-    /// Whether what a touch reads depends on the touches before it.
+    /// Returns whether the readings of a touch depend on the touches before it.
     pub(super) fn remembers(&self) -> bool {
         matches!(self, Self::Error { error, .. } if error.about().remembers)
     }
 }
 
 impl SensorError {
-    /// The step that does it at some strengths, those that are not given being zero, of the skin of a name.
+    /// Returns the signal step of this error with the strengths `given`; missing strengths are zero. `skin` is the seed of the skin.
     pub fn step(self, given: &[f64], skin: Seed) -> SignalStep {
         let mut strengths = [0.0; MAX_STRENGTHS];
         strengths[..given.len()].copy_from_slice(given);
@@ -45,7 +45,7 @@ impl SensorError {
         }
     }
 
-    /// The one of a step's word.
+    /// Returns the sensor error whose step has the name `word`.
     pub fn of_step(word: &str) -> Option<Self> {
         let mut all = SENSOR_ERRORS.iter().copied();
         all.find(|error| error.about().step == word)

@@ -1,24 +1,24 @@
 //! Gaussian smoothing on a skin that is no grid.
 //!
-//! xᵢ ← Σⱼ wᵢⱼ xⱼ / Σⱼ wᵢⱼ, wᵢⱼ = exp(−½ (dᵢⱼ / w)²), over all taxels whose distance d along the surface ([`Neighbours`]) is at most 4 w; w is
-//! the width (σ) in metres, as on a [grid](super::Smoothing). Beyond an edge is nothing, and an even frame stays even.
+//! xᵢ ← Σⱼ wᵢⱼ xⱼ / Σⱼ wᵢⱼ, wᵢⱼ = exp(−½ (dᵢⱼ / w)²), over all taxels whose distance d along the surface ([`Neighbours`]) is at most 4 w. w is
+//! the width (σ) in metres, as on a [grid](super::Smoothing). Taxels beyond an edge have no weight; a uniform frame is unchanged.
 
 use super::sensor_error::{Effect, TouchRead};
 use crate::error::{Error, Result};
 use crate::world::{Neighbours, Patch};
 
-/// The kernel's reach in widths.
+/// Radius of the kernel, in widths.
 const TRUNCATE: f64 = 4.0;
-/// Weights, at most: a gigabyte.
+/// Maximum number of weights; they need one gigabyte.
 const MAX_WEIGHTS: usize = 1 << 26;
 
-/// A smoothing of one width, prepared for one skin.
+/// Gaussian smoothing of one width, prepared for one skin.
 #[derive(Debug)]
 pub(super) struct SurfaceSmoothing {
-    /// Where the weights of each taxel begin, and behind the last where they end.
+    /// Index of the first weight of each taxel, followed by the total number of weights.
     starts: Vec<usize>,
     taxels: Vec<u32>,
-    /// Of sum 1, taxel by taxel.
+    /// Weights, taxel by taxel; the weights of each taxel have sum 1.
     weights: Vec<f64>,
 }
 
@@ -26,7 +26,7 @@ impl SurfaceSmoothing {
     /// Prepares a width (σ, metres, zero or positive).
     ///
     /// # Errors
-    /// A negative or non-finite width; one that reaches so many taxels that their weights have no room.
+    /// If the width is negative or not finite, or if there are more than [`MAX_WEIGHTS`] pairs of taxels within four widths.
     pub fn new(width: f64, skin: &Patch) -> Result<Self> {
         let refused =
             |allowed: &str| Error::input("smoothing width", format!("{width} m"), allowed);

@@ -1,39 +1,41 @@
-//! Effects on single taxels: the value that a taxel reads depends on its number, the frame and the time, and on no other taxel.
+//! Effects on single taxels: the reading of a taxel depends on its index, the frame and the time, and on no other taxel.
 //!
-//! Draws are [by number](crate::random::CounterKey), four neighbours a counter, and computed for [`LANES`] counters at a time.
+//! The random numbers are [counter-based](crate::random::CounterKey). Four adjacent taxels share a counter, and [`LANES`] counters are computed at
+//! a time.
 
 use crate::contact::{Instructions, for_instructions};
 use crate::random::{CounterKey, GROUP};
 use std::fmt::Debug;
 
-/// Taxels that are read together. More: memory beside the processor; fewer: blocks of counters that are not full.
+/// Number of taxels that are read together. If it is larger, the data leave the processor's cache; if it is smaller, blocks of counters are only
+/// partly used.
 pub(super) const CHUNK: usize = 512;
-/// Counters that are mixed together: f64 lanes of 512 bits.
+/// Number of counters that are computed together: f64 lanes of 512 bits.
 const LANES: usize = 8;
 
-/// When a body is read.
+/// Time at which a body is read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
-    /// The number of the frame, which names its noise.
+    /// Index of the frame; the noise depends on it.
     pub frame: u64,
-    /// The share of the session that has gone, 0 to 1, which drift goes by.
+    /// Elapsed fraction of the session, 0 to 1; the drift depends on it.
     pub time: f64,
 }
 
-/// Step of a [`BodyReadout`](super::BodyReadout), prepared for one patch: changes each taxel without regard to the others.
+/// Step of a [`BodyReadout`](super::BodyReadout), prepared for one patch. Acts on each taxel independently.
 pub trait TaxelEffect: Debug + Send + Sync {
-    /// Replaces the true values of the taxels in `chunk` by the values that they read, in the unit of their patch.
+    /// Replaces the true values of the taxels in `chunk` by readings, in the unit of their patch.
     fn apply(&self, chunk: &mut Chunk, moment: Moment, values: &mut [f64]);
 }
 
-/// Eight counters' draws, item by item of their groups.
+/// Draws of eight counters; the first index is the item within its group of four.
 type Block = [[f64; LANES]; GROUP];
 
-/// Up to [`CHUNK`] taxels and the counters that their draws come from.
+/// Up to [`CHUNK`] taxels and the counters of their draws.
 pub struct Chunk {
     groups: [[u64; LANES]; CHUNK / LANES],
     n_blocks: usize,
-    /// Of each taxel: where its draw is.
+    /// Index of each taxel's draw in `draws`, flattened.
     places: [u16; CHUNK],
     draws: [Block; CHUNK / LANES],
 }
@@ -50,7 +52,7 @@ impl Default for Chunk {
 }
 
 impl Chunk {
-    /// Takes at most [`CHUNK`] taxels by their numbers. Neighbours that come one after the other share a counter.
+    /// Sets the taxels, at most [`CHUNK`], by their indices. Consecutive taxels of one group of four share a counter.
     pub(super) fn lay(&mut self, taxels: &[usize]) {
         let mut n_groups = 0;
         let mut last = u64::MAX;
@@ -84,7 +86,7 @@ impl Chunk {
         lay_uniforms(Instructions::Best, key, index, groups, draws);
     }
 
-    /// Replaces each value by `read(value, draw)`, with the taxel's number of the last draw.
+    /// Replaces each value by `read(value, draw)`, where `draw` is the taxel's number from the last draw.
     pub(super) fn each(&self, values: &mut [f64], mut read: impl FnMut(f64, f64) -> f64) {
         let draws = self.draws.as_flattened().as_flattened();
         for (value, &place) in values.iter_mut().zip(&self.places) {
@@ -94,7 +96,7 @@ impl Chunk {
 }
 
 for_instructions! {
-    /// Adds `weight` times the normal numbers of an index.
+    /// Adds `weight` times the normal numbers at an index to `sums`.
     fn add_normals(
         key: CounterKey,
         index: u64,
@@ -117,7 +119,7 @@ fn add_each(key: CounterKey, index: u64, weight: f64, groups: &[[u64; LANES]], s
 }
 
 for_instructions! {
-    /// Writes the uniform numbers of an index.
+    /// Writes the uniform numbers at an index.
     fn lay_uniforms(
         key: CounterKey,
         index: u64,
