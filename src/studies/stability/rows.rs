@@ -1,11 +1,11 @@
-//! The result tables of a study of stability: one plain struct a row, one field a column.
+//! Rows of the result tables of a stability study: one plain struct for each kind of row, one field for each column.
 
 use crate::engine::work_items::any_number;
 use crate::row;
 use crate::studies::stability::spec::{ContactMethod, StabilityScene};
 use serde::{Deserialize, Serialize};
 
-/// What people call methods.
+/// Names of methods in charts and tables.
 const METHODS: &[(&str, &str)] = &[
     ("quasi_static", "quasi-static (ours)"),
     ("semi_implicit", "semi-implicit Euler, penalty"),
@@ -17,152 +17,151 @@ const METHODS: &[(&str, &str)] = &[
 ];
 
 row! {
-/// What is simulated, and how: a row of `stability.csv` begins with it, and one of `timing.csv`.
+/// Configuration of a simulation; each row of `stability.csv` and `timing.csv` begins with these columns.
 pub struct StabilityCell {
-    /// The part of the study, from 1.
+    /// Number of the part of the study, from 1.
     part: usize => Subject "part of the study": Linear;
-    /// What happens.
+    /// Simulated scene.
     scene: StabilityScene => Condition;
-    /// How it is simulated.
+    /// Simulation method.
     method: ContactMethod => Choice named METHODS;
-    /// Of an engine's solver, a step.
+    /// Iterations of an engine's solver per step.
     solver_iterations: Option<usize> => Choice: Linear;
-    /// Taxels a side.
+    /// Number of taxels along a side of the square array.
     taxels: usize => Condition "taxels a side": Linear;
-    /// k, N/m.
+    /// Stiffness k of a taxel, N/m.
     stiffness_n_per_m: f64 => Condition "taxel stiffness" in "N/m": Log;
-    /// m, kg.
+    /// Mass m of a taxel, kg.
     taxel_mass_kg: f64 => Condition "taxel mass" in "kg": Log;
-    /// M of a free ball, kg.
+    /// Mass M of a free ball, kg.
     object_mass_kg: Option<f64> => Condition "mass of the ball" in "kg": Log;
-    /// Δt, s.
+    /// Time step Δt, s.
     dt_s: f64 => Choice "time step" in "s": Log;
 } }
 
 impl StabilityCell {
-    /// All taxels.
+    /// Returns the number of taxels of the square array.
     pub fn n_taxels(&self) -> usize {
         self.taxels * self.taxels
     }
 
-    /// M / m, of a free ball.
+    /// Returns the mass ratio M / m for a free ball; `None` if the ball's motion is imposed.
     pub fn mass_ratio(&self) -> Option<f64> {
         self.object_mass_kg.map(|mass| mass / self.taxel_mass_kg)
     }
 }
 
 row! {
-/// What came of it (with the [`StabilityCell`] before it: a row of `stability.csv`).
+/// Result of a simulation. A row of `stability.csv` is a [`StabilityCell`] followed by a `StabilityScore`.
 pub struct StabilityScore {
-    /// M / m, of a free ball.
+    /// Mass ratio M / m of a free ball and a taxel.
     mass_ratio: Option<f64> => Note "mass ratio, ball to taxel": Log;
-    /// 2 √(m / k), s: an explicit spring without damper diverges beyond.
+    /// Stability limit 2 √(m / k), s: with larger time steps an explicit spring without a damper diverges.
     explicit_limit_s: f64 => Note "limit of an explicit spring" in "s": Log;
-    /// c, N·s/m.
+    /// Damping c of a taxel, N·s/m.
     damping_n_s_per_m: f64 => Note "taxel damping" in "N s/m": Log;
-    /// κ, N/m, where contact is a penalty.
+    /// Contact stiffness κ, N/m, if contact is modelled by a penalty force.
     contact_stiffness_n_per_m: Option<f64> => Note "contact stiffness" in "N/m": Log;
-    /// Right, or how it broke.
+    /// Whether the result is right, and if not, the kind of failure.
     outcome: Outcome => Outcome;
-    /// |Σ f − what it must be| as a share of that; none if it broke before.
+    /// Relative force error, |Σ f − expected| / expected; `None` if the simulation failed earlier.
     #[serde(with = "any_number")]
     force_imbalance: Option<f64> => Value(Less): Log;
-    /// Σ |δ − δ*| / Σ δ*; none if it broke before.
+    /// Relative deflection error, Σ |δ − δ*| / Σ δ*; `None` if the simulation failed earlier.
     #[serde(with = "any_number")]
     deflection_error: Option<f64> => Value(Less): Log;
-    /// Steps that were made.
+    /// Number of completed steps.
     n_steps: usize => Note "steps": Log;
-    /// Seconds that were simulated; none where nothing is stepped.
+    /// Simulated time, s; `None` if the method does not step through time.
     simulated_s: Option<f64> => Note "simulated time" in "s": Log;
 } }
 
 row! {
-/// What it cost (with the [`StabilityCell`] before it: a row of `timing.csv`).
+/// Computing time of a simulation. A row of `timing.csv` is a [`StabilityCell`] followed by a `StabilityTime`.
 pub struct StabilityTime {
-    /// Seconds of the whole cell, on one thread beside other cells on the others.
+    /// Wall-clock time of the whole simulation, s, on one thread while other threads run other simulations.
     wall_s: f64 => Cost "time" in "s": Log;
-    /// Seconds a simulated second; none where nothing is stepped.
+    /// Wall-clock seconds per simulated second; `None` if the method does not step through time.
     per_simulated_s: Option<f64> => Cost "computing a simulated second" in "s": Log;
 } }
 
 row! {
-/// A method in a scene over all cells: a row of `stability_summary.csv`.
+/// Results of a method in a scene over all configurations: a row of `stability_summary.csv`.
 pub struct StabilitySummary {
-    /// What happens.
+    /// Simulated scene.
     scene: StabilityScene => Condition;
-    /// How it is simulated.
+    /// Simulation method.
     method: ContactMethod => Choice named METHODS;
-    /// Of an engine's solver, a step.
+    /// Iterations of an engine's solver per step.
     solver_iterations: Option<usize> => Choice: Linear;
-    /// Cells.
+    /// Number of configurations.
     n_cells: usize => Note "cells": Linear;
-    /// Cells that are right.
+    /// Number of configurations with the right result.
     n_right: usize => Value(More) "right": Linear;
-    /// Cells that came to an end, but not to the right one.
+    /// Number of configurations that ended with a wrong result.
     n_inaccurate: usize => Value(Less) "inaccurate": Linear;
-    /// Cells in which contact was missed.
+    /// Number of configurations that missed a contact.
     n_missed_contact: usize => Value(Less) "missed contact": Linear;
-    /// Cells that gained energy.
+    /// Number of configurations whose energy grew.
     n_energy_growth: usize => Value(Less) "energy growth": Linear;
-    /// Cells that ended in numbers that are not finite.
+    /// Number of configurations that ended with a number that is not finite.
     n_not_finite: usize => Value(Less) "not finite": Linear;
-    /// The largest force imbalance of the cells that did not break; none if all did.
+    /// Largest force imbalance of the configurations that did not fail; `None` if all failed.
     worst_force_imbalance: Option<f64> => Value(Less): Log;
-    /// The largest deflection error of the same.
+    /// Largest deflection error of the configurations that did not fail; `None` if all failed.
     worst_deflection_error: Option<f64> => Value(Less): Log;
 } }
 
 row! {
-/// What a plunger costs whose taxels carry the same on all arrays: a row of `joints.csv`.
+/// Cost of simulating a plunger whose mass per taxel is the same on all arrays: a row of `joints.csv`.
 pub struct Joints {
-    /// How it is simulated.
+    /// Simulation method.
     method: ContactMethod => Choice named METHODS;
-    /// Of an engine's solver, a step.
+    /// Iterations of an engine's solver per step.
     solver_iterations: Option<usize> => Choice: Linear;
-    /// m, kg.
+    /// Mass m of a taxel, kg.
     taxel_mass_kg: f64 => Condition "taxel mass" in "kg": Log;
-    /// Δt, s.
+    /// Time step Δt, s.
     dt_s: f64 => Choice "time step" in "s": Log;
-    /// Taxels: each is a body on a joint.
+    /// Number of taxels; each is a body on a joint.
     joints: usize => Condition: Log;
-    /// M over the number of taxels, kg.
+    /// Mass M of the plunger divided by the number of taxels, kg.
     carried_kg: f64 => Note "load of a taxel" in "kg": Log;
-    /// Right, or how it broke.
+    /// Whether the result is right, and if not, the kind of failure.
     outcome: Outcome => Outcome;
-    /// Seconds a simulated second; of what steps nothing, in all.
+    /// Wall-clock seconds per simulated second; in total if the method does not step through time.
     time_s: f64 => Cost "computing a simulated second" in "s": Log;
 } }
 
-/// What came of a work item, and what it cost.
+/// Configuration, result and computing time of a work item.
 pub type StabilityRow = (StabilityCell, StabilityScore, StabilityTime);
 
-/// Who measured a row of another program: it ends with these columns.
+/// Source of a row that another program measured; such a row ends with these columns.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PeerSource {
-    /// Which program.
+    /// Name of the program.
     pub program: String,
-    /// Of the program.
+    /// Version of the program.
     pub version: String,
-    /// Year-month-day.
+    /// Date of the measurement, year-month-day.
     pub date: String,
 }
 
-/// What came of a cell.
+/// Outcome of a simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
     /// Force imbalance and deflection error are at most [`TOLERANCE`].
     Right,
-    /// It came to an end, but not to the right one.
+    /// The simulation ended, but an error exceeds [`TOLERANCE`].
     Inaccurate,
-    /// At a moment of judgement the taxels that are to be pushed are in less than half as far as they must be, all together, or more than twice
-    /// as far; or nothing holds the ball.
+    /// Contact was missed: at a time of evaluation the deflections sum to less than half or more than twice their expected sum, or nothing supports the ball.
     MissedContact,
-    /// More energy than the scene can have: at most four times what goes into it.
+    /// The energy exceeds four times the energy that enters the scene.
     EnergyGrowth,
-    /// A number is not finite.
+    /// A number is infinite or NaN.
     NotFinite,
 }
 
-/// Errors up to this are right.
+/// Largest relative error of a result that counts as right.
 pub const TOLERANCE: f64 = 0.01;

@@ -1,4 +1,4 @@
-//! A study of stability as it is written.
+//! Specification of a stability study: the keys of its TOML file.
 
 use crate::engine::axis::Axis;
 use crate::files::FilePath;
@@ -6,16 +6,16 @@ use crate::inputs::defaults::number;
 use crate::study_file::toml_file;
 use serde::{Deserialize, Serialize};
 
-/// The file.
+/// The study file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StabilityStudySpec {
-    /// What the study asks, in a sentence.
+    /// The question of the study, in one sentence.
     pub question: String,
-    /// What the author expected before it ran.
+    /// The author's expectation before the first run.
     #[serde(default)]
     pub expected: String,
-    /// What is tried.
+    /// Settings of the simulations.
     pub stability: StabilitySpec,
 }
 
@@ -23,63 +23,63 @@ pub struct StabilityStudySpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StabilitySpec {
-    /// Between neighbouring taxels; they are balls of half as much.
+    /// Distance between neighbouring taxels, mm; the radius of a taxel is half of it.
     #[serde(default = "number::<4>")]
     pub pitch_mm: f64,
-    /// A table that other programs wrote (`benches/peers/stability.py`), beside the study's file; left out where it is not.
+    /// Table that other programs wrote (`benches/peers/stability.py`), relative to the study file; ignored if the file does not exist.
     pub peers: Option<FilePath>,
-    /// Products of axes that are tried, one after the other.
+    /// Parts of the study, run one after the other; each part combines all values of its axes.
     pub parts: Vec<StabilityPartSpec>,
 }
 
-/// `[[stability.parts]]`: all combinations of its axes.
+/// `[[stability.parts]]`: a part of the study, which combines all values of its axes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StabilityPartSpec {
-    /// What happens.
+    /// Simulated scene.
     pub scene: StabilityScene,
-    /// How it is simulated.
+    /// Simulation methods.
     pub methods: Vec<ContactMethod>,
-    /// Axis: taxels a side.
+    /// Axis: number of taxels along a side of the array.
     pub taxels: Axis<usize>,
-    /// s.
+    /// Stroke s of a taxel, mm.
     #[serde(default = "number::<2>")]
     pub stroke_mm: f64,
-    /// Axis: k.
+    /// Axis: stiffness k of a taxel, N/m.
     pub stiffness_n_per_m: Axis<f64>,
-    /// Axis: m. (Quasi-static taxels have none.)
+    /// Axis: mass m of a taxel, kg. Quasi-static taxels have no mass.
     pub taxel_mass_kg: Axis<f64>,
-    /// Axis: M of the ball, of each in a stack; needed where it is free, not there where its motion is imposed.
+    /// Axis: mass M of each ball, kg. Required if the balls are free, not allowed if their motion is imposed.
     pub object_mass_kg: Option<Axis<f64>>,
-    /// In its place: M over the number of taxels, so that each carries the same on all arrays.
+    /// Axis, instead of `object_mass_kg`: M divided by the number of taxels, kg, so that each taxel carries the same load on all arrays.
     pub object_mass_per_taxel_kg: Option<Axis<f64>>,
-    /// Axis: Δt.
+    /// Axis: time step Δt, s.
     pub dt_s: Axis<f64>,
-    /// Axis: iterations of an engine's solver a step; of [`RapierSkinSim`](ContactMethod::RapierSkinSim), sweeps.
+    /// Axis: iterations of an engine's solver per step; for [`RapierSkinSim`](ContactMethod::RapierSkinSim), the number of sweeps.
     #[serde(default = "default_iterations")]
     pub solver_iterations: Axis<usize>,
 }
 
-/// What happens to the ball.
+/// Scene with one or more balls on a square array of taxels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StabilityScene {
-    /// It is lowered to first contact and let go. The taxels' dampers are the best for it: they stop it without ringing,
-    /// `c = 2 √(k (M / n + m))` with the n taxels that carry it at rest.
+    /// A ball is lowered to first contact and released. The dampers stop it without oscillation:
+    /// `c = 2 √(k (M / n + m))`, where n taxels carry the ball at rest.
     Rest,
-    /// Its motion is imposed: from 2 mm above, with 0.5 m/s to half the stroke, held, and back as fast. The dampers are 0.508 of critical
-    /// for a taxel, as SkinSim's are.
+    /// The motion of a ball is imposed: from 2 mm above the array, at 0.5 m/s, to half the stroke, a pause, and back at the same speed. The damping
+    /// of a taxel is 0.508 of critical, as in SkinSim.
     Press,
-    /// It is let go as in `rest`, on SkinSim's dampers: c / k = 0.13 / 16.37 s.
+    /// A ball is released as in `rest`, with SkinSim's dampers: c / k = 0.13 / 16.37 s.
     Plunger,
-    /// Two equal balls, one upon the other, in a smooth square tube as wide as they are, are let go as in `rest`. The mass is that of each.
+    /// Two equal balls, one on top of the other in a smooth square tube of their width, are released as in `rest`. The mass is that of each ball.
     StackOfTwo,
-    /// Four of them.
+    /// Four equal balls in a tube, as in `stack_of_two`.
     StackOfFour,
 }
 
 impl StabilityScene {
-    /// How many balls there are.
+    /// Returns the number of balls.
     pub fn n_balls(self) -> usize {
         match self {
             Self::Rest | Self::Press | Self::Plunger => 1,
@@ -89,40 +89,40 @@ impl StabilityScene {
     }
 }
 
-/// How contact is simulated.
+/// Method that simulates contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ContactMethod {
-    /// Ours: taxels without mass, in closed form ([`balance`](crate::contact::equilibrium) at rest,
-    /// [`Approach::press_to_force`](crate::contact::Approach::press_to_force) under a plunger, [`DamperState`](crate::contact::DamperState) over time).
+    /// Ours: massless taxels, solved in closed form. [`balance`](crate::contact::equilibrium) is used for rest,
+    /// [`Approach::press_to_force`](crate::contact::Approach::press_to_force) under a plunger, and [`DamperState`](crate::contact::DamperState) over time.
     QuasiStatic,
-    /// [`SemiImplicit`](crate::dynamics::SemiImplicit), the better of two contact stiffnesses: one that lets nothing sink in by more than a
-    /// 400th of its deflection or stroke, and the stiffest that the step carries.
+    /// [`SemiImplicit`](crate::dynamics::SemiImplicit) with the better of two contact stiffnesses. One limits the penetration to 1/400 of the deflection or
+    /// stroke; the other is the largest stable stiffness at the given time step.
     SemiImplicit,
     /// [`ImplicitEuler`](crate::dynamics::ImplicitEuler).
     ImplicitEuler,
-    /// rapier as it comes, but for its unit of length. Only with the feature `rapier`; left out without it.
+    /// rapier with default settings, except for the unit of length. Requires the feature `rapier`; omitted without it.
     RapierAsItComes,
-    /// rapier tuned for skin. Only with the feature `rapier`; left out without it.
+    /// rapier with settings tuned for skin. Requires the feature `rapier`; omitted without it.
     RapierTuned,
-    /// rapier told what SkinSim tells its engine: springs and dampers as forces, taxels on a light base, rigid contacts. Only with the
-    /// feature `rapier`; left out without it.
+    /// rapier with the settings that SkinSim gives its engine: springs and dampers as forces, taxels on a light base, rigid contacts. Requires the
+    /// feature `rapier`; omitted without it.
     RapierSkinSim,
-    /// MuJoCo as it comes: Euler's integrator, soft contacts. Only in [`peers`](StabilitySpec::peers), as the next two.
+    /// MuJoCo with default settings: Euler integrator, soft contacts. All MuJoCo methods exist only in the table [`peers`](StabilitySpec::peers).
     MujocoEuler,
-    /// MuJoCo with its integrator `implicitfast`, soft contacts.
+    /// MuJoCo with the integrator `implicitfast` and soft contacts.
     MujocoImplicitfast,
-    /// MuJoCo with its integrator `discrete`, contacts as hard as it gets.
+    /// MuJoCo with the integrator `discrete` and the hardest possible contacts.
     MujocoDiscrete,
 }
 
 impl ContactMethod {
-    /// Whether this build has it.
+    /// Returns whether this build contains the method.
     pub fn is_built(self) -> bool {
         !self.is_engine() || cfg!(feature = "rapier")
     }
 
-    /// Whether it is another program's.
+    /// Returns whether the method's results come from another program's table.
     pub fn is_peer(self) -> bool {
         matches!(
             self,
@@ -130,7 +130,7 @@ impl ContactMethod {
         )
     }
 
-    /// Whether solver iterations mean something to it.
+    /// Returns whether `solver_iterations` applies to the method.
     pub fn is_engine(self) -> bool {
         matches!(
             self,

@@ -1,4 +1,4 @@
-//! The result tables: one plain struct a row, one field a column.
+//! Rows of the result tables: one plain struct for each kind of row, one field for each column.
 //!
 //! A row of `accuracy.csv` is a [`Cell`] followed by a [`TrialScore`]; the other tables are built the same way.
 
@@ -10,49 +10,49 @@ use crate::studies::recognition::rows::cell::Cell;
 use serde::{Deserialize, Serialize};
 
 row! {
-/// How one trial of a cell went (with the [`Cell`] before it: a row of `accuracy.csv`).
+/// Score of one configuration in one trial. A row of `accuracy.csv` is a [`Cell`] followed by a `TrialScore`.
 pub struct TrialScore {
     /// Number of the trial, from 0.
     trial: usize => Subject: Linear;
-    /// Number of its split. This column and the next are there only if the study has `projections_per_split`.
+    /// Number of the trial's split. Present only if the study has `projections_per_split`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     split: Option<usize> => Note: Linear, optional;
-    /// Number of its projection.
+    /// Number of the trial's projection. Present only if the study has `projections_per_split`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     projection: Option<usize> => Note: Linear, optional;
-    /// Number of the first trial (with `projections_per_split`: the first split) that has the same training and test touches. Only if trials repeat
-    /// splits, as those of splits by pose do when there are more trials than parts: for tests, trials of one split are one.
+    /// Number of the first trial with the same training and test touches; with `projections_per_split`, the number of the first such split. Present only if
+    /// trials repeat splits, as splits by pose do if there are more trials than parts. Statistical tests count trials of one split once.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     distinct_split: Option<usize> => Note "same split as": Linear, optional;
     /// Training rows.
     n_train: usize => Note "training rows": Linear;
     /// Test rows: groups of `fused_touches` test touches.
     n_test: usize => Note "test rows": Linear;
-    /// Test touches that no whole group was left for, all objects.
+    /// Test touches that do not fill a whole group of `fused_touches`, over all objects.
     n_left_out: usize => Note "test touches left out": Linear;
     /// Test rows recognised.
     n_correct: usize => Note "test rows recognised": Linear;
     /// `n_correct / n_test`.
     accuracy: f64 => Value(More): Share between [accuracy_low, accuracy_high];
-    /// Lower end of the 95 % interval: Wilson's of the test rows, or [of the groups](crate::statistics::grouped) that are held out.
+    /// Lower end of the 95 % interval of the accuracy: Wilson's interval of the test rows, or [of the held-out groups](crate::statistics::grouped).
     accuracy_low: f64 => Note "95 % interval, lower end": Share;
-    /// Upper end of the 95 % interval.
+    /// Upper end of the 95 % interval of the accuracy.
     accuracy_high: f64 => Note "95 % interval, upper end": Share;
-    /// Groups that it comes from; test rows where none are held out. Only if the study holds out groups.
+    /// Number of groups behind the interval; the number of test rows if no groups are held out. Present only if the study holds out groups.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     n_groups: Option<usize> => Note "groups of the interval": Linear, optional;
     /// Mean over classes of the F1 score.
     macro_f1: f64 => Value(More) "macro F1": Share;
-    /// The C that was used (given, or chosen by cross-validation within the training rows); empty without one.
+    /// C used by the classifier: given, or chosen by cross-validation within the training rows. Empty if the classifier has no C.
     c_used: Option<f64> => Note "C used": Log;
-    /// The γ of the RBF or polynomial kernel that was used (given, scaled or chosen); empty without one.
+    /// γ used by the RBF or polynomial kernel: given, scaled or chosen. Empty if the kernel has no γ.
     gamma_used: Option<f64> => Note "γ used": Log;
     /// Binary SVMs that stopped at the iteration cap.
     n_capped: usize => Note "solves that stopped at the cap": Linear;
 } }
 
 impl TrialScore {
-    /// The accuracy of a trial whose decisions are on so many touches each.
+    /// Returns the accuracy of this trial for statistics over trials, if each decision uses `n_fused` touches.
     pub fn repeat(&self, n_fused: usize) -> Repeat {
         let split = self.distinct_split.or(self.split);
         Repeat {
@@ -60,7 +60,7 @@ impl TrialScore {
             split: split.unwrap_or(self.trial),
             projection: self.projection,
             score: self.accuracy,
-            // How much trials overlap is a matter of touches, however many of them one decision takes.
+            // The overlap of trials depends on touches, not on decisions.
             size: Some(TrialSize {
                 n_train: self.n_train,
                 n_test: self.n_test * n_fused,
@@ -70,9 +70,9 @@ impl TrialScore {
 }
 
 row! {
-/// A cell over its trials (with the [`Cell`] before it: a row of `summary.csv`).
+/// Score of a configuration over its trials. A row of `summary.csv` is a [`Cell`] followed by a `CellScore`.
 pub struct CellScore {
-    /// How many trials.
+    /// Number of trials.
     n_trials: usize => Note "trials": Linear;
     /// Test rows of one trial: groups of `fused_touches` test touches.
     n_test: usize => Note "test rows": Linear;
@@ -80,251 +80,254 @@ pub struct CellScore {
     accuracy: f64 => Value(More): Share between [accuracy_low, accuracy_high];
     /// Standard deviation of the accuracy over trials (0 for one trial).
     accuracy_std: f64 => Note "standard deviation over trials": Share;
-    /// Lower end of the 95 % Wilson interval of the counts of all trials, at the test rows of one trial or of all folds; or of the interval of the
-    /// groups that all trials hold out.
+    /// Lower end of the 95 % interval of the mean accuracy.
     ///
-    /// Trials split the same touches again, so counting all their rows would promise too much; the row of a fold and a group count once.
+    /// Wilson's interval of the counts of all trials, at the number of test rows of one trial, or of all folds. If groups are held out, the interval over the
+    /// groups that all trials hold out. Trials split the same touches again, so counting the test rows of all trials would make the interval too narrow; each
+    /// fold and each group counts once.
     accuracy_low: f64 => Note "95 % interval, lower end": Share;
-    /// Upper end of the same interval.
+    /// Upper end of the 95 % interval of the mean accuracy.
     accuracy_high: f64 => Note "95 % interval, upper end": Share;
-    /// Groups that it comes from, all trials; test rows of a trial where none are held out. Only if the study holds out groups.
+    /// Number of groups behind the interval, over all trials; the test rows of a trial if no groups are held out. Present only if the study holds out groups.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     n_groups: Option<usize> => Note "groups of the interval": Linear, optional;
-    /// Lower end of the 95 % bootstrap interval of the mean over trials: where it would be with other splits, projections and
-    /// noise on the same touches. Empty with fewer than five trials (or splits, or projections).
+    /// Lower end of the 95 % bootstrap interval of the mean accuracy over trials: its spread under other splits, projections and noise on the same touches.
+    /// Empty with fewer than five trials, splits or projections.
     #[serde(default)]
     bootstrap_low: Option<f64> => Note "mean over trials, lower end": Share;
-    /// Upper end of the same interval.
+    /// Upper end of the 95 % bootstrap interval of the mean accuracy over trials.
     #[serde(default)]
     bootstrap_high: Option<f64> => Note "mean over trials, upper end": Share;
     /// Mean macro-F1 over trials.
     macro_f1: f64 => Value(More) "macro F1": Share;
-    /// Binary SVMs that stopped at the iteration cap, all trials.
+    /// Binary SVMs that stopped at the iteration cap, over all trials.
     n_capped: usize => Note "solves that stopped at the cap": Linear;
 } }
 
 row! {
-/// How often one object was taken for another, all trials of a cell: a row of `confusion.csv`. Zero counts are left out.
+/// Number of test rows of one object that were recognised as another, over all trials of a configuration: a row of `confusion.csv`. Zero counts are omitted.
 pub struct Confusion {
-    /// Number of the cell.
+    /// Number of the configuration.
     cell: usize => Subject: Linear;
-    /// What was touched.
+    /// Name of the touched object.
     object: String => Subject;
-    /// What it was taken for.
+    /// Name of the recognised object.
     predicted: String => Subject "taken for";
-    /// How many test rows.
-    // Rare confusions are seen, too.
+    /// Number of test rows.
+    // A logarithmic scale makes rare confusions visible.
     count: usize => Value(Neither) "test rows": Log;
 } }
 
 row! {
-/// A pair of objects that the best cell confuses most often: a row of `confused.csv`. Where touches are fused it is the best of the fewest touches, and
-/// what is left of it in the same cell of the most touches stands beside it.
+/// Pair of objects that the best configuration confuses most often: a row of `confused.csv`.
+///
+/// If touches are fused, the best configuration of the fewest touches is taken. The confusion with the most fused touches is listed beside it.
 pub struct Confused {
-    /// Number of the best cell.
+    /// Number of the best configuration.
     cell: usize => Subject: Linear;
-    /// What was touched.
+    /// Name of the touched object.
     object: String => Subject;
-    /// What it was taken for.
+    /// Name of the recognised object.
     predicted: String => Subject "taken for";
-    /// How many of the object's test rows, all trials.
+    /// Number of the object's test rows that were recognised as `predicted`, over all trials.
     count: usize => Note "test rows": Log;
-    /// The object's test rows, all trials.
+    /// Number of the object's test rows, over all trials.
     n_test: usize => Note "test rows of the object": Linear;
     /// `count / n_test`.
     share: f64 => Value(Less) "share of the object's test rows": Share between [share_low, share_high];
-    /// Lower end of its 95 % Wilson interval.
+    /// Lower end of the 95 % Wilson interval of `share`.
     share_low: f64 => Note "95 % interval, lower end": Share, optional;
-    /// Upper end of the same interval.
+    /// Upper end of the 95 % Wilson interval of `share`.
     share_high: f64 => Note "95 % interval, upper end": Share, optional;
-    /// The most touches that are fused; only if the study fuses some.
+    /// Largest number of fused touches. Present only if the study fuses touches.
     #[serde(skip_serializing_if = "Option::is_none")]
     most_fused: Option<usize> => Note "most touches fused": Linear, optional;
-    /// The same share of decisions on so many; only if the study fuses some.
+    /// `share` in decisions on `most_fused` touches. Present only if the study fuses touches.
     #[serde(skip_serializing_if = "Option::is_none")]
     share_fused: Option<f64> => Value(Less) "share with most touches fused": Share, optional;
 } }
 
 row! {
-/// A published accuracy beside ours (with the [`Cell`] before it, the most accurate of those it is about in a condition: a row of
-/// `published.csv`). A claim has a row for each condition that its cells have.
+/// Published accuracy beside ours. A row of `published.csv` is a [`Cell`] followed by a `Published`.
+///
+/// The [`Cell`] is the most accurate of the configurations to which the claim applies. A claim has one row for each condition of these configurations.
 pub struct Published {
-    /// What was claimed, in words.
+    /// The claim, in words.
     claim: String => Subject;
-    /// Where it was published.
+    /// Source of the claim.
     source: String => Subject;
-    /// The published accuracy.
+    /// Published accuracy, 0 to 1.
     published_accuracy: f64 => Value(Neither) "published accuracy": Share;
     /// Our mean accuracy over trials.
     accuracy: f64 => Value(More): Share between [accuracy_low, accuracy_high];
-    /// Lower end of its 95 % interval, as in `summary.csv`.
+    /// Lower end of the 95 % interval of our accuracy, as in `summary.csv`.
     accuracy_low: f64 => Note "95 % interval, lower end": Share;
-    /// Upper end of the same interval.
+    /// Upper end of the 95 % interval of our accuracy.
     accuracy_high: f64 => Note "95 % interval, upper end": Share;
     /// `accuracy − published_accuracy`.
     difference: f64 => Value(More) "difference to what was published": Linear;
-    /// Cells that the claim is about, in this condition.
+    /// Number of configurations in this condition to which the claim applies.
     n_matching: usize => Note "configurations that it is about": Linear;
 } }
 
 row! {
-/// A cell against the best cell of its condition, paired over trials: a row of `comparison.csv`.
+/// Comparison of a configuration with the best one of its condition, paired over trials: a row of `comparison.csv`.
 pub struct Comparison {
-    /// Number of the cell.
+    /// Number of the configuration.
     cell: usize => Subject: Linear;
-    /// Number of the cell it is compared with: the one with the highest mean accuracy in the same condition.
+    /// Number of the configuration with the highest mean accuracy in the same condition.
     best_cell: usize => Note "best cell": Linear;
-    /// Trials both have; trials of one split count once.
+    /// Number of trials that both configurations have; trials of one split count once.
     n_trials: usize => Note "trials of both": Linear;
-    /// Mean over trials of (accuracy − best cell's accuracy).
+    /// Mean over trials of the accuracy minus the best configuration's accuracy.
     difference: f64 => Value(More) "difference to the best": Linear between [difference_low, difference_high];
     /// Lower end of the 95 % interval of the difference; empty with one trial.
     difference_low: Option<f64> => Note "difference, lower end": Linear;
-    /// Upper end of it; empty with one trial.
+    /// Upper end of the 95 % interval of the difference; empty with one trial.
     difference_high: Option<f64> => Note "difference, upper end": Linear;
-    /// Two-sided p-value of no difference; empty where there are too few trials for one.
+    /// Two-sided p-value of the hypothesis that the difference is zero; empty if there are too few trials.
     p_value: Option<f64> => Value(Neither) "p-value": Linear;
-    /// The same after Holm's correction for all cells but the best ones; empty for those.
+    /// p-value after Holm's correction over all configurations except the best ones; empty for the best ones.
     #[serde(default)]
     p_holm: Option<f64> => Value(Neither) "p-value, Holm": Linear;
-    /// Why there is a p-value or none.
+    /// Reason why there is a p-value, or why there is none.
     #[serde(default)]
     p_status: PStatus => Outcome "test";
-    /// [Trials from which on](crate::statistics::comparison::trials_needed) there is one (with `projections_per_split`: all of so many splits);
-    /// empty where no number of them is enough, because too many rows are tested, or further trials repeat the same splits.
+    /// Smallest [number of trials](crate::statistics::comparison::trials_needed) with which a p-value exists; with `projections_per_split`, the number of
+    /// splits. Empty if no number suffices, because too many rows are tested or further trials repeat the same splits.
     #[serde(default)]
     n_trials_needed: Option<usize> => Note "trials needed": Linear;
 } }
 
 row! {
-/// What a trial of a cell cost (with the [`Cell`] before it: a row of `timing.csv`).
+/// Times of a trial of a configuration. A row of `timing.csv` is a [`Cell`] followed by a `TrialTime`.
 pub struct TrialTime {
     /// Number of the trial, from 0.
     trial: usize => Subject: Linear;
-    /// Seconds to fit (scaling and the choice of C and γ included). Cells that differ in `fused_touches` share one fit.
+    /// Seconds to fit, including scaling and the choice of C and γ. Configurations that differ only in `fused_touches` share one fit.
     fit_s: f64 => Cost "time to train" in "s": Log;
-    /// Seconds to score all test touches (shared in the same way) and to decide all test rows.
+    /// Seconds to score all test touches and to decide all test rows. Configurations that differ only in `fused_touches` share the scores.
     predict_s: f64 => Cost "time to predict" in "s": Log;
-    /// The same for one test touch, microseconds.
+    /// Microseconds to predict one test touch.
     predict_us_per_touch: f64 => Cost "time to predict a touch" in "µs": Log;
 } }
 
 row! {
-/// What a cell's accuracy costs (with the [`Cell`] before it: a row of `pareto.csv`).
+/// Accuracy of a configuration and its cost. A row of `pareto.csv` is a [`Cell`] followed by a `Pareto`.
 ///
-/// A cell is on a front if no cell of the same [condition](crate::table::Role::Condition) is at least as accurate in at most the same
-/// time and better in one of the two.
+/// A configuration is on a front if no other of the same [condition](crate::table::Role::Condition) dominates it. A configuration dominates if it is at least
+/// as accurate in at most the same time and better in one of the two.
 pub struct Pareto {
     /// Mean accuracy over trials.
     accuracy: f64 => Value(More): Share;
     /// Mean seconds to fit.
     fit_s: f64 => Cost "time to train" in "s": Log;
-    /// Mean microseconds of fitting for one training touch.
+    /// Mean microseconds of fitting per training touch.
     fit_us_per_touch: f64 => Cost "time to train, of a training touch" in "µs": Log;
-    /// Mean microseconds to decide once: to predict `fused_touches` touches.
+    /// Mean microseconds of one decision, which predicts `fused_touches` touches.
     predict_us_per_decision: f64 => Cost "time of a decision" in "µs": Log;
-    /// Whether it is on the front of accuracy against `fit_s`.
+    /// Whether the configuration is on the front of accuracy against `fit_s`.
     on_training_front: bool => Note;
-    /// Whether it is on the front of accuracy against `predict_us_per_decision`.
+    /// Whether the configuration is on the front of accuracy against `predict_us_per_decision`.
     on_prediction_front: bool => Note;
 } }
 
 row! {
-/// What a stage before recognition cost: a row of `stages.csv`.
+/// Time of a stage before recognition: a row of `stages.csv`.
 pub struct StageTime {
-    /// `simulate` or `measure` (signal and projection), with the number of frames a touch if it is not one.
+    /// `simulate` or `measure` (signal and projection), with the number of frames per touch if that is more than one.
     stage: String => Subject;
-    /// Millimetres between taxels.
+    /// Distance between taxels, mm.
     pitch_mm: f64 => Subject "pitch" in "mm": Linear;
-    /// Taxel columns.
+    /// Number of taxel columns.
     nx: usize => Subject "taxels along x": Linear;
-    /// Taxel rows.
+    /// Number of taxel rows.
     ny: usize => Subject "taxels along y": Linear;
-    /// Touches that went through.
+    /// Number of touches that the stage processed.
     n_touches: usize => Note "touches": Linear;
-    /// Processor-seconds, summed over threads.
+    /// Processor time, s, summed over threads.
     cpu_s: f64 => Cost "processor time" in "s": Log;
-    /// Processor-microseconds a touch.
+    /// Processor time per touch, µs.
     us_per_touch: f64 => Cost "processor time of a touch" in "µs": Log;
 } }
 
 row! {
-/// How often a limit of the model was reached: a row of `limits.csv`.
+/// Number of times that a limit of the model was reached: a row of `limits.csv`.
 pub struct Limit {
-    /// What happened: `saturated taxels`.
+    /// The limit, such as `saturated taxels`.
     what: String => Subject "limit";
-    /// How often.
+    /// Number of cases in which the limit was reached.
     count: u64 => Note: Log;
-    /// Out of how many.
+    /// Total number of cases.
     of: u64 => Note: Linear;
-    /// What it means for the reader.
+    /// Consequence for the results, in words.
     meaning: String => Note;
 } }
 
-/// All result tables of a study.
+/// All result tables of a recognition study.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tables {
-    /// One row per cell and trial, cell by cell.
+    /// `accuracy.csv`: one row per configuration and trial, ordered by configuration.
     pub accuracy: Vec<(Cell, TrialScore)>,
-    /// One row per cell.
+    /// `summary.csv`: one row per configuration.
     pub summary: Vec<(Cell, CellScore)>,
-    /// Non-zero confusion counts, cell by cell.
+    /// `confusion.csv`: non-zero counts, ordered by configuration.
     pub confusion: Vec<Confusion>,
-    /// One row per cell.
+    /// `comparison.csv`: one row per configuration.
     pub comparison: Vec<Comparison>,
-    /// One row per cell and trial.
+    /// `timing.csv`: one row per configuration and trial.
     pub timing: Vec<(Cell, TrialTime)>,
-    /// One row per cell.
+    /// `pareto.csv`: one row per configuration.
     pub pareto: Vec<(Cell, Pareto)>,
-    /// One row per array, number of frames and stage.
+    /// `stages.csv`: one row per array, number of frames and stage.
     pub stages: Vec<StageTime>,
-    /// The pairs of objects that the best cell confuses most often, the worst first.
+    /// `confused.csv`: the pairs of objects that the best configuration confuses most often, in descending order of the count.
     pub confused: Vec<Confused>,
-    /// One row per published accuracy.
+    /// `published.csv`: published accuracies beside ours.
     pub published: Vec<(Cell, Published)>,
-    /// Three rows per cell, for studies with `projections_per_split`.
+    /// `variance.csv`: three rows per configuration, for studies with `projections_per_split`.
     pub variance: Vec<Variance>,
-    /// How often limits of the model were reached.
+    /// `limits.csv`: counts of reached limits of the model.
     pub limits: Vec<Limit>,
-    /// Whether trials test the folds of the touches in turn.
+    /// Whether the trials test the folds of a cross-validation one after the other.
     pub has_folds: bool,
 }
 
-/// What makes the accuracies of a cell's trials differ.
+/// Source of the variance of a configuration's accuracy over trials.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Source {
-    /// Which touches train and which test.
+    /// Division into training and test touches.
     Split,
     /// The random projection.
     Projection,
-    /// Noise and what else is drawn in each trial, and what a split and a projection do together.
+    /// Noise and all other random draws of a trial, and the interaction of split and projection.
     Rest,
 }
 
 row! {
-/// What a source adds to the variance of a cell's accuracy: a row of `variance.csv`, for studies with `projections_per_split`.
+/// Contribution of a source to the variance of a configuration's accuracy: a row of `variance.csv`, for studies with `projections_per_split`.
 pub struct Variance {
-    /// Number of the cell.
+    /// Number of the configuration.
     cell: usize => Subject: Linear;
-    /// The source.
+    /// Source of the variance.
     source: Source => Subject "source of variance";
-    /// How many of it were drawn; of the rest: trials.
+    /// Number of drawn levels of the source; for [`Source::Rest`], the number of trials.
     n_levels: usize => Note "levels": Linear;
-    /// Degrees of freedom of its mean square.
+    /// Degrees of freedom of the mean square.
     degrees_of_freedom: usize => Note: Linear;
-    /// Its mean square.
+    /// Mean square of the source.
     mean_square: f64 => Note: Linear;
-    /// Unbiased estimate of its variance (method of moments); below zero by chance if it is small.
+    /// Unbiased estimate of the variance due to the source (method of moments); may be negative by chance if the variance is small.
     estimate: f64 => Note "variance": Linear;
-    /// Standard deviation that it alone gives the accuracy: the root of the estimate, 0 if that is below zero.
+    /// Standard deviation of the accuracy due to this source alone: the square root of `estimate`, or 0 if the estimate is negative.
     accuracy_std: f64 => Value(Less) "standard deviation of the accuracy": Linear between [accuracy_std_low, accuracy_std_high];
-    /// Lower end of the 95 % interval of that standard deviation (modified large samples; of the rest χ²).
+    /// Lower end of the 95 % interval of `accuracy_std`: modified large samples, or χ² for [`Source::Rest`].
     accuracy_std_low: f64 => Note "standard deviation, lower end": Linear;
-    /// Upper end of the same interval.
+    /// Upper end of the 95 % interval of `accuracy_std`.
     accuracy_std_high: f64 => Note "standard deviation, upper end": Linear;
-    /// Share of the variance of a trial, estimates below zero taken as zero; empty if nothing varies.
+    /// Fraction of the variance of a trial, with negative estimates counted as zero; empty if nothing varies.
     share: Option<f64> => Value(Less) "share of the variance": Share;
-    /// p-value of the F test that it adds nothing; empty for the rest.
+    /// p-value of the F test that the source contributes nothing; empty for [`Source::Rest`].
     p_value: Option<f64> => Value(Neither) "p-value": Linear;
 } }

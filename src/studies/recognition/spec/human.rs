@@ -1,24 +1,24 @@
-//! Human touches as they are written: `[human_touch]`, in place of `[objects]` and `[touches]`.
+//! Specification of human touches: `[human_touch]`, which replaces `[objects]` and `[touches]`.
 
 use crate::inputs::defaults::number;
 use crate::world::TouchKind;
 use serde::{Deserialize, Serialize};
 
-/// `[human_touch]`: which kind of touch is it? The skin is bent around a forearm, its columns around it, its rows along it.
+/// `[human_touch]`: recognition of kinds of human touch on a forearm. The columns of the skin are bent around the arm; the rows run along it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HumanTouchSpec {
-    /// The kinds to tell apart; all six when left out.
+    /// Kinds of touch to distinguish. Default: all six.
     #[serde(default = "all_kinds")]
     pub kinds: Vec<TouchKind>,
-    /// Touches a kind.
+    /// Number of touches of each kind.
     pub per_kind: usize,
-    /// From the axis of the arm to the outside of its skin, mm.
+    /// Distance from the axis of the arm to the outside of its skin, mm.
     #[serde(default = "number::<43>")]
     pub arm_radius_mm: f64,
-    /// Frames a second.
+    /// Frame rate, Hz.
     pub frames_hz: f64,
-    /// How long each recording is, s; the touch begins at any time that lets it end within.
+    /// Duration of each recording, s. The touch begins at a random time that lets it end within the recording.
     pub duration_s: f64,
 }
 

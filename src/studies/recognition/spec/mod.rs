@@ -1,4 +1,4 @@
-//! A recognition study as its TOML file states it.
+//! Specification of a recognition study: the keys of its TOML file.
 
 pub mod human;
 pub mod pose_split;

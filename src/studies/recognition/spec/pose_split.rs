@@ -1,7 +1,7 @@
-//! Splits by pose: which poses are learned and which are tested, where touches have listed values.
+//! Splits by pose: which poses train and which test, if the touches have listed values.
 //!
-//! Values are numbered from the least to the largest, whatever their order in the study. A trial holds out one part, the next trial the
-//! next, and after the last comes the first again:
+//! Values are numbered in ascending order, whatever their order in the study. Each trial holds out one part. The parts are held out in order, and after the
+//! last part the first follows again:
 //!
 //! | `recognition.split` | tested | learned | parts |
 //! |---|---|---|---|
@@ -12,7 +12,7 @@
 //! | `unseen_tilt` | one tilt (about x and y together) | all other tilts | tilts |
 //! | `unseen_depth` | one depth | all other depths | depths |
 //!
-//! Of an odd number of values the middle one is of the smaller half. `opposite_blocks` leaves out what is in neither block.
+//! If the number of values is odd, the middle value belongs to the smaller half. `opposite_blocks` omits the touches that belong to neither block.
 
 use crate::error::{Error, Result};
 use crate::learning::data::split::Side;
@@ -20,30 +20,30 @@ use crate::world::{Touch, TouchAxis};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Which poses a split holds out.
+/// Rule that decides which poses are held out for testing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PoseSplit {
-    /// Touches drawn at random: on a grid of poses most have neighbours that are learned.
+    /// Touches drawn at random; on a grid of poses, most test touches have neighbours among the training touches.
     #[default]
     Random,
-    /// One yaw in turn.
+    /// One yaw per trial.
     LeaveOneYawOut,
-    /// The larger half of the yaws, then the smaller.
+    /// The larger half of the yaws in one trial, the smaller half in the next.
     HalfOfYaws,
-    /// An eighth of offsets and yaws; the opposite eighth is learned.
+    /// An eighth of the offsets and yaws is tested; the opposite eighth is trained on.
     OppositeBlocks,
-    /// One tilt in turn.
+    /// One tilt per trial.
     UnseenTilt,
-    /// One depth in turn.
+    /// One depth per trial.
     UnseenDepth,
 }
 
-/// The axes of which a block has half the values each.
+/// Axes that a block divides into halves.
 const BLOCK: [TouchAxis; 3] = [TouchAxis::OffsetX, TouchAxis::OffsetY, TouchAxis::Yaw];
 
 impl PoseSplit {
-    /// As a study spells it.
+    /// Returns the name of the split in study files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Random => "random",
@@ -55,7 +55,7 @@ impl PoseSplit {
         }
     }
 
-    /// What the test touches are, in words.
+    /// Returns a description of the test touches.
     pub fn words(self) -> &'static str {
         match self {
             Self::Random => "random touches: most have neighbours in the pose that are learned",
@@ -69,7 +69,7 @@ impl PoseSplit {
         }
     }
 
-    /// What training touches are grouped by where they are split once more, to choose C or γ.
+    /// Returns the grouping of training touches for the inner cross-validation that chooses C or γ; `None` if touches are drawn individually.
     pub(crate) fn group(self) -> Option<GroupSpec> {
         match self {
             Self::Random | Self::OppositeBlocks => None,
@@ -79,15 +79,15 @@ impl PoseSplit {
         }
     }
 
-    /// The number of the block that a trial tests, of a split by blocks: all that it tests is near each other.
+    /// Returns the number of the tested block if the split holds out blocks of neighbouring poses.
     pub(crate) fn tested_block(self, trial: usize) -> Option<usize> {
         (self == Self::OppositeBlocks).then_some(trial % (1 << BLOCK.len()))
     }
 
-    /// Whether it can split these touches.
+    /// Checks that the split can divide these touches.
     ///
     /// # Errors
-    /// Those of [`sides`](Self::sides).
+    /// If [`sides`](Self::sides) fails.
     pub(crate) fn check(self, touches: &[&Touch]) -> Result<()> {
         match self {
             Self::Random => Ok(()),
@@ -95,13 +95,13 @@ impl PoseSplit {
         }
     }
 
-    /// The side of every touch in a trial.
+    /// Returns the side of every touch in a trial: training, test, or left out.
     ///
     /// # Errors
-    /// An axis that it goes by whose values are drawn, or of which there are fewer than two.
+    /// If a required axis has drawn values or fewer than two listed values.
     ///
     /// # Panics
-    /// Of [`Random`](Self::Random), which goes by no pose.
+    /// If the split is [`Random`](Self::Random), which does not depend on poses.
     pub(crate) fn sides(self, touches: &[&Touch], trial: usize) -> Result<Vec<Side>> {
         let number = |axes: &[TouchAxis]| self.numbered(touches, axes);
         let leave_one_out = |(numbers, n): (Vec<usize>, usize)| {
@@ -120,16 +120,17 @@ impl PoseSplit {
                 Ok(leave_one_out(tilts))
             }
             Self::UnseenDepth => Ok(leave_one_out(number(&[TouchAxis::Depth])?)),
-            // A block of one axis has half its values, and the opposite block the other half.
+            // A block of one axis has half of the values; the opposite block has the other half.
             Self::HalfOfYaws => self.blocks(touches, &[TouchAxis::Yaw], trial),
             Self::OppositeBlocks => self.blocks(touches, &BLOCK, trial),
         }
     }
 
-    /// Test: all axes on the side that the trial says, bit by bit, the larger halves first. Train: all on the other.
+    /// Each bit of `trial` selects the tested half of one axis; 0 selects the larger values. Touches in the tested half of all axes test; touches in none
+    /// train.
     fn blocks(self, touches: &[&Touch], axes: &[TouchAxis], trial: usize) -> Result<Vec<Side>> {
         let block = axes.len();
-        // Of each touch, how many of its values are in the halves that are tested.
+        // For each touch, the number of its values that lie in the tested halves.
         let mut n_tested = vec![0; touches.len()];
         for (bit, &axis) in axes.iter().enumerate() {
             let (numbers, n) = self.numbered(touches, &[axis])?;
@@ -147,7 +148,7 @@ impl PoseSplit {
         Ok(n_tested.into_iter().map(side).collect())
     }
 
-    /// Of each touch the number of its combination of values on some axes, and how many combinations there are.
+    /// Returns, for each touch, the number of its combination of values on `axes`, and the number of combinations.
     fn numbered(self, touches: &[&Touch], axes: &[TouchAxis]) -> Result<(Vec<usize>, usize)> {
         let refused = |given: String| {
             let allowed = format!(
@@ -174,7 +175,7 @@ impl PoseSplit {
     }
 }
 
-/// A listed value, in order of size.
+/// Listed value, ordered by size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Value(f64);
 
@@ -192,20 +193,20 @@ impl PartialOrd for Value {
     }
 }
 
-/// What groups touches for a split that keeps groups together.
+/// Property that defines groups of touches which a split does not divide.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GroupSpec {
-    /// Rest pose, offset, yaw and tilt: everything but the depth.
+    /// Rest pose, offset, yaw and tilt: the whole pose except the depth.
     Pose,
-    /// Both offsets.
+    /// Offsets along x and y.
     Offset,
-    /// The yaw.
+    /// Yaw.
     Yaw,
-    /// Both tilts.
+    /// Tilts about x and y.
     Tilt,
-    /// The stable pose.
+    /// Stable pose on the table.
     Rest,
-    /// The depth.
+    /// Depth.
     Depth,
 }

@@ -1,4 +1,4 @@
-//! Recorded frames as they are written: `[recorded]`, in place of `[objects]` and `[touches]`.
+//! Specification of recorded frames: `[recorded]`, which replaces `[objects]` and `[touches]`.
 
 use crate::error::{Error, Result};
 use crate::files::{file_path, optional_file_path};
@@ -10,103 +10,102 @@ use serde::{Deserialize, Deserializer, Serialize};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// `[recorded]`: what a skin has read, in files of NumPy (`.npy`, `.npz`) or tables (`.csv`). `[skin]` says how far apart its taxels are and what their
-/// full scale is.
+/// `[recorded]`: frames of a real skin, in NumPy files (`.npy`, `.npz`) or tables (`.csv`). `[skin]` gives the pitch and the stroke of its taxels.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RecordedSpec {
-    /// n × rows × columns, n × F × rows × columns of touches of F frames, or n × taxels of a skin without rows and columns; any type of number of up to
-    /// 64 bits. The other files may be left out where this is an archive that contains their arrays.
+    /// Frames: shape (n, rows, columns), or (n, F, rows, columns) for touches of F frames, or (n, taxels) for a skin without rows and columns. Any
+    /// numeric type of up to 64 bits. If this file is an archive that contains the other arrays, their keys may be omitted.
     #[serde(deserialize_with = "file_path")]
     pub frames: PathBuf,
-    /// The two forces across the axis of each taxel, newtons, of a skin that reads shear: the axes of `frames`, and before those of the place the axis c of
-    /// two values. Without it all three values of a taxel are in `frames`.
+    /// Tangential forces of a skin that reads shear, newtons: the two forces across the axis of each taxel. The array has the axes of `frames`
+    /// plus an axis `c` of length 2 before the rows and columns. Without this key, `frames` contains all three values of each taxel.
     #[serde(
         default,
         skip_serializing_if = "Option::is_none",
         deserialize_with = "optional_file_path"
     )]
     pub shear: Option<PathBuf>,
-    /// n: the class of every touch: whole numbers, texts, or n × classes of 0 and 1.
+    /// Class of every touch, shape (n,): integers or texts; or shape (n, classes) with entries 0 and 1.
     #[serde(
         default,
         skip_serializing_if = "is_empty",
         deserialize_with = "file_path"
     )]
     pub labels: PathBuf,
-    /// n: touches that share a number or a text are never on both sides of a split, those of a grasp or of a day, say.
+    /// Group of every touch, shape (n,), such as the grasp or the day. A split never divides a group.
     #[serde(default, deserialize_with = "optional_file_path")]
     pub groups: Option<PathBuf>,
-    /// A letter for each axis of the frames: n touches, t frames of a touch, y rows, x columns, c values of a taxel, or taxels without rows and
-    /// columns; `n y x`, `n t y x` or `n c` when left out.
+    /// One letter for each axis of the frames: `n` touches, `t` frames of a touch, `y` rows, `x` columns, `c` values of a taxel, or taxels without
+    /// rows and columns. Default: `n y x`, `n t y x` or `n c`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub order: Option<String>,
-    /// Rows and columns of the axis `c`.
+    /// Numbers of rows and columns into which the axis `c` is divided.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grid: Option<[usize; 2]>,
-    /// Frames of the given test set, with the axes of `frames`; all touches of `frames` then train.
+    /// Frames of a separate test set, with the axes of `frames`; all touches of `frames` then train.
     #[serde(
         default,
         skip_serializing_if = "Option::is_none",
         deserialize_with = "optional_file_path"
     )]
     pub frames_test: Option<PathBuf>,
-    /// Forces across of the given test set, as in `shear`.
+    /// Tangential forces of the separate test set, as in `shear`.
     #[serde(
         default,
         skip_serializing_if = "Option::is_none",
         deserialize_with = "optional_file_path"
     )]
     pub shear_test: Option<PathBuf>,
-    /// Their classes, as in `labels`.
+    /// Classes of the separate test set, as in `labels`.
     #[serde(
         default,
         skip_serializing_if = "Option::is_none",
         deserialize_with = "optional_file_path"
     )]
     pub labels_test: Option<PathBuf>,
-    /// Their groups, from which the interval of an accuracy comes.
+    /// Groups of the separate test set, from which the interval of the accuracy is computed.
     #[serde(
         default,
         skip_serializing_if = "Option::is_none",
         deserialize_with = "optional_file_path"
     )]
     pub groups_test: Option<PathBuf>,
-    /// What the classes are called, by their labels.
+    /// Names of the classes, by label.
     pub names: Option<Vec<String>>,
-    /// The reading of a taxel that nothing touches: one number, or a file with the number of each taxel; 0 when left out.
+    /// Reading of an untouched taxel: one number, or a file with one number for each taxel. Default: 0.
     #[serde(default)]
     pub zero: ZeroSpec,
-    /// The reading of a taxel at its full scale, which is its stroke; the largest of the frames when left out.
+    /// Reading of a taxel at its full scale, which corresponds to its stroke. Default: the largest reading.
     pub full_scale: Option<f64>,
-    /// n: how far each touch was pressed, metres; with `speed_mm_per_s` this is the time between its frames.
+    /// Press depth of each touch, metres, shape (n,); together with `speed_mm_per_s` it gives the time between the frames of a touch.
     #[serde(
         default,
         skip_serializing_if = "Option::is_none",
         deserialize_with = "optional_file_path"
     )]
     pub depths: Option<PathBuf>,
-    /// Approach speed at the moment of reading, mm/s: what the damper feels.
+    /// Approach speed at the time of reading, mm/s, which acts on the damper.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub speed_mm_per_s: f64,
-    /// Seconds between the frames of a touch, for sensor errors that take time; instead of `speed_mm_per_s`.
+    /// Interval between the frames of a touch, s, for sensor errors that depend on time; replaces `speed_mm_per_s`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frame_interval_s: Option<f64>,
-    /// Which touch came before each, for sensor errors that remember it.
+    /// Touch that precedes each touch, for sensor errors with memory.
     #[serde(default, skip_serializing_if = "is_usual")]
     pub previous_touch: PreviousTouch,
-    /// Values of a taxel: a plan knows what its skin reads. 0: one.
+    /// Number of values per taxel, set by the plan; 0 counts as 1.
     #[serde(skip)]
     pub n_values: usize,
 }
 
-/// `zero = 100.0` or `zero = "zero.npy"`: what taxels read that nothing touches.
+/// Readings of untouched taxels: `zero = 100.0` or `zero = "zero.npy"`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum ZeroSpec {
-    /// All taxels read the same.
+    /// Common reading of all taxels.
     One(f64),
-    /// A file with one number for each taxel: an array with the axes that taxels have in `frames`, or a list, row by row.
+    /// File with one reading for each taxel: an array with the taxel axes of `frames`, or a list in row-major order.
     Each(PathBuf),
 }
 
@@ -118,7 +117,7 @@ impl Default for ZeroSpec {
 
 impl<'de> Deserialize<'de> for ZeroSpec {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
-        /// Tells a number from a path.
+        /// Distinguishes a number from a path.
         struct NumberOrPath;
         impl Visitor<'_> for NumberOrPath {
             type Value = ZeroSpec;
@@ -159,14 +158,14 @@ impl<'de> Deserialize<'de> for ZeroSpec {
     }
 }
 
-/// What a skin that remembers was touched by before each touch.
+/// Touch that precedes each touch of a skin with memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PreviousTouch {
-    /// Another touch of the study that is drawn at random in each trial, as in studies of pressed objects.
+    /// Another touch of the study, drawn at random in each trial, as in studies of pressed objects.
     #[default]
     Random,
-    /// None.
+    /// No preceding touch.
     None,
 }
 
@@ -192,7 +191,7 @@ fn is_usual(touch: &PreviousTouch) -> bool {
 }
 
 impl RecordedSpec {
-    /// Returns frames without labels, for what reads frames alone.
+    /// Returns a specification of frames without labels, for commands that only read frames.
     pub fn of_frames(frames: &Path, order: Option<&str>, grid: Option<[usize; 2]>) -> Self {
         Self {
             frames: frames.to_owned(),
@@ -202,7 +201,7 @@ impl RecordedSpec {
         }
     }
 
-    /// All files that are named, to be found in another folder.
+    /// Returns mutable references to all given paths, to resolve them against another folder.
     pub fn files_mut(&mut self) -> impl Iterator<Item = &mut PathBuf> {
         let labels = Some(&mut self.labels).filter(|path| !is_empty(path));
         let zero = match &mut self.zero {
@@ -222,7 +221,7 @@ impl RecordedSpec {
         files.chain(others.into_iter().flatten())
     }
 
-    /// All files that are read.
+    /// Returns all files that the study reads.
     pub fn files(&self) -> Vec<&Path> {
         let labels = Some(self.labels.as_path()).filter(|path| !path.as_os_str().is_empty());
         let others = [
@@ -243,7 +242,7 @@ impl RecordedSpec {
         files.into_iter().flatten().chain(others).collect()
     }
 
-    /// The file of the array `name`: the one that is given, or the archive of the frames if it contains the array.
+    /// Returns the file of the array `name`: the given file, or the archive of the frames if it contains the array.
     pub fn file_of(&self, name: &str) -> Option<&Path> {
         let given = match name {
             "frames" => Some(self.frames.as_path()),
@@ -257,15 +256,15 @@ impl RecordedSpec {
         given.or_else(|| Some(self.frames.as_path()).filter(|path| is_member(path, name)))
     }
 
-    /// Whether some touches are the test set.
+    /// Returns whether there is a separate test set.
     pub fn has_test_set(&self) -> bool {
         self.file_of("frames_test").is_some()
     }
 
-    /// The axes of `frames` or `frames_test`.
+    /// Returns the axes of `frames` or `frames_test`.
     ///
     /// # Errors
-    /// If there is no such file, or its axes are not those of frames.
+    /// If the file does not exist or its axes are not axes of frames.
     pub fn shape_of(&self, name: &str) -> Result<FrameShape> {
         let path = self.file_of(name).unwrap_or(&self.frames);
         let shape = FileArray::shape_of(path, name)?;
@@ -277,7 +276,7 @@ impl RecordedSpec {
         frame_shape(&path.display().to_string(), &shape, axes)
     }
 
-    /// What each taxel reads that nothing touches, shape (rows · columns), row by row.
+    /// Returns the readings of untouched taxels, shape (rows · columns,), in row-major order.
     ///
     /// # Errors
     /// If the file cannot be read or does not have one number for each taxel of `shape`, the axes of `frames`.
@@ -309,7 +308,7 @@ impl RecordedSpec {
         }
     }
 
-    /// The file of the forces across that belong to `frames` or `frames_test`, and the name of its array.
+    /// Returns the file of the tangential forces of `frames` or `frames_test`, and the name of the array in it.
     pub fn shear_of(&self, name: &str) -> Option<(&Path, &'static str)> {
         let (path, name) = match name {
             "frames" => (&self.shear, "shear"),
@@ -318,10 +317,10 @@ impl RecordedSpec {
         Some((path.as_deref()?, name))
     }
 
-    /// The axes of the forces across that belong to `frames` or `frames_test`, whose axes are given; `None` if there is no such file.
+    /// Returns the axes of the tangential forces of `frames` or `frames_test`, given the axes of the frames. Returns `None` if there is no such file.
     ///
     /// # Errors
-    /// If its axes are not those of the frames with two values of each taxel.
+    /// If the axes differ from the axes of the frames with two values per taxel.
     pub fn shear_shape(&self, name: &str, frames: &FrameShape) -> Result<Option<FrameShape>> {
         let Some((path, array)) = self.shear_of(name) else {
             return Ok(None);
@@ -343,10 +342,11 @@ impl RecordedSpec {
         frame_shape(&place, &shape, self.axes(Some(&order), 2)).map(Some)
     }
 
-    /// Refuses what is missing or stands alone.
+    /// Checks that the files form a complete data set.
     ///
     /// # Errors
-    /// No labels; a test set without labels or frames; forces across of a skin that does not read them, or of one of two sets.
+    /// If there are no labels, a test set lacks labels or frames, the skin does not read shear although tangential forces are given, or only one of two
+    /// sets has tangential forces.
     pub fn check_files(&self) -> Result<()> {
         if self.file_of("labels").is_none() {
             let allowed = "labels = \"FILE\", the class of every touch (or an array `labels` in the archive of the frames)";

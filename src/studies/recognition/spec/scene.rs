@@ -1,4 +1,4 @@
-//! What touches what, as it is written: `[objects]`, `[skin]` and `[touches]`.
+//! Specification of the scene: `[objects]`, `[skin]` and `[touches]`.
 
 use crate::engine::axis::{Axis, one_value};
 use crate::inputs::defaults::number;
@@ -9,32 +9,32 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SkinSpec {
-    /// Axis: side of the square that each taxel has for itself, mm: the distance between neighbours of a grid. In a hexagonal lattice
-    /// (`hexagonal`, `disc`) neighbours are 1.0746 times as far apart.
+    /// Axis: side of the square area per taxel, mm; the distance between neighbours in a grid. In a hexagonal lattice (`hexagonal`, `disc`) the distance
+    /// between neighbours is 1.0746 times as large.
     pub pitch_mm: Axis<f64>,
-    /// Axis: side length of the square array, mm; a whole number of pitches.
+    /// Axis: side length of the square array, mm; a multiple of the pitch.
     pub size_mm: Option<Axis<f64>>,
-    /// Axis, instead of `size_mm`: taxels along a side.
+    /// Axis, instead of `size_mm`: number of taxels along a side.
     pub taxels: Option<Axis<usize>>,
-    /// How the taxels lie, as many an area in every layout: `grid` (when left out), `hexagonal`, `disc`, `cylinder`, `cap`.
+    /// Layout of the taxels; all layouts have the same area. One of `grid` (default), `hexagonal`, `disc`, `cylinder`, `cap`.
     pub layout: Option<ArrayLayout>,
-    /// Radius to which `cylinder` and `cap` are bent, to the taxels' rest centres, mm.
+    /// Radius of curvature of `cylinder` and `cap`, measured to the rest centres of the taxels, mm.
     pub curvature_radius_mm: Option<f64>,
-    /// What each taxel reads: `deflection` (when left out), `force` along its axis, or `shear`, which is this and the two forces across it.
+    /// Quantity that each taxel reads: `deflection` (default), `force` along its axis, or `shear` (the force along its axis and the two forces across it).
     pub sensed: Option<SensedSpec>,
-    /// μ between the taxels' tips and what they touch, beside `sensed = "shear"`, if tips go along the object: in a slide, or on a curved layout. A tip
-    /// of a flat array that is pressed straight on stays where it first touches.
+    /// Friction coefficient μ between taxels and object, with `sensed = "shear"`. Used only if taxels move along the object, in a slide or on a curved
+    /// layout. The taxels of a flat array that is pressed straight on do not slip.
     pub friction: Option<f64>,
-    /// k_t, N/m: how stiff the tips are across their axes, beside `friction`; as stiff as along them when left out.
+    /// Tangential stiffness k_t of a taxel, N/m, with `friction`. Default: the stiffness along the axis.
     pub shear_stiffness_n_per_m: Option<f64>,
-    /// ρ, mm; half the pitch when left out.
+    /// Taxel radius ρ, mm. Default: half the pitch.
     pub taxel_radius_mm: Option<f64>,
-    /// s, mm.
+    /// Stroke s of a taxel, mm.
     pub stroke_mm: f64,
-    /// k, N/m.
+    /// Stiffness k of a taxel, N/m.
     #[serde(default = "number::<100>")]
     pub stiffness_n_per_m: f64,
-    /// c, N·s/m.
+    /// Damping c of a taxel, N·s/m.
     #[serde(default)]
     pub damping_n_s_per_m: f64,
 }
@@ -43,35 +43,35 @@ pub struct SkinSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct TouchesSpec {
-    /// How the object lies on the table.
+    /// Rest poses of the object on the table.
     pub rest: RestPoses,
-    /// Touches an object; all combinations when left out.
+    /// Number of touches per object. Default: all combinations of values.
     pub per_object: Option<usize>,
-    /// Where the patch's centre is over the object's, along table x, mm.
+    /// Offset of the patch's centre from the object's centre along the table's x axis, mm.
     pub offset_x_mm: SpreadSpec,
-    /// The same along table y, mm.
+    /// Offset of the patch's centre from the object's centre along the table's y axis, mm.
     pub offset_y_mm: SpreadSpec,
-    /// How the object is turned about the vertical, degrees.
+    /// Rotation of the object about the vertical, degrees.
     pub yaw_deg: SpreadSpec,
-    /// How the patch is tilted about its x axis, degrees.
+    /// Tilt of the patch about its x axis, degrees.
     pub tilt_x_deg: SpreadSpec,
-    /// The same about its y axis, degrees.
+    /// Tilt of the patch about its y axis, degrees.
     pub tilt_y_deg: SpreadSpec,
-    /// How far the patch goes past first contact, mm; beyond the stroke taxels stay saturated.
+    /// Travel of the patch past first contact, mm; beyond the stroke taxels stay saturated.
     pub depth_mm: SpreadSpec,
-    /// How far the patch goes along what it touches once it is pressed, mm; not at all when left out.
+    /// Distance that the pressed patch slides along the object, mm. Default: no slide.
     pub slide_mm: Option<f64>,
-    /// In which direction, degrees from the patch's x towards its y, beside `slide_mm`; along x when left out.
+    /// Direction of the slide, degrees from the patch's x axis towards its y axis, with `slide_mm`. Default: along x.
     pub slide_deg: Option<f64>,
-    /// Axis: F, frames a touch: it is read at the depths d/F, 2d/F … d, each frame with noise of its own, and the measurements
-    /// of all of them are its features.
+    /// Axis: F, number of frames per touch. The frames are read at the depths d/F, 2d/F, …, d, each with its own noise. The measurements of all
+    /// frames are the features of the touch.
     pub frames: Axis<usize>,
-    /// Approach speed at the moment of reading, mm/s: what the damper feels.
+    /// Approach speed at the time of reading, mm/s, which acts on the damper.
     pub speed_mm_per_s: f64,
 }
 
 impl TouchesSpec {
-    /// Says which keys have a list of values, which looks like an axis and is none; `None` where no key has.
+    /// Describes the keys of `[touches]` that have a list of values, which may be mistaken for an axis. Returns `None` if there is no such key.
     pub fn mixed_values(&self) -> Option<String> {
         let table = toml::Table::try_from(self).expect("every field of a study has a TOML form");
         let lists = table.iter().filter_map(|(key, spread)| {
@@ -90,7 +90,7 @@ impl TouchesSpec {
     }
 }
 
-/// No touches: those of a study that does not press objects.
+/// No touches, for studies that do not press objects.
 impl Default for TouchesSpec {
     fn default() -> Self {
         Self {
@@ -110,20 +110,20 @@ impl Default for TouchesSpec {
     }
 }
 
-/// What a taxel reads.
+/// Quantity that a taxel reads.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SensedSpec {
-    /// How far it is pushed in.
+    /// Deflection, metres.
     #[default]
     Deflection,
-    /// The force along its axis.
+    /// Force along the taxel's axis, newtons.
     Force,
-    /// The forces along and across its axis.
+    /// Forces along and across the taxel's axis, newtons.
     Shear,
 }
 
-/// How a touch parameter is spread over touches.
+/// Distribution of a touch parameter over the touches of an object.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(
     untagged,
@@ -132,21 +132,21 @@ pub enum SensedSpec {
 pub enum SpreadSpec {
     /// `yaw_deg = 30.0`
     One(f64),
-    /// `yaw_deg = [0.0, 10.0, 20.0]`: all of them in each configuration, as no axis.
+    /// `yaw_deg = [0.0, 10.0, 20.0]`: every configuration contains all of these values, so the list is not an axis.
     List(Vec<f64>),
     /// `yaw_deg = { grid = [0.0, 50.0, 6] }`, `{ uniform = [0.0, 360.0] }` or `{ within = 15.0 }`
     Range(RangeSpec),
 }
 
-/// A grid or an interval.
+/// Grid or interval of values.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum RangeSpec {
-    /// First value, last value, how many.
+    /// First value, last value, number of values.
     Grid(f64, f64, usize),
-    /// Drawn uniformly between two values.
+    /// Values drawn uniformly between two bounds.
     Uniform(f64, f64),
-    /// Drawn uniformly between a value below zero and as much above; 0: always zero.
+    /// Values drawn uniformly from [−w, w] for the given half width w; 0: always zero.
     Within(f64),
 }
 

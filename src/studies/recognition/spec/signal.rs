@@ -1,4 +1,4 @@
-//! What happens to a frame, as it is written: `[signal]`.
+//! Specification of the signal chain: `[signal]`.
 
 use crate::engine::axes::CombineSpec;
 use crate::engine::axis::Axis;
@@ -13,33 +13,34 @@ use std::fmt;
 /// `[signal]`
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SignalSpec {
-    /// What is done to a frame of deflections, in this order; each step at most once.
+    /// Steps of the signal chain, applied to a frame of deflections in this order; each step at most once.
     pub steps: Vec<StepSpec>,
-    /// How much of it is done.
+    /// Strengths of the steps.
     #[serde(flatten)]
     pub axes: SignalAxes,
-    /// Axis: the skin that test touches are made with, `same_skin` (as training touches; when left out) or `another_skin`.
+    /// Axis: skin of the test touches, `same_skin` (default: the skin of the training touches) or `another_skin`.
     pub tested_on: Option<Axis<TestedOn>>,
-    /// How the axes above are combined with each other. (With other axes they always are.)
+    /// How the axes of `[signal]` are combined with each other. They are always combined with all other axes.
     #[serde(skip_serializing_if = "is_default")]
     pub combine: CombineSpec,
 }
 
-/// Axes of numbers, each with the step that it belongs to: the standard deviation of the noise as a fraction of the full scale, in
-/// millimetres (of deflection) or in newtons (of force), which is one axis; that of the Gaussian that smooths, mm; and the strengths of sensor
-/// errors, each by its [key](crate::signal::Strength::key).
+/// Numeric axes of `[signal]`, each with the step to which it belongs.
 ///
-/// Hysteresis: each touch comes after another of the study, drawn at random and let go. Gains, drift and faults belong to a skin: they
-/// follow from the seed and the array and are the same in all touches and trials. Drift: a session is the study's touches in random order,
-/// trial by trial; it begins with every zero at zero. Scan: the press goes on at `touches.speed_mm_per_s` while the array is read; the last
+/// The noise has one axis: its standard deviation as a fraction of the full scale, in millimetres of deflection or in newtons of force. The smoothing has the
+/// width of its Gaussian, mm. Each sensor error has the strengths named by its [keys](crate::signal::Strength::key).
+///
+/// Hysteresis: each touch follows another touch of the study, drawn at random and released. Gains, drift and faults belong to a skin: they depend only on the
+/// seed and the array, and are equal in all touches and trials. Drift: a session consists of the study's touches in random order, trial by trial, and starts
+/// with zero drift. Scan: the press continues at `touches.speed_mm_per_s` while the array is read; the last frame of a touch is read at rest.
 /// frame of a touch is read at rest.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SignalAxes(BTreeMap<usize, SignalAxis>);
 
-/// A key, the step that it belongs to, and its values.
+/// Key of an axis, the step to which it belongs, and its values.
 pub type SignalAxis = (&'static str, StepSpec, Axis<f64>);
 
-/// All of them, in the order in which conditions go through them.
+/// Returns all axes in the order in which conditions iterate over them.
 fn all_axes() -> impl Iterator<Item = (&'static str, StepSpec)> {
     let errors = all_strengths().map(|(error, strength)| (strength.key, StepSpec::Error(error)));
     NOISES
@@ -50,18 +51,18 @@ fn all_axes() -> impl Iterator<Item = (&'static str, StepSpec)> {
 }
 
 impl SignalAxes {
-    /// The axis of a key.
+    /// Returns the axis of a key, if the study has it.
     pub fn of(&self, key: &str) -> Option<&Axis<f64>> {
         let mut given = self.given();
         given.find_map(|(known, _, axis)| (*known == key).then_some(axis))
     }
 
-    /// Those that a study has.
+    /// Returns the axes that the study has.
     pub fn given(&self) -> impl Iterator<Item = &SignalAxis> {
         self.0.values()
     }
 
-    /// Puts an axis at a key, if there is such a key.
+    /// Sets the axis of a key, if the key exists.
     fn set(&mut self, key: &str, axis: Axis<f64>) {
         let found = all_axes().enumerate().find(|(_, (known, _))| *known == key);
         if let Some((place, (key, step))) = found {
@@ -76,22 +77,22 @@ impl Serialize for SignalAxes {
     }
 }
 
-/// A step of the signal stage.
+/// Step of the signal chain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum StepSpec {
-    /// Deflection → force, newtons.
+    /// Conversion of deflections to forces, newtons.
     Force,
     /// Additive zero-mean Gaussian noise.
     Noise,
     /// Gaussian smoothing over the array.
     Smoothing,
-    /// A sensor error, with strengths of its own keys.
+    /// Sensor error, whose strengths have their own keys.
     Error(SensorError),
 }
 
 impl StepSpec {
-    /// The step's name in a study.
+    /// Returns the name of the step in study files.
     pub fn word(self) -> &'static str {
         match self {
             Self::Force => "force",
@@ -101,7 +102,7 @@ impl StepSpec {
         }
     }
 
-    /// Every step.
+    /// Returns every step.
     fn all() -> impl Iterator<Item = Self> {
         let errors = SENSOR_ERRORS.iter().map(|error| Self::Error(*error));
         [Self::Force, Self::Noise, Self::Smoothing]
@@ -133,7 +134,7 @@ fn unknown(what: &str, given: &str, known: impl Iterator<Item = &'static str>) -
     )
 }
 
-/// A key of `[signal]`.
+/// Key of `[signal]`.
 struct Key(String);
 
 impl<'de> Deserialize<'de> for Key {
@@ -150,7 +151,7 @@ impl<'de> Deserialize<'de> for Key {
     }
 }
 
-/// Written out, because the keys of sensor errors are those that their files say.
+/// Implemented by hand, because each sensor error defines its own keys.
 impl<'de> Deserialize<'de> for SignalSpec {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_map(SpecVisitor)

@@ -1,6 +1,6 @@
-//! A study as it is written: the keys of its TOML file, in the units of its keys.
+//! Specification of a recognition study: the keys of its TOML file, in the units of the keys.
 //!
-//! Nothing is checked here beyond names and types; [`Plan`](crate::studies::recognition::plan::study_plan::Plan) does that. An axis takes one value or a list.
+//! Only names and types are checked here; [`Plan`](crate::studies::recognition::plan::study_plan::Plan) checks values. An axis takes one value or a list.
 
 use crate::engine::axes;
 use crate::engine::axes::{AxisRules, StudyAxes};
@@ -27,55 +27,56 @@ use bubbletouch_svm::scaling::Scaling;
 use bubbletouch_svm::{Multiclass, Solver};
 use serde::{Deserialize, Serialize};
 
-/// The file.
+/// A recognition study file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StudySpec {
-    /// What the study asks, in a sentence.
+    /// Question of the study, in one sentence.
     pub question: String,
-    /// What the author expected before it ran.
+    /// Expectation of the author before the first run.
     #[serde(default)]
     pub expected: String,
-    /// Root of all randomness.
+    /// Seed of all random numbers.
     #[serde(default = "default_seed")]
     pub seed: u64,
-    /// How often each cell is repeated with a new split, projection and noise.
+    /// Number of trials per configuration, each with a new split, projection and noise.
     #[serde(default = "count::<1>")]
     pub trials: usize,
-    /// Instead of a projection of its own for each trial: so many projections, each with each of `trials` / so many splits. It
-    /// tells what the projection does to the accuracy from what the split does (`variance.csv`).
+    /// Number p of projections, each combined with each of `trials` / p splits, instead of one projection per trial. Separates the effect of the projection
+    /// on the accuracy from the effect of the split (`variance.csv`).
     pub projections_per_split: Option<usize>,
-    /// What is touched.
+    /// Touched objects.
     #[serde(default, skip_serializing_if = "is_default")]
     pub objects: ObjectsSpec,
-    /// What touches.
+    /// The skin.
     pub skin: SkinSpec,
-    /// How it touches.
+    /// The touches.
     #[serde(default, skip_serializing_if = "is_default")]
     pub touches: TouchesSpec,
-    /// Instead of objects and how they are touched: which kind of touch is it?
+    /// Recognition of kinds of human touch; replaces `[objects]` and `[touches]`.
     pub human_touch: Option<HumanTouchSpec>,
-    /// Instead of objects and how they are touched: what a skin has read.
+    /// Recorded frames; replaces `[objects]` and `[touches]`.
     pub recorded: Option<RecordedSpec>,
-    /// What happens to a frame before it is sensed.
+    /// Processing of a frame before it is compressed.
     #[serde(default)]
     pub signal: SignalSpec,
-    /// How a frame is compressed.
+    /// Compression of a frame.
     pub sensing: SensingSpec,
-    /// How objects are recognised.
+    /// Features, classifier and split.
     pub recognition: RecognitionSpec,
-    /// Keys of `[objects]`, `[skin]`, `[touches]` and `[signal]` that test touches have instead of the study's: `test.touches.depth_mm`.
+    /// Keys of `[objects]`, `[skin]`, `[touches]` and `[signal]` with the values of test touches if these differ: `test.touches.depth_mm`.
     #[serde(default, skip_serializing_if = "toml::Table::is_empty")]
     pub test: toml::Table,
-    /// What the report shows.
+    /// Contents of the report.
     #[serde(default)]
     pub report: ReportSpec,
-    /// Other keys with their values, in all combinations: [`axes`].
+    /// Further axes, each a key with its values: [`axes`].
     #[serde(skip)]
     pub axes: StudyAxes,
 }
 
-/// Keys that are axes where they stand: they take a list there, and are put there from `[axes]`. Of `[signal]` all keys but the steps are axes.
+/// Keys that accept a list of values in their own table. If they are given in `[axes]`, they are moved there. In `[signal]`, all keys except the steps are
+/// axes.
 const AXES_IN_PLACE: &[&str] = &[
     "skin.pitch_mm",
     "skin.size_mm",
@@ -97,7 +98,7 @@ const AXES_IN_PLACE: &[&str] = &[
     "recognition.next_touch",
 ];
 
-/// Trials split the same touches again, and words and reports are of the whole study.
+/// Keys that cannot be axes: trials repeat the same touches, and texts and reports belong to the whole study.
 const AXIS_RULES: AxisRules = AxisRules {
     in_place: |key| match key.strip_prefix("signal.") {
         Some(key) => !matches!(key, "steps" | "combine"),
@@ -117,12 +118,12 @@ const AXIS_RULES: AxisRules = AxisRules {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SensingSpec {
-    /// Axis: how measurements are made.
+    /// Axis: ensemble of the measurement matrix.
     #[serde(default = "default_ensemble")]
     pub ensemble: Axis<Ensemble>,
     /// Axis: compression ratio, taxels per measurement.
     pub ratio: Option<Axis<f64>>,
-    /// Axis, instead of `ratio`: measurements a touch.
+    /// Axis, instead of `ratio`: number of measurements per touch.
     pub measurements: Option<Axis<usize>>,
 }
 
@@ -130,93 +131,92 @@ pub struct SensingSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RecognitionSpec {
-    /// Axis: what is made of a touch's measurements before they are scaled: `raw`, `centred`, `unit_norm`, `centred_unit_norm`; or features of
-    /// images, `fourier_magnitude`, `fourier_mellin`, `polar_harmonics`, `descriptors`, `aligned`, or several of these joined by `+`. (Features of
-    /// force: `"force"` among `signal.steps`.)
+    /// Axis: transformation of a touch's measurements before scaling. Invariances: `raw`, `centred`, `unit_norm`, `centred_unit_norm`. Features of images:
+    /// `fourier_magnitude`, `fourier_mellin`, `polar_harmonics`, `descriptors`, `aligned`, or several of these joined by `+`. For features of force, add
+    /// `"force"` to `signal.steps`.
     #[serde(default = "default_features")]
     pub features: Axis<Features>,
-    /// Axis: features of images see only what is so far behind the foremost point, as a fraction of the full scale, as if each touch were pressed so
-    /// deep; all that is there when left out. A depth that was never learned then looks like one that was.
+    /// Axis: depth window of the image features behind the foremost point, as a fraction of the full scale. It makes the features invariant to the press
+    /// depth. Default: the whole image.
     pub foremost_full_scale: Option<Axis<f64>>,
-    /// Axis: so many copies of each training touch are learned, too, tilted at random as far as images say what that looks like: a tilt that was
-    /// never learned then looks like one that was. Of features of images alone; none when left out.
+    /// Axis: number of additional copies of each training touch, tilted at random as far as its images allow. The copies make recognition robust to tilts that
+    /// were not trained on. Only for image features; default: none.
     pub tilted_copies: Option<Axis<usize>>,
-    /// Most that a copy is tilted about the array's x and y, evenly distributed; 5 when left out.
+    /// Largest tilt of a copy about the array's x and y axes, degrees; tilts are uniformly distributed. Default: 5.
     pub tilted_copies_deg: Option<f64>,
-    /// Axis: what is made of the frames of a touch; all of them one after the other when left out. `deepest` frame, `stacked_8` evenly
-    /// in time (or another number), `moments` of each measurement, `course` of the touch, or `summarised`: moments and course.
+    /// Axis: how the frames of a touch are combined. Default: concatenated. `deepest` frame, `stacked_8` (8 frames, or another number, evenly spaced in time),
+    /// `moments` of each measurement, `course` of the touch, or `summarised` (moments and course).
     pub over_time: Option<Axis<OverTime>>,
-    /// Axis: which classifier.
+    /// Axis: classifier.
     pub classifier: Axis<ClassifierKind>,
-    /// How two-class SVMs make a many-class one.
+    /// Scheme that combines two-class SVMs into a multi-class one.
     #[serde(default)]
     pub multiclass: Multiclass,
-    /// What trains an SVM.
+    /// Solver that trains SVMs.
     #[serde(default)]
     pub solver: Solver,
-    /// How features are scaled, fitted on training rows.
+    /// Scaling of features, fitted on training rows.
     #[serde(default)]
     pub scaling: Scaling,
-    /// Axis: soft-margin penalty of the classifiers that have one; 1 when left out.
+    /// Axis: penalty C of the classifiers that have one. Default: 1.
     pub c: Option<Axis<f64>>,
-    /// Instead of `c`: candidates of which each fit chooses one by cross-validation within its training rows.
+    /// Candidate values of C, instead of `c`. Each fit chooses one by cross-validation within its training rows.
     pub choose_c: Option<Vec<f64>>,
-    /// γ of the RBF, Laplacian and polynomial kernels; 1 / (F · m · variance), 'scale', when left out (Laplacian: the standard deviation).
+    /// γ of the RBF, Laplacian and polynomial kernels. Default: 'scale', 1 / (F · m · variance); for the Laplacian kernel with the standard deviation.
     pub gamma: Option<f64>,
-    /// Instead of `gamma`: candidates as multiples of 'scale', of which each fit chooses one together with C.
+    /// Candidate values of γ as multiples of 'scale', instead of `gamma`. Each fit chooses one together with C.
     pub choose_gamma: Option<Vec<f64>>,
-    /// Folds of the cross-validation that chooses C and γ, or that says how touches which are not learned are answered (`most_informative`); 5 when left
-    /// out. What the split keeps together, they do.
+    /// Number of folds of the inner cross-validation, which chooses C and γ and estimates decisions on unseen touches for `most_informative`. Default: 5.
+    /// Folds do not divide the groups that the split keeps together.
     pub choose_folds: Option<usize>,
-    /// Training touches an object that take part in that choice, at most; all when left out. γ is that of all training touches.
+    /// Largest number of training touches per object for the choice of C and γ. Default: all. The default γ is computed from all training touches.
     pub choose_touches: Option<usize>,
-    /// How many times each training touch is read and learned, each time with its own noise; 1 when left out. Without noise,
-    /// drift or pink noise all readings of a touch are the same, and it is learned once. C and γ are chosen on first readings.
+    /// Number of readings of each training touch, each with its own noise. Default: 1. Without noise, drift or pink noise all readings of a touch are equal,
+    /// and one is used. C and γ are chosen on first readings.
     pub training_readings: Option<usize>,
-    /// d of the polynomial kernel.
+    /// Degree d of the polynomial kernel.
     #[serde(default = "default_degree")]
     pub degree: u32,
-    /// c₀ of the polynomial kernel.
+    /// Constant c₀ of the polynomial kernel.
     #[serde(default = "number::<1>")]
     pub coef0: f64,
-    /// k of the k nearest neighbours; 5 when left out.
+    /// Number k of nearest neighbours. Default: 5.
     pub n_neighbours: Option<usize>,
-    /// Trees of a random forest; 100 when left out.
+    /// Number of trees of a random forest. Default: 100.
     pub n_trees: Option<usize>,
-    /// Splits below each other in a tree or in a forest's trees; until leaves are pure when left out.
+    /// Largest depth of a decision tree and of a forest's trees. Default: unlimited, until leaves are pure.
     pub max_depth: Option<usize>,
-    /// Most gibibytes of kernel values that an SVM's solver holds at once; 2 when left out. Above it values are computed again,
-    /// which takes longer and may change last digits.
+    /// Memory limit for the kernel values that an SVM solver stores, GiB. Default: 2. Above the limit values are recomputed, which takes longer and may change
+    /// the last digits.
     pub solver_memory_gib: Option<f64>,
-    /// Axis: training touches an object, at most; all of the training split when left out.
+    /// Axis: largest number of training touches per object. Default: all touches of the training split.
     pub train_touches: Option<Axis<usize>>,
-    /// Axis: fraction of each object's training touches that are labelled as another object, drawn at random, 0 to 1.
+    /// Axis: fraction of each object's training touches that are labelled as another, randomly drawn object, 0 to 1.
     pub mislabelled_fraction: Option<Axis<f64>>,
-    /// Axis: how many times as many training touches the most frequent object has as the rarest, at least 1; the others lie
-    /// between by equal ratios, in an order of each trial's own. Test touches stay as many of each.
+    /// Axis: ratio of the training touches of the most frequent object to the least frequent, at least 1. The other objects lie between in a geometric
+    /// sequence, in an order drawn for each trial. The numbers of test touches are unchanged.
     pub class_imbalance: Option<Axis<f64>>,
-    /// Axis: k, test touches of an object that are decided on together by the sum of their scores. An object's test touches
-    /// are grouped at random; fewer than k that remain are left out.
+    /// Axis: number k of test touches of an object that are fused into one decision by the sum of their scores. An object's test touches are grouped at
+    /// random; a remainder of fewer than k touches is omitted.
     #[serde(default = "one_value")]
     pub fused_touches: Axis<usize>,
-    /// Axis: how the touches after the first are chosen: at `random`; the `farthest` pose from those touched; or the `most_informative` one, of which
-    /// the least entropy of the belief in objects is expected. Chosen ones are of all test touches of the object, each once at most among those that are
-    /// decided on together.
+    /// Axis: policy that chooses the touches after the first. `random`; `farthest`, the pose farthest from the previous ones; `most_informative`, the pose
+    /// with the least expected entropy of the belief over objects. Candidates are all test touches of the object, each at most once per decision.
     pub next_touch: Option<Axis<NextTouch>>,
-    /// Which poses are held out: `random` ones, or those that [`PoseSplit`] says.
+    /// Poses that are held out: `random` ones, or a rule of [`PoseSplit`].
     #[serde(default, skip_serializing_if = "is_default")]
     pub split: PoseSplit,
-    /// Fraction of the touches that a random split holds out for testing (without `folds`; 0.25 when both are left out).
+    /// Fraction of the touches that a random split holds out for testing, without `folds`. Default: 0.25.
     pub test_fraction: Option<f64>,
-    /// Instead of `test_fraction`: k of a k-fold split; `trials` is then a multiple of k.
+    /// Number k of folds of a k-fold split, instead of `test_fraction`; `trials` must be a multiple of k.
     pub folds: Option<usize>,
-    /// Touches that share this (`pose`, `offset`, `yaw`, `tilt`, `rest` or `depth`) are never on both sides of the split. Where its
-    /// values are drawn (`{ uniform = … }`), touches of an object that neighbours connect stay together: those nearer than the next
-    /// two keys say, on each drawn axis.
+    /// Property (`pose`, `offset`, `yaw`, `tilt`, `rest` or `depth`) that defines groups of touches. A group is never divided between training and test. If
+    /// the values are drawn (`{ uniform = … }`), touches of an object that are connected by a chain of neighbours form a group. Neighbours are closer than
+    /// `keep_together_mm` and `keep_together_deg` on each drawn axis.
     pub keep_together: Option<GroupSpec>,
-    /// Drawn offsets and depths nearer than this are neighbours.
+    /// Distance below which drawn offsets and depths are neighbours, mm.
     pub keep_together_mm: Option<f64>,
-    /// Drawn yaws and tilts nearer than this are neighbours.
+    /// Angle below which drawn yaws and tilts are neighbours, degrees.
     pub keep_together_deg: Option<f64>,
 }
 
@@ -224,14 +224,14 @@ pub struct RecognitionSpec {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ReportSpec {
-    /// Objects whose touches are drawn side by side; four spread over the list when left out.
+    /// Objects whose touches are drawn side by side. Default: four, spread over the list.
     pub samples: Option<Vec<String>>,
-    /// Whether to chart accuracy against time with its Pareto front; when left out, if at least three classifiers are swept.
+    /// Whether to chart accuracy against time with its Pareto front. Default: if at least three classifiers are swept.
     pub pareto: Option<bool>,
     /// Configurations whose confusion matrix is in `confusion.csv`.
     #[serde(default, skip_serializing_if = "is_default")]
     pub confusion: ConfusionMatrices,
-    /// Accuracies that others published, shown beside the best of the cells that each is about.
+    /// Published accuracies, shown beside the best of the configurations to which each claim applies.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub published: Vec<PublishedSpec>,
 }
@@ -243,43 +243,43 @@ pub enum ConfusionMatrices {
     /// All configurations.
     #[default]
     All,
-    /// The most accurate configuration and those of `confused.csv`. With many objects, the other matrices are most of the bytes of a folder.
+    /// The most accurate configuration and the configurations in `confused.csv`. With many objects, confusion matrices take most of the space of a result
+    /// folder.
     Best,
 }
 
-/// `{ claim = "98 % at 64:1", accuracy = 0.98, source = "[CL]", ratio = 64.0, ensemble = "sbhe" }`
+/// Published accuracy: `{ claim = "98 % at 64:1", accuracy = 0.98, source = "[CL]", ratio = 64.0, ensemble = "sbhe" }`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PublishedSpec {
-    /// What was claimed, in words.
+    /// The claim, in words.
     pub claim: String,
-    /// The published share of test touches recognised, 0 to 1.
+    /// Published fraction of recognised test touches, 0 to 1.
     pub accuracy: f64,
-    /// Where it was published.
+    /// Source of the claim.
     pub source: String,
-    /// Every other key narrows the cells that it is compared with: the name of a column of [`Cell`]
-    /// (`noise` is short for `noise_std`) and its value there.
+    /// Other keys, which select the configurations to compare with. Each is the name of a column of [`Cell`] (`noise` is short for `noise_std`) with its
+    /// value.
     #[serde(flatten)]
     pub at: toml::Table,
 }
 
 impl StudySpec {
-    /// Reads a study.
+    /// Reads a study from the text of its file.
     ///
-    /// # Errors
-    /// The error names the file, the line and the key.
+    /// # Errors If the text is not a valid study. The error names the file, the line and the key.
     pub fn parse(place: &str, text: &str) -> Result<Self> {
         let (spec, axes) = axes::read::<Self>(place, text, AXIS_RULES)?;
         Ok(Self { axes, ..spec })
     }
 
-    /// Whether it touches objects that it places.
+    /// Returns whether the study places objects and touches them.
     pub fn places_objects(&self) -> bool {
         self.human_touch.is_none() && self.recorded.is_none()
     }
 
-    /// How many values each key has that is an axis where it stands, but for those of the signal, which may be combined in another way.
+    /// Returns the number of values of each key that has a list in its own table. Keys of the signal are excluded, because they may be combined differently.
     pub(crate) fn axis_lengths(&self) -> impl Iterator<Item = (&'static str, usize)> {
-        // A seed of the command line may be larger than TOML's numbers.
+        // TOML integers have 63 bits; a seed from the command line may be larger.
         let without_seed = Self {
             seed: 0,
             ..self.clone()
@@ -293,7 +293,7 @@ impl StudySpec {
         })
     }
 
-    /// The columns of its own axes in tables of results.
+    /// Returns the columns of the study's own axes in result tables.
     pub fn axis_columns(&self) -> Vec<Column> {
         let of_cells = Cell::columns();
         let of_trials = TrialScore::columns();
@@ -307,13 +307,13 @@ impl StudySpec {
         self.axes.columns(|name| known.contains(&name))
     }
 
-    /// Writes the study with every default spelt out.
+    /// Returns the study as TOML with all defaults written out.
     pub fn to_toml(&self) -> String {
         axes::to_toml(self, &self.axes)
     }
 }
 
-/// The seed of every kind of study that names none.
+/// Default seed of all kinds of study.
 pub(crate) fn default_seed() -> u64 {
     2018
 }
