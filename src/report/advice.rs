@@ -1,19 +1,20 @@
-//! Advice from a table by the roles of its columns: of the choices that were measured in a condition of the world, the cheapest whose
-//! value is enough, or the one of best value that is cheap enough.
+//! Advice from a result table, based on the roles of its columns.
+//!
+//! Within one condition, the advised row is the cheapest choice whose value meets a bound, or the best choice within a budget.
 
 use crate::error::{Error, Result};
 use crate::report::swept::{Setting, Swept};
 use crate::table::{Better, Column, Role, Scale, Table, Value, column_name, front};
 use std::collections::HashSet;
 
-/// A column that is sought in tables.
+/// Selector of a column in the tables, by role and name.
 struct Sought {
-    /// The option by which people name it.
+    /// Command-line option that names the column.
     option: &'static str,
-    /// What is taken if nobody names one, where a table has it; else the first.
+    /// Default name, used if no name is given and a table has such a column. Otherwise, the first column of the role is used.
     usual: &'static str,
     has_role: fn(Role) -> bool,
-    /// Names that every kind of study knows, with the columns that they mean.
+    /// Names that are valid for all kinds of study, each with the columns that it stands for.
     shared: &'static [(&'static str, &'static [&'static str])],
 }
 
@@ -39,72 +40,72 @@ const COST: Sought = Sought {
     ],
 };
 
-/// What is advised on; what is left out is found.
+/// Query of an advice. A field that is `None` is chosen automatically.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Asked {
-    /// The file of a table.
+    /// File name of the table.
     pub table: Option<String>,
-    /// What is to be good: a column of values.
+    /// Column of values to optimise.
     pub value: Option<String>,
-    /// What is to be small: a column of costs, or one of the names that all kinds of study share.
+    /// Column of costs to keep small, or a name that is valid for all kinds of study.
     pub cost: Option<String>,
-    /// Conditions: `noise=0.05`.
+    /// Fixed conditions, each as `noise=0.05`.
     pub given: Vec<String>,
-    /// The largest values that columns of costs may have, by their names: rows above one of them are left out.
+    /// Upper bounds of cost columns, by column name. Rows above a bound are left out.
     pub limits: Vec<(String, f64)>,
 }
 
-/// What is wished for.
+/// Requirement: a bound on the value or on the cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Wish {
-    /// A value at least as good as this, for as little as possible.
+    /// Minimum quality: the cheapest choice whose value is at least this good.
     Value(f64),
-    /// The best value for at most so much, positive.
+    /// Maximum cost, positive: the choice of best value within this budget.
     Budget(f64),
-    /// The best value, whatever it costs.
+    /// No bound: the choice of best value at any cost.
     Best,
 }
 
-/// A choice: a row of the table, what it gives, and what it costs.
+/// Candidate: a row of the table with its value and its cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Offer {
-    /// The row.
+    /// Row index.
     pub row: usize,
-    /// What it gives.
+    /// Value, in the unit of the value column.
     pub value: f64,
-    /// What it costs.
+    /// Cost, in the unit of the cost column.
     pub cost: f64,
 }
 
-/// An answer.
+/// Advice for one condition.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Advice {
-    /// The cheapest choice whose value is enough, or the best that is cheap enough.
+    /// The cheapest choice whose value is sufficient, or the best choice within the budget.
     pub choice: Offer,
-    /// The cheapest whose whole interval is enough, where that is another than the choice and there is one.
+    /// The cheapest choice whose whole confidence interval is sufficient. `None` if it equals `choice` or does not exist.
     pub certain: Option<Offer>,
-    /// The next of the front: the cheapest that is better than the choice.
+    /// The next choice on the Pareto front: the cheapest one with a better value than `choice`.
     pub next_up: Option<Offer>,
 }
 
-/// The choices of a table, those of given conditions.
+/// Candidates of one table, restricted to the given conditions.
 pub struct Offers<'a> {
-    /// The table.
+    /// The table of the candidates.
     pub table: &'a Table,
-    /// What is to be good.
+    /// Column of values to optimise.
     pub value: &'a Column,
-    /// What is to be small.
+    /// Column of costs to keep small.
     pub cost: &'a Column,
     swept: Swept<'a>,
-    /// Rows of given conditions whose value and cost are known.
+    /// Rows that satisfy the given conditions and have both a value and a cost.
     rows: Vec<usize>,
 }
 
 impl<'a> Offers<'a> {
-    /// Of the first table that offers what is asked: choices with such a value and such a cost.
+    /// Returns the candidates of the first table that has choices and the requested value and cost columns.
     ///
     /// # Errors
-    /// No such table; a condition that it has not.
+    /// If no table has these columns, or a condition or a cost limit is not valid for the table.
     pub fn of(tables: &'a [Table], asked: &Asked) -> Result<Self> {
         let mut offering: Vec<&Table> = tables.iter().filter(|t| t.offers_choices()).collect();
         let has_several = offering.iter().any(|table| table.n_rows > 1);
@@ -121,7 +122,7 @@ impl<'a> Offers<'a> {
         let value = VALUE.narrow(&mut offering, asked.value.as_deref())?;
         let cost = COST.narrow(&mut offering, asked.cost.as_deref())?;
         let value = |table: &'a Table| VALUE.columns(table, value)[0];
-        // Of several, one that says how sure its values are.
+        // Among several tables, one whose values have confidence intervals is preferred.
         let has_interval = |table: &&&'a Table| value(table).interval.is_some();
         let table = *offering.iter().find(has_interval).unwrap_or(&offering[0]);
         let mut found = Self::of_columns(table, value(table), COST.columns(table, cost)[0]);
@@ -135,10 +136,10 @@ impl<'a> Offers<'a> {
         Ok(found)
     }
 
-    /// Removes the rows whose cost in a column, given by its name, is above a limit or not known.
+    /// Removes the rows whose cost in the named column exceeds the limit or is absent.
     ///
     /// # Errors
-    /// No such column of costs; a limit that is not a positive number or that no row keeps.
+    /// If no such cost column exists, the limit is not a positive number, or no row satisfies the limit.
     fn limit(&mut self, name: &str, most: f64) -> Result<()> {
         let columns = COST.columns(self.table, Some(name));
         let known = COST.columns(self.table, None).into_iter();
@@ -171,7 +172,7 @@ impl<'a> Offers<'a> {
         Ok(())
     }
 
-    /// Of all rows of a table whose value and cost are known.
+    /// Returns the candidates from all rows of a table that have both a value and a cost.
     pub fn of_columns(table: &'a Table, value: &'a Column, cost: &'a Column) -> Self {
         let rows: Vec<usize> = (0..table.n_rows).collect();
         let mut found = Self {
@@ -186,7 +187,7 @@ impl<'a> Offers<'a> {
         found
     }
 
-    /// None for a row whose value or cost is not known.
+    /// Returns `None` if the value or the cost of the row is absent.
     fn offer(&self, row: usize) -> Option<Offer> {
         let value = self.table.number(&self.value.name, row);
         let cost = self.table.number(&self.cost.name, row);
@@ -194,7 +195,7 @@ impl<'a> Offers<'a> {
         is_known.then_some(Offer { row, value, cost })
     }
 
-    /// Those of each condition, in the order in which conditions first come.
+    /// Returns the candidates grouped by condition, in the order in which the conditions first occur.
     pub fn by_condition(&self) -> Vec<Vec<Offer>> {
         let conditions = self.swept.by_condition(&self.rows).into_iter();
         let offers =
@@ -202,7 +203,7 @@ impl<'a> Offers<'a> {
         conditions.map(offers).collect()
     }
 
-    /// Each choice in the condition where its value is worst, at the most that it costs in any: what it gives whichever condition comes.
+    /// Returns each choice with its worst value and its highest cost over all conditions: a guarantee for any of these conditions.
     /// Choices that were not measured in every condition are left out.
     pub fn worst(&self) -> Vec<Offer> {
         let n_conditions = self.swept.by_condition(&self.rows).len();
@@ -224,10 +225,10 @@ impl<'a> Offers<'a> {
         measured.filter_map(worst).collect()
     }
 
-    /// Answers a wish from offers of one condition.
+    /// Returns the advice for a requirement, from candidates of one condition.
     ///
     /// # Errors
-    /// A wish out of its range; no offers; a wish that no offer fulfils: the error names the nearest.
+    /// If the requirement is out of range, there are no candidates, or no candidate meets the requirement; the error names the nearest candidate.
     pub fn advise(&self, offers: &[Offer], wish: Wish) -> Result<Advice> {
         let (column, wanted, place) = match wish {
             Wish::Value(wanted) => (self.value, wanted, "wish"),
@@ -286,13 +287,13 @@ impl<'a> Offers<'a> {
         })
     }
 
-    /// The offers that no other beats: each better than all that cost as much or less. Cheapest first; of equals the first.
+    /// Returns the Pareto front, cheapest first: each candidate is better than all that cost the same or less. Among equal candidates, the first is kept.
     pub fn front(&self, offers: &[Offer]) -> Vec<Offer> {
         let points: Vec<(f64, f64)> = offers.iter().map(|o| (o.cost, o.value)).collect();
         let is_on = front(&points, |a, b| self.is_better(a, b));
         let on = offers.iter().zip(is_on).filter(|(_, is_on)| *is_on);
         let mut front: Vec<Offer> = on.map(|(offer, _)| *offer).collect();
-        // A stable sort: of equals the first stays first.
+        // The sort is stable: among equal candidates, the first stays first.
         front.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         front.dedup_by_key(|offer| offer.cost);
         front
@@ -310,7 +311,7 @@ impl<'a> Offers<'a> {
         value == wanted || self.is_better(value, wanted)
     }
 
-    /// The end of the value's interval that is worse: what a choice surely gives.
+    /// Returns the worse end of the value's confidence interval, or NaN if there is no interval.
     fn worse_end(&self, offer: &Offer) -> f64 {
         let ends = self.table.interval(self.value, offer.row);
         ends.map_or(
@@ -319,7 +320,7 @@ impl<'a> Offers<'a> {
         )
     }
 
-    /// `accuracy 0.830 (0.800 to 0.860), time of a decision 210 µs`.
+    /// Describes value, interval and cost: `accuracy 0.830 (0.800 to 0.860), time of a decision 210 µs`.
     pub fn gives(&self, offer: &Offer) -> String {
         let interval = match self.table.interval(self.value, offer.row) {
             Some(ends) => {
@@ -333,7 +334,7 @@ impl<'a> Offers<'a> {
         format!("{} {value}{interval}, {cost}", self.value.words)
     }
 
-    /// A value, or a difference of two: shares to three digits.
+    /// Formats a value or a difference of two values. Fractions have three decimal places.
     pub fn value_words(&self, value: f64) -> String {
         match self.value.scale == Scale::Share && self.value.unit.is_empty() {
             true => format!("{value:.3}"),
@@ -341,12 +342,12 @@ impl<'a> Offers<'a> {
         }
     }
 
-    /// The same behind what it is: `accuracy 0.830, time of a decision 210 µs: RBF SVM, m = 64`.
+    /// Describes value, cost and choices: `accuracy 0.830, time of a decision 210 µs: RBF SVM, m = 64`.
     pub fn in_words(&self, offer: &Offer) -> String {
         format!("{}: {}", self.gives(offer), self.setting(offer))
     }
 
-    /// The choices in words.
+    /// Describes the choices, or returns "the only setting" if no choice varies.
     pub fn setting(&self, offer: &Offer) -> String {
         match self.choices(offer) {
             words if words.is_empty() => "the only setting".to_owned(),
@@ -354,17 +355,17 @@ impl<'a> Offers<'a> {
         }
     }
 
-    /// The same; empty where there is one.
+    /// Describes the choices. Empty if no choice varies.
     pub fn choices(&self, offer: &Offer) -> String {
         self.swept.choice_words(offer.row)
     }
 
-    /// The condition in words; empty where there is one.
+    /// Describes the condition. Empty if there is only one condition.
     pub fn condition(&self, offer: &Offer) -> String {
         self.swept.condition_words(offer.row)
     }
 
-    /// For a program: setting and condition in words, and every column by its name.
+    /// Returns a JSON object: the choices and the condition as text, and the entry of every column by column name.
     pub fn json(&self, offer: &Offer) -> serde_json::Value {
         let mut row = serde_json::Map::new();
         row.insert("setting".to_owned(), self.setting(offer).into());
@@ -379,7 +380,7 @@ impl<'a> Offers<'a> {
 }
 
 impl Sought {
-    /// The columns of numbers of a table that are it: those of a name, or all, those that vary before those that do not.
+    /// Returns the matching numeric columns of a table, by name or, if `name` is `None`, all of the role. Columns that vary come first.
     fn columns<'t>(&self, table: &'t Table, name: Option<&str>) -> Vec<&'t Column> {
         let shared = self.shared.iter().find(|(known, _)| Some(*known) == name);
         let is_named = |column: &str| match name {
@@ -396,7 +397,7 @@ impl Sought {
         found.into_iter().map(|one| one.column).collect()
     }
 
-    /// Keeps the tables that have one of the name that is asked for, or of the usual name where any has it; gives that name.
+    /// Keeps the tables that have the requested column, or the default column if any table has one. Returns the name that was used.
     fn narrow<'n>(
         &self,
         tables: &mut Vec<&Table>,
@@ -427,7 +428,7 @@ fn refuse_none<T>(found: &[T], (option, given): (&str, &str), mut known: Vec<&st
     }
 }
 
-/// Those of some rows that have a condition: `noise=0.05`.
+/// Returns the rows that satisfy a condition, for example `noise=0.05`.
 fn given_rows(table: &Table, rows: Vec<usize>, text: &str) -> Result<Vec<usize>> {
     let refuse = || Error::input("--given", text, "a condition and its value: noise=0.05");
     let (key, value) = text.split_once('=').ok_or_else(refuse)?;
@@ -466,7 +467,7 @@ fn given_rows(table: &Table, rows: Vec<usize>, text: &str) -> Result<Vec<usize>>
         let allowed = format!("a number, in the unit of the column: {unit}");
         Error::input(&place, value, allowed)
     })?;
-    // A value that is exactly the same comes before one that is nearly the same.
+    // An exact match has priority over a match within the tolerance.
     let mut found = with(&|known| known.as_ref() == Some(&wanted));
     if found.is_empty() {
         found = with(&|known| known.is_some_and(|known| known.agrees(&wanted)));
@@ -480,7 +481,7 @@ fn given_rows(table: &Table, rows: Vec<usize>, text: &str) -> Result<Vec<usize>>
     }
 }
 
-/// A value as people give it: a number, also with its unit (`0.5 mm`, `5 %`), or a word. `None` of a number with another unit.
+/// Parses a number, optionally with its unit (`0.5 mm`, `5 %`), or a word. Returns `None` if the unit differs from that of the column.
 fn given_value(text: &str, unit: &str) -> Option<Value> {
     if let Ok(number) = text.parse() {
         return Some(Value::Number(number));
@@ -502,25 +503,25 @@ mod tests {
     use crate::table::File;
 
     crate::row! {
-    /// A setting.
+    /// Row of a test table.
     pub struct Setting {
-        /// Which.
+        /// Name of the design.
         design: String => Choice;
-        /// The world.
+        /// Name of the condition.
         world: String => Condition;
-        /// µs.
+        /// Time, µs.
         time: f64 => Cost in "µs": Linear;
-        /// How many.
+        /// Number of taxels.
         taxels: f64 => Cost: Linear;
-        /// Known by nobody.
+        /// Weight, absent in all rows.
         weight: Option<f64> => Cost: Linear;
-        /// Share.
+        /// Accuracy, a fraction.
         accuracy: f64 => Value(More): Share between [low, high];
-        /// End.
+        /// Lower end of the interval.
         low: f64 => Note: Share;
-        /// End.
+        /// Upper end of the interval.
         high: f64 => Note: Share;
-        /// Of something.
+        /// Error of a measured quantity.
         error: f64 => Value(Less): Log;
     } }
 
@@ -561,7 +562,7 @@ mod tests {
         }
     }
 
-    /// The designs of choice, certain one and next step.
+    /// Returns the designs of `choice`, `certain` and `next_up`.
     fn advised(asked: &Asked, wish: Wish) -> Result<[Option<String>; 3]> {
         let tables = settings();
         let offers = Offers::of(&tables, asked)?;

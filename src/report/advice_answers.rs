@@ -1,20 +1,20 @@
-//! Advice condition by condition: what the command says, and what programs read.
+//! Advice for each condition, as text for the command and as JSON for programs.
 
 use super::advice::{Advice, Offer, Offers, Wish};
 use crate::error::{Error, Result};
 
-/// What is advised in a condition, or why nothing is.
+/// Advice for one condition, or the reason why there is none.
 pub struct Answer {
-    /// In words; empty where there is one.
+    /// Description of the condition. Empty if there is only one condition.
     pub condition: String,
-    /// The advice, or what is wished that no choice gives.
+    /// The advice, or the error that names the requirement and the nearest candidate.
     pub advice: Result<Advice>,
 }
 
-/// An answer a condition; with `worst` one for all, from each choice in the condition where its value is worst.
+/// Returns one answer for each condition. If `worst` is true, returns one answer for all, based on the worst value of each choice over the conditions.
 ///
 /// # Errors
-/// There is advice in no condition: what the first says.
+/// If no condition has advice: the error of the first condition.
 pub fn answers(offers: &Offers, wish: Wish, worst: bool) -> Result<Vec<Answer>> {
     let conditions = offers.by_condition();
     let answer = |condition: String, choices: &[Offer]| Answer {
@@ -31,7 +31,7 @@ pub fn answers(offers: &Offers, wish: Wish, worst: bool) -> Result<Vec<Answer>> 
     if answers.iter().any(|answer| answer.advice.is_ok()) {
         return Ok(answers);
     }
-    // Of several conditions the first speaks for all.
+    // The error of the first condition stands for all.
     let first = answers.into_iter().next();
     let Some((condition, Err(refused))) = first.map(|first| (first.condition, first.advice)) else {
         let given = "no choice whose value and cost are known";
@@ -43,7 +43,7 @@ pub fn answers(offers: &Offers, wish: Wish, worst: bool) -> Result<Vec<Answer>> 
     })
 }
 
-/// The answers for programs: the table, its columns of value and cost, and of each condition its choices with every column by name.
+/// Returns JSON: the table, its value and cost columns, and for each condition the advised choices with all columns by name.
 pub fn answers_json(offers: &Offers, answers: &[Answer]) -> serde_json::Value {
     let in_json = |offer: &Offer| offers.json(offer);
     let answers = answers

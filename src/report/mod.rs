@@ -1,12 +1,12 @@
 //! Report: tables → files for people.
 //!
-//! In: the result tables ([`Table`](crate::table::Table)) with the specs of charts, frames (ny × nx, metres or newtons), and what the study
-//! says of itself ([`StudyAbout`](page::StudyAbout)). Out: CSV files, charts and pictures (SVG and PNG), terminal text, and
-//! one self-contained HTML page. Equal input gives equal bytes; every file is whole or not there.
+//! In: the result tables ([`Table`](crate::table::Table)) with their chart specifications, frames (ny × nx, metres or newtons), and the
+//! metadata of the study ([`StudyAbout`](page::StudyAbout)). Out: CSV files, charts and pictures (SVG and PNG), terminal text, and
+//! one self-contained HTML page. Equal input gives equal bytes. Each file is written completely or not at all.
 //!
-//! [`study_folder::files_with`] makes the files of a study's folder; [`terminal::table_text`] is what a run prints at its end;
-//! [`frame_files::write_frame`] and [`pressure_map`] show a single frame; [`recording`] streams frames over time to a file and
-//! draws them, also moving.
+//! [`study_folder::files_with`] makes the files of a study's folder. [`terminal::table_text`] makes the table that is printed after a run.
+//! [`frame_files::write_frame`] and [`pressure_map`] show a single frame. [`recording`] writes frames over time to a file and
+//! draws them as still pictures or animations.
 
 pub mod advice;
 pub mod advice_answers;

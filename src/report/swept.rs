@@ -1,13 +1,13 @@
-//! Which settings vary over the rows of a table, and how.
+//! Settings that vary over the rows of a table.
 //!
-//! Charts, sentences and terminal tables show the columns that vary and state the others once. A column whose value is known from the other
-//! varying ones (the ratio, when m and the array are chosen) follows them and gets no place of its own.
+//! Charts, sentences and terminal tables show the columns that vary and state the others once. A column is dependent if other varying columns
+//! determine its value, as m and the array determine the compression ratio. Dependent columns are not shown separately.
 
 use crate::table::{Column, Data, Role, Table, Value};
 use std::collections::HashSet;
 
-/// Settings that follow from others are given up in this order: m and the ratio say the same twice at one array; the array's sides follow
-/// its pitch when nx stays. One that a study can only choose directly is dropped last.
+/// Order in which dependent settings are removed. For one array, m and the ratio are equivalent; if nx is constant, the side lengths depend on the pitch.
+/// Settings that a study can only choose directly come last.
 const GIVEN_UP_FIRST: [&str; 16] = [
     "nx",
     "ny",
@@ -27,63 +27,63 @@ const GIVEN_UP_FIRST: [&str; 16] = [
     "features",
 ];
 
-/// A column with its values.
+/// A column and its values.
 #[derive(Clone, Copy)]
 pub struct Setting<'a> {
-    /// What it is.
+    /// The column.
     pub column: &'a Column,
-    /// Its values.
+    /// The values of the column, one for each row.
     pub data: &'a Data,
 }
 
-/// The choices and conditions of a table, by whether they vary.
+/// The choices and conditions of a table, divided into varying, dependent and constant ones.
 pub struct Swept<'a> {
     table: &'a Table,
-    /// Those that vary by themselves, in the order of the table.
+    /// Independent varying settings, in the order of the table.
     pub free: Vec<Setting<'a>>,
-    /// Those that vary only because others do.
+    /// Dependent settings: they vary only because other settings vary.
     pub following: Vec<Setting<'a>>,
-    /// Of the free ones those of which at most one leaves its first value in any row; none if there are fewer than two.
+    /// Independent settings of which each row changes at most one from the first row's value. Empty if there are fewer than two.
     pub one_at_a_time: Vec<Setting<'a>>,
-    /// Those with one value.
+    /// Constant settings.
     pub fixed: Vec<Setting<'a>>,
 }
 
 impl<'a> Setting<'a> {
-    /// All columns of a table.
+    /// Returns all columns of a table.
     pub fn all(table: &'a Table) -> impl Iterator<Item = Self> {
         let columns = table.columns.iter().zip(&table.data);
         columns.map(|(column, data)| Self { column, data })
     }
 
-    /// Those that have one of some roles.
+    /// Returns the columns that have one of the given roles.
     pub fn of_roles(table: &'a Table, roles: &[Role]) -> impl Iterator<Item = Self> {
         Self::all(table).filter(|one| roles.contains(&one.column.role))
     }
 
-    /// Rows of a table by the values of some of its settings, in the order in which rows first have them.
+    /// Groups rows by the values of the given settings, in the order in which the values first occur.
     pub fn groups(settings: &[Self], table: &Table, rows: &[usize]) -> Vec<Vec<usize>> {
         let names: Vec<&str> = settings.iter().map(|one| &one.column.name[..]).collect();
         table.groups(&names, rows.iter().copied())
     }
 
-    /// Whether it varies over rows.
+    /// Returns whether the values differ between the given rows.
     pub fn varies(&self, rows: &[usize]) -> bool {
         self.data.varies(rows.iter().copied())
     }
 
-    /// Whether it has a value in all rows: a number, a word, or an absent one that has a name.
+    /// Returns whether every given row has a value: a number, a word, or a named absent value.
     pub fn applies(&self, rows: &[usize]) -> bool {
         let has_name = !self.column.word("").is_empty();
         has_name || rows.iter().all(|&row| self.data.value(row).is_some())
     }
 
-    /// Whether its values are numbers.
+    /// Returns whether the values are numbers.
     pub fn is_number(&self) -> bool {
         matches!(self.data, Data::Numbers(_))
     }
 
-    /// Its name and value in a row: `m = 64`; of words, the value alone where that says it.
+    /// Describes name and value in a row: `m = 64`. For a word that needs no name, only the value.
     pub fn phrase(&self, row: usize) -> String {
         match self.data.value(row) {
             Some(value) => self.column.phrase(&value),
@@ -91,7 +91,7 @@ impl<'a> Setting<'a> {
         }
     }
 
-    /// Its value in a row; of an absent one, what the column calls it.
+    /// Formats the value in a row. For an absent value, returns the column's name for it, or "none".
     pub fn label(&self, row: usize) -> String {
         match self.data.value(row) {
             Some(value) => self.column.value_words(&value),
@@ -101,7 +101,7 @@ impl<'a> Setting<'a> {
         }
     }
 
-    /// Its value in a row, for a title: a number says what it is of.
+    /// Formats the value in a row for a title. A number includes the column's name.
     pub fn title(&self, row: usize) -> String {
         match self.is_number() {
             true => self.phrase(row),
@@ -109,7 +109,7 @@ impl<'a> Setting<'a> {
         }
     }
 
-    /// A row for each of its values: numbers rising, words in the order of first rows.
+    /// Returns one row for each distinct value: numbers ascending, words in the order of their first rows.
     pub fn levels(&self, rows: &[usize]) -> Vec<usize> {
         let mut firsts = rows.to_vec();
         if let Data::Numbers(numbers) = self.data {
@@ -122,7 +122,7 @@ impl<'a> Setting<'a> {
 }
 
 impl<'a> Swept<'a> {
-    /// Of some rows of a table.
+    /// Classifies the settings of the given rows of a table.
     pub fn of(table: &'a Table, rows: &[usize]) -> Self {
         let all = Setting::of_roles(table, &[Role::Choice, Role::Condition]);
         let (mut free, fixed): (Vec<Setting>, Vec<Setting>) =
@@ -136,7 +136,7 @@ impl<'a> Swept<'a> {
         let mut following = Vec::new();
         for one in order {
             let others = without(&free, &one);
-            // A setting that does not apply in some rows does not tell what another one is there.
+            // A setting that does not apply in some rows cannot determine another setting there.
             let telling: Vec<Setting> = others
                 .iter()
                 .filter(|other| other.applies(rows))
@@ -157,25 +157,25 @@ impl<'a> Swept<'a> {
         }
     }
 
-    /// Rows by the values of some settings, in the order in which rows first have them.
+    /// Groups rows by the values of the given settings, in the order in which the values first occur.
     pub fn groups(&self, settings: &[Setting], rows: &[usize]) -> Vec<Vec<usize>> {
         Setting::groups(settings, self.table, rows)
     }
 
-    /// Those that vary and have a role.
+    /// Returns the varying settings of a role.
     pub fn of_role(&self, role: Role) -> Vec<Setting<'a>> {
         let of_role = self.varying().filter(|one| one.column.role == role);
         of_role.copied().collect()
     }
 
-    /// Those that vary, by themselves or with others.
+    /// Returns the varying settings: independent ones, then dependent ones.
     pub fn varying(&self) -> impl Iterator<Item = &Setting<'a>> {
         self.free.iter().chain(&self.following)
     }
 
-    /// What a chart and a table show first: of those that vary by themselves the number of most values, of equals the last, since what is done
-    /// with measurements stands behind how they are made. Numbers that do not apply in all rows come after words, since their axis has no place for such
-    /// a row.
+    /// Returns the main setting for charts and tables: the independent numeric setting with the most values. Among equals, the last column is taken, because
+    /// columns follow the order of processing. A numeric setting that is absent in some rows comes after words, because its axis has no place
+    /// for such a row.
     pub fn main(&self, rows: &[usize]) -> Option<Setting<'a>> {
         let numbers = self.free.iter().filter(|setting| setting.is_number());
         let numbers = numbers.filter(|setting| numbers_are_there(setting, rows));
@@ -184,7 +184,7 @@ impl<'a> Swept<'a> {
         main.or(words).or(self.free.first()).copied()
     }
 
-    /// The conditions of the world in a row, in words; where one thing at a time happens, that one. Empty if there is one condition.
+    /// Describes the conditions of a row. If at most one condition differs at a time, only that one is stated. Empty if there is one condition.
     pub fn condition_words(&self, row: usize) -> String {
         let conditions = self.of_role(Role::Condition);
         let is_absent = |setting: &Setting| {
@@ -200,9 +200,9 @@ impl<'a> Swept<'a> {
         }
     }
 
-    /// The choices of a row that vary, in words.
+    /// Describes the varying choices of a row.
     pub fn choice_words(&self, row: usize) -> String {
-        // What does not apply to a row is not said of it.
+        // A choice that does not apply to the row is left out.
         let applies =
             |one: &&Setting| one.data.value(row).is_some() || !one.column.word("").is_empty();
         let choices = self.of_role(Role::Choice);
@@ -210,18 +210,18 @@ impl<'a> Swept<'a> {
         said.collect::<Vec<_>>().join(", ")
     }
 
-    /// Rows by their conditions, in the order in which rows first have them.
+    /// Groups rows by condition, in the order in which the conditions first occur.
     pub fn by_condition(&self, rows: &[usize]) -> Vec<Vec<usize>> {
         self.groups(&self.of_role(Role::Condition), rows)
     }
 }
 
-/// Whether a setting of numbers has one in every row.
+/// Returns whether a numeric setting has a number in every given row.
 fn numbers_are_there(setting: &Setting, rows: &[usize]) -> bool {
     rows.iter().all(|&row| setting.data.value(row).is_some())
 }
 
-/// All settings but one.
+/// Returns all settings but one.
 pub fn without<'a>(settings: &[Setting<'a>], one: &Setting) -> Vec<Setting<'a>> {
     let others = settings.iter().copied();
     others
@@ -229,7 +229,7 @@ pub fn without<'a>(settings: &[Setting<'a>], one: &Setting) -> Vec<Setting<'a>> 
         .collect()
 }
 
-/// Returns all numbers, or else those of the signal, if each row leaves the first row's value of at most one of them.
+/// Returns all numeric settings, or else those of the signal, if each row changes at most one of them from the first row's value.
 fn one_at_a_time<'a>(free: &[Setting<'a>], rows: &[usize]) -> Vec<Setting<'a>> {
     let is_signal = |setting: &Setting| {
         setting.column.role == Role::Condition || setting.column.name == "smoothing_mm"

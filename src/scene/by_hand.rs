@@ -1,8 +1,7 @@
-//! Scenes by hand: what a program moves itself, step by step, in place of what the scene's file says.
+//! Manual control of a scene: a program sets poses and joint positions instead of the scene file.
 //!
-//! What is set goes there in the next step, and stays; everything else goes on as the scene says. A step by hand of the same length, at the
-//! same time and to the same places as one of the [time loop](Simulation::next_frame) is the same step, bit by bit, if it is observed
-//! where the loop makes a frame.
+//! A new pose takes effect in the next step and stays. Everything else follows the scene file. A manual step equals a step of the
+//! [time loop](Simulation::next_frame) bit by bit, if length, time and poses are equal and the step is observed where the loop makes a frame.
 
 use super::plan_object::Movement;
 use super::simulation::Simulation;
@@ -14,7 +13,7 @@ use crate::world::{Interpolation, JointTrajectory};
 use ndarray::Array2;
 
 impl Simulation<'_> {
-    /// Makes a step of `dt` seconds, which [`observe`](Self::observe) then reports.
+    /// Makes a step of `dt` seconds. [`observe`](Self::observe) returns the new state.
     ///
     /// ```
     /// use bubbletouch::geometry::Pose;
@@ -28,7 +27,7 @@ impl Simulation<'_> {
     /// "#)?;
     /// let plan = ScenePlan::new("ball.toml", std::path::Path::new(""), spec)?;
     /// let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);
-    /// // Down until the palm is pushed with a newton.
+    /// Moves down until the force on the palm is one newton.
     /// let mut height = 0.0;
     /// while simulation.observe()?.patches[0].wrench.force.z > -1.0 {
     ///     height -= 0.1e-3;
@@ -40,7 +39,7 @@ impl Simulation<'_> {
     /// ```
     ///
     /// # Errors
-    /// A step that is not a positive number of seconds; a pose beyond all numbers.
+    /// If `dt` is not a positive number, or a pose overflows.
     pub fn step(&mut self, dt: f64) -> Result<()> {
         if !positive(dt) {
             let allowed = "a positive number of seconds";
@@ -51,21 +50,21 @@ impl Simulation<'_> {
         self.advance(self.time + dt, dt)
     }
 
-    /// Back to before the first frame, and nothing is set by hand any more. What the skin is made of stays (where draped taxels are, the
-    /// gains of its sensors); the noise of its readings is that of `seed`: with the plan's, all is as it was.
+    /// Returns to the state before the first frame and removes all manual settings. The skin keeps its drawn properties (places of draped taxels,
+    /// sensor gains). `seed` sets the noise of the readings; the plan's seed restores the original noise.
     pub fn reset(&mut self, seed: u64) {
         *self = Self::with_seed(self.plan, self.stepping, seed);
     }
 
-    /// Seconds since the start.
+    /// Returns the time since the start, seconds.
     pub fn time(&self) -> f64 {
         self.time
     }
 
-    /// From the next step on a robot's joints are here: one number a [coordinate](crate::world::Robot::coordinates), rad and m.
+    /// Sets a robot's joint positions from the next step on: one number for each [coordinate](crate::world::Robot::coordinates), rad or m.
     ///
     /// # Errors
-    /// A name that no robot of the scene has; another number of positions; one that is not finite or beyond the limits of its joint.
+    /// If the scene has no robot of this name, the number of positions is wrong, or a position is not finite or outside the limits of its joint.
     pub fn set_joint_positions(&mut self, robot: &str, positions: &[f64]) -> Result<()> {
         let number = self.robot(robot)?;
         let row = Array2::from_shape_vec((1, positions.len()), positions.to_vec());
@@ -78,10 +77,10 @@ impl Simulation<'_> {
         Ok(())
     }
 
-    /// From the next step on a robot's base is here, `world_from_base`.
+    /// Sets the pose of a robot's base, `world_from_base`, from the next step on.
     ///
     /// # Errors
-    /// A name that no robot of the scene has; a pose that is not finite.
+    /// If the scene has no robot of this name, or the pose is not finite.
     pub fn set_robot_pose(&mut self, robot: &str, pose: Pose) -> Result<()> {
         let number = self.robot(robot)?;
         check_pose(&format!("robots.{robot}"), &pose)?;
@@ -89,11 +88,11 @@ impl Simulation<'_> {
         Ok(())
     }
 
-    /// From the next step on an object is here, `world_from_object`. One that is pushed for a force starts its way from here; a free one
-    /// comes to rest from here, also if it had escaped.
+    /// Sets the pose of an object, `world_from_object`, from the next step on. A pressed object starts its travel at this pose. A free object comes
+    /// to rest from this pose, even if it had escaped.
     ///
     /// # Errors
-    /// A name that no object of the scene has; an object that a robot carries; a pose that is not finite.
+    /// If the scene has no object of this name, a robot carries the object, or the pose is not finite.
     pub fn set_object_pose(&mut self, object: &str, pose: Pose) -> Result<()> {
         let objects = self.plan.objects.iter();
         let number = known("object", object, objects.map(|object| object.name.as_str()))?;

@@ -1,4 +1,4 @@
-//! What a scene is like at one instant, and who wants to know.
+//! State of a scene at one instant, and the receivers of such frames.
 
 use crate::contact::Wrench;
 use crate::contact::equilibrium::{Equilibrium, Touch};
@@ -6,105 +6,105 @@ use crate::error::Result;
 use crate::geometry::Pose;
 use glam::DVec3;
 
-/// Everything at one instant.
+/// State of a scene at one instant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
-    /// Seconds.
+    /// Time since the start, seconds.
     pub time: f64,
-    /// One a patch, in the plan's order.
+    /// One reading for each patch, in the order of the plan.
     pub patches: Vec<PatchReading>,
-    /// One an object, in the plan's order.
+    /// One reading for each object, in the order of the plan.
     pub objects: Vec<ObjectReading>,
-    /// What planes and objects put on free objects, by the plan's numbers of both.
+    /// Contacts of planes and objects with free objects. The numbers of planes and objects are those of the plan.
     pub touches: Vec<Touch>,
 }
 
-/// What a patch feels, and where it is.
+/// Pose, deflections and forces of a patch.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PatchReading {
-    /// `world_from_patch`.
+    /// Pose of the patch, `world_from_patch`.
     pub pose: Pose,
-    /// n_taxels, metres.
+    /// Deflections, metres, shape (n_taxels,).
     pub deflection: Vec<f64>,
-    /// n_taxels, newtons along the axes, never negative; zero on a taxel that only relaxes. Of a taxel at its stroke that carries a free
-    /// object, with the reaction of its stop; of an imposed object, what stops carry is not known and not counted.
+    /// Forces along the axes, newtons, shape (n_taxels,), never negative; zero on a taxel that only relaxes. A taxel at its stroke that carries a
+    /// free object includes the reaction of its stop. The reaction of a stop to an imposed object is indeterminate and not counted.
     pub force: Vec<f64>,
-    /// Forces of the objects on the taxels, newtons, patch frame, shape (n_taxels,): along the axes, across them from inclined contacts, and
-    /// friction. Their sum is the force of the wrench.
+    /// Forces of the objects on the taxels, newtons, patch frame, shape (n_taxels,). They include axial forces, transverse forces of inclined contacts, and
+    /// friction. Their sum is the force of `wrench`.
     pub force3: Vec<DVec3>,
-    /// n_taxels, what the patch's signal reads: metres or newtons. Of a patch with a signal.
+    /// Output of the signal chain, metres or newtons, shape (n_taxels,). `None` if the patch has no signal chain.
     pub signal: Option<Vec<f64>>,
-    /// Taxels with a force.
+    /// Number of taxels with a force.
     pub n_touched: usize,
-    /// Taxels at their stroke that an object would push further, or whose stop carries a free object.
+    /// Number of taxels at their stroke that an object would push further, or whose stop carries a free object.
     pub n_saturated: usize,
-    /// Taxels whose contact is grazing: see [`GRAZING`](crate::contact::GRAZING).
+    /// Number of taxels with a grazing contact: see [`GRAZING`](crate::contact::GRAZING).
     pub n_grazing: usize,
-    /// What the stops of taxels carry of free objects, newtons, of all together; it is in the forces above.
+    /// Sum of the reactions of all stops to free objects, newtons; included in the forces above.
     pub stop_force: f64,
-    /// What the objects put on the patch, in its frame, by the forces above; friction with it.
+    /// Wrench of the objects on the patch, in the patch frame, from the forces above and friction.
     pub wrench: Wrench,
-    /// Of a patch with friction.
+    /// Friction of the patch. `None` if the patch has no friction.
     pub friction: Option<FrictionReading>,
-    /// The mean rest centre of the taxels, weighted by their forces; metres, in the patch frame. `None` if none is touched.
+    /// Mean rest centre of the taxels, weighted by their forces; metres, patch frame. `None` if no taxel has a force.
     pub center_of_pressure: Option<DVec3>,
 }
 
-/// What friction does to a patch.
+/// Friction state of a patch.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrictionReading {
-    /// The part of the wrench's force that is friction.
+    /// Friction part of the wrench's force, newtons, patch frame.
     pub shear: DVec3,
-    /// Taxels whose tips go with the object.
+    /// Number of taxels with sticking contacts.
     pub n_sticking: usize,
-    /// Taxels whose tips have slipped since the step before.
+    /// Number of taxels whose contacts slipped during the last step.
     pub n_slipping: usize,
 }
 
-/// Where an object is.
+/// Pose of an object and how it is determined.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ObjectReading {
-    /// `world_from_object`; of an escaped one, where it was last.
+    /// Pose `world_from_object`. For an escaped object, its last pose.
     pub pose: Pose,
-    /// What decides that.
+    /// Cause of the pose.
     pub held: Held,
-    /// Of a free object that is there: what holds it, and how well that balances its weight.
+    /// For a free object that has not escaped: its equilibrium and the residual of the forces.
     pub balance: Option<Equilibrium>,
 }
 
-/// What holds an object.
+/// Cause of an object's pose.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Held {
-    /// Its motion.
+    /// Imposed motion.
     #[default]
     Imposed,
-    /// Its motion, and a force that a patch is to feel.
+    /// Imposed motion plus a travel that controls the force on a patch.
     Pressed {
-        /// How far it is from where its motion says, metres.
+        /// Distance from the pose of the imposed motion, metres.
         travel: f64,
-        /// Σ k δ of the patch, N.
+        /// Spring force Σ k δ of the patch, newtons.
         force: f64,
-        /// What it is to be, N.
+        /// Target value of the force, newtons.
         wanted: f64,
     },
-    /// What it touches: it is at rest.
+    /// Equilibrium of a free object.
     AtRest,
-    /// What it touches, but within the largest number of steps no rest was found for all free objects together.
+    /// No equilibrium: the solver reached its iteration limit before all free objects were at rest.
     Unsettled,
-    /// Nothing: it left the skin, and touches none any more.
+    /// Escape: a free object left the skin and has no contact.
     Escaped {
-        /// When, seconds.
+        /// Time of the escape, seconds.
         time: f64,
-        /// Where to: unit, in the world.
+        /// Direction of the escape: unit vector in the world frame.
         direction: DVec3,
     },
 }
 
-/// How near a force is to what is wanted when it is reached, N. Smaller: rounding in stiff skins counts as a miss.
+/// Tolerance of a reached force, N, relative above 1 N. A smaller tolerance counts rounding errors of stiff skins as missed forces.
 const REACHED: f64 = 1e-9;
 
 impl Held {
-    /// Whether it is pressed, and with another force than is wanted.
+    /// Returns whether the object is pressed and its force differs from the target.
     pub fn is_off(&self) -> bool {
         match self {
             Self::Pressed { force, wanted, .. } => {
@@ -115,16 +115,16 @@ impl Held {
     }
 }
 
-/// Who is handed each frame as soon as it is made.
+/// Receiver of frames, which are passed on as soon as they are computed.
 pub trait FrameSink {
-    /// Takes a frame; an error ends the simulation.
+    /// Receives a frame.
     ///
     /// # Errors
-    /// Whatever ends the simulation.
+    /// If the simulation must stop, for example because a file cannot be written.
     fn frame(&mut self, frame: &Frame) -> Result<()>;
 }
 
-/// Keeps all: for scenes that fit in memory.
+/// Stores all frames, for scenes that fit into memory.
 impl FrameSink for Vec<Frame> {
     fn frame(&mut self, frame: &Frame) -> Result<()> {
         self.push(frame.clone());

@@ -1,4 +1,4 @@
-//! Free objects of a scene: together they come to rest on what is there.
+//! Free objects of a scene, which move to a common equilibrium on skin, planes and other objects.
 
 use super::frame::{Held, ObjectReading};
 use super::plan::ScenePlan;
@@ -18,24 +18,24 @@ use crate::objects::SphereUnion;
 #[derive(Clone, Debug)]
 pub(super) struct FreeObjects {
     all: Vec<Free>,
-    /// The scene's numbers of those that its balancer put to rest last.
+    /// Scene numbers of the free objects in the last equilibrium.
     there: Vec<usize>,
-    /// And of the objects that go where they are told.
+    /// Scene numbers of the objects that are not free.
     obstacles: Vec<usize>,
     balancer: EquilibriumSolver,
-    /// How far the others push each taxel of each patch; empty where they push none.
+    /// Deflections of each patch from objects that are not free, metres. Empty if none of them touches the patch.
     pushed: Vec<Vec<f64>>,
     workspace: Workspace,
 }
 
-/// One of them.
+/// One free object.
 #[derive(Clone, Debug)]
 struct Free {
     object: usize,
     mass: f64,
     center_of_mass: glam::DVec3,
     reading: ObjectReading,
-    /// It has been put where it is, and not been at rest since.
+    /// Whether the object was placed and has not been at rest since.
     is_put: bool,
 }
 
@@ -70,7 +70,7 @@ impl FreeObjects {
         }
     }
 
-    /// Puts one somewhere, by the scene's number of it: from there it comes to rest in the next step.
+    /// Places an object, by its scene number. It comes to rest from this pose in the next step.
     pub fn put(&mut self, object: usize, pose: Pose) {
         for free in self.all.iter_mut().filter(|free| free.object == object) {
             free.reading = at_start(pose);
@@ -78,7 +78,8 @@ impl FreeObjects {
         }
     }
 
-    /// Puts those that are still there to rest, `dt` seconds after the last time, endless at the start; whether all are.
+    /// Computes the equilibrium of all objects that have not escaped, `dt` seconds after the last one (infinite at the start). Returns whether all are at
+    /// rest.
     pub fn settle(
         &mut self,
         plan: &ScenePlan,
@@ -143,13 +144,13 @@ impl FreeObjects {
             .all(|free| free.reading.held != Held::Unsettled))
     }
 
-    /// What a patch carries of them, in the order of its taxels.
+    /// Returns the loads of free objects on a patch, in taxel order.
     pub fn on_patch(&self, patch: usize) -> impl Iterator<Item = &TaxelLoad> {
         let loads = self.balancer.loads().iter();
         loads.filter(move |load| load.skin == patch)
     }
 
-    /// What holds them on a patch with friction, in the order of its taxels, by the scene's numbers of objects.
+    /// Returns the tangential springs that hold free objects on a patch with friction, in taxel order, with scene numbers of objects.
     pub fn tips_on(&self, patch: usize) -> Vec<TangentialSpringState> {
         let tips = self.balancer.tangential_springs().iter();
         let own = tips
@@ -161,7 +162,7 @@ impl FreeObjects {
         own.collect()
     }
 
-    /// What rigid things carry of them, by the scene's numbers of objects and planes.
+    /// Returns the contacts of free objects with rigid bodies, with scene numbers of objects and planes.
     pub fn touches(&self) -> impl Iterator<Item = Touch> {
         self.balancer.touches().iter().map(|touch| Touch {
             object: self.there[touch.object],
@@ -176,7 +177,7 @@ impl FreeObjects {
         })
     }
 
-    /// The tips of patches with friction hold those that were put somewhere, where they are.
+    /// Attaches the tangential springs of patches with friction to the objects that were just placed.
     fn hold_by_tips(&mut self, plan: &ScenePlan, skins: &mut [SkinState], objects: &PlacedObjects) {
         let has_friction = plan.patches.iter().any(PlannedPatch::has_friction);
         for free in self.all.iter_mut().filter(|free| free.is_put) {
@@ -194,7 +195,7 @@ impl FreeObjects {
         }
     }
 
-    /// How far the objects that are not free push each patch.
+    /// Computes the deflections of each patch from objects that are not free.
     fn push_by_others(&mut self, plan: &ScenePlan, skins: &[SkinState], objects: &PlacedObjects) {
         let patches = plan.patches.iter().zip(skins).zip(&mut self.pushed);
         for ((patch, skin), pushed) in patches {
@@ -207,7 +208,7 @@ impl FreeObjects {
         }
     }
 
-    /// Reports where they are.
+    /// Writes the readings of the free objects.
     pub fn read(&self, readings: &mut [ObjectReading]) {
         for free in &self.all {
             readings[free.object] = free.reading;

@@ -1,30 +1,34 @@
 //! Scene: a TOML file → robots, skin and objects that move → frames over time.
 //!
-//! [`SceneSpec`] (as written) → [`ScenePlan`] (checked, SI, files read) → [`Simulation`] (steps) → [`Frame`]s, each handed to
-//! [`FrameSink`]s as it is made. Nothing is kept but the current state.
+//! [`SceneSpec`] (as written) → [`ScenePlan`] (checked, SI, files read) → [`Simulation`] (steps) → [`Frame`]s. Each frame is passed to the
+//! [`FrameSink`]s as soon as it is computed. Only the current state is stored.
 //!
-//! At each step, in this order:
+//! Order of computations in each step:
 //!
-//! 1. robots and imposed objects go where their motions say; patches go with their links;
-//! 2. objects that are pushed for a force ([`PressSpec`]) go on along their lines until their patches feel it, as far as their
-//!    speed lets them in a step ([`MovedObject`](crate::contact::MovedObject)): the springs together, Σ k δ. So without dampers the force
-//!    that is recorded is the one that is wanted; with them it is more while taxels go in, less while they come out, and
-//!    the same when all rest. A force that is not reached is no error: the object waits at the end of its travel, and each frame
-//!    says what it carries;
-//! 3. free objects go to rest on the skin that is there, on planes ([`PlaneSpec`]), on imposed objects and on one another, all together and each from
-//!    where it was ([`balance`](crate::contact::equilibrium)). What carries them on skin is its springs, with what dampers add to them
-//!    within the step, and, at the end of a stroke, the reaction of the rigid stop, which
-//!    follows from the balance and counts in the forces of the patch;
-//! 4. each patch is pressed, unless no object is within its reach: what nothing pushes relaxes
-//!    ([`DamperState`](crate::contact::DamperState)), and the tips of a patch with friction are dragged along
-//!    ([`FrictionState`](crate::contact::FrictionState)), whatever moves, patch or object.
+//! 1. Robots and imposed objects move to the poses of their trajectories. Patches move with their links.
+//! 2. Pressed objects ([`PressSpec`]) move along their lines until the spring force Σ k δ of their patches reaches the target. The speed limits the travel in
+//!   a
+//! step ([`MovedObject`](crate::contact::MovedObject)). Without dampers, the recorded force equals the target. With dampers it is larger while deflections
+//! grow, smaller while they shrink, and equal at rest. A target that is not reached is no error: the object stops at its maximum travel, and each frame
+//! contains the actual force.
+//! 3. Free objects move to a common equilibrium on skin, planes ([`PlaneSpec`]), imposed objects and one another
+//! ([`balance`](crate::contact::equilibrium)). Each starts at its last pose. Skin carries them by its springs, by the dampers' forces within the step, and by
+//! the
+//! reactions of rigid stops at the end of the stroke. The equilibrium gives these reactions; they are part of the forces of the patch.
+//! 4. Each patch computes its contacts, unless no object is within its reach. Taxels without contact relax
+//! ([`DamperState`](crate::contact::DamperState)). On a patch with friction, the tips of the tangential springs move with the contacting objects
+//! ([`FrictionState`](crate::contact::FrictionState)), whether the patch or the object moves.
 //!
-//! A scene begins as if it had stood as it does at t = 0 for long. One without dampers, friction, free and pushed objects remembers
-//! nothing, so it is evaluated at its frames only, with the same result.
+//! A scene starts in the steady state of its poses at t = 0. A scene without dampers, friction, free objects and pressed objects has no
+//! memory. Therefore, it is only evaluated at its frames, with equal results.
 //!
-//! What is not modelled: planes and objects hold free ones without friction, and so does skin that a free object meets only on its way to rest
-//! (what it touched when a step began, or where it was put, holds it); imposed objects touch free ones and skin, not each other or planes; free objects neither swing nor bounce (\[BT\] is quasi-static); an
-//! object that has escaped touches nothing any more.
+//! Limits of the model:
+//!
+//! - Planes and objects hold free objects without friction.
+//! - Skin has friction with a free object only at contacts that exist at the start of a step or when the object is placed.
+//! - Imposed objects touch free objects and skin, but not each other or planes.
+//! - Free objects neither swing nor bounce (\[BT\] is quasi-static).
+//! - An object that has escaped has no contacts.
 //!
 //! ```
 //! use bubbletouch::scene::{ScenePlan, SceneSpec, Simulation, Stepping};

@@ -1,4 +1,4 @@
-//! A scene that can run: every key of its [`SceneSpec`] checked, every unit SI, every file read.
+//! Executable scene: all keys of the [`SceneSpec`] are checked, all units are SI, and all files are read.
 
 use super::overlap::check_starts;
 use super::plan_object::{Movement, PlannedObject};
@@ -19,35 +19,35 @@ use glam::DVec3;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-/// Steps of one scene, at most: more is a step in the wrong unit.
+/// Maximum number of steps of a scene. A larger number indicates a step in the wrong unit.
 const MOST_STEPS: f64 = 1e9;
 
-/// Robots, skin and objects, and when they are looked at.
+/// Executable scene: robots, skin, objects and the times of the frames.
 #[derive(Clone, Debug)]
 pub struct ScenePlan {
-    /// Its file's name, for errors.
+    /// File name, for errors.
     pub place: String,
-    /// As it was written, with its duration, and with paths that hold from any folder.
+    /// Specification with its duration and absolute paths.
     pub spec: SceneSpec,
-    /// Frames a second.
+    /// Frames per second.
     pub output_rate: f64,
-    /// Frame k is at k / output_rate seconds; at least one.
+    /// Number of frames, at least one. Frame k is at k / output_rate seconds.
     pub n_frames: usize,
-    /// Frames of the whole scene, before it was [cut](Self::cut): sensors drift over their time.
+    /// Number of frames before a [cut](Self::cut). The drift of sensors depends on this duration.
     pub n_frames_uncut: usize,
-    /// Equal steps from one frame to the next, where steps are needed.
+    /// Number of equal steps between two frames, if steps are needed.
     pub n_substeps: usize,
-    /// m/s², in the world.
+    /// Gravity, m/s², world frame.
     pub gravity: DVec3,
-    /// What moves skin.
+    /// Robots.
     pub robots: Vec<PlannedRobot>,
-    /// Skin.
+    /// Patches of skin.
     pub patches: Vec<PlannedPatch>,
-    /// What is touched.
+    /// Objects.
     pub objects: Vec<PlannedObject>,
-    /// What each object is made of.
+    /// Contact model of each object.
     pub models: Vec<Model>,
-    /// Tables.
+    /// Rigid planes, such as tables.
     pub planes: Vec<HalfSpace>,
 }
 
@@ -55,7 +55,7 @@ impl ScenePlan {
     /// Reads a scene from its file.
     ///
     /// # Errors
-    /// A file that cannot be read; those of [`new`](Self::new).
+    /// If the file cannot be read, or as for [`new`](Self::new).
     pub fn read(path: &Path) -> Result<Self> {
         let place = path.display().to_string();
         let text = crate::files::read_to_string(path).map_err(|e| {
@@ -66,18 +66,18 @@ impl ScenePlan {
         plan.map_err(|error| with_line(&place, &text, error))
     }
 
-    /// Checks a scene; paths in it are relative to `folder`.
+    /// Checks a scene. Paths in it are relative to `folder`.
     ///
     /// # Errors
-    /// Errors begin with `place`, its file's name, and the key.
+    /// If a key is invalid or a file cannot be read. The error begins with `place` (the file name) and the key.
     pub fn new(place: &str, folder: &Path, spec: SceneSpec) -> Result<Self> {
         Self::with_models(place, folder, spec, &BTreeMap::new())
     }
 
-    /// The same with objects that are in memory, by their names in the scene, which then says of them neither `object`, `spheres` nor `mesh`.
+    /// Checks a scene with objects in memory, by their names in the scene. For these objects, the scene must not have `object`, `spheres` or `mesh`.
     ///
     /// # Errors
-    /// Also a model whose name no object of the scene has.
+    /// As for [`new`](Self::new). Also if the scene has no object with the name of a model.
     pub fn with_models(
         place: &str,
         folder: &Path,
@@ -102,7 +102,7 @@ impl ScenePlan {
         let patches = patches.collect::<Result<Vec<_>>>()?;
         let pitches = spec.patches.iter().map(|patch| patch.layout.pitch_mm());
         let finest_mm = pitches.fold(f64::INFINITY, f64::min);
-        // Free objects touch spheres only.
+        // Free objects touch only spheres.
         let default_model = match spec.objects.iter().any(|object| object.free.is_some()) {
             true => ModelSpec::Packed,
             false => ModelSpec::Mesh,
@@ -146,10 +146,10 @@ impl ScenePlan {
         })
     }
 
-    /// Ends it early, seconds; a scene that is shorter stays as it is. The frames that are left are the first ones of the whole scene.
+    /// Ends the scene at the time `until`, seconds, if it is longer. The remaining frames equal the first frames of the whole scene.
     ///
     /// # Errors
-    /// A time that is negative or not finite.
+    /// If the time is negative or not finite.
     pub fn cut(&mut self, place: &str, until: f64) -> Result<()> {
         if !not_negative(until) {
             let allowed = "zero or a positive number of seconds";
@@ -159,12 +159,12 @@ impl ScenePlan {
         Ok(())
     }
 
-    /// The time of a frame, seconds.
+    /// Returns the time of a frame, seconds.
     pub fn time(&self, frame: usize) -> f64 {
         frame as f64 / self.output_rate
     }
 
-    /// Sentences on what is read of its robots' files and what is not, each with the key.
+    /// Returns notes on used and ignored parts of the robots' files, each with its key.
     pub fn notes(&self) -> impl Iterator<Item = String> {
         let of_robot = |robot: &PlannedRobot| {
             let trajectory = robot.joints.iter().flat_map(|joints| joints.notes());
@@ -175,7 +175,7 @@ impl ScenePlan {
         self.robots.iter().flat_map(of_robot)
     }
 
-    /// Whether what is between frames decides what they are: dampers, friction, free and pushed objects remember.
+    /// Returns whether frames depend on the steps between them: this holds for dampers, friction, free objects and pressed objects.
     pub fn needs_steps(&self) -> bool {
         let remembers = |object: &PlannedObject| {
             matches!(object.movement, Movement::Free { .. }) || object.press.is_some()
@@ -184,7 +184,7 @@ impl ScenePlan {
     }
 }
 
-/// How often a scene is looked at.
+/// Number of frames of a scene, and of steps between them.
 struct Clock {
     n_frames: usize,
     n_substeps: usize,
@@ -207,7 +207,7 @@ impl Clock {
                 format!("at most {MOST_STEPS} steps"),
             ));
         }
-        // A whole number of steps in other units is a whole number of steps.
+        // The tolerance keeps a whole number of steps whole after conversion of units.
         let substeps = (1.0 / (rate * dt) - 1e-9).ceil().max(1.0);
         if substeps > MOST_STEPS {
             let given = format!("{} beside output_hz = {rate}", spec.dt_ms);
@@ -223,7 +223,7 @@ impl Clock {
         })
     }
 
-    /// Those of this many seconds.
+    /// Returns the number of frames of a duration in seconds.
     fn frames(duration: f64, rate: f64) -> usize {
         (duration * rate + 1e-9).floor() as usize + 1
     }
@@ -251,7 +251,7 @@ fn check_names(check: &Check, spec: &SceneSpec) -> Result<()> {
     Ok(())
 }
 
-/// Planes are for free objects, and what free objects touch is made of spheres.
+/// Checks that planes occur only with free objects, and that objects beside free ones are made of spheres.
 fn check_rigid(
     check: &Check,
     spec: &SceneSpec,
@@ -277,7 +277,7 @@ fn check_rigid(
     Ok(())
 }
 
-/// A force of a patch is held by one object, and where it is does not depend on free ones.
+/// Checks that each patch has at most one pressed object, and that a scene with pressed objects has no free ones.
 fn check_presses(check: &Check, spec: &SceneSpec) -> Result<()> {
     let free = spec.objects.iter().find(|object| object.free.is_some());
     let mut seen: BTreeMap<&str, &str> = BTreeMap::new();
@@ -299,7 +299,7 @@ fn check_presses(check: &Check, spec: &SceneSpec) -> Result<()> {
     Ok(())
 }
 
-/// When the last imposed motion and the last change of a wanted force end, seconds.
+/// Returns the time when the last imposed motion and the last change of a target force end, seconds.
 fn end(robots: &[PlannedRobot], objects: &[PlannedObject]) -> f64 {
     let objects = objects.iter().map(|object| {
         let press = object.press.as_ref().map_or(0.0, PlannedPress::end);

@@ -1,4 +1,4 @@
-//! The loop: one frame after the other, each handed on as soon as it is made; by hand, step by step ([`by_hand`](super::by_hand)).
+//! Time loop of a scene, which passes on each frame as soon as it is computed. For manual steps, see [`by_hand`](super::by_hand).
 
 use super::frame::{Frame, FrameSink, FrictionReading, Held, ObjectReading, PatchReading};
 use super::free_objects::FreeObjects;
@@ -13,16 +13,16 @@ use crate::geometry::Pose;
 use crate::random::Seed;
 use crate::signal::Scratch;
 
-/// Whether to step where nothing is remembered from step to step.
+/// Choice of the time steps between frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stepping {
-    /// Frames alone, if no damper and no free object needs the steps between; then, only of patches with dampers.
+    /// Skips steps between frames if the scene has no memory. Otherwise, computes only patches with memory in these steps.
     AsNeeded,
-    /// All patches at all steps: the same frames, slower. For tests.
+    /// Computes all patches in all steps. The frames are equal, but slower to compute. For tests.
     Always,
 }
 
-/// A scene on its way.
+/// Simulation of a scene.
 #[derive(Clone, Debug)]
 pub struct Simulation<'p> {
     pub(super) plan: &'p ScenePlan,
@@ -30,19 +30,19 @@ pub struct Simulation<'p> {
     pub(super) robots: Vec<RobotState>,
     skins: Vec<SkinState>,
     objects: PlacedObjects,
-    /// Where imposed objects were put by hand, `world_from_object`; the others follow their motions.
+    /// Manually set poses of imposed objects, `world_from_object`. Objects with `None` follow their motions.
     pub(super) put: Vec<Option<Pose>>,
     pressed: PressedObjects,
     pub(super) free: FreeObjects,
-    /// One a patch: what the noise of its readings is drawn from.
+    /// Seed of the sensor noise of each patch.
     noise: Vec<Seed>,
     frame: Frame,
     scratch: Scratch,
-    /// Seconds.
+    /// Time since the start, seconds.
     pub(super) time: f64,
-    /// Whether steps are made by hand, and no longer by the scene's clock.
+    /// Whether the steps are made manually instead of by the scene's clock.
     pub(super) is_by_hand: bool,
-    /// How long the last step was, until the patches have felt it: whoever reads them decides how.
+    /// Length of the last step, seconds, until the patches are computed. The detail of this computation depends on whether a frame is read.
     unfelt: Option<f64>,
     n_read: usize,
     pub(super) n_steps: usize,
@@ -50,12 +50,12 @@ pub struct Simulation<'p> {
 }
 
 impl<'p> Simulation<'p> {
-    /// A scene before its first frame.
+    /// Creates a simulation before its first frame.
     pub fn new(plan: &'p ScenePlan, stepping: Stepping) -> Self {
         Self::with_seed(plan, stepping, plan.spec.seed)
     }
 
-    /// The same with noise of another seed than the plan's.
+    /// Creates a simulation whose sensor noise has another seed than the plan.
     pub(super) fn with_seed(plan: &'p ScenePlan, stepping: Stepping, seed: u64) -> Self {
         let signals = Seed::new(seed).named("signal");
         let skins = plan.patches.iter();
@@ -97,10 +97,10 @@ impl<'p> Simulation<'p> {
         }
     }
 
-    /// Makes all frames that are left, and hands each to all sinks.
+    /// Computes all remaining frames and passes each one to all sinks.
     ///
     /// # Errors
-    /// The error is one of theirs, or of [`next_frame`](Self::next_frame).
+    /// If a sink or [`next_frame`](Self::next_frame) fails.
     pub fn run(&mut self, sinks: &mut [&mut dyn FrameSink]) -> Result<()> {
         while let Some(frame) = self.next_frame()? {
             for sink in sinks.iter_mut() {
@@ -110,10 +110,10 @@ impl<'p> Simulation<'p> {
         Ok(())
     }
 
-    /// Goes to the next frame of the scene's clock; `None` after the last.
+    /// Computes the next frame of the scene's clock. Returns `None` after the last one.
     ///
     /// # Errors
-    /// A pose beyond all numbers; a scene that has been [stepped](Self::step) by hand.
+    /// If a pose overflows, or the scene has been [stepped](Self::step) manually.
     pub fn next_frame(&mut self) -> Result<Option<&Frame>> {
         let plan = self.plan;
         if self.is_by_hand {
@@ -137,11 +137,11 @@ impl<'p> Simulation<'p> {
         self.observe().map(Some)
     }
 
-    /// What everything is like now: before any step, as if it had stood like this for long, which is the scene's first frame. What
-    /// sensors read is drawn once: asked for again, the frame is the same.
+    /// Returns the current frame. Before any step, it is the first frame of the scene, in its steady state. Sensor noise is drawn once for each
+    /// frame, so that a second call returns an equal frame.
     ///
     /// # Errors
-    /// A pose beyond all numbers.
+    /// If a pose overflows.
     pub fn observe(&mut self) -> Result<&Frame> {
         self.begin()?;
         if let Some(dt) = self.unfelt.take() {
@@ -152,12 +152,12 @@ impl<'p> Simulation<'p> {
         Ok(&self.frame)
     }
 
-    /// Steps that were made, frames included.
+    /// Returns the number of steps so far, including frames.
     pub fn n_steps(&self) -> usize {
         self.n_steps
     }
 
-    /// Steps, frames included, in which free objects were not at rest.
+    /// Returns the number of steps, including frames, in which free objects did not come to rest.
     pub fn n_unsettled(&self) -> usize {
         self.n_unsettled
     }
@@ -167,7 +167,7 @@ impl<'p> Simulation<'p> {
         if are_needed { self.plan.n_substeps } else { 1 }
     }
 
-    /// Stands as at the start, if nothing has been done yet.
+    /// Computes the initial state if no step has been made.
     pub(super) fn begin(&mut self) -> Result<()> {
         match self.n_steps {
             0 => self.advance(0.0, f64::INFINITY),
@@ -175,7 +175,7 @@ impl<'p> Simulation<'p> {
         }
     }
 
-    /// One step: to where everything is at a time, `dt` seconds after the last one.
+    /// Makes one step to a time, `dt` seconds after the last step.
     pub(super) fn advance(&mut self, time: f64, dt: f64) -> Result<()> {
         if let Some(dt) = self.unfelt.take() {
             self.feel(dt);
@@ -186,7 +186,7 @@ impl<'p> Simulation<'p> {
         Ok(())
     }
 
-    /// Everything goes to where it is at a time, `dt` seconds after the last one.
+    /// Moves robots, objects and patches to their poses at a time, `dt` seconds after the last step.
     fn go_to(&mut self, time: f64, dt: f64) -> Result<()> {
         let plan = self.plan;
         self.n_steps += 1;
@@ -216,7 +216,7 @@ impl<'p> Simulation<'p> {
         Ok(())
     }
 
-    /// Patches feel a step of which nobody is told.
+    /// Computes the patches after a step without a frame.
     fn feel(&mut self, dt: f64) {
         let plan = self.plan;
         for (number, (skin, patch)) in self.skins.iter_mut().zip(&plan.patches).enumerate() {
@@ -233,7 +233,7 @@ impl<'p> Simulation<'p> {
         }
     }
 
-    /// How much of the scene's time has passed, by which sensors drift.
+    /// Returns the elapsed fraction of the scene's duration, 0 to 1, which determines the drift of the sensors.
     fn share(&self) -> f64 {
         let n_frames = match self.is_by_hand {
             true => self.time * self.plan.output_rate,
@@ -242,7 +242,7 @@ impl<'p> Simulation<'p> {
         (n_frames / (self.plan.n_frames_uncut - 1).max(1) as f64).min(1.0)
     }
 
-    /// Patches feel a step, and the frame is made.
+    /// Computes the patches after a step and fills the frame.
     fn read(&mut self, dt: f64) {
         let plan = self.plan;
         let share = self.share();

@@ -1,4 +1,4 @@
-//! A patch on its way: where it is, what pushes it now, and what its dampers remember.
+//! State of a patch during a simulation: pose, contacts, damper state and friction state.
 
 use super::frame::PatchReading;
 use super::mount::Mount;
@@ -12,23 +12,24 @@ use crate::geometry::Pose;
 use crate::objects::Model;
 use glam::DVec3;
 
-/// Where all objects are.
+/// Poses and bounding balls of all objects.
 #[derive(Clone, Debug)]
 pub(super) struct PlacedObjects {
-    /// `world_from_object`, one an object; escaped ones are [out of reach](OUT_OF_REACH).
+    /// Pose of each object, `world_from_object`. Escaped objects are [out of reach](OUT_OF_REACH).
     pub poses: Vec<Pose>,
-    /// Of a ball around each, in its own frame, metres.
+    /// Bounding ball of each object (centre, radius), object frame, metres.
     pub balls: Vec<(DVec3, f64)>,
 }
 
-/// Where an object is that touches nothing: farther away than any skin, and near enough that its square is a number.
+/// Pose of an object without contacts: farther away than any skin, but with a finite squared distance.
 pub(super) const OUT_OF_REACH: Pose = Pose {
     rotation: glam::DQuat::IDENTITY,
     translation: DVec3::new(0.0, 0.0, 1e100),
 };
 
 impl PlacedObjects {
-    /// Where a patch sees them, `patch_from_object`: all but the one that carries it, which it does not feel.
+    /// Returns the poses of the objects in the patch frame, `patch_from_object`. An object that carries the patch is out of reach, because the patch does
+    /// not touch it.
     pub fn seen_by<'a>(
         &'a self,
         patch: &PlannedPatch,
@@ -45,7 +46,7 @@ impl PlacedObjects {
         })
     }
 
-    /// Whether any object may push a patch that is there: by a box around its taxels and balls around the objects.
+    /// Returns whether any object may touch the patch: compares a bounding box of the taxels with the bounding balls of the objects.
     pub fn can_reach(&self, patch: &PlannedPatch, world_from_patch: &Pose) -> bool {
         let skin = &patch.skin;
         let Some(bounds) = skin.tree().bounds() else {
@@ -56,31 +57,31 @@ impl PlacedObjects {
             .any(|(pose, &(center, radius))| {
                 let center = pose.transform_point(center);
                 let reach = radius + skin.tree().largest_radius();
-                // What rounding may add, far above 1e-16 and far below what is felt.
+                // Margin for rounding errors: far above 1e-16 and far below a measurable distance.
                 bounds.distance_squared(center) <= reach * reach * (1.0 + 1e-9)
             })
     }
 }
 
-/// A patch at one time.
+/// State of a patch at one instant.
 #[derive(Clone, Debug)]
 pub(super) struct SkinState {
-    /// `world_from_patch`.
+    /// Pose of the patch, `world_from_patch`.
     pub pose: Pose,
     damper: DamperState,
-    /// Nothing pushes it, and all its taxels are out.
+    /// Whether no object pushes the patch and all deflections are zero.
     is_idle: bool,
     workspace: Workspace,
-    /// Of a patch with friction.
+    /// Friction state. `None` if the patch has no friction.
     friction: Option<FrictionState>,
     contact_modes: ContactModeCounts,
-    /// `patch_from_object`, one an object.
+    /// Pose of each object in the patch frame, `patch_from_object`.
     poses: Vec<Pose>,
     counts: Contact,
 }
 
 impl SkinState {
-    /// Taxels that stand out.
+    /// Creates the state of a patch with zero deflections.
     pub fn of(patch: &PlannedPatch) -> Self {
         let n_taxels = patch.skin.n_taxels();
         let friction = patch.shears.clone();
@@ -100,19 +101,19 @@ impl SkinState {
         }
     }
 
-    /// From now on these parts of objects push their taxels behind the substrate too.
+    /// Keeps the given contacts in the following steps, even if the sphere's centre passes behind the substrate.
     pub fn hold<'a>(&mut self, contacts: impl IntoIterator<Item = &'a TaxelContact>) {
         self.workspace.hold(contacts);
     }
 
-    /// Tangential springs that hold objects; the numbers of objects are those of the scene.
+    /// Returns the tangential springs that hold objects. Object numbers are those of the scene.
     pub fn tangential_springs(&self) -> impl Iterator<Item = TangentialSpring> {
         self.friction
             .iter()
             .flat_map(FrictionState::tangential_springs)
     }
 
-    /// Its tips hold an object by what it touches where it is, as if it had just been put there; all others are out of reach.
+    /// Attaches tangential springs to the contacts of one object at its pose, as if it had just been placed there. `only` has all other objects out of reach.
     pub fn put(
         &mut self,
         patch: &PlannedPatch,
@@ -127,12 +128,12 @@ impl SkinState {
         }
     }
 
-    /// How far its taxels are in, metres.
+    /// Returns the deflections, metres, shape (n_taxels,).
     pub fn deflection(&self) -> &[f64] {
         &self.damper.deflection
     }
 
-    /// [Feels](Self::feel), and reports; `loads` and `tips`: what its taxels carry of free objects, taxel by taxel.
+    /// Makes a [step](Self::feel) and writes the reading. `loads` and `tips` are the taxels' loads and tangential springs of free objects, in taxel order.
     pub fn step_and_read(
         &mut self,
         patch: &PlannedPatch,
@@ -173,7 +174,8 @@ impl SkinState {
         }
     }
 
-    /// Feels for `dt` seconds what is there at their end; for an endless `dt`, as if it had been there for long. `tips`: what holds free objects.
+    /// Makes a step of `dt` seconds with the objects at their final poses. An infinite `dt` gives the steady state. `tips` are the tangential springs of
+    /// free objects.
     pub fn feel(
         &mut self,
         patch: &PlannedPatch,
@@ -202,7 +204,7 @@ impl SkinState {
         self.damper
             .step(patch.skin.taxels(), dt, workspace.deflections());
         if let Some(friction) = &mut self.friction {
-            // Drags the tips along with what touches them.
+            // Moves the tips of the tangential springs with the contacting objects.
             let normal = NormalForce::Dampers(&self.damper);
             let contacts = workspace.contacts();
             self.contact_modes =
@@ -213,7 +215,7 @@ impl SkinState {
     }
 }
 
-/// Adds to a reading what stops carry of free objects.
+/// Adds the reactions of the stops to free objects to a reading.
 fn add_stops(
     patch: &PlannedPatch,
     contacts: &[TaxelContact],
@@ -234,8 +236,8 @@ fn add_stops(
     }
 }
 
-/// Returns the frictionless wrench of taxels with these forces on the objects, and writes each taxel's part to `force3`: the force of the objects
-/// on the taxel. A contact has one direction, but several spheres of free objects may share a taxel: the loads contain the force of each sphere.
+/// Returns the frictionless wrench of the taxels on the objects. Writes the force of the objects on each taxel to `force3`.
+/// A contact has one direction, but several spheres of free objects may share a taxel: the loads contain the force of each sphere.
 fn on_objects(
     contacts: &[TaxelContact],
     loads: &[&TaxelLoad],
@@ -260,15 +262,15 @@ fn on_objects(
     sum
 }
 
-/// What is asked of a step.
+/// Results that a step computes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Detail {
     Deflections,
-    /// Also what touches what.
+    /// Deflections and contacts.
     Contacts,
 }
 
-/// What an object feels, felt by the patch; nothing has no sign.
+/// Converts the wrench on an object into the opposite wrench on the patch, without negative zeros.
 fn on_patch(on_object: Wrench) -> Wrench {
     Wrench::default() + -on_object
 }

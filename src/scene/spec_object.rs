@@ -1,4 +1,4 @@
-//! Objects as they are written: `[[objects]]`.
+//! Specification of objects: `[[objects]]`.
 
 use super::numbers::Numbers;
 use crate::files::FilePath;
@@ -7,85 +7,84 @@ use crate::mesh::LengthUnit;
 use crate::scene::spec_motion::{MotionSpec, PoseSpec};
 use serde::{Deserialize, Serialize};
 
-/// `[[objects]]`: what is touched.
+/// Specification of one object: `[[objects]]`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ObjectSpec {
-    /// Its name in this scene.
+    /// Name, unique in the scene.
     pub name: String,
-    /// A built-in object (`bubbletouch objects` lists them).
+    /// Name of a built-in object (`bubbletouch objects` lists them).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub object: Option<String>,
-    /// A TOML file of objects, of which `object` is one; the built-in ones when left out.
+    /// TOML file of objects that contains `object`. Default: the built-in objects.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub objects: Option<FilePath>,
-    /// Instead: a CSV file of spheres, columns x, y, z, r.
+    /// CSV file of spheres with the columns x, y, z, r, in place of `object`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spheres: Option<FilePath>,
-    /// Instead: a PLY, OBJ or STL file.
+    /// PLY, OBJ or STL file, in place of `object`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mesh: Option<FilePath>,
-    /// What a mesh becomes; spheres around its vertices when left out.
+    /// Contact model of a mesh. Default: spheres around its vertices.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model: Option<ModelSpec>,
-    /// Unit of the numbers of a mesh or of spheres. When left out, metres, and 0.1 mm to 10 m large.
+    /// Length unit of a mesh or of spheres. Default: metres; the size must then be between 0.1 mm and 10 m.
     #[serde(default, alias = "mesh_unit", skip_serializing_if = "Option::is_none")]
     pub unit: Option<LengthUnit>,
-    /// How far spheres may be from a solid's or packed mesh's surface; 0.25, or packed a tenth of the finest pitch, when left out.
+    /// Maximum distance of the spheres from the surface of a solid or packed mesh. Default: 0.25; for a packed mesh, a tenth of the finest pitch.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub surface_error_mm: Option<f64>,
-    /// The robot that carries it, in place of a motion of its own.
+    /// Robot that carries the object, in place of `motion`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub robot: Option<String>,
-    /// The robot's link that carries it; its base when left out.
+    /// Robot link that carries the object. Default: the base.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub link: Option<String>,
-    /// Where it is, or starts, in the world or on the link.
+    /// Pose, or initial pose, in the world or on the link.
     #[serde(default)]
     pub at: PoseSpec,
-    /// How it moves, whatever touches it; not at all when left out.
+    /// Imposed motion, independent of contacts. Default: no motion.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<MotionSpec>,
-    /// Beside `motion`: it is also pushed along a line so that a patch feels a force.
+    /// Force control, together with `motion`: the object also moves along a line until a patch reaches a force.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub press: Option<PressSpec>,
-    /// Instead of `motion`: only gravity and skins hold it.
+    /// Free object, in place of `motion`: its pose follows from gravity and contacts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub free: Option<FreeSpec>,
 }
 
-/// `free = { mass_kg = 0.2 }`
+/// Specification of a free object: `free = { mass_kg = 0.2 }`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FreeSpec {
-    /// What it weighs.
+    /// Mass.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mass_kg: Option<f64>,
-    /// In its own frame; that of a homogeneous solid when left out.
+    /// Centre of mass in the object frame. Default: that of a homogeneous solid.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub center_of_mass_mm: Option<[f64; 3]>,
 }
 
-/// `press = { patch = "palm", direction = [0.0, 0.0, -1.0], force_n = 2.0, speed_mm_per_s = 20.0, travel_mm = 10.0 }`
+/// Force control: `press = { patch = "palm", direction = [0.0, 0.0, -1.0], force_n = 2.0, speed_mm_per_s = 20.0, travel_mm = 10.0 }`
 ///
-/// From where `at` and `motion` say that it is, the object goes along the direction until the patch feels the force; from step to step
-/// no faster than the speed, never beyond the travel, and back if the force is too much. It does not pass through the patch: what it has
-/// pressed stays at its stroke, however much more force is wanted. With a force of zero it goes back to
-/// where its motion says.
+/// The object starts at the pose of `at` and `motion` and moves along the direction until the patch reaches the force. It moves back if the force
+/// is too large. Speed and travel are limited. The object does not pass through the patch: pressed taxels stay at their stroke, even if the force
+/// is not reached. If the force is zero, the object returns to the pose of its motion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PressSpec {
-    /// The patch that is to feel the force.
+    /// Patch whose force is controlled.
     pub patch: String,
-    /// Where to, in the world; of any length.
+    /// Direction of the travel in the world frame, of any length.
     pub direction: [f64; 3],
-    /// Σ k δ of the patch, whatever touches it: one force for all times, or one a time of `time_s`.
+    /// Target of the spring force Σ k δ of the patch, from all objects: one number, or one for each time in `time_s`.
     pub force_n: Numbers,
-    /// When the forces are wanted; straight lines between them, and the first and last beyond.
+    /// Times of the forces. Forces are interpolated linearly and constant outside these times.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub time_s: Vec<f64>,
-    /// Along the direction, at most.
+    /// Maximum speed along the direction.
     pub speed_mm_per_s: f64,
-    /// From where the motion says, at most.
+    /// Maximum travel from the pose of the motion.
     pub travel_mm: f64,
 }

@@ -1,40 +1,40 @@
-//! A chart as a value: which columns of which table it shows, and how.
+//! Specification of a chart: the columns that it shows, and the form of their marks.
 
 use super::{Column, Table, Value};
 
-/// What a chart shows. One renderer draws it as SVG and PNG, and the page contains the SVG.
+/// Specification of a chart. One renderer draws it as SVG and PNG, and the page contains the SVG.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ChartSpec {
-    /// File name without ending.
+    /// File name without extension.
     pub name: String,
-    /// What it shows, in words.
+    /// Title of the chart.
     pub title: String,
-    /// How to read it, in a sentence or two; empty where the chart says all.
+    /// Explanation for the reader, one or two sentences. Empty if the chart needs none.
     pub note: String,
-    /// The file of its [table](super::Table).
+    /// File name of the chart's [table](super::Table).
     pub table: &'static str,
-    /// Only rows with these values.
+    /// Filters: only rows with these values are drawn.
     pub shown: Vec<Shown>,
-    /// The column along x; its scale is the column's.
+    /// Column along x. The column defines the scale of the axis.
     pub x: String,
-    /// What runs along x where the column holds values of several things: its words, unit and scale in place of the column's.
+    /// Replacement for the words, unit and scale of the x axis, if the x column contains several quantities.
     pub x_is: Option<Column>,
-    /// The column along y. Its interval, if it has one, is drawn as a band or as whiskers.
+    /// Column along y. If it has an interval, the chart shows a band or error bars.
     pub y: String,
-    /// Columns of which each combination has a line, or a colour of points, of its own; of tiles, a row of panels.
+    /// Columns whose combinations of values have one line or point colour each. In a chart of tiles: one row of panels each.
     pub lines: Vec<String>,
-    /// The column of which each value has a panel of its own.
+    /// Column whose values have one panel each.
     pub panels: Option<String>,
-    /// How rows are drawn.
+    /// Form of the marks.
     pub mark: Mark,
-    /// Lines across the chart: chance, a limit, a published value.
+    /// Reference lines across the chart: chance level, a limit, a published value.
     pub rules: Vec<Rule>,
-    /// Whether the Pareto front of the points is drawn: x is what it costs, and y is better as its [role](super::Role) says.
+    /// Draws the Pareto front of the points if true. The cost is x, and the [role](super::Role) of y defines the better direction.
     pub front: bool,
 }
 
 impl Table {
-    /// A line chart of two of its columns, y against x, with the table's note.
+    /// Returns a line chart of y against x, with the table's note.
     pub fn chart(
         &self,
         name: impl Into<String>,
@@ -54,7 +54,7 @@ impl Table {
 }
 
 impl Rule {
-    /// At a value of an axis.
+    /// Reference line at a value of an axis.
     pub fn at(along: Along, value: f64, words: impl Into<String>) -> Self {
         Self {
             along,
@@ -64,58 +64,58 @@ impl Rule {
     }
 }
 
-/// Rows of which a column has a value.
+/// Filter: rows with a given value in a column.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shown {
-    /// The column.
+    /// Column name.
     pub column: String,
-    /// Its value; an empty word where it has none.
+    /// Value in the column; an empty word selects absent values.
     pub value: Value,
 }
 
-/// How rows are drawn.
+/// Form of the marks.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Mark {
-    /// Points joined along x; points alone where x is words.
+    /// Points joined by lines along x; only points if x contains words.
     #[default]
     Line,
-    /// Points alone.
+    /// Only points.
     Points,
-    /// A tile at each x and y.
+    /// One tile for each pair of x and y.
     Tiles {
-        /// The column that fills it: an outcome by a colour and a letter, a number by a sequential scale.
+        /// Column that fills the tile: an outcome by colour and letter, a number by a sequential colour scale.
         fill: String,
-        /// The column that is written on it, in place of the letter or the number; where it is absent, these stand there.
+        /// Column whose value is written on the tile. If the value is absent, the letter or number of `fill` is written.
         sign: Option<String>,
     },
 }
 
-/// A line across the chart.
+/// Reference line across the chart.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rule {
-    /// The axis on which it stands.
+    /// Axis that contains the line's value.
     pub along: Along,
-    /// Where.
+    /// Position of the line.
     pub at: At,
-    /// What it is.
+    /// Label of the line.
     pub words: String,
 }
 
-/// Where a rule stands.
+/// Position of a reference line.
 #[derive(Clone, Debug, PartialEq)]
 pub enum At {
-    /// At a value of its axis.
+    /// Constant position on the axis.
     Value(f64),
-    /// Where a column says, in each panel for each place along the other axis: chance that depends on the number of objects, a limit that
-    /// depends on the mass.
+    /// Position from a column, for each panel and each place along the other axis: a chance level that depends on the number of objects, or
+    /// a limit that depends on the mass.
     Column(String),
 }
 
-/// An axis of a chart.
+/// Axis of a chart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Along {
-    /// Across.
+    /// Horizontal axis.
     X,
-    /// Up.
+    /// Vertical axis.
     Y,
 }

@@ -1,80 +1,80 @@
-//! What a column of a table is: its name, words, unit, scale and role.
+//! Description of a table column: name, words, unit, scale and role.
 
 use super::value::Value;
 use bubbletouch_sim::text::numbers::{short_number, time_words};
 use std::borrow::Cow;
 
-/// A text that is mostly written in the program, and made where a study names its own axes.
+/// Static text, or text made at run time for axes that a study names itself.
 pub type Words = Cow<'static, str>;
 
-/// What a column is to whoever reads the table. The role is the only thing that report, page, advice and comparison look at.
+/// Role of a column. Reports, pages, advice and comparisons depend only on the roles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// A designer decides it: pitch, ensemble, C. Advice and every "best" choose among these, within a condition.
+    /// Choice of the designer: pitch, ensemble, C. Advice and every "best" choose among these, within a condition.
     Choice,
-    /// The world sets it: noise, sensor errors, friction. It is given, never advised.
+    /// Condition of the world: noise, sensor errors, friction. Advice is stated for a condition.
     Condition,
-    /// What is looked at: an object, a trial, a touch.
+    /// Subject of a measurement: an object, a trial, a touch.
     Subject,
-    /// What was found, and which is better.
+    /// Measured result, with the direction that is better.
     Value(Better),
-    /// What it takes: time, memory, spheres. Less is better.
+    /// Cost: time, memory, spheres. Smaller values are better.
     Cost,
-    /// How it ended: right, diverged, refused.
+    /// Outcome of a row: right, diverged, refused.
     Outcome,
-    /// It says how to read the others, counts, or bounds a value.
+    /// Auxiliary column: a count, a bound of an interval, or a note.
     Note,
 }
 
-/// Which of two values is better.
+/// Direction in which a value is better.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Better {
-    /// The larger.
+    /// Larger values are better.
     More,
-    /// The smaller.
+    /// Smaller values are better.
     Less,
-    /// Neither.
+    /// No direction is better.
     Neither,
 }
 
-/// How the values of a column lie along an axis.
+/// Scale of a column's values along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
-    /// They are words, in the order of their first rows.
+    /// Words, in the order of their first rows.
     Words,
-    /// Numbers, evenly.
+    /// Numbers on a linear scale.
     Linear,
-    /// Numbers by their logarithm; where zero is among them, it stands apart at the beginning.
+    /// Numbers on a logarithmic scale. Zero has a separate place at the start of the axis.
     Log,
-    /// Shares of one, shown as percent or from 0 to 1; evenly.
+    /// Fractions of one on a linear scale, shown as percent or from 0 to 1.
     Share,
 }
 
-/// A column.
+/// Description of a table column.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {
-    /// Its name in the file: `pitch_mm`.
+    /// Name in the CSV header: `pitch_mm`.
     pub name: Words,
-    /// What people call it, without unit: `taxel pitch`.
+    /// Name in text and charts, without unit: `taxel pitch`.
     pub words: Words,
-    /// Of its numbers: `mm`; empty without. Numbers of unit `%` are shares of one, shown times 100; those of unit `:1` are ratios; times
-    /// (`s`, `ms`, `us`) are said in the unit that suits them where they span decades.
+    /// Unit of the numbers: `mm`; empty if there is none. Unit `%`: fractions of one, shown times 100. Unit `:1`: ratios. Times (`s`, `ms`, `us`) on a
+    /// logarithmic scale are shown in the unit that suits each value.
     pub unit: Words,
-    /// How it lies along an axis.
+    /// Scale along an axis.
     pub scale: Scale,
-    /// What it is.
+    /// Role of the column.
     pub role: Role,
-    /// The columns that bound it, lower and upper: of a value with an interval.
+    /// Names of the columns with the lower and upper bound, for a value with an interval.
     pub interval: Option<[Words; 2]>,
-    /// What people call its words, where these are codes: `rbf_svm`, `RBF SVM`. Of others, underscores are spaces. Of numbers, those that
-    /// are more than numbers: `0` bits, `none`.
+    /// Display names of codes: `rbf_svm`, `RBF SVM`. For other words, underscores are shown as spaces. Numbers with a special meaning can have
+    /// names, too: `0` bits, `none`.
     pub names: &'static [(&'static str, &'static str)],
-    /// Whether it may be missing from a file: only some studies have it.
+    /// Whether the column may be missing from a file, because only some studies have it.
     pub is_optional: bool,
 }
 
 impl Column {
-    /// One that every study of its kind has.
+    /// Creates a column that every study of its kind has.
     pub fn new(
         name: impl Into<Words>,
         role: Role,
@@ -94,25 +94,25 @@ impl Column {
         }
     }
 
-    /// The same, bounded by two other columns.
+    /// Sets the names of the columns with the lower and upper bound.
     pub fn between(mut self, low: impl Into<Words>, high: impl Into<Words>) -> Self {
         self.interval = Some([low.into(), high.into()]);
         self
     }
 
-    /// The same, that only some studies have.
+    /// Marks the column as optional: only some studies have it.
     pub fn optional(mut self) -> Self {
         self.is_optional = true;
         self
     }
 
-    /// The same, with what people call its words.
+    /// Sets the display names of the codes.
     pub fn named(mut self, names: &'static [(&'static str, &'static str)]) -> Self {
         self.names = names;
         self
     }
 
-    /// The title of an axis: `taxel pitch (mm)`.
+    /// Returns the title of an axis: `taxel pitch (mm)`.
     pub fn title(&self) -> String {
         match (self.unit.as_ref(), self.is_time()) {
             ("" | ":1", _) | (_, true) => self.words.to_string(),
@@ -120,23 +120,23 @@ impl Column {
         }
     }
 
-    /// Whether it has numbers that are more than numbers: between these and others there is nothing.
+    /// Returns whether some numbers have names. Such numbers are not interpolated with others.
     pub fn has_named_numbers(&self) -> bool {
         self.scale != Scale::Words && self.names.iter().any(|(code, _)| !code.is_empty())
     }
 
-    /// The name of one of its codes, or of one of its numbers.
+    /// Returns the display name of a code or a number.
     fn name_of(&self, code: &str) -> Option<&'static str> {
         let mut names = self.names.iter();
         names.find_map(|(known, name)| (*known == code).then_some(*name))
     }
 
-    /// Whether its numbers are times over decades.
+    /// Returns whether the numbers are times on a logarithmic scale.
     fn is_time(&self) -> bool {
         self.scale == Scale::Log && matches!(self.unit.as_ref(), "s" | "ms" | "us" | "µs")
     }
 
-    /// A number without its unit: `10`, `64:1`, `20 µs`.
+    /// Formats a number without its unit: `10`, `64:1`, `20 µs`.
     pub fn tick(&self, number: f64) -> String {
         if let Some(name) = self.name_of(&short_number(number)) {
             return name.to_owned();
@@ -152,7 +152,7 @@ impl Column {
         }
     }
 
-    /// A number with its unit: `10 %`, `64:1`.
+    /// Formats a number with its unit: `10 %`, `64:1`.
     pub fn number_words(&self, number: f64) -> String {
         let tick = self.tick(number);
         match self.unit.as_ref() {
@@ -163,13 +163,13 @@ impl Column {
         }
     }
 
-    /// What people call one of its words.
+    /// Returns the display name of a word.
     pub fn word(&self, code: &str) -> String {
         let name = self.name_of(code);
         name.map_or_else(|| code.replace('_', " "), str::to_owned)
     }
 
-    /// A value for a sentence: `10 %`, `RBF SVM`.
+    /// Formats a value for a sentence: `10 %`, `RBF SVM`.
     pub fn value_words(&self, value: &Value) -> String {
         match value {
             Value::Number(number) => self.number_words(*number),
@@ -177,7 +177,7 @@ impl Column {
         }
     }
 
-    /// Name and value: `noise 10 %`, `m = 64`.
+    /// Formats name and value: `noise 10 %`, `m = 64`.
     pub fn phrase(&self, value: &Value) -> String {
         let is_symbol = self.words.chars().count() == 1;
         let between = if is_symbol { " = " } else { " " };
@@ -185,9 +185,9 @@ impl Column {
     }
 }
 
-/// A row whose fields are columns, in their order.
+/// Row type whose fields are columns, in their order.
 pub trait Columns {
-    /// All columns, those included that only some studies have.
+    /// Returns all columns, including the optional ones.
     fn columns() -> Vec<Column>;
 }
 
@@ -203,7 +203,7 @@ impl<A: Columns, B: Columns, C: Columns> Columns for (A, B, C) {
     }
 }
 
-/// A column as people may write it: `noise` stands for `noise_std`.
+/// Returns the column name for a short name: `noise` stands for `noise_std`.
 pub fn column_name(key: &str) -> &str {
     match key {
         "noise" => "noise_std",

@@ -1,4 +1,4 @@
-//! A file of rows, before there are any.
+//! Specification of a table file, independent of its rows.
 
 use super::{Column, Columns, Table};
 use crate::error::{Error, Result};
@@ -6,7 +6,7 @@ use serde::Serialize;
 use std::marker::PhantomData;
 use std::path::Path;
 
-/// What is known of a table but for its rows.
+/// Specification of a table file: name, title, note and row type.
 pub struct File<R> {
     name: &'static str,
     title: &'static str,
@@ -17,7 +17,7 @@ pub struct File<R> {
 }
 
 impl<R: Columns> File<R> {
-    /// Its name, what it holds, and how to read it: a table without times of rows of work items.
+    /// Creates the specification of a table from its file name, title and note. By default, the table is reproducible and not a summary.
     pub const fn new(name: &'static str, title: &'static str, note: &'static str) -> Self {
         Self {
             name,
@@ -29,27 +29,27 @@ impl<R: Columns> File<R> {
         }
     }
 
-    /// Its name.
+    /// Returns the file name.
     pub const fn name(&self) -> &'static str {
         self.name
     }
 
-    /// The same, of times: no two runs give the same bytes.
+    /// Marks a table of times, whose bytes differ between runs.
     pub const fn of_times(mut self) -> Self {
         self.repeats = false;
         self
     }
 
-    /// The same, made of the rows of all work items.
+    /// Marks a summary, which is computed from the rows of all work items.
     pub const fn summary(mut self) -> Self {
         self.is_summary = true;
         self
     }
 
-    /// The table of some rows. Numbers are written in the shortest form that reads back as the same bits.
+    /// Returns the table of the given rows. Numbers have the shortest form that reads back as the same bits.
     ///
     /// # Errors
-    /// Rows that have no such form; the error names the file.
+    /// If a row cannot be serialised as CSV; the error names the file.
     pub fn of(&self, rows: &[R]) -> Result<Table>
     where
         R: Serialize,
@@ -57,28 +57,28 @@ impl<R: Columns> File<R> {
         self.of_columns(R::columns(), rows)
     }
 
-    /// The same of rows that have other columns than their type says: those of axes that a study names itself.
+    /// Returns the table of rows with the given columns, for studies that name their own axes.
     ///
     /// # Errors
-    /// Those of [`of`](Self::of); a row with other columns.
+    /// As for [`of`](Self::of). Also if a row has other columns.
     pub fn of_columns(&self, columns: Vec<Column>, rows: &[impl Serialize]) -> Result<Table> {
         let csv = csv_of(rows, &columns);
         let csv = csv.map_err(|e| Error::io(self.name, "write", std::io::Error::other(e)))?;
         self.table(columns, Path::new(self.name), csv)
     }
 
-    /// The table that stands in a folder.
+    /// Reads the table from a folder.
     ///
     /// # Errors
-    /// A file that cannot be read, or has other columns or values; the error names file, line and column.
+    /// If the file cannot be read, or has other columns or invalid values; the error names file, line and column.
     pub fn read(&self, folder: &Path) -> Result<Table> {
         self.read_columns(R::columns(), folder)
     }
 
-    /// The same of a file that has these columns.
+    /// Reads a table with the given columns from a folder.
     ///
     /// # Errors
-    /// Those of [`read`](Self::read).
+    /// As for [`read`](Self::read).
     pub fn read_columns(&self, columns: Vec<Column>, folder: &Path) -> Result<Table> {
         let path = folder.join(self.name);
         let csv = crate::files::read(&path)
@@ -86,10 +86,10 @@ impl<R: Columns> File<R> {
         self.table(columns, &path, csv)
     }
 
-    /// The same where there is such a file: of a part that a study may leave out.
+    /// Reads the table of an optional part of a study. Returns `None` if the file does not exist.
     ///
     /// # Errors
-    /// Those of [`read`](Self::read).
+    /// As for [`read`](Self::read).
     pub fn read_if_there(&self, folder: &Path) -> Result<Option<Table>> {
         let is_there = folder.join(self.name).exists();
         is_there.then(|| self.read(folder)).transpose()
@@ -106,7 +106,7 @@ impl<R: Columns> File<R> {
     }
 }
 
-/// A table of no rows has the header of those columns that every study has.
+/// Returns the CSV bytes. Without rows, the header contains the columns that are not optional.
 fn csv_of<R: Serialize>(
     rows: &[R],
     columns: &[Column],

@@ -1,7 +1,9 @@
-//! The Pareto front: which points nobody beats.
+//! The Pareto front of points with a cost and a value.
 
-/// For each (cost, value), whether no other is at most as costly and at least as good, and better in one of them; `is_better` tells of two
-/// values whether the first is better. A point with a number that is none (NaN) is never on the front. n log n.
+/// Returns for each point (cost, value) whether it is on the Pareto front, in O(n log n) time.
+///
+/// A point is on the front if no other point is at most as costly and at least as good, and better in one of them.
+/// `is_better(a, b)` returns whether value a is better than value b. A point with a NaN is never on the front.
 pub fn front(points: &[(f64, f64)], is_better: impl Fn(f64, f64) -> bool) -> Vec<bool> {
     let is_number = |&place: &usize| !(points[place].0.is_nan() || points[place].1.is_nan());
     let mut order: Vec<usize> = (0..points.len()).filter(is_number).collect();
@@ -10,7 +12,7 @@ pub fn front(points: &[(f64, f64)], is_better: impl Fn(f64, f64) -> bool) -> Vec
         (_, true) => std::cmp::Ordering::Greater,
         _ => std::cmp::Ordering::Equal,
     };
-    // 0 and −0 are the same cost.
+    // 0 and −0 are equal costs.
     let cost = |place: usize| points[place].0 + 0.0;
     order.sort_by(|&a, &b| {
         let by_cost = cost(a).total_cmp(&cost(b));

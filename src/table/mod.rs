@@ -1,9 +1,9 @@
-//! Tables with roles: what a study yields, and all that a report, a page, advice and a comparison look at.
+//! Tables with roles: the results of a study, and the only input of reports, pages, advice and comparisons.
 //!
-//! Rows stay typed structs, one field a column; [`row!`](crate::row) makes struct and columns of one list, in which each field says its words,
-//! unit, scale and [`Role`]: one of which nothing is said does not compile. [`File`] knows what a table is before
-//! there are rows: it makes the table of rows, and reads that of a file that a run wrote; both hold the same.
-//! A [`ChartSpec`] names the columns of a table that a chart shows; it holds no pixels.
+//! Rows are typed structs with one field for each column. [`row!`](crate::row) defines the struct and its columns in one list: each field
+//! has words, unit, scale and [`Role`]. A field without a role does not compile. [`File`] specifies a table independently of its rows. It makes the table
+//! from rows, or reads the table from a file of an earlier run; both tables are equal.
+//! [`ChartSpec`] names the columns of a table that a chart shows; it contains no pixels.
 
 mod chart;
 mod column;

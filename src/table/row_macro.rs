@@ -1,8 +1,10 @@
-//! The one place in which a row says what its fields are.
+//! Macro that defines a row type together with its columns.
 
-/// A row of a table: a struct, and what each of its fields is, behind the field's type: `=> Role "words" in "unit": Scale between [low, high]
-/// named NAMES, optional;` of which the words and all after them may be left out: words are then the field's name, and the scale is that of
-/// words. `NAMES` is a constant that says what people call codes, as `[("rbf_svm", "RBF SVM")]`.
+/// Defines a row type: a struct with a column description after the type of each field.
+///
+/// The description has the form `=> Role "words" in "unit": Scale between [low, high] named NAMES, optional;`. All parts after the role may be
+/// left out. The default words are the field's name, and the default scale is `Words`. `NAMES` is a constant with the display names of codes, as
+/// `[("rbf_svm", "RBF SVM")]`.
 ///
 /// ```
 /// use bubbletouch::row;
@@ -20,7 +22,7 @@
 /// let found = bubbletouch::table::File::new("found.csv", "Found", "").of(&[row]);
 /// assert_eq!(found.unwrap().csv, b"method,step_s,error\npress,0.5,0.1\n");
 /// ```
-/// A field of which nothing is said does not compile.
+/// A field without a description does not compile.
 #[macro_export]
 macro_rules! row {
     ($(#[$of_row:meta])* pub struct $row:ident { $($(#[$of_field:meta])* $field:ident: $type:ty =>

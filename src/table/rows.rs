@@ -1,10 +1,10 @@
-//! Rows of a table by their values.
+//! Selection, grouping and formatting of the rows of a table.
 
 use super::{Column, Data, Role, Scale, Shown, Table, Value};
 use std::collections::HashMap;
 
 impl Table {
-    /// Rows that have the same values in some columns, in the order of their first. A column that is not there tells none apart.
+    /// Groups rows with equal values in the given columns, in the order of their first rows. Missing columns are ignored.
     pub fn groups(
         &self,
         columns: &[&str],
@@ -25,26 +25,26 @@ impl Table {
         groups
     }
 
-    /// What of a column must be shown for a row; none where its value is absent.
+    /// Returns the filter that selects the value of a row in a column, or `None` if the value is absent.
     pub fn shown(&self, column: &str, row: usize) -> Option<Shown> {
         let value = self.column(column)?.1.value(row)?;
         let column = column.to_owned();
         Some(Shown { column, value })
     }
 
-    /// The names of its columns of a role.
+    /// Returns the names of the columns of a role.
     pub fn of_role(&self, role: Role) -> Vec<&str> {
         let columns = self.columns.iter().filter(|column| column.role == role);
         columns.map(|column| column.name.as_ref()).collect()
     }
 
-    /// Whether a row has a setting.
+    /// Returns whether a row has the wanted value in a column, within the tolerance of settings.
     pub fn has_setting(&self, column: &str, row: usize, wanted: &Value) -> bool {
         let known = self.column(column).and_then(|(_, data)| data.value(row));
         known.is_some_and(|known| known.agrees(wanted))
     }
 
-    /// The values of a column, each once, for an error: `one of 16, 64`; empty if it has none.
+    /// Lists the distinct values of a column for an error message: `one of 16, 64`. Empty if the column has no values.
     pub fn one_of(&self, column: &str, rows: impl IntoIterator<Item = usize>) -> String {
         let firsts = self.groups(&[column], rows);
         let data = self.column(column).map(|(_, data)| data);
@@ -56,15 +56,15 @@ impl Table {
         }
     }
 
-    /// The interval of a column's value in a row; none where an end is absent.
+    /// Returns the interval of a value, or `None` if an end is absent.
     pub fn interval(&self, column: &Column, row: usize) -> Option<[f64; 2]> {
         let ends = column.interval.as_ref()?.each_ref();
         let ends = ends.map(|end| self.number(end, row));
         ends.iter().all(|end| end.is_finite()).then_some(ends)
     }
 
-    /// A value with its interval: `0.93 [0.90, 0.95]`; shares with two digits, and four where nearly all would be rounded to all. Empty where
-    /// it is absent.
+    /// Formats a value with its interval: `0.93 [0.90, 0.95]`. Fractions have two decimal places; from 0.995 to below 1 they have four, so that they
+    /// are not rounded to 1. Empty if the value is absent.
     pub fn bounded(&self, column: &Column, row: usize) -> String {
         let value = self.number(&column.name, row);
         let is_share = column.scale == Scale::Share && column.unit.is_empty();
@@ -81,13 +81,13 @@ impl Table {
         }
     }
 
-    /// A number; NaN where it is absent.
+    /// Returns a number; NaN if it is absent.
     pub fn number(&self, column: &str, row: usize) -> f64 {
         self.numbers(column)
             .map_or(f64::NAN, |numbers| numbers[row])
     }
 
-    /// A word as it is written; empty where it is absent.
+    /// Returns a word as in the file; empty if it is absent.
     pub fn word(&self, column: &str, row: usize) -> &str {
         match self.column(column) {
             Some((_, Data::Words { levels, codes })) => &levels[codes[row] as usize],
@@ -95,7 +95,7 @@ impl Table {
         }
     }
 
-    /// A value as people read it, with its unit; empty where it is absent.
+    /// Formats a value with its unit; empty if it is absent.
     pub fn words(&self, column: &str, row: usize) -> String {
         let found = self.column(column);
         let found = found.and_then(|(column, data)| Some(column.value_words(&data.value(row)?)));

@@ -7,39 +7,39 @@ use std::collections::HashMap;
 use std::fmt;
 use std::path::Path;
 
-/// A table of a study's results.
+/// Table of results of a study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    /// Its file's name: `accuracy.csv`.
+    /// File name: `accuracy.csv`.
     pub file: &'static str,
-    /// What it holds, for a heading: `Accuracy of every trial`.
+    /// Title for a heading: `Accuracy of every trial`.
     pub title: &'static str,
-    /// How to read it, in a sentence or two; empty where the columns say all.
+    /// Explanation for the reader, one or two sentences. Empty if the columns need none.
     pub note: String,
-    /// Whether the same study gives the same bytes: false for tables of times.
+    /// Whether equal studies give equal bytes; false for tables of times.
     pub repeats: bool,
-    /// Whether its rows are made of those of all work items: some of the items alone give other rows.
+    /// Whether the rows are computed from all work items, so that some of the items alone give other rows.
     pub is_summary: bool,
-    /// What its columns are: those that the file has.
+    /// Columns of the file, in their order.
     pub columns: Vec<Column>,
-    /// The values of each column.
+    /// Values of each column, in the order of `columns`.
     pub data: Vec<Data>,
-    /// How many rows.
+    /// Number of rows.
     pub n_rows: usize,
-    /// The file's content.
+    /// Content of the CSV file. Empty for a table without a file.
     pub csv: Vec<u8>,
 }
 
-/// The values of a column, row by row.
+/// Values of a column, one for each row.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Data {
-    /// NaN where absent.
+    /// Numbers; NaN if absent.
     Numbers(Vec<f64>),
-    /// Each word once, in the order of first rows, and the place of each row's in that list. An absent word is the empty one.
+    /// Words, stored as codes. An absent word is the empty word.
     Words {
-        /// Each once.
+        /// Distinct words, in the order of their first rows.
         levels: Vec<String>,
-        /// Of each row.
+        /// Index into `levels` for each row.
         codes: Vec<u32>,
     },
 }
@@ -56,7 +56,7 @@ impl From<&str> for Value {
     }
 }
 
-/// As files have it.
+/// Formats the value as in CSV files.
 impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
@@ -66,12 +66,12 @@ impl fmt::Display for Value {
     }
 }
 
-/// Numbers this close, relative to the larger, are the same setting: a ratio of 100 on 4,096 taxels is 41 measurements, which
-/// are 99.90:1. Larger, and neighbouring settings would be taken for each other; smaller, and that ratio would be refused.
+/// Relative tolerance, with respect to the larger number, for equal settings. Example: a ratio of 100 on 4,096 taxels gives 41 measurements,
+/// which is a ratio of 99.90:1. A larger tolerance would merge neighbouring settings; a smaller one would reject this ratio.
 const SAME_SETTING: f64 = 1e-3;
 
 impl Value {
-    /// Whether it is the same setting as another.
+    /// Returns whether two values are the same setting, within the tolerance for numbers.
     pub fn agrees(&self, wanted: &Self) -> bool {
         match (self, wanted) {
             (Self::Number(a), Self::Number(b)) => {
@@ -83,14 +83,14 @@ impl Value {
 }
 
 impl Data {
-    /// Whether it has several values in some rows.
+    /// Returns whether the given rows have different values.
     pub fn varies(&self, rows: impl IntoIterator<Item = usize>) -> bool {
         let mut keys = rows.into_iter().map(|row| self.key(row));
         keys.next()
             .is_some_and(|first| keys.any(|key| key != first))
     }
 
-    /// A number a row that is equal for equal values only.
+    /// Returns a key of the value in a row; equal values, and only these, have equal keys.
     pub fn key(&self, row: usize) -> u64 {
         match self {
             Self::Numbers(numbers) => numbers[row].to_bits(),
@@ -98,7 +98,7 @@ impl Data {
         }
     }
 
-    /// The value of a row; none where it is absent.
+    /// Returns the value of a row, or `None` if it is absent.
     pub fn value(&self, row: usize) -> Option<Value> {
         match self {
             Self::Numbers(numbers) => Some(numbers[row])
@@ -112,13 +112,13 @@ impl Data {
 }
 
 impl Table {
-    /// The same with a note.
+    /// Sets the note.
     pub fn noted(mut self, note: impl Into<String>) -> Self {
         self.note = note.into();
         self
     }
 
-    /// Whether its rows are choices of a designer that have a value and a cost: columns that vary say so, of a single row all but subjects.
+    /// Returns whether the rows are choices with a value and a cost. Only columns that vary count; in a table of one row, all columns except subjects count.
     pub fn offers_choices(&self) -> bool {
         let columns = self.columns.iter().zip(&self.data);
         let counted = columns.filter(|(column, data)| match self.n_rows {
@@ -131,18 +131,18 @@ impl Table {
         has(Role::Choice) && has(Role::Cost) && has_value && !has(Role::Subject)
     }
 
-    /// The place of a column by its name.
+    /// Returns the index of a column, by name.
     pub fn place(&self, column: &str) -> Option<usize> {
         self.columns.iter().position(|known| known.name == column)
     }
 
-    /// A column by its name.
+    /// Returns a column and its values, by name.
     pub fn column(&self, column: &str) -> Option<(&Column, &Data)> {
         let place = self.place(column)?;
         Some((&self.columns[place], &self.data[place]))
     }
 
-    /// The numbers of a column; none if there is no such column of numbers.
+    /// Returns the numbers of a column, or `None` if there is no numeric column of this name.
     pub fn numbers(&self, column: &str) -> Option<&[f64]> {
         match self.column(column)? {
             (_, Data::Numbers(numbers)) => Some(numbers),
@@ -150,7 +150,7 @@ impl Table {
         }
     }
 
-    /// A table of the same rows that more columns follow. It has no file: its content is empty.
+    /// Returns a table with additional columns. The new table has no file: its content is empty.
     pub fn with(
         &self,
         (file, title): (&'static str, &'static str),
@@ -170,7 +170,8 @@ impl Table {
         table
     }
 
-    /// A column of another table for the rows of this one, found by a column of numbers that both have; absent for rows that the other one lacks.
+    /// Returns a column of another table for the rows of this table. The numeric column `key` of both tables relates the rows. Values are absent for rows
+    /// that the other table lacks.
     pub fn look_up(&self, other: &Self, key: &str, column: &str) -> Option<(Column, Data)> {
         let ((_, known), (_, wanted)) = (other.column(key)?, self.column(key)?);
         let (column, data) = other.column(column)?;
@@ -187,7 +188,7 @@ impl Table {
         Some((column.clone(), maker.data))
     }
 
-    /// Of the content of a file, which stands at a path.
+    /// Parses the content of a CSV file; `path` is only used in errors.
     pub(super) fn from_csv(
         (file, title): (&'static str, &'static str),
         known: Vec<Column>,
@@ -208,7 +209,7 @@ impl Table {
                 let given = format!("column {name:?} twice");
                 return Err(bad(header.position(), given, "each column once"));
             }
-            // A column before it that every study has must not be passed over.
+            // A required column before this one must not be skipped.
             match all.find(|column| column.name == name || !column.is_optional) {
                 Some(column) if column.name == name => columns.push(column),
                 other => {
@@ -249,7 +250,7 @@ impl Table {
     }
 }
 
-/// A line of a file, for an error.
+/// Returns the path and line number of a file, for an error message.
 pub(crate) fn csv_place(path: &Path, line: Option<u64>) -> String {
     match line {
         Some(line) => format!("{}: line {line}", path.display()),
@@ -257,10 +258,10 @@ pub(crate) fn csv_place(path: &Path, line: Option<u64>) -> String {
     }
 }
 
-/// Collects the values of a column.
+/// Builder of a column's values.
 struct Maker {
     data: Data,
-    /// The code of each word.
+    /// Code of each word.
     known: HashMap<String, u32>,
 }
 
@@ -277,7 +278,7 @@ impl Maker {
         Self { data, known }
     }
 
-    /// Whether the text is such a value.
+    /// Appends a value. Returns false if the text is not a number in a numeric column.
     fn push(&mut self, text: &str) -> bool {
         match &mut self.data {
             Data::Numbers(numbers) => match (text.is_empty(), text.parse()) {

@@ -1,13 +1,13 @@
-//! A value of a table.
+//! Value of one table entry.
 
 use serde::Serialize;
 
-/// A value of a row.
+/// Value of one table entry: a number or a word.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Value {
     /// A number.
     Number(f64),
-    /// A word.
+    /// Word as in the file.
     Word(String),
 }

@@ -1,4 +1,4 @@
-//! What moved between two folders of results: sentences, a table, and a page.
+//! Report of the differences between two result folders: sentences, a table, and a page.
 
 use crate::engine::program::PROGRAM;
 use crate::error::Result;
@@ -19,10 +19,10 @@ use crate::table::{
 const VALUES: File<Difference> = File::new("differences.csv", "Values of both runs", "");
 const COSTS: File<Difference> = File::new("costs.csv", "Costs of both runs", "");
 
-/// Sentences and a table of lines at most `width` letters long: what moved most surely first.
+/// Returns sentences and a table, wrapped at `width` characters. The most significant differences come first.
 ///
 /// # Errors
-/// Rows that have no form in a table.
+/// If rows cannot be serialised as CSV.
 pub fn differences_text(found: &[ColumnDifferences], width: usize) -> Result<String> {
     Ok(format!(
         "{}\n{}",
@@ -31,16 +31,16 @@ pub fn differences_text(found: &[ColumnDifferences], width: usize) -> Result<Str
     ))
 }
 
-/// A paragraph each, of lines at most `width` letters long.
+/// Returns one paragraph for each sentence, wrapped at `width` characters.
 pub fn sentences_text(sentences: &[String], width: usize) -> String {
     let sentences = sentences.iter();
     sentences.map(|said| paragraph(said, width)).collect()
 }
 
-/// The page of two folders by their names: what moved, and how alike they rank their designs.
+/// Returns the HTML page that compares two named folders: the differences, and the agreement of both rankings of designs.
 ///
 /// # Errors
-/// As [`differences_text`]; a chart that cannot be drawn.
+/// As for [`differences_text`]. Also if a chart cannot be drawn.
 pub fn differences_page(
     (found, ranks, entries): (&[ColumnDifferences], Option<&RankAgreement>, &[String]),
     (first, second): (&str, &str),
@@ -73,7 +73,7 @@ pub fn differences_page(
     )
 }
 
-/// A column in the second run against the first.
+/// Chart of one column: values of the second run against values of the first run.
 fn chart(
     values: &Table,
     one: &ColumnDifferences,
@@ -108,7 +108,7 @@ fn values(found: &[ColumnDifferences]) -> Result<Table> {
     table(&VALUES, found.iter().filter(|one| !is_cost(one)))
 }
 
-/// Some columns, those rows first that moved most surely.
+/// Returns a table of the columns' differences, the most significant rows first.
 fn table<'a>(
     file: &File<Difference>,
     columns: impl Iterator<Item = &'a ColumnDifferences>,
@@ -124,7 +124,7 @@ fn table<'a>(
     file.of(&rows)
 }
 
-/// What moved: of each table how much of it both have, then its values, then its costs.
+/// Describes the differences: for each table the number of shared settings, then its values, then its costs.
 fn sentences(found: &[ColumnDifferences]) -> Vec<String> {
     let mut said = Vec::new();
     let mut last = "";
@@ -132,7 +132,7 @@ fn sentences(found: &[ColumnDifferences]) -> Vec<String> {
         let Some(Difference { table, .. }) = one.rows.first() else {
             continue;
         };
-        // Those of a table stand together.
+        // Columns of one table are adjacent in `found`.
         if std::mem::replace(&mut last, table) != table {
             said.push(format!(
                 "{table}: {} settings are in both runs, {} in the first alone, {} in the second alone.",
@@ -149,7 +149,7 @@ fn sentences(found: &[ColumnDifferences]) -> Vec<String> {
     said
 }
 
-/// Says which rows and entries differ that the means of `sentences` do not cover: outcomes, numbers that one run lacks, and all other columns.
+/// Describes rows and entries that differ but are not covered by the means in `sentences`: outcomes, numbers absent in one run, and all other columns.
 pub fn entries_words(found: &[ColumnDifferences], tables: &[TableEntries]) -> Vec<String> {
     let has_moved = |file: &str, column: &str| {
         let mut of_column = found.iter().filter(|one| one.column.name == column);
@@ -158,7 +158,7 @@ pub fn entries_words(found: &[ColumnDifferences], tables: &[TableEntries]) -> Ve
             rows.any(|row| row.table == file && row.difference != 0.0)
         })
     };
-    // A table without trials has a setting a row, which its own sentence counts.
+    // A table without trials has one row for each setting; the sentence about settings already counts these rows.
     let counts_rows = |table: &TableEntries| {
         found.iter().any(|one| {
             let is_of_table = one.rows.first().is_some_and(|row| row.table == table.file);
@@ -171,7 +171,7 @@ pub fn entries_words(found: &[ColumnDifferences], tables: &[TableEntries]) -> Ve
     said.flatten().collect()
 }
 
-/// The same of one table; `counts_rows` is whether its rows are counted elsewhere, `has_moved` whether means of a column are said to differ.
+/// Describes one table. `counts_rows`: its rows are counted by another sentence; `has_moved`: another sentence reports that means of the column differ.
 fn table_words(
     table: &TableEntries,
     counts_rows: bool,
@@ -221,10 +221,10 @@ fn table_words(
     said
 }
 
-/// Changes of an outcome that a sentence lists, at most.
+/// Maximum number of changes of an outcome that a sentence lists.
 const MOST_CHANGES: usize = 8;
 
-/// `stability.csv: outcome: 1279 the same, 226 changed (226 from right to not finite).`
+/// Describes an outcome: `stability.csv: outcome: 1279 the same, 226 changed (226 from right to not finite).`
 fn outcome_words(file: &str, entries: &ColumnEntries) -> String {
     let listed = entries.changes.iter().take(MOST_CHANGES);
     let listed = listed.map(|(from, to, n)| format!("{n} from {from} to {to}"));
@@ -241,13 +241,13 @@ fn outcome_words(file: &str, entries: &ColumnEntries) -> String {
     )
 }
 
-/// `time to train: median 1.02 times that of the first run, 0.9 to 1.1 times.`
+/// Describes a cost: `time to train: median 1.02 times that of the first run, 0.9 to 1.1 times.`
 fn cost_words(one: &ColumnDifferences) -> String {
     let mut ratios: Vec<f64> = one.rows.iter().map(|row| row.second / row.first).collect();
     let [middle, least, most] = [0.5, 0.0, 1.0].map(|q| short_number(quantile(&mut ratios, q)));
     let words = &one.column.words;
     let n_changed = one.rows.iter().filter(|row| row.difference != 0.0).count();
-    // Ratios are rounded: a small change would be no change.
+    // Ratios are rounded, so a small change could look like no change.
     let small = match n_changed > 0 && [&middle, &least, &most].iter().all(|ratio| *ratio == "1") {
         true => format!(
             " {n_changed} of {} settings differ by less than that says.",
@@ -258,7 +258,7 @@ fn cost_words(one: &ColumnDifferences) -> String {
     format!("{words}: median {middle} times that of the first run, {least} to {most} times.{small}")
 }
 
-/// How many settings are better and worse, and how many of these by more than chance explains.
+/// Counts the settings that are better and worse, and how many of these differences are significant.
 fn value_words(one: &ColumnDifferences) -> Vec<String> {
     let words = match one.column.role {
         Role::Value(Better::Neither) => ["larger", "smaller"],

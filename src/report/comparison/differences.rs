@@ -1,8 +1,8 @@
-//! Two folders of results side by side: what moved between rows of the same settings, and whether chance explains it.
+//! Differences between two result folders, for rows with equal settings, and their statistical significance.
 //!
-//! Of each table that both have, rows are the same whose choices, conditions and subjects are. Of those that are repeated in trials the means
-//! are told, over trials that both have; where a table says on how many rows trials train and test, a t-test paired over trials tells whether
-//! chance explains the difference. Of values with intervals it does not if the two are apart.
+//! Rows of two tables correspond if their choices, conditions and subjects are equal. If settings are repeated in trials, the means over shared trials
+//! are compared. If the table contains the numbers of training and test rows, a t-test paired over trials gives the significance.
+//! If values have confidence intervals and no trials, a difference is significant if the two intervals are disjoint.
 
 use crate::error::{Error, Result};
 use crate::report::swept::Setting;
@@ -15,17 +15,17 @@ use crate::table::{Better, Column, Role, Table};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeSet, HashMap, HashSet};
 
-/// Whether chance explains a difference.
+/// Significance of a difference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Moved {
-    /// Less than once in twenty such comparisons; or the intervals are apart.
+    /// Significant: p < 0.05 after correction, or the intervals are disjoint.
     Surely,
-    /// Nobody can say: there are no intervals, and no trials or too few.
+    /// Not tested: there are no intervals, and no trials or too few.
     Untested,
-    /// It does.
+    /// Not significant: chance explains the difference.
     ByChance,
-    /// There is none.
+    /// Both values are equal.
     Same,
 }
 
@@ -37,62 +37,62 @@ const MOVED: &[(&str, &str)] = &[
 ];
 
 row! {
-/// A number that both folders have: a row of what `bubbletouch compare` writes.
+/// Comparison of one number in both folders: a row of the tables that `bubbletouch compare` writes.
 pub struct Difference {
-    /// The table's file.
+    /// File name of the table that contains the number.
     table: String => Subject;
-    /// Its column.
+    /// Column that contains the number.
     column: String => Subject;
-    /// Choices, conditions and subjects that vary, in words.
+    /// Description of the choices, conditions and subjects that vary.
     setting: String => Subject;
-    /// The first row in the second folder's table that has the setting, from 0.
+    /// First row of the second folder's table that has this setting, counted from 0.
     row: usize => Note: Linear;
-    /// Trials that both have; 1 where nothing is repeated.
+    /// Number of trials in both folders; 1 if the setting is not repeated.
     n_trials: usize => Note "trials of both": Linear;
-    /// In the first folder, mean over trials.
+    /// Value in the first folder, as the mean over shared trials.
     first: f64 => Value(Neither): Linear;
-    /// In the second.
+    /// Value in the second folder, as the mean over shared trials.
     second: f64 => Value(Neither): Linear;
-    /// Second less first.
+    /// Value in the second folder minus value in the first folder.
     difference: f64 => Value(Neither): Linear between [difference_low, difference_high];
-    /// Lower end of its 95 % interval, where trials are paired.
+    /// Lower end of the 95 % confidence interval of the difference; absent if trials are not paired.
     difference_low: Option<f64> => Note "95 % interval, lower end": Linear;
-    /// Upper end of it.
+    /// Upper end of the 95 % confidence interval of the difference; absent if trials are not paired.
     difference_high: Option<f64> => Note "95 % interval, upper end": Linear;
-    /// Whether chance explains it.
+    /// Significance of the difference.
     moved: Moved => Outcome "difference" named MOVED;
-    /// Two-sided p-value of no difference, where there are trials enough for one.
+    /// Two-sided p-value of the hypothesis of no difference; absent if there are too few trials.
     p_value: Option<f64> => Note "p-value": Linear;
-    /// The same after Holm's correction for all settings.
+    /// The p-value after Holm's correction for all settings of the column.
     p_holm: Option<f64> => Value(Neither) "p (Holm)": Linear;
-    /// Why there is a p-value or none.
+    /// Reason why a p-value is present or absent.
     p_status: Option<PStatus> => Outcome "test";
-    /// Trials from which on there is one; empty where no number of them is enough.
+    /// Number of trials that a p-value requires; absent if no number of trials is sufficient.
     n_trials_needed: Option<usize> => Note "trials needed": Linear;
 } }
 
-/// A column of a table of both folders.
+/// Differences in one column of a table that both folders have.
 pub struct ColumnDifferences {
-    /// What it is.
+    /// The compared column.
     pub column: Column,
-    /// Settings of both folders with a number in both.
+    /// Settings that have a number in both folders.
     pub rows: Vec<Difference>,
-    /// How many settings both have, with and without numbers.
+    /// Number of settings in both folders, with or without numbers.
     pub n_both: usize,
-    /// How many settings only the first has.
+    /// Number of settings in the first folder alone.
     pub n_first_only: usize,
-    /// How many only the second has.
+    /// Number of settings in the second folder alone.
     pub n_second_only: usize,
 }
 
-/// All columns of values and of costs of the tables that two folders have; of columns that several tables say of the same settings, the first.
+/// Returns the differences in all value and cost columns of the shared tables. If several tables have a column for equal settings, the first is used.
 ///
 /// # Errors
-/// No setting is in both; a setting of which both have other trials.
+/// If no setting is in both folders, or the two folders share no trial of a setting.
 pub fn differences(first: &[Table], second: &[Table]) -> Result<Vec<ColumnDifferences>> {
     let mut told = HashSet::new();
     let mut found = Vec::new();
-    // A table that is made of others tells nothing more.
+    // A table without a file is derived from other tables and contains nothing new.
     for second in second.iter().filter(|table| !table.csv.is_empty()) {
         let first = first.iter().find(|first| first.file == second.file);
         let (Some(first), Some(second)) = (first.and_then(Settings::of), Settings::of(second))
@@ -120,18 +120,18 @@ pub fn differences(first: &[Table], second: &[Table]) -> Result<Vec<ColumnDiffer
     }
 }
 
-/// The settings of a table, and the rows that have them.
+/// Settings of a table and their rows.
 struct Settings<'a> {
     table: &'a Table,
-    /// The columns that tell them apart.
+    /// Columns that distinguish the settings.
     columns: Vec<Setting<'a>>,
-    /// Rows of each, the trials of repeated ones; in the order of their first.
+    /// Rows of each setting, one for each trial, in the order of their first rows.
     groups: Vec<Vec<usize>>,
     is_repeated: bool,
 }
 
 impl<'a> Settings<'a> {
-    /// None of a table that names cells by their numbers, which other runs number otherwise, or whose rows nothing tells apart.
+    /// Returns `None` if the table names configurations by numbers, which differ between runs, or if several rows of an unrepeated table share a setting.
     fn of(table: &'a Table) -> Option<Self> {
         let columns = Setting::of_roles(table, &[Role::Choice, Role::Condition, Role::Subject]);
         let columns = columns.filter(|one| one.column.name != "trial");
@@ -150,7 +150,7 @@ impl<'a> Settings<'a> {
         })
     }
 
-    /// A setting by its values and their units; what is absent is left out.
+    /// Returns a setting as its values with their units. Absent values are left out.
     fn key(&self, row: usize) -> BTreeSet<String> {
         let columns = self.columns.iter();
         let said = columns.filter_map(|Setting { column, data }| {
@@ -160,7 +160,7 @@ impl<'a> Settings<'a> {
         said.collect()
     }
 
-    /// The same in words: what varies.
+    /// Describes a setting by the columns that vary.
     fn words(&self, row: usize) -> String {
         let columns = self.columns.iter();
         let varying = columns.filter(|one| one.data.varies(0..self.table.n_rows));
@@ -174,7 +174,7 @@ impl<'a> Settings<'a> {
         (!number.is_nan()).then_some(number as usize)
     }
 
-    /// The numbers of a column in some rows.
+    /// Returns the numbers of a column in the given rows, one for each trial.
     fn repeats(&self, column: &str, rows: &[usize]) -> Vec<Repeat> {
         let repeats = rows.iter().map(|&row| {
             let trial = self.count("trial", row).unwrap_or(0);
@@ -192,12 +192,12 @@ impl<'a> Settings<'a> {
         repeats.filter(|repeat| !repeat.score.is_nan()).collect()
     }
 
-    /// How a trial splits the touches; none where nothing says so.
+    /// Returns the numbers of training and test touches of a trial, or `None` if the table does not contain them.
     fn trial_size(&self, row: usize) -> Option<TrialSize> {
         self.is_repeated.then_some(())?;
         Some(TrialSize {
             n_train: self.count("n_train", row)?,
-            // How much the trials overlap is a matter of touches, however many of them one decision takes.
+            // The overlap of trials is counted in touches; a decision can use several touches.
             n_test: self.count("n_test", row)? * self.count("fused_touches", row).unwrap_or(1),
         })
     }
@@ -239,7 +239,7 @@ fn explained(is_by_chance: bool) -> Moved {
 
 type Rows<'a> = (&'a Settings<'a>, &'a [usize]);
 
-/// Of one setting; none where a number is absent.
+/// Compares one setting. Returns `None` if a number is absent.
 fn of_setting(
     column: &Column,
     (first, theirs): Rows,
@@ -279,7 +279,7 @@ fn of_setting(
         difference_high: interval.map(|interval| interval.high),
         moved: match intervals {
             _ if ours_mean == theirs_mean => Moved::Same,
-            // Those of single trials say nothing of their means.
+            // Intervals of single trials do not apply to the means over trials.
             Some(([low, high], [from, to])) if !first.is_repeated && !second.is_repeated => {
                 explained(low <= to && from <= high)
             }
@@ -293,7 +293,7 @@ fn of_setting(
 }
 
 impl ColumnDifferences {
-    /// How many rows moved so, to the better (of values of which neither is, to the larger), and to the worse.
+    /// Counts the selected rows that improved and that became worse. If neither direction is better, counts larger and smaller values.
     pub fn counts(&self, is_counted: impl Fn(&Difference) -> bool) -> [usize; 2] {
         let less = matches!(self.column.role, Role::Cost | Role::Value(Better::Less));
         let count = |better: bool| {

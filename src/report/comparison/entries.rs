@@ -1,4 +1,4 @@
-//! Two versions of a table entry by entry: which rows both have, and in which columns the entries of such rows differ, exactly.
+//! Exact comparison of two versions of a table: rows that both versions have, and columns in which the entries of such rows differ.
 //!
 //! [`differences`](super::differences) compares means over trials. This comparison has no such tolerance: it covers outcomes, notes, numbers that one
 //! version lacks, and tables that name configurations by number.
@@ -7,13 +7,13 @@ use crate::report::swept::Setting;
 use crate::table::{Column, Role, Table, Value};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-/// Columns whose numbers name configurations, which other runs number otherwise.
+/// Columns whose numbers name configurations. Another run can number the configurations differently.
 const CONFIGURATION_NUMBERS: [&str; 2] = ["cell", "best_cell"];
 
-/// Roles of the columns that tell rows apart.
+/// Roles of the columns that distinguish rows.
 const KEY_ROLES: [Role; 3] = [Role::Choice, Role::Condition, Role::Subject];
 
-/// A row of one version and the same row of the other.
+/// Row indices of corresponding rows: first version, second version.
 type Pair = (usize, usize);
 
 /// The rows of two versions of a table.
@@ -38,7 +38,7 @@ pub struct ColumnEntries {
     pub column: Column,
     /// Rows of both versions that have the same entry.
     pub n_same: usize,
-    /// The changed entries, first and second in words, and how many rows have this change; in the order of their first rows.
+    /// The changed entries as text (first version, second version), each with its number of rows, in the order of their first rows.
     pub changes: Vec<(String, String, usize)>,
     /// Rows with a value in the first version alone.
     pub n_first_only: usize,
@@ -53,7 +53,7 @@ impl ColumnEntries {
     }
 }
 
-/// Compares the files of tables that both folders have, in the order of the second.
+/// Compares the table files that both folders have, in the order of the second folder.
 pub fn entries(first: &[Table], second: &[Table]) -> Vec<TableEntries> {
     let numbers = [first, second].map(configurations);
     let with_files = second.iter().filter(|table| !table.csv.is_empty());
@@ -64,14 +64,14 @@ pub fn entries(first: &[Table], second: &[Table]) -> Vec<TableEntries> {
     found.collect()
 }
 
-/// The files of tables that only one of two folders has.
+/// Returns the names of the table files that `one` has and `other` lacks.
 pub fn files_of_one<'a>(one: &'a [Table], other: &[Table]) -> Vec<&'a str> {
     let files = one.iter().filter(|table| !table.csv.is_empty());
     let alone = files.filter(|table| other.iter().all(|known| known.file != table.file));
     alone.map(|table| table.file).collect()
 }
 
-/// The settings of each configuration by its number.
+/// The settings of each configuration, by its number.
 type Configurations = HashMap<u64, String>;
 
 fn configurations(tables: &[Table]) -> Configurations {
@@ -83,7 +83,7 @@ fn configurations(tables: &[Table]) -> Configurations {
         };
         // In a table of configurations the number is a note beside their settings.
         if column.role == Role::Note {
-            // Seeds are subjects, too; a trial is one of a configuration.
+            // Seeds are subjects, too. The trial is left out, because a configuration has several trials.
             let columns = Setting::of_roles(table, &KEY_ROLES);
             let columns: Vec<Setting> = columns.filter(|one| one.column.name != "trial").collect();
             for row in 0..table.n_rows {
@@ -94,7 +94,7 @@ fn configurations(tables: &[Table]) -> Configurations {
                 let said = columns.iter();
                 let said = said.filter_map(|one| entry(*one, row, &Configurations::new()));
                 let said: String = said.collect();
-                // A second number of the same settings is a number that was changed.
+                // If the settings already have a number, the number was changed between rows.
                 if named.insert(said.clone()) {
                     known.insert(number, said);
                 }
@@ -104,14 +104,14 @@ fn configurations(tables: &[Table]) -> Configurations {
     known
 }
 
-/// The settings of a row with their units. An entry that is absent is the same as a column that is absent: both do not apply.
+/// Returns the settings of a row with their units. An absent entry equals an absent column: in both cases the setting does not apply.
 fn settings(table: &Table, row: usize, roles: &[Role], configurations: &Configurations) -> String {
     let columns = Setting::of_roles(table, roles);
     let said = columns.filter_map(|one| entry(one, row, configurations));
     said.collect()
 }
 
-/// An entry of a row with the name and the unit of its column; a configuration by its settings.
+/// Returns an entry with the name and unit of its column. A configuration number is replaced by the settings of the configuration.
 fn entry(one: Setting, row: usize, configurations: &Configurations) -> Option<String> {
     let value = one.data.value(row)?;
     let name = &one.column.name;
@@ -131,7 +131,7 @@ fn of_table(tables: [&Table; 2], configurations: &[Configurations; 2]) -> TableE
         places.entry(key(0, row)).or_default().push(row);
     }
     let pairs = (0..second.n_rows).filter_map(|row| {
-        // Rows that no setting tells apart are taken in their order.
+        // If no setting distinguishes rows, they are paired in order.
         let same = places.get_mut(&key(1, row))?;
         Some((same.pop()?, row))
     });
@@ -154,7 +154,7 @@ fn of_table(tables: [&Table; 2], configurations: &[Configurations; 2]) -> TableE
     }
 }
 
-/// A column of the second table against that of the first; `None` if all entries are the same.
+/// Compares a column of both versions. Returns `None` if all entries are equal.
 fn of_column(
     one: Setting,
     [first, _]: [&Table; 2],
@@ -193,7 +193,7 @@ fn of_column(
     })
 }
 
-/// An entry in words; numbers in full.
+/// Formats an entry. Numbers are not rounded.
 fn words(one: Setting, row: usize) -> String {
     match one.data.value(row) {
         None => "nothing".to_owned(),

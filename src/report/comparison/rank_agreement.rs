@@ -1,9 +1,9 @@
-//! Whether two studies rank their designs alike: a simulated skin and a real one, say, which share no setting to the letter.
+//! Agreement of the rankings of designs in two studies, for example of a simulated skin and a real one, whose settings are not all equal.
 //!
-//! Designs are told apart by the choices and conditions of which both tables have a value in common. Rows with values of one table alone are left out,
-//! and of what else differs the mean is taken. Values are the same if their numbers and units are exactly the same; that a setting does not apply (a
-//! k-NN has no C) is a value, too. Compression ratios of two tables are the same if one nominal ratio r gives both numbers of measurements,
-//! m = n / r rounded, as on arrays that do not divide by r.
+//! A design is a combination of the choices and conditions for which both tables have common values. Rows with a value that only one table has are left out.
+//! The mean is taken over all other columns. Two values are equal if their numbers and units are exactly equal. "Does not apply" (a
+//! k-NN has no C) is a value, too. Compression ratios of two tables are equal if one nominal ratio r gives both numbers of measurements,
+//! m = n / r rounded, as on arrays that are not divisible by r.
 
 use crate::report::swept::Setting;
 use crate::statistics::p_status::CONFIDENCE;
@@ -12,26 +12,26 @@ use crate::table::{Column, Role, Table, Value, short_number};
 use bubbletouch_sim::statistics::interval::Interval;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-/// What is ranked.
+/// The ranked column.
 const RANKED: &str = "accuracy";
-/// Designs below which there is no order to speak of.
+/// Minimum number of designs for a comparison of rankings.
 const FEWEST: usize = 5;
 
-/// How alike two studies rank their designs.
+/// Agreement of the rankings of designs in two studies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RankAgreement {
-    /// Designs of both.
+    /// Number of designs in both studies.
     pub n_designs: usize,
-    /// Kendall's τ of their accuracies.
+    /// Kendall's τ of the accuracies, −1 ≤ τ ≤ 1.
     pub tau: f64,
-    /// Its bootstrap interval over designs.
+    /// Bootstrap confidence interval of τ over designs.
     pub interval: Interval,
-    /// Of each choice: its words, how many pairs of designs that differ in nothing else are in the same order, and of how many that are
-    /// no tie.
+    /// For each choice: its description, and two counts of pairs of designs that differ in this choice alone. The first count is the pairs
+    /// that both studies order alike; the second is all pairs without a tie.
     pub choices: Vec<(String, usize, usize)>,
 }
 
-/// Of the first tables of either that tell accuracies; none where too few designs are in both.
+/// Compares the first table with accuracies of either study. Returns `None` if both studies share too few designs.
 pub fn rank_agreement(first: &[Table], second: &[Table]) -> Option<RankAgreement> {
     let ranked = |tables: &'_ [Table]| {
         let mut places = 0..tables.len();
@@ -68,7 +68,7 @@ pub fn rank_agreement(first: &[Table], second: &[Table]) -> Option<RankAgreement
 }
 
 impl RankAgreement {
-    /// Two sentences.
+    /// Describes the agreement in two sentences.
     pub fn words(&self) -> Vec<String> {
         let [tau, low, high] = [self.tau, self.interval.low, self.interval.high].map(short_number);
         let choices = self.choices.iter();
@@ -91,7 +91,7 @@ impl RankAgreement {
     }
 }
 
-/// A choice that tells designs apart, and its values that both tables have.
+/// A choice that distinguishes designs, and its values that both tables have.
 struct Choice<'a> {
     column: &'a Column,
     values: BTreeSet<String>,
@@ -100,10 +100,10 @@ struct Choice<'a> {
 /// The values of all choices of a design.
 type Design = Vec<String>;
 
-/// A table, and what its ratios are called in another table.
+/// A table and the mapping of its compression ratios to those of another table.
 struct Ranked<'a> {
     table: &'a Table,
-    /// The other table's ratio for each ratio that is the same, by its bits.
+    /// The equal ratio of the other table, for each ratio by its bits.
     ratios: HashMap<u64, f64>,
 }
 
@@ -113,7 +113,7 @@ impl<'a> Ranked<'a> {
         Self { table, ratios }
     }
 
-    /// With the ratios of another table where the same nominal ratio gives both; each ratio is matched with the nearest one.
+    /// Maps each ratio to the nearest ratio of the other table if one nominal ratio gives both.
     fn like(table: &'a Table, other: &Table) -> Self {
         let (ours, theirs) = (nominal_ratios(table), nominal_ratios(other));
         let nearest = |of: &NominalRatio, among: &[NominalRatio]| {
@@ -129,7 +129,7 @@ impl<'a> Ranked<'a> {
         Self { table, ratios }
     }
 
-    /// A value with its unit; empty where the setting does not apply; `None` of a column that the table lacks.
+    /// Returns a value with its unit: empty if the setting does not apply, `None` if the table lacks the column.
     fn value(&self, column: &str, row: usize) -> Option<String> {
         let (column, data) = self.table.column(column)?;
         Some(match data.value(row) {
@@ -144,7 +144,7 @@ impl<'a> Ranked<'a> {
     }
 }
 
-/// A compression ratio, and the nominal ratios from which rounding gives its number of measurements.
+/// A compression ratio, and the range of nominal ratios that round to its number of measurements.
 #[derive(Clone, Copy, PartialEq)]
 struct NominalRatio {
     ratio: f64,
@@ -162,7 +162,7 @@ impl NominalRatio {
     }
 }
 
-/// The ratios of a table, each once; without numbers of measurements each is nominal itself.
+/// Returns the distinct ratios of a table. Without numbers of measurements, each ratio is its own nominal ratio.
 fn nominal_ratios(table: &Table) -> Vec<NominalRatio> {
     let rows = table.groups(&["ratio"], 0..table.n_rows);
     let ratios = rows.iter().map(|rows| {
@@ -181,7 +181,7 @@ fn nominal_ratios(table: &Table) -> Vec<NominalRatio> {
 fn shared_choices<'a>(first: &Ranked<'a>, second: &Ranked) -> Vec<Choice<'a>> {
     let has_ratio = first.table.place("ratio").is_some();
     let choices = Setting::of_roles(first.table, &[Role::Choice, Role::Condition]);
-    // On arrays of two sizes a ratio is the same choice, a number of measurements is not.
+    // Arrays of two sizes can share a compression ratio, but equal numbers of measurements mean different ratios.
     let choices = choices.filter(|one| !(has_ratio && one.column.name == "measurements"));
     let choices = choices.filter_map(|one| {
         let values = |ranked: &Ranked| -> BTreeSet<String> {
@@ -199,7 +199,7 @@ fn shared_choices<'a>(first: &Ranked<'a>, second: &Ranked) -> Vec<Choice<'a>> {
     choices.collect()
 }
 
-/// Mean accuracy of each design that has none but shared values.
+/// Returns the mean accuracy of each design that has only shared values.
 fn designs(ranked: &Ranked, shared: &[Choice]) -> BTreeMap<Design, f64> {
     let mut sums: BTreeMap<Design, (f64, f64)> = BTreeMap::new();
     for row in 0..ranked.table.n_rows {
@@ -220,7 +220,7 @@ fn designs(ranked: &Ranked, shared: &[Choice]) -> BTreeMap<Design, f64> {
     means.collect()
 }
 
-/// Pairs that differ in one choice alone and are no tie: how many both order alike, and how many there are.
+/// Counts pairs of designs without a tie that differ in one choice alone. Returns the pairs that both studies order alike, and all pairs.
 fn in_order(designs: &[(&Design, [f64; 2])], choice: usize) -> (usize, usize) {
     let without = |design: &Design| {
         let mut others = design.clone();
