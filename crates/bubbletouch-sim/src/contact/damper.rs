@@ -1,19 +1,19 @@
-//! The damper: taxels that nothing pushes relax, and forces that know the rate.
+//! Dampers of the taxels: free relaxation and rate-dependent forces.
 //!
-//! Over a step Δt a free taxel goes `δ → δ e^(−k Δt / c)` (exactly, whatever Δt), so
+//! Over a step Δt a free taxel relaxes as `δ → δ e^(−k Δt / c)`, exactly for any Δt, so
 //! `δ(t + Δt) = max(δ(t) e^(−k Δt / c), δ*(t + Δt))`.
-//! The force is the constant one that takes the taxel there within the step,
+//! The force is the constant force that moves the taxel to δ(t + Δt) within the step,
 //!
 //! ```text
 //! f = k (δ(t + Δt) − δ(t) φ) / (1 − φ),   φ = e^(−k Δt / c)
 //! ```
 //!
-//! which is zero exactly where the taxel relaxes freely and positive where it is pushed: the complementarity
-//! 0 ≤ f ⟂ gap ≥ 0 of \[PT\] in closed form. It tends to `k δ + c δ̇` for Δt → 0 and is `k δ` for c = 0 or at rest.
+//! The force is zero exactly if the taxel relaxes freely and positive if the taxel is pushed: the complementarity condition
+//! 0 ≤ f ⟂ gap ≥ 0 of \[PT\] in closed form. The force tends to `k δ + c δ̇` for Δt → 0 and equals `k δ` for c = 0 or at rest.
 
 use crate::world::{Taxel, Taxels};
 
-/// φ = e^(−k Δt / c): what is left of a free taxel's deflection after `dt` seconds; 0 without a damper.
+/// Returns φ = e^(−k Δt / c), the fraction of a free taxel's deflection that remains after `dt` seconds; 0 without a damper.
 pub fn relaxation_factor(taxel: &Taxel, dt: f64) -> f64 {
     if taxel.damping == 0.0 {
         return 0.0;
@@ -24,14 +24,14 @@ pub fn relaxation_factor(taxel: &Taxel, dt: f64) -> f64 {
 /// Deflections and forces of one patch between steps.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DamperState {
-    /// n_taxels, metres.
+    /// Metres, shape (n_taxels,).
     pub deflection: Vec<f64>,
-    /// n_taxels, newtons, never negative.
+    /// Newtons, never negative, shape (n_taxels,).
     pub force: Vec<f64>,
 }
 
 impl DamperState {
-    /// An untouched patch of `n_taxels`.
+    /// Creates the state of an untouched patch with `n_taxels` taxels.
     pub fn at_rest(n_taxels: usize) -> Self {
         Self {
             deflection: vec![0.0; n_taxels],
@@ -39,10 +39,10 @@ impl DamperState {
         }
     }
 
-    /// One step of `dt` seconds (positive) to the contact deflections δ* at its end (n_taxels, metres).
+    /// Advances by `dt` seconds (positive) to the contact deflections δ* at the step's end, metres, shape (n_taxels,).
     ///
     /// # Panics
-    /// If `contact`, or taxels that are given one each, are not as many as the state's.
+    /// If the length of `contact`, or of a list with one taxel each, differs from the length of the state.
     pub fn step(&mut self, taxels: &Taxels, dt: f64, contact: &[f64]) {
         assert_eq!(contact.len(), self.deflection.len());
         let states = self.deflection.iter_mut().zip(&mut self.force).zip(contact);
@@ -56,7 +56,7 @@ impl DamperState {
             Taxels::Each(each) => {
                 assert_eq!(each.len(), contact.len());
                 for (((deflection, force), &pushed), taxel) in states.zip(each) {
-                    // Most taxels are out and stay out: no exponential for them.
+                    // Most taxels remain undeflected; this branch skips their exponential.
                     if *deflection == 0.0 && pushed == 0.0 {
                         *force = 0.0;
                         continue;
@@ -68,7 +68,7 @@ impl DamperState {
     }
 }
 
-/// What a step of one length does to taxels of one kind.
+/// Relaxation of equal taxels over a step of fixed length.
 pub struct Relaxation {
     stiffness: f64,
     /// φ.
@@ -92,7 +92,7 @@ impl Relaxation {
         }
     }
 
-    /// Takes a taxel to the end of the step and returns its force.
+    /// Advances a taxel to the end of the step and returns its force, newtons.
     #[inline]
     fn advance(&self, deflection: &mut f64, pushed: f64) -> f64 {
         let before = *deflection;
@@ -100,7 +100,7 @@ impl Relaxation {
         self.force(before, *deflection)
     }
 
-    /// The force, newtons, that takes a taxel from a deflection to another, metres, within the step.
+    /// Returns the force, newtons, that moves a taxel from one deflection to another, metres, within the step.
     #[inline]
     pub(crate) fn force(&self, before: f64, after: f64) -> f64 {
         self.stiffness * (after - before * self.left) / self.gone

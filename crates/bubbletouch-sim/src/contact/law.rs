@@ -71,7 +71,7 @@ pub(super) fn may_exceed(q: f64, height: f64, deflection: f64) -> bool {
     shortfall(q, height, deflection) < 0.0
 }
 
-/// Below zero if √q − h may be above the deflection, m².
+/// Returns a value below zero if √q − h may be above the deflection, m².
 #[inline(always)]
 fn shortfall(q: f64, height: f64, deflection: f64) -> f64 {
     let bar = (height + deflection).max(0.0);
@@ -109,9 +109,9 @@ pub(crate) fn beats<const N: usize>(
 
 /// Raises deflections to √q − h where q is above zero; `squares` are q, m², and `heights` h, metres.
 ///
-/// Written for compilers: by numbers, as the parts of an iterator that are compiled elsewhere would be called; by way of copies, as
-/// numbers in memory that may be the same are not computed together; roots of all, as those of less than nothing cost no more; and a
-/// maximum, as a comparison in its place becomes a masked store, for which some processors take ten times as long.
+/// Indexed loops over local copies let the compiler vectorise this function. Iterator adapters compiled elsewhere would remain calls, and memory that
+/// may alias is not vectorised. The roots of all lanes are taken, because those of negative numbers cost no more. The maximum avoids a
+/// masked store, which takes ten times as long on some processors.
 #[inline(always)]
 pub(crate) fn indent<const N: usize>(
     squares: &[f64; N],

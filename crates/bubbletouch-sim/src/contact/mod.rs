@@ -7,34 +7,34 @@
 //! δ*_i = min(s, max(0, max_j δ_ij))
 //! ```
 //!
-//! On a mesh the taxel stays on its substrate's side of every triangle swept by a ball of radius ρ: `swept_triangle` has the
-//! equations of its faces, edges and corners.
+//! On a mesh the taxel stays on its substrate's side of every triangle swept by a ball of radius ρ. The module `swept_triangle` has the
+//! equations for faces, edges and corners.
 //!
-//! **Behind the substrate.** A press comes from the front and stays there: to a depth, a travel or a force all counts, however deep,
-//! so that no taxel of a flat patch is deflected less the deeper it is pressed. At a pose without such a way ([`press_at_pose`],
-//! [`press_with_contacts`]) and to free objects a sphere or a mesh counts until it is wholly behind the substrate, as far as that taxel can
-//! tell: a taxel that rests on its far side would be further back than the substrate is, `h + √(S² − b²) < −s − ρ` (the module `law` has this
-//! predicate). So a ball that goes through a skin leaves it taxel by taxel. In a time loop, and on the way of a press, what pushed a taxel in the step before
-//! goes on pushing it.
+//! **Behind the substrate.** A press to a depth, a travel or a force approaches from the front, and all spheres count at any depth. The
+//! deflection of a taxel of a flat patch therefore never decreases with the depth. At a pose without a path ([`press_at_pose`],
+//! [`press_with_contacts`]) and for free objects, a sphere or a mesh counts until it is wholly behind the substrate. This is decided for each taxel:
+//! the obstacle is behind if a taxel resting on its far side would be behind the substrate, `h + √(S² − b²) < −s − ρ` (predicate in the module `law`).
+//! So a ball that moves through a skin leaves it taxel by taxel. In a time loop, and along the path of a press, a part that pushed a taxel in the step
+//! before continues to push this taxel.
 //!
-//! A taxel that would have to go further than its stroke s is saturated: counted in [`Contact`], never hidden.
+//! A taxel that an object would push further than its stroke s is saturated; [`Contact`] counts such taxels.
 //!
-//! A **direct press** ([`press_to_depth`], [`press_to_travel`], [`press_to_force`]; along other directions than z, and on from there
-//! sideways: [`Approach`]) evaluates this at the final pose. A **time loop** ([`simulate()`], [`DamperState`]) adds the damper: a taxel
-//! that nothing pushes relaxes, `k δ + c δ̇ = 0`. Without a damper both agree exactly, so a scene that has none needs no loop.
+//! A **direct press** ([`press_to_depth`], [`press_to_travel`], [`press_to_force`]) evaluates the law at the final pose. [`Approach`] presses along
+//! directions other than z and can then slide sideways. A **time loop** ([`simulate()`], [`DamperState`]) adds the damper: a free taxel
+//! relaxes, `k δ + c δ̇ = 0`. Without a damper both agree exactly, so a scene without dampers needs no loop.
 //!
-//! On a flat grid of taxels that go equally deep the kernel goes along rows; on any other layout it finds the taxels near each sphere in a
-//! tree. [`press_with_contacts`] also says which part of which object decides each taxel ([`TaxelContact`]); [`spring_load`] adds up
-//! what the springs carry.
+//! On a flat grid with equal radii and substrate heights the kernel works along rows; on any other layout it finds the taxels near each sphere in a
+//! tree. [`press_with_contacts`] also records which part of which object determines each deflection ([`TaxelContact`]). [`spring_load`] sums
+//! the forces of the springs.
 //!
 //! A free object rests where its weight and the forces of the taxels balance: [`equilibrium`].
 //!
-//! A **touch to a force** goes on until the springs carry Σ k δ = F together: exactly the press at the travel that it finds.
-//! [`MovedObject`] holds a force by one object among others.
+//! A **touch to a force** ends where the springs carry Σ k δ = F together; the result equals a press to the travel found.
+//! [`MovedObject`] presses one object among others to a force.
 //!
-//! **Friction** is an option: with [`Shear`](crate::world::Shear) springs the tips of the taxels are dragged along and slip, and each
-//! taxel feels a force in three dimensions ([`FrictionState`], which has the equations). Without it, and with μ = 0 to the bit, the forces
-//! are those of `spring_load`.
+//! **Friction** is optional: with [`Shear`](crate::world::Shear) springs the objects drag the tips of the taxels until they slip. Each
+//! taxel then measures a three-axis force ([`FrictionState`] has the equations). Without friction, and to the bit with μ = 0, the forces
+//! equal `spring_load`.
 
 mod damper;
 pub mod equilibrium;

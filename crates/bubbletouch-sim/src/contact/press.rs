@@ -1,7 +1,7 @@
-//! Presses: of any patch on any objects, to a depth, a travel or a force along its z axis, or right at a pose.
+//! Presses of any patch on any objects: to a depth, a travel or a force along the patch's z axis, or at a given pose.
 //!
-//! A flat grid of taxels that go equally deep is pressed row by row (`grid`), any other patch taxel by taxel
-//! (`tree`); what both can do is the same, to rounding.
+//! A flat grid with equal radii and substrate heights is pressed row by row (`grid`), any other patch taxel by taxel
+//! (`tree`). Both kernels agree to rounding.
 
 use super::grid::{OutputBuffer, Row, TravelGoal, force};
 use super::press_summary::Contact;
@@ -12,26 +12,26 @@ use crate::geometry::Pose;
 use crate::objects::Model;
 use crate::world::{Patch, Taxels};
 
-/// What ends a press.
+/// End condition of a press.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
-    /// Nothing: [`press_at_pose`].
+    /// Presses at the given pose, without travel: [`press_at_pose`].
     Pose,
-    /// Metres past first contact: [`press_to_depth`].
+    /// Depth past first contact, metres: [`press_to_depth`].
     Depth(f64),
-    /// Metres from the pose: [`press_to_travel`].
+    /// Travel from the given pose, metres: [`press_to_travel`].
     Travel(f64),
-    /// Newtons that the springs carry: [`press_to_force`].
+    /// Force that the springs carry together, newtons: [`press_to_force`].
     Force(f64),
 }
 
-/// The press that a goal asks for; `None` (and zero deflections) where the patch meets nothing on its way.
+/// Presses until `goal` is reached. Returns `None`, with zero deflections, if the patch meets nothing on its path.
 ///
 /// # Errors
-/// Those of [`press_to_force`].
+/// If [`press_to_force`] fails.
 ///
 /// # Panics
-/// If there are not as many poses as objects.
+/// If the number of poses differs from the number of objects.
 pub fn press(
     patch: &Patch,
     objects: &[Model],
@@ -43,13 +43,13 @@ pub fn press(
     to_goal(patch, placed, goal, (workspace, &mut OutputBuffer::none()))
 }
 
-/// The same press, whose deflections are written into a row, too: faster than a copy of them, where rows are many.
+/// Presses until `goal` is reached and also writes the deflections into `row`, which is faster than copying them afterwards.
 ///
 /// # Errors
-/// Those of [`press_to_force`]; then nobody knows what is in the row.
+/// If [`press_to_force`] fails; the contents of `row` are then unspecified.
 ///
 /// # Panics
-/// If there are not as many poses as objects, or the row has not one place a taxel.
+/// If the number of poses differs from the number of objects, or `row` has not `n_taxels` elements.
 pub fn press_into(
     patch: &Patch,
     objects: &[Model],
@@ -62,13 +62,14 @@ pub fn press_into(
     press_with_output(patch, placed, goal, (workspace, OutputBuffer::new(row)))
 }
 
-/// The same press into a row of zeros. What nothing has come near is left alone: an array whose pages were never written costs nothing there.
+/// Presses until `goal` is reached and writes the deflections into a row of zeros. Taxels far from all objects are not written, so
+/// memory pages of the array that were never written cost nothing.
 ///
 /// # Errors
-/// Those of [`press_into`].
+/// If [`press_into`] fails.
 ///
 /// # Panics
-/// As [`press_into`].
+/// If the number of poses differs from the number of objects, or `zeros` has not `n_taxels` elements.
 pub fn press_onto_zeros(
     patch: &Patch,
     objects: &[Model],
@@ -95,7 +96,7 @@ fn press_with_output(
     assert_eq!(output.row.len(), patch.n_taxels(), "one number a taxel");
     let contact = to_goal(patch, placed, goal, (workspace, &mut output))?;
     match workspace.is_on_grid() {
-        // Written there, or nothing is touched.
+        // The kernel has written the row, or nothing is touched.
         true => output.finish(),
         false => output.row.write(workspace.deflections()),
     }
@@ -126,7 +127,7 @@ fn to_place(
 ) -> Option<Contact> {
     let by_rows = |workspace: &Workspace| match until {
         TravelGoal::Depth(_) | TravelGoal::Travel(_) => true,
-        // At a pose a mesh may be behind some taxels, and what is held pushes from there.
+        // At a pose a mesh may be behind some taxels, and held parts push from behind the substrate.
         TravelGoal::Pose => {
             objects.iter().all(|object| object.spheres().is_some()) && !workspace.holds_any()
         }
@@ -167,13 +168,13 @@ fn to_place(
     }
 }
 
-/// How far the patch must travel along z until the first taxel is touched, metres (negative: it already is); `None` where no
-/// travel would touch anything.
+/// Returns the travel along z at which the first taxel is touched, metres; negative if a taxel is touched already. Returns `None` if no
+/// travel touches anything.
 ///
-/// Poses are `patch_from_object`, one an object. Closed form: a taxel that travels along a line meets a sphere at a root.
+/// `patch_from_objects` has one pose per object. Closed form: a taxel that travels along a line meets a sphere at a root of a quadratic equation.
 ///
 /// # Panics
-/// If there are not as many poses as objects.
+/// If the number of poses differs from the number of objects.
 pub fn first_contact(
     patch: &Patch,
     objects: &[Model],
@@ -191,13 +192,13 @@ pub fn first_contact(
     }
 }
 
-/// Presses until the patch is `depth` metres past first contact; `None` (and zero deflections) where it meets nothing.
+/// Presses until the patch is `depth` metres past first contact. Returns `None`, with zero deflections, if the patch meets nothing.
 ///
-/// The patch comes from the front and all counts, however deep: past the stroke taxels are saturated. On a flat patch no taxel that is
-/// touched at a depth is deflected less at a larger one.
+/// The patch approaches from the front, and all spheres count at any depth; taxels pushed past their stroke are saturated. On a flat patch the
+/// deflection of a taxel never decreases with the depth.
 ///
 /// # Panics
-/// If there are not as many poses as objects.
+/// If the number of poses differs from the number of objects.
 pub fn press_to_depth(
     patch: &Patch,
     objects: &[Model],
@@ -210,11 +211,11 @@ pub fn press_to_depth(
     to_place(patch, placed, TravelGoal::Depth(depth), scratch)
 }
 
-/// Presses until the patch has moved `travel` metres along z from the pose given, from the front: the press of [`press_to_depth`]
-/// with this travel.
+/// Presses from the front until the patch has moved `travel` metres along z from the given pose. The result equals [`press_to_depth`]
+/// at the depth with this travel.
 ///
 /// # Panics
-/// If there are not as many poses as objects.
+/// If the number of poses differs from the number of objects.
 pub fn press_to_travel(
     patch: &Patch,
     objects: &[Model],
@@ -227,17 +228,17 @@ pub fn press_to_travel(
     to_place(patch, placed, TravelGoal::Travel(travel), scratch).unwrap_or_default()
 }
 
-/// Presses until the springs carry `force` newtons together, Σ k δ: to within 1e-12 of it, or to the last bit of the travel.
+/// Presses until the springs carry `force` newtons together, Σ k δ, to within a relative 1e-12 or the last bit of the travel.
 ///
-/// `None` (and zero deflections) where the patch meets nothing. The travel may be negative, as that of
-/// [`press_to_depth`]: to the depth of this travel past [`first_contact`] it is the same press.
+/// Returns `None`, with zero deflections, if the patch meets nothing. The travel may be negative. The result equals
+/// [`press_to_depth`] at the depth `travel − first_contact` (see [`first_contact`]).
 ///
 /// # Errors
-/// A force that is not a positive number; one that is more than what the object can press into the taxels' strokes: the text
-/// says the largest force, and its travel.
+/// If `force` is not a positive number or exceeds the largest force that the object can exert within the taxels' strokes. The message contains
+/// this largest force and its travel.
 ///
 /// # Panics
-/// If there are not as many poses as objects.
+/// If the number of poses differs from the number of objects.
 ///
 /// ```
 /// use bubbletouch_sim::contact::{Workspace, press_to_force};
@@ -290,7 +291,7 @@ fn to_force(
 /// Presses as [`press_with_contacts`](super::press_with_contacts) does, without recording contacts.
 ///
 /// # Panics
-/// If there are not as many poses as objects.
+/// If the number of poses differs from the number of objects.
 pub fn press_at_pose(
     patch: &Patch,
     objects: &[Model],

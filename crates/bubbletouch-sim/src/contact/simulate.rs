@@ -9,29 +9,28 @@ use crate::text::in_range::positive;
 use crate::world::{Patch, VelocityPlan};
 use ndarray::{Array1, Array2, ArrayView1};
 
-/// Frames over time.
+/// Frames recorded over time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
-    /// n_frames, seconds.
+    /// Times, seconds, shape (n_frames,).
     pub time: Array1<f64>,
-    /// n_frames × n_taxels, metres.
+    /// Metres, shape (n_frames, n_taxels).
     pub deflection: Array2<f64>,
-    /// n_frames × n_taxels, newtons.
+    /// Newtons, shape (n_frames, n_taxels).
     pub force: Array2<f64>,
-    /// Taxels at their stroke, summed over frames.
+    /// Number of taxels at their stroke, summed over frames.
     pub n_saturated: usize,
 }
 
-/// Moves the patch and the objects along their plans from t = 0 and records every `dt` seconds until `n_frames` frames
-/// are made; frame k is at (k + 1) dt.
+/// Moves the patch and the objects along their plans from t = 0 and records `n_frames` frames, one every `dt` seconds; frame k is at (k + 1) dt.
 ///
-/// What comes through the front of the patch goes on pressing behind the substrate, as in a direct press: what pushed a taxel in the
-/// frame before pushes it there, too.
+/// A part that pushed a taxel in the frame before continues to push this taxel, even from behind the substrate, as in a
+/// direct press.
 ///
-/// `world_from_objects`: one plan an object; a fixed object's plan has no phases. Any `dt` is stable.
+/// `world_from_objects` has one plan per object; the plan of a fixed object has no phases. Any `dt` is stable.
 ///
 /// # Errors
-/// The error names a `dt` that is not positive, or a number of plans that is not the number of objects.
+/// If `dt` is not positive, or the number of plans differs from the number of objects.
 pub fn simulate(
     patch: &Patch,
     objects: &[Model],

@@ -1,37 +1,37 @@
-//! What a thread presses in.
+//! Workspace of a thread for presses.
 
 use super::grid::{GridLines, GridPress};
 use super::instructions::Instructions;
 use super::taxel_contact::TaxelContact;
 use crate::geometry::Pose;
 
-/// Scratch of one thread, and what the last press left; it is reused, so a press allocates nothing once the largest patch has been seen.
+/// Scratch memory of one thread and the result of its last press. Reuse avoids allocations once the largest patch has been pressed.
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
     instructions: Instructions,
-    /// Of flat grids pressed along their axis.
+    /// Workspace for flat grids pressed along their axis.
     grid: GridPress,
-    /// Whether that was the last press.
+    /// Whether the last press used `grid`.
     is_on_grid: bool,
-    /// n_taxels, metres.
+    /// Metres, shape (n_taxels,).
     pub(super) deflections: Vec<f64>,
-    /// n_taxels: object and part; of untouched taxels whatever was there.
+    /// Object and part that determine each deflection, shape (n_taxels,); unspecified for untouched taxels.
     pub(super) deciding: Vec<[u32; 2]>,
-    /// The touched taxels, ascending at the end of a press.
+    /// Touched taxels, ascending after a press.
     pub(super) touched: Vec<u32>,
-    /// Spheres of an object that are near.
+    /// Spheres of an object near the patch.
     pub(super) near: Vec<u32>,
-    /// Of the last even grid.
+    /// Lines of the last even grid.
     pub(super) lines: GridLines,
-    /// Of the touched taxels, in the same order.
+    /// Contacts of the touched taxels, in the order of `touched`.
     pub(super) contacts: Vec<TaxelContact>,
-    /// What goes on pushing its taxel, behind the substrate too; see [`hold`](Self::hold).
+    /// Parts that push their taxels even from behind the substrate; see [`hold`](Self::hold).
     pub(super) held: Vec<Held>,
-    /// Of the objects on their way.
+    /// Poses of the objects along their path.
     pub(super) poses: Vec<Pose>,
 }
 
-/// A taxel that is held, and what it is held by: object and part.
+/// Held taxel, with the object and part that hold it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Held {
     pub taxel: u32,
@@ -39,12 +39,12 @@ pub(super) struct Held {
 }
 
 impl Workspace {
-    /// An empty workspace.
+    /// Creates an empty workspace.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// An empty workspace for some other than the best instructions, to compare them.
+    /// Creates an empty workspace that uses the given instructions, for comparisons.
     pub fn with(instructions: Instructions) -> Self {
         Self {
             instructions,
@@ -56,7 +56,7 @@ impl Workspace {
         self.instructions
     }
 
-    /// Deflections of the last press: n_taxels, metres, in the order of the layout.
+    /// Returns the deflections of the last press, metres, shape (n_taxels,), in the order of the layout.
     pub fn deflections(&self) -> &[f64] {
         match self.is_on_grid {
             true => self.grid.deflections(),
@@ -64,18 +64,18 @@ impl Workspace {
         }
     }
 
-    /// Whether the last press was of a flat grid along its axis.
+    /// Returns whether the last press was of a flat grid along its axis.
     pub(super) fn is_on_grid(&self) -> bool {
         self.is_on_grid
     }
 
-    /// The touched taxels of the last press, ascending; none if it was a [press](super::press_at_pose) that does not say what touches what.
+    /// Returns the contacts of the last press, ascending by taxel; empty after [presses](super::press_at_pose) that do not record contacts.
     pub fn contacts(&self) -> &[TaxelContact] {
         &self.contacts
     }
 
-    /// From now on each of these parts pushes its taxel behind the substrate too, until other parts are held: on its way through the
-    /// front of a patch an object goes on pressing what it has pressed.
+    /// Marks parts that push their taxels even from behind the substrate, until the next call. An object that moves through the front of a patch
+    /// thereby continues to press the taxels that it has pressed.
     pub fn hold<'a>(&mut self, contacts: impl IntoIterator<Item = &'a TaxelContact>) {
         self.held.clear();
         self.held.extend(contacts.into_iter().map(|contact| Held {
@@ -84,7 +84,7 @@ impl Workspace {
         }));
     }
 
-    /// Holds what pushes the taxels of the last press.
+    /// Holds the parts that determine the deflections of the last press.
     pub(super) fn hold_touched(&mut self) {
         let deciding = &self.deciding;
         self.held.clear();
@@ -94,12 +94,12 @@ impl Workspace {
         }));
     }
 
-    /// Whether any part is held.
+    /// Returns whether any part is held.
     pub fn holds_any(&self) -> bool {
         !self.held.is_empty()
     }
 
-    /// For the next press, which is of a flat grid along its axis.
+    /// Returns the grid workspace for the next press, which is of a flat grid along its axis.
     pub(super) fn on_grid(&mut self) -> &mut GridPress {
         self.is_on_grid = true;
         self.contacts.clear();
@@ -107,7 +107,7 @@ impl Workspace {
         &mut self.grid
     }
 
-    /// Makes room for a patch; only what the last press touched is wiped.
+    /// Resizes the buffers for a patch and clears only the taxels that the last press touched.
     pub(super) fn clear(&mut self, n_taxels: usize) {
         self.is_on_grid = false;
         for &taxel in &self.touched {
@@ -121,7 +121,7 @@ impl Workspace {
         self.deciding.resize(n_taxels, [0; 2]);
     }
 
-    /// Pushes a taxel as far as a part of an object needs; of parts that need the same the first counts.
+    /// Raises the deflection of a taxel to `needed`; of parts that need equal deflections the first counts.
     #[inline(always)]
     pub(super) fn push(&mut self, taxel: u32, needed: f64, deciding: [u32; 2]) {
         let number = taxel as usize;

@@ -1,21 +1,21 @@
-//! A free object on its way down.
+//! State of a free object during the descent to equilibrium.
 
 use super::free_object::FreeObject;
 use super::symmetric::Six;
 use crate::geometry::Pose;
 use glam::{DQuat, DVec3};
 
-/// Where a free object is; its motions are three translations of the centre of mass along the world's axes, and three rotations about them
-/// through it, times its arm (metres).
+/// Pose of a free object. A motion has six numbers: three translations of the centre of mass along the world's axes, and three rotations about these
+/// axes through the centre, times the arm (metres).
 #[derive(Clone, Debug)]
 pub(super) struct Body<'a> {
-    /// Of the object, among those that are put to rest.
+    /// Number of the object in the list passed to the solver.
     pub number: usize,
     pub object: FreeObject<'a>,
     /// m g, newtons.
     pub weight: DVec3,
     start: DVec3,
-    /// Of mass.
+    /// Centre of mass, metres.
     pub center: DVec3,
     pub rotation: DQuat,
 }
@@ -33,7 +33,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// Rotations count by how far they move a point this far from the centre of mass, metres.
+    /// Returns the arm, metres: the distance from the centre of mass at which rotations are measured as displacements.
     pub fn arm(&self) -> f64 {
         self.object.radius
     }
@@ -43,7 +43,7 @@ impl<'a> Body<'a> {
         Pose::new(self.rotation, self.center - from_origin)
     }
 
-    /// Moves it (six numbers); its way, metres.
+    /// Moves the body by six numbers; returns the translation, metres.
     pub fn go(&mut self, motion: &[f64]) -> DVec3 {
         let (shift, turn) = (DVec3::from_slice(motion), DVec3::from_slice(&motion[3..]));
         self.center += shift;
@@ -52,14 +52,14 @@ impl<'a> Body<'a> {
         shift
     }
 
-    /// What is left of a force (N) and a torque (N·m) with the weight: see [`Equilibrium::imbalance`](super::Equilibrium::imbalance).
+    /// Returns the residual of a force (N) and a torque (N·m) together with the weight: see [`Equilibrium::imbalance`](super::Equilibrium::imbalance).
     pub fn imbalance_of(&self, (force, torque): (DVec3, DVec3)) -> f64 {
         let weight = self.weight.length();
         let of_force = (force + self.weight).length() / weight;
         of_force.max(torque.length() / (weight * self.arm()))
     }
 
-    /// Where it went to from where it started, across its weight if it did.
+    /// Returns the direction from the start to the present position, without its component along the weight unless nothing else remains.
     pub fn way_out(&self) -> DVec3 {
         let down = self.weight.normalize();
         let way = self.center - self.start;
@@ -72,14 +72,14 @@ impl<'a> Body<'a> {
     }
 }
 
-/// How a point of a body moves when it goes along or turns about each of the axes; per metre. `from_center`: from the centre of mass to it.
+/// Returns the displacement of a point of a body by each unit motion, per metre; `from_center` is the vector from the centre of mass to the point.
 pub(super) fn ways(axes: &[DVec3; 3], from_center: DVec3, arm: f64) -> [DVec3; 6] {
     let [x, y, z] = *axes;
     let turn = |axis: DVec3| axis.cross(from_center) / arm;
     [x, y, z, turn(x), turn(y), turn(z)]
 }
 
-/// By each motion of a body what goes by `gradient` when a point of it moves.
+/// Returns the derivative by each motion of a body of a quantity whose derivative by the displacement of a point is `gradient`.
 pub(super) fn along(ways: &[DVec3; 6], gradient: DVec3) -> Six {
     ways.map(|way| gradient.dot(way))
 }

@@ -1,4 +1,4 @@
-//! Down the energy to a pose at rest.
+//! Descent along the energy to a pose at rest.
 
 use super::body::Body;
 use super::energy::{Energy, PairLoad, wrenches};
@@ -12,10 +12,11 @@ use super::shear_springs::{self, Spring};
 use super::symmetric::{Symmetric, norm};
 use glam::DVec3;
 
-/// Poses evaluated per body, at most; a body that rolls across a whole skin takes some hundreds. Larger: problems that do not converge take longer;
+/// Largest number of poses evaluated per body; a body that rolls across a whole skin takes some hundreds. Larger: problems that do not converge take
+/// longer;
 /// smaller: long rolls do not converge.
 const MAX_STEPS: usize = 4000;
-/// Rounds of multipliers, at most; three to six are usual.
+/// Largest number of multiplier updates; three to six are usual.
 const MAX_ROUNDS: usize = 40;
 /// Imbalance at which a pose is at rest; ten times less than the accepted one.
 const TARGET_IMBALANCE: f64 = 1e-7;
@@ -31,9 +32,9 @@ const NEARBY: f64 = 0.04;
 const SMOOTHING: f64 = 1e-2;
 /// Least smoothing, in units of rounding of the object's size.
 const LAST_BITS: f64 = 64.0;
-/// Rounds in which ties and stops become steeper by a factor of 5, at most: f64 has no digits for more.
+/// Largest number of rounds in which ties and stops become steeper by a factor of 5; f64 has no digits for more.
 const MAX_TIGHTENINGS: usize = 12;
-/// Distance below which two places are the same, relative to size and travel of the object.
+/// Distance below which two places count as equal, relative to size and travel of the object.
 const SAME_PLACE: f64 = 1e-15;
 
 /// Memory of descents, reused; the multipliers of one descent start the next one.
@@ -47,14 +48,14 @@ pub(super) struct DescentWorkspace {
     pub multipliers: Multipliers,
 }
 
-/// Bodies on their way down.
+/// Bodies during a descent.
 pub(super) struct Descent<'a, 'b> {
     pub workspace: &'b mut DescentWorkspace,
     /// Bodies, ground, and the multipliers of the round.
     pub scene: Scene<'a>,
-    /// No step is longer, metres.
+    /// Length of the longest step, metres.
     pub farthest: f64,
-    /// The longest step that is trusted now, metres.
+    /// Trust-region radius, metres.
     pub reach: f64,
     pub n_steps: usize,
 }
@@ -63,7 +64,7 @@ pub(super) struct Descent<'a, 'b> {
 pub(super) enum End {
     /// All bodies are at rest.
     Rest,
-    /// Nothing is below these bodies.
+    /// Bodies that nothing below them can stop.
     Endless(Vec<usize>),
     /// The step limit was reached.
     Exhausted,
@@ -107,7 +108,7 @@ impl<'a, 'b> Descent<'a, 'b> {
         }
     }
 
-    /// Rounds of descents, each with better multipliers; of those that come no nearer to rest any more, the best within what is promised.
+    /// Repeats descents with improved multipliers. If they no longer approach rest, the best pose within the accepted tolerances is returned.
     pub fn run(&mut self) -> End {
         self.look(&[]);
         let mut complementarity_residual = f64::INFINITY;
@@ -134,7 +135,7 @@ impl<'a, 'b> Descent<'a, 'b> {
                 (best, least) = (Some(self.scene.clone()), now);
             }
             let Some(deepest) = self.deepest() else {
-                // Less than the last bit above taxels that are too stiff to be pressed by it.
+                // The body floats less than the last bit above taxels that are too stiff for its weight.
                 return End::Exhausted;
             };
             let energy = &self.workspace.now;
@@ -143,7 +144,7 @@ impl<'a, 'b> Descent<'a, 'b> {
             if deepest > 0.0 {
                 smoothness.smoothing = smoothness.smoothing.min(SMOOTHING * deepest);
             }
-            // Where the energy bends down between ties, multipliers need steeper sides to converge.
+            // Where the energy is concave between ties, multipliers converge only with steeper sides.
             if now > TARGET_RESIDUAL.max(0.25 * complementarity_residual)
                 && n_tightened < MAX_TIGHTENINGS
             {
@@ -169,7 +170,7 @@ impl<'a, 'b> Descent<'a, 'b> {
             && self.complementarity_residual() <= complementarity_residual
     }
 
-    /// The largest of all islands.
+    /// Returns the largest residual of all islands.
     fn complementarity_residual(&self) -> f64 {
         let now = &self.workspace.now;
         let islands = now.pairs.islands(self.scene.bodies.len());
@@ -178,7 +179,7 @@ impl<'a, 'b> Descent<'a, 'b> {
             .fold(0.0, f64::max)
     }
 
-    /// Of bodies that touch one another, those that are farthest from rest.
+    /// Returns the bodies of the island farthest from rest.
     pub fn most_restless(&self) -> Vec<usize> {
         let now = &self.workspace.now;
         let islands = now.pairs.islands(self.scene.bodies.len());
@@ -193,7 +194,7 @@ impl<'a, 'b> Descent<'a, 'b> {
         all.filter(|&body| Some(islands[body]) == worst).collect()
     }
 
-    /// Down to a stationary point of the smooth energy that is no saddle.
+    /// Descends to a stationary point of the smooth energy that is no saddle.
     fn descend(&mut self) -> End {
         while self.n_steps < MAX_STEPS * self.scene.bodies.len() {
             if let Some((loose, way, room)) = self.loose() {
@@ -212,7 +213,7 @@ impl<'a, 'b> Descent<'a, 'b> {
             };
             let length = norm(&step.motion);
             if length <= self.same_place() {
-                // Where the reach has come to nothing too soon, the next round sees farther.
+                // If the trust region has shrunk to nothing too early, the next round gathers contacts in a wider range.
                 if slope > TARGET_IMBALANCE {
                     self.reach = self.nearby();
                 }
@@ -230,7 +231,7 @@ impl<'a, 'b> Descent<'a, 'b> {
         End::Exhausted
     }
 
-    /// The [slope](Scene::slope) of the energy, and the best step; `None` at a stationary point that is no saddle.
+    /// Returns the [slope](Scene::slope) of the energy and the best step; `None` at a stationary point that is no saddle.
     fn best(&mut self) -> Option<(f64, Step)> {
         let (gradient, hessian) = self.derivatives();
         let slope = self.scene.slope(&gradient);
@@ -242,13 +243,13 @@ impl<'a, 'b> Descent<'a, 'b> {
         Some((slope, step))
     }
 
-    /// Lays the model at the pose that was looked at last; gradient (N) and Hessian (N/m) there.
+    /// Sets up the model at the pose evaluated last; returns the gradient (N) and the Hessian (N/m) there.
     fn derivatives(&mut self) -> (Vec<f64>, Symmetric) {
         let DescentWorkspace { now, model, .. } = &mut *self.workspace;
         model.lay(&self.scene, now)
     }
 
-    /// Goes a step if it leads down; how much of the promised gain it brought, `None` if it was not gone.
+    /// Takes a step if the energy decreases. Returns the ratio of actual to predicted gain, or `None` if the step was rejected.
     fn attempt(&mut self, step: &Step, slope: f64) -> Option<f64> {
         let bodies = self.scene.bodies.clone();
         let fallen = self.go(&step.motion);
@@ -259,7 +260,7 @@ impl<'a, 'b> Descent<'a, 'b> {
         self.workspace.next.pairs.behind = behind;
         let after = self.workspace.now.loads.elastic;
         let gain = before - after + fallen;
-        // So little that the energies' last digits decide: the slope then says whether this is the right way.
+        // The difference of the energies is below rounding; the slope then decides.
         let noise = 1e-14 * (before.abs() + after.abs() + fallen.abs());
         let is_noise = step.gain <= 100.0 * noise;
         let is_better = match is_noise {
@@ -277,7 +278,7 @@ impl<'a, 'b> Descent<'a, 'b> {
         None
     }
 
-    /// Moves the bodies; what their weights do by that, joules.
+    /// Moves the bodies; returns the work of their weights, joules.
     fn go(&mut self, motion: &[f64]) -> f64 {
         let bodies = self.scene.bodies.iter_mut().zip(motion.chunks(6));
         bodies
@@ -285,14 +286,14 @@ impl<'a, 'b> Descent<'a, 'b> {
             .sum()
     }
 
-    /// Bodies that nothing holds, if there are any, their way down (unit), and how far they may go, metres.
+    /// Returns a group of bodies that nothing holds, the direction of its motion (unit vector), and the distance it may move, metres.
     fn loose(&self) -> Option<(Loose, DVec3, f64)> {
         let down = self.scene.bodies[0].weight.normalize();
         let all = Loose::all(&self.workspace.now.pairs, self.scene.bodies.len());
         all.into_iter().find_map(|loose| {
             let way = loose.way(self.scene.ground, down)?;
             let room = match loose.room(&self.scene.bodies, self.scene.ground, way) {
-                // Steps find the way along a plane, with what is near.
+                // Steps find the direction along a plane, together with nearby contacts.
                 None if loose.slides() => return None,
                 room => room.unwrap_or(0.0).max(self.farthest),
             };
@@ -326,33 +327,33 @@ impl<'a, 'b> Descent<'a, 'b> {
         bodies.for_each(|&body| self.scene.bodies[body].center += by);
     }
 
-    /// Metres that are none.
+    /// Returns the distance, metres, below which places count as equal.
     fn same_place(&self) -> f64 {
         let bodies = self.scene.bodies.iter();
         let sizes = bodies.map(|body| body.arm() + body.center.length());
         SAME_PLACE * sizes.fold(f64::INFINITY, f64::min)
     }
 
-    /// Looks at the pose; `behind`: the spheres that were behind taxels where it comes from.
+    /// Evaluates the energy at the pose; `behind` lists the spheres that were behind taxels at the pose before.
     fn look(&mut self, behind: &[(Key, Part)]) {
         self.n_steps += 1;
-        // Of far steps not all is foreseen: that would be most spheres.
+        // A long step is not fully covered: the list would contain most spheres.
         let step = self.reach.min(self.nearby());
         self.workspace.now.look(&self.scene, step, behind);
     }
 
-    /// Looks at the pose with what was behind taxels before.
+    /// Evaluates the energy at the pose with the present list of spheres behind taxels.
     fn look_again(&mut self) {
         let behind = std::mem::take(&mut self.workspace.now.pairs.behind);
         self.look(&behind);
     }
 
-    /// Steps up to this, metres, are foreseen with all contacts that they make.
+    /// Returns the length of a step, metres, up to which all contacts that the step makes are gathered.
     fn nearby(&self) -> f64 {
         NEARBY * self.farthest
     }
 
-    /// How far the farthest taxel is pushed, metres; 0 where only what is rigid carries, `None` if nothing does.
+    /// Returns the largest deflection, metres; 0 if only rigid contacts carry, `None` if nothing carries.
     fn deepest(&self) -> Option<f64> {
         let now = &self.workspace.now;
         let carrying = now.loads.carrying(&now.pairs.groups);
@@ -364,7 +365,7 @@ impl<'a, 'b> Descent<'a, 'b> {
             .reduce(f64::max)
     }
 
-    /// Of each body with these loads.
+    /// Returns the imbalance of each body with these loads, dimensionless.
     fn imbalances(&self, loads: &[PairLoad]) -> Vec<f64> {
         let pairs = &self.workspace.now.pairs.all;
         let Scene {

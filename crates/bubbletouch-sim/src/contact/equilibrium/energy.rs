@@ -1,4 +1,4 @@
-//! Elastic energy of the skins that free objects press where they are, and the forces there.
+//! Elastic energy of the skins that free objects press at their present poses, and its forces.
 
 use super::body::Body;
 use super::free_object::PlacedSkin;
@@ -9,31 +9,30 @@ use super::scene::Scene;
 use super::shear_springs::{self, Spring};
 use glam::DVec3;
 
-/// What misses of rigid things count as in [`Energy::complementarity_residual`], per metre: a nanometre is a hundred-thousandth.
+/// Weight of violated rigid contacts in [`Energy::complementarity_residual`], 1/m.
 const RIGID_MISS: f64 = 1e-7 / 3e-10;
 
-/// The energy at one place of all bodies, and all that its model is made of. Reused: nothing is allocated once it has seen the most
-/// pairs.
+/// Energy at the present poses of all bodies, with the contacts and loads from which its model is built. Reuse avoids allocations.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Energy {
     pub pairs: Pairs,
     pub loads: Loads,
 }
 
-/// What one pair puts on its taxel, or on something rigid.
+/// Load of one pair on its taxel or rigid contact.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PairLoad {
-    /// Its number.
+    /// Number of the pair.
     pub pair: usize,
-    /// Newtons along the axis; with the stop's.
+    /// Force along the axis including the stop's, newtons.
     pub force: f64,
-    /// The stop's part.
+    /// Part of the force carried by the stop, newtons.
     pub stop: f64,
 }
 
 impl Energy {
-    /// Looks at bodies where they are, and at what they would press after a motion of `step` metres; `behind`: the spheres that were
-    /// behind taxels before.
+    /// Evaluates the energy at the present poses and gathers the contacts within a motion of `step` metres. `behind` lists the spheres that were
+    /// behind taxels at the pose before.
     pub fn look(&mut self, scene: &Scene, step: f64, behind: &[(Key, Part)]) {
         let margins = Margins {
             step,
@@ -49,7 +48,7 @@ impl Energy {
         self.loads.elastic += shear_springs::energy(&scene.springs, &scene.bodies);
     }
 
-    /// What each pair carries, if each taxel carries k times its deflection and what its stop carries.
+    /// Returns the load of each pair. Each taxel carries k times its deflection, plus the force of its stop.
     pub fn pair_loads(&self) -> Vec<PairLoad> {
         let mut all = Vec::new();
         for (group, load) in self.loads.carrying(&self.pairs.groups) {
@@ -65,7 +64,7 @@ impl Energy {
         all
     }
 
-    /// Complementarity residual of each [island](Pairs::islands), dimensionless, at the number of the island; 0 where nothing touches.
+    /// Returns the complementarity residual of each [island](Pairs::islands), dimensionless, by the island's number; 0 if nothing touches.
     ///
     /// Spheres that share a taxel should push it equally far; a stop that carries should be reached exactly, and no stop passed. The residual
     /// is the force of the taxel's spring over the largest violation, divided by the largest force of a spring. Rigid contacts count with
@@ -96,12 +95,12 @@ impl Energy {
         loose
     }
 
-    /// What makes the [complementarity_residual](Self::complementarity_residual) of one taxel or rigid thing, metres.
+    /// Returns the violation of the constraints of one taxel or rigid contact, metres; see [complementarity_residual](Self::complementarity_residual).
     fn miss(&self, group: &Group, load: &Load) -> f64 {
         let past = load.deepest - group.stroke;
         let of_stop: f64 = if load.stop > 0.0 { past.abs() } else { past };
         if load.force == 0.0 {
-            // Pressed, and below the smoothed maximum about shares that another pose had.
+            // Pressed, but below the smoothed maximum that uses the shares of an earlier pose.
             return of_stop.max(load.deepest);
         }
         let sharing = group
@@ -113,7 +112,7 @@ impl Energy {
     }
 }
 
-/// Force (N) and torque about the centre of mass (N·m) that loads of pairs and springs of tips put on each body, in the world.
+/// Returns the force (N) and the torque about the centre of mass (N·m) of pairs and tangential springs on each body, in the world.
 pub(super) fn wrenches(
     (loads, pairs): (&[PairLoad], &[Pair]),
     springs: &[Spring],

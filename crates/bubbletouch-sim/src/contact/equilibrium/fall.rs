@@ -1,4 +1,4 @@
-//! Bodies in the air, and on planes that do not hold them: how far they certainly fall or slide before they meet something.
+//! Free fall and sliding: the distance that bodies can safely move before they meet something.
 
 use super::body::Body;
 use super::free_object::Ground;
@@ -8,10 +8,10 @@ use super::rigid_contact::Touched;
 use glam::DVec3;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Slopes up to this hold, as a share of the weight: that much less than what a pose at rest is allowed.
+/// Slope, relative to the weight, up to which planes hold a body; well below the accepted imbalance of a pose at rest.
 const FLAT: f64 = 1e-8;
 
-/// Bodies that nothing is near to but one another and planes.
+/// Group of bodies that are in contact only with one another and with planes.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Loose {
     pub bodies: Vec<usize>,
@@ -20,7 +20,7 @@ pub(super) struct Loose {
 }
 
 impl Loose {
-    /// All there are, of `n_bodies` at these pairs, with their unions.
+    /// Returns all such groups among `n_bodies` bodies with these pairs, and unions of groups.
     pub fn all(pairs: &Pairs, n_bodies: usize) -> Vec<Self> {
         let islands = pairs.islands(n_bodies);
         let mut all = vec![Self::default(); n_bodies];
@@ -40,7 +40,7 @@ impl Loose {
             }
         }
         all.retain(|group| !group.bodies.is_empty() && !group.is_held);
-        // Last what goes the same way, all together: side by side they may be in one another's way for ever.
+        // Groups on equal planes are also moved together, as a last resort: side by side they may block one another forever.
         let mut unions: BTreeMap<BTreeSet<usize>, Vec<usize>> = BTreeMap::new();
         for group in &all {
             let union = unions.entry(group.planes.clone()).or_default();
@@ -57,11 +57,12 @@ impl Loose {
         all
     }
 
-    /// Where its weight takes it, unit: `down`, along the planes that it touches; `None` if these hold it.
+    /// Returns the direction (unit vector) of the motion under gravity: `down`, constrained by the planes touched; `None` if these hold the group.
     pub fn way(&self, ground: &Ground, down: DVec3) -> Option<DVec3> {
         let normals = self.planes.iter().map(|&plane| ground.planes[plane].normal);
         let normals: Vec<DVec3> = normals.collect();
-        // Of down what is along none, one, or two of them; the longest that leads into none is the nearest to it.
+        // Candidates are `down` and its projections onto planes and onto lines where two meet; the longest that enters no plane is the constrained
+        // direction.
         let along_one = normals
             .iter()
             .map(|normal| down.reject_from_normalized(*normal));
@@ -77,8 +78,8 @@ impl Loose {
         (way.length() > FLAT).then(|| way.normalize())
     }
 
-    /// How far it goes its `way` (unit) at least before it meets skin, obstacles, `bodies` that are not its own, and planes that it does not
-    /// touch, metres; endless if nothing is on the way, `None` if something is too near to say.
+    /// Returns a lower bound, metres, of the distance along `way` (unit vector) to skins, obstacles, other `bodies`, and planes not touched.
+    /// Infinite if nothing is in this direction; `None` if something is too near to decide.
     pub fn room(&self, bodies: &[Body], ground: &Ground, way: DVec3) -> Option<f64> {
         let others = bodies.iter().enumerate();
         let others = others.filter(|(other, _)| !self.bodies.contains(other));
@@ -89,12 +90,12 @@ impl Loose {
         (nearest > 0.0).then_some(nearest)
     }
 
-    /// Whether it touches planes.
+    /// Returns whether the group touches planes.
     pub fn slides(&self) -> bool {
         !self.planes.is_empty()
     }
 
-    /// Between one of its bodies and the nearest thing on its way, metres.
+    /// Returns the distance between one body of the group and the nearest thing in its direction, metres.
     fn gap(&self, body: &Body, ground: &Ground, others: &[&Body], way: DVec3) -> f64 {
         let mut nearest = f64::INFINITY;
         let mut meet = |gap: f64, is_on_way: bool| {

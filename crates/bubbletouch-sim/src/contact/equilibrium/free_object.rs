@@ -9,21 +9,21 @@ use crate::text::in_range::positive;
 use crate::world::Patch;
 use glam::DVec3;
 
-/// A rigid object that only gravity and what it touches hold.
+/// Rigid object subject to gravity and contact forces only.
 #[derive(Clone, Copy, Debug)]
 pub struct FreeObject<'a> {
     pub(super) spheres: &'a [Sphere],
     pub(super) mass: f64,
     pub(super) center_of_mass: DVec3,
-    /// From the centre of mass to the farthest point of a sphere, metres.
+    /// Distance from the centre of mass to the farthest point of a sphere, metres.
     pub(super) radius: f64,
 }
 
 impl<'a> FreeObject<'a> {
-    /// An object of `mass` (kg, positive) with its centre of mass somewhere in its own frame (metres).
+    /// Creates an object of `mass` (kg, positive) with its centre of mass given in the object's frame (metres).
     ///
     /// # Errors
-    /// The error names what is not finite or not positive.
+    /// If a value is not finite, or the mass is not positive.
     pub fn new(spheres: &'a SphereUnion, mass: f64, center_of_mass: DVec3) -> Result<Self> {
         positive("object mass", mass, "kg")?;
         if !center_of_mass.is_finite() {
@@ -42,24 +42,24 @@ impl<'a> FreeObject<'a> {
     }
 }
 
-/// A skin where it is.
+/// Skin at a pose, as part of the ground.
 #[derive(Clone, Copy, Debug)]
 pub struct PlacedSkin<'a> {
     /// The skin.
     pub patch: &'a Patch,
-    /// Where it is.
+    /// Pose of the patch in the world.
     pub world_from_patch: Pose,
-    /// How far objects that are not free push each taxel, metres; empty if there are none.
+    /// Deflection of each taxel by objects that are not free, metres; empty if there are none.
     pub pushed: &'a [f64],
-    /// How far each taxel was in a step ago, metres, and that step, seconds: what its damper holds in. `None` if all stood like this for
-    /// long, or without dampers.
+    /// Deflection of each taxel one step ago, metres, and the length of this step, seconds, for the dampers. `None` without dampers, or if nothing has
+    /// moved for long.
     pub before: Option<(&'a [f64], f64)>,
-    /// Tangential springs that hold objects at the beginning of the step; empty without friction.
+    /// Tangential springs that act on objects at the beginning of the step; empty without friction.
     pub tangential_springs: &'a [TangentialSpring],
 }
 
 impl<'a> PlacedSkin<'a> {
-    /// A skin that nothing else has pushed or pushes.
+    /// Creates a skin that nothing else has pushed or pushes.
     pub fn new(patch: &'a Patch, world_from_patch: Pose) -> Self {
         Self {
             patch,
@@ -70,14 +70,14 @@ impl<'a> PlacedSkin<'a> {
         }
     }
 
-    /// How far a taxel is in if nothing pushes it, metres: what its damper has left.
+    /// Returns the deflection of a free taxel at the end of the step, metres: φ δ_before with a damper, 0 without one.
     pub(super) fn relaxed(&self, taxel: usize) -> f64 {
         self.before.map_or(0.0, |(deflections, dt)| {
             deflections[taxel] * relaxation_factor(self.patch.taxels().at(taxel), dt)
         })
     }
 
-    /// What a taxel puts against each metre more than [relaxed](Self::relaxed) within the step: k / (1 − φ), N/m.
+    /// Returns the stiffness within the step beyond the [relaxed](Self::relaxed) deflection: k / (1 − φ), N/m.
     pub(super) fn stiffness(&self, taxel: usize) -> f64 {
         let taxel = self.patch.taxels().at(taxel);
         match self.before {
@@ -87,37 +87,37 @@ impl<'a> PlacedSkin<'a> {
     }
 }
 
-/// A half-space that nothing enters, a table: the points x with x·normal < height.
+/// Rigid half-space, such as a table: the points x with x·normal < height.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalfSpace {
-    /// Unit, out of it, in the world.
+    /// Outward unit normal, in the world.
     pub normal: DVec3,
-    /// Of its surface along the normal, from the origin, metres.
+    /// Height of the surface along the normal, from the origin, metres.
     pub height: f64,
 }
 
-/// An object that stays where it is, whatever rests on it.
+/// Fixed rigid object that carries free objects.
 #[derive(Clone, Copy, Debug)]
 pub struct Obstacle<'a> {
-    /// What it is made of.
+    /// Shape of the obstacle.
     pub spheres: &'a SphereUnion,
     /// `world_from_object`.
     pub pose: Pose,
 }
 
-/// What free objects rest on.
+/// Fixed surroundings that carry free objects.
 #[derive(Clone, Debug, Default)]
 pub struct Ground<'a> {
-    /// Elastic.
+    /// Elastic skins.
     pub skins: Vec<PlacedSkin<'a>>,
-    /// Rigid.
+    /// Rigid half-spaces.
     pub planes: Vec<HalfSpace>,
-    /// Rigid.
+    /// Rigid obstacles.
     pub obstacles: Vec<Obstacle<'a>>,
 }
 
 impl Ground<'_> {
-    /// The same as seen from another origin.
+    /// Returns the ground relative to another origin.
     pub(super) fn seen_from(&self, origin: DVec3) -> Self {
         let mut near = self.clone();
         for skin in &mut near.skins {

@@ -1,4 +1,4 @@
-//! What taxels carry, and how the spheres that push them share it.
+//! Loads of taxels, and their shares among the spheres that push them.
 //!
 //! For taxel i with ψ the smoothed maximum of its deflections, k its stiffness and s its stroke, the energy is
 //!
@@ -6,79 +6,79 @@
 //! E = Σ ½ k ψ² + (max(0, λ + κ (ψ − s))² − λ²) / 2κ
 //! ```
 //!
-//! (ψ from where the taxel is if nothing pushes it, with k as stiff as its damper makes it within the step; k = s = 0 of what is rigid)
+//! Here ψ is measured from the taxel's free position, and k includes the damper's stiffness within the step. For a rigid contact k = s = 0.
 //!
-//! the second part being the augmented Lagrangian of the rigid stop ψ ≤ s \[RW\]: with the right λ the stop holds exactly, and
-//! λ is what it carries.
+//! The second term is the augmented Lagrangian of the rigid stop ψ ≤ s \[RW\]: with the correct λ the stop holds exactly, and
+//! λ is the force on it.
 
 use super::pair::{Key, Pair, Part};
 use super::pairs::{Group, Pairs};
 use super::tied_max::tied_max;
 use std::collections::BTreeMap;
 
-/// What is known of the forces inside taxels.
+/// Multipliers of stops and of shared taxels.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Multipliers {
-    /// λ: what stops carry, newtons.
+    /// λ: forces on stops, newtons.
     pub stops: BTreeMap<Key, f64>,
-    /// w⁰ of taxels that several spheres share.
+    /// Shares w⁰ of taxels that several spheres push.
     pub shares: BTreeMap<Key, Vec<(Part, f64)>>,
 }
 
-/// How the energy is made smooth.
+/// Parameters that make the energy smooth.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Smoothness {
     /// μ of soft taxels, metres.
     pub smoothing: f64,
-    /// μ k of stiff ones, as a share of the weight: a smoothing that is little on a soft taxel is more than what its stiff neighbour goes.
+    /// μ k of stiff taxels, relative to the weight. A smoothing that is small for a soft taxel can exceed the deflection of a stiff one.
     pub load: f64,
-    /// The least μ, metres: less than rounding of deflections would decide ties.
+    /// Least μ, metres; below this value rounding of deflections would decide ties.
     pub least: f64,
     /// κ, N/m.
     pub stop_stiffness: f64,
 }
 
 impl Smoothness {
-    /// μ of a taxel, metres.
+    /// Returns μ of a taxel, metres.
     fn of(&self, group: &Group) -> f64 {
         let of_load = self.load * group.weight / group.stiffness;
         self.smoothing.min(of_load).max(self.least)
     }
 
-    /// Ties are steeper by this factor below 1.
+    /// Multiplies the smoothing by a factor below 1, which makes ties steeper.
     pub fn tighten(&mut self, factor: f64) {
         self.smoothing *= factor;
         self.load *= factor;
     }
 }
 
-/// What a group of pairs puts on a taxel.
+/// Load of a group of pairs on a taxel.
 #[derive(Clone, Debug)]
 pub(super) struct Load {
-    /// Pairs with a share above zero.
+    /// Number of pairs with a share above zero.
     pub n_sharing: usize,
-    /// max δ, metres; negative if nothing touches it.
+    /// max δ, metres; negative if nothing touches the taxel.
     pub deepest: f64,
     /// μ, metres.
     pub smoothing: f64,
-    /// What the stop carries, newtons.
+    /// Force on the stop, newtons.
     pub stop: f64,
-    /// Along the axis, with the stop's, newtons; 0 if nothing touches it.
+    /// Force along the axis including the stop's, newtons; 0 if nothing touches the taxel.
     pub force: f64,
-    /// Its derivative by ψ, N/m.
+    /// Derivative of the force with respect to ψ, N/m.
     pub tangent: f64,
 }
 
-/// The loads of all groups of pairs.
+/// Loads of all groups of pairs.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Loads {
-    /// One a group.
+    /// One load per group.
     pub all: Vec<Load>,
-    /// One a pair.
+    /// One share per pair.
     pub shares: Vec<f64>,
     /// E, joules.
     pub elastic: f64,
-    /// One a pair.
+    /// One deflection per pair, metres.
     deflections: Vec<f64>,
     known: Vec<f64>,
     sharing: Vec<f64>,
@@ -141,7 +141,7 @@ impl Loads {
         });
     }
 
-    /// Those that are not zero, with what they are of.
+    /// Returns the nonzero loads and their groups.
     pub fn carrying<'a>(
         &'a self,
         groups: &'a [Group],
@@ -150,7 +150,7 @@ impl Loads {
         all.filter(|(_, load)| load.force > 0.0)
     }
 
-    /// The multipliers that make a pose at rest one at rest without smoothing.
+    /// Returns the multipliers for which a pose at rest is also at rest without smoothing.
     pub fn multipliers(&self, pairs: &Pairs) -> Multipliers {
         let mut multipliers = Multipliers::default();
         for (group, load) in self.carrying(&pairs.groups) {

@@ -1,21 +1,23 @@
 //! Equilibrium of free objects on taxels, tables, obstacles and each other.
 //!
-//! Without friction the forces of the taxels are −∇ of their elastic energy, so objects are at rest where
-//! `E = Σ ½ k δ² − Σ m g·x` is stationary, and stay there where it is a minimum \[BT\]: one problem of six unknowns an object, since δ is
-//! the largest that any of them needs. [`EquilibriumSolver::solve_all`] goes down from their poses by a trust-region Newton method with
-//! closed-form derivatives: never uphill, and out of saddles, too, since negative curvature is followed. What finds no minimum leaves:
-//! it [escapes](Outcome::Escaped), and the others go on without it.
+//! Without friction the forces of the taxels are −∇ of their elastic energy. Objects are therefore at rest where
+//! `E = Σ ½ k δ² − Σ m g·x` is stationary, and stable where E has a minimum \[BT\]. All objects form one problem with six unknowns each, since δ is
+//! the largest deflection that any of them needs. [`EquilibriumSolver::solve_all`] minimises E from the initial poses by a trust-region Newton
+//! method with closed-form derivatives. The energy never increases, and the method leaves saddles because it follows negative curvature. An object
+//! without a minimum [escapes](Outcome::Escaped), and the others continue without it.
 //!
-//! Three things make E rough, and all are kept exactly: a taxel between two spheres (`tied_max`), be they of one object or of two; the
-//! rigid stop of a taxel at its stroke; and what is rigid itself, which spheres do not enter: half-spaces ([`HalfSpace`]), objects that
-//! do not move ([`Obstacle`]), and the spheres of other free objects. They are constraints with multipliers: the shares of the spheres, and
-//! the forces of stops and touches.
+//! E has three kinds of kinks, all of which are kept exactly:
 //!
-//! A damper holds its taxel in: within a step of Δt it comes out to φ δ at most (φ = e^(−k Δt / c)), and what pushes it further finds a spring
-//! of k / (1 − φ) from there on. So in a step E = Σ ½ k/(1 − φ) (δ − φ δ_before)², and the forces are those of
+//! - taxels between two spheres of one object or of two (`tied_max`); the multipliers are the shares of the spheres;
+//! - rigid stops of taxels at their stroke; the multipliers are the forces on the stops;
+//! - rigid contacts: half-spaces ([`HalfSpace`]), fixed objects ([`Obstacle`]), and the spheres of other free objects; the multipliers are
+//!  the contact forces.
+//!
+//! A damper delays its taxel: within a step Δt a free taxel returns to φ δ_before (φ = e^(−k Δt / c)), and beyond this deflection its stiffness
+//! is k / (1 − φ). So within a step E = Σ ½ k/(1 − φ) (δ − φ δ_before)², and the forces are those of
 //! [`DamperState`](crate::contact::DamperState).
 //!
-//! A skin with friction holds by shear springs, too: those of the taxels that touched an object when the step began (`shear_springs`).
+//! With friction, the shear springs of the taxels that touched an object at the beginning of the step also act on this object (`shear_springs`).
 //!
 //! # Sources
 //!

@@ -1,6 +1,6 @@
-//! The energy near a pose: deflections go linearly with the object's motion, their curvature is that of the forces there.
+//! Model of the energy near a pose: deflections are linear in the motion, and their curvature is weighted with the forces at the pose.
 //!
-//! So it knows which taxels a step lifts off, and which it meets: what makes the energy itself bend is in the model.
+//! The model therefore includes taxels that a step lifts off or meets, which cause the strongest changes of the energy's curvature.
 
 use super::energy::Energy;
 use super::loads::Loads;
@@ -12,23 +12,23 @@ use super::slopes::Slopes;
 use super::symmetric::{Six, Symmetric, best_step, dot, norm};
 use glam::DVec3;
 
-/// Steps inside the model, at most.
+/// Largest number of steps inside the model.
 const MAX_STEPS: usize = 40;
 
-/// A model of the energy; a motion is six numbers a [body](super::body::Body).
+/// Model of the energy; a motion has six numbers per [body](super::body::Body).
 #[derive(Clone, Debug, Default)]
 pub(super) struct Model {
     slopes: Slopes,
-    /// After the motion that was looked at last.
+    /// Loads after the motion evaluated last.
     loads: Loads,
     curvature: Symmetric,
     held: Held,
-    /// Of the loads of one taxel: weighted means and sums of slopes, one a body that pushes it.
+    /// Work memory for the loads of one taxel: weighted means and sums of slopes, one per body that pushes it.
     means: Vec<(u32, Six)>,
     sums: Vec<(u32, Six)>,
 }
 
-/// A step, and how much lower the model is there, joules.
+/// Step, and the decrease of the model, joules.
 #[derive(Clone, Debug)]
 pub(super) struct Step {
     pub motion: Vec<f64>,
@@ -36,7 +36,7 @@ pub(super) struct Step {
 }
 
 impl Model {
-    /// The model around the pose of this energy; gradient (N) and Hessian (N/m) there.
+    /// Sets up the model around the pose of this energy; returns the gradient (N) and the Hessian (N/m) there.
     pub fn lay(
         &mut self,
         scene: &Scene,
@@ -66,7 +66,7 @@ impl Model {
         self.derivatives(scene, pairs, loads, &still)
     }
 
-    /// Energy after a motion, with the weights'; joules.
+    /// Returns the energy after a motion, including the work of the weights, joules.
     fn energy_after(&mut self, scene: &Scene, pairs: &Pairs, motion: &[f64]) -> f64 {
         let Self { loads, slopes, .. } = self;
         loads.weigh(
@@ -82,7 +82,7 @@ impl Model {
         self.loads.elastic + self.held.energy_after(motion) + bent - fallen
     }
 
-    /// Gradient (N) and Hessian (N/m) after a motion that leads to these loads.
+    /// Returns the gradient (N) and the Hessian (N/m) after a motion that leads to these loads.
     fn derivatives(
         &mut self,
         scene: &Scene,
@@ -132,8 +132,8 @@ impl Model {
         (gradient, hessian)
     }
 
-    /// A motion of at most `reach` that is good for the model: trust-region Newton steps inside it. The model must have been
-    /// [laid](Self::lay) around this energy, where it has this gradient and Hessian.
+    /// Returns a motion of at most `reach` that lowers the model, by trust-region Newton steps inside it. The model must have been
+    /// [set up](Self::lay) around this energy, with this gradient and Hessian.
     pub fn best(
         &mut self,
         scene: &Scene,

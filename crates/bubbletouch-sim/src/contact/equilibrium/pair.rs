@@ -1,4 +1,4 @@
-//! A sphere of a free object and what it pushes: a taxel, or something rigid.
+//! Pair of a sphere of a free object and the taxel or rigid contact that it pushes.
 //!
 //! A rigid surface is treated as a taxel without a spring at the end of its stroke: its deflection is the penetration of the sphere, and its force
 //! is that of the stop.
@@ -7,44 +7,44 @@ use super::reach::Reach;
 use super::rigid_contact::{Touched, Touching};
 use glam::{DMat3, DVec3};
 
-/// A body's place among those on their way, and the number of one of its spheres.
+/// Index of a body in the descent, and number of one of its spheres.
 pub(super) type Part = (u32, u32);
 
-/// What is pushed.
+/// Taxel or rigid contact that a sphere pushes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Key {
-    /// A skin's number and a taxel's in it.
+    /// Number of the skin, and number of the taxel in it.
     Taxel(u32, u32),
-    /// Something rigid, by one sphere; other free objects by their places among bodies.
+    /// Rigid contact of one sphere; other free objects are given by their index among the bodies.
     Rigid(Part, Touched),
 }
 
-/// The part of a pair that is none of a free object: how far others push the taxel.
+/// Marks a pair that stands for objects that are not free: the deflection that they need.
 pub(super) const OTHERS: Part = (u32::MAX, u32::MAX);
 
-/// A sphere and what it pushes.
+/// Sphere and the taxel or rigid contact that it pushes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pair {
     pub key: Key,
     pub part: Part,
-    /// Past where it is without anything that pushes it, metres; negative if they do not touch yet.
+    /// Deflection past the free position, metres; negative if the two do not touch yet.
     pub deflection: f64,
     pub kind: Kind,
-    /// From the centre of mass to the sphere's centre; in the patch frame, or of rigid things in the world.
+    /// Vector from the centre of mass to the sphere's centre; in the patch frame for taxels, in the world for rigid contacts.
     pub arm: DVec3,
 }
 
-/// How the deflection of a pair changes.
+/// Dependence of a pair's deflection on motions.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Kind {
     Taxel(Reach),
     Rigid(Touching),
-    /// Not at all: what others push.
+    /// Fixed: the deflection by objects that are not free.
     Fixed,
 }
 
 impl Pair {
-    /// `gradient` and curvature of its deflection by a motion of the sphere, relative to what else moves; `None` of others.
+    /// Returns gradient and curvature of the deflection by the sphere's motion relative to its counterpart; `None` for fixed pairs.
     pub fn derivatives(&self) -> Option<(DVec3, DMat3)> {
         match &self.kind {
             Kind::Taxel(reach) => {
@@ -56,7 +56,7 @@ impl Pair {
         }
     }
 
-    /// The bodies that its deflection depends on: which, which way their points count, and where these are from their centres of mass.
+    /// Returns the bodies on which the deflection depends: index, sign of their motion, and vector from their centre of mass to the point.
     pub fn ends(&self) -> impl Iterator<Item = (usize, f64, DVec3)> {
         let other = match &self.kind {
             Kind::Rigid(touching) => touching.other,
@@ -67,7 +67,7 @@ impl Pair {
         own.into_iter().chain(other)
     }
 
-    /// What a force (N) along the axis of the taxel is on the sphere, newtons; in the frame of its arm.
+    /// Returns the force on the sphere, newtons, in the frame of its arm, for a force (N) along the axis of the taxel.
     pub fn push(&self, force: f64) -> DVec3 {
         let gradient = self.derivatives().map(|(gradient, _)| gradient);
         -force * gradient.unwrap_or(DVec3::ZERO)

@@ -1,7 +1,7 @@
-//! The spheres of free objects and what they push, or could after a small step: taxels, and rigid things.
+//! Pairs of spheres of free objects and the taxels or rigid contacts that they push, or could push after a small step.
 //!
-//! What is rigid is a taxel without a spring, at the end of its stroke: a sphere pushes it by how far it is inside, and what it carries
-//! is the force of its stop. So both are pairs, and everything else sees no difference.
+//! A rigid contact is treated as a taxel without a spring at the end of its stroke: its deflection is the penetration of the sphere, and its force
+//! is the force on the stop. Both kinds are therefore pairs with the same interface.
 
 use super::super::taxel_contact::GRAZING;
 use super::body::Body;
@@ -12,46 +12,46 @@ use super::rigid_pairs::gather_rigid;
 use glam::{DMat3, DVec3};
 use std::ops::Range;
 
-/// A taxel, or something rigid, and the pairs that push it.
+/// Taxel or rigid contact, and the pairs that push it.
 #[derive(Clone, Debug)]
 pub(super) struct Group {
     pub key: Key,
     pub pairs: Range<usize>,
-    /// N/m; 0 of what is rigid.
+    /// Stiffness, N/m; 0 for a rigid contact.
     pub stiffness: f64,
-    /// From where it is if nothing pushes it, metres; 0 of what is rigid.
+    /// Stroke from the free position, metres; 0 for a rigid contact.
     pub stroke: f64,
-    /// What others push, metres.
+    /// Deflection by objects that are not free, metres.
     pub others: f64,
-    /// Of the lightest body that pushes it, newtons.
+    /// Weight of the lightest body that pushes the taxel, newtons.
     pub weight: f64,
 }
 
-/// How much more than what presses is looked at.
+/// Margins within which pairs are gathered beyond those in contact.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Margins {
-    /// How far spheres may move and still be known to meet a taxel, metres.
+    /// Distance that spheres may move without meeting a taxel that is not gathered, metres.
     pub step: f64,
-    /// Spheres that push a taxel less far than the deepest by more than this do not count, metres.
+    /// Pairs whose deflection is less than the taxel's largest one by more than this are omitted, metres.
     pub window: f64,
 }
 
-/// Pairs at one place of all bodies.
+/// Pairs at the present poses of all bodies.
 ///
-/// A sphere behind a taxel's substrate does not push it. It also does not while it comes up from there: else it would meet a
-/// cliff where the substrate is, on which an object could hang. So such pairs are remembered until they are apart.
+/// A sphere behind a taxel's substrate does not push the taxel. Neither does a sphere that comes up from behind: the energy would
+/// jump at the substrate, and an object could hang on this jump. Such pairs are stored until sphere and taxel are apart.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Pairs {
-    /// Those that push or could, sorted by what they push and by sphere.
+    /// Pairs that push or could push, sorted by taxel or rigid contact and then by sphere.
     pub all: Vec<Pair>,
     pub groups: Vec<Group>,
-    /// Those that do not since the sphere came from behind; sorted.
+    /// Pairs that do not push because the sphere came from behind; sorted.
     pub behind: Vec<(Key, Part)>,
     deepest: Vec<f64>,
 }
 
 impl Pairs {
-    /// Looks at bodies where they are; `behind`: what was behind before.
+    /// Gathers the pairs at the present poses; `behind` lists the pairs that were behind before.
     pub fn look(
         &mut self,
         bodies: &[Body],
@@ -75,7 +75,7 @@ impl Pairs {
         }
     }
 
-    /// Of each of `n_bodies` the number of one that stands for all which it touches or shares taxels with.
+    /// Returns for each of `n_bodies` bodies the number of its island: bodies that touch one another or share taxels have equal numbers.
     pub fn islands(&self, n_bodies: usize) -> Vec<usize> {
         let mut islands: Vec<usize> = (0..n_bodies).collect();
         for group in &self.groups {
@@ -129,7 +129,7 @@ impl Pairs {
             let Key::Taxel(_, taxel) = pair.key else {
                 continue;
             };
-            // Of a taxel that nothing pushes yet, all that could.
+            // For a taxel that nothing pushes yet, all candidates are kept.
             let deepest = deepest[taxel as usize];
             if deepest == 0.0 || pair.deflection >= deepest - margins.window {
                 all[kept] = pair;
@@ -183,7 +183,7 @@ impl Pairs {
         }
     }
 
-    /// What others push of taxels that a free object pushes, too.
+    /// Adds the deflections by other objects of taxels that a free object pushes, too.
     fn gather_others(&mut self, number: u32, skin: &PlacedSkin) {
         let deepest = self.deepest.iter_mut().zip(skin.pushed);
         for (taxel, (deepest, others)) in deepest.enumerate() {

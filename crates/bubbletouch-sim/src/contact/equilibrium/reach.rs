@@ -1,24 +1,24 @@
-//! How far one sphere pushes one taxel, with its derivatives for a motion of the sphere.
+//! Deflection of one taxel by one sphere, with its derivatives by the sphere's motion.
 
 use super::super::law;
 use super::super::taxel_contact::GRAZING;
 use crate::world::PlacedTaxel;
 use glam::{DMat3, DVec3};
 
-/// δ of a sphere and a taxel, and what it depends on; all in the patch frame.
+/// δ of a sphere and a taxel, and the quantities from which it is computed; all in the patch frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reach {
     /// δ, metres.
     pub deflection: f64,
-    /// The sphere's centre beside the taxel's axis, metres.
+    /// Vector from the taxel's axis to the sphere's centre, metres.
     beside: DVec3,
-    /// n.
+    /// Axis n of the taxel, unit.
     axis: DVec3,
     /// S = ρ + R.
     reach: f64,
 }
 
-/// δ and its first two derivatives by the sphere's centre.
+/// First two derivatives of δ with respect to the sphere's centre.
 pub(super) struct Derivatives {
     /// ∂δ/∂c.
     pub gradient: DVec3,
@@ -28,12 +28,12 @@ pub(super) struct Derivatives {
 }
 
 impl Reach {
-    /// Of a sphere (in the patch frame) and a taxel, `None` if it does not push the taxel and will not after a motion of
-    /// `motion` metres; as if there were no substrate.
+    /// Computes δ of a sphere (in the patch frame) and a taxel, ignoring the substrate. Returns `None` if the sphere does not push the taxel
+    /// and cannot after a motion of `motion` metres.
     ///
-    /// `δ = √(S² − b²) − h` for `√(S² − b²) ≥ γS` with γ = [`GRAZING`]. Where the sphere's flank is steeper it goes on along
-    /// the tangent, so that a sphere that comes from the side climbs a slope of 1/γ, not a cliff: that is the bound on the
-    /// gradient that forces have.
+    /// `δ = √(S² − b²) − h` for `√(S² − b²) ≥ γS` with γ = [`GRAZING`]. On steeper flanks of the sphere δ continues along
+    /// the tangent, so a sphere that comes from the side climbs a slope of 1/γ instead of a cliff. This is also the bound of the gradient
+    /// used for forces.
     pub fn new(center: DVec3, radius: f64, taxel: &PlacedTaxel, motion: f64) -> Option<Self> {
         let (axis, reach) = (taxel.axis, taxel.radius + radius);
         let from_rest = center - taxel.center;
@@ -61,7 +61,7 @@ impl Reach {
         })
     }
 
-    /// Whether the sphere is on the far side of the substrate, which is `taxel.behind` along the axis.
+    /// Returns whether the sphere is on the far side of the substrate, which is `taxel.behind` along the axis.
     pub fn is_behind(&self, taxel: &PlacedTaxel, center: DVec3) -> bool {
         let height = (center - taxel.center).dot(self.axis);
         let q = self.reach * self.reach - self.beside.length_squared();

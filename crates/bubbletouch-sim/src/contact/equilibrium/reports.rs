@@ -1,4 +1,4 @@
-//! What carries objects at rest, one force after the other.
+//! Individual loads on objects at rest.
 
 use super::body::Body;
 use super::energy::PairLoad;
@@ -8,40 +8,40 @@ use super::rigid_contact::Touched;
 use crate::contact::Wrench;
 use glam::DVec3;
 
-/// What one taxel carries of one sphere of an object.
+/// Load between one taxel and one sphere of an object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TaxelLoad {
-    /// The skin's number in the list that objects were put to rest on.
+    /// Number of the skin in the list of the ground.
     pub skin: usize,
-    /// The taxel's number in its layout.
+    /// Number of the taxel in its layout.
     pub taxel: usize,
-    /// The object's number.
+    /// Number of the object.
     pub object: usize,
-    /// The sphere's number.
+    /// Number of the sphere in its object.
     pub sphere: usize,
-    /// What the sphere puts on the taxel along its axis, newtons, above 0.
+    /// Force of the sphere on the taxel along the taxel's axis, newtons, above 0.
     pub force: f64,
-    /// The part of that force which the spring at its stroke does not carry, newtons: its share in the reaction of the stop, the
-    /// multiplier of δ ≤ s in the balance; 0 before the stroke.
+    /// Part of `force` that the spring at its stroke does not carry, newtons: the share in the reaction of the stop, which is the
+    /// multiplier of δ ≤ s; 0 below the stroke.
     pub stop: f64,
-    /// Whether the sphere's flank is as good as parallel to the axis: see [`GRAZING`](crate::contact::GRAZING).
+    /// Whether the sphere's flank is nearly parallel to the axis: see [`GRAZING`](crate::contact::GRAZING).
     pub is_grazing: bool,
-    /// What the taxel puts on the object, in the patch frame: force n_c / (n_c·n).
+    /// Load of the taxel on the object, in the patch frame: force n_c / (n_c·n).
     pub on_object: Wrench,
 }
 
-/// What something rigid carries of one sphere of an object.
+/// Load between something rigid and one sphere of an object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touch {
-    /// The object's number.
+    /// Number of the object.
     pub object: usize,
-    /// The sphere's number.
+    /// Number of the sphere in its object.
     pub sphere: usize,
-    /// What it touches.
+    /// Rigid counterpart of the sphere.
     pub other: Touched,
-    /// Where, in the world, metres.
+    /// Contact point, metres, in the world.
     pub point: DVec3,
-    /// On the object, newtons, in the world; the opposite on what it touches.
+    /// Force on the object, newtons, in the world; the opposite force acts on the counterpart.
     pub force: DVec3,
 }
 
@@ -70,7 +70,7 @@ impl TaxelLoad {
 }
 
 impl Touch {
-    /// `of_body`: the number of the object that is behind a place among bodies.
+    /// `of_body` maps the index of a body to the number of its object.
     pub(super) fn new(
         pair: &Pair,
         touched: Touched,

@@ -2,30 +2,30 @@
 
 use glam::{DMat3, DVec3};
 
-/// What a sphere of a free object touches that is rigid.
+/// Rigid counterpart of a sphere of a free object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Touched {
-    /// A plane, by its number.
+    /// Number of a plane.
     Plane(usize),
-    /// An obstacle, by its number, and one of its spheres.
+    /// Number of an obstacle, and number of one of its spheres.
     Obstacle(usize, usize),
-    /// Another free object, by its number, and one of its spheres.
+    /// Number of another free object, and number of one of its spheres.
     Object(usize, usize),
 }
 
-/// How far a sphere is inside of something rigid, and what that depends on; in the world.
+/// Penetration of a sphere into something rigid, and the quantities on which it depends; in the world.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Touching {
-    /// Unit, out of it to the sphere.
+    /// Unit normal, from the counterpart to the sphere.
     pub normal: DVec3,
-    /// Between the middles of two spheres, metres; endless from a plane.
+    /// Distance between the centres of two spheres, metres; infinite for a plane.
     pub distance: f64,
-    /// The body that the sphere touches, and where the centre of its sphere is from its centre of mass; `None` of what does not move.
+    /// Index of the touched body, and the vector from its centre of mass to the centre of its sphere; `None` for a fixed counterpart.
     pub other: Option<(u32, DVec3)>,
 }
 
 impl Touching {
-    /// ∂δ/∂c and ∂²δ/∂c² (1/m) by how the sphere's centre moves, less how the other one's does.
+    /// Returns ∂δ/∂c and ∂²δ/∂c² (1/m) by the motion of the sphere's centre relative to the counterpart.
     pub fn derivatives(&self) -> (DVec3, DMat3) {
         let n = self.normal;
         let along = DMat3::from_cols(n * n.x, n * n.y, n * n.z);

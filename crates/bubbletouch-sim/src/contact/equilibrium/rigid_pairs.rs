@@ -1,4 +1,4 @@
-//! Spheres of free objects on what is rigid: planes, obstacles, and one another.
+//! Contacts between spheres of free objects and planes, obstacles, and other free objects.
 
 use super::body::Body;
 use super::free_object::{Ground, HalfSpace};
@@ -8,15 +8,15 @@ use crate::geometry::Pose;
 use crate::objects::Sphere;
 use glam::{DMat3, DVec3};
 
-/// Spheres that one of a body may touch.
+/// Spheres that a sphere of a body may touch.
 struct Others<'a> {
     spheres: &'a [Sphere],
     pose: Pose,
-    /// The number and the centre of mass of the body that they are of.
+    /// Index and centre of mass of the body that owns the spheres; `None` for an obstacle.
     body: Option<(u32, DVec3)>,
 }
 
-/// Appends the pairs of all spheres that are inside of something rigid, or nearer to it than each may move, metres; sorted.
+/// Appends the pairs of all spheres that penetrate something rigid or are nearer than `may_move`, metres, sorted.
 pub(super) fn gather_rigid(pairs: &mut Vec<Pair>, bodies: &[Body], ground: &Ground, may_move: f64) {
     let first = pairs.len();
     for (body, slot) in bodies.iter().zip(0..) {
@@ -77,7 +77,7 @@ fn gather_plane(
     }
 }
 
-/// Those less than `gap` apart, sorted along the way from the body to the middle of what is near of the others: there most are past each other.
+/// Gathers pairs less than `gap` apart. Spheres are sorted along the line from the body to the middle of the nearby others: the sweep skips most.
 fn gather_spheres(
     pairs: &mut Vec<Pair>,
     (slot, body): (u32, &Body),
@@ -107,7 +107,7 @@ fn gather_spheres(
             if deflection > -gap {
                 let part: Part = (slot, index);
                 let touching = Touching {
-                    // Of two in the same place, whichever.
+                    // Coincident centres have no normal; any direction will do.
                     normal: between.try_normalize().unwrap_or(DVec3::Z),
                     distance: distance.max(f64::MIN_POSITIVE),
                     other: others
@@ -126,7 +126,7 @@ fn gather_spheres(
     }
 }
 
-/// In the world, with their numbers.
+/// Returns the spheres in the world, with their numbers.
 fn placed(spheres: &[Sphere], pose: &Pose) -> impl Iterator<Item = (u32, Sphere)> {
     let (rotation, origin) = (DMat3::from_quat(pose.rotation), pose.translation);
     let all = spheres.iter().zip(0..);

@@ -1,4 +1,4 @@
-//! Free objects on their way to equilibrium, and what their energy depends on.
+//! Free objects during the search for equilibrium, and the parameters of their energy.
 
 use super::body::Body;
 use super::free_object::Ground;

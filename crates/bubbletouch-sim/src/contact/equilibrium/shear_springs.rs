@@ -1,15 +1,16 @@
-//! Friction: the tips of taxels that hold free objects by their shear springs.
+//! Friction of taxels whose shear springs act on free objects.
 //!
-//! A tip that touched an object when the step began is dragged along by the material point a that it touched. With v = u + P (a − a₀) across
-//! the taxel's axis, k_t the shear spring's stiffness and r = μ f / k_t, its energy is
+//! The material point a of the object drags the tip that touched it at the beginning of the step. With v = u + P (a − a₀) perpendicular to
+//! the taxel's axis, k_t the stiffness of the shear spring and r = μ f / k_t, the energy of the spring is
+//!
 //!
 //! ```text
 //! ½ k_t |v|²               |v| ≤ r        it sticks
 //! k_t r (|v| − ½ r)        |v| > r        it slips
 //! ```
 //!
-//! Its slope is k_t times the return of v to the cone. In itself r depends on the force f at rest: each round of a descent takes it from the
-//! rest of the last one (Tresca's friction, again and again), until both agree \[NJ\].
+//! The derivative is k_t times v, returned to the cone. The radius r depends on the force f in equilibrium. Each round of a descent therefore takes r
+//! from the solution of the last round, until both agree: a fixed-point iteration of Tresca's friction \[NJ\].
 
 use super::body::{Body, along, ways};
 use super::free_object::{Ground, PlacedSkin};
@@ -21,26 +22,26 @@ use super::symmetric::{Six, Symmetric, dot};
 use crate::contact::friction::{TangentialSpring, TangentialSpringState};
 use glam::{DVec2, DVec3};
 
-/// What rounding may add to a tip on its cone: less is no slip.
+/// Factor by which rounding may move a tip beyond its cone without a slip.
 const ROUNDING: f64 = 1.0 + 1e-12;
 
-/// A tip on a body.
+/// Shear spring between a taxel's tip and a body.
 #[derive(Clone, Debug)]
 pub(super) struct Spring {
     skin: usize,
     tip: TangentialSpring,
-    /// The body's place among those on their way.
+    /// Index of the body in the descent.
     pub body: usize,
-    /// x and y of the taxel's frame, in the world.
+    /// x and y axes of the taxel's frame, in the world.
     axes: [DVec3; 2],
-    /// Where the point was, seen from the patch where it is now; in the world.
+    /// Place of the point at the beginning of the step, moved with the patch; in the world.
     start: DVec3,
     /// r, metres.
     reach: f64,
 }
 
 impl Spring {
-    /// All that hold these bodies.
+    /// Returns all shear springs that act on these bodies.
     pub fn all(bodies: &[Body], ground: &Ground) -> Vec<Self> {
         let skins = ground.skins.iter().enumerate();
         let tips = skins.flat_map(|skin| {
@@ -63,20 +64,20 @@ impl Spring {
         springs.collect()
     }
 
-    /// From the body's centre of mass to the point, in the world.
+    /// Returns the vector from the body's centre of mass to the point, in the world.
     fn arm(&self, bodies: &[Body]) -> DVec3 {
         let body = &bodies[self.body];
         body.rotation * (self.tip.point - body.object.center_of_mass)
     }
 
-    /// v, metres.
+    /// Returns v, metres.
     fn stretch(&self, bodies: &[Body]) -> DVec2 {
         let way = bodies[self.body].center + self.arm(bodies) - self.start;
         let [x, y] = self.axes;
         self.tip.displacement + DVec2::new(way.dot(x), way.dot(y))
     }
 
-    /// Its energy, joules, with v.
+    /// Returns the energy of the spring, joules, at v.
     fn energy(&self, v: DVec2) -> f64 {
         let (k, r, length) = (self.tip.shear.stiffness, self.reach, v.length());
         match length <= r {
@@ -85,12 +86,12 @@ impl Spring {
         }
     }
 
-    /// The energy's slope by v, newtons.
+    /// Returns the derivative of the energy by v, newtons.
     fn slope(&self, v: DVec2) -> DVec2 {
         self.tip.shear.stiffness * v.clamp_length_max(self.reach)
     }
 
-    /// The slope's, N/m: how much of it is along any way, and how much less of it along v.
+    /// Returns the second derivative of the energy by v, N/m: the isotropic part, and the amount subtracted along v.
     fn bend(&self, v: DVec2) -> (f64, f64) {
         let (k, length) = (self.tip.shear.stiffness, v.length());
         if self.reach > 0.0 && length <= self.reach {
@@ -100,13 +101,13 @@ impl Spring {
         (slipping, slipping)
     }
 
-    /// In the world, newtons.
+    /// Returns the force on the body, newtons, in the world.
     fn force(&self, v: DVec2) -> DVec3 {
         let DVec2 { x, y } = -self.slope(v);
         x * self.axes[0] + y * self.axes[1]
     }
 
-    /// What presses its taxel into the body where this energy was looked at, newtons; what the stop carries is none of it.
+    /// Returns the normal force of the taxel's spring on the body at the pose evaluated last, newtons, without the force of the stop.
     fn pressing(&self, (pairs, loads): (&Pairs, &Loads)) -> f64 {
         let key = Key::Taxel(self.skin as u32, self.tip.taxel as u32);
         let Ok(at) = pairs.groups.binary_search_by_key(&key, |group| group.key) else {
@@ -122,7 +123,7 @@ impl Spring {
         }
     }
 
-    /// What it does at rest, by the number of its object.
+    /// Returns the state of the spring in equilibrium, with the number of its object.
     pub fn load(&self, bodies: &[Body], skins: &[PlacedSkin]) -> TangentialSpringState {
         let v = self.stretch(bodies);
         let place = bodies[self.body].center + self.arm(bodies);
@@ -140,14 +141,14 @@ impl Spring {
     }
 }
 
-/// The energy of springs, joules.
+/// Returns the energy of the springs, joules.
 pub(super) fn energy(springs: &[Spring], bodies: &[Body]) -> f64 {
     let each = springs.iter();
     each.map(|spring| spring.energy(spring.stretch(bodies)))
         .sum()
 }
 
-/// Adds what they put on each body to its force (N) and torque about the centre of mass (N·m), in the world.
+/// Adds the loads of the springs to the force (N) and the torque about the centre of mass (N·m) of each body, in the world.
 pub(super) fn add_wrenches(springs: &[Spring], bodies: &[Body], to: &mut [(DVec3, DVec3)]) {
     for spring in springs {
         let force = spring.force(spring.stretch(bodies));
@@ -156,7 +157,7 @@ pub(super) fn add_wrenches(springs: &[Spring], bodies: &[Body], to: &mut [(DVec3
     }
 }
 
-/// Takes the cones from what presses the taxels here; how far they were from it, as a share of the weights.
+/// Updates the cones from the present normal forces; returns the largest change of a limit, relative to the weights.
 pub(super) fn renew(springs: &mut [Spring], bodies: &[Body], here: (&Pairs, &Loads)) -> f64 {
     let mut most = 0.0_f64;
     for spring in springs {
@@ -169,15 +170,15 @@ pub(super) fn renew(springs: &mut [Spring], bodies: &[Body], here: (&Pairs, &Loa
     most
 }
 
-/// The springs in a model of the energy: v goes linearly with the motion.
+/// Shear springs in a model of the energy: v is linear in the motion.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Held {
-    /// Each with its v at the pose, and ∂v by the motion of its body.
+    /// Each spring with v at the pose, and the derivative of v by the motion of its body.
     all: Vec<(Spring, DVec2, [Six; 2])>,
 }
 
 impl Held {
-    /// Lays the model at a pose; adds the energy's curvature by what turns there.
+    /// Sets up the model at a pose; adds the curvature of the energy due to rotations.
     pub fn lay(&mut self, springs: &[Spring], bodies: &[Body], curvature: &mut Symmetric) {
         self.all.clear();
         for spring in springs {
@@ -209,14 +210,14 @@ impl Held {
         })
     }
 
-    /// After a motion, joules.
+    /// Returns the energy after a motion, joules.
     pub fn energy_after(&self, motion: &[f64]) -> f64 {
         self.after(motion)
             .map(|(spring, v, _)| spring.energy(v))
             .sum()
     }
 
-    /// Adds their part of gradient (N) and Hessian (N/m) after a motion.
+    /// Adds the springs' part of the gradient (N) and Hessian (N/m) after a motion.
     pub fn add_derivatives(&self, motion: &[f64], gradient: &mut [f64], hessian: &mut Symmetric) {
         for (spring, v, slopes) in self.after(motion) {
             let slope = spring.slope(v).to_array();

@@ -5,10 +5,10 @@ use super::pair::Pair;
 use super::symmetric::{Six, Symmetric, dot};
 use glam::DVec3;
 
-/// ∂δ of each pair by the motions of the bodies that it depends on.
+/// ∂δ of each pair by the motions of the bodies on which it depends.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Slopes {
-    /// Where those of each pair begin, and the end of the last.
+    /// Start of the entries of each pair, and the end of the last.
     first: Vec<u32>,
     all: Vec<(u32, Six)>,
 }
@@ -18,7 +18,7 @@ impl Slopes {
         &self.all[self.first[pair] as usize..self.first[pair + 1] as usize]
     }
 
-    /// How much more of a pair's deflection a motion is.
+    /// Returns the change of a pair's deflection by a motion, to first order, metres.
     pub fn dot(&self, pair: usize, motion: &[f64]) -> f64 {
         let of = self.of(pair).iter();
         of.map(|(body, slope)| dot(slope, &motion[6 * *body as usize..]))
@@ -31,7 +31,8 @@ impl Slopes {
         self.first.push(0);
     }
 
-    /// Those of the next pair, with the `axes` of the world in the frame of its arm; adds the energy's curvature where it carries a force, newtons.
+    /// Appends the derivatives of the next pair; `axes` are the world's, in the frame of its arm. If `force` (newtons) is positive, adds the energy's
+    /// curvature.
     pub fn lay(
         &mut self,
         bodies: &[Body],
@@ -65,7 +66,7 @@ impl Slopes {
     }
 }
 
-/// Second order of a rotation θ, which takes r to r + θ × r + ½ θ × (θ × r): a·½ θ × (θ × r) = ½ ((a·θ)(r·θ) − (a·r) θ²).
+/// Adds the second-order term of a rotation θ, which maps r to r + θ × r + ½ θ × (θ × r): a·½ θ × (θ × r) = ½ ((a·θ)(r·θ) − (a·r) θ²).
 pub(super) fn add_turning(
     curvature: &mut Symmetric,
     body: usize,

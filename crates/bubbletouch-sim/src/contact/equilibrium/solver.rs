@@ -44,14 +44,14 @@ pub struct Equilibrium {
     pub n_touched: usize,
     /// Number of taxels whose stops carry the object.
     pub n_saturated: usize,
-    /// Taxels pushed along a flank as good as parallel to their axis: see [`GRAZING`](crate::contact::GRAZING).
+    /// Number of taxels pushed along a flank nearly parallel to their axis: see [`GRAZING`](crate::contact::GRAZING).
     pub n_grazing: usize,
     /// Number of poses that the solver evaluated, of all objects together.
     pub n_steps: usize,
 }
 
 impl Equilibrium {
-    /// Whether the object is on the ground: at rest, or not converged.
+    /// Returns whether the object is still in the scene: at rest, or not converged.
     pub fn is_there(&self) -> bool {
         !matches!(self.outcome, Outcome::Escaped { .. })
     }
@@ -74,18 +74,18 @@ impl EquilibriumSolver {
         Self::default()
     }
 
-    /// Loads of taxels in the last solution, in the order of skins and taxels; without objects that escaped. With the
-    /// [touches](Self::touches) they add up to the forces of each [`Equilibrium`].
+    /// Returns the loads of taxels in the last solution, in the order of skins and taxels, without those of escaped objects. Together with the
+    /// [touches](Self::touches) they sum to the forces of each [`Equilibrium`].
     pub fn loads(&self) -> &[TaxelLoad] {
         &self.loads
     }
 
-    /// Tangential springs in the last solution, in the order of skins and taxels.
+    /// Returns the tangential springs in the last solution, in the order of skins and taxels.
     pub fn tangential_springs(&self) -> &[TangentialSpringState] {
         &self.tangential_springs
     }
 
-    /// Rigid contacts in the last solution.
+    /// Returns the rigid contacts in the last solution.
     pub fn touches(&self) -> &[Touch] {
         &self.touches
     }
@@ -93,7 +93,7 @@ impl EquilibriumSolver {
     /// Solves for the equilibrium of one object on skins, from a pose (`world_from_object`), under `gravity` (m/s², in the world).
     ///
     /// # Errors
-    /// Those of [`solve_all`](Self::solve_all).
+    /// If [`solve_all`](Self::solve_all) fails.
     pub fn solve(
         &mut self,
         object: &FreeObject,
@@ -114,10 +114,10 @@ impl EquilibriumSolver {
     /// The energy never increases from the start to the solution; objects at rest do not move. The ground is fixed.
     ///
     /// # Errors
-    /// The error names a gravity that is zero or not finite, and a pose that is not finite.
+    /// If the gravity is zero or not finite, or a pose is not finite.
     ///
     /// # Panics
-    /// If there are not as many poses as objects.
+    /// If the number of poses differs from the number of objects.
     pub fn solve_all(
         &mut self,
         objects: &[FreeObject],
@@ -127,7 +127,7 @@ impl EquilibriumSolver {
     ) -> Result<Vec<Equilibrium>> {
         assert_eq!(objects.len(), starts.len());
         check(gravity, starts)?;
-        // Where the objects are, is the origin: far from the world's, places have too few digits to balance stiff springs.
+        // The origin is at the first object: far from the world's origin, coordinates have too few digits to balance stiff springs.
         let origin = starts.first().map_or(DVec3::ZERO, |pose| pose.translation);
         let ground = ground.seen_from(origin);
         let from_there = |pose: &Pose| Pose::new(pose.rotation, pose.translation - origin);
@@ -144,7 +144,7 @@ impl EquilibriumSolver {
     }
 
     /// Descends repeatedly. Objects that leave or do not converge are removed, and the others continue. If a descent does not converge, it is
-    /// repeated once from there without multipliers: those of a diverged iteration would mislead the next.
+    /// repeated once from its last poses without multipliers: those of a diverged iteration would mislead the next.
     fn solve_bodies<'s>(
         &mut self,
         mut bodies: Vec<Body<'s>>,
@@ -165,7 +165,7 @@ impl EquilibriumSolver {
             let end = descent.run();
             n_steps += descent.n_steps;
             let is_first = !std::mem::replace(&mut is_again, false);
-            // What leaves has no outcome yet: its direction is its own.
+            // The outcome of an object that leaves contains its own direction and is set below.
             let (done, outcome) = match end {
                 End::Endless(gone) => (gone, None),
                 End::Rest => ((0..numbers.len()).collect(), Some(Outcome::AtRest)),
@@ -239,7 +239,7 @@ impl EquilibriumSolver {
         }
     }
 
-    /// What carries those bodies that are `done`, by the numbers of the objects.
+    /// Reports the loads on the bodies in `done`, with the numbers of their objects.
     fn report(
         &mut self,
         bodies: &[Body],

@@ -1,9 +1,9 @@
-//! Symmetric matrices of all ways in which several bodies can move, and the best step of a quadratic model in a ball.
+//! Symmetric matrices over the motions of several bodies, and the best step of a quadratic model in a ball.
 
-/// Three translations, three rotations of one body.
+/// Three translations and three rotations of one body.
 pub(super) type Six = [f64; 6];
 
-/// With sums beside one another, which a processor adds at once.
+/// Returns the dot product, with independent partial sums that a processor adds at once.
 #[inline(always)]
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let n = a.len().min(b.len());
@@ -23,14 +23,14 @@ pub(super) fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// A symmetric matrix of n rows.
+/// Symmetric matrix with n rows.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Symmetric {
     n: usize,
     entries: Vec<f64>,
 }
 
-/// L of `L Lᵀ`: lower triangular, row after row.
+/// Cholesky factor L of `L Lᵀ`: lower triangular, row by row.
 #[derive(Clone, Debug)]
 pub(super) struct Factor {
     n: usize,
@@ -38,7 +38,7 @@ pub(super) struct Factor {
 }
 
 impl Symmetric {
-    /// Zeros.
+    /// Resizes the matrix to n rows of zeros.
     pub fn clear(&mut self, n: usize) {
         self.n = n;
         self.entries.clear();
@@ -53,12 +53,12 @@ impl Symmetric {
         &self.entries[i * self.n..][..self.n]
     }
 
-    /// The entries of row i from column `first` on.
+    /// Returns the entries of row i from column `first` on.
     pub fn part_mut(&mut self, i: usize, first: usize) -> &mut [f64] {
         &mut self.entries[i * self.n..][first..self.n]
     }
 
-    /// Adds `factor · x yᵀ` to the block of the ways of body a (rows) and b (columns).
+    /// Adds `factor · x yᵀ` to the block of the motions of body a (rows) and body b (columns).
     pub fn add_block(&mut self, [a, b]: [usize; 2], factor: f64, x: &Six, y: &Six) {
         for (i, x) in x.iter().enumerate() {
             let row = &mut self.part_mut(6 * a + i, 6 * b)[..6];
@@ -68,7 +68,7 @@ impl Symmetric {
         }
     }
 
-    /// Whether all eigenvalues are above 0, but for rounding.
+    /// Returns whether all eigenvalues are above 0, to rounding.
     pub fn is_convex(&self) -> bool {
         self.factor(1e-9 * self.size()).is_some()
     }
@@ -77,14 +77,14 @@ impl Symmetric {
         (0..self.n).map(|i| dot(self.row(i), v)).collect()
     }
 
-    /// At least as large as every eigenvalue.
+    /// Returns an upper bound of the eigenvalues.
     pub fn size(&self) -> f64 {
         let rows = (0..self.n).map(|i| self.row(i).iter().map(|x| x.abs()).sum());
         rows.fold(0.0, f64::max)
     }
 
-    /// Cholesky's factor with `shift` added to the diagonal; `None` if that is not positive definite. What is zero before the first entry of a
-    /// row stays so: bodies that do not touch cost nothing.
+    /// Returns the Cholesky factor with `shift` added to the diagonal; `None` if the sum is not positive definite. Leading zeros of a
+    /// row are preserved and skipped, so bodies that do not touch cost nothing.
     pub fn factor(&self, shift: f64) -> Option<Factor> {
         let n = self.n;
         let mut rows = self.entries.clone();
@@ -102,7 +102,7 @@ impl Symmetric {
                 row[j] = (row[j] - dot(&row[both..j], &other[both..j])) / other[j];
             }
             let left = row[i] + shift - dot(&row[from..i], &row[from..i]);
-            // Also false of what is no number.
+            // Also false for NaN.
             if !(left > 0.0 && left.is_finite()) {
                 return None;
             }
@@ -117,7 +117,7 @@ impl Factor {
         &self.rows[i * self.n..][..self.n]
     }
 
-    /// z of `L z = b`.
+    /// Solves `L z = b` for z.
     fn forward(&self, b: &[f64]) -> Vec<f64> {
         let mut z = b.to_vec();
         for i in 0..self.n {
@@ -127,7 +127,7 @@ impl Factor {
         z
     }
 
-    /// x of `L Lᵀ x = b`.
+    /// Solves `L Lᵀ x = b` for x.
     pub fn solve(&self, b: &[f64]) -> Vec<f64> {
         let mut x = self.forward(b);
         for i in (0..self.n).rev() {
@@ -140,9 +140,9 @@ impl Factor {
         x
     }
 
-    /// About the eigenvector of the lowest eigenvalue, of length 1: by inverse iteration.
+    /// Returns an approximate eigenvector of the lowest eigenvalue, of length 1, by inverse iteration.
     fn weakest(&self) -> Vec<f64> {
-        /// The shift is within a hundredth of the eigenvalue: each gains two digits or, where two are alike, any of both will do.
+        /// The shift is within a hundredth of the eigenvalue, so each iteration gains two digits; if two eigenvalues nearly agree, either vector will do.
         const N_ITERATIONS: usize = 6;
         let mut vector: Vec<f64> = (0..self.n).map(|i| 1.0 + 0.1 * (i % 7) as f64).collect();
         for _ in 0..N_ITERATIONS {
@@ -154,16 +154,16 @@ impl Factor {
     }
 }
 
-/// The step d with |d| ≤ `reach` that minimises `g·d + ½ dᵀHd`, and how much that is below zero; also where H has negative
+/// Returns the step d with |d| ≤ `reach` that minimises `g·d + ½ dᵀHd`, and the decrease; H may have negative
 /// curvature. \[MS\]
 ///
-/// It solves `(H + σ) d = −g` with the least σ ≥ 0 for which H + σ is positive definite and d within reach: Newton's method for
-/// `1/|d| = 1/reach`. Where g has no part along the lowest eigenvector of an indefinite H (the hard case), that vector is added up to
-/// the edge of the ball.
+/// The step solves `(H + σ) d = −g` with the least σ ≥ 0 for which H + σ is positive definite and |d| ≤ `reach`, by Newton's method for
+/// `1/|d| = 1/reach`. If g has no component along the lowest eigenvector of an indefinite H (the hard case), this vector is added up to
+/// the boundary of the ball.
 pub(super) fn best_step(gradient: &[f64], h: &Symmetric, reach: f64) -> (Vec<f64>, f64) {
-    /// How near to the edge of the ball a step is at it.
+    /// Relative distance from the boundary of the ball within which a step counts as on it.
     const NEAR: f64 = 1e-9;
-    /// The first σ that is tried for an indefinite H, as a share of the largest: from larger and smaller ones the way is longer.
+    /// First σ tried for an indefinite H, relative to the largest; larger and smaller values need more iterations.
     const FIRST: f64 = 1e-3;
     let (size, slope) = (h.size(), norm(gradient));
     let flat = 1e-14 * size.max(slope / reach);
@@ -245,7 +245,7 @@ mod tests {
         ((0..n).map(|_| rng.gen_range(-1.0..1.0)).collect(), m)
     }
 
-    /// About the eigenvector of the lowest eigenvalue: of the least shift that makes a matrix positive definite.
+    /// Returns an approximate eigenvector of the lowest eigenvalue: the least shift that makes a matrix positive definite.
     fn lowest(m: &Symmetric) -> Vec<f64> {
         let (mut low, mut high) = (0.0, 2.0 * m.size());
         for _ in 0..60 {
@@ -277,7 +277,7 @@ mod tests {
             let n = 6 * (1 + seed as usize % 3);
             let (mut g, m) = random_case(seed, n);
             if seed % 4 == 0 {
-                // The hard case: nothing along the lowest direction.
+                // Hard case: no component along the lowest direction.
                 if m.factor(0.0).is_none() {
                     let vector = lowest(&m);
                     let along = dot(&g, &vector);

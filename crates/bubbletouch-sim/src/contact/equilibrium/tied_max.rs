@@ -1,24 +1,24 @@
 //! The maximum of several deflections, smooth enough for Newton's method and exact in the end.
 //!
-//! A taxel between two spheres carries both, and only their shares say how its force splits. The maximum is
-//! `max over w in the simplex of w·δ`; its augmented Lagrangian about shares w⁰ known so far,
+//! A taxel between two spheres touches both, and the shares of its force on each are unknown. The maximum is
+//! `max over w in the simplex of w·δ`; its augmented Lagrangian about the present shares w⁰,
 //!
 //! ```text
 //! ψ = max over w of  w·δ − (μ/2) |w − w⁰|²        (about no shares: − (μ/2) (|w|² − 1))
 //! ```
 //!
-//! has the gradient w. Taking w for the next w⁰ makes ψ the maximum itself \[RW\].
+//! has the gradient w. Replacing w⁰ by w and repeating makes ψ converge to the maximum itself \[RW\].
 
-/// ψ, and the shares.
+/// Value ψ of the smoothed maximum, and the number of shares.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct TiedMax {
     pub value: f64,
-    /// How many shares are above zero.
+    /// Number of shares above zero.
     pub n_sharing: usize,
 }
 
-/// Shares (written to `shares`) and value of the smoothed maximum of `deflections`; `known`: w⁰ of each, and Σ w⁰² over all,
-/// with those of spheres too far back to be in the list; `None` if no shares are known.
+/// Returns the smoothed maximum of `deflections` and writes the shares to `shares`. `known` has w⁰ of each deflection, and Σ w⁰² over all
+/// spheres, including those omitted from the list; `None` if no shares are known.
 pub(super) fn tied_max(
     deflections: &[f64],
     known: Option<(&[f64], f64)>,
@@ -38,7 +38,7 @@ pub(super) fn tied_max(
     let highest = (0..deflections.len())
         .map(at)
         .fold(f64::NEG_INFINITY, f64::max);
-    // Only what is within one of the highest can have a share.
+    // Only values within one of the highest can have a share.
     let mut near: Vec<f64> = (0..deflections.len())
         .map(at)
         .filter(|v| *v > highest - 1.0)
@@ -53,7 +53,7 @@ pub(super) fn tied_max(
         }
     }
     shares.extend((0..deflections.len()).map(|j| (at(j) - level).max(0.0)));
-    // Of |w − w⁰|² what does not depend on the list: Σ w⁰², or the 1 that makes a clear maximum itself.
+    // Part of |w − w⁰|² that does not depend on the list: Σ w⁰², or the 1 for which a clear maximum has its exact value.
     let mut value = 0.5 * smoothing * known.map_or(1.0, |(_, squares)| -squares);
     for (j, share) in shares.iter().enumerate() {
         value += share * deflections[j] - 0.5 * smoothing * share * (share - 2.0 * about(j));

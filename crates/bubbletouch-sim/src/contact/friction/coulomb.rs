@@ -1,32 +1,32 @@
-//! A spring with dry friction in a plane, dragged along a straight line: where its end is then, in closed form.
+//! Closed-form motion of a spring with dry friction in a plane, dragged along a straight line.
 //!
-//! The spring's deflection u is held to a disc: `|u| ≤ r`, r = μ f / k_t. What drags it moves by Δ = L e (|e| = 1) at a
-//! constant speed, while r stays. Inside of the disc the end sticks, and u grows by the motion. On its rim, and on the way
-//! outwards, it slips against the force: `u̇ = e − (e·û) û`. With φ the angle from e to u that is `r φ' = −sin φ`, so
+//! The spring's deflection u lies in a disc: `|u| ≤ r`, r = μ f / k_t. The dragging point moves by Δ = L e (|e| = 1) at a constant speed, with constant r.
+//! Inside the disc the spring's end sticks, and u grows by the motion. If u is on the rim and the motion points outwards, the end slips
+//! against the force: `u̇ = e − (e·û) û`. With φ the angle from e to u, this gives `r φ' = −sin φ`, so
 //!
 //! ```text
 //! tan(φ/2) = tan(φ₀/2) e^(−s / r)
 //! ```
 //!
-//! s after it came to the rim: u turns until it trails behind the motion. So a straight path in one step or in many is the
-//! same, not only where u is along the motion (there the usual radial return is this, too). A disc that has become
-//! smaller takes u radially along first: backward Euler for the normal force.
+//! at the distance s after the end reached the rim: u turns until it points along the motion. One step along a straight path therefore equals many
+//! steps. If u is parallel to the motion, the solution is the usual radial return. If r has decreased, u is first
+//! returned radially to the new disc: backward Euler for the normal force.
 
 use glam::DVec2;
 
-/// What rounding may add to a trial on the rim: less is no slip. Larger would call creep stuck; smaller, a rest on the rim slip.
+/// Factor by which rounding may move a trial beyond the rim without a slip. Larger: creep counts as sticking; smaller: rest on the rim counts as slip.
 const ROUNDING: f64 = 1.0 + 1e-12;
 
-/// The spring's end after a drag.
+/// State of the spring's end after a drag.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Dragged {
-    /// u, metres, no longer than the limit.
+    /// Displacement u, metres, |u| ≤ r.
     pub displacement: DVec2,
-    /// Whether it has slipped anywhere on the way.
+    /// Whether the end slipped during the drag.
     pub has_slipped: bool,
 }
 
-/// Drags a spring's end from `displacement` by `motion`, with a limit r ≥ 0; all in metres.
+/// Drags the spring's end from `displacement` by `motion`, with the limit r ≥ 0; all in metres.
 pub(crate) fn drag(displacement: DVec2, motion: DVec2, limit: f64) -> Dragged {
     let is_outside = displacement.length() > limit * ROUNDING;
     let start = within(displacement, limit);
@@ -51,7 +51,7 @@ fn within(displacement: DVec2, limit: f64) -> DVec2 {
     displacement * (limit / length)
 }
 
-/// From inside of the disc to its rim, and along it.
+/// Moves the end from inside the disc to its rim, and then along the rim.
 fn slide(start: DVec2, motion: DVec2, limit: f64) -> DVec2 {
     if limit == 0.0 {
         return DVec2::ZERO;

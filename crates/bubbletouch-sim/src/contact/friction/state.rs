@@ -1,36 +1,35 @@
-//! Forces in three dimensions: shear springs and Coulomb friction at the tips of the taxels.
+//! Three-axis contact forces: shear springs and Coulomb friction at the taxels.
 //!
-//! Beside its spring (k, δ) along the axis n a taxel has a shear spring at its tip: stiffness k_t, displacement u across the
-//! axis. While the taxel is in contact, the object drags the tip along. Over a step it moves from the pose X₀ to X₁ (in the
-//! patch frame), the material point a that touched the taxel at the start, and the one that touches it at the end, b, with it:
+//! In addition to the spring (k, δ) along its axis n, a taxel has a shear spring at its tip: stiffness k_t, displacement u perpendicular to
+//! the axis. While the taxel is in contact, the object drags the tip. During a step the object moves from the pose X₀ to X₁ (patch frame). Let a
+//! be the material point of the object that touches the taxel at the start of the step, and b the point that touches at the end:
 //!
 //! ```text
-//! Δ = P ½ [(X₁ a − X₀ a) + (X₁ b − X₀ b)],   P = 1 − n nᵀ         what shears; what is along n is the spring's
-//! f_t = k_t u on the tip,  |f_t| ≤ μ f_n                            stick inside of the cone, slip on it
+//! Δ = P ½ [(X₁ a − X₀ a) + (X₁ b − X₀ b)],   P = 1 − n nᵀ         tangential motion; the spring carries the motion along n
+//! f_t = k_t u on the tip,  |f_t| ≤ μ f_n                            stick inside the cone, slip on it
 //! ```
 //!
-//! `coulomb` has the step of u in closed form: the predictor u + Δ, returned to the cone of the normal force at the step's end.
-//! Rolling has X₁ a − X₀ a and X₁ b − X₀ b that cancel to second order, and drags nothing.
+//! The module `coulomb` solves the step of u in closed form: the predictor u + Δ is returned to the friction cone of the normal force at the step's end.
+//! If the object rolls, X₁ a − X₀ a and X₁ b − X₀ b cancel to second order, so rolling drags nothing.
 //!
-//! What drags a free object's contacts is not known before its equilibrium, which these tips hold: there b is left out, and u + Δ returned to the
-//! cone radially (`equilibrium::shear_springs`); on a straight way that is the same.
+//! For a free object the motion is unknown before its equilibrium, which depends on the shear springs. There b is omitted, and u + Δ is returned
+//! radially to the cone (`equilibrium::shear_springs`). On a straight path both rules give the same u.
 //!
-//! **What is normal**: the sensor's axis, f_n = f = k δ (+ c δ̇ with a damper), not the contact normal n_c. A friction across
-//! the axis has no part along it, so δ and f stay as they are without friction, in closed form; no wedge can jam a taxel; and
-//! the cone is one that the sensor's own readings show. The taxel slides on rigid guides, so what the inclined contact pushes
-//! it aside without friction, `f (n_c + n cos) / cos`, is carried by these and does not load the shear spring. At a
-//! flank at an angle θ Coulomb's cone about n_c differs by the order of μ tan θ; head-on both are the same. What u moves of the place that is
-//! touched is left out, as small as μ f / k_t.
+//! **Normal direction**: the sensor's axis, f_n = f = k δ (+ c δ̇ with a damper), not the contact normal n_c. Friction perpendicular to the axis
+//! has no component along it, so δ and f keep their frictionless closed form and no wedge can jam a taxel. The cone then refers
+//! to the force that the sensor measures. The taxel slides on rigid guides. The lateral frictionless force of an inclined
+//! contact, `f (n_c + n cos) / cos`, is carried by these guides and does not load the shear spring. On a
+//! flank at an angle θ, Coulomb's cone about n_c differs by the order of μ tan θ; head-on both cones are equal. The shift of the contact point by
+//! u is neglected; it is of the order of μ f / k_t.
 //!
-//! So the force on the object is the frictionless one, −∇ Σ ½ k δ², minus Σ f_t at the contact points. For μ = 0 every u is
-//! exactly zero, and the [load](FrictionState::load) is that of [`spring_load`](crate::contact::spring_load) to the bit.
+//! The force on the object is therefore the frictionless one, −∇ Σ ½ k δ², minus Σ f_t at the contact points. For μ = 0 every u is
+//! exactly zero, and the [load](FrictionState::load) equals [`spring_load`](crate::contact::spring_load) to the bit.
 //!
-//! **Laws**: the cone holds after any step; no step size is unstable. The work of f_t on the object is at most what the shear
-//! springs gave back, at any step size, so friction only dissipates. One step along a straight way is the same as many while f
-//! stays; where f changes, and for taxels that come into contact within a step (they begin with u = 0 at its end), the
-//! steps' error is of first order. A taxel out of contact, or in contact with another object, forgets u. A saturated taxel
-//! carries k s as far as its spring says; what its stop carries beyond is not known, so its friction is the least that it can be; press
-//! counts such taxels.
+//! **Laws**: the friction cone holds after any step, and no step size is unstable. The work of f_t on the object is at most the energy released by
+//! the shear springs, at any step size, so friction only dissipates. While f is constant, one step along a straight path equals many steps. If f
+//! changes, the error of a step is of first order. It is also of first order for taxels that come into contact within a step, which begin with
+//! u = 0 at the step's end. If a taxel leaves contact or touches another object, u is reset to zero. For a saturated taxel the normal force
+//! is the spring's k s. The additional force of the stop is unknown, so the friction is a lower bound; a press counts such taxels.
 
 use super::coulomb::{Dragged, drag};
 use super::tangential_spring::{TangentialSpring, TangentialSpringState};
@@ -70,21 +69,21 @@ impl NormalForce<'_> {
     }
 }
 
-/// How many taxels did what in a step.
+/// Numbers of sticking and slipping taxels after a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ContactModeCounts {
-    /// Pressed, and not slipped.
+    /// Number of taxels in contact that did not slip.
     pub n_sticking: usize,
-    /// Slipped.
+    /// Number of taxels that slipped during the step.
     pub n_slipping: usize,
 }
 
-/// What the taxels of some contacts do to the objects.
+/// Sum of the forces that taxels exert on objects.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FrictionLoad {
-    /// Springs and friction.
+    /// Force and torque of springs and friction together.
     pub on_object: Wrench,
-    /// The part of it that is friction.
+    /// Force and torque of the friction alone.
     pub friction: Wrench,
 }
 
@@ -121,26 +120,26 @@ pub struct FrictionLoad {
 #[derive(Clone, Debug)]
 pub struct FrictionState {
     shears: Shears,
-    /// n_taxels.
+    /// Three-axis readings, N, shape (n_taxels,).
     forces: Vec<DVec3>,
-    /// n_taxels.
+    /// Shape (n_taxels,).
     contact_modes: Vec<ContactMode>,
     /// Taxels in contact, ascending.
     held: Vec<Held>,
-    /// Those of the step before, while one is made.
+    /// Taxels in contact at the step before; used only during a step.
     before: Vec<Held>,
     /// `patch_from_object` after the last step.
     poses: Vec<Pose>,
 }
 
-/// A tip on an object.
+/// Contact between a taxel's tip and an object.
 #[derive(Clone, Copy, Debug)]
 struct Held {
     taxel: usize,
     object: usize,
-    /// The material point that it touches, metres, in the object's frame.
+    /// Material point of the object that the tip touches, metres, in the object's frame.
     point: DVec3,
-    /// Where that is, and where the friction acts, metres, in the patch frame.
+    /// Position of the material point, and position where the friction acts, metres, in the patch frame.
     place: DVec3,
     acts_at: DVec3,
     /// u, metres, along x and y of the taxel's frame.
@@ -148,10 +147,10 @@ struct Held {
 }
 
 impl FrictionState {
-    /// An untouched patch.
+    /// Creates the state of an untouched patch: no taxel is in contact.
     ///
     /// # Errors
-    /// Those of [`Shears::check_on`].
+    /// If [`Shears::check_on`] refuses the shear springs.
     pub fn at_rest(patch: &Patch, shears: Shears) -> Result<Self> {
         shears.check_on(patch)?;
         Ok(Self {
@@ -169,9 +168,9 @@ impl FrictionState {
         &self.shears
     }
 
-    /// `force3`: n_taxels readings of a sensor with three axes, N. Each is the object's force on the tip: x and y along those of
-    /// the taxel's [frame](crate::world::Layout::frame), friction and what an inclined contact pushes aside; z is what presses the
-    /// taxel in (against its axis), never negative. Zero for a taxel that nothing presses.
+    /// Returns the readings `force3` of three-axis sensors, N, shape (n_taxels,): the object's force on each tip.
+    /// x and y, along the axes of the taxel's [frame](crate::world::Layout::frame), are friction plus the lateral force of an inclined contact.
+    /// z is the force against the taxel's axis, never negative. The reading is zero if nothing presses the taxel.
     pub fn force3(&self) -> &[DVec3] {
         &self.forces
     }
@@ -181,12 +180,12 @@ impl FrictionState {
         &self.contact_modes
     }
 
-    /// The friction on one taxel's tip along x and y of its [frame](crate::world::Layout::frame), N: k_t u, at most μ f.
+    /// Returns the friction on one taxel's tip along x and y of the taxel's [frame](crate::world::Layout::frame), N: k_t u, at most μ f.
     pub fn friction(&self, taxel: usize) -> DVec2 {
         self.shears.at(taxel).stiffness * self.displacement(taxel)
     }
 
-    /// u of one taxel along x and y of its [frame](crate::world::Layout::frame), metres; zero out of contact.
+    /// Returns u of one taxel along x and y of the taxel's [frame](crate::world::Layout::frame), metres; zero if the taxel is not in contact.
     pub fn displacement(&self, taxel: usize) -> DVec2 {
         self.held(taxel)
             .map_or(DVec2::ZERO, |held| held.displacement)
@@ -197,7 +196,7 @@ impl FrictionState {
         found.ok().map(|index| &self.held[index])
     }
 
-    /// Tangential springs of the taxels in contact, ascending by taxel; they hold free objects in the next step.
+    /// Returns the tangential springs of the taxels in contact, ascending by taxel; they act on free objects in the next step.
     pub fn tangential_springs(&self) -> impl Iterator<Item = TangentialSpring> {
         self.held.iter().map(|held| TangentialSpring {
             taxel: held.taxel,
@@ -210,7 +209,7 @@ impl FrictionState {
         })
     }
 
-    /// From now on an object is held by these contacts (ascending) alone, at this pose, as if it had just been put there.
+    /// Replaces the contacts of one object by the given contacts (ascending by taxel) at the given pose, with u = 0.
     pub fn put(
         &mut self,
         patch: &Patch,
@@ -237,11 +236,11 @@ impl FrictionState {
         }
     }
 
-    /// A step to the end of which the patch was pressed with these contacts (ascending, as a press gives them) by objects at
-    /// these poses; from where they were after the step before. The first step, as any first contact, shears nothing.
+    /// Advances the shear springs by one step, from the poses of the step before to `patch_from_objects`.
+    /// `contacts` are the contacts of a press at the step's end, ascending by taxel. At the first step, and at any first contact, u is zero.
     ///
     /// # Panics
-    /// If a contact has a taxel or an object that there is not.
+    /// If the taxel or object of a contact does not exist.
     pub fn step(
         &mut self,
         patch: &Patch,
@@ -252,11 +251,12 @@ impl FrictionState {
         self.step_with(patch, contacts, patch_from_objects, normal, &[])
     }
 
-    /// The same where tips hold free objects as their [equilibrium](crate::contact::equilibrium) says (ascending by taxel): what it put to rest with the
-    /// [tangential springs](Self::tangential_springs) of the step before.
+    /// Advances the shear springs by one step, with free objects in [equilibrium](crate::contact::equilibrium).
+    /// `held_at_rest`, ascending by taxel, is the result of the equilibrium that was solved with the [tangential springs](Self::tangential_springs) of
+    /// the step before.
     ///
     /// # Panics
-    /// If a contact has a taxel or an object that there is not.
+    /// If the taxel or object of a contact does not exist.
     pub fn step_with(
         &mut self,
         patch: &Patch,
@@ -321,7 +321,7 @@ impl FrictionState {
         counts
     }
 
-    /// Adds up what the taxels do to the objects after a step: those of all its contacts, or of those with one object.
+    /// Returns the sum of the forces that taxels exert on objects after a step: over all its contacts, or over those with one object.
     pub fn load<'a>(
         &self,
         patch: &Patch,
@@ -353,7 +353,7 @@ impl Dragged {
     }
 }
 
-/// The part of a vector in the patch frame that is across a taxel's axis, along x and y of the taxel's frame.
+/// Returns the component of a vector (patch frame) perpendicular to a taxel's axis, along x and y of the taxel's frame.
 fn across(frame: &DMat3, vector: DVec3) -> DVec2 {
     (frame.transpose() * vector).xy()
 }

@@ -1,4 +1,4 @@
-//! A skin of any shape moved along a line past first contact.
+//! Motion of a patch with any layout along a line past first contact.
 
 use super::near_spheres::{PlacedUnion, needed_of_leaf};
 use super::path::{ApproachPath, ContactRequest, meeting};
@@ -13,29 +13,29 @@ use glam::DVec3;
 use std::cell::Cell;
 use std::sync::OnceLock;
 
-/// The way of a patch along a direction.
+/// Motion of a patch along a direction.
 ///
-/// A taxel first meets what its sphere meets on the way, wherever its own axis points: so first contact is found by taxels at the same
-/// places whose axes are the direction and whose strokes do not end, and the one that is pushed farthest in was met first.
+/// First contact depends on the taxels' spheres and the direction, not on the taxels' axes. It is therefore found with taxels at the same
+/// places whose axes are the direction and whose strokes are unlimited: the taxel with the largest deflection touches first.
 #[derive(Clone, Debug)]
 pub struct Approach<'a> {
     patch: &'a Patch,
     direction: DVec3,
-    /// Made when it is asked for; that along z is the patch's.
+    /// Created on first use; the one along z belongs to the patch.
     travelling: OnceLock<Travelling>,
 }
 
 impl<'a> Approach<'a> {
-    /// Of a patch along a direction (unit, in the patch frame).
+    /// Creates the motion of a patch along a direction (unit vector, in the patch frame).
     ///
     /// # Errors
-    /// A direction whose length is not one.
+    /// If the length of the direction is not one.
     pub fn new(patch: &'a Patch, direction: DVec3) -> Result<Self> {
         ApproachPath::check(direction)?;
         Ok(Self::along(patch, direction))
     }
 
-    /// Of a patch along its z.
+    /// Creates the motion of a patch along its z axis.
     pub(crate) fn ahead(patch: &'a Patch) -> Self {
         Self::along(patch, DVec3::Z)
     }
@@ -48,7 +48,7 @@ impl<'a> Approach<'a> {
         }
     }
 
-    /// The taxels as they travel.
+    /// Returns the taxels with their axes turned into the direction of travel.
     fn travelling(&self) -> &Travelling {
         if self.direction == DVec3::Z {
             return self.patch.ahead();
@@ -57,12 +57,13 @@ impl<'a> Approach<'a> {
         self.travelling.get_or_init(make)
     }
 
-    /// How far the patch goes until a taxel meets an object, metres, negative if it is past that; `None` where the way misses all of them.
+    /// Returns the travel at which a taxel first meets an object, metres; negative if the patch is past this contact. Returns `None` if the
+    /// path misses all objects.
     ///
-    /// `patch_from_objects`: where the objects are, one an object.
+    /// `patch_from_objects` has one pose per object.
     ///
     /// # Panics
-    /// If there are not as many poses as objects.
+    /// If the number of poses differs from the number of objects.
     pub fn first_contact(&self, objects: &[Model], patch_from_objects: &[Pose]) -> Option<f64> {
         assert_eq!(
             objects.len(),
@@ -82,7 +83,7 @@ impl<'a> Approach<'a> {
         (farthest > 0.0).then_some(end - farthest)
     }
 
-    /// How far an object pushes the taxels as they travel, metres, if that is more than others do.
+    /// Returns the largest deflection of the travelling taxels by an object, metres, or `others` if that is larger.
     fn farthest(&self, object: &Model, pose: &Pose, others: f64) -> f64 {
         let mut farthest = others;
         match object {
@@ -99,7 +100,8 @@ impl<'a> Approach<'a> {
         farthest
     }
 
-    /// The same of spheres: first those of the cluster that may push farthest, then of those that may push farther than these do.
+    /// Returns the largest deflection by a sphere union. The cluster with the largest bound is evaluated first, then those whose bound exceeds the
+    /// deflection found.
     fn farthest_sphere(&self, union: &SphereUnion, pose: &Pose, others: f64) -> f64 {
         let (placed, travelling) = (PlacedUnion::new(union, pose), &self.travelling().taxels);
         let mut foremost = (others, None);
@@ -125,13 +127,13 @@ impl<'a> Approach<'a> {
         farthest_of_each(Instructions::Best, self, placed, numbers, others)
     }
 
-    /// How far a ball (in the patch frame) can push a taxel as they travel, at most, metres.
+    /// Returns an upper bound of the deflection, metres, of the travelling taxels by a ball in the patch frame.
     #[inline(always)]
     fn most(&self, ball: &Sphere) -> f64 {
         self.travelling().front + ball.radius - ball.center.dot(self.direction)
     }
 
-    /// The same of the taxels of a node: all that the ball meets are ahead of it, so that its way from their stretches is its way from their axes.
+    /// Returns an upper bound of the deflection of a node's taxels by a ball. All taxels are parallel, so the bound uses the distance from their axes.
     #[inline(always)]
     fn most_of(&self, node: &Node, ball: &Sphere) -> f64 {
         let room = node.room(ball.center, ball.radius);
@@ -141,13 +143,13 @@ impl<'a> Approach<'a> {
         }
     }
 
-    /// Presses to a depth (metres, positive) past first contact; `None` (and zero deflections) where the way misses all objects. The
-    /// workspace then says what touches what.
+    /// Presses to a depth (metres, positive) past first contact and records the contacts in the workspace. Returns `None`, with zero
+    /// deflections, if the path misses all objects.
     ///
-    /// What pushes a taxel goes on pushing it behind the substrate: nothing passes through the skin.
+    /// A part that pushes a taxel continues to push it behind the substrate, so nothing passes through the skin.
     ///
     /// # Panics
-    /// If there are not as many poses as objects.
+    /// If the number of poses differs from the number of objects.
     pub fn press_to_depth(
         &self,
         objects: &[Model],
@@ -159,11 +161,11 @@ impl<'a> Approach<'a> {
         self.press_and_slide(objects, patch_from_objects, motion, None, workspace)
     }
 
-    /// Presses to a depth and then slides along a straight line (metres, in the patch frame), dragging the tips of the taxels if there is
-    /// friction, which begins at rest; its forces are those at the end.
+    /// Presses to a depth and then slides along a straight line (metres, in the patch frame). With friction, the objects drag the tips of the taxels;
+    /// the friction begins at rest, and its forces are those at the end of the path.
     ///
     /// # Panics
-    /// If there are not as many poses as objects, or the friction is another patch's.
+    /// If the number of poses differs from the number of objects, or the friction belongs to another patch.
     pub fn press_and_slide(
         &self,
         objects: &[Model],
@@ -178,8 +180,8 @@ impl<'a> Approach<'a> {
         path.press_and_slide(travels, slide, friction)
     }
 
-    /// The deflections alone, from one travel to another; `None` of none. Those of taxels along the direction need no steps: each is pushed in as far
-    /// as it goes past what it met.
+    /// Computes the deflections from one travel to another without contacts; returns `None` if `travels` is `None`. Taxels whose axes are parallel to
+    /// the direction need no steps: their deflection follows from the travel past their contact.
     pub(crate) fn deflect(
         &self,
         objects: &[Model],
@@ -215,7 +217,7 @@ impl<'a> Approach<'a> {
 }
 
 for_instructions! {
-    /// How far some spheres push the taxels of an approach, if that is more than others do.
+    /// Returns the largest deflection by each of some spheres, or `others` if that is larger.
     fn farthest_of_each(
         approach: &Approach,
         placed: &PlacedUnion,

@@ -1,4 +1,4 @@
-//! A patch of any layout moved along a line until it feels a force.
+//! Motion of a patch with any layout along a line to a given force.
 
 use super::approach::Approach;
 use super::path::{ApproachPath, meeting};
@@ -12,19 +12,18 @@ use crate::objects::Model;
 use crate::text::in_range::positive;
 
 impl Approach<'_> {
-    /// Goes on until the springs carry `force` newtons together, Σ k δ: to within 1e-12 of it, or to the last bit of the travel.
+    /// Presses until the springs carry `force` newtons together, Σ k δ, to within a relative 1e-12 or the last bit of the travel.
     ///
-    /// `patch_from_objects`: where the objects are before, one an object. `None` where the way misses all of them (the workspace then
-    /// holds the last press on it). Taxels of a curved skin come and go along the way: the first travel with this force that steps of
-    /// half a stroke find is named. Where the force jumps past it (an edge that comes upon a taxel from the side), the
-    /// upper side of the jump is. What pushes a taxel goes on pushing it behind the substrate: nothing passes through the skin.
+    /// `patch_from_objects` has the objects' poses before the motion, one per object. Returns `None` if the path misses all objects; the workspace then
+    /// contains the last press on the path. The force of a curved skin need not be monotonic along the path, so the first travel with this force is
+    /// returned, searched in steps of half a stroke. If the force jumps past `force` (an edge meets a taxel from the side), the
+    /// upper side of the jump is returned. A part that pushes a taxel continues to push it behind the substrate, so nothing passes through the skin.
     ///
     /// # Errors
-    /// A force that is not a positive number; one that is not reached on the way past the objects: the text says the largest one and
-    /// its travel.
+    /// If `force` is not a positive number or is not reached on the path past the objects. The message contains the largest force and its travel.
     ///
     /// # Panics
-    /// If there are not as many poses as objects.
+    /// If the number of poses differs from the number of objects.
     pub fn press_to_force(
         &self,
         objects: &[Model],
@@ -42,7 +41,7 @@ impl Approach<'_> {
 }
 
 impl ApproachPath<'_> {
-    /// Goes on until the force is felt.
+    /// Increases the travel until the force is reached.
     fn go(&mut self, force: f64) -> Result<Option<Contact>> {
         let ends = meeting(
             self.patch,
@@ -66,7 +65,7 @@ impl ApproachPath<'_> {
         }))
     }
 
-    /// Two travels, with less than the force at the first and not less at the second; `None` if nothing is touched.
+    /// Returns two travels, with a smaller force at the first and at least `force` at the second; `None` if nothing is touched.
     fn bracket(&mut self, [start, end]: [f64; 2], force: f64) -> Result<Option<[f64; 2]>> {
         let mut largest = (0.0, start);
         let n_steps = self.patch.n_steps(end - start);
@@ -90,7 +89,7 @@ impl ApproachPath<'_> {
         Err(unreachable_force(force, largest.0, &where_to))
     }
 
-    /// Σ k δ in N, and its slope over the travel in N/m.
+    /// Returns Σ k δ, N, and its derivative with respect to the travel, N/m.
     fn sample(&mut self, travel: f64) -> Sample {
         self.press(travel);
         sample(

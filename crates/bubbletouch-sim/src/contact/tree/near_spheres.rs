@@ -1,4 +1,4 @@
-//! The spheres of an object that are where a skin is: by clusters, so that most of a large object is never looked at.
+//! Search for the spheres of an object near a skin, by clusters, so that most spheres of a large object are skipped.
 
 use crate::contact::law;
 use crate::geometry::Pose;
@@ -22,7 +22,7 @@ impl<'a> PlacedUnion<'a> {
         }
     }
 
-    /// A sphere by its number.
+    /// Returns the sphere with this number, in the patch frame.
     #[inline(always)]
     pub fn at(&self, number: u32) -> Sphere {
         self.place(self.union.spheres()[number as usize])
@@ -36,18 +36,18 @@ impl<'a> PlacedUnion<'a> {
         }
     }
 
-    /// The clusters that may count by the balls around them.
+    /// Returns the clusters that may count, with their bounding balls.
     pub fn clusters(&self) -> impl Iterator<Item = (usize, Sphere)> {
         let bounds = self.union.clusters().bounds();
         (0..bounds.len()).map(|cluster| (cluster, self.place(bounds.ball(cluster))))
     }
 
-    /// The numbers of the spheres of a cluster.
+    /// Returns the numbers of the spheres of a cluster.
     pub fn of(&self, cluster: usize) -> &'a [u32] {
         self.union.clusters().numbers(cluster)
     }
 
-    /// The numbers of the spheres of those clusters that may count, ascending.
+    /// Collects the numbers of the spheres of those clusters that may count, ascending.
     pub fn gather(&self, mut may_count: impl FnMut(&Sphere) -> bool, numbers: &mut Vec<u32>) {
         numbers.clear();
         for (cluster, ball) in self.clusters() {
@@ -59,11 +59,11 @@ impl<'a> PlacedUnion<'a> {
     }
 }
 
-/// How far a sphere needs a taxel to be pushed, metres, zero or less if it does not meet it or is behind its substrate, which is at height
-/// `behind` along its axis. `from`: the sphere's centre to the taxel's; `frame`: across the axis, twice, and along it, unit; `reach`: both radii,
-/// metres.
+/// Returns the deflection that a sphere needs, metres; at most 0 if the sphere misses the taxel or lies behind its substrate. `from` is
+/// the vector from the sphere's centre to the taxel's; `frame` has two unit vectors perpendicular to the axis and the axis. `reach` is the sum of both
+/// radii, metres, and `behind` the substrate's height along the axis.
 ///
-/// The order of the operations is that of the grid kernel, so that both agree to the last bit on a grid.
+/// The operations have the order of the grid kernel, so that both agree to the last bit on a grid.
 #[inline(always)]
 pub(crate) fn needed_along(from: DVec3, frame: [DVec3; 3], reach: f64, behind: f64) -> f64 {
     let [across_x, across_y, axis] = frame;
@@ -72,7 +72,7 @@ pub(crate) fn needed_along(from: DVec3, frame: [DVec3; 3], reach: f64, behind: f
     law::needed(q, height, behind)
 }
 
-/// The same of each taxel of a leaf and a sphere in the patch frame.
+/// Returns the deflections that a sphere (in the patch frame) needs of the taxels of a leaf, metres.
 #[inline(always)]
 pub(crate) fn needed_of_leaf(leaf: &Leaf, sphere: &Sphere) -> [f64; LEAF] {
     let mut needed = [0.0; LEAF];

@@ -11,13 +11,13 @@ use glam::DVec3;
 /// Length of a step relative to the shortest stroke. Larger: a short peak of the force may be missed, and small spheres may pass through; smaller:
 /// more presses in vain.
 const STEP: f64 = 0.5;
-/// With friction a step is this part of the smallest taxel's radius, too. Larger: what comes into contact within a step has dragged less
-/// than it should; smaller: more presses for no more than a hundredth of the shear.
+/// Length of a step with friction relative to the smallest taxel's radius. Larger: taxels that come into contact within a step are dragged too little;
+/// smaller: more presses for at most a hundredth of the shear.
 const FRICTION_STEP: f64 = 0.25;
-/// Steps of a path, at most; steps become longer where strokes are far shorter than the path.
+/// Largest number of steps of a path; if strokes are far shorter than the path, steps become longer.
 const MAX_STEPS: f64 = 4096.0;
 
-/// A patch, and the poses of the objects before it moves along a direction (unit, in the patch frame).
+/// Patch, and the poses of the objects before it moves along a direction (unit vector, in the patch frame).
 pub(crate) struct ApproachPath<'a> {
     pub patch: &'a Patch,
     pub objects: &'a [Model],
@@ -30,14 +30,14 @@ pub(crate) struct ApproachPath<'a> {
 /// Whether a press records contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum ContactRequest {
-    /// At the end of the path.
+    /// Contacts are recorded at the end of the path.
     AtEnd,
-    /// Never.
+    /// No contacts are recorded.
     None,
 }
 
 impl Patch {
-    /// In how many steps a part of a way past objects is looked at; its length in metres.
+    /// Returns the number of steps for a part of the path of this length, metres.
     pub fn n_steps(&self, length: f64) -> usize {
         let step = STEP * self.least(|taxel| taxel.stroke);
         (length / step).ceil().clamp(1.0, MAX_STEPS) as usize
@@ -50,7 +50,7 @@ impl Patch {
 }
 
 impl ApproachPath<'_> {
-    /// An error unless a direction's length is one.
+    /// Returns an error unless the length of a direction is one.
     pub fn check(direction: DVec3) -> Result<()> {
         match direction.is_finite() && (direction.length() - 1.0).abs() < 1e-9 {
             true => Ok(()),
@@ -62,26 +62,26 @@ impl ApproachPath<'_> {
         }
     }
 
-    /// In how many steps a part of the way (metres) is looked at where friction drags the taxels' tips.
+    /// Returns the number of steps for a part of the path (metres) with friction.
     pub fn n_friction_steps(&self, length: f64) -> usize {
         let step = FRICTION_STEP * self.patch.least(|taxel| taxel.radius);
-        // A whole number of steps is not one more for the last bit of a length.
+        // Rounding of the length must not add a step.
         let n_steps = (length / step * (1.0 - 1e-9)).ceil();
         let n_steps = n_steps.clamp(1.0, MAX_STEPS) as usize;
         n_steps.max(self.patch.n_steps(length))
     }
 
-    /// Presses after a travel.
+    /// Presses at a travel, metres.
     pub fn press(&mut self, travel: f64) -> Contact {
         self.press_at(travel * self.direction)
     }
 
-    /// Presses where the patch is after it has moved (metres, in the patch frame), which is the objects' motion the other path.
+    /// Presses after the patch has moved (metres, in the patch frame), computed as the opposite motion of the objects.
     pub fn press_at(&mut self, moved: DVec3) -> Contact {
         self.at(moved, press_with_contacts)
     }
 
-    /// Presses a flat patch along its axis by its taxels as they travel, from the front.
+    /// Presses a flat patch along its axis from the front, with the travelling taxels.
     pub fn press_through(&mut self, taxels: &TaxelTree, travel: f64) -> Contact {
         let contact = self.at(
             travel * self.direction,
@@ -115,7 +115,7 @@ impl ApproachPath<'_> {
         counts
     }
 
-    /// Presses from one travel to another, `None` where nothing is met, and slides along a straight line.
+    /// Presses from one travel to another and slides along a straight line; `None` if nothing is met.
     pub fn press_and_slide(
         &mut self,
         travels: Option<[f64; 2]>,
@@ -162,7 +162,7 @@ impl ApproachPath<'_> {
     }
 }
 
-/// The ends of so many equal parts of a stretch; the last is its end.
+/// Returns the ends of `n` equal parts of an interval; the last one is the interval's end.
 fn parts([start, end]: [f64; 2], n: usize) -> impl Iterator<Item = f64> {
     (1..=n).map(move |number| match number == n {
         true => end,
@@ -170,7 +170,7 @@ fn parts([start, end]: [f64; 2], n: usize) -> impl Iterator<Item = f64> {
     })
 }
 
-/// The travels between which the balls around a patch that goes along a direction and objects meet; `None` if none does.
+/// Returns the travels between which the bounding balls of the moving patch and of objects meet; `None` if none meet.
 pub(crate) fn meeting(
     patch: &Patch,
     objects: &[Model],

@@ -1,4 +1,4 @@
-//! The kernel of any layout: each taxel along its own axis, only those that a sphere reaches.
+//! Press kernel for any layout: each taxel moves along its own axis, and only taxels within reach of a sphere are evaluated.
 
 use super::near_spheres::{PlacedUnion, needed_along, needed_of_leaf};
 use crate::contact::grid::View;
@@ -14,7 +14,7 @@ use crate::objects::{MeshModel, Model, Sphere, SphereUnion};
 use crate::world::{EvenGrid, LEAF, Patch, PlacedTaxel, TaxelTree};
 use glam::DVec3;
 
-/// Pushes each taxel as far as an object needs, without a stop.
+/// Raises the deflection of each taxel to the one that an object needs, without the limit of the stroke.
 pub(crate) fn push(
     patch: &Patch,
     objects: &[Model],
@@ -27,7 +27,7 @@ pub(crate) fn push(
     push_held(patch, objects, patch_from_objects, workspace);
 }
 
-/// The same of so many taxels in a tree, which may be an even grid, whatever is held.
+/// Raises the deflections of the taxels of a tree, which may be those of an even grid; held parts are ignored.
 pub(crate) fn push_tree(
     (taxels, even_grid): (&TaxelTree, Option<&EvenGrid>),
     n_taxels: usize,
@@ -62,7 +62,7 @@ pub(crate) fn push_tree(
     }
 }
 
-/// Pushes the taxels by the parts that are held and lie behind the substrate; those in front of it push anyway.
+/// Pushes taxels by held parts behind the substrate; parts in front of it push their taxels anyway.
 fn push_held(
     patch: &Patch,
     objects: &[Model],
@@ -81,7 +81,7 @@ fn push_held(
                 let [across_x, across_y] = taxel.across;
                 let frame = [across_x, across_y, taxel.axis];
                 let needed = |behind| needed_along(from, frame, taxel.radius + radius, behind);
-                // In front of the substrate it has pushed already.
+                // In front of the substrate the part has pushed already.
                 if needed(taxel.behind) > 0.0 {
                     continue;
                 }
@@ -97,7 +97,7 @@ fn push_held(
     workspace.held = held;
 }
 
-/// The same as [`push_by_spheres`] to the bit, for taxels in rows: no search, and no look at spheres that are above all of them.
+/// Pushes taxels in rows, equal to [`push_by_spheres`] to the bit, without a search; spheres above all taxels are skipped.
 fn push_along_rows(
     grid: &EvenGrid,
     (object, union, near): (usize, &SphereUnion, &[u32]),
@@ -132,7 +132,7 @@ fn push_along_rows(
 }
 
 for_instructions! {
-    /// Pushes the taxels by the near spheres of an object.
+    /// Pushes the taxels by the nearby spheres of an object.
     fn push_by_spheres(
         taxels: &TaxelTree,
         placed: (usize, &PlacedUnion, &[u32]),
@@ -181,7 +181,7 @@ fn push_by_mesh(
     });
 }
 
-/// Deflects the taxels, and leaves what pushes each of them.
+/// Deflects the taxels and records the part that determines each deflection.
 pub(crate) fn deflect(
     patch: &Patch,
     objects: &[Model],
@@ -192,7 +192,7 @@ pub(crate) fn deflect(
     stop(patch, workspace)
 }
 
-/// Stops the touched taxels at their strokes.
+/// Limits the deflections of the touched taxels to their strokes.
 pub(crate) fn stop(patch: &Patch, workspace: &mut Workspace) -> Contact {
     let mut counts = Contact::default();
     for &taxel in &workspace.touched {
@@ -205,11 +205,11 @@ pub(crate) fn stop(patch: &Patch, workspace: &mut Workspace) -> Contact {
     counts
 }
 
-/// Presses a patch on objects, right where they are: poses are `patch_from_object`, one an object.
+/// Presses a patch on objects at their given poses and records the contacts; `patch_from_objects` has one pose per object.
 ///
-/// What is behind the substrate does not count (the contact stage's title page has the rule), for each taxel by itself: so what a forearm
-/// rests on does not press on its other side. What has gone far past the stroke lies there, too, unless it is known how it came
-/// ([`press_to_depth`](crate::contact::press_to_depth)). A single part decides each touched taxel; where two need the same, the object that comes first, and of a union the first of its spheres.
+/// Parts behind the substrate of a taxel do not count for this taxel (rule in [`contact`](crate::contact)), so an object below a forearm does not press on
+/// its upper side. A part pushed far past the stroke is also behind the substrate; [`press_to_depth`](crate::contact::press_to_depth)
+/// counts it because its path is known. One part determines each deflection. If parts need equal deflections, the first object and its first sphere count.
 ///
 /// ```
 /// use bubbletouch_sim::contact::{Workspace, press_with_contacts, spring_load};
@@ -239,7 +239,7 @@ pub(crate) fn stop(patch: &Patch, workspace: &mut Workspace) -> Contact {
 /// ```
 ///
 /// # Panics
-/// If there are not as many poses as objects.
+/// If the number of poses differs from the number of objects.
 pub fn press_with_contacts(
     patch: &Patch,
     objects: &[Model],
@@ -250,7 +250,7 @@ pub fn press_with_contacts(
     meet(patch, objects, patch_from_objects, workspace)
 }
 
-/// Stops the touched taxels at their strokes, and records the contact of each.
+/// Limits the deflections of the touched taxels to their strokes and records the contacts.
 fn meet(
     patch: &Patch,
     objects: &[Model],
@@ -290,7 +290,7 @@ fn meet(
     counts
 }
 
-/// The point of an object's part that is nearest to a place, and the direction from there to the place; in the patch frame.
+/// Returns the point of an object's part nearest to a place, and the direction from there to the place; in the patch frame.
 fn nearest_point(object: &Model, part: usize, pose: &Pose, place: DVec3) -> (DVec3, DVec3) {
     match object {
         Model::Spheres(union) => {
