@@ -1,4 +1,4 @@
-//! Binary problems of a multi-class SVM, solved.
+//! Solved binary problems of a multi-class SVM.
 
 use crate::dual::DualSolution;
 
@@ -7,10 +7,10 @@ use crate::dual::DualSolution;
 pub struct BinaryProblem {
     /// The class whose rows are positive.
     pub positive: usize,
-    /// The class whose rows are negative; `None`: all others.
+    /// The class whose rows are negative; `None` if all other classes are negative.
     pub negative: Option<usize>,
     /// The problem's rows, as indices of training rows.
     pub rows: Vec<usize>,
-    /// The solution; its coefficients go with `rows`.
+    /// The solution; its coefficients are in the order of `rows`.
     pub solution: DualSolution,
 }

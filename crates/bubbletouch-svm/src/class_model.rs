@@ -1,4 +1,4 @@
-//! What every trained classifier but the kernel SVM is asked: one score per class.
+//! Common interface of the trained classifiers except the kernel SVM: one score per class.
 
 use std::fmt::Debug;
 
@@ -9,30 +9,29 @@ use crate::predict::voting::first_maximum;
 
 /// A trained classifier that scores every class.
 ///
-/// Scores are made to be summed: the sum of the scores of k touches of one object is the score of all of them. So a
-/// model of probabilities scores by `ln p(x | class)` up to a constant of the row, and keeps `ln p(class)` apart as
-/// [`log_prior`](Self::log_prior), which is added once however many touches were summed.
+/// Scores are additive: the sum of the scores of k touches of one object is the score of all touches. A probabilistic model therefore returns
+/// `ln p(x | class)` up to a constant per row. The prior `ln p(class)` is separate ([`log_prior`](Self::log_prior)) and is added once for all summed touches.
 pub trait ClassModel: Debug + Send + Sync {
-    /// The classes of the training rows, ascending: what can be predicted.
+    /// Returns the classes of the training rows, ascending. Predictions are among them.
     fn classes(&self) -> &[usize];
 
-    /// Scores (n_rows × n_classes, in the order of [`classes`](Self::classes)): larger speaks for the class.
+    /// Returns the scores (n_rows × n_classes, in the order of [`classes`](Self::classes)). Larger scores favour the class.
     ///
     /// # Errors
-    /// Another number of columns than in training, or a NaN or infinite feature.
+    /// If the number of columns differs from training, or a feature is NaN or infinite.
     fn scores(&self, features: ArrayView2<f64>) -> Result<Array2<f64>>;
 
-    /// What is added to a sum of scores before the largest wins, per class; `None`: nothing.
+    /// Returns the log-prior of each class, added to a sum of scores before the maximum is taken; `None` if there is no prior.
     fn log_prior(&self) -> Option<ArrayView1<'_, f64>> {
         None
     }
 
-    /// How many of its optimisation problems stopped at their iteration cap, short of their tolerance.
+    /// Returns the number of optimisation problems that stopped at their iteration cap before reaching the tolerance.
     fn n_capped(&self) -> usize {
         0
     }
 
-    /// The label of each row of scores: the largest score with the prior added, the lowest label of equals.
+    /// Returns the label of each row of scores: the class with the largest sum of score and prior; the lowest label, if several are equal.
     fn labels_of_scores(&self, scores: ArrayView2<f64>) -> Array1<usize> {
         let prior = self
             .log_prior()
@@ -46,19 +45,20 @@ pub trait ClassModel: Debug + Send + Sync {
             .collect()
     }
 
-    /// The predicted label of each row.
+    /// Returns the predicted label of each row.
     ///
     /// # Errors
-    /// As [`scores`](Self::scores).
+    /// Returns the errors of [`scores`](Self::scores).
     fn labels(&self, features: ArrayView2<f64>) -> Result<Array1<usize>> {
         Ok(self.labels_of_scores(self.scores(features)?.view()))
     }
 }
 
-/// `ln((votes + 1) / (all votes + n_classes))` of each row: Laplace's rule of succession.
+/// Returns `ln((votes + 1) / (all votes + n_classes))` of each row: Laplace's rule of succession.
 ///
-/// A class without votes is unlikely, not impossible (−∞ would silence it for all touches that follow), and few votes
-/// are believed less than many. Keeps order and ties of the votes.
+/// A class without votes keeps a finite score; −∞ would exclude the class in all further touches. Few votes weigh less than many. The order and ties of the
+/// votes
+/// are preserved.
 pub fn log_vote_shares(mut votes: Array2<f64>) -> Array2<f64> {
     for mut row in votes.axis_iter_mut(Axis(0)) {
         let all = row.sum() + row.len() as f64;
@@ -67,7 +67,7 @@ pub fn log_vote_shares(mut votes: Array2<f64>) -> Array2<f64> {
     votes
 }
 
-/// `ln(n_class / n_rows)` for these classes.
+/// Returns `ln(n_class / n_rows)` of each class.
 pub fn log_priors(labels: ArrayView1<usize>, classes: &[usize]) -> Array1<f64> {
     let share = |class: &usize| {
         let n_class = labels.iter().filter(|&label| label == class).count();

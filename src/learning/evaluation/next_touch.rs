@@ -1,17 +1,20 @@
-//! Which pose of an unknown object to touch next: one at random, the farthest from those that were touched, or the one that is expected to tell most.
+//! Choice of the next pose in which to touch an unknown object: random, farthest from the previous touches, or most informative.
 //!
-//! A pose can be commanded, what lies there is known only when it is touched. After touches in poses x₁ … x_t, to whose frames a classifier answered
-//! with labels a₁ … a_t, an object o is believed in with
+//! The pose can be commanded, but the object there is known only after the touch. A classifier assigns labels a₁ … a_t to touches in poses x₁ … x_t. The
+//! posterior
+//! probability (belief) of object o is
 //!
-//! P(o) ∝ Π P(a_i | o, x_i), every object alike before the first touch.
+//! P(o) ∝ Π P(a_i | o, x_i), with a uniform prior.
 //!
-//! The answers that o gets in a pose x are learned from training touches, each answered by a classifier that has not learned it:
+//! The label probabilities of object o in pose x are estimated from training touches. Each is labelled by a classifier that was not trained on it:
 //!
 //! P(a | o, x) = (Σ_i w_i [a_i = a] + s P(a | o)) / (Σ_i w_i + s), w_i = exp(−d²(x, x_i) / 2), over the training touches i of o,
-//! P(a | o) = (n_oa + 1/n) / (n_o + 1), of n objects and n_o touches of o, of which n_oa are answered a.
+//! P(a | o) = (n_oa + 1/n) / (n_o + 1), for n objects and n_o touches of o, of which n_oa have the label a.
 //!
-//! d² sums squares of differences along each axis of a pose, in bandwidths of that axis. These and s are those with the greatest likelihood of the answers,
-//! each left out of what it is told from. The least expected entropy of P(o) after a touch in x is the greatest [information](PoseAnswers::information)
+//! The distance d² sums squared differences along the axes of a pose, each divided by the bandwidth of its axis. The bandwidths and s maximise the
+//! leave-one-out
+//! likelihood of the labels. The most informative pose has the least expected entropy of P(o) after the touch, that is the greatest
+//! [information](PoseAnswers::information)
 //!
 //! I(O; A | x) = H(A | x) − Σ_o P(o) H(A | o, x), P(a | x) = Σ_o P(o) P(a | o, x) (Lindley, 1956).
 
@@ -19,30 +22,30 @@ use ndarray::{Array1, Array2, ArrayView1, Axis};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// How the touches after the first are chosen.
+/// Strategy for the touches after the first.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum NextTouch {
-    /// At random.
+    /// A random pose.
     #[default]
     Random,
-    /// The pose that is farthest from the nearest one touched.
+    /// The pose with the largest distance to its nearest previous touch.
     Farthest,
     /// The pose with the least expected entropy of the belief.
     MostInformative,
 }
 
-/// Where touches are made.
+/// Poses of touches.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Poses {
     /// n_touches × n_axes, each axis in units of its range.
     pub coordinates: Array2<f64>,
-    /// Of each axis what a full turn is in these units, if it is an angle of which turns come back.
+    /// For each axis that is a periodic angle, the size of a full turn in these units; `None` for other axes.
     pub turns: Vec<Option<f64>>,
 }
 
 impl Poses {
-    /// Those of some touches, by number, in this order.
+    /// Returns the poses of the touches with the given numbers, in the given order.
     pub fn select(&self, touches: &[usize]) -> Self {
         Self {
             coordinates: self.coordinates.select(Axis(0), touches),
@@ -50,7 +53,7 @@ impl Poses {
         }
     }
 
-    /// The difference of two touches along an axis, the shorter way round.
+    /// Returns the absolute difference of two touches along an axis; for a periodic axis, the shorter way round.
     fn difference(&self, axis: usize, a: usize, b: usize) -> f64 {
         let apart = (self.coordinates[[a, axis]] - self.coordinates[[b, axis]]).abs();
         match self.turns[axis] {
@@ -62,17 +65,17 @@ impl Poses {
         }
     }
 
-    /// The sum of squared differences of two touches, each axis in units of its bandwidth.
+    /// Returns the sum of squared differences of two touches, each axis in units of its bandwidth.
     fn squared_distance(&self, bandwidths: &[f64], a: usize, b: usize) -> f64 {
         let along = bandwidths.iter().enumerate();
         let along = along.map(|(axis, bandwidth)| self.difference(axis, a, b) / bandwidth);
         along.map(|apart| apart * apart).sum()
     }
 
-    /// Which of the touches that are left is farthest from the nearest one made, by its place; of equals the first.
+    /// Returns the position in `left` of the touch with the largest distance to its nearest touch in `made`; the first, if several are equal.
     ///
     /// # Panics
-    /// If none is made, or none left.
+    /// If `made` or `left` is empty.
     pub fn farthest(&self, made: &[usize], left: &[usize]) -> usize {
         let units = vec![1.0; self.turns.len()];
         let nearest = |&touch: &usize| {
@@ -84,27 +87,27 @@ impl Poses {
     }
 }
 
-/// Training touches and what they were answered by classifiers that had not learned them.
+/// Model of a classifier's labels, estimated from training touches that were labelled by classifiers not trained on them.
 #[derive(Clone, Debug)]
 pub struct AnswerModel<'a> {
     poses: &'a Poses,
-    /// Of each object its touches with their answers.
+    /// For each object, its touches and their labels.
     answered: Vec<Vec<(usize, usize)>>,
-    /// A bandwidth of each axis, in units of its range.
+    /// Bandwidth of each axis, in units of the range of the axis.
     bandwidths: Vec<f64>,
-    /// s: how many touches in the very pose the answers in all poses count for.
+    /// Strength s: weight of the pose-independent label frequencies, as a number of touches in the pose.
     strength: f64,
 }
 
-/// Bandwidths that are tried. Narrower, and a pose has no neighbours; beyond 1 an axis counts for little, and at infinity for nothing.
+/// Candidate bandwidths. If narrower, a pose has no neighbours; beyond 1, an axis has little influence, and at infinity none.
 const BANDWIDTHS: [f64; 5] = [0.05, 0.1, 0.2, 0.4, f64::INFINITY];
-/// Strengths that are tried: few touches in a pose say little, many all.
+/// Candidate strengths: small values trust few touches in a pose, large values need many.
 const STRENGTHS: [f64; 3] = [1.0, 5.0, 25.0];
-/// How often each axis is tried again when others have changed.
+/// Number of passes over all parameters; each pass tunes every parameter again.
 const PASSES: usize = 2;
 
 impl<'a> AnswerModel<'a> {
-    /// Of touches (number of its pose, object, answer), for objects and answers below `n_objects`.
+    /// Fits the model to touches (pose number, object, label). Objects and labels are below `n_objects`.
     pub fn new(poses: &'a Poses, touches: &[(usize, usize, usize)], n_objects: usize) -> Self {
         let mut answered = vec![Vec::new(); n_objects];
         for &(touch, object, answer) in touches {
@@ -125,7 +128,7 @@ impl<'a> AnswerModel<'a> {
         model
     }
 
-    /// Gives one of its numbers the likeliest of some values.
+    /// Sets one parameter to the candidate value of highest likelihood.
     fn choose<const N: usize>(&mut self, values: [f64; N], number: impl Fn(&mut Self) -> &mut f64) {
         let likelihoods = values.map(|value| {
             *number(self) = value;
@@ -134,7 +137,7 @@ impl<'a> AnswerModel<'a> {
         *number(self) = values[first_greatest(likelihoods)];
     }
 
-    /// ln of the probability of all answers, each told from the others.
+    /// Returns the leave-one-out log-likelihood of all labels.
     fn log_likelihood(&self) -> f64 {
         let share = 1.0 / self.answered.len() as f64;
         let of_object = |answered: &Vec<(usize, usize)>| -> f64 {
@@ -160,7 +163,7 @@ impl<'a> AnswerModel<'a> {
         (-0.5 * self.poses.squared_distance(&self.bandwidths, a, b)).exp()
     }
 
-    /// What each object is answered in the pose of a touch.
+    /// Returns the label probabilities of each object in the pose of a touch.
     pub fn at(&self, touch: usize) -> PoseAnswers {
         let n = self.answered.len();
         let mut given = Array2::from_elem((n, n), 1.0 / n as f64);
@@ -179,17 +182,17 @@ impl<'a> AnswerModel<'a> {
     }
 }
 
-/// The probabilities of answers in a pose.
+/// Label probabilities of all objects in one pose.
 #[derive(Clone, Debug)]
 pub struct PoseAnswers {
-    /// P(a | o): n_objects × n_answers, positive, each row with the sum 1.
+    /// P(a | o): n_objects × n_answers, positive; each row sums to 1.
     given: Array2<f64>,
     /// H(A | o), nats.
     entropies: Array1<f64>,
 }
 
 impl PoseAnswers {
-    /// Of P(a | o): n_objects × n_answers, positive, each row with the sum 1.
+    /// Creates the probabilities from P(a | o): n_objects × n_answers, positive; each row sums to 1.
     pub fn new(given: Array2<f64>) -> Self {
         Self {
             entropies: given.map_axis(Axis(1), entropy),
@@ -197,20 +200,21 @@ impl PoseAnswers {
         }
     }
 
-    /// The belief in each object after an answer.
+    /// Updates the belief in each object after a label (Bayes' rule).
     pub fn believe(&self, belief: &mut Array1<f64>, answer: usize) {
         *belief *= &self.given.column(answer);
         *belief /= belief.sum();
     }
 
-    /// I(O; A): by how much the entropy of the belief is expected to fall, nats.
+    /// Returns the mutual information I(O; A): the expected reduction of the entropy of the belief, nats.
     pub fn information(&self, belief: &Array1<f64>) -> f64 {
         entropy(belief.dot(&self.given).view()) - belief.dot(&self.entropies)
     }
 }
 
-/// Which of the poses that are left tells most after the answers to those made, by its place; of equals the first. Poses and answers go by the number of a
-/// touch; answers of `left` are not looked at.
+/// Returns the position in `left` of the most informative pose; the first, if several are equal. `poses` and `answers` are indexed by touch. The belief is
+/// computed from
+/// the labels of the touches in `made`; the labels of `left` are not used.
 pub fn most_informative(
     (poses, answers): (&[PoseAnswers], &[usize]),
     made: &[usize],
@@ -224,8 +228,9 @@ pub fn most_informative(
     first_greatest(left.iter().map(|&touch| poses[touch].information(&belief)))
 }
 
-/// k ≤ n of the touches `0..n`, the first given, each other one chosen among those that are left: of those made and those left, in rising order, `next`
-/// says the place of one among the latter.
+/// Returns a sequence of k ≤ n of the touches `0..n`, starting with `first`. Each further touch is chosen by `next`, which receives the touches made, in
+/// order, and the
+/// remaining touches, ascending. `next` returns a position in the latter list.
 pub fn sequence(
     (first, k): (usize, usize),
     n: usize,
@@ -244,7 +249,7 @@ fn entropy(shares: ArrayView1<f64>) -> f64 {
     -shares.iter().map(|share| share * share.ln()).sum::<f64>()
 }
 
-/// The place of the greatest of some numbers, of equals the first.
+/// Returns the index of the greatest value; the first, if several are equal.
 fn first_greatest(values: impl IntoIterator<Item = f64>) -> usize {
     let values = values.into_iter().enumerate();
     let greatest = values.reduce(|best, one| if one.1 > best.1 { one } else { best });

@@ -1,8 +1,8 @@
-//! The classifier of a study's cell: one choice, trained and asked the same way whatever it is.
+//! Classifiers of a study's configurations, with one interface for training and prediction of all kinds.
 //!
-//! [`Classifier`] and [`TrainedClassifier`] implement linfa's `Fit` and `PredictInplace`, so they stand wherever a
-//! linfa classifier does; and whatever implements those traits is scored the same way by
-//! [`predict_split`].
+//! [`Classifier`] and [`TrainedClassifier`] implement linfa's `Fit` and `PredictInplace`, so they can replace any linfa classifier. [`predict_split`]
+//! evaluates any
+//! classifier that implements these traits.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -27,56 +27,57 @@ use crate::{Error, Result};
 
 pub use crate::classifiers::trained_classifier::TrainedClassifier;
 
-/// The C of a soft-margin SVM or a logistic regression: given, or chosen by cross-validation of the training rows.
+/// The penalty C of a soft-margin SVM or a logistic regression: a fixed value, or chosen by cross-validation on the training rows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Cost {
-    /// This C.
+    /// Fixed value of C.
     Fixed(f64),
-    /// The most accurate of these (and of the γ beside them) on validation rows; of equals the smaller γ, then the smaller
-    /// C. Then all training rows are used.
+    /// C (and γ) with the highest accuracy on validation rows; of equal candidates the smaller γ, then the smaller C. The final model is trained on all
+    /// training
+    /// rows.
     Chosen(Candidates),
 }
 
-/// Folds of the cross-validation that chooses C and γ, unless others are given: scikit-learn's default.
+/// Number of cross-validation folds for the choice of C and γ, if no folds are given: scikit-learn's default.
 const FOLDS: usize = 5;
 
-/// A classifier and its options. Options that its kind has no use for are ignored: γ of a linear SVM, C of all but SVMs
-/// and logistic regression ([`ClassifierKind::has_c`]; [`TrainedClassifier::c`] is then `None`).
+/// A classifier and its options. Options that its kind does not use are ignored: γ of a linear SVM, and C of all kinds except SVMs and logistic regression
+/// ([`ClassifierKind::has_c`]; [`TrainedClassifier::c`] is then `None`).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Classifier {
-    /// Which.
+    /// Kind of classifier.
     pub kind: ClassifierKind,
-    /// How features are scaled, fitted on the training rows.
+    /// Scaling of the features, fitted on the training rows.
     pub scaling: Scaling,
-    /// How binary SVMs make one for many classes.
+    /// Combination of binary SVMs to a classifier of many classes.
     pub multiclass: Multiclass,
-    /// Which solver trains an SVM.
+    /// Solver that trains an SVM.
     pub solver: Solver,
-    /// C.
+    /// Penalty C, or the candidates to choose from.
     pub c: Cost,
     /// γ of the RBF and polynomial kernels, in inverse squared units of the scaled features.
     pub gamma: Gamma,
-    /// c₀ ≥ 0 of the polynomial kernel.
+    /// Constant c₀ ≥ 0 of the polynomial kernel.
     pub coef0: f64,
     /// Degree of the polynomial kernel, 1 to 20.
     pub degree: u32,
-    /// The solver's stopping tolerance, above 0; see [`SvmParams::tolerance`] and [`LinearSvmParams::tolerance`].
-    /// Logistic regression takes a tenth of it as its own tolerance.
+    /// Stopping tolerance of the solver, above 0; see [`SvmParams::tolerance`] and [`LinearSvmParams::tolerance`]. Logistic regression uses a tenth of this
+    /// value.
     pub tolerance: f64,
-    /// k of the k nearest neighbours, 1 to the number of training rows.
+    /// Number k of nearest neighbours, 1 to the number of training rows.
     pub n_neighbours: usize,
-    /// Trees of a random forest, at least 1.
+    /// Number of trees of a random forest, at least 1.
     pub n_trees: usize,
-    /// Splits below each other in a tree or in a forest's trees, at least 1; `None`: until leaves are pure.
+    /// Maximum depth of the trees of a forest, at least 1; `None` grows trees until the leaves are pure.
     pub max_depth: Option<usize>,
-    /// Most bytes of kernel values that an SVM's solver holds at once; see [`SvmParams::memory_bytes`].
+    /// Maximum size of the kernel values that an SVM's solver holds at once, bytes; see [`SvmParams::memory_bytes`].
     pub memory_bytes: usize,
 }
 
 impl Classifier {
-    /// A classifier with scikit-learn's defaults (C = 1, γ 'scale', degree 3, 5 neighbours, 100 trees of any depth; but
-    /// c₀ = 1, since c₀ = 0 leaves out all lower powers) on standardised features; SVMs one-vs-one.
+    /// Creates a classifier with scikit-learn's defaults on standardised features: C = 1, γ 'scale', degree 3, 5 neighbours, 100 trees of any depth. SVMs are
+    /// one-vs-one. Differs from scikit-learn: c₀ = 1, because c₀ = 0 omits all lower powers.
     pub fn new(kind: ClassifierKind) -> Self {
         Self {
             kind,
@@ -95,11 +96,12 @@ impl Classifier {
         }
     }
 
-    /// Trains on training rows. Whatever is drawn comes from `seed`: the five stratified folds on which a C to be chosen is
-    /// chosen, a forest's trees, the order of coordinate descent.
+    /// Trains on the training rows. All random draws come from `seed`: the five stratified folds that choose C, the trees of a forest, and the order of
+    /// coordinate
+    /// descent.
     ///
     /// # Errors
-    /// Parameters out of range, or data that the kind's training or [`stratified_k_fold`] refuses.
+    /// If a parameter is out of range, or the training of the kind or [`stratified_k_fold`] rejects the data.
     pub fn train(&self, training: &Dataset, seed: &dyn DynStreams) -> Result<TrainedClassifier> {
         let folds = match &self.c {
             Cost::Chosen(_) if self.kind.has_c() => {
@@ -111,12 +113,12 @@ impl Classifier {
         self.train_validated(training, &folds, seed)
     }
 
-    /// Trains on training rows; a C to be chosen is chosen on these folds of them (such as some that keep groups apart),
-    /// given in positions within `training`. The scaling sees all training rows, but not their labels, before they are
-    /// folded. Whatever else is drawn comes from `seed`.
+    /// Trains on the training rows. If C is to be chosen, it is chosen on `folds`, which contain positions within `training` (for instance folds that keep
+    /// groups
+    /// apart). The scaling is fitted to all training rows, without their labels, before the folds are made. Other random draws come from `seed`.
     ///
     /// # Errors
-    /// Parameters out of range, or data that the kind's training or [`choose`](Self::choose) refuses.
+    /// If a parameter is out of range, or the training of the kind or [`choose`](Self::choose) rejects the data.
     pub fn train_validated(
         &self,
         training: &Dataset,
@@ -137,10 +139,10 @@ impl Classifier {
         }
     }
 
-    /// The best of the candidates on folds of the training rows; see [`choose`].
+    /// Chooses the best candidate on folds of the training rows; see [`choose`].
     ///
     /// # Errors
-    /// As [`choose`].
+    /// Returns the errors of [`choose`].
     pub fn choose(
         &self,
         training: &Dataset,
@@ -161,7 +163,7 @@ impl Classifier {
         choose_c(train, &scaled, folds, &candidates.c)
     }
 
-    /// The same classifier with C and γ as they were chosen.
+    /// Returns a copy of the classifier with the chosen C and γ.
     pub fn with_choice(&self, chosen: &Chosen) -> Self {
         Self {
             c: Cost::Fixed(chosen.best.c),
@@ -170,7 +172,7 @@ impl Classifier {
         }
     }
 
-    /// With the C that was given, if the kind has one.
+    /// Trains with the fixed C, if the kind has one.
     fn train_without_choice(
         &self,
         training: &Dataset,
@@ -183,10 +185,10 @@ impl Classifier {
         self.train_with_c(training, c, None, seed)
     }
 
-    /// Trains for several C, in the order asked; kernel SVMs from one Gram matrix ([`SvmParams::train_path`]).
+    /// Trains one classifier per value of C, in the order of `path`. Kernel SVMs share one Gram matrix ([`SvmParams::train_path`]).
     ///
     /// # Errors
-    /// As [`train`](Self::train); a kind without C.
+    /// Returns the errors of [`train`](Self::train), or an error if the kind has no C.
     pub fn train_path(
         &self,
         training: &Dataset,
@@ -215,7 +217,7 @@ impl Classifier {
             .collect())
     }
 
-    /// The scaling, and the training rows scaled: themselves, where it changes nothing.
+    /// Returns the fitted scaling and the scaled training rows, without a copy if the scaling is the identity.
     fn scaled<'a>(&self, training: &'a Dataset) -> Result<(FittedScaling, Cow<'a, Dataset>)> {
         let scaling = self.scaling.fit(training.records.view())?;
         if scaling.changes_nothing() {
@@ -238,7 +240,7 @@ impl Classifier {
         Ok(TrainedClassifier::new(scaling, model, c, chosen))
     }
 
-    /// The model on scaled rows.
+    /// Trains the model on scaled rows.
     fn train_model(
         &self,
         scaled: &Dataset,
@@ -252,7 +254,7 @@ impl Classifier {
         })
     }
 
-    /// An SVM without a kernel matrix.
+    /// Trains an SVM without a kernel matrix.
     pub(crate) fn train_kernel_free(
         &self,
         scaled: &Dataset,
@@ -263,7 +265,7 @@ impl Classifier {
         Ok(Arc::new(self.linear_svm(c)?.train(scaled, &*seed)?))
     }
 
-    /// What the kernel SVM is trained with, if that is what the options ask for.
+    /// Returns the parameters of the kernel SVM; `None` if the options require another model.
     fn kernel_svm(&self, c: f64) -> Option<SvmParams> {
         let kernel = self.kind.about().kernel?(self);
         (self.solver != Solver::CoordinateDescent).then_some(SvmParams {
@@ -279,7 +281,7 @@ impl Classifier {
     /// Checks that the solver can train this classifier, if it is an SVM.
     ///
     /// # Errors
-    /// If coordinate descent is to train another kernel than the linear one, or another scheme than one-vs-rest.
+    /// If the solver is coordinate descent and the kernel is not linear or the scheme is not one-vs-rest.
     pub fn check_solver(&self) -> Result<()> {
         let is_linear = self.kind == ClassifierKind::LinearSvm;
         let is_possible = is_linear && self.multiclass == Multiclass::OneVsRest;
@@ -293,7 +295,7 @@ impl Classifier {
         Err(Error::input("solver", given, allowed))
     }
 
-    /// What the linear SVM without a kernel matrix is trained with.
+    /// Returns the parameters of a linear SVM that is trained without a kernel matrix.
     fn linear_svm(&self, c: f64) -> Result<LinearSvmParams> {
         self.check_solver()?;
         Ok(LinearSvmParams {
@@ -307,17 +309,17 @@ impl Classifier {
 impl Fit<Array2<f64>, Array1<usize>, Error> for Classifier {
     type Object = TrainedClassifier;
 
-    /// [`Classifier::train`] with the seed 0_u64.
+    /// Calls [`Classifier::train`] with the seed 0_u64.
     fn fit(&self, training: &Dataset) -> Result<TrainedClassifier> {
         self.train(training, &0_u64)
     }
 }
 
-/// Trains any classifier that speaks linfa's traits on a split's training rows, and predicts its test rows (in the
-/// order of `split.test`).
+/// Trains any classifier that implements linfa's traits on the training rows of a split. Returns the predicted labels of the test rows, in the order of
+/// `split.test`.
 ///
 /// # Errors
-/// A row beyond the data, or what the classifier refuses.
+/// If the split contains a row beyond the data, or the classifier returns an error.
 pub fn predict_split<P, E>(params: &P, data: &Dataset, split: &Split) -> Result<Array1<usize>>
 where
     P: Fit<Array2<f64>, Array1<usize>, E>,
@@ -333,7 +335,7 @@ where
     Ok(labels)
 }
 
-/// Our own errors as they are; another crate's as bad input to its classifier.
+/// Returns an error of this crate unchanged; wraps an error of another crate as invalid input to its classifier.
 fn own_or_wrapped(error: impl std::error::Error + 'static) -> Error {
     let error: Box<dyn std::error::Error> = Box::new(error);
     match error.downcast::<Error>() {

@@ -1,4 +1,4 @@
-//! What a kind of classifier says of itself.
+//! Descriptors of the kinds of classifiers.
 
 use crate::class_model::ClassModel;
 use crate::classifiers::ClassifierKind;
@@ -10,9 +10,9 @@ use crate::streams::DynStreams;
 use std::fmt;
 use std::sync::Arc;
 
-/// A kind of classifier.
+/// Descriptor of a kind of classifier.
 pub struct ClassifierAbout {
-    /// What people call it.
+    /// Common name in words.
     pub words: &'static str,
     /// Whether it has a soft-margin penalty C.
     pub has_c: bool,
@@ -20,19 +20,19 @@ pub struct ClassifierAbout {
     pub has_gamma: bool,
     /// Whether its kernel has a degree and a constant.
     pub has_degree: bool,
-    /// Whether it has a number of neighbours.
+    /// Whether the number of neighbours is a parameter.
     pub has_neighbours: bool,
-    /// Whether it has a number of trees.
+    /// Whether the number of trees is a parameter.
     pub has_trees: bool,
-    /// Whether its trees have a largest depth.
+    /// Whether the maximum depth of the trees is a parameter.
     pub has_depth: bool,
-    /// The kernel of a kernel SVM: several C are then solved together, and kernel values are held.
+    /// Kernel of a kernel SVM. Kernel SVMs solve several C together and hold kernel values in memory.
     pub kernel: Option<fn(&Classifier) -> Kernel>,
-    /// Trains on scaled rows, with a C where it has one, and draws from the seed.
+    /// Trains on scaled rows, with C if the kind has one; random draws come from the seed.
     pub train: Train,
 }
 
-/// What trains a classifier without a kernel.
+/// Function that trains a classifier without a kernel matrix.
 pub type Train = fn(&Classifier, &Dataset, f64, &dyn DynStreams) -> Result<Arc<dyn ClassModel>>;
 
 impl ClassifierAbout {
@@ -51,7 +51,7 @@ impl ClassifierAbout {
         }
     }
 
-    /// An SVM of a kernel.
+    /// Describes an SVM with the given kernel.
     pub(crate) const fn svm(words: &'static str, kernel: fn(&Classifier) -> Kernel) -> Self {
         Self {
             has_c: true,
@@ -71,18 +71,19 @@ impl fmt::Debug for ClassifierAbout {
 }
 
 impl ClassifierKind {
-    /// Whether it has a C: the soft-margin SVMs and logistic regression. The others train the same whatever C is given.
+    /// Returns whether the kind has a C: soft-margin SVMs and logistic regression. The training of other kinds ignores C.
     pub fn has_c(self) -> bool {
         self.about().has_c
     }
 
-    /// Whether it has a kernel with a γ.
+    /// Returns whether the kind has a kernel with a γ.
     pub fn has_gamma(self) -> bool {
         self.about().has_gamma
     }
 }
 
-/// Says of each classifier which file tells of it: its name in a study.
+/// Declares the kinds of classifiers. Each line contains the variant, the file that describes it, and its documentation; the file's name is the name in a
+/// study.
 macro_rules! classifiers {
     ($($name:ident $file:ident $doc:literal;)*) => {
         $(pub mod $file;)*
@@ -94,7 +95,7 @@ macro_rules! classifiers {
             $(#[doc = $doc] $name,)*
         }
 
-        /// A name of [`NAMES`](ClassifierKind::NAMES).
+        /// Deserialises a name of [`NAMES`](ClassifierKind::NAMES).
         impl<'de> Deserialize<'de> for ClassifierKind {
             fn deserialize<D: serde::Deserializer<'de>>(names: D) -> Result<Self, D::Error> {
                 use serde::de::Error;
@@ -109,13 +110,13 @@ macro_rules! classifiers {
         }
 
         impl ClassifierKind {
-            /// All of them.
+            /// All kinds of classifiers.
             pub const ALL: &[Self] = &[$(Self::$name),*];
 
-            /// The name in a study, and what people call it.
+            /// For each kind, its name in a study and its common name in words.
             pub const NAMES: &[(&str, &str)] = &[$((stringify!($file), $file::ABOUT.words)),*];
 
-            /// What it says of itself.
+            /// Returns the descriptor of the kind.
             pub const fn about(self) -> &'static ClassifierAbout {
                 match self {
                     $(Self::$name => &$file::ABOUT,)*
