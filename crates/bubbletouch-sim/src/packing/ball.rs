@@ -1,48 +1,49 @@
-//! Balls inside a mesh, and the largest that a point of its surface allows.
+//! Balls inside a mesh, and the largest ball that touches its surface at a given point.
 
 use super::target::{Body, Target};
 use crate::objects::Sphere;
 use glam::DVec3;
 
-/// A ball around a point inside a mesh. Inflated by a part of the tolerance it is a sphere of the packing.
+/// Ball around a point inside a mesh. Enlarged by a fraction of the tolerance it becomes a sphere of the packing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Ball {
-    /// Inside the mesh, or on it.
+    /// Centre, inside the mesh or on it.
     pub center: DVec3,
-    /// From there to the nearest point of the mesh, metres.
+    /// Distance from the centre to the nearest point of the mesh, metres.
     pub depth: f64,
-    /// A point of the surface for whose sake it is there.
+    /// Surface point that the ball is made to cover.
     pub foot: DVec3,
 }
 
-/// Queries after which a ball is given up; most take three to eight.
+/// Maximum number of queries per ball; most balls take three to eight. A ball that needs more is rejected.
 const MAX_STEPS: usize = 60;
 
-/// The share of the tolerance that spheres reach outside the mesh; of what they leave open inside it all is used.
+/// Maximum distance that spheres reach outside the mesh, as a fraction of the tolerance. Gaps inside it use the whole tolerance.
 ///
-/// With 1 the spheres are fewest (a quarter fewer than with ½), but the middle of their rough surface lies half the tolerance
-/// outside the mesh, and a skin feels it: on eight scans the mean deflection error is 0.059 mm at a tolerance of 0.1 mm with 1,
-/// 0.033 with 0.6 and 0.027 with 0.45.
+/// With 1 the number of spheres is lowest (a quarter fewer than with ½), but the mean of their rough surface lies half the tolerance
+/// outside the mesh, which changes the deflections. On eight scans with a tolerance of 0.1 mm, the mean deflection error is 0.059 mm with 1,
+/// 0.033 mm with 0.6 and 0.027 mm with 0.45.
 const PROTRUSION: f64 = 0.5;
 
-/// How far apart the highest and the lowest places of the spheres' surface may be, when they are made for a tolerance `e`.
+/// Returns the maximum height difference of the spheres' surface for a tolerance `e`, metres.
 pub(super) fn relief(e: f64) -> f64 {
     (1.0 + PROTRUSION) * e
 }
 
-/// Distance beside the centre of a ball on the surface, relative to the tolerance, at which it is tested whether the centre lies in the solid.
-/// It must be less than the rounding reserve of [`Target::new`], since it adds to the protrusion; smaller: rounding decides.
+/// Distance from a ball's centre on the surface at which the code tests whether the centre lies in the solid, relative to the tolerance.
+/// If it is larger than the rounding reserve of [`Target::new`], the protrusion exceeds the tolerance; if it is too small, rounding decides the
+/// test.
 const BESIDE: f64 = 1e-7;
 
 impl Ball {
-    /// Returns the largest ball that touches the surface from inside at `foot`; on a sheet the ball around `foot`.
+    /// Returns the largest ball that touches the surface from inside at `foot`. For a [`Body::Sheet`] it returns the ball of radius 0 at `foot`.
     pub fn at(target: &Target, foot: DVec3, normal: DVec3) -> Self {
         let largest = Self::largest(target, foot, -normal, 0.0, target.largest_radius());
         largest.unwrap_or(Self::on_surface(foot))
     }
 
-    /// Returns the largest ball that touches the surface at the point nearest to the shifted centre of this ball; on a sheet the ball around
-    /// this point. Returns `None` if the shifted centre is outside a solid.
+    /// Shifts the centre, and returns the largest ball that touches the surface at the point nearest to the shifted centre. For a [`Body::Sheet`]
+    /// it returns the ball of radius 0 at this point. Returns `None` if the shifted centre is outside a solid.
     pub fn beside(&self, target: &Target, shift: DVec3) -> Option<Self> {
         let center = self.center + shift;
         let nearest = target.surface.closest(center, f64::INFINITY)?;
@@ -57,8 +58,7 @@ impl Ball {
         Self::largest(target, nearest.point, inward, 0.0, target.largest_radius())
     }
 
-    /// Returns whether the centre is in the solid. The centre of a ball on the surface lies on a face, which need not bound the solid where
-    /// parts overlap.
+    /// Returns whether the centre is in the solid. A centre on a face can lie outside the boundary of the solid if parts overlap.
     pub fn has_center_in(&self, target: &Target) -> bool {
         if target.body == Body::Sheet {
             return true;
@@ -70,18 +70,18 @@ impl Ball {
         target.surface.contains(self.center - lift) || target.surface.contains(self.center + lift)
     }
 
-    /// The ball of largest t with centre `foot + t·inward` and no surface nearer to its centre than t − `slack`.
+    /// Returns the ball of largest t with centre `foot + t·inward` for which no surface point is closer to its centre than t − `slack`.
     ///
-    /// Without slack it is the largest ball inside the mesh that touches it at the foot \[MBC\]; with slack, surface may
-    /// reach that far into the ball of radius t, so bumps lower than the slack do not count. For a point q of the
-    /// surface, u inward and s the slack,
+    /// Without slack it is the largest ball inside the mesh that touches the mesh at the foot \[MBC\]. With slack, the surface may
+    /// reach that far into the ball of radius t, so bumps lower than the slack are ignored. For a surface point q,
+    /// u inward and s the slack,
     ///
     /// ```text
     /// |foot + t u − q| ≥ t − s   ⟺   t ≤ (|q − foot|² − s²) / (2 (u·(q − foot) − s))   if u·(q − foot) > s
     /// ```
     ///
-    /// so t shrinks from `limit` until no such q is left. `None` if the centre is beyond a wall
-    /// thinner than the slack, and for a sheet.
+    /// so t decreases from `limit` until no such q exists. Returns `None` if the centre is beyond a wall
+    /// thinner than the slack, and for a [`Body::Sheet`].
     pub fn largest(
         target: &Target,
         foot: DVec3,
@@ -93,8 +93,8 @@ impl Ball {
             return None;
         }
         let surface = target.surface;
-        // The ray inward meets a point q with u·(q − foot) = |q − foot|, which makes the bound (|q − foot| + s) / 2; from
-        // there on queries are cheap, since they are not far from the surface.
+        // The ray inward hits a point q with u·(q − foot) = |q − foot|, which gives the bound (|q − foot| + s) / 2. Queries from
+        // there are fast, since the centre is close to the surface.
         let beyond_foot = 1e-9 * limit..2.0 * limit;
         let hit = surface.bvh().first_hit(foot, inward, beyond_foot);
         let mut t = hit.map_or(limit, |hit| {
@@ -102,12 +102,12 @@ impl Ball {
         });
         for _ in 0..MAX_STEPS {
             let center = foot + t * inward;
-            // The foot is no farther than t, so there is a nearest point.
+            // The foot is at distance t at most, so a nearest point exists.
             let nearest = surface.closest(center, t * (1.0 + 1e-6))?;
             let offset = nearest.point - foot;
             let rise = inward.dot(offset) - slack;
             let next = (offset.length_squared() - slack * slack) / (2.0 * rise);
-            // A hair of room, so that the foot itself does not count.
+            // The relative margin 1e-9 excludes the foot itself.
             let is_clear = nearest.distance >= (t - slack) * (1.0 - 1e-9);
             if is_clear || rise <= 0.0 || next >= t {
                 let ball = Self {
@@ -115,7 +115,7 @@ impl Ball {
                     depth: nearest.distance,
                     foot,
                 };
-                // Nothing lies between the foot and the centre of a ball without slack.
+                // Without slack, no surface lies between the foot and the centre.
                 let is_inside = slack == 0.0
                     || (center - nearest.point).dot(surface.pseudonormal(&nearest)) < 0.0;
                 return is_inside.then_some(ball);
@@ -125,8 +125,7 @@ impl Ball {
         None
     }
 
-    /// The last resort: around a point of the surface itself. It covers what is within [`relief`] of it, whatever the
-    /// surface is like.
+    /// Returns the ball of radius 0 at a surface point. This ball covers all surface within [`relief`] of this point, for any surface.
     pub fn on_surface(foot: DVec3) -> Self {
         Self {
             center: foot,
@@ -135,7 +134,7 @@ impl Ball {
         }
     }
 
-    /// The sphere that reaches [`PROTRUSION`] of `e` outside the mesh, no more.
+    /// Returns the sphere that reaches at most [`PROTRUSION`] times `e` outside the mesh.
     pub fn sphere(&self, e: f64) -> Sphere {
         Sphere {
             center: self.center,
@@ -143,12 +142,12 @@ impl Ball {
         }
     }
 
-    /// How far from the centre a point of the surface may be for the sphere to come within `e` of it.
+    /// Returns the largest distance from the centre at which the sphere comes within `e` of a surface point.
     pub fn reach(&self, e: f64) -> f64 {
         self.depth + relief(e)
     }
 
-    /// Half the width of what it covers of a flat face at the distance of its depth.
+    /// Returns the radius of the disc that the ball covers on a flat face at the distance `depth`.
     pub fn half_width(&self, e: f64) -> f64 {
         let relief = relief(e);
         (relief * (2.0 * self.depth + relief)).sqrt()

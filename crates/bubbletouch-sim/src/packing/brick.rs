@@ -1,9 +1,9 @@
-//! The mesh that unit tests of packing are about.
+//! Mesh for the unit tests of packing.
 
 use crate::mesh::{Surface, TriangleMesh};
 use glam::DVec3;
 
-/// A box of half sizes 3, 2, 1 about the origin.
+/// Returns a box with half sizes 3, 2, 1 about the origin.
 pub fn brick() -> Surface {
     let corner = |i: u32| {
         let sign = |bit: u32| if i & bit == 0 { -1.0 } else { 1.0 };

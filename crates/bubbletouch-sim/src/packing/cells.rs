@@ -1,8 +1,8 @@
-//! Space cut into cells with few points in each, so that each can be worked on alone.
+//! Partition of space into cells with few points each, for independent processing.
 
 use glam::DVec3;
 
-/// A tree of planes across the axes.
+/// Tree of axis-aligned planes (k-d tree).
 pub(super) struct Cells {
     nodes: Vec<Node>,
     n_cells: usize,
@@ -12,14 +12,14 @@ enum Node {
     Plane {
         axis: usize,
         at: f64,
-        /// The node below the plane; the one above comes next.
+        /// Index of the child below the plane; the child above has the next index.
         below: usize,
     },
     Cell(usize),
 }
 
 impl Cells {
-    /// Cells of at most `most` points, cut at this share of the points along the longest axis.
+    /// Builds cells of at most `most` points. Each cut divides the points along the longest axis, with the fraction `share` below it.
     pub fn new(points: &[DVec3], most: usize, share: f64) -> Self {
         let mut cells = Self {
             nodes: vec![Node::Cell(0)],
@@ -33,7 +33,7 @@ impl Cells {
         self.n_cells
     }
 
-    /// The cell that a point lies in.
+    /// Returns the index of the cell that contains a point.
     pub fn cell_of(&self, point: DVec3) -> usize {
         let mut node = 0;
         loop {
@@ -56,7 +56,7 @@ impl Cells {
         let axis = size.max_position();
         let middle = (points.len() as f64 * share) as usize;
         points.select_nth_unstable_by(middle, |a, b| a[axis].total_cmp(&b[axis]));
-        // Points at the plane lie above it, wherever the selection left them.
+        // Points on the plane belong to the upper child, regardless of the order that the selection produced.
         let at = match points[middle][axis] {
             at if at > low[axis] => at,
             _ => 0.5 * (low[axis] + high[axis]),

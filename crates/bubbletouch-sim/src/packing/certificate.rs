@@ -1,10 +1,14 @@
-//! Proof that no point of the outer surface is farther than the tolerance from the spheres, or points that are.
+//! Proof that all points of the outer surface are within the tolerance of the spheres, or a list of gaps.
 //!
-//! A ball holds a triangle if it holds its corners. So a triangle of the mesh is cut in halves until each piece lies
-//! within the reach of one ball (proved), looks into the solid all over (no outer surface), has a middle on the outer
-//! surface that is within the reach of none (disproved), or is so small that the question is left (counted as disproved).
-//! Where parts overlap, a triangle may be outer surface here and lie inside another part there: no few points of it say so,
-//! only pieces that no other face crosses ([`Target::buries`]).
+//! A ball contains a triangle if it contains its corners. Each triangle of the mesh is therefore halved until every piece has one of four results:
+//!
+//! - one ball contains the piece (proved),
+//! - the piece lies inside the solid (it is no outer surface),
+//! - the middle of the piece is on the outer surface, and no ball contains it (a gap),
+//! - the piece is smaller than a limit (counted as a gap).
+//!
+//! If parts overlap, a triangle can lie partly inside another part. Testing a few points cannot show this; pieces are only classified
+//! if no other face crosses them ([`Target::buries`]).
 
 use super::ball::Ball;
 use super::sampling::Sample;
@@ -12,19 +16,19 @@ use super::target::Target;
 use crate::mesh::{Bvh, Triangle};
 use glam::DVec3;
 
-/// Pieces smaller than this share of the tolerance count as gaps if one ball alone does not hold them.
+/// Pieces smaller than this fraction of the tolerance count as gaps if no single ball contains them.
 const SMALLEST: f64 = 0.02;
 
-/// Where the surface is farther than `e` from the spheres, or not proved to be nearer.
+/// Places where the surface is farther than `e` from the spheres, or not proved to be closer.
 #[derive(Debug, Default)]
 pub(super) struct Gaps {
-    /// Places there, and how large the pieces around them are; none at all if the promise holds.
+    /// Middles of the pieces, with their sizes; empty if the tolerance is proved.
     pub places: Vec<Sample>,
-    /// Triangles that hold them.
+    /// Triangles that contain the places.
     pub triangles: Vec<usize>,
 }
 
-/// The gaps that these balls leave in these triangles. A triangle without gaps stays without when balls are added.
+/// Returns the gaps that `balls` leave in `triangles`. A triangle without gaps has none after more balls are added.
 pub(super) fn gaps(target: &Target, triangles: &[usize], balls: &[Ball]) -> Gaps {
     let Target { surface, e, .. } = *target;
     let mut balls_near = vec![Vec::new(); triangles.len()];
@@ -67,7 +71,7 @@ pub(super) fn gaps(target: &Target, triangles: &[usize], balls: &[Ball]) -> Gaps
 fn touches(triangle: &Triangle, ball: &Ball, e: f64) -> bool {
     let reach2 = ball.reach(e).powi(2);
     let is_inside = |point: DVec3| point.distance_squared(ball.center) < reach2;
-    // Most that touch at all have a corner inside.
+    // Most triangles that touch the ball have a corner inside.
     triangle.0.into_iter().any(is_inside) || is_inside(triangle.closest(ball.center).0)
 }
 

@@ -1,4 +1,4 @@
-//! Few balls that cover the outer surface: cell by cell, then again with other cells, until no gap is left.
+//! Covering of the outer surface with few balls: cell by cell, then repeatedly with other cells, until no gap remains.
 
 use super::ball::Ball;
 use super::cells::Cells;
@@ -11,22 +11,22 @@ use crate::random::Seed;
 use glam::DVec3;
 use rand::Rng;
 
-/// Samples in a cell. Larger: fewer seams between cells, but the search falls out of the processor's cache.
+/// Samples per cell. If it is larger, there are fewer borders between cells, but the data of the search exceed the processor's cache.
 const CELL: usize = 24_000;
 
-/// Share of the whole time that sampling takes, for those who watch.
+/// Fraction of the total time that sampling takes, for progress reports.
 const SAMPLING_TIME: f64 = 0.2;
 
-/// How a pass over all cells works.
+/// Parameters of one pass over all cells.
 struct Pass {
-    /// At which share of the points a cell is cut; another one moves the seams.
+    /// Fraction of the points below each cut. Passes with different fractions have different cell borders.
     cut: f64,
-    /// Share of the whole effort for exchanges and shifted copies.
+    /// Fraction of the total effort for exchanges and shifted copies.
     steps: f64,
     moves: f64,
 }
 
-/// Passes that look for fewer balls; after each one gaps become samples.
+/// Passes that reduce the number of balls; after each one the gaps become samples.
 const PASSES: [Pass; 3] = [
     Pass {
         cut: 0.5,
@@ -45,11 +45,11 @@ const PASSES: [Pass; 3] = [
     },
 ];
 
-/// Rounds in which balls are added where a gap is left. Each takes what the one before left, mostly nothing after three.
+/// Maximum number of rounds that add balls at the remaining gaps. Usually no gap remains after three rounds.
 const MAX_REPAIRS: usize = 40;
 
-/// Balls whose spheres come within `e` of every point of the outer surface, and how many gaps are left: none, unless
-/// [`MAX_REPAIRS`] was reached.
+/// Returns balls whose spheres come within `e` of every point of the outer surface, and the number of remaining gaps, which is 0 unless
+/// [`MAX_REPAIRS`] rounds were reached.
 pub(super) fn cover_surface(
     target: &Target,
     watch: &mut dyn FnMut(f64),
@@ -84,13 +84,13 @@ struct Covering<'a> {
     sampling: Sampling,
     tree: SampleTree,
     chosen: Vec<Ball>,
-    /// How many chosen balls cover each sample.
+    /// Number of chosen balls that cover each sample.
     counts: Vec<u32>,
-    /// Scratch: each sample's row in the cell that is worked on; [`NOT_HERE`] for those of no concern to it.
+    /// Workspace: row of each sample in the current cell; [`NOT_HERE`] for samples that do not belong to it.
     row_of: Vec<u32>,
 }
 
-/// In place of a row's number.
+/// Value that replaces a row number.
 const NOT_HERE: u32 = u32::MAX;
 
 impl<'a> Covering<'a> {
@@ -114,7 +114,7 @@ impl<'a> Covering<'a> {
         gaps(self.target, triangles, &self.chosen)
     }
 
-    /// Works on one cell after another.
+    /// Optimises one cell after another.
     fn pass(&mut self, pass: &Pass, number: u64, watch: &mut dyn FnMut(f64)) {
         let positions: Vec<DVec3> = self.sampling.samples.iter().map(|s| s.position).collect();
         let cells = Cells::new(&positions, CELL, pass.cut);
@@ -140,7 +140,7 @@ impl<'a> Covering<'a> {
         }
     }
 
-    /// Chooses anew in one cell: balls for its samples, and for all that its freed balls covered alone.
+    /// Chooses the balls of one cell again, so that they cover its samples and all samples that only the removed balls covered.
     fn work_on(
         &mut self,
         freed: Vec<Ball>,
@@ -205,7 +205,7 @@ impl<'a> Covering<'a> {
         }
     }
 
-    /// Balls beside these, up to half of what they cover away; about `n_moves` for each.
+    /// Returns shifted copies of balls, about `n_moves` per ball, each shifted by up to half of its covered radius.
     fn moved(&self, balls: &[Ball], n_moves: f64, rng: &mut impl Rng) -> Vec<Ball> {
         let n_moves = n_moves * balls.len() as f64;
         let mut moved = Vec::new();
@@ -218,7 +218,7 @@ impl<'a> Covering<'a> {
         moved
     }
 
-    /// Balls that cover gaps, one for each.
+    /// Returns one ball per gap that covers it.
     fn balls_at(&self, gaps: &[Sample]) -> Vec<Ball> {
         let ball = |gap: &Sample| {
             let normal = self.target.normal_at(gap.position);
@@ -227,7 +227,7 @@ impl<'a> Covering<'a> {
         gaps.iter().map(ball).collect()
     }
 
-    /// Makes samples of gaps, and candidates of the balls that cover them.
+    /// Adds gaps to the samples, and balls that cover them to the candidates.
     fn sample_gaps(&mut self, gaps: &[Sample]) {
         self.sampling.balls.extend(self.balls_at(gaps));
         self.sampling.samples.extend_from_slice(gaps);
@@ -242,7 +242,7 @@ impl<'a> Covering<'a> {
         }
     }
 
-    /// Adds few balls that cover these gaps, but for those that no ball with its centre in the solid covers.
+    /// Adds few balls that cover the gaps. Gaps that no ball with its centre in the solid covers remain.
     fn fill(&mut self, gaps: &[Sample]) {
         let target = self.target;
         let held = |ball: Ball| ball.has_center_in(target).then_some(ball);
@@ -250,7 +250,7 @@ impl<'a> Covering<'a> {
         for (gap, ball) in gaps.iter().zip(self.balls_at(gaps)) {
             if let Some(ball) = held(ball).or_else(|| held(Ball::on_surface(ball.foot))) {
                 balls.push(ball);
-                // As a point: a margin might leave a gap to no ball at all.
+                // The sample has radius 0: with a larger radius no ball might cover it.
                 places.push(Sample {
                     radius: 0.0,
                     ..*gap

@@ -1,4 +1,4 @@
-//! One object in several levels of detail.
+//! One object at several levels of detail.
 
 use super::pack::{Packing, pack_mesh};
 use super::target::Body;
@@ -8,17 +8,17 @@ use rayon::prelude::*;
 
 /// Packings of one mesh, from coarse to fine.
 ///
-/// Invariant: at least one; tolerances strictly descend.
+/// Invariant: there is at least one packing, and the tolerances strictly decrease.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DetailChain {
     packings: Vec<Packing>,
 }
 
 impl DetailChain {
-    /// Packs a mesh to each of these tolerances (metres, in any order, each once or more).
+    /// Packs a mesh to each tolerance (metres, in any order; repeated values count once).
     ///
     /// # Errors
-    /// An error for no tolerances, and for what [`pack_mesh`] does not pack.
+    /// If there are no tolerances, or if [`pack_mesh`] fails.
     pub fn pack(surface: &Surface, body: Body, tolerances: &[f64]) -> Result<Self> {
         let mut tolerances = tolerances.to_vec();
         tolerances.sort_by(|a, b| b.total_cmp(a));
@@ -30,10 +30,10 @@ impl DetailChain {
         Self::new(packings?)
     }
 
-    /// Packings of one mesh at different tolerances, in any order.
+    /// Creates a chain from packings of one mesh at different tolerances, in any order.
     ///
     /// # Errors
-    /// No packing, or two at one tolerance.
+    /// If there is no packing, or if two packings have equal tolerances.
     pub fn new(mut packings: Vec<Packing>) -> Result<Self> {
         packings.sort_by(|a, b| b.tolerance.total_cmp(&a.tolerance));
         let is_twice = |pair: &[Packing]| pair[0].tolerance == pair[1].tolerance;
@@ -48,15 +48,15 @@ impl DetailChain {
         Ok(Self { packings })
     }
 
-    /// From coarse to fine.
+    /// Returns the packings from coarse to fine.
     pub fn packings(&self) -> &[Packing] {
         &self.packings
     }
 
-    /// The packing with the largest tolerance that is at most this one (metres).
+    /// Returns the packing with the largest tolerance that does not exceed `tolerance` (metres).
     ///
     /// # Errors
-    /// An error if even the finest is coarser.
+    /// If the tolerance of the finest packing exceeds `tolerance`.
     pub fn coarsest_within(&self, tolerance: f64) -> Result<&Packing> {
         let fitting = self
             .packings

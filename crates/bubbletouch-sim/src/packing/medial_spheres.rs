@@ -1,4 +1,4 @@
-//! Medial spheres: what sphere models were before packings with a stated error.
+//! Medial spheres: sphere models without a stated error, for comparison with packings.
 
 use super::ball::Ball;
 use super::packing_error::surface_points;
@@ -7,17 +7,17 @@ use crate::error::Result;
 use crate::mesh::Surface;
 use crate::objects::{Sphere, SphereUnion};
 
-/// Thinner spheres, as parts of the mesh's size, are left out: at sharp edges nothing but a point fits.
+/// Smallest radius of a sphere relative to the size of the mesh. Smaller spheres are left out; they occur at sharp edges.
 const THINNEST: f64 = 1e-6;
 
-/// The largest spheres inside a closed mesh that touch it at `n` points spread evenly over its area, as Ma, Bae and Choi (2012)
-/// find them; points where none fits are left out.
+/// Returns the largest spheres inside a closed mesh that touch it at `n` points distributed uniformly over its area, as in Ma, Bae and Choi (2012).
+/// Points at which no sphere fits are left out.
 ///
-/// The spheres lie inside the mesh and touch it; what is between the points is as far outside them as it happens to be. Stolpner, Kry and Siddiqi
+/// The spheres lie inside the mesh and touch it; the distance of the surface between the points is not bounded. Stolpner, Kry and Siddiqi
 /// (2011) approximate shapes by such spheres.
 ///
 /// # Errors
-/// Errors as for [`pack_mesh`](super::pack_mesh), and if no sphere is left.
+/// If [`pack_mesh`](super::pack_mesh) would reject the mesh, or if no sphere remains.
 pub fn medial_spheres(surface: &Surface, n: usize) -> Result<SphereUnion> {
     let size = surface.bounds().size().length();
     let target = Target::new(surface, Body::Solid, THINNEST * size)?;

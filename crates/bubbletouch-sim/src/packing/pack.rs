@@ -1,4 +1,4 @@
-//! From a mesh to the spheres that stand for it.
+//! Packing of a mesh with spheres.
 
 use super::cover_surface::cover_surface;
 use super::sampling::estimated_spheres;
@@ -7,32 +7,33 @@ use crate::error::{Error, Result};
 use crate::mesh::Surface;
 use crate::objects::{MAX_SPHERES, SphereUnion};
 
-/// Spheres that stand for a mesh, and what is proved of them.
+/// Spheres that approximate a mesh, with their proved tolerance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Packing {
-    /// In the mesh's frame.
+    /// Spheres, in the frame of the mesh.
     pub spheres: SphereUnion,
-    /// How far the two surfaces may be apart, metres.
+    /// Proved maximum distance between the two surfaces, metres.
     pub tolerance: f64,
 }
 
-/// Packs a mesh with few spheres within `tolerance` (metres, positive) of the solid that it stands for.
+/// Packs the solid of a mesh with few spheres, within `tolerance` (metres, positive).
 ///
-/// Proved, as [the module](super#the-promise) says: no sphere reaches more than half the tolerance outside the solid, and every
-/// point of its surface is within the tolerance of the spheres. The same mesh gives the same spheres.
+/// The tolerance is proved, as [the module](super#the-promise) describes: no sphere reaches more than half the tolerance outside the solid, and
+/// every
+/// point of its surface is within the tolerance of the spheres. Equal meshes give equal spheres.
 ///
 /// # Errors
-/// A tolerance that is not positive, or so small that it takes more than two million spheres; a [`Body::Solid`] with holes,
-/// with faces that disagree about the outside, or inside out; a surface that cannot be proved to be within the tolerance, for
-/// its features are near the limits of floating-point numbers.
+/// - If the tolerance is not positive, or is so small that more than two million spheres are needed.
+/// - If a [`Body::Solid`] has holes, has inconsistently oriented faces, or is inside out.
+/// - If the surface cannot be proved to be within the tolerance, because its features are near the limits of floating-point numbers.
 pub fn pack_mesh(surface: &Surface, body: Body, tolerance: f64) -> Result<Packing> {
     pack_mesh_watched(surface, body, tolerance, &mut |_| {})
 }
 
-/// [`pack_mesh`] that says now and then which share of its work is done, about, from 0 to 1.
+/// Packs a mesh like [`pack_mesh`], and calls `watch` with the approximate completed fraction of the work, 0 to 1.
 ///
 /// # Errors
-/// Those of [`pack_mesh`].
+/// If [`pack_mesh`] fails.
 pub fn pack_mesh_watched(
     surface: &Surface,
     body: Body,
@@ -58,14 +59,14 @@ pub fn pack_mesh_watched(
     })
 }
 
-/// Number of spheres from which on [`slow_packing`] returns a sentence: about half a minute of one processor. Larger: long packings begin without a word;
-/// smaller: packings of seconds are announced.
+/// Number of spheres from which on [`slow_packing`] returns a sentence: about half a minute on one processor. If it is larger, long packings start
+/// without a notice; if it is smaller, packings of a few seconds are announced.
 const MANY_SPHERES: f64 = 5_000.0;
 
-/// Milliseconds of one processor for each sphere of a packing, about: 13 s for 2201 spheres of a scan.
+/// Approximate computing time per sphere on one processor, milliseconds: 13 s for 2201 spheres of a scan.
 const MS_A_SPHERE: f64 = 6.0;
 
-/// Returns a sentence about the expected time of a packing if it is likely to take minutes, before it begins.
+/// Returns a sentence about the expected time of a packing if it is likely to take minutes; `None` otherwise.
 pub fn slow_packing(surface: &Surface, body: Body, tolerance: f64) -> Option<String> {
     let target = Target::new(surface, body, tolerance).ok()?;
     let n_spheres = estimated_spheres(&target);
@@ -79,8 +80,7 @@ pub fn slow_packing(surface: &Surface, body: Body, tolerance: f64) -> Option<Str
     })
 }
 
-/// An error of [`pack_mesh`] about the mesh itself, under the name of its file, and with what else may be done; another error
-/// as it is.
+/// Adds the name of the file and `advice` to an error of [`pack_mesh`] about the mesh. Returns other errors unchanged.
 pub fn error_of_file(error: Error, file: &str, advice: &str) -> Error {
     match error {
         Error::Input {

@@ -1,4 +1,4 @@
-//! How far spheres are from the mesh that they stand for: measured at points of its own choice, not promised.
+//! Measured distances between spheres and their mesh at sample points; unlike the tolerance of a packing they are not proved.
 
 use super::target::Body;
 use crate::geometry::Aabb;
@@ -11,29 +11,29 @@ use rand::Rng;
 /// Mean, 95th percentile and maximum of distances, metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spread {
-    /// Over all points, zeros included.
+    /// Mean over all points, zeros included.
     pub mean: f64,
-    /// Not exceeded at 95 % of the points.
+    /// 95th percentile over all points.
     pub p95: f64,
-    /// At no point more.
+    /// Maximum over all points.
     pub max: f64,
 }
 
-/// How far the surfaces of a mesh and of spheres are apart, seen from points spread evenly over the mesh.
+/// Distances between the surfaces of a mesh and of spheres, at points distributed uniformly over the mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PackingError {
-    /// How far the spheres' surface lies outside the mesh, where the normal of the mesh meets it; 0 where it lies inside.
+    /// Distance of the spheres' surface outside the mesh, along the normal of the mesh; 0 where it lies inside.
     pub protrusion: Spread,
-    /// How far the mesh's surface lies outside the spheres; 0 where it lies inside.
+    /// Distance of the mesh's surface outside the spheres; 0 where it lies inside.
     pub gap: Spread,
-    /// Points of the outer surface that were tried.
+    /// Number of tested points of the outer surface.
     pub n_points: usize,
-    /// Share of all points that are not outer surface: they lie inside other parts of the mesh.
+    /// Fraction of all points that lie inside other parts of the mesh, and therefore not on the outer surface.
     pub buried_share: f64,
 }
 
-/// Measures both ways at `n_points` points of the mesh: one in each of as many equal shares of its area, at a random
-/// place in it that depends on the number of points alone.
+/// Measures protrusion and gap at `n_points` points of the mesh. The area is divided into `n_points` equal parts with one random
+/// point in each; the points depend only on the mesh and on `n_points`.
 pub fn packing_error(
     surface: &Surface,
     body: Body,
@@ -64,17 +64,17 @@ pub fn packing_error(
     }
 }
 
-/// From a point inside the spheres along the normal to where they end, and from there to the mesh.
+/// Returns the distance from the mesh to the end of the spheres along the normal, starting at a point inside the spheres.
 fn protrusion(surface: &Surface, tree: &SphereTree, point: DVec3, normal: DVec3) -> f64 {
     let end = tree.end(point, normal);
     match surface.closest(end, f64::INFINITY) {
         Some(nearest) if !surface.contains(end) => nearest.distance,
-        // The spheres close a narrow cleft here: there is no surface to see.
+        // The spheres close a narrow cleft here, so there is no outer surface.
         _ => 0.0,
     }
 }
 
-/// One point in each of as many equal shares of the mesh's area, and the outward normal there.
+/// Returns one random point in each of `n_points` equal parts of the mesh's area, with its outward normal.
 pub(super) fn surface_points(surface: &Surface, n_points: usize) -> Vec<(DVec3, DVec3)> {
     let mesh = surface.mesh();
     let area = mesh.area();
@@ -118,10 +118,10 @@ fn spread(mut values: Vec<f64>) -> Spread {
     }
 }
 
-/// A tree over spheres.
+/// Tree of spheres.
 struct SphereTree {
     tree: BoxTree,
-    /// In the tree's order.
+    /// Spheres, in the order of the tree.
     spheres: Vec<Sphere>,
 }
 
@@ -136,7 +136,7 @@ impl SphereTree {
         }
     }
 
-    /// From a point to the spheres; 0 inside.
+    /// Returns the distance from a point to the spheres; 0 inside.
     fn distance(&self, point: DVec3) -> f64 {
         let mut least = f64::INFINITY;
         let bound = |bounds: &Aabb| bounds.distance_squared(point).sqrt();
@@ -149,7 +149,7 @@ impl SphereTree {
         least
     }
 
-    /// Where a ray from a point inside the spheres first leaves them all.
+    /// Returns the point at which a ray from a point inside the spheres first leaves all spheres.
     fn end(&self, start: DVec3, direction: DVec3) -> DVec3 {
         let mut along = 0.0;
         loop {

@@ -1,4 +1,4 @@
-//! Points all over the outer surface, as dense as the balls there are small, and balls that touch it.
+//! Samples of the outer surface, denser where balls are small, and candidate balls that touch it.
 
 use super::ball::{Ball, relief};
 use super::target::Target;
@@ -8,48 +8,51 @@ use crate::mesh::{BoxTree, Triangle};
 use crate::objects::MAX_SPHERES;
 use glam::DVec3;
 
-/// A point that some ball must cover, standing for the surface around it.
+/// Surface point that some ball must cover; it represents the surface around it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sample {
     pub position: DVec3,
-    /// Of the surface that it stands for, metres.
+    /// Radius of the represented surface, metres.
     pub radius: f64,
 }
 
-/// What is to be covered, and what with.
+/// Samples to cover, and candidate balls.
 pub(super) struct Sampling {
     pub effort: Effort,
-    /// Triangles that are not proved to be buried in the solid.
+    /// Triangles that are not proved to lie inside the solid.
     pub outer: Vec<usize>,
     pub samples: Vec<Sample>,
     pub balls: Vec<Ball>,
 }
 
-/// Sizes are computed anew at this share of what a ball covers. Larger: edges and tips are sampled too thinly; smaller: slower.
+/// Distance, relative to the radius covered by a ball, up to which its size is reused. If it is larger, edges and tips have too few samples;
+/// if it is smaller, sampling is slower.
 const NEAR: f64 = 0.3;
-/// Share of a plane's covering by discs of unit radius that each has to itself: 3·√3/2, a hexagon.
+/// Area per disc in the best covering of a plane by discs of unit radius: 3·√3/2, a hexagon.
 const HEXAGON: f64 = 2.598_076_211_353_316;
 
-/// How much work a packing is worth; less for each sphere where there are many.
+/// Effort of a packing; the effort per sphere decreases with the number of spheres.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Effort {
-    /// Samples in the area that one ball has to itself in the best covering of a plane. More: fewer gaps to mend, slower;
-    /// fewer: the local search plans for gaps that it cannot see.
+    /// Samples in the area per ball (in the best covering of a plane). If it is larger, sampling is slower and leaves fewer gaps to repair;
+    /// if it is smaller, the local search overlooks gaps.
     pub samples_a_ball: f64,
-    /// Places in that area at which a candidate ball touches. More: better coverings, slower.
+    /// Candidate balls in the area per ball. If it is larger, the covering needs fewer balls and takes longer.
     pub feet_a_ball: f64,
-    /// Exchanges of the local search for each chosen ball.
+    /// Exchanges of the local search per chosen ball.
     pub steps_a_ball: f64,
-    /// Shifted copies of each chosen ball that the next search may take instead.
+    /// Shifted copies per chosen ball that the next search may choose instead.
     pub moves_a_ball: f64,
-    /// Searches over all cells.
+    /// Number of passes over all cells.
     pub n_passes: usize,
 }
 
 impl Effort {
-    /// All of it up to 2,000 spheres, then less for each, so that the time grows more slowly than their number; from 30,000
-    /// on, fewer balls to choose from too; and fewer, but some 1,000, where a ball covers many times what it would of a plane,
-    /// as on a sphere, whose middle is equally far from all of it: there a ball takes longest to find.
+    /// Returns the full effort up to 2,000 spheres, then less per sphere, so that the time grows more slowly than the number of spheres.
+    /// From 30,000 spheres on, there are also fewer candidate balls. Candidates are reduced further, to no fewer than about 1,000, where a ball
+    /// covers
+    /// much more than on a plane. An example is a sphere, whose centre is equally far from its whole surface; there a ball takes longest to
+    /// compute.
     fn for_about(demand: &Demand) -> Self {
         let share = (2000.0 / demand.flat).clamp(0.03, 1.0);
         let feet_a_ball = 5.0 + 35.0 * share.sqrt();
@@ -70,9 +73,9 @@ impl Effort {
     }
 }
 
-/// Samples the surface; the same mesh always gives the same samples.
+/// Samples the surface. Equal meshes give equal samples.
 ///
-/// The error is a tolerance at which it takes more than [`MAX_SPHERES`], about.
+/// Returns an error if the tolerance needs more than about [`MAX_SPHERES`] spheres.
 pub(super) fn sample(target: &Target) -> Result<Sampling> {
     let surface = target.surface;
     let demand = Demand::of(target);
@@ -114,7 +117,7 @@ pub(super) fn sample(target: &Target) -> Result<Sampling> {
         });
     let mut sampling = sampler.sampling;
     if sampling.samples.is_empty() {
-        // The outer surface is less than what a sample stands for.
+        // The outer surface is smaller than the area of one sample.
         let first = sampling.outer.first().copied().unwrap_or(0);
         sampling.samples.push(Sample {
             position: surface.mesh().triangle(first).middle(),
@@ -124,22 +127,22 @@ pub(super) fn sample(target: &Target) -> Result<Sampling> {
     Ok(sampling)
 }
 
-/// About how many spheres a packing takes.
+/// Returns the approximate number of spheres of a packing.
 pub(super) fn estimated_spheres(target: &Target) -> f64 {
     let demand = Demand::of(target);
     demand.bent.min(demand.flat)
 }
 
-/// About how many balls it takes to cover a surface.
+/// Approximate number of balls that cover a surface.
 struct Demand {
-    /// If each covered no more than it does of a plane.
+    /// Number of balls if each covers as much as on a plane.
     flat: f64,
-    /// By what each covers in truth: fewer where the surface bends like the balls.
+    /// Number of balls by the area that each actually covers; lower where the surface curves like the balls.
     bent: f64,
 }
 
 impl Demand {
-    /// From every eighth triangle; of many triangles from some 4,000.
+    /// Estimates the number from every eighth triangle; in large meshes from about 4,000 triangles.
     fn of(target: &Target) -> Self {
         let mesh = target.surface.mesh();
         let every = (mesh.n_triangles() / 4096).max(8);
@@ -177,16 +180,16 @@ impl Demand {
 struct Sampler<'a> {
     sizes: Sizes<'a>,
     effort: Effort,
-    /// A sample is placed whenever this passes one: evenly, however the surface is cut into triangles.
+    /// Fraction of the next sample; a sample is placed whenever this value reaches one, so samples are uniform for any triangulation.
     due_samples: f64,
     due_feet: f64,
     sampling: Sampling,
 }
 
-/// How much of the surface a ball has to itself, here and there.
+/// Area of the surface per ball, as a function of position.
 struct Sizes<'a> {
     target: &'a Target<'a>,
-    /// Where they were last computed: the normal, and the largest ball that covers the place, its foot.
+    /// Last result: the normal, and the largest ball that covers the position, which is its foot.
     known: Option<(DVec3, Ball)>,
 }
 
@@ -202,7 +205,7 @@ impl Sampler<'_> {
             let foot = triangle.middle();
             let share = self.sizes.share(foot, normal);
             let balls = triangle.area() / share;
-            // Compact pieces only: a long one reaches to places that its middle knows nothing of.
+            // Only compact pieces are sampled: the middle of a long piece does not represent its ends.
             let is_long = triangle.longest_edge_squared() * samples_a_ball > 8.0 * share;
             if balls * samples_a_ball > 1.0 || is_long {
                 let [first, second] = triangle.bisected();
@@ -239,12 +242,12 @@ impl<'a> Sizes<'a> {
         }
     }
 
-    /// What the ball of a point of the surface has to itself, m².
+    /// Returns the area per ball at a surface point, m².
     fn share(&mut self, foot: DVec3, normal: DVec3) -> f64 {
         HEXAGON * self.ball(foot, normal).half_width(self.target.e).powi(2)
     }
 
-    /// The largest ball that covers a point of the surface, or a point nearby.
+    /// Returns the largest ball that covers a surface point, or the ball of a previous point nearby.
     fn ball(&mut self, foot: DVec3, normal: DVec3) -> Ball {
         let e = self.target.e;
         if let Some((known_normal, ball)) = &self.known
@@ -261,17 +264,18 @@ impl<'a> Sizes<'a> {
     }
 }
 
-/// A tree over samples.
+/// Tree of samples.
 pub(super) struct SampleTree {
     tree: BoxTree,
 }
 
-/// How much of a sample's radius must be covered too, by the slope of the ball there. More: more spheres; less: more gaps
-/// to mend, which takes more spheres in the end.
+/// Fraction of a sample's radius that must also be covered, times the slope of the ball there. If it is larger, more spheres are needed; if it is
+/// smaller,
+/// more gaps must be repaired, which needs more spheres in the end.
 const MARGIN: f64 = 0.7;
 
 impl SampleTree {
-    /// There must be some.
+    /// Builds the tree of at least one sample.
     pub fn new(samples: &[Sample]) -> Self {
         let boxes = samples.iter().map(|sample| Aabb {
             min: sample.position,
@@ -282,7 +286,7 @@ impl SampleTree {
         }
     }
 
-    /// Calls `visit` with the number of each sample that a ball covers.
+    /// Calls `visit` with the index of each sample that a ball covers.
     pub fn each_covered(
         &self,
         samples: &[Sample],

@@ -1,14 +1,14 @@
-//! Few sets that cover all rows: greedy, then a local search with row weights \[RWLS\].
+//! Set cover: few sets that cover all rows, by a greedy choice and a local search with row weights \[RWLS\].
 //!
-//! The search takes a set away whenever all rows are covered, and then exchanges sets one for one until they are again:
-//! out goes the set whose loss uncovers least weight, in comes the set that covers most of it and holds a certain
-//! uncovered row. Rows that stay uncovered grow heavier, which leads the search away from where it is stuck.
+//! Whenever all rows are covered, the search removes a set. Single exchanges follow until all rows are covered again.
+//! Each exchange removes the set whose loss uncovers the least weight. It adds the set of most weight that contains a randomly chosen
+//! uncovered row. The weights of rows that stay uncovered increase, which lets the search leave local minima.
 
 use rand::RngCore;
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashSet};
 
-/// Lists of numbers, one after another.
+/// Lists of numbers, stored one after another.
 pub(super) struct Lists {
     starts: Vec<usize>,
     items: Vec<u32>,
@@ -35,7 +35,7 @@ impl Lists {
         &self.items[self.starts[list]..self.starts[list + 1]]
     }
 
-    /// For each of `n` numbers the lists that hold it, in ascending order.
+    /// Returns, for each of `n` numbers, the lists that contain it, in ascending order.
     pub fn transposed(&self, n: usize) -> Self {
         let mut starts = vec![0; n + 1];
         for &item in &self.items {
@@ -56,7 +56,7 @@ impl Lists {
     }
 }
 
-/// Numbers 0, 1, 2, … some of which are members; every operation takes constant time.
+/// Set of numbers from 0 to n − 1; every operation takes constant time.
 struct Members {
     members: Vec<u32>,
     places: Vec<u32>,
@@ -91,29 +91,29 @@ impl Members {
     }
 }
 
-/// A choice of sets in the making.
+/// Set cover under construction.
 pub(super) struct Cover<'a> {
     rows_of: &'a Lists,
     sets_of: Lists,
     chosen: Members,
     uncovered: Members,
-    /// Of each row.
+    /// Weight of each row.
     weights: Vec<i32>,
-    /// How many chosen sets hold a row.
+    /// Number of chosen sets that contain each row.
     counts: Vec<u32>,
-    /// Their numbers, combined by exclusive or: if it is one set, which.
+    /// Exclusive or of the indices of these sets; if there is one set, its index.
     holders: Vec<u32>,
-    /// Of a set that is not chosen: the weight that it would cover. Of a chosen one: less the weight that only it covers.
+    /// Score of each set. Not chosen: the weight that it would cover. Chosen: minus the weight that only this set covers.
     scores: Vec<i32>,
-    /// When a set was last put in or taken out.
+    /// Step at which each set was last added or removed.
     moved_at: Vec<u32>,
 }
 
-/// Chosen sets that are looked at before one is taken out. More: greedier, slower.
+/// Number of randomly drawn chosen sets among which the removed set is selected. If it is larger, the search is greedier and slower.
 const TRIED: usize = 64;
 
 impl<'a> Cover<'a> {
-    /// Nothing chosen yet; `rows_of` are the rows of each set. Rows of no set are left out of it all.
+    /// Creates a cover without chosen sets. `rows_of` lists the rows of each set; rows that no set contains are ignored.
     pub fn new(rows_of: &'a Lists, n_rows: usize) -> Self {
         let sets_of = rows_of.transposed(n_rows);
         let mut uncovered = Members::none_of(n_rows);
@@ -134,12 +134,12 @@ impl<'a> Cover<'a> {
         }
     }
 
-    /// The chosen sets, in no particular order.
+    /// Returns the chosen sets, in no particular order.
     pub fn chosen(&self) -> &[u32] {
         &self.chosen.members
     }
 
-    /// Chooses a set.
+    /// Adds a set to the chosen ones.
     pub fn add(&mut self, set: usize) {
         self.chosen.insert(set);
         self.scores[set] = -self.scores[set];
@@ -176,7 +176,7 @@ impl<'a> Cover<'a> {
         }
     }
 
-    /// Changes the scores of the sets that hold a row.
+    /// Adds `by` to the scores of all sets but `set` that contain a row.
     fn raise_all_but(&mut self, set: usize, row: usize, by: i32) {
         for &other in self.sets_of.of(row) {
             if other as usize != set {
@@ -185,7 +185,7 @@ impl<'a> Cover<'a> {
         }
     }
 
-    /// Chooses the set that covers most until all rows are covered, then drops those that became superfluous.
+    /// Adds the set that covers the most weight until all rows are covered, then removes redundant sets.
     pub fn complete(&mut self) {
         let candidates = (0..self.rows_of.len()).filter(|&set| !self.chosen.contains(set));
         let entry = |set: usize, score: i32| (score, Reverse(set));
@@ -194,7 +194,7 @@ impl<'a> Cover<'a> {
             let Some((score, Reverse(set))) = heap.pop() else {
                 break;
             };
-            // Scores only fall, so one that still holds is the highest.
+            // Scores only decrease, so a current score at the top is the highest.
             if self.scores[set] == score {
                 self.add(set);
             } else {
@@ -208,7 +208,7 @@ impl<'a> Cover<'a> {
         }
     }
 
-    /// Looks for fewer sets in this many exchanges; all rows must be covered, and are again in the end.
+    /// Searches for fewer sets in `n_steps` exchanges. All rows must be covered before, and are covered afterwards.
     pub fn improve(&mut self, n_steps: usize, rng: &mut impl RngCore) {
         let mut best = self.chosen.members.clone();
         let mut just_added = None;
@@ -241,7 +241,7 @@ impl<'a> Cover<'a> {
         }
     }
 
-    /// What is best to put in or take out: the highest score, then the one that has rested longest.
+    /// Returns the sort key of a set: the highest score first, then the set that was moved least recently.
     fn merit(&self, set: u32) -> (i32, Reverse<u32>, u32) {
         let index = set as usize;
         (self.scores[index], Reverse(self.moved_at[index]), set)
@@ -281,7 +281,7 @@ impl<'a> Cover<'a> {
     }
 }
 
-/// A number below n, as good as even.
+/// Returns a random number below n, with a negligible bias.
 fn below(n: usize, rng: &mut impl RngCore) -> usize {
     ((u64::from(rng.next_u32()) * n as u64) >> 32) as usize
 }

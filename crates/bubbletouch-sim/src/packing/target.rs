@@ -1,36 +1,36 @@
-//! What is packed: a mesh, what of it counts, and how near the spheres must come.
+//! Target of a packing: a mesh, the body that it represents, and the tolerance.
 
 use crate::error::{Error, Result};
 use crate::mesh::{Hole, Surface, Triangle, TriangleMesh, Welded};
 use glam::DVec3;
 
-/// What errors about a mesh begin with, where its file is not known.
+/// Name of the mesh in errors if its file is not known.
 pub(super) const MESH: &str = "mesh";
 
-/// How far above a face, as a share of the tolerance, it is asked whether the face lies inside the solid: clefts that are
-/// narrower count as closed. Larger: wider ones do; smaller: rounding decides where faces lie on each other.
+/// Height above a face, as a fraction of the tolerance, at which the code tests whether the face lies inside the solid; narrower clefts
+/// count as closed. If it is larger, wider clefts are closed; if it is smaller, rounding decides where faces coincide.
 const LIFT: f64 = 1e-3;
 
-/// What a mesh stands for.
+/// Body that a mesh represents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Body {
-    /// The [solid](crate::mesh#the-solid-of-a-mesh) that it encloses: of closed parts that overlap their union. It must have no
+    /// [Solid](crate::mesh#the-solid-of-a-mesh) that the mesh encloses; the union of closed parts that overlap. The mesh must have no
     /// holes.
     Solid,
-    /// Itself, without thickness: spheres as small as the tolerance, centred on it. Holes stay open; the spheres are many.
+    /// Surface of the mesh without thickness: many spheres as small as the tolerance, centred on the surface. Holes stay open.
     Sheet,
 }
 
-/// A mesh that can be packed.
+/// Mesh that can be packed.
 pub(super) struct Target<'a> {
     pub surface: &'a Surface,
     pub body: Body,
-    /// How far spheres may be from the outer surface, metres.
+    /// Maximum distance between the spheres and the outer surface, metres.
     pub e: f64,
 }
 
 impl<'a> Target<'a> {
-    /// Checks that the mesh has what the body needs.
+    /// Checks that the mesh meets the requirements of the body.
     pub fn new(surface: &'a Surface, body: Body, tolerance: f64) -> Result<Self> {
         if !(tolerance.is_finite() && tolerance > 0.0) {
             return Err(Error::input(
@@ -45,29 +45,29 @@ impl<'a> Target<'a> {
         if body == Body::Solid {
             check_enclosure(surface.mesh())?;
         }
-        // Leaves rounding errors a place, so that what is promised is kept to the last digit.
+        // The margin for rounding errors keeps the stated tolerance exact.
         let e = tolerance * (1.0 - 1e-6);
         Ok(Self { surface, body, e })
     }
 
-    /// No ball is larger, metres.
+    /// Returns an upper bound of the radius of a ball, metres.
     pub fn largest_radius(&self) -> f64 {
         0.5 * self.surface.bounds().size().length()
     }
 
-    /// The outward unit normal near a point of the surface; zero where there is none.
+    /// Returns the outward unit normal near a surface point; zero if it is undefined.
     pub fn normal_at(&self, point: DVec3) -> DVec3 {
         let nearest = self.surface.closest(point, f64::INFINITY);
         let normal = nearest.map(|nearest| self.surface.pseudonormal(&nearest));
         normal.unwrap_or_default().normalize_or_zero()
     }
 
-    /// Whether a point of a face of a solid looks into the solid: it does when it is lifted off the face by [`LIFT`].
+    /// Returns whether the solid contains a point of one of its faces after a shift by [`LIFT`] along the normal.
     pub fn is_buried(&self, point: DVec3, normal: DVec3) -> bool {
         self.body == Body::Solid && self.surface.contains(point + normal * (LIFT * self.e))
     }
 
-    /// Whether the winding number is proved to be the same all over a part of a face, when it is lifted off it by [`LIFT`]: no
+    /// Returns whether the winding number is proved to be constant over a part of a face, shifted by [`LIFT`] along the normal: no
     /// face of the mesh crosses it there.
     pub fn is_uncrossed(&self, piece: &Triangle, normal: DVec3) -> bool {
         let lift = normal * (LIFT * self.e);
@@ -75,15 +75,15 @@ impl<'a> Target<'a> {
         !self.surface.may_cross(&Triangle(lifted))
     }
 
-    /// Whether a part of a face is proved to look into the solid all over.
+    /// Returns whether a part of a face is proved to lie inside the solid entirely.
     pub fn buries(&self, piece: &Triangle, normal: DVec3) -> bool {
         self.is_buried(piece.middle(), normal) && self.is_uncrossed(piece, normal)
     }
 }
 
-/// An error unless every edge is passed as often in one direction as in the other, and the enclosed volume is positive.
+/// Returns an error unless each edge has equally many faces in both directions and the enclosed volume is positive.
 ///
-/// Weaker than two faces an edge: where four faces meet in one, inside and outside are still known everywhere.
+/// The condition is weaker than two faces per edge: if four faces meet at an edge, inside and outside are still defined everywhere.
 fn check_enclosure(mesh: &TriangleMesh) -> Result<()> {
     let welded = Welded::new(mesh);
     let n_unbalanced = welded.n_unbalanced();

@@ -146,7 +146,7 @@ impl BodyReadout {
     /// Writes the readings of all taxels of a patch, shape (n_taxels,), in the order of the layout.
     ///
     /// # Panics
-    /// If `body` has another number of taxels, if the patch does not exist, or if the time is not from 0 to 1.
+    /// If `body` has another number of taxels, if the patch does not exist, if there is not one value per taxel, or if the time is not from 0 to 1.
     pub fn read_patch(
         &self,
         body: &WholeBody,

@@ -198,7 +198,7 @@ mod tests {
             .collect();
         times.sort_by(f64::total_cmp);
         for (rank, time) in times.iter().enumerate() {
-            // The Kolmogorov–Smirnov distance of so many: below 0.044 in 999 of 1000 series.
+            // The Kolmogorov–Smirnov distance is below 0.044 in 999 of 1000 series.
             assert!((time - rank as f64 / 2000.0).abs() < 0.044);
         }
     }

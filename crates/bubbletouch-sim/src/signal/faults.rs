@@ -145,7 +145,7 @@ mod tests {
         let mut levels: Vec<f64> = taxels(0.0, 1.0).unwrap().iter().map(|f| f.1).collect();
         levels.sort_by(f64::total_cmp);
         for (rank, level) in levels.iter().enumerate() {
-            // The Kolmogorov–Smirnov distance of so many: below 0.062 in 999 of 1000 skins.
+            // The Kolmogorov–Smirnov distance is below 0.062 in 999 of 1000 skins.
             assert!((level / 5e-3 - rank as f64 / 1000.0).abs() < 0.062);
         }
     }

@@ -73,7 +73,7 @@ mod tests {
     use super::*;
     use crate::statistics::standard_errors::{assert_expected, of_mean};
 
-    /// The noise of a touch of so many readings, of standard deviation 1.
+    /// Returns the noise of a touch with `n_readings` readings and standard deviation 1.
     fn noise(touch: u64, n_readings: usize) -> Vec<f64> {
         let mut readings = vec![0.0; n_readings];
         let seed = Seed::new(5).numbered(touch);
@@ -97,7 +97,7 @@ mod tests {
             let found = products.sum::<f64>() / N as f64;
             let of_source = |k: usize| (1.0 - lag as f64 / f64::from(1 << k)).max(0.0);
             let expected = (0..N_SOURCES).map(of_source).sum::<f64>() / N_SOURCES as f64;
-            // Of products of normal numbers of variance 1.
+            // Standard deviation of a product of two normal numbers of variance 1.
             let standard_error = of_mean((1.0 + expected * expected).sqrt(), N);
             assert_expected(&format!("lag {lag}"), found, expected, standard_error);
         }
