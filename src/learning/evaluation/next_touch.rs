@@ -38,7 +38,7 @@ pub enum NextTouch {
 /// Poses of touches.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Poses {
-    /// n_touches × n_axes, each axis in units of its range.
+    /// Coordinates, n_touches × n_axes, each axis in units of its range.
     pub coordinates: Array2<f64>,
     /// For each axis that is a periodic angle, the size of a full turn in these units; `None` for other axes.
     pub turns: Vec<Option<f64>>,

@@ -1,11 +1,13 @@
 //! k nearest neighbours: the k training rows closest to a row (Euclidean) vote for their classes.
 //!
-//! **Ties.** Of rows at equal distance the one with the lower index is nearer; of classes with equal votes the lower
-//! label wins, as in scikit-learn.
+//! **Ties.** Of training rows at equal distance, the row with the lower index is nearer. Of classes with equal votes, the lower label wins. Both rules are
+//! scikit-learn's.
 //!
-//! Distances come from one matrix product a block, `|a|² + |b|² − 2 a·b`, which loses digits where rows are close. So it only
-//! nominates: every row that rounding could have kept out of the k nearest is measured again by `Σ (a − b)²`, and the
-//! neighbours are those of a search one pair at a time, exactly. (Far from the origin many are nominated: scale features.)
+//! Distances are computed by one matrix product per block, `|a|² + |b|² − 2 a·b`, which is inaccurate for close rows. The product therefore only selects
+//! candidates:
+//! all rows that could be among the k nearest within the rounding error. The distances of the candidates are recomputed by `Σ (a − b)²`, so the result equals
+//! that of
+//! an exact pairwise search. Far from the origin, there are many candidates; scale the features.
 
 use crate::classifiers::classifier_about::ClassifierAbout;
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis};
@@ -15,28 +17,30 @@ use crate::class_model::{ClassModel, log_vote_shares};
 use crate::dataset::{Dataset, check_width, checked_classes, positions};
 use crate::{Error, Result};
 
-/// Rows whose distances to all training rows are computed at once. More leave the processor's cache, fewer make the
-/// products inefficient.
+/// Number of rows whose distances to all training rows are computed together. If larger, the distances exceed the processor's cache; if smaller, the products
+/// are
+/// inefficient.
 const BLOCK_ROWS: usize = 128;
 
-/// Training rows and their labels. Scores are the logarithms of smoothed shares of the votes.
+/// Trained k-nearest-neighbours classifier: the training rows and their labels. Scores are the logarithms of smoothed vote fractions.
 #[derive(Clone, Debug)]
 pub struct KNearest {
     n_neighbours: usize,
     classes: Vec<usize>,
-    /// n_rows × m.
+    /// Training rows, n_rows × m.
     rows: Array2<f64>,
-    /// The position in `classes` of each row's label.
+    /// Position in `classes` of each row's label.
     label: Vec<usize>,
     squared_norms: Array1<f64>,
 }
 
 impl KNearest {
-    /// Keeps labelled measurements for `n_neighbours` of them to vote.
+    /// Stores the labelled rows, of which `n_neighbours` vote.
     ///
     /// # Errors
-    /// Neighbours not in 1 to the number of rows, empty data, a NaN or infinite feature or one whose square overflows,
-    /// another number of labels than rows, or a single class.
+    /// If `n_neighbours` is not in 1 to the number of rows, the data are empty, a feature is NaN, infinite or too large to square, the number of labels
+    /// differs from the
+    /// number of rows, or there is a single class.
     pub fn train(data: &Dataset, n_neighbours: usize) -> Result<Self> {
         let classes = checked_classes(data)?;
         let n_rows = data.records.nrows();
@@ -65,10 +69,10 @@ impl KNearest {
         })
     }
 
-    /// The nearest training rows of each row, nearest first (n_rows × n_neighbours).
+    /// Returns the nearest training rows of each row, nearest first (n_rows × n_neighbours).
     ///
     /// # Errors
-    /// Another number of columns than in training, or a NaN or infinite feature.
+    /// If the number of columns differs from training, or a feature is NaN or infinite.
     pub fn neighbours(&self, features: ArrayView2<f64>) -> Result<Array2<usize>> {
         check_width(&features, self.rows.ncols())?;
         let mut neighbours = Array2::zeros((features.nrows(), self.n_neighbours));
@@ -93,11 +97,11 @@ impl KNearest {
         Ok(neighbours)
     }
 
-    /// The nearest training rows of one row, from its products with all of them.
+    /// Returns the nearest training rows of one row, given its products with all training rows.
     fn nearest(&self, row: ArrayView1<f64>, products: ArrayView1<f64>) -> Vec<usize> {
         let norm = row.dot(&row);
         let rough = |other: usize| norm + self.squared_norms[other] - 2.0 * products[other];
-        // The k smallest rough distances, ascending; its last entry is the bar that others must pass.
+        // The k smallest approximate distances, ascending; the last entry is the threshold.
         let k = self.n_neighbours;
         let mut smallest = vec![f64::INFINITY; k];
         for other in 0..products.len() {
@@ -108,7 +112,7 @@ impl KNearest {
                 smallest[place] = distance;
             }
         }
-        // The neighbours' squared norms are at most 2|a|² + 2|a − b|²; a product of m terms is off by less than m roundings.
+        // The neighbours' squared norms are at most 2|a|² + 2|a − b|². The error of a product of m terms is below m roundings.
         let bar = smallest[k - 1];
         let rounding = 4.0 * (row.len() + 8) as f64 * f64::EPSILON;
         let is_out = |other: &usize| {

@@ -1,4 +1,4 @@
-//! Soft-margin SVM of a Laplacian kernel; see [`svm`](crate).
+//! Soft-margin SVM with a Laplacian kernel; see the [crate documentation](crate).
 
 use crate::classifiers::classifier_about::ClassifierAbout;
 use crate::kernel::Kernel;

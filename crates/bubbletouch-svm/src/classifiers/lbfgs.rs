@@ -4,30 +4,30 @@ use std::collections::VecDeque;
 
 use ndarray::Array1;
 
-/// Pairs of steps and gradient changes remembered: 10, as SciPy. More cost memory, fewer cost iterations.
+/// Number of pairs of steps and gradient changes in memory: 10, as in SciPy. If larger, more memory is used; if smaller, more iterations are needed.
 const MEMORY: usize = 10;
 
-/// Share of the predicted decrease that a step must reach (Armijo's condition).
+/// Fraction of the predicted decrease that a step must reach (Armijo's condition).
 const SUFFICIENT_DECREASE: f64 = 1e-4;
 
-/// Changes of the value below this share of it are rounding.
+/// Relative changes of the function value below this fraction are rounding errors.
 const ROUNDING: f64 = 1e-14;
 
-/// Halvings of a step before the search gives up: the decrease is then below rounding.
+/// Maximum number of halvings of a step; beyond it, the decrease is below rounding.
 const MAX_HALVINGS: usize = 40;
 
-/// Where a minimisation ended.
+/// Result of a minimisation.
 #[derive(Clone, Debug)]
 pub(crate) struct Minimum {
     pub at: Array1<f64>,
     pub n_iterations: usize,
-    /// Whether it stopped short of its tolerance: at the iteration cap, or where rounding hides any decrease.
+    /// Whether the minimisation stopped before reaching its tolerance: at the iteration cap, or because rounding hides any decrease.
     pub is_capped: bool,
 }
 
 /// Minimises a convex function from `at`, until no component of the gradient exceeds `tolerance`.
 ///
-/// `function` gives value and gradient.
+/// `function` returns the value and the gradient.
 pub fn minimise(
     mut function: impl FnMut(&Array1<f64>) -> (f64, Array1<f64>),
     mut at: Array1<f64>,
@@ -47,7 +47,7 @@ pub fn minimise(
         }
         let direction = direction(&pairs, &gradient);
         let slope = direction.dot(&gradient);
-        // Without curvature, the first step goes a unit of length at most.
+        // Without curvature information, the length of the first step is at most 1.
         let mut step = if pairs.is_empty() {
             1.0 / slope.abs().sqrt().max(1.0)
         } else {
@@ -58,7 +58,7 @@ pub fn minimise(
             let next = &at + &(&direction * step);
             let (next_value, next_gradient) = function(&next);
             let decreases = next_value <= value + SUFFICIENT_DECREASE * step * slope;
-            // Near the bottom rounding hides the decrease of the value, not that of the slope [Hager, Zhang 2005].
+            // Near the minimum, rounding hides the decrease of the value, but not the decrease of the slope [Hager, Zhang 2005].
             let flattens = next_value <= value + ROUNDING * value.abs()
                 && direction.dot(&next_gradient).abs() <= 0.9 * slope.abs();
             if decreases || flattens {
@@ -75,7 +75,7 @@ pub fn minimise(
             };
         };
         let pair = (&next - &at, &next_gradient - &gradient);
-        // Convexity makes s·y ≥ 0; one that rounding hides carries no curvature.
+        // Convexity implies s·y ≥ 0; a pair below rounding contains no curvature information.
         if pair.0.dot(&pair.1) > f64::EPSILON * pair.1.dot(&pair.1) {
             if pairs.len() == MEMORY {
                 pairs.pop_front();
@@ -87,7 +87,7 @@ pub fn minimise(
     unreachable!("the last iteration returns")
 }
 
-/// `−H g`, H the inverse Hessian that the pairs (s, y) describe: the two-loop recursion.
+/// Returns `−H g`, where H is the inverse Hessian estimated from the pairs (s, y), by the two-loop recursion.
 fn direction(pairs: &VecDeque<(Array1<f64>, Array1<f64>)>, gradient: &Array1<f64>) -> Array1<f64> {
     let mut direction = -gradient;
     let mut factors = Vec::with_capacity(pairs.len());

@@ -1,4 +1,4 @@
-//! Linear soft-margin SVMs; see [`svm`](crate), and [`crate::linear_svm`] for coordinate descent.
+//! Linear soft-margin SVM; see the [crate documentation](crate), and [`crate::linear_svm`] for coordinate descent.
 
 use crate::classifiers::classifier_about::ClassifierAbout;
 use crate::kernel::Kernel;

@@ -1,11 +1,13 @@
 //! Multinomial logistic regression: `p(k | x) = exp(w_k·x + b_k) / Σ_j exp(w_j·x + b_j)`.
 //!
-//! Minimises `C Σ_i −ln p(y_i | x_i) + ½ Σ_k |w_k|²` by L-BFGS; the bias is not regularised, as in scikit-learn. For two
-//! classes, scikit-learn regularises the difference `w_1 − w_0` alone (half as much as two vectors): so does this.
+//! Minimises `C Σ_i −ln p(y_i | x_i) + ½ Σ_k |w_k|²` by L-BFGS. The bias is not regularised, as in scikit-learn. For two classes, only the difference
+//! `w_1 − w_0` is regularised (half as much as two vectors), as in scikit-learn.
 //!
-//! Differs from linfa-logistic 0.8.1, because its log-sum-exp takes the largest score of the whole matrix instead of
-//! each row's: where scores of rows differ by more than 34, probabilities and gradients are wrong and it stops short in
-//! silence (600 rows, 5 classes, C = 1,000: objective 46.6, where C = 1 reaches 9.8).
+//! Differs from linfa-logistic 0.8.1, because its log-sum-exp subtracts the maximum of the whole matrix instead of the maximum of each row. If the scores of
+//! rows
+//! differ by more than 34, its probabilities and gradients are wrong, and it stops early without an error. Example: with 600 rows, 5 classes and C = 1,000,
+//! the
+//! objective is 46.6, while C = 1 reaches 9.8.
 
 use crate::classifiers::classifier_about::ClassifierAbout;
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis, s};
@@ -17,18 +19,18 @@ use crate::dataset::{Dataset, checked_classes, positions};
 use crate::linear_model::LinearModel;
 use crate::{Error, Result};
 
-/// Iterations after which the solver gives up: ten times scikit-learn's.
+/// Maximum number of iterations: ten times scikit-learn's.
 pub const MAX_ITERATIONS: usize = 1000;
 
-/// What a logistic regression is trained with.
+/// Parameters of a logistic regression.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LogisticParams {
-    /// C > 0: the weight of the data against the regularisation.
+    /// Weight C > 0 of the data relative to the regularisation.
     pub c: f64,
-    /// The largest component of the gradient of the mean loss (the objective over `C n_rows`) when the solver stops;
-    /// above 0. scikit-learn's default is 1e-4.
+    /// Stopping tolerance, above 0: the largest component of the gradient of the mean loss (the objective divided by `C n_rows`). scikit-learn's default is
+    /// 1e-4.
     pub tolerance: f64,
-    /// Iterations after which the solver gives up and says so.
+    /// Maximum number of iterations; beyond it, the solver stops and marks the model as capped.
     pub max_iterations: usize,
 }
 
@@ -43,7 +45,7 @@ impl Default for LogisticParams {
     }
 }
 
-/// A trained logistic regression. Scores are `ln p(k | x) − ln p(k)`, p(k) the class's share of the training rows.
+/// A trained logistic regression. Scores are `ln p(k | x) − ln p(k)`, where p(k) is the fraction of training rows of class k.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Logistic {
     classes: Vec<usize>,
@@ -54,10 +56,11 @@ pub struct Logistic {
 }
 
 impl LogisticParams {
-    /// Trains on labelled measurements. Deterministic.
+    /// Trains on labelled rows. The result is deterministic.
     ///
     /// # Errors
-    /// C or tolerance out of range, empty data, a NaN or infinite feature, another number of labels than rows, or a
+    /// If C or the tolerance is out of range, the data are empty, a feature is NaN or infinite, the number of labels differs from the number of rows, or
+    /// there is a
     /// single class.
     pub fn train(&self, data: &Dataset) -> Result<Logistic> {
         for (name, value) in [("C", self.c), ("tolerance", self.tolerance)] {
@@ -93,20 +96,20 @@ impl LogisticParams {
 }
 
 impl Logistic {
-    /// Weights and biases.
+    /// Returns the weights and biases.
     pub fn model(&self) -> &LinearModel {
         &self.model
     }
 
-    /// Iterations of the solver.
+    /// Returns the number of iterations of the solver.
     pub fn n_iterations(&self) -> usize {
         self.n_iterations
     }
 
-    /// `ln p(k | x)` (n_rows × n_classes).
+    /// Returns `ln p(k | x)` (n_rows × n_classes).
     ///
     /// # Errors
-    /// Another number of columns than in training, or a NaN or infinite feature.
+    /// If the number of columns differs from training, or a feature is NaN or infinite.
     pub fn log_probabilities(&self, features: ArrayView2<f64>) -> Result<Array2<f64>> {
         let mut values = self.model.scores(features)?;
         normalise(&mut values);
@@ -132,7 +135,7 @@ impl ClassModel for Logistic {
     }
 }
 
-/// Weights (n_classes × m) and biases (n_classes) within the solver's vector.
+/// Returns the weights (n_classes × m) and biases (n_classes) contained in the solver's vector.
 fn parts(vector: ArrayView1<f64>, n_classes: usize) -> (ArrayView2<f64>, ArrayView1<f64>) {
     let (weights, bias) = vector.split_at(Axis(0), vector.len() - n_classes);
     let m = weights.len() / n_classes;
@@ -140,7 +143,7 @@ fn parts(vector: ArrayView1<f64>, n_classes: usize) -> (ArrayView2<f64>, ArrayVi
     (weights.expect("a slice of n_classes × m"), bias)
 }
 
-/// `(1/n) Σ_i −ln p(y_i | x_i) + ½ penalty Σ_k |w_k|²`, and its gradient.
+/// Returns `(1/n) Σ_i −ln p(y_i | x_i) + ½ penalty Σ_k |w_k|²` and its gradient.
 fn mean_loss(
     features: ArrayView2<f64>,
     label: &[usize],
@@ -174,7 +177,7 @@ fn mean_loss(
     (loss, gradient)
 }
 
-/// Subtracts `ln Σ_k exp` from each row, the row's largest value taken out first.
+/// Subtracts `ln Σ_k exp` from each row; the maximum of the row is subtracted first.
 fn normalise(values: &mut Array2<f64>) {
     for mut row in values.rows_mut() {
         let max = row.fold(f64::NEG_INFINITY, |max, &value| max.max(value));

@@ -1,6 +1,6 @@
-//! Classifiers by name, each trained and asked the same way: SVMs of all kernels, and classifiers without a kernel.
+//! Registry of classifiers with one interface for training and prediction: SVMs with all kernels, and classifiers without a kernel.
 //!
-//! Equal rows and equal seeds give equal models on every machine. [`Classifier`](classifier::Classifier) holds the options of any kind.
+//! Equal rows and equal seeds give equal models on every machine. [`Classifier`](classifier::Classifier) contains the options of all kinds.
 
 use serde::{Deserialize, Serialize};
 
@@ -16,7 +16,7 @@ pub(crate) mod tree;
 pub use crate::class_model;
 pub use classifier_about::{ClassifierAbout, Train};
 
-// Everything that a study may say of a classifier follows from its line here and from the file that it names.
+// Each line declares a classifier; the file that it names contains the descriptor.
 classifiers! {
     LinearSvm linear_svm "Soft-margin SVM, linear kernel.";
     RbfSvm rbf_svm "Soft-margin SVM, Gaussian kernel `exp(−γ|x − z|²)`.";

@@ -1,7 +1,8 @@
-//! Gaussian naive Bayes, fitted by linfa-bayes: every feature of a class is normal, independent of the others.
+//! Gaussian naive Bayes, fitted by linfa-bayes: the features of a class are normal and independent.
 //!
-//! linfa's own prediction is not used: it takes the winner of a tie by the order of a `HashMap`, and normalises
-//! probabilities without taking the largest out first (with 64 features all underflow to 0). Its joint log-likelihoods are right.
+//! linfa's prediction is not used. Ties are resolved in the order of a `HashMap`, and probabilities are normalised without subtracting the maximum first:
+//! with 64
+//! features all underflow to 0. linfa's joint log-likelihoods are correct and are used.
 
 use crate::classifiers::classifier_about::ClassifierAbout;
 use linfa::traits::Fit;
@@ -13,7 +14,7 @@ use crate::class_model::{ClassModel, log_priors};
 use crate::dataset::{Dataset, check_width, checked_classes};
 use crate::{Error, Result};
 
-/// Share of the largest feature's variance that is added to every variance: scikit-learn's default.
+/// Fraction of the largest feature variance that is added to every variance: scikit-learn's default.
 pub const VARIANCE_SMOOTHING: f64 = 1e-9;
 
 /// A trained Gaussian naive Bayes classifier. Scores are `ln p(x | k)`.
@@ -26,11 +27,12 @@ pub struct NaiveBayes {
 }
 
 impl NaiveBayes {
-    /// Fits means and variances to labelled measurements.
+    /// Fits the means and variances of labelled rows.
     ///
     /// # Errors
-    /// Empty data, a NaN or infinite feature, another number of labels than rows, a single class, or features that are
-    /// all constant (no variance to smooth with).
+    /// If the data are empty, a feature is NaN or infinite, the number of labels differs from the number of rows, there is a single class, or all features
+    /// are
+    /// constant (no variance for smoothing).
     pub fn train(data: &Dataset) -> Result<Self> {
         let classes = checked_classes(data)?;
         let is_constant = |column: ArrayView1<f64>| column.iter().all(|x| *x == column[0]);
@@ -55,10 +57,10 @@ impl NaiveBayes {
         })
     }
 
-    /// `ln p(x, k)` (n_rows × n_classes).
+    /// Returns `ln p(x, k)` (n_rows × n_classes).
     ///
     /// # Errors
-    /// Another number of columns than in training, or a NaN or infinite feature.
+    /// If the number of columns differs from training, or a feature is NaN or infinite.
     pub fn joint_log_likelihoods(&self, features: ArrayView2<f64>) -> Result<Array2<f64>> {
         check_width(&features, self.n_features)?;
         let by_class = self.model.joint_log_likelihood(features);

@@ -1,8 +1,10 @@
-//! Nearest centroid: each class is the mean of its training rows, and a row is of the class whose mean is nearest (Euclidean).
+//! Nearest centroid: each class is represented by the mean of its training rows; a row is assigned to the class with the nearest mean (Euclidean).
 //!
-//! What scikit-learn's `NearestCentroid` is: as many numbers as classes times features, no parameter, and a decision that costs one
-//! distance a class. Scores are −½|x − μₖ|², which is `ln p(x | k)` of normal classes of variance 1 up to a constant of the row: the sum
-//! over several touches is that of all of them together. Of equal distances the lower label wins, as there.
+//! The classifier equals scikit-learn's `NearestCentroid`. It stores n_classes × m numbers and has no parameters; a decision costs one distance per class.
+//! Scores are
+//! −½|x − μₖ|², which is `ln p(x | k)` of normal classes of variance 1, up to a constant per row. The sum over several touches is therefore the joint score.
+//! Of
+//! equal distances, the lower label wins, as in scikit-learn.
 
 use crate::Result;
 use crate::class_model::ClassModel;
@@ -11,19 +13,19 @@ use crate::dataset::{Dataset, check_width, checked_classes};
 use ndarray::{Array2, ArrayView2, Axis};
 use std::sync::Arc;
 
-/// The mean of each class.
+/// A trained nearest-centroid classifier.
 #[derive(Clone, Debug)]
 pub struct NearestCentroid {
     classes: Vec<usize>,
-    /// n_classes × m.
+    /// Mean of each class, n_classes × m.
     centroids: Array2<f64>,
 }
 
 impl NearestCentroid {
-    /// Averages labelled rows class by class.
+    /// Averages the labelled rows of each class.
     ///
     /// # Errors
-    /// Empty data, a NaN or infinite feature, another number of labels than rows, or a single class.
+    /// If the data are empty, a feature is NaN or infinite, the number of labels differs from the number of rows, or there is a single class.
     pub fn train(data: &Dataset) -> Result<Self> {
         let classes = checked_classes(data)?;
         let mut centroids = Array2::zeros((classes.len(), data.records.ncols()));
@@ -41,7 +43,7 @@ impl NearestCentroid {
         Ok(Self { classes, centroids })
     }
 
-    /// The mean of each class, ascending by label: n_classes × m.
+    /// Returns the mean of each class, ascending by label: n_classes × m.
     pub fn centroids(&self) -> ArrayView2<'_, f64> {
         self.centroids.view()
     }
@@ -76,7 +78,7 @@ mod tests {
     use ndarray::array;
 
     fn trained() -> NearestCentroid {
-        // The example of scikit-learn's documentation, with labels 1 and 2.
+        // The example in scikit-learn's documentation, with labels 1 and 2.
         let rows = array![
             [-1.0, -1.0],
             [-2.0, -1.0],
@@ -114,7 +116,7 @@ mod tests {
     #[test]
     fn the_border_of_two_classes_is_the_plane_half_way_between_their_means() {
         let model = trained();
-        // Along it: (4/3, −2) is at right angles to the difference of the means.
+        // Along the boundary: (4/3, −2) is orthogonal to the difference of the means.
         for step in [-3.0, -0.5, 2.0] {
             let on = [step * 4.0 / 3.0, -2.0 * step];
             for (side, label) in [(1e-6, 2), (-1e-6, 1)] {

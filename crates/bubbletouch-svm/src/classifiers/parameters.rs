@@ -1,16 +1,16 @@
-//! Hyper-parameters that only some classifiers use: a study or a command that sets one for other classifiers is refused.
+//! Hyper-parameters that only some classifiers use. Setting one for another classifier is an error.
 
 use crate::classifiers::ClassifierKind;
 
-/// A hyper-parameter of some classifiers.
+/// A hyper-parameter that only some classifiers use.
 pub struct Parameter {
-    /// The keys of `[recognition]` that set it. Options of `bubbletouch classify` have the same names.
+    /// Keys of `[recognition]` that set the parameter. Options of `bubbletouch classify` have equal names.
     pub keys: &'static [&'static str],
-    /// Whether a classifier uses it.
+    /// Returns whether a classifier uses the parameter.
     pub is_used: fn(ClassifierKind) -> bool,
 }
 
-/// All of them.
+/// All hyper-parameters that only some classifiers use.
 pub const PARAMETERS: [Parameter; 8] = [
     Parameter {
         keys: &["tolerance"],
@@ -47,7 +47,7 @@ pub const PARAMETERS: [Parameter; 8] = [
 ];
 
 impl Parameter {
-    /// The classifiers that use it, by their names in studies: `k_nearest`, `linear_svm or rbf_svm`.
+    /// Returns the study names of the classifiers that use the parameter: `k_nearest`, `linear_svm or rbf_svm`.
     pub fn users(&self) -> String {
         let all = ClassifierKind::ALL.iter().zip(ClassifierKind::NAMES);
         let users = all.filter(|(kind, _)| (self.is_used)(**kind));

@@ -1,8 +1,10 @@
-//! Random forests [Breiman 2001]: many trees, each grown on a bootstrap of the rows and, in every node, on √m features
-//! drawn afresh; they vote with the class shares of their leaves, as in scikit-learn.
+//! Random forests [Breiman 2001]. Each tree is grown on a bootstrap sample of the rows, with √m random features per node. The trees vote with the class
+//! fractions of
+//! their leaves, as in scikit-learn.
 //!
-//! Differs from linfa-ensemble 0.8.1, because that grows the trees of linfa-trees 0.8.1 (which sums impurities in f32 in the order of a `HashMap`, so
-//! two trainings on the same rows differ), breaks ties of votes by the order of a `HashMap`, and draws features once a tree.
+//! Differs from linfa-ensemble 0.8.1 for three reasons. Its trees (linfa-trees 0.8.1) sum impurities in f32 in the order of a `HashMap`, so two trainings on
+//! equal
+//! rows differ. It breaks ties of votes in the order of a `HashMap`. It draws features once per tree instead of once per node.
 
 use crate::classifiers::classifier_about::ClassifierAbout;
 use ndarray::{Array2, ArrayView2};
@@ -16,7 +18,7 @@ use crate::dataset::{Dataset, check_width, checked_classes, positions};
 use crate::streams::DynStreams;
 use crate::{Error, Result};
 
-/// A trained forest. Scores are the logarithms of smoothed shares of its trees' votes.
+/// A trained forest. Scores are the logarithms of smoothed vote fractions.
 #[derive(Clone, Debug)]
 pub struct RandomForest {
     classes: Vec<usize>,
@@ -25,12 +27,13 @@ pub struct RandomForest {
 }
 
 impl RandomForest {
-    /// Grows `n_trees` trees to pure leaves, or to `max_depth` splits below each other. Tree t draws from
-    /// `seed.named("tree").numbered(t)`, so a larger forest holds the smaller one.
+    /// Grows `n_trees` trees until the leaves are pure, or to the depth `max_depth`. Tree t draws from `seed.named("tree").numbered(t)`, so a larger forest
+    /// contains the trees of a smaller forest.
     ///
     /// # Errors
-    /// No trees, a depth of 0, empty data, a NaN or infinite feature, another number of labels than rows, or a single
-    /// class.
+    /// If there are no trees, the depth is 0, the data are empty, a feature is NaN or infinite, the number of labels differs from the number of rows, or
+    /// there is a
+    /// single class.
     pub fn train(
         data: &Dataset,
         n_trees: usize,
@@ -80,7 +83,7 @@ impl ClassModel for RandomForest {
     fn scores(&self, features: ArrayView2<f64>) -> Result<Array2<f64>> {
         check_width(&features, self.n_features)?;
         let mut votes = Array2::zeros((features.nrows(), self.classes.len()));
-        // Tree by tree: one stays in the processor's cache while all rows fall through it.
+        // The loop runs tree by tree, because one tree fits into the processor's cache for all rows.
         for tree in &self.trees {
             for (row, mut votes) in features.rows().into_iter().zip(votes.rows_mut()) {
                 let counts = tree.leaf(row);

@@ -1,13 +1,13 @@
-//! Features by rank: all that a tree needs to know of them, and quick to sort.
+//! Ranks of feature values: sufficient for growing trees, and fast to sort.
 
 use ndarray::{Array2, ArrayView2, Axis};
 
-/// Every feature's distinct values, ascending, and for every row the place of its value among them.
+/// The distinct values of every feature, ascending, and the rank of each row's value.
 #[derive(Clone, Debug)]
 pub(crate) struct Ranked {
-    /// m × n_rows: a feature's ranks are contiguous.
+    /// Ranks, m × n_rows: the ranks of a feature are contiguous.
     ranks: Array2<u32>,
-    /// Per feature.
+    /// Distinct values of each feature, ascending.
     values: Vec<Vec<f64>>,
 }
 
@@ -21,7 +21,7 @@ impl Ranked {
             order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
             let mut distinct: Vec<f64> = Vec::new();
             for (value, row) in order {
-                // −0 and 0 are equal, whatever total_cmp says.
+                // −0 and 0 count as equal, although total_cmp orders them.
                 if distinct.last() != Some(&value) {
                     distinct.push(value);
                 }
@@ -44,7 +44,7 @@ impl Ranked {
         self.ranks[[feature, row as usize]]
     }
 
-    /// Half-way between the values of two ranks; the lower value where rounding takes the middle up to the upper.
+    /// Returns the midpoint between the values of two ranks; the lower value if the midpoint is rounded to the upper value.
     pub(crate) fn threshold(&self, feature: usize, lower: u32, upper: u32) -> f64 {
         let (low, high) = (
             self.values[feature][lower as usize],

@@ -1,4 +1,4 @@
-//! Soft-margin SVM of a Gaussian kernel; see [`svm`](crate).
+//! Soft-margin SVM with a Gaussian kernel; see the [crate documentation](crate).
 
 use crate::classifiers::classifier_about::ClassifierAbout;
 use crate::kernel::Kernel;

@@ -1,4 +1,4 @@
-//! A trained classifier: scaling and model, asked the same way whatever they are.
+//! Trained classifiers: scaling and model behind one interface for prediction.
 
 use std::sync::Arc;
 
@@ -20,12 +20,12 @@ pub struct TrainedClassifier {
     chosen: Option<Chosen>,
 }
 
-/// What was trained on scaled features.
+/// Model trained on scaled features.
 #[derive(Clone, Debug)]
 pub(crate) enum Model {
-    /// A kernel SVM: its scores are decision values of binary problems.
+    /// A kernel SVM: its scores are the decision values of binary problems.
     Svm(Box<SvmModel>),
-    /// One score per class.
+    /// A model with one score per class.
     Classes(Arc<dyn ClassModel>),
 }
 
@@ -37,7 +37,7 @@ impl Model {
         }
     }
 
-    /// Solves that stopped at their iteration cap.
+    /// Returns the number of optimisation problems that stopped at their iteration cap.
     pub(crate) fn n_capped(&self) -> usize {
         match self {
             Self::Svm(model) => model.n_capped(),
@@ -61,27 +61,28 @@ impl TrainedClassifier {
         }
     }
 
-    /// The predicted label of each row of unscaled features (n_rows × m).
+    /// Returns the predicted label of each row of unscaled features (n_rows × m).
     ///
     /// # Errors
-    /// Another number of columns than in training, or a NaN or infinite feature.
+    /// If the number of columns differs from training, or a feature is NaN or infinite.
     pub fn labels(&self, features: ArrayView2<f64>) -> Result<Array1<usize>> {
         let scaled = self.scaling.apply(features)?;
         self.model.labels(scaled.view())
     }
 
-    /// Scores (n_rows × n_scores) of unscaled features, of which [`labels_of_scores`](Self::labels_of_scores) makes
-    /// labels. The sum of the scores of several touches of one object is the score of all of them together.
+    /// Returns the scores (n_rows × n_scores) of unscaled features; [`labels_of_scores`](Self::labels_of_scores) converts them to labels. Scores are
+    /// additive: the sum of
+    /// the scores of several touches of one object is their joint score.
     ///
     /// | classifier | score |
     /// |---|---|
     /// | SVM | decision value of each binary problem, or of each class |
-    /// | logistic regression | `ln p(k given x) − ln p(k)`: the prior is added once, by `labels_of_scores` |
-    /// | naive Bayes | `ln p(x given k)`: likewise |
-    /// | k nearest neighbours, tree, forest | `ln((v_k + 1) / (Σ v + n_classes))`, v the votes or the leaf's rows: finite without a vote |
+    /// | logistic regression | `ln p(k given x) − ln p(k)`; `labels_of_scores` adds the prior once |
+    /// | naive Bayes | `ln p(x given k)`; `labels_of_scores` adds the prior once |
+    /// | k nearest neighbours, tree, forest | `ln((v_k + 1) / (Σ v + n_classes))`, where v are the votes or the rows of the leaf; finite without votes |
     ///
     /// # Errors
-    /// As [`labels`](Self::labels).
+    /// Returns the errors of [`labels`](Self::labels).
     pub fn scores(&self, features: ArrayView2<f64>) -> Result<Array2<f64>> {
         let scaled = self.scaling.apply(features)?;
         match &self.model {
@@ -90,7 +91,7 @@ impl TrainedClassifier {
         }
     }
 
-    /// The label that each row of scores speaks for.
+    /// Returns the label that each row of scores favours.
     pub fn labels_of_scores(&self, scores: ArrayView2<f64>) -> Array1<usize> {
         match &self.model {
             Model::Svm(model) => model.labels_of_values(scores),
@@ -98,22 +99,22 @@ impl TrainedClassifier {
         }
     }
 
-    /// The C that it was trained with; `None` for a kind without C.
+    /// Returns the C used in training; `None` for a kind without C.
     pub fn c(&self) -> Option<f64> {
         self.c
     }
 
-    /// How C was chosen, if it was.
+    /// Returns the result of the choice of C; `None` if C was fixed.
     pub fn chosen(&self) -> Option<&Chosen> {
         self.chosen.as_ref()
     }
 
-    /// How many of its optimisation problems stopped at the solver's iteration cap, short of its tolerance.
+    /// Returns the number of optimisation problems that stopped at the solver's iteration cap before reaching the tolerance.
     pub fn n_capped(&self) -> usize {
         self.model.n_capped()
     }
 
-    /// The trained kernel SVM, if it is one; it takes scaled features, see [`scaling`](Self::scaling).
+    /// Returns the trained kernel SVM; `None` for another model. The SVM expects scaled features, see [`scaling`](Self::scaling).
     pub fn svm(&self) -> Option<&SvmModel> {
         match &self.model {
             Model::Svm(model) => Some(model),
@@ -121,7 +122,7 @@ impl TrainedClassifier {
         }
     }
 
-    /// The scaling, as fitted on the training rows.
+    /// Returns the scaling fitted on the training rows.
     pub fn scaling(&self) -> &FittedScaling {
         &self.scaling
     }
@@ -131,7 +132,7 @@ impl<D: Data<Elem = f64>> PredictInplace<ArrayBase<D, Ix2>, Array1<usize>> for T
     /// Writes the predicted labels into `targets`.
     ///
     /// # Panics
-    /// As [`SvmModel`]'s; [`TrainedClassifier::labels`] returns an error instead.
+    /// If the features are invalid or `targets` has a wrong length; [`TrainedClassifier::labels`] returns an error instead.
     fn predict_inplace(&self, features: &ArrayBase<D, Ix2>, targets: &mut Array1<usize>) {
         match self.labels(features.view()) {
             Ok(labels) => targets.assign(&labels),

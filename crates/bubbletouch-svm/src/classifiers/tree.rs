@@ -1,12 +1,12 @@
 //! The classification trees of a random forest [Breiman et al. 1984]: Gini impurity, binary splits `x_f ≤ threshold`, no pruning.
 //!
-//! A node takes the split that lowers the impurity most, i.e. with the largest `Σ_k l_k² / l + Σ_k r_k² / r` (l_k, r_k: rows of
-//! class k left and right); of equals the first feature looked at and its lowest threshold. Thresholds lie half-way
-//! between values that occur in the node.
+//! A node is divided by the split that lowers the impurity most, i.e. with the largest `Σ_k l_k² / l + Σ_k r_k² / r` (l_k, r_k: rows of class k left and
+//! right).
+//! Of equal splits, the feature visited first and its lowest threshold are taken. Thresholds are midpoints between values that occur in the node.
 //!
-//! Differs from linfa-trees 0.8.1, because that sums impurities in f32 in the order of a `HashMap`: two trainings on the
-//! same rows differ (2,000 rows, 20 classes: 3 of 500 predictions). It also takes values closer than 1e-5 for equal,
-//! whatever the unit, and visits every row and feature at every node.
+//! Differs from linfa-trees 0.8.1, because it sums impurities in f32 in the order of a `HashMap`. Two trainings on equal rows differ (2,000 rows, 20 classes:
+//! 3 of
+//! 500 predictions). linfa-trees also treats values closer than 1e-5 as equal in any unit, and visits every row and feature at every node.
 
 use crate::classifiers::ranked::Ranked;
 use crate::streams::DynStreams;
@@ -15,7 +15,7 @@ use ndarray::ArrayView1;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 
-/// Refuses a tree without splits.
+/// Returns an error if the maximum depth is 0.
 pub(crate) fn check_depth(max_depth: Option<usize>) -> Result<()> {
     if max_depth == Some(0) {
         return Err(Error::input("depth", 0, "at least 1 is allowed"));
@@ -23,7 +23,7 @@ pub(crate) fn check_depth(max_depth: Option<usize>) -> Result<()> {
     Ok(())
 }
 
-/// Nodes, the root first.
+/// A binary tree as a list of nodes, the root first.
 #[derive(Clone, Debug)]
 pub(crate) struct Tree {
     nodes: Vec<Node>,
@@ -34,17 +34,17 @@ enum Node {
     Split {
         feature: usize,
         threshold: f64,
-        /// The node for values up to the threshold, and the one for those above.
+        /// Child for values up to the threshold, and child for larger values.
         children: [usize; 2],
     },
     Leaf {
-        /// (class, training rows), classes ascending, none with 0 rows.
+        /// Pairs (class, number of training rows), classes ascending, without empty classes.
         counts: Vec<(u32, u32)>,
     },
 }
 
 impl Tree {
-    /// The (class, training rows) of the leaf that a row falls into.
+    /// Returns the pairs (class, number of training rows) of the leaf of a row.
     pub(crate) fn leaf(&self, row: ArrayView1<f64>) -> &[(u32, u32)] {
         let mut at = 0;
         loop {
@@ -60,15 +60,15 @@ impl Tree {
     }
 }
 
-/// How a tree grows.
+/// Parameters of the growth of a tree.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Growth {
-    /// Features that vary in a node and are looked at there: drawn afresh for each node, unless it is all of them.
+    /// Number of varying features considered in a node. They are drawn anew for each node, unless all are considered.
     pub n_candidates: usize,
     pub max_depth: Option<usize>,
 }
 
-/// A split that separates rows by rank: up to `rank` goes left.
+/// A split by rank: rows with ranks up to `rank` go left.
 struct Split {
     feature: usize,
     rank: u32,
@@ -76,19 +76,19 @@ struct Split {
     score: f64,
 }
 
-/// What a node is split by.
+/// Data and buffers for splitting nodes.
 struct Grower<'a> {
     ranked: &'a Ranked,
     label: &'a [usize],
     n_classes: usize,
-    /// rank << 32 | class, of the node's rows.
+    /// Sort keys of the node's rows: rank << 32 | class.
     keys: Vec<u64>,
     left: Vec<f64>,
     right: Vec<f64>,
 }
 
 impl Growth {
-    /// Grows a tree on these rows (which may repeat). `label` holds class positions below `n_classes`.
+    /// Grows a tree on the given rows, which may repeat. `label` contains class positions below `n_classes`.
     pub(crate) fn grow(
         &self,
         ranked: &Ranked,
@@ -109,7 +109,7 @@ impl Growth {
         };
         let mut features: Vec<usize> = (0..ranked.n_features()).collect();
         let mut nodes = vec![Node::Leaf { counts: Vec::new() }];
-        // (node, its rows, its depth): a stack of our own, since a tree may be as deep as it has rows.
+        // Pending nodes (node, rows, depth): an explicit stack, because a tree may be as deep as its number of rows.
         let mut open = vec![(0, 0..rows.len(), 0)];
         while let Some((node, range, depth)) = open.pop() {
             let counts = grower.counts(&rows[range.clone()]);
@@ -137,7 +137,7 @@ impl Growth {
         Tree { nodes }
     }
 
-    /// The best split of a node's rows, among the candidates; `None` if no feature varies.
+    /// Returns the best split of a node's rows among the candidate features; `None` if no feature varies.
     fn best_split(
         &self,
         grower: &mut Grower,
@@ -167,7 +167,7 @@ impl Growth {
 }
 
 impl Grower<'_> {
-    /// (class, rows) of these rows, classes ascending.
+    /// Returns the pairs (class, number of rows) of the given rows, classes ascending.
     fn counts(&self, rows: &[u32]) -> Vec<(u32, u32)> {
         let mut counts = vec![0; self.n_classes];
         for &row in rows {
@@ -176,7 +176,7 @@ impl Grower<'_> {
         (0..).zip(counts).filter(|&(_, count)| count > 0).collect()
     }
 
-    /// The best split of these rows by one feature; `None` if it does not vary.
+    /// Returns the best split of the given rows by one feature; `None` if the feature is constant.
     fn split(&mut self, feature: usize, rows: &[u32]) -> Option<Split> {
         self.keys.clear();
         self.keys.extend(rows.iter().map(|&row| {
@@ -193,7 +193,7 @@ impl Grower<'_> {
         for &key in &self.keys {
             self.right[key as u32 as usize] += 1.0;
         }
-        // Σ l² and Σ r², followed as rows go from right to left; whole numbers, so exact.
+        // Σ l² and Σ r², updated while rows move from right to left; integers, so exact.
         let mut squares = [0.0, self.right.iter().map(|r| r * r).sum::<f64>()];
         let mut best: Option<(f64, u32, u32)> = None;
         for (i, pair) in self.keys.windows(2).enumerate() {
@@ -222,7 +222,7 @@ impl Grower<'_> {
     }
 }
 
-/// Moves the rows that go left to the front; how many they are.
+/// Moves the rows of the left child to the front; returns their number.
 fn partition(rows: &mut [u32], ranked: &Ranked, split: &Split) -> usize {
     let mut n_left = 0;
     for i in 0..rows.len() {
@@ -251,7 +251,7 @@ mod tests {
         growth.grow(&ranked, label, n_classes, rows, &(0))
     }
 
-    /// Returns the most frequent class of the leaf of each row; of equals the first.
+    /// Returns the most frequent class of the leaf of each row; the first, if several are equal.
     fn labels(tree: &Tree, features: &Array2<f64>) -> Vec<usize> {
         let label = |row| {
             let counts = tree.leaf(row).iter().rev();
@@ -265,7 +265,7 @@ mod tests {
         tree.nodes.iter().filter(is_leaf).count()
     }
 
-    /// 60 rows of 5 features, of three classes.
+    /// 60 rows of 5 features in three classes.
     fn waves() -> (Array2<f64>, Vec<usize>) {
         let value = |(i, j): (usize, usize)| {
             let wave = (1.7 * (i * 5 + j) as f64 + 0.3 * (j * j) as f64).sin();
@@ -275,8 +275,9 @@ mod tests {
         (features, (0..60).map(|i| i * i / 7 % 3).collect())
     }
 
-    /// The labels are those of scikit-learn 1.9.1, `DecisionTreeClassifier(max_depth=3)`. No two splits of these rows are equally good, so its
-    /// tree does not depend on its `random_state`.
+    /// The labels equal those of scikit-learn 1.9.1, `DecisionTreeClassifier(max_depth=3)`. No two splits of these rows are equally good, so scikit-learn's
+    /// tree does not
+    /// depend on its `random_state`.
     #[test]
     fn a_shallow_tree_is_scikit_learns() {
         let (features, label) = waves();
