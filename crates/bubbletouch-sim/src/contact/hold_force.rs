@@ -1,4 +1,4 @@
-//! One object among others moved along a line so that a skin feels a force, no farther than it can go in a step.
+//! Motion of one object among others along a line until a skin carries a given force, within the limits of a step.
 
 use super::force_goal::FORCE_ACCURACY;
 use super::root_search::crossing;
@@ -9,38 +9,38 @@ use crate::objects::Model;
 use crate::world::Patch;
 use glam::DVec3;
 
-/// Where an object is that is moved for a force.
+/// Result of moving an object to a force.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HeldForce {
-    /// How far it went along the direction, metres.
+    /// Travel of the object along the direction, metres.
     pub travel: f64,
-    /// Σ k δ of the patch there, N.
+    /// Σ k δ of the patch at this travel, N.
     pub force: f64,
 }
 
-/// A skin, and one object among others that is moved onto it along a line.
+/// Skin, and one object among others that is moved onto the skin along a line.
 #[derive(Clone, Copy, Debug)]
 pub struct MovedObject<'a> {
     /// The skin.
     pub patch: &'a Patch,
     /// All objects.
     pub objects: &'a [Model],
-    /// The number of the one that is moved.
+    /// Number of the moved object.
     pub moving: usize,
-    /// Where to: unit, in the patch frame.
+    /// Direction of the motion, unit vector, in the patch frame.
     pub direction: DVec3,
 }
 
 impl MovedObject<'_> {
-    /// Moves the object to where the springs of the patch carry `force` newtons together (Σ k δ of all objects): to within 1e-13 of
-    /// it, or to the last bit of the travel.
+    /// Moves the object until the springs of the patch carry `force` newtons together (Σ k δ of all objects), to within a relative 1e-13 or
+    /// the last bit of the travel.
     ///
-    /// `poses`: `patch_from_object`, one an object, that of the moved one before any travel; afterwards where the last press found it.
-    /// `travels`, metres, ascending: how far back it may go, how far it is, how far ahead it may go. If the force is not
-    /// reached between them it goes to the end on that side. Where the force jumps past what is wanted, the upper side of the jump is.
+    /// `poses` has one `patch_from_object` per object; the moved object's is its pose before any travel, and afterwards its pose at the last press.
+    /// `travels`, metres, ascending: the lower limit, the present travel, and the upper limit. If the force is not
+    /// reached between the limits, the object moves to the limit on this side. If the force jumps past `force`, the upper side of the jump is returned.
     ///
     /// # Panics
-    /// If there are not as many poses as objects, or not that many objects.
+    /// If the number of poses differs from the number of objects, or `moving` is not a number of an object.
     pub fn hold(
         &self,
         poses: &mut [Pose],

@@ -1,17 +1,17 @@
-//! Which vector instructions the kernels use.
+//! Choice of the vector instructions of the kernels.
 
 use serde::{Deserialize, Serialize};
 use std::sync::OnceLock;
 
-/// Vector instructions of x86-64; other processors have the baseline of theirs alone. All give the same bits, as nothing is fused:
-/// whoever does not want to compare them needs no other than the best.
+/// Vector instructions of x86-64; other processors have only their baseline. All choices give the same bits, because no operations are fused.
+/// Choices other than the best serve comparisons.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Instructions {
-    /// The last of those below that the processor has.
+    /// The last choice below that the processor supports.
     #[default]
     Best,
-    /// What every processor has that the program is built for.
+    /// Instructions that every processor of the compilation target has.
     Baseline,
     /// 256 bits: AVX2.
     Avx2,
@@ -20,7 +20,7 @@ pub enum Instructions {
 }
 
 impl Instructions {
-    /// Those that this processor has, the best one last.
+    /// Returns the choices that this processor supports, the best one last.
     pub fn here() -> &'static [Self] {
         static HERE: OnceLock<Vec<Instructions>> = OnceLock::new();
         HERE.get_or_init(|| [vec![Self::Baseline], Self::beyond_baseline()].concat())
@@ -43,7 +43,7 @@ impl Instructions {
         Vec::new()
     }
 
-    /// What is meant: the best one by its name; of what the processor has not, the best that it has.
+    /// Resolves `Best` to its name, and an unsupported choice to the best supported one.
     pub fn resolved(self) -> Self {
         let here = Self::here();
         match here.contains(&self) {
@@ -53,8 +53,8 @@ impl Instructions {
     }
 }
 
-/// A function compiled once for each of the [`Instructions`], which are its first argument: the same body, which must be
-/// `#[inline(always)]` with all that it calls.
+/// Defines a function that is compiled once for each of the [`Instructions`], its first argument. The shared body must be
+/// `#[inline(always)]`, as must all functions that it calls.
 macro_rules! for_instructions {
     ($(#[$meta:meta])* $vis:vis fn $name:ident($($arg:ident: $type:ty),* $(,)?) $(-> $out:ty)? = $body:ident) => {
         $(#[$meta])*

@@ -1,7 +1,7 @@
 //! Lanes of a vector whose values are below a limit.
 
-/// Iterator over the lanes whose values are below a limit, ascending. (An iterator of its own: the compiler does not use vector instructions in
-/// closures.)
+/// Iterator over the lanes whose values are below a limit, ascending. It is a type of its own because the compiler does not use vector
+/// instructions in closures.
 #[derive(Clone, Copy, Default)]
 pub struct LanesBelow {
     /// One bit per lane that is still to be visited.
@@ -19,7 +19,7 @@ impl LanesBelow {
         Self { pending }
     }
 
-    /// Whether no value is below the limit.
+    /// Returns whether no value is below the limit.
     #[inline(always)]
     pub fn is_empty(&self) -> bool {
         self.pending == 0

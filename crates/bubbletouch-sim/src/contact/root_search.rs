@@ -1,21 +1,21 @@
-//! Where a function comes up to a value: Newton's steps inside of a bracket.
+//! Search for the argument at which a function reaches a value: Newton steps inside a bracket.
 
-/// A function at one place.
+/// Value and derivative of a function at one argument.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sample {
     pub value: f64,
-    /// Its derivative, as far as it is known: a wrong one costs steps, not truth.
+    /// Derivative, possibly approximate: a wrong one costs steps but does not change the result.
     pub slope: f64,
 }
 
-/// Every so many steps the bracket is halved, whatever Newton says. More: a function with kinks may creep; fewer: a smooth one is
-/// found later.
+/// Number of steps after which the bracket is halved instead of a Newton step. Larger: a function with kinks may converge slowly; smaller: a smooth
+/// function needs more steps.
 const HALVED_EACH: usize = 3;
 
-/// Where a function comes up to `wanted` on its way from a value below it at `low` to no lower one at `high`: to `tolerance` of
-/// its value, or to the last bit of the place; to that in any case if the tolerance is negative.
+/// Returns the argument at which a function reaches `wanted`, between `low`, where it is smaller, and `high`, where it is not. The search ends within
+/// `tolerance` of the value or at the last bit of the argument; if the tolerance is negative, only at the last bit.
 ///
-/// A function that jumps upwards past the value comes up to it there: the upper side of the jump is named.
+/// If the function jumps past the value, the upper side of the jump is returned.
 pub(crate) fn crossing(
     [mut low, mut high]: [f64; 2],
     (wanted, tolerance): (f64, f64),
@@ -38,7 +38,7 @@ pub(crate) fn crossing(
             return high;
         }
         let newton = match at - value / slope {
-            // Less than the last bit: the neighbour closes the bracket.
+            // The step is below the last bit; the neighbouring number closes the bracket.
             same if same == at && value < 0.0 => at.next_up(),
             same if same == at => at.next_down(),
             other => other,

@@ -1,4 +1,4 @@
-//! What the springs of a skin patch carry: forces, torques, and where.
+//! Loads of the springs of a skin patch: forces, torques, and centre of pressure.
 
 use super::root_search::Sample;
 use super::taxel_contact::TaxelContact;
@@ -6,41 +6,41 @@ use super::wrench::Wrench;
 use crate::world::Patch;
 use glam::DVec3;
 
-/// What the springs of some contacts carry together.
+/// Sum of the spring forces of some contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpringLoad {
-    /// On the objects: Σ k δ n_c / (n_c·n) at the points where they touch, without friction.
+    /// Load on the objects without friction: Σ k δ n_c / (n_c·n) at the contact points.
     pub on_object: Wrench,
-    /// Σ k δ, N: what the taxels read together.
+    /// Σ k δ, N: the sum of the taxels' readings.
     pub spring_force: f64,
-    /// The mean rest centre of the touched taxels, weighted by k δ; metres, in the patch frame. `None` if none is touched.
+    /// Mean rest centre of the touched taxels, weighted by k δ; metres, in the patch frame. `None` if none is touched.
     pub center_of_pressure: Option<DVec3>,
-    /// The share of the spring force that saturated taxels carry, 0 to 1. Their stops carry more, which is not counted.
+    /// Fraction of the spring force that saturated taxels carry, 0 to 1. The additional force of their stops is not counted.
     pub saturated_share: f64,
 }
 
 impl SpringLoad {
-    /// On the patch: exactly the opposite of what is on the objects.
+    /// Returns the load on the patch, exactly opposite to the load on the objects.
     pub fn on_patch(&self) -> Wrench {
         -self.on_object
     }
 }
 
-/// What forces along the axes of some contacts are together.
+/// Sum of forces along the taxels' axes at some contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxialLoad {
-    /// On the objects, without friction: Σ f n_c / (n_c·n) at the points where they touch.
+    /// Load on the objects without friction: Σ f n_c / (n_c·n) at the contact points.
     pub on_object: Wrench,
     /// Σ f, N.
     pub force: f64,
-    /// The mean rest centre of the touched taxels, weighted by f; metres, in the patch frame. `None` if there is no force.
+    /// Mean rest centre of the touched taxels, weighted by f; metres, in the patch frame. `None` if the force is zero.
     pub center_of_pressure: Option<DVec3>,
 }
 
-/// Adds up forces along the axes (newtons, `force_of` each contact) from a press of this patch.
+/// Sums forces along the axes at the contacts of a press of this patch; `force_of` returns the force of a contact, newtons.
 ///
 /// # Panics
-/// If a contact has a taxel that the patch does not have.
+/// If the taxel of a contact does not exist in the patch.
 pub fn axial_load<'a>(
     patch: &Patch,
     contacts: impl IntoIterator<Item = &'a TaxelContact>,
@@ -61,13 +61,13 @@ pub fn axial_load<'a>(
     }
 }
 
-/// Adds up the springs of contacts from a press of this patch: of all, or of those with one object.
+/// Sums the spring forces of the contacts of a press of this patch: of all, or of those with one object.
 ///
-/// The force on an object is −∇ Σ ½ k δ² for its motion in the patch frame, but for saturated taxels (whose energy is at its
-/// end) and grazing ones (whose gradient is bounded). \[BT\]
+/// The force on an object is −∇ Σ ½ k δ² by its motion in the patch frame. Exceptions are saturated taxels, whose energy no longer changes,
+/// and grazing contacts, whose gradient is bounded. \[BT\]
 ///
 /// # Panics
-/// If a contact has a taxel that the patch does not have.
+/// If the taxel of a contact does not exist in the patch.
 pub fn spring_load<'a>(
     patch: &Patch,
     contacts: impl IntoIterator<Item = &'a TaxelContact>,
@@ -93,7 +93,7 @@ pub fn spring_load<'a>(
     }
 }
 
-/// Σ k δ of contacts in N, and its slope in N/m as those objects whose number is `moved` go along a direction (unit, in the patch frame).
+/// Returns Σ k δ, N, and its derivative, N/m, while the objects selected by `moved` move along a direction (unit, in the patch frame).
 pub(super) fn sample(
     patch: &Patch,
     contacts: &[TaxelContact],

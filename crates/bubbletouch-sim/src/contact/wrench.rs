@@ -13,7 +13,7 @@ pub struct Wrench {
 }
 
 impl Wrench {
-    /// Wrench of a force (newtons) that acts at a point (metres), both in the patch frame.
+    /// Returns the wrench of a force (newtons) that acts at a point (metres), both in the patch frame.
     pub fn at(point: DVec3, force: DVec3) -> Self {
         Self {
             force,

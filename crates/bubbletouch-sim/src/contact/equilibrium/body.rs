@@ -59,7 +59,7 @@ impl<'a> Body<'a> {
         of_force.max(torque.length() / (weight * self.arm()))
     }
 
-    /// Returns the direction from the start to the present position, without its component along the weight unless nothing else remains.
+    /// Returns the direction from the start to the present position, perpendicular to the weight; the weight's direction if the body fell straight.
     pub fn way_out(&self) -> DVec3 {
         let down = self.weight.normalize();
         let way = self.center - self.start;

@@ -14,7 +14,7 @@
 //!  the contact forces.
 //!
 //! A damper delays its taxel: within a step Δt a free taxel returns to φ δ_before (φ = e^(−k Δt / c)), and beyond this deflection its stiffness
-//! is k / (1 − φ). So within a step E = Σ ½ k/(1 − φ) (δ − φ δ_before)², and the forces are those of
+//! is k / (1 − φ). Within a step, therefore, E = Σ ½ k/(1 − φ) (δ − φ δ_before)², and the forces are those of
 //! [`DamperState`](crate::contact::DamperState).
 //!
 //! With friction, the shear springs of the taxels that touched an object at the beginning of the step also act on this object (`shear_springs`).

@@ -38,7 +38,7 @@ pub(super) struct Margins {
 
 /// Pairs at the present poses of all bodies.
 ///
-/// A sphere behind a taxel's substrate does not push the taxel. Neither does a sphere that comes up from behind: the energy would
+/// A sphere behind a taxel's substrate does not push the taxel. A sphere that comes up from behind also does not push it: the energy would
 /// jump at the substrate, and an object could hang on this jump. Such pairs are stored until sphere and taxel are apart.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Pairs {

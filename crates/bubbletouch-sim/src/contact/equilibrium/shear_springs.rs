@@ -157,7 +157,7 @@ pub(super) fn add_wrenches(springs: &[Spring], bodies: &[Body], to: &mut [(DVec3
     }
 }
 
-/// Updates the cones from the present normal forces; returns the largest change of a limit, relative to the weights.
+/// Updates the cones from the present normal forces; returns the largest change of a friction force, relative to the body's weight.
 pub(super) fn renew(springs: &mut [Spring], bodies: &[Body], here: (&Pairs, &Loads)) -> f64 {
     let mut most = 0.0_f64;
     for spring in springs {

@@ -1,4 +1,4 @@
-//! How far a patch can go over a mesh: the height at which the mesh stops each taxel, only where it can be reached.
+//! Heights at which a mesh stops each taxel, computed only for triangles that the patch can reach.
 
 use super::lines::GridLines;
 use super::placed_objects::{PlacedObjects, TravelGoal};
@@ -9,24 +9,25 @@ use crate::objects::{ContactFace, MeshModel, Model};
 use glam::{DMat3, DVec2, DVec3, Vec3Swizzles};
 use std::cell::Cell;
 
-/// For each taxel the least height in the patch frame at which a triangle stops it as the patch rises: a travel.
+/// For each taxel, the travel at which a triangle stops the taxel: the least height in the patch frame as the patch rises.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Envelope {
-    /// n_taxels, metres; infinite where nothing that has been looked at stops it.
+    /// Metres, shape (n_taxels,); infinite if no triangle evaluated so far stops the taxel.
     pub heights: Vec<f64>,
-    /// The least of them.
+    /// Smallest height, metres.
     pub first: f64,
 }
 
 impl Envelope {
-    /// Nothing stops any of `n_taxels`.
+    /// Resets the heights to infinity for `n_taxels` taxels.
     pub fn clear(&mut self, n_taxels: usize) {
         self.heights.clear();
         self.heights.resize(n_taxels, f64::INFINITY);
         self.first = f64::INFINITY;
     }
 
-    /// Looks where meshes stop the taxels, up to the goal; whether there is any mesh. `first`: the travel at which the spheres touch.
+    /// Finds the heights at which meshes stop the taxels, up to the goal. Returns whether there is a mesh; `first` is the travel at first contact with
+    /// spheres.
     pub fn look(&mut self, placed: &PlacedObjects, (goal, first): (TravelGoal, f64)) -> bool {
         let pairs = placed.objects.iter().zip(placed.patch_from_objects);
         let meshes = pairs.filter_map(|(object, pose)| match object {
@@ -43,7 +44,7 @@ impl Envelope {
         has_meshes
     }
 
-    /// Lowers the heights to those of a mesh where they are below the limit.
+    /// Lowers the heights to those of a mesh, up to the limit.
     fn lower(
         &mut self,
         mesh: &MeshModel,
@@ -77,24 +78,24 @@ impl Envelope {
     }
 }
 
-/// One mesh on its way to the heights. They are in cells, so that the search can see what is below a box already.
+/// State of the search over one mesh. The heights are in cells, so that the search can compare a box with the heights found so far.
 struct Sweep<'a> {
     view: MeshView,
     /// ρ.
     radius: f64,
     lines: &'a GridLines,
-    /// And the travel at which what has been looked at before touches.
+    /// Goal, and the travel at first contact with the objects evaluated before.
     goal: (TravelGoal, f64),
     heights: &'a [Cell<f64>],
     first: &'a Cell<f64>,
 }
 
-/// Boxes with more taxels near them than this are opened without a look at what is below them. More: looks that find nothing,
-/// where triangles are as large as taxels; fewer: boxes opened in vain, where they are much smaller.
+/// Number of taxels near a box up to which the box is tested for being hidden before it is opened. Larger: needless tests, if triangles are as large as
+/// taxels; smaller: needlessly opened boxes, if triangles are much smaller.
 const FEW: usize = 2;
 
 impl Sweep<'_> {
-    /// The travel up to which heights matter.
+    /// Returns the travel up to which heights matter, metres.
     fn limit(&self) -> f64 {
         match self.goal {
             (TravelGoal::Travel(travel), _) => travel,
@@ -103,7 +104,7 @@ impl Sweep<'_> {
         }
     }
 
-    /// The least travel at which something in a box can stop a taxel; infinite if it cannot lower any.
+    /// Returns a lower bound, metres, of the travel at which a triangle in a box stops a taxel; infinite if the box cannot lower any height.
     fn bound(&self, bounds: &Aabb) -> f64 {
         let [low, high] = self.view.turned(bounds);
         if self.view.is_beside(low, high) || self.is_hidden(low, high) {
@@ -112,7 +113,7 @@ impl Sweep<'_> {
         low.z - self.radius
     }
 
-    /// Whether what is in a small box lowers none of the few taxels near it: at a distance b beside the box a ball stops no
+    /// Returns whether a small box lowers none of the few heights near it. At a horizontal distance b from the box, a ball stops no
     /// lower than √(ρ² − b²) below the box.
     fn is_hidden(&self, low: DVec3, high: DVec3) -> bool {
         let (center, half) = (0.5 * (low + high), 0.5 * (high - low) + self.radius);
@@ -162,7 +163,7 @@ impl Sweep<'_> {
         }
     }
 
-    /// Lowers the taxels between the corners of a rectangle to what they meet.
+    /// Lowers the heights of the taxels between the corners of a rectangle by the function `height`.
     #[inline]
     fn lower_under(&self, ground: (DVec2, DVec2), height: impl Fn(DVec2) -> Option<f64>) {
         let (low, high) = ground;
@@ -188,14 +189,14 @@ impl Sweep<'_> {
     }
 }
 
-/// A mesh's frame seen from the patch.
+/// Transform from a mesh's frame to the patch frame.
 struct MeshView {
     rotation: DMat3,
     translation: DVec3,
-    /// The positive and the negative parts of the rotation: their products with a box's corners are the turned box's.
+    /// Positive and negative parts of the rotation: their products with a box's corners are the bounds of the rotated box.
     positive: DMat3,
     negative: DMat3,
-    /// The outermost taxels' |x| and |y|, and ρ.
+    /// Largest |x| and |y| of a taxel, plus ρ.
     half_size: DVec2,
 }
 
@@ -223,13 +224,13 @@ impl MeshView {
         self.rotation * point + self.translation
     }
 
-    /// Lowest and highest corner of the box around a turned box.
+    /// Returns the lowest and highest corner of the axis-aligned box around a rotated box.
     fn turned(&self, bounds: &Aabb) -> [DVec3; 2] {
         [(bounds.min, bounds.max), (bounds.max, bounds.min)]
             .map(|(near, far)| self.positive * near + self.negative * far + self.translation)
     }
 
-    /// Whether no taxel is under a box.
+    /// Returns whether no taxel is under a box.
     fn is_beside(&self, low: DVec3, high: DVec3) -> bool {
         low.xy().cmpgt(self.half_size).any() || high.xy().cmplt(-self.half_size).any()
     }

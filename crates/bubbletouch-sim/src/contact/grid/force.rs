@@ -1,8 +1,8 @@
-//! A flat grid of equal taxels pressed along its axis until it feels a force.
+//! Presses of a flat grid of equal taxels along its axis to a force.
 //!
-//! On a grid every taxel moves along the direction of travel t, so taxel i needs t − t_i, t_i being where it begins to move; the total
-//! force is `F(t) = k Σ min(s, max(0, t − t_i))`: continuous, piecewise linear, never falling. So the skin is pressed once,
-//! deeply, to know all t_i, and the travel for a force is found among them.
+//! On a grid every taxel moves along the direction of travel t. Taxel i needs the deflection t − t_i, where t_i is the travel at which it begins to
+//! move. The total force `F(t) = k Σ min(s, max(0, t − t_i))` is continuous, piecewise linear and never decreases. One deep press
+//! therefore yields all t_i, from which the travel for a force follows.
 
 use super::output_buffer::OutputBuffer;
 use super::placed_objects::TravelGoal;
@@ -16,7 +16,7 @@ use crate::objects::Model;
 use crate::text::in_range::positive;
 use crate::world::EvenGrid;
 
-/// See [`press_to_force`](crate::contact::press_to_force); taxels of one stiffness, N/m.
+/// Presses to a force, as [`press_to_force`](crate::contact::press_to_force), with taxels of one stiffness, N/m.
 pub(crate) fn press(
     (grid, stiffness): (&EvenGrid, f64),
     objects: &[Model],
@@ -33,7 +33,7 @@ pub(crate) fn press(
     };
     let mut curve = ForceCurve::of(press, (grid, stiffness), first + stroke);
     if curve.largest() < force {
-        // Not before the first taxel is saturated: then all that is there counts.
+        // This press is deep enough to reach every taxel that the objects can saturate.
         let depth = top(objects, patch_from_objects) + stroke - first;
         press.gather(grid, objects, patch_from_objects, TravelGoal::Depth(depth));
         curve = ForceCurve::of(press, (grid, stiffness), first + depth);
@@ -51,21 +51,21 @@ pub(crate) fn press(
     Ok(Some(press.indent(grid, travel, output)))
 }
 
-/// What summing thousands of springs rounds a force by, as a share: far above 1e-16, far below what is felt.
+/// Relative rounding of a force that is the sum of thousands of springs: far above 1e-16, far below any measurable difference.
 const ROUNDING: f64 = 1e-12;
 
-/// F(t) of a grid, up to a travel.
+/// Force F(t) of a grid up to a travel.
 struct ForceCurve<'a> {
     /// t_i, metres.
     starts: &'a [f64],
-    /// Where nothing changes any more, or nothing beyond is known; metres.
+    /// Travel beyond which the force is constant or unknown, metres.
     end: f64,
     stroke: f64,
     stiffness: f64,
 }
 
 impl<'a> ForceCurve<'a> {
-    /// Of what has been gathered, up to a travel.
+    /// Creates the curve from the gathered objects, up to a travel.
     fn of(press: &'a mut GridPress, (grid, stiffness): (&EvenGrid, f64), travel: f64) -> Self {
         let starts = press.starts(grid, travel);
         let last = starts.iter().fold(f64::NEG_INFINITY, |a, &b| a.max(b));
@@ -77,7 +77,7 @@ impl<'a> ForceCurve<'a> {
         }
     }
 
-    /// F in N and its slope in N/m.
+    /// Returns F, N, and its derivative, N/m.
     fn at(&self, travel: f64) -> Sample {
         let (mut deflection, mut n_moving) = (0.0, 0);
         for start in self.starts {
@@ -91,12 +91,12 @@ impl<'a> ForceCurve<'a> {
         }
     }
 
-    /// N.
+    /// Returns the largest force of the curve, N.
     fn largest(&self) -> f64 {
         self.at(self.end).value
     }
 
-    /// Where it is a force that is not more than the largest.
+    /// Returns the travel, metres, at which the force is `force`, at most the largest.
     fn travel(&self, force: f64) -> f64 {
         let first = self.starts.iter().fold(self.end, |a, &b| a.min(b));
         crossing(
@@ -107,7 +107,7 @@ impl<'a> ForceCurve<'a> {
     }
 }
 
-/// A height in the patch frame that no object reaches beyond, metres.
+/// Returns a height in the patch frame above all objects, metres.
 fn top(objects: &[Model], patch_from_objects: &[Pose]) -> f64 {
     let tops = objects.iter().zip(patch_from_objects);
     let tops = tops.map(|(object, pose)| {

@@ -1,17 +1,17 @@
-//! The lines of a grid patch: where its rows and columns are, and which lie near a coordinate.
+//! Lines of a grid patch: positions of its rows and columns, and search for the lines near a coordinate.
 
 use crate::world::Grid;
 use std::ops::Range;
 
-/// What rounding can move a place on the grid, in pitches: far above 1e-16 of the largest grid, far below what is felt.
+/// Bound of rounding errors of positions on the grid, in pitches: far above 1e-16 of the largest grid, far below any measurable distance.
 const ROUNDING: f64 = 1e-9;
 
 /// Columns and rows of a grid.
 #[derive(Clone, Debug, Default)]
 pub struct GridLines {
-    /// Columns, by their x.
+    /// Columns, given by their x.
     pub x: Lines,
-    /// Rows, by their y.
+    /// Rows, given by their y.
     pub y: Lines,
     grid: Option<Grid>,
 }
@@ -21,12 +21,12 @@ pub struct GridLines {
 pub struct Lines {
     /// Metres.
     pub positions: Vec<f64>,
-    /// Lines a metre.
+    /// Lines per metre.
     density: f64,
 }
 
 impl GridLines {
-    /// Takes over a grid; nothing is computed if it is the one of the last call.
+    /// Sets the lines to those of a grid; returns at once if the grid is unchanged.
     pub fn lay(&mut self, grid: &Grid) {
         if self.grid.as_ref() == Some(grid) {
             return;
@@ -39,14 +39,14 @@ impl GridLines {
 }
 
 impl Lines {
-    /// Lines at these places, metres, ascending and equally far apart.
+    /// Creates lines at given positions, metres, ascending and equidistant.
     pub fn at(positions: &[f64]) -> Self {
         let steps = positions.len().saturating_sub(1).max(1) as f64;
         let length =
             positions.last().copied().unwrap_or(0.0) - positions.first().copied().unwrap_or(0.0);
         Self {
             positions: positions.to_vec(),
-            // Of a single line any density will do.
+            // The density of a single line is arbitrary.
             density: if length > 0.0 { steps / length } else { 1.0 },
         }
     }
@@ -57,18 +57,18 @@ impl Lines {
         self.density = 1.0 / pitch;
     }
 
-    /// The position of the line nearest to a coordinate.
+    /// Returns the position of the line nearest to a coordinate, metres.
     #[inline(always)]
     pub fn nearest(&self, coordinate: f64) -> f64 {
         let index = (coordinate - self.positions[0]) * self.density + 0.5;
-        // The cast cuts off the fraction, and saturates beside the grid.
+        // The cast truncates, and saturates beside the grid.
         self.positions[(index as u32 as usize).min(self.positions.len() - 1)]
     }
 
-    /// The lines within `half_width` of a coordinate, and those that are beyond by no more than rounding.
+    /// Returns the lines within `half_width` of a coordinate, including those that are beyond by no more than rounding.
     ///
-    /// Casts, which cut off the fraction and saturate beside the grid, instead of floor and ceil: those are function calls
-    /// on the oldest processors that this runs on; by way of 32 bits, which is fewer instructions than 64.
+    /// Casts truncate and saturate beside the grid. They replace floor and ceil, which are function calls on the oldest supported processors.
+    /// The cast to 32 bits needs fewer instructions than one to 64 bits.
     #[inline(always)]
     pub fn within(&self, coordinate: f64, half_width: f64) -> Range<usize> {
         let index = (coordinate - self.positions[0]) * self.density;

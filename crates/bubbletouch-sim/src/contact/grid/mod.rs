@@ -1,9 +1,9 @@
-//! Presses of flat grids along their axis: the kernel goes along rows of taxels.
+//! Presses of flat grids along their axis: the kernel works along rows of taxels.
 //!
 //! | stage | input → output |
 //! |---|---|
 //! | `lines` | a grid → the places of its rows and columns |
-//! | `placed_objects` | objects and poses → what the grid sees of them |
+//! | `placed_objects` | objects and poses → objects in the frame of the grid |
 //! | `sphere_search` | sphere unions → the spheres that reach a taxel |
 //! | `placed_sphere` | a sphere → the deflections of the taxels under it |
 //! | `envelope` | meshes → the height at which they stop each taxel |

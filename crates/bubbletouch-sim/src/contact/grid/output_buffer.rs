@@ -1,14 +1,14 @@
 //! Row of an array of the caller that receives the deflections of a press.
 
-/// Where the frame of a press goes, metres: one number a taxel, of either kind.
+/// Destination of a press: one deflection per taxel, metres, in single or double precision.
 ///
-/// An array of many frames is seldom in the processor's caches, and to fill a row with zeros takes a third of a fast press. So it is
-/// filled bit by bit while the spheres press, when the memory has nothing else to do.
+/// An array of many frames is rarely in the processor's caches, and filling a row with zeros takes a third of a fast press. The row is therefore
+/// filled in small parts while the spheres press, when the memory is idle.
 #[derive(Debug)]
 pub enum Row<'a> {
-    /// Rounded to single precision.
+    /// Deflections rounded to single precision.
     Single(&'a mut [f32]),
-    /// As they are.
+    /// Deflections in double precision.
     Double(&'a mut [f64]),
 }
 
@@ -20,7 +20,7 @@ impl Row<'_> {
         }
     }
 
-    /// Writes a deflection for each taxel.
+    /// Writes one deflection per taxel.
     pub(crate) fn write(&mut self, deflections: &[f64]) {
         match self {
             Self::Double(row) => row.copy_from_slice(deflections),

@@ -8,7 +8,7 @@ use crate::objects::{Cluster, ClusterBounds, MAX_IN_CLUSTER, Sphere};
 use glam::{DMat3, DVec3};
 use std::ops::Range;
 
-/// A sphere in the patch frame, its radius grown by the taxel's: the taxel is then a point.
+/// Sphere in the patch frame with the taxel's radius added to its own, so that the taxel can be treated as a point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PlacedSphere {
     pub center: DVec3,
@@ -16,14 +16,14 @@ pub(crate) struct PlacedSphere {
     pub reach: f64,
 }
 
-/// What rounding may add to a reach, far above 1e-16 and far below what is felt.
+/// Factor that covers rounding of a reach: far above 1e-16 and far below any measurable difference.
 const ROUNDING: f64 = 1.0 + 1e-9;
 
-/// Footprints of at most so many columns are looked at as squares. More: taxels beside large spheres are looked at in vain; fewer: the
-/// ends of short rows are computed in vain.
+/// Largest number of columns for which a footprint is treated as a square. Larger: needless taxels beside large spheres; smaller: needless
+/// computations at the ends of short rows.
 const SQUARE: usize = 10;
 
-/// An object's frame seen from the patch.
+/// Transform from an object's frame to the patch frame.
 #[derive(Clone, Debug)]
 pub(crate) struct View {
     /// Rows of the rotation.
@@ -31,12 +31,12 @@ pub(crate) struct View {
     translation: DVec3,
     /// ρ.
     taxel_radius: f64,
-    /// The outermost taxels' |x| and |y|.
+    /// Largest |x| and |y| of a taxel, metres.
     half_size: [f64; 2],
 }
 
 impl View {
-    /// Of an object at `patch_from_object` from a grid with taxels of one radius.
+    /// Creates the transform for an object at `patch_from_object` and a grid with taxels of one radius.
     pub fn new(taxel_radius: f64, lines: &GridLines, pose: &Pose) -> Self {
         let last = |positions: &[f64]| positions.last().copied().unwrap_or(0.0);
         Self {
@@ -47,7 +47,7 @@ impl View {
         }
     }
 
-    /// Travels before which no sphere of a cluster meets a taxel, metres, one a cluster; infinite if its shadow misses the patch.
+    /// Writes for each cluster a travel before which none of its spheres meets a taxel, metres; infinite if its projection misses the patch.
     #[inline(always)]
     pub fn lay_starts(&self, bounds: &ClusterBounds, starts: &mut [f64]) {
         let n = starts.len();
@@ -66,7 +66,7 @@ impl View {
             let at_z = self.rows.z_axis.dot(middle) + self.translation.z;
             let below = up.dot(DVec3::new(wide[k], deep[k], high[k]));
             let below = (below + largest[k] + self.taxel_radius) * ROUNDING;
-            // The ball is the tighter one around spheres of different sizes.
+            // For spheres of different sizes the bounding ball is the tighter bound.
             let below = if beside < below { beside } else { below };
             let is_beside = (at_x.abs() >= half_x + beside) | (at_y.abs() >= half_y + beside);
             starts[k] = if is_beside {
@@ -77,7 +77,7 @@ impl View {
         }
     }
 
-    /// Travels before which the spheres of a cluster meet no taxel, metres.
+    /// Returns for each sphere of a cluster the travel before which it meets no taxel, metres.
     #[inline(always)]
     pub fn starts(&self, cluster: &Cluster) -> [f64; MAX_IN_CLUSTER] {
         let [x, y, z] = cluster.centers;
@@ -95,7 +95,7 @@ impl View {
         starts
     }
 
-    /// The sphere in the patch frame; `None` if it meets no taxel before `travel` or its shadow misses the patch.
+    /// Returns the sphere in the patch frame; `None` if it meets no taxel before `travel` or its projection misses the patch.
     #[inline(always)]
     pub fn place(&self, sphere: &Sphere, travel: f64) -> Option<PlacedSphere> {
         let reach = self.taxel_radius + sphere.radius;
@@ -125,7 +125,7 @@ fn less<const N: usize>(value: f64, numbers: &[f64; N]) -> [f64; N] {
 }
 
 impl PlacedSphere {
-    /// The travel at which the sphere meets the taxel nearest to its axis, its first; infinite if it passes between all.
+    /// Returns the travel at first contact, metres: with the taxel nearest to the sphere's axis; infinite if the sphere passes between taxels.
     #[inline(always)]
     pub fn first_touch(&self, lines: &GridLines) -> f64 {
         let DVec3 { x, y, z } = self.center;
@@ -160,7 +160,8 @@ impl PlacedSphere {
         }
     }
 
-    /// The same with its centre behind the substrate, which is at height `behind`: it pushes the taxels whose substrates are inside of it.
+    /// Raises deflections by a sphere whose centre is below the substrate's height `behind`, metres: only taxels whose substrate is inside the sphere are
+    /// pushed.
     #[cold]
     pub fn indent_through(
         &self,
@@ -189,7 +190,7 @@ impl PlacedSphere {
         }
     }
 
-    /// N blocks from column `first` of each row.
+    /// Indents N blocks of each row, from column `first`.
     #[inline(always)]
     fn indent_square<const N: usize>(
         &self,
@@ -218,7 +219,7 @@ impl PlacedSphere {
         }
     }
 
-    /// Of each row the columns that it reaches, more than a block of them.
+    /// Indents in each row the columns that the sphere reaches, more than a block of them.
     #[inline(always)]
     fn indent_rows(
         &self,
@@ -237,7 +238,7 @@ impl PlacedSphere {
             let row_reach2 = reach2 - dy * dy;
             let mut next = columns.start;
             while next < columns.end {
-                // The last block of a row goes over some of the one before it again.
+                // The last block of a row overlaps the one before.
                 let first = next.min(last);
                 let mut dx2 = [0.0; WIDE];
                 let places = &lines.x.positions[first..first + WIDE];
@@ -255,11 +256,11 @@ impl PlacedSphere {
         }
     }
 
-    /// Raises each deflection to the one that the sphere needs at its own height, and marks the taxels whose deflection it raised. Where it is behind the
-    /// substrate, which is at height `behind`, it does not count.
+    /// Raises each deflection to the one that the sphere needs at its own height, and marks the taxels whose deflection was raised. If the
+    /// sphere is behind the substrate, whose height is `behind`, it does not count.
     ///
-    /// The footprint is where the sphere needs more than zero: `b² < S² − max(h, 0)²`. Ranges are rounded outwards, those of small
-    /// footprints to a square; the comparison with S in the innermost loop is what decides.
+    /// The footprint is the region where the sphere needs more than zero: `b² < S² − max(h, 0)²`. Ranges are rounded outwards, small
+    /// footprints to a square. The comparison with S in the innermost loop decides exactly.
     pub fn indent_and_mark<M: Copy>(
         &self,
         lines: &GridLines,

@@ -1,4 +1,4 @@
-//! The kernel of a flat grid pressed along its axis: only the spheres and triangles that reach the skin, only the taxels under them.
+//! Press kernel of a flat grid along its axis: evaluates only spheres and triangles that reach the skin, and only the taxels under them.
 
 use super::deflection_grid::DeflectionGrid;
 use super::envelope::Envelope;
@@ -14,32 +14,32 @@ use crate::geometry::Pose;
 use crate::objects::Model;
 use crate::world::EvenGrid;
 
-/// Scratch of one thread.
+/// Scratch memory of one thread.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct GridPress {
     pub instructions: Instructions,
-    /// Of the last grid.
+    /// Lines of the last grid.
     lines: GridLines,
     /// Spheres that can press.
     search: SphereSearch,
-    /// Where the meshes stop the taxels; empty if there are none.
+    /// Heights at which the meshes stop the taxels; empty if there are no meshes.
     envelope: Envelope,
     deflections: DeflectionGrid,
     /// Height of the substrate, metres. A sphere with a lower centre pushes only taxels whose substrate is inside the sphere. −s − ρ at a pose;
     /// −∞ if the press comes from the front, where all spheres count.
     behind: f64,
-    /// Of the last press to a force: see [`starts`](Self::starts).
+    /// Result of [`starts`](Self::starts) in the last press to a force.
     starts: Vec<f64>,
 }
 
 impl GridPress {
-    /// Deflections of the last press: n_taxels, metres, row (patch y, ascending) by row.
+    /// Returns the deflections of the last press, metres, shape (n_taxels,), row by row (patch y, ascending).
     pub fn deflections(&self) -> &[f64] {
         self.deflections.deflections()
     }
 
-    /// Keeps the spheres that press a taxel on the way to the goal, and returns the travel to first contact if the
-    /// goal is a depth (`None` where no travel touches anything).
+    /// Gathers the spheres that press a taxel before the goal. Returns the travel to first contact if the
+    /// goal is a depth; `None` if no travel touches anything.
     pub(crate) fn gather(
         &mut self,
         grid: &EvenGrid,
@@ -71,7 +71,7 @@ impl GridPress {
         first.is_finite().then_some(first)
     }
 
-    /// Indents the patch at a travel, after a depth of at least as much has been gathered for.
+    /// Indents the patch at a travel; the objects must have been gathered for this travel or a larger one.
     pub(crate) fn indent(
         &mut self,
         grid: &EvenGrid,
@@ -91,7 +91,7 @@ impl GridPress {
         }
     }
 
-    /// For each taxel that what has been gathered reaches up to `travel`, the travel at which it begins to move, metres.
+    /// Returns the travel at which each taxel begins to move, metres, for the taxels that the gathered objects reach before `travel`.
     pub(crate) fn starts(&mut self, grid: &EvenGrid, travel: f64) -> &[f64] {
         self.push(grid, travel, &mut OutputBuffer::none());
         self.starts.clear();
@@ -108,12 +108,12 @@ impl GridPress {
         &self.starts
     }
 
-    /// Leaves all taxels of a patch at rest.
+    /// Sets all deflections of a patch to zero.
     pub(crate) fn touch_nothing(&mut self, grid: &EvenGrid) {
         self.deflections.clear(grid.grid.nx, grid.grid.ny);
     }
 
-    /// Sets the deflections to what the taxels need at a travel, without a stop.
+    /// Computes the deflections that the objects need at a travel, without the limit of the stroke.
     fn push(&mut self, grid: &EvenGrid, travel: f64, output: &mut OutputBuffer) {
         self.touch_nothing(grid);
         output.in_steps(self.search.found.len());
@@ -140,7 +140,7 @@ impl GridPress {
 }
 
 for_instructions! {
-    /// Indents the taxels by all spheres that count at a travel, and fills the output meanwhile.
+    /// Indents the taxels by all spheres that count at a travel, and fills the output in the meantime.
     fn indent_all(
         spheres: &[PlacedSphere],
         lines: &GridLines,
@@ -170,7 +170,7 @@ fn indent_each(
 }
 
 for_instructions! {
-    /// Counts touched and saturated taxels, stops the latter at their stroke, and writes all into a row of zeros, if it is one.
+    /// Counts touched and saturated taxels, limits deflections to the stroke, and writes them into `row` if there is one.
     fn stop_at_stroke(deflections: &mut DeflectionGrid, stroke: f64, row: &mut Row) -> [usize; 2] = stop_each
 }
 
@@ -206,7 +206,7 @@ fn stop_each(deflections: &mut DeflectionGrid, stroke: f64, row: &mut Row) -> [u
     [stop.n_touched, stop.n_saturated]
 }
 
-/// The end of the taxels' strokes.
+/// Stop of the taxels, and the counts of touched and saturated taxels.
 struct Stop {
     stroke: f64,
     limit: f64,
@@ -215,7 +215,7 @@ struct Stop {
 }
 
 impl Stop {
-    /// Counts a deflection, and what is left of it.
+    /// Counts a deflection and returns it limited to the stroke.
     #[inline(always)]
     fn of(&mut self, deflection: f64) -> f64 {
         self.n_touched += usize::from(deflection > 0.0);

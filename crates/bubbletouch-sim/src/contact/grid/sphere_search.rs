@@ -1,4 +1,4 @@
-//! Which spheres can press a flat grid: clusters of neighbours first, then the spheres of those that are near.
+//! Search for the spheres that can press a flat grid: first by clusters of neighbours, then by the spheres of nearby clusters.
 
 use super::placed_objects::{PlacedObjects, TravelGoal};
 use super::placed_sphere::{PlacedSphere, View};
@@ -7,25 +7,25 @@ use crate::contact::instructions::for_instructions;
 use crate::contact::law;
 use crate::objects::{Model, SphereClusters};
 
-/// Scratch of a search, reused.
+/// Reused scratch memory of a search.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SphereSearch {
-    /// Of the sphere unions, in their order.
+    /// Transforms of the sphere unions, in their order.
     views: Vec<View>,
-    /// For each of their clusters a travel before which none of its spheres presses any taxel, metres; infinite beside the patch.
+    /// For each cluster a travel before which none of its spheres presses a taxel, metres; infinite beside the patch.
     starts: Vec<f64>,
-    /// Spheres that can press, in the patch frame before any travel.
+    /// Spheres that can press, in the patch frame before the travel.
     pub found: Vec<PlacedSphere>,
 }
 
-/// So many clusters are looked at together.
+/// Number of clusters that are tested together.
 const LOOK: usize = 8;
 
 for_instructions! {
-    /// Finds the spheres that can press a taxel on the way to the goal, and returns the travel at which the first taxel is touched;
-    /// infinite if none is, or if the goal is no depth.
+    /// Finds the spheres that can press a taxel before the goal, and returns the travel at first contact. Infinite if no taxel is touched,
+    /// or if the goal is not a depth.
     ///
-    /// For a depth, the cluster that is nearest is looked at beforehand, so that most others need no look to know what is first.
+    /// For a depth, the nearest cluster is evaluated first, so that most other clusters can be excluded by their bounds.
     pub(crate) fn search(search: &mut SphereSearch, placed: &PlacedObjects, goal: TravelGoal) -> f64 = run
 }
 
@@ -69,7 +69,7 @@ impl SphereSearch {
         }
     }
 
-    /// The travel at which the first sphere meets its first taxel.
+    /// Returns the travel at which the first sphere meets its first taxel, metres.
     #[inline(always)]
     fn first_touch(&self, placed: &PlacedObjects) -> f64 {
         let mut lowest = [f64::INFINITY; LOOK];
@@ -84,7 +84,7 @@ impl SphereSearch {
         }
         let lowest = lowest.into_iter().fold(f64::INFINITY, f64::min);
         let mut first = f64::INFINITY;
-        // The nearest cluster by itself, then what may be before its first.
+        // The first pass evaluates the nearest cluster alone, the second one those that may be nearer than its first contact.
         for limit in [lowest.next_up(), f64::INFINITY] {
             for (union, view, starts) in self.unions(placed.objects) {
                 for (look, starts) in starts.iter().enumerate() {
@@ -102,7 +102,7 @@ impl SphereSearch {
         first
     }
 
-    /// Keeps the spheres that press before a travel and count.
+    /// Gathers the spheres that press before a travel and for which `counts` returns true.
     #[inline(always)]
     fn gather(&mut self, objects: &[Model], limit: f64, counts: impl Fn(&PlacedSphere) -> bool) {
         let mut found = std::mem::take(&mut self.found);
@@ -121,7 +121,7 @@ impl SphereSearch {
         self.found = found;
     }
 
-    /// The unions, from where each is seen, and the starts of its clusters.
+    /// Returns the unions with their transforms and the travels of their clusters.
     #[inline(always)]
     fn unions<'a>(
         &'a self,

@@ -1,4 +1,4 @@
-//! Where a mesh stops one taxel that comes up along its own axis.
+//! Stop of a taxel that moves up along its own axis by a mesh.
 
 use super::swept_triangle::stopping_height;
 use crate::contact::law;
@@ -8,24 +8,24 @@ use crate::objects::MeshModel;
 use crate::world::PlacedTaxel;
 use glam::{DMat3, DVec2, DVec3};
 
-/// A mesh where it is, in the patch frame.
+/// Mesh at a pose, in the patch frame.
 pub(crate) struct MeshAt<'a> {
     mesh: &'a MeshModel,
     pose: &'a Pose,
     rotation: DMat3,
 }
 
-/// The triangle that stops a taxel.
+/// Triangle that stops a taxel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stop {
-    /// Of the taxel's centre along its axis, from where it rests, metres: below zero.
+    /// Height of the taxel's centre along its axis above its rest centre, metres; below zero.
     pub height: f64,
-    /// Its number in the mesh.
+    /// Number of the triangle in the mesh.
     pub triangle: usize,
 }
 
-/// How far beside its axis the bottom of a taxel is looked at, in radii: beside it, since the diagonals of boxes often run
-/// through the axes of grids, and a line along an edge meets both of its triangles or none.
+/// Offset from the axis, in radii, of the ray that tests the taxel's substrate. Diagonals of boxes often run
+/// through the axes of grids, and a ray along an edge hits both of its triangles or none.
 const BESIDE: DVec2 = DVec2::new(0.011, 0.007);
 
 impl<'a> MeshAt<'a> {
@@ -38,16 +38,16 @@ impl<'a> MeshAt<'a> {
         }
     }
 
-    /// A ball around the mesh, in the patch frame: centre and radius, metres.
+    /// Returns a ball around the mesh, in the patch frame: centre and radius, metres.
     pub fn ball(&self) -> (DVec3, f64) {
         let bounds = self.mesh.bounds();
         let radius = 0.5 * bounds.size().length();
         (self.pose.transform_point(bounds.center()), radius)
     }
 
-    /// Where a taxel stops, if the mesh pushes it.
+    /// Returns the stop of a taxel; `None` if the mesh does not push the taxel.
     ///
-    /// Of triangles that stop it equally any may be named; the same one each time.
+    /// If several triangles stop the taxel at equal heights, the choice among them is arbitrary but reproducible.
     pub fn stop(&self, taxel: &PlacedTaxel) -> Option<Stop> {
         let view = AxisView::new(self, taxel);
         let mut found = None;
@@ -72,15 +72,15 @@ impl<'a> MeshAt<'a> {
         }
     }
 
-    /// Where a triangle stops a taxel, behind its substrate too.
+    /// Returns the stop of a taxel by one triangle, even behind the taxel's substrate.
     pub fn stop_by(&self, taxel: &PlacedTaxel, triangle: usize) -> Option<Stop> {
         let turned = AxisView::new(self, taxel).turned(&self.mesh.mesh().triangle(triangle));
         let height = stopping_height(&turned, taxel.radius, DVec2::ZERO)?;
         Some(Stop { height, triangle })
     }
 
-    /// The triangle through which a taxel's axis came into the mesh, if the mesh is solid at its substrate: the nearest
-    /// triangle behind is seen from outside, and the nearest one ahead from inside.
+    /// Returns the triangle through which a taxel's axis entered the mesh, if the substrate is inside the solid mesh. Then the nearest
+    /// triangle behind the substrate faces outwards, and the nearest one ahead shows its inner side.
     fn entered(&self, view: &AxisView) -> Option<Stop> {
         let beside = view.taxel.radius * BESIDE;
         let place = view.to_mesh(beside.extend(view.taxel.behind));
@@ -111,12 +111,12 @@ impl<'a> MeshAt<'a> {
     }
 }
 
-/// A mesh's frame seen from a taxel: z along its axis, its rest centre at the origin.
+/// Transform from a mesh's frame to a taxel's: z along the taxel's axis, origin at its rest centre.
 struct AxisView<'a> {
     taxel: &'a PlacedTaxel,
     rotation: DMat3,
     translation: DVec3,
-    /// The rotation's entries without their signs: they turn half the size of a box.
+    /// Absolute values of the rotation's entries, which rotate half the size of a box.
     absolute: DMat3,
 }
 
@@ -146,12 +146,12 @@ impl<'a> AxisView<'a> {
         self.rotation.transpose() * (place - self.translation)
     }
 
-    /// The taxel's axis in the mesh's frame.
+    /// Returns the taxel's axis in the mesh's frame.
     fn up_in_mesh(&self) -> DVec3 {
         self.rotation.transpose() * DVec3::Z
     }
 
-    /// The least height at which something in a box can stop the taxel; infinite if nothing can, or only behind its
+    /// Returns a lower bound of the heights at which a triangle in a box stops the taxel; infinite if none can, or only behind the
     /// substrate.
     fn lowest(&self, bounds: &Aabb) -> f64 {
         let center = self.rotation * bounds.center() + self.translation;
@@ -163,7 +163,7 @@ impl<'a> AxisView<'a> {
         center.z - half.z
     }
 
-    /// Where a triangle stops the taxel; `None` if it passes by, or touches it only behind its substrate.
+    /// Returns the height at which a triangle stops the taxel; `None` if it misses the taxel, or touches only behind the substrate.
     fn stop(&self, triangle: &Triangle) -> Option<f64> {
         let turned = self.turned(triangle);
         let radius = self.taxel.radius;
@@ -171,7 +171,7 @@ impl<'a> AxisView<'a> {
         if law::reaches_front(height, self.taxel.behind) {
             return Some(height);
         }
-        // Seen from above, it stops a taxel that comes down at the highest place where they touch.
+        // The far side: the highest place of contact for a taxel that moves down from above.
         let mirrored = Triangle(turned.0.map(|v| DVec3::new(v.x, v.y, -v.z)));
         let highest = -stopping_height(&mirrored, radius, DVec2::ZERO)?;
         law::reaches_front(highest, self.taxel.behind).then_some(height)

@@ -1,7 +1,7 @@
-//! A ball rising along a line meets a triangle: on its face, an edge or a corner, each in closed form.
+//! Contact of a ball that rises along a line with a triangle: with the face, an edge or a corner, each in closed form.
 //!
-//! The ball's centre is at (x, y) and rises from z = −∞. It stops at the lowest point of the triangle swept by the ball:
-//! the smallest of the heights below, over those parts whose nearest point to the stopped centre belongs to them.
+//! The ball's centre is at (x, y) and rises from z = −∞. The ball stops at the lowest point of the triangle swept by the ball:
+//! the smallest of the heights below, over the parts that contain the point of the triangle nearest to the stopped centre.
 //!
 //! | part | with | stops at |
 //! |---|---|---|
@@ -13,11 +13,11 @@ use crate::contact::law;
 use crate::mesh::Triangle;
 use glam::{DVec2, DVec3, Vec3Swizzles};
 
-/// A face or edge steeper than this cosine is left to its edges or corners: less than a nanometre of its 0.1 m is seen from
-/// below, and its heights there would be noise.
+/// Cosine below which a steep face or edge is replaced by its edges or corners. The projection of such a part of 0.1 m is less than a nanometre,
+/// and its heights would be dominated by rounding.
 const STEEP: f64 = 1e-8;
 
-/// The height of the centre of a ball that comes up along z at (x, y) and stops at a triangle; `None` if it passes by.
+/// Returns the height of the centre of a ball that rises along z at (x, y) and stops at a triangle; `None` if the ball misses the triangle.
 ///
 /// All in metres; the triangle is solid from both sides and may be as thin as a line or a point.
 pub fn stopping_height(triangle: &Triangle, radius: f64, at: DVec2) -> Option<f64> {
@@ -34,24 +34,24 @@ pub fn stopping_height(triangle: &Triangle, radius: f64, at: DVec2) -> Option<f6
     heights.flatten().reduce(f64::min)
 }
 
-/// Where a ball stops at a corner.
+/// Returns the height at which a ball stops at a corner, metres.
 #[inline]
 pub(crate) fn corner_height(corner: DVec3, radius: f64, at: DVec2) -> Option<f64> {
     let q = radius * radius - at.distance_squared(corner.xy());
     (q > 0.0).then(|| -law::deflection(q, corner.z))
 }
 
-/// A face moved down by the ball's radius along its normal.
+/// Face moved down by the ball's radius along its normal.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SweptFace {
     corners: [DVec2; 3],
-    /// Unit; seen from above the corners turn counter-clockwise if it points up.
+    /// Unit normal; if it points up, the corners are counter-clockwise as seen from above.
     normal: DVec3,
     height_of_first: f64,
 }
 
 impl SweptFace {
-    /// `None` for a face that is seen edge-on; `normal`: the triangle's.
+    /// Creates the face; `None` if it is seen edge-on. `normal` is the triangle's.
     #[inline]
     pub fn new(corners: &[DVec3; 3], normal: DVec3, radius: f64) -> Option<Self> {
         if normal.z.abs() < STEEP {
@@ -65,14 +65,14 @@ impl SweptFace {
         })
     }
 
-    /// The lowest and highest corner of the ground that it covers.
+    /// Returns the lowest and highest corner of the ground area under the face.
     #[inline]
     pub fn ground(&self) -> (DVec2, DVec2) {
         let [a, b, c] = self.corners;
         (a.min(b).min(c), a.max(b).max(c))
     }
 
-    /// Where a ball stops at the face itself.
+    /// Returns the height at which a ball stops at the face itself, metres.
     #[inline]
     pub fn height(&self, at: DVec2) -> Option<f64> {
         let [a, b, c] = self.corners;
@@ -86,31 +86,31 @@ impl SweptFace {
     }
 }
 
-/// The lower side of a tube around an edge, or the part of it that no face hides.
+/// Lower side of a tube around an edge, without the part that faces hide.
 ///
-/// Distances along and beside the edge are kept as multiples of its length on the ground: most edges are done with before
-/// that length is needed.
+/// Distances along and beside the edge are stored as multiples of its ground length, because most tests succeed before
+/// this length is needed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SweptEdge {
     from: DVec3,
     edge: DVec3,
-    /// Square of its length on the ground.
+    /// Square of the edge's length on the ground, m².
     length2: f64,
     radius: f64,
-    /// Between which distances beside the edge, positive to the left, it can be what stops the ball; times its length.
+    /// Range of distances beside the edge, positive to the left, in which the edge can stop the ball, times the edge's length.
     beside: [f64; 2],
-    /// The normals of its faces, pointing down, if one lies on either side.
+    /// Normals of the edge's faces, pointing down, if the faces lie on different sides.
     between: Option<[DVec3; 2]>,
 }
 
 impl SweptEdge {
-    /// `None` for an edge that is a point from below, or that its faces hide altogether.
+    /// Creates the edge; `None` if it is a point as seen from below, or if its faces hide it altogether.
     ///
-    /// `faces`: the unit normals of those at the edge, zero for none. Seen from above, a face lies to the left of the edge if
-    /// its normal points up, and to the right if it points down.
+    /// `faces` has the unit normals of the faces at the edge, zero for none. Seen from above, a face lies to the left of the edge if
+    /// its normal points up, and to the right if its normal points down.
     ///
-    /// A face hides the edge wherever the way from the edge to the centre of the stopped ball leads towards the face: from
-    /// the place where the face begins when it is moved down by the radius, ρ n·aside beside the edge.
+    /// A face hides the edge if the direction from the edge to the centre of the stopped ball points towards the face: beyond
+    /// the place where the face begins after it is moved down by the radius, ρ n·aside beside the edge.
     #[inline]
     pub fn new(from: DVec3, to: DVec3, radius: f64, faces: [DVec3; 2]) -> Option<Self> {
         let edge = to - from;
@@ -119,7 +119,7 @@ impl SweptEdge {
             return None;
         }
         let aside = edge.xy().perp();
-        // A little less is hidden, so that no rounding opens a gap between an edge and its faces.
+        // The hidden range is slightly reduced, so that rounding cannot open a gap between an edge and its faces.
         let slack = 1e-6 * radius * (aside.x.abs() + aside.y.abs());
         let mut beside = [f64::NEG_INFINITY, f64::INFINITY];
         for normal in faces {
@@ -148,10 +148,10 @@ impl SweptEdge {
         })
     }
 
-    /// The lowest and highest corner of a box on the ground around all places where the edge can stop the ball.
+    /// Returns the lowest and highest corner of a ground rectangle that contains all places where the edge can stop the ball.
     ///
-    /// It is the edge moved by ρ along all directions between its faces' normals. Their arc leaves its chord by no more than
-    /// ρ (1 − cos β) / 2, β being the angle between the normals.
+    /// These places are the edge moved by ρ along all directions between its faces' normals. The arc of directions deviates from its chord by at most
+    /// ρ (1 − cos β) / 2, where β is the angle between the normals.
     #[inline]
     pub fn ground(&self) -> (DVec2, DVec2) {
         let to = (self.from + self.edge).xy();
@@ -164,7 +164,7 @@ impl SweptEdge {
         (low + a.min(b) - arc, high + a.max(b) + arc)
     }
 
-    /// Where a ball stops at the part of the edge that is not hidden.
+    /// Returns the height at which a ball stops at the visible part of the edge, metres.
     #[inline]
     pub fn height(&self, at: DVec2) -> Option<f64> {
         let from = at - self.from.xy();
