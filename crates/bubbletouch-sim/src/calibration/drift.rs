@@ -1,8 +1,8 @@
-//! Drift: how far zeros move. A zero is a Wiener process of standard deviation σ at the end of the session, so between the times s and t it moves by a
-//! variance of σ² (t − s), taxel by taxel.
+//! Drift: estimated from changes of the zeros. A zero is a Wiener process of standard deviation σ at the end of the session. Between the times s and t
+//! the zeros of all taxels therefore change with the variance σ² (t − s).
 //!
-//! From the first run of untouched frames to the last: σ² = (Var(z(t) − z(s)) − noise) / (t − s). Where most readings are clipped at the zero, only
-//! zeros that moved up are seen; as many moved down as far, from a zero that began there: σ² = Σ (z(t)² − noise) / Σ t over those above it.
+//! From the first run of untouched frames to the last: σ² = (Var(z(t) − z(s)) − noise) / (t − s). If most readings are clipped at zero, only
+//! positive zeros are visible; by symmetry, equally many are negative. Then σ² = Σ (z(t)² − noise) / Σ t over the visible zeros.
 
 use super::robust::{jackknife, variance};
 use super::smoothing::Smoothed;
@@ -10,10 +10,10 @@ use super::untouched::{Untouched, Zero};
 use super::{Estimate, RecordedSkin};
 use std::f64::consts::FRAC_PI_2;
 
-/// Share of the session that lies between the first and the last untouched frames, at least. Less says too little of its end.
+/// Minimum fraction of the session between the first and the last untouched frames. Less determines the drift at its end poorly.
 const SPAN: f64 = 0.25;
 
-/// σ at the end of the session, of the full scale; of noise of a standard deviation, smoothed by a width in pitches.
+/// Estimates σ at the end of the session, as a fraction of the full scale. `noise` is a standard deviation; `width` is that of the smoothing in pitches.
 pub(super) fn estimate(
     skin: &RecordedSkin,
     untouched: Option<&Untouched>,
@@ -27,7 +27,7 @@ pub(super) fn estimate(
         return Estimate::unknown("untouched frames are from one time of the session");
     }
     let n_taxels = skin.n_taxels();
-    // A mean of a run has so much of it, and of the rounding.
+    // Variance of the mean of a run due to noise and rounding.
     let of_mean = noise.powi(2) / untouched.n_run as f64;
     let found = jackknife(n_taxels, |keep| {
         let taxels = (0..n_taxels).filter(|&taxel| keep(taxel));
@@ -38,7 +38,7 @@ pub(super) fn estimate(
     });
     let share = Smoothed::new(skin.shape, width).variance;
     let std = |variance: f64| (variance / share).max(0.0).sqrt();
-    // A converter hides what is less than half of its step.
+    // A converter hides values below half of its step.
     let hidden = 0.5 * untouched.step;
     match found.map(|variance| variance.map(std)) {
         Some(Estimate::Found { value, interval }) if value < hidden => Estimate::Found {
@@ -52,7 +52,7 @@ pub(super) fn estimate(
     }
 }
 
-/// Variance of what zeros move from the first run to the last.
+/// Returns the variance of the change of the zeros from the first run to the last.
 fn moved(untouched: &Untouched, taxels: impl Iterator<Item = usize>) -> Option<f64> {
     let last = untouched.runs.nrows() - 1;
     let ends = taxels.map(|taxel| [0, last].map(|run| untouched.runs[(run, taxel)]));
@@ -65,7 +65,7 @@ fn moved(untouched: &Untouched, taxels: impl Iterator<Item = usize>) -> Option<f
     (moves.len() > 1).then(|| variance(&moves))
 }
 
-/// σ² of zeros that are above where they began.
+/// Returns σ² from the zeros above their initial value.
 fn above(untouched: &Untouched, taxels: impl Iterator<Item = usize>, of_mean: f64) -> Option<f64> {
     let (mut squares, mut times) = (0.0, 0.0);
     for taxel in taxels {

@@ -1,21 +1,21 @@
-//! Calibration: frames that a skin has recorded → the `[signal]` that makes simulated frames like them.
+//! Calibration: recorded frames of a skin → the `[signal]` settings that reproduce them in simulation.
 //!
-//! Frames are taken for what a [`Chain`](crate::signal::Chain) in the order of the signal's way makes of deflections: crosstalk, gain, drift, noise, smoothing,
-//! faults, converter. Each is estimated from what it alone does, and from what is known by then:
+//! The model is a [`Chain`](crate::signal::Chain) in physical order: crosstalk, gain, drift, noise, smoothing,
+//! faults, converter. Each parameter is estimated from an effect that it alone has, and from parameters estimated before:
 //!
 //! | parameter | from | by |
 //! |---|---|---|
-//! | [`converter`] | all readings | the step of which all their differences are multiples |
-//! | [`faults`] | touched frames | taxels that stay as they are where their neighbours move |
+//! | [`converter`] | all readings | the largest step of which all differences of readings are multiples |
+//! | [`faults`] | touched frames | taxels that stay constant while their neighbours change |
 //! | [`noise`] | untouched frames | differences of a taxel from frame to frame |
-//! | [`smoothing`] | untouched frames | how much the noise of neighbours is alike |
-//! | [`drift`] | untouched frames | how far zeros moved from the beginning to the end |
-//! | [`gain`] | touched frames | what taxels read of what their neighbours read, even and odd frames apart |
-//! | [`crosstalk`] | touched frames | what untouched taxels beside an edge of contact read of their neighbours |
+//! | [`smoothing`] | untouched frames | the correlation of the noise of neighbours |
+//! | [`drift`] | untouched frames | the change of the zeros from the beginning to the end |
+//! | [`gain`] | touched frames | readings of taxels relative to their neighbours, in even and odd frames separately |
+//! | [`crosstalk`] | touched frames | readings of untouched taxels beside an edge of contact, relative to their neighbours |
 //! | [`stiffness`] | touched frames, forces | force over the sum of deflections |
 //!
-//! Each is a number with a 95 % interval, or [not identifiable](Estimate::NotIdentifiable) with the reason. Zero is a number: frames may well tell that
-//! there is none of something.
+//! Each estimate is a number with a 95 % interval, or [not identifiable](Estimate::NotIdentifiable) with the reason. Zero is a valid estimate: frames can
+//! show that an effect is absent.
 
 pub mod converter;
 pub mod crosstalk;
@@ -39,33 +39,33 @@ pub use saturation::plateau;
 
 use crate::error::Result;
 
-/// What frames say of the skin that read them.
+/// Estimated signal parameters of a recorded skin.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Calibration {
-    /// Bits of the converter; 0 for none.
+    /// Number of bits of the converter; 0 if there is none.
     pub converter: Estimate,
-    /// Share of taxels that read 0.
+    /// Fraction of taxels that read 0.
     pub dead: Estimate,
-    /// Share of taxels that read one level.
+    /// Fraction of taxels that read a constant level.
     pub stuck: Estimate,
-    /// Standard deviation of the noise, of the full scale.
+    /// Standard deviation of the noise, as a fraction of the full scale.
     pub noise: Estimate,
-    /// σ of the Gaussian that smooths, in taxel pitches.
+    /// Standard deviation σ of the smoothing Gaussian, in taxel pitches.
     pub smoothing: Estimate,
-    /// Standard deviation of the zeros at the end of the session, of the full scale.
+    /// Standard deviation of the zeros at the end of the session, as a fraction of the full scale.
     pub drift: Estimate,
-    /// Standard deviation of the gains.
+    /// Standard deviation of the gains, relative to their mean 1.
     pub gain: Estimate,
-    /// What a taxel leaks to its neighbours, a fraction.
+    /// Fraction of a taxel's value that leaks to its neighbours.
     pub crosstalk: Estimate,
-    /// Of a taxel's spring, N/m.
+    /// Stiffness of a taxel's spring, N/m.
     pub stiffness: Estimate,
 }
 
 /// Estimates all parameters.
 ///
 /// # Errors
-/// Frames, times or forces that do not fit each other; readings that are not finite.
+/// If frames, times or forces have inconsistent sizes, or if readings are not finite.
 pub fn calibrate(skin: &RecordedSkin) -> Result<Calibration> {
     skin.check()?;
     let faults = faults::find(skin);

@@ -1,16 +1,17 @@
-//! Statistics that a few wild values do not move, and intervals of them.
+//! Statistics that are robust against outliers, and their intervals.
 
 use super::Estimate;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// Groups of the jackknife. Fewer make its own error larger; more take longer.
+/// Number of groups of the jackknife. If it is smaller, the jackknife itself is less accurate; if it is larger, it takes longer.
 const N_GROUPS: usize = 20;
-/// Where the weight of a value ends, in median absolute deviations. Smaller loses precision on normal values, larger is moved by wild ones.
+/// Deviation at which the weight of a value becomes 0, in median absolute deviations. Smaller values lose precision for normal data; larger values are
+/// less robust.
 const REACH: f64 = 9.0;
-/// What this makes of the variance 1 of normal values.
+/// Value of the uncorrected estimator for normal values of variance 1.
 const OF_NORMAL: f64 = 1.018442;
 
-/// The median; NaN of nothing.
+/// Returns the median; NaN if there are no values.
 pub fn median(values: &mut [f64]) -> f64 {
     match values.is_empty() {
         true => f64::NAN,
@@ -18,15 +19,15 @@ pub fn median(values: &mut [f64]) -> f64 {
     }
 }
 
-/// The mean; NaN of nothing.
+/// Returns the mean; NaN if there are no values.
 pub fn mean(values: impl Iterator<Item = f64>) -> f64 {
     let (sum, n) = values.fold((0.0, 0), |(sum, n), value| (sum + value, n + 1));
     sum / f64::from(n)
 }
 
-/// The biweight midvariance: n Σ (x − M)² (1 − u²)⁴ / (Σ (1 − u²)(1 − 5u²))² over |u| < 1, u = (x − M) / (9 MAD), M the median, over
-/// what that is of normal values of variance 1. Mosteller and Tukey, *Data analysis and regression*, 1977. The plain variance where most values are
-/// the same.
+/// Returns the biweight midvariance: n Σ (x − M)² (1 − u²)⁴ / (Σ (1 − u²)(1 − 5u²))² over |u| < 1, u = (x − M) / (9 MAD), M the median, divided by
+/// its value for normal data of variance 1. Mosteller and Tukey, *Data analysis and regression*, 1977. If most values are
+/// equal, returns the ordinary variance.
 pub fn variance(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     let middle = median(&mut sorted);
@@ -46,8 +47,8 @@ pub fn variance(values: &[f64]) -> f64 {
     values.len() as f64 * squares / (weights * weights * OF_NORMAL)
 }
 
-/// Where values are densest: half-sample mode (Bickel and Frühwirth, Computational Statistics & Data Analysis 50, 2006), then the mean of what is
-/// within as much of it as lies below, until it stays. Sorts them; NaN of nothing.
+/// Returns the mode: the half-sample mode (Bickel and Frühwirth, Computational Statistics & Data Analysis 50, 2006), refined by the mean of the values
+/// as close to it as those below, until convergence. Sorts the values; returns NaN if there are none.
 pub fn mode(values: &mut [f64]) -> f64 {
     values.sort_by(f64::total_cmp);
     let mut densest = &*values;
@@ -75,9 +76,9 @@ pub fn mode(values: &mut [f64]) -> f64 {
     found
 }
 
-/// An estimate from n units that come in order, with its 95 % interval: the jackknife over [`N_GROUPS`] runs of neighbours (Efron and Tibshirani,
-/// *An introduction to the bootstrap*, 1993, chapter 11), Student's t. The closure computes it from the units that it is told to keep; `None` where
-/// it has none.
+/// Returns an estimate from n ordered units with its 95 % interval, by the jackknife over [`N_GROUPS`] runs of neighbours (Efron and Tibshirani,
+/// *An introduction to the bootstrap*, 1993, chapter 11) with Student's t. The closure computes the estimate from the units that it must keep, and
+/// returns `None` if that is impossible.
 pub fn jackknife(
     n: usize,
     estimate: impl Fn(&dyn Fn(usize) -> bool) -> Option<f64>,
@@ -96,7 +97,7 @@ pub fn jackknife(
     })
 }
 
-/// The quantile of 97.5 %.
+/// Returns the 97.5 % quantile of Student's t distribution.
 fn student(freedom: f64) -> Option<f64> {
     let distribution = StudentsT::new(0.0, 1.0, freedom).ok()?;
     Some(distribution.inverse_cdf(0.975))

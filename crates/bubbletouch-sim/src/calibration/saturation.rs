@@ -1,13 +1,13 @@
-//! Saturation: a largest reading that many frames share, as of a converter that clips below the full scale.
+//! Saturation: a largest reading that many frames share, for example because a converter clips below the full scale.
 
-/// Frames that share a largest reading which is a plateau, at least, and their share of all frames.
+/// Minimum number of frames that share a plateau, and their minimum fraction of all frames.
 const MIN_FRAMES: usize = 3;
 const MIN_SHARE: f64 = 0.01;
-/// How many times as often as the next smaller reading a plateau is read, at least: readings of few levels share their largest by chance.
+/// Minimum ratio of the counts of a plateau and the next smaller reading. If readings have few levels, many frames share the largest one by chance.
 const MIN_EXCESS: usize = 3;
 
-/// Returns the largest reading if it is a plateau: read by at least two taxels, in at least 3 frames and 1 % of all, and at least three times as often
-/// as the next smaller one. The closure yields the readings of each frame in the order of taxels; NaN is left out.
+/// Returns the largest reading if it is a plateau: at least two taxels have it, in at least 3 frames and 1 % of all, and it is at least three times as
+/// frequent as the next smaller reading. The closure yields the readings of each frame in the order of taxels; NaN is left out.
 pub fn plateau<F: Iterator<Item = f64>, I: Iterator<Item = F>>(
     frames: impl Fn() -> I,
 ) -> Option<f64> {
@@ -26,7 +26,7 @@ pub fn plateau<F: Iterator<Item = f64>, I: Iterator<Item = F>>(
         }
     }
     let (mut n_frames, mut n_shared) = (0, 0);
-    // A single taxel that stays at its level is stuck.
+    // A single taxel at a constant level is stuck.
     let (mut first, mut are_several) = (None, false);
     for frame in frames() {
         n_frames += 1;

@@ -1,7 +1,7 @@
-//! Smoothing: how much the noise of neighbours along a row, and along a column, is alike.
+//! Smoothing: estimated from the correlation of the noise of neighbours along rows and columns.
 //!
-//! Noise that is independent from taxel to taxel comes out of a smoothing S with the covariance S Sᵀ. The mean correlation of neighbours rises with
-//! the width; the width is that of the correlation measured. Only what is smoothed after the noise comes in shows here: a soft cover does not.
+//! Independent noise has the covariance S Sᵀ after a smoothing S. The mean correlation of neighbours increases with
+//! the width, so the measured correlation determines the width. Only smoothing after the noise is visible; a soft cover is not.
 
 use super::estimate::NONE;
 use super::robust::jackknife;
@@ -11,22 +11,22 @@ use crate::signal::Smoothing;
 use crate::world::Grid;
 use std::f64::consts::FRAC_PI_2;
 
-/// Widths below which a smoothing has no reach (half a taxel): the narrowest there is, in pitches.
+/// Smallest width, in pitches. A smaller smoothing has no effect, because it reaches less than half a taxel.
 const NARROWEST: f64 = 0.125;
-/// Steps of bisection, to a billionth of the array.
+/// Number of bisection steps, to a billionth of the array.
 const N_STEPS: usize = 40;
 
-/// What independent noise of variance 1 is after smoothing, as a mean over the grid.
+/// Statistics of independent noise of variance 1 after smoothing, averaged over the grid.
 pub(super) struct Smoothed {
-    /// Its variance.
+    /// Variance of the smoothed noise.
     pub variance: f64,
-    /// Mean product of neighbours over their mean square: beyond an edge the frame is mirrored, so its taxels have more noise, and fewer
+    /// Mean product of neighbours divided by their mean square. Frames are mirrored at edges, so edge taxels have more noise and fewer
     /// neighbours.
     pub correlation: f64,
 }
 
 impl Smoothed {
-    /// By a width in pitches.
+    /// Computes the statistics for a width in pitches.
     pub fn new((rows, columns): (usize, usize), width: f64) -> Self {
         let (y, x) = (Line::new(rows, width), Line::new(columns, width));
         let [along_x, along_y] = [(columns - 1) * rows, (rows - 1) * columns].map(|n| n as f64);
@@ -40,13 +40,13 @@ impl Smoothed {
     }
 }
 
-/// Means over a line of taxels of what noise of variance 1 is after smoothing along it.
+/// Means over a line of taxels of noise of variance 1, smoothed along the line.
 struct Line {
-    /// Variance.
+    /// Mean variance of the taxels.
     own: f64,
-    /// The same of those of a pair of neighbours.
+    /// Mean variance over the taxels of neighbouring pairs.
     of_pairs: f64,
-    /// Their covariance.
+    /// Mean covariance of neighbours.
     neighbours: f64,
 }
 
@@ -85,7 +85,7 @@ impl Line {
     }
 }
 
-/// Its width, in pitches.
+/// Estimates the width of the smoothing, in pitches.
 pub(super) fn estimate(skin: &RecordedSkin, untouched: Option<&Untouched>) -> Estimate {
     let (rows, columns) = skin.shape;
     let Some(untouched) = untouched else {
@@ -122,9 +122,9 @@ pub(super) fn estimate(skin: &RecordedSkin, untouched: Option<&Untouched>) -> Es
     }
 }
 
-/// The same width where its interval is narrow; 0 where the upper end has no more than [`NONE`] of correlation.
+/// Returns the width if its interval is narrow, and 0 if the upper end has a correlation of at most [`NONE`].
 pub(super) fn narrow(width: Estimate) -> Estimate {
-    // Of a Gaussian of width σ the correlation of neighbours is exp(−1 / 4σ²).
+    // For a Gaussian of width σ, the correlation of neighbours is exp(−1 / 4σ²).
     let as_good_as_none = (-0.25 / NONE.ln()).sqrt();
     match width {
         Estimate::Found {
@@ -135,7 +135,7 @@ pub(super) fn narrow(width: Estimate) -> Estimate {
     }
 }
 
-/// Products of what neighbours read.
+/// Sums of products of the readings of neighbours.
 #[derive(Default)]
 struct Products {
     of_neighbours: f64,
@@ -157,7 +157,7 @@ impl Products {
                     self.n_pairs += 1.0;
                 }
             }
-            // Only whether they are above the least reading: products of such signs have the correlation 2/π asin ρ.
+            // For clipped readings only the signs are used; products of such signs have the correlation 2/π asin ρ.
             [Zero::Clipped { .. }, Zero::Clipped { .. }] if !untouched.is_clear => {
                 let share = |of: &ndarray::ArrayView1<f64>| {
                     of.iter().filter(|&&reading| reading > 0.0).count() as f64 / of.len() as f64
@@ -176,7 +176,7 @@ impl Products {
     }
 
     fn correlation(&self, untouched: &Untouched) -> Option<f64> {
-        // Rounding is independent from taxel to taxel.
+        // Rounding errors are independent from taxel to taxel.
         let rounding = match untouched.is_clear {
             true => self.n_pairs * untouched.step.powi(2) / 6.0,
             false => 0.0,
@@ -190,7 +190,7 @@ impl Products {
     }
 }
 
-/// The width at which neighbours have a correlation; 0 where the narrowest has more.
+/// Returns the width at which neighbours have a given correlation; 0 if the smallest width has a larger correlation.
 fn width_of(shape: (usize, usize), correlation: f64) -> f64 {
     if correlation <= 0.0 {
         return 0.0;

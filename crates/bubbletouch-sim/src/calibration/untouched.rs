@@ -1,8 +1,8 @@
-//! Untouched frames: the zero of each taxel in runs of frames, also where a converter that clips hides what is below it.
+//! Untouched frames: the zero of each taxel in runs of frames, also if a converter clips values below zero.
 //!
-//! Of a reading max(0, z), z ~ N(μ, σ²), that is above 0 in a share p of a run's frames and has the mean m, with a = Φ⁻¹(p):
-//! σ = m / (a p + φ(a)) and μ = a σ (Tobin, Econometrica 26, 1958, by moments). A converter of step q rounds to 0 what is below q/2, so there p
-//! and m are those of z − q/2.
+//! Let a clipped reading be max(0, z), z ~ N(μ, σ²). If p is the fraction of a run's readings above 0, m their mean, and a = Φ⁻¹(p), then
+//! σ = m / (a p + φ(a)) and μ = a σ (Tobin, Econometrica 26, 1958, by moments). A converter of step q rounds values below q/2 to 0; for it, p
+//! and m refer to z − q/2.
 
 use super::RecordedSkin;
 use super::faults::FoundFaults;
@@ -10,46 +10,46 @@ use super::robust::mean;
 use ndarray::{Array2, ArrayView1, s};
 use statrs::distribution::{Continuous, ContinuousCDF, Normal};
 
-/// Frames of a run. Fewer say less of its zero; more let it drift meanwhile.
+/// Number of frames per run. If it is smaller, the zero is less accurate; if it is larger, the zero drifts during a run.
 const N_RUN: usize = 50;
-/// Frames that say something.
+/// Minimum number of untouched frames for an estimate.
 const FEWEST: usize = 20;
-/// Shares of frames above the least reading from which on, and up to which, a clipped zero is computed. Wider ends lie on too few frames.
+/// Range of the fraction of frames above the lowest reading in which a clipped zero is computed. A wider range uses too few frames at its ends.
 const CLIPPED: [f64; 2] = [0.3, 0.98];
-/// Share of runs that must be clear of the least reading for the others to be left out.
+/// Fraction of runs that must be clear of the lowest reading for the other runs to be left out.
 const SUFFICIENT_CLEAR: f64 = 0.1;
 
-/// What untouched frames say of a taxel in a run of them.
+/// Zero of a taxel in a run of untouched frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Zero {
-    /// It never reads the least that the skin can; its mean.
+    /// No reading is the lowest possible one; mean of the readings.
     Clear(f64),
-    /// It often does; mean and standard deviation of what is clipped.
+    /// Many readings are clipped; mean and standard deviation of the values before clipping.
     Clipped { mean: f64, std: f64 },
-    /// It nearly always does, or is at fault.
+    /// Nearly all readings are clipped, or the taxel is faulty.
     Lost,
 }
 
-/// Untouched frames and their zeros.
+/// Untouched frames and the zeros of their taxels.
 #[derive(Debug)]
 pub struct Untouched<'a> {
     pub skin: &'a RecordedSkin,
-    /// The converter's step, of the full scale.
+    /// Step of the converter, as a fraction of the full scale.
     pub step: f64,
-    /// Runs × taxels.
+    /// Zeros, shape (n_runs, n_taxels).
     pub runs: Array2<Zero>,
-    /// When each run was read.
+    /// Mean time of each run, 0 to 1.
     pub times: Vec<f64>,
-    /// Frames of each run.
+    /// Number of frames per run.
     pub n_run: usize,
-    /// Whether what is below the zero of readings is lost.
+    /// Whether values below zero are clipped.
     pub is_clipped: bool,
-    /// Whether there are clear runs enough to leave out the others.
+    /// Whether there are enough clear runs to leave out the other runs.
     pub is_clear: bool,
 }
 
 impl<'a> Untouched<'a> {
-    /// None of too few frames.
+    /// Estimates the zeros. Returns `None` if there are too few frames.
     pub fn new(skin: &'a RecordedSkin, faults: &FoundFaults, step: f64) -> Option<Self> {
         let n = skin.untouched.nrows();
         if n < FEWEST {
@@ -87,7 +87,7 @@ impl<'a> Untouched<'a> {
         })
     }
 
-    /// What a taxel reads untouched at a time, on a straight line between the runs before and after; none where one of them is lost.
+    /// Returns the zero of a taxel at a time, interpolated linearly between the runs before and after; `None` if one of them is lost.
     pub fn zero(&self, taxel: usize, time: f64) -> Option<f64> {
         let after = self.times.partition_point(|&run| run <= time);
         let after = after.min(self.times.len() - 1);
@@ -105,13 +105,13 @@ impl<'a> Untouched<'a> {
         Some(first + share * (second - first))
     }
 
-    /// Runs of taxels that are clear.
+    /// Returns the indices of the clear runs of a taxel.
     pub fn clear(&self, taxel: usize) -> impl Iterator<Item = usize> + '_ {
         let runs = self.runs.column(taxel).into_iter().enumerate();
         runs.filter_map(|(run, zero)| matches!(zero, Zero::Clear(_)).then_some(run))
     }
 
-    /// Readings of a taxel in a run.
+    /// Returns the readings of a taxel in a run.
     pub fn readings(&self, taxel: usize, run: usize) -> ArrayView1<'_, f64> {
         let run = run * self.n_run..(run + 1) * self.n_run;
         self.skin.untouched.slice(s![run, taxel])

@@ -1,4 +1,4 @@
-//! CSV files that grow row by row.
+//! CSV files that are written row by row.
 
 use super::whole_file::WholeFile;
 use crate::error::{Error, Result};
@@ -6,7 +6,7 @@ use serde::Serialize;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// A CSV file that grows row by row, in bounded memory; the header is that of the first row's fields.
+/// CSV file that is written row by row in bounded memory. The header consists of the field names of the first row.
 #[derive(Debug)]
 pub struct CsvFile {
     file: WholeFile,
@@ -14,10 +14,10 @@ pub struct CsvFile {
 }
 
 impl CsvFile {
-    /// Starts a table that will stand at `path`.
+    /// Starts a table. [`commit`](Self::commit) moves it to `path`.
     ///
     /// # Errors
-    /// There can be no file.
+    /// If the file cannot be created.
     pub fn create(path: &Path) -> Result<Self> {
         Ok(Self {
             file: WholeFile::create(path)?,
@@ -25,13 +25,13 @@ impl CsvFile {
         })
     }
 
-    /// Adds a row: a struct with one field a column.
+    /// Appends a row, a struct with one field per column.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// If the row cannot be written.
     pub fn row(&mut self, row: impl Serialize) -> Result<()> {
         let is_first = !std::mem::replace(&mut self.has_header, true);
-        // Through a buffer of its own: flushing the CSV writer would flush the file with every row.
+        // A separate buffer per row, because flushing the CSV writer would flush the file with every row.
         let mut csv = csv::WriterBuilder::new()
             .has_headers(is_first)
             .from_writer(Vec::new());
@@ -41,16 +41,16 @@ impl CsvFile {
         })
     }
 
-    /// Makes it durable and puts it in place.
+    /// Flushes the file to disk and moves it to its path.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// If the file cannot be written.
     pub fn commit(self) -> Result<()> {
         self.file.commit()
     }
 }
 
-/// What to say of a table that cannot be read: the file, the line where it is known, and what is `allowed`.
+/// Returns a conversion of CSV read errors. The result names the file, the line if it is known, and what is `allowed`.
 pub fn table_error(path: &Path, allowed: &str) -> impl Fn(csv::Error) -> Error {
     move |error| {
         let line = error.position().map(|at| format!(", line {}", at.line()));

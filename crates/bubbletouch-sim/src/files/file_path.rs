@@ -1,4 +1,4 @@
-//! Paths in a study or scene file: relative to that file, absolute where the file is written out.
+//! Paths in study and scene files. A relative path is relative to the folder of its file; resolved files contain absolute paths.
 
 use crate::error::Error;
 use crate::text::note::note;
@@ -9,25 +9,25 @@ use std::ops::Deref;
 use std::path::{Path, PathBuf};
 
 thread_local! {
-    /// Folder of the file that this thread parses; `None`: paths stay as they are written.
+    /// Folder of the file that this thread is parsing; `None` if paths are kept as written.
     static FOLDER: RefCell<Option<PathBuf>> = const { RefCell::new(None) };
-    /// Folder of the file whose specification this thread makes absolute ([`with_absolute_paths`]).
+    /// Folder of the file whose specification this thread converts to absolute paths ([`with_absolute_paths`]).
     static FOLDER_OF_COPY: RefCell<Option<PathBuf>> = const { RefCell::new(None) };
 }
 
-/// Path of a file or a folder that a study file names.
+/// Path of a file or a folder in a study file.
 ///
-/// A relative path is relative to the folder of the study file ([`with_folder`]). If it exists only relative to the current folder, that
-/// file is taken, with a note on standard error. It is written out as an absolute path, so that a resolved study runs from any folder.
+/// A relative path is relative to the folder of the study file ([`with_folder`]). If the path exists only relative to the current folder, that
+/// file is used, with a note on standard error. Serialization writes an absolute path, so that a resolved study runs from any folder.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FilePath {
     written: PathBuf,
     resolved: PathBuf,
 }
 
-/// Parses with paths relative to `folder`; with `None` they stay as they are written.
+/// Runs `parse` with paths relative to `folder`; with `None`, paths are kept as written.
 pub fn with_folder<T>(folder: impl Into<Option<PathBuf>>, parse: impl FnOnce() -> T) -> T {
-    /// Puts the folder back that was there before, also if parsing panics.
+    /// Guard that restores the previous folder, also if parsing panics.
     struct Before(Option<PathBuf>);
     impl Drop for Before {
         fn drop(&mut self) {
@@ -39,12 +39,12 @@ pub fn with_folder<T>(folder: impl Into<Option<PathBuf>>, parse: impl FnOnce() -
 }
 
 impl FilePath {
-    /// Returns the path as it stands in the file.
+    /// Returns the path as written in the file.
     pub fn as_written(&self) -> &Path {
         &self.written
     }
 
-    /// Returns the path. If the file was parsed without a folder, a relative path is relative to `folder`.
+    /// Returns the resolved path. If the file was parsed without a folder, a relative path is relative to `folder`.
     pub fn within(&self, folder: &Path) -> PathBuf {
         match self.resolved == self.written {
             true => folder.join(&self.written),
@@ -61,14 +61,14 @@ impl FilePath {
                 written.display(),
                 resolved.display()
             ));
-            // Absolute, so that no folder is put before it.
+            // An absolute path, so that no folder is prepended to it.
             let resolved = std::path::absolute(&written).unwrap_or_else(|_| written.clone());
             return Self { written, resolved };
         }
         Self { written, resolved }
     }
 
-    /// Returns the absolute path, without symbolic links where the file is there.
+    /// Returns the absolute path, with symbolic links resolved if the file exists.
     fn absolute(&self) -> PathBuf {
         let absolute = || std::path::absolute(&self.resolved).ok();
         let found = self.resolved.canonicalize().ok().or_else(absolute);
@@ -120,11 +120,11 @@ impl Serialize for FilePath {
     }
 }
 
-/// Returns the same specification with every [`FilePath`] in it absolute; relative ones are taken from `folder`. The specification is copied through
-/// TOML, and each path is joined as it is written, so that no key can be forgotten.
+/// Returns a copy of a specification in which every [`FilePath`] is absolute; relative paths are relative to `folder`. The copy is made
+/// through TOML. Each path is resolved during serialization, so no key can be missed.
 ///
 /// # Errors
-/// If the specification of `place` has no form in TOML, such as a whole number above 2⁶³ − 1.
+/// If the specification of `place` cannot be represented in TOML, for example because of an integer above 2⁶³ − 1.
 pub fn with_absolute_paths<T: Serialize + DeserializeOwned>(
     place: &str,
     spec: &T,
@@ -142,10 +142,10 @@ pub fn with_absolute_paths<T: Serialize + DeserializeOwned>(
     copied.map_err(|error| Error::input(place, error, "what TOML can hold"))
 }
 
-/// Deserializes a path; while a file is parsed with a folder, to an absolute path.
+/// Deserializes a path. If the file is parsed with a folder, the path becomes absolute.
 ///
 /// # Errors
-/// If the value is no text.
+/// If the value is not a string.
 pub fn file_path<'de, D: Deserializer<'de>>(deserializer: D) -> Result<PathBuf, D::Error> {
     let path = FilePath::deserialize(deserializer)?;
     let has_folder =
@@ -156,22 +156,22 @@ pub fn file_path<'de, D: Deserializer<'de>>(deserializer: D) -> Result<PathBuf, 
     })
 }
 
-/// Deserializes a path that may be absent, as [`file_path`] does.
+/// Deserializes an optional path like [`file_path`].
 ///
 /// # Errors
-/// If the value is no text.
+/// If the value is not a string.
 pub fn optional_file_path<'de, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<Option<PathBuf>, D::Error> {
     file_path(deserializer).map(Some)
 }
 
-/// Name of a built-in set of objects, or path of a TOML file of objects.
+/// Name of a built-in set of objects, or path of a TOML file with objects.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SetName {
     /// Name of a built-in set.
     BuiltIn(String),
-    /// TOML file.
+    /// Path of a TOML file.
     File(FilePath),
 }
 

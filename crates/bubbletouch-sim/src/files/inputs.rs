@@ -1,7 +1,7 @@
-//! The files that a command reads: no command may write over one of them.
+//! Input files of a command, which no command may overwrite.
 //!
-//! Readers open files through [`open`], [`read`] and [`read_to_string`], which record them once [`protect_inputs`] was called.
-//! [`WholeFile`](super::WholeFile) refuses to replace a recorded file, whatever path leads to it.
+//! The functions [`open`], [`read`] and [`read_to_string`] record input files after [`protect_inputs`] has been called.
+//! [`WholeFile`](super::WholeFile) does not replace a recorded file under any path.
 
 use crate::error::{Error, Result};
 use std::collections::BTreeMap;
@@ -10,27 +10,27 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
-/// Identity of a file, whatever path leads to it.
+/// Identity of a file, independent of its path.
 #[cfg(unix)]
 type FileId = (u64, u64);
 #[cfg(not(unix))]
 type FileId = PathBuf;
 
-/// Recorded files, with the path under which they were read. `None`: nothing is recorded.
+/// Recorded files, each with the path under which it was read; `None` if recording is off.
 static INPUTS: Mutex<Option<BTreeMap<FileId, PathBuf>>> = Mutex::new(None);
 
-/// Records from now on which files this process reads, and refuses to write over them.
+/// Starts recording the files that this process reads, and prevents overwriting them.
 ///
-/// The command calls this first. A library does not: a program may read a file and replace it on purpose.
+/// Call this function first in a command. A library does not call it: a program may read a file and replace it on purpose.
 pub fn protect_inputs() {
     let mut inputs = INPUTS.lock().unwrap_or_else(|e| e.into_inner());
     inputs.get_or_insert_default();
 }
 
-/// Opens a file to read it, and records it as an input.
+/// Opens a file for reading and records it as an input.
 ///
 /// # Errors
-/// Those of [`File::open`].
+/// If [`File::open`] fails.
 pub fn open(path: &Path) -> io::Result<File> {
     let file = File::open(path)?;
     let mut inputs = INPUTS.lock().unwrap_or_else(|e| e.into_inner());
@@ -42,27 +42,27 @@ pub fn open(path: &Path) -> io::Result<File> {
     Ok(file)
 }
 
-/// Reads a whole file, and records it as an input.
+/// Reads a whole file and records it as an input.
 ///
 /// # Errors
-/// Those of [`fs::read`].
+/// If [`fs::read`] fails.
 pub fn read(path: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     open(path)?.read_to_end(&mut bytes)?;
     Ok(bytes)
 }
 
-/// Reads a whole text, and records its file as an input.
+/// Reads a whole text file and records it as an input.
 ///
 /// # Errors
-/// Those of [`fs::read_to_string`].
+/// If [`fs::read_to_string`] fails.
 pub fn read_to_string(path: &Path) -> io::Result<String> {
     let mut text = String::new();
     open(path)?.read_to_string(&mut text)?;
     Ok(text)
 }
 
-/// Checks that a file can be written without destroying an input.
+/// Checks that writing a file does not destroy an input.
 ///
 /// # Errors
 /// If this process has read the file, also through a link or another path.
@@ -88,7 +88,7 @@ pub fn check_output(path: &Path) -> Result<()> {
     Err(Error::input(path.display(), given, allowed))
 }
 
-/// Returns a recorded input that lies in a folder or below it, if there is one.
+/// Returns a recorded input in a folder or its subfolders; `None` if there is none.
 pub fn input_within(folder: &Path) -> Option<PathBuf> {
     let folder = folder.canonicalize().ok()?;
     let inputs = INPUTS.lock().unwrap_or_else(|e| e.into_inner());
@@ -100,7 +100,7 @@ pub fn input_within(folder: &Path) -> Option<PathBuf> {
     paths.find(is_within).cloned()
 }
 
-/// Returns `None` for a pipe or a device, which writing does not replace.
+/// Returns `None` for a pipe or a device; writing does not replace them.
 #[cfg(unix)]
 fn file_id(_: &Path, meta: &Metadata) -> Option<FileId> {
     use std::os::unix::fs::MetadataExt;

@@ -1,12 +1,12 @@
-//! Files that are complete or absent; none replaces a file that the command reads.
+//! Output files that are either complete or absent, and protection of input files from being overwritten.
 //!
 //! | file | contents |
 //! |---|---|
-//! | `inputs` | files that the command reads, which no output may replace |
-//! | `whole_file` | files written under another name, then renamed ([`WholeFile`]) |
-//! | `csv_file` | tables that grow row by row ([`CsvFile`]) |
+//! | `inputs` | input files of the command, which no output may replace |
+//! | `whole_file` | files that are written under a temporary name and then renamed ([`WholeFile`]) |
+//! | `csv_file` | tables that are written row by row ([`CsvFile`]) |
 //! | `owned` | files of an output folder that the program wrote ([`OwnedFiles`]) |
-//! | `file_path` | paths that are relative to the file which names them ([`FilePath`]) |
+//! | `file_path` | paths relative to the file that contains them ([`FilePath`]) |
 
 mod csv_file;
 mod file_path;

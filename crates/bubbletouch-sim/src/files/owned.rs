@@ -1,4 +1,4 @@
-//! The files of an output folder that the program wrote: the only ones that it may replace.
+//! Files of an output folder that the program wrote; it may replace only these.
 
 use super::inputs::check_output;
 use super::whole_file::write_bytes;
@@ -9,31 +9,31 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-/// The manifest's name in an output folder.
+/// Name of the manifest in an output folder.
 pub const MANIFEST_FILE: &str = "manifest.json";
 
-/// Writer of folders of results, in [`OwnedFiles::read`].
+/// Name of the subcommand that writes result folders, for [`OwnedFiles::read`].
 pub const RUN: &str = "run";
 
-/// Lists of files in a manifest: the keys of each are names.
+/// Keys of the file lists in a manifest; the keys of each list are file names.
 const LISTS: [&str; 4] = ["tables_sha256", "times_sha256", "files_sha256", "files"];
 
-/// The files that one subcommand wrote into a folder, as the folder's manifest lists them.
+/// Files that one subcommand wrote into a folder, as listed in the folder's manifest.
 #[derive(Clone, Debug)]
 pub struct OwnedFiles {
     folder: PathBuf,
     names: BTreeSet<String>,
     /// Whether the folder has a manifest.
     has_manifest: bool,
-    /// Whether the manifest is of a version that listed only tables: charts and the page are then known by their endings.
+    /// Whether the manifest has an old version that lists only tables. Charts and the page are then recognised by their extensions.
     lists_tables_only: bool,
 }
 
 impl OwnedFiles {
-    /// Reads the manifest of a folder to which the subcommand `writer` is to write. A folder without a manifest owns nothing.
+    /// Reads the manifest of a folder for the subcommand `writer`. Without a manifest, no file of the folder is owned.
     ///
     /// # Errors
-    /// If the manifest is not one of this program, or is one of another subcommand.
+    /// If the manifest is invalid, or was written by another program or another subcommand.
     pub fn read(folder: &Path, writer: &str) -> Result<Self> {
         let path = folder.join(MANIFEST_FILE);
         let mut owned = Self {
@@ -83,10 +83,10 @@ impl OwnedFiles {
         Ok(owned)
     }
 
-    /// Checks that files of these names can be written: each is absent, or was written by the program before.
+    /// Checks that files with these names can be written: each must be absent or owned by the program.
     ///
     /// # Errors
-    /// If a file was not written by the program, is a link, or is read by this command; the error names the file.
+    /// If a file was not written by the program, is a link, or is an input of this command; the error names the file.
     pub fn check<'a>(&self, names: impl IntoIterator<Item = &'a str>) -> Result<()> {
         for name in names {
             let path = self.folder.join(name);
@@ -106,12 +106,12 @@ impl OwnedFiles {
         Ok(())
     }
 
-    /// Checks before a study runs that its tables, page and charts can be written.
+    /// Checks, before a study runs, that its tables, page and charts can be written.
     ///
-    /// The names of charts depend on the results. In a folder without a manifest, every picture is therefore refused.
+    /// The names of charts depend on the results. In a folder without a manifest, any existing picture is therefore an error.
     ///
     /// # Errors
-    /// Those of [`check`](Self::check).
+    /// If [`check`](Self::check) fails, or if a picture exists that the program did not write.
     pub fn check_results<'a>(&self, tables: impl IntoIterator<Item = &'a str>) -> Result<()> {
         self.check(["study.toml", "report.html"])?;
         self.check(tables)?;
@@ -127,17 +127,17 @@ impl OwnedFiles {
         paths.first().map_or(Ok(()), |path| Err(foreign(path)))
     }
 
-    /// Whether the program wrote the file of this name.
+    /// Returns whether the program wrote the file with this name.
     pub fn owns(&self, name: &str) -> bool {
         self.names.contains(name) || (self.lists_tables_only && is_picture(Path::new(name)))
     }
 }
 
-/// Checks that a single output file can be written: it is no file that this command reads, and none that another command wrote into a folder
-/// of its own.
+/// Checks that a single output file can be written: it must not be an input of this command, nor a file that another command wrote into
+/// an output folder.
 ///
 /// # Errors
-/// If it is; the error names the file.
+/// If the file is an input or belongs to another output folder; the error names the file.
 pub fn check_single_output(path: &Path) -> Result<()> {
     check_output(path)?;
     let (folder, name) = (
@@ -171,7 +171,7 @@ fn is_picture(path: &Path) -> bool {
     ending.is_some_and(|ending| ["svg", "png"].contains(&ending))
 }
 
-/// A folder of data that a subcommand other than `run` writes, with a manifest that lists its files.
+/// Data folder of a subcommand other than `run`, with a manifest that lists its files.
 #[derive(Debug)]
 pub struct DataFolder {
     folder: PathBuf,
@@ -180,10 +180,10 @@ pub struct DataFolder {
 }
 
 impl DataFolder {
-    /// Claims a folder for files of these names; nothing is written yet. `writer` is the subcommand.
+    /// Prepares a folder for files with these names without writing anything. `writer` is the subcommand.
     ///
     /// # Errors
-    /// Those of [`OwnedFiles::read`] and [`OwnedFiles::check`].
+    /// If [`OwnedFiles::read`] or [`OwnedFiles::check`] fails.
     pub fn claim<'a>(
         folder: &Path,
         writer: &'static str,
@@ -192,10 +192,10 @@ impl DataFolder {
         Self::claim_with(folder, writer, names, |_| false)
     }
 
-    /// Claims a folder as [`claim`](Self::claim) does, with files that no manifest lists but whose bytes tell that the program wrote them.
+    /// Prepares a folder like [`claim`](Self::claim), but also accepts files that no manifest lists if their content shows that the program wrote them.
     ///
     /// # Errors
-    /// Those of [`claim`](Self::claim).
+    /// If [`claim`](Self::claim) fails.
     pub fn claim_with<'a>(
         folder: &Path,
         writer: &'static str,
@@ -222,12 +222,12 @@ impl DataFolder {
         })
     }
 
-    /// Adds facts about a file to the manifest, such as its quantity and unit.
+    /// Adds metadata of a file to the manifest, such as its quantity and unit.
     pub fn describe(&mut self, name: &str, facts: Value) {
         self.files.insert(name.to_owned(), facts);
     }
 
-    /// Writes the manifest. Call this before the files are put in place: if the process is killed in between, the next one may replace them.
+    /// Writes the manifest. Call this before the files are moved to their paths: if the process is killed in between, the next run may replace them.
     ///
     /// # Errors
     /// If the manifest cannot be written.

@@ -1,4 +1,4 @@
-//! Files that are complete or absent: written under another name, then renamed.
+//! Files that are complete or absent: written under a temporary name, then renamed.
 
 use super::inputs::check_output;
 use crate::error::{Error, Result};
@@ -7,25 +7,25 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Files started by this process: two threads may write the same file.
+/// Number of files that this process has started; it makes temporary names unique if two threads write one path.
 static N_STARTED: AtomicU64 = AtomicU64::new(0);
 
-/// A file in the making. [`commit`](Self::commit) puts it in place; dropped before, it leaves nothing behind.
+/// File under construction. [`commit`](Self::commit) moves it to its path; if it is dropped earlier, the temporary file is removed.
 #[derive(Debug)]
 pub struct WholeFile {
-    /// The path as given, for errors.
+    /// Path as given, for error messages.
     given: PathBuf,
     path: PathBuf,
-    /// Where it is written until then; `None` for a device or a pipe, which no rename can replace.
+    /// Path of the temporary file; `None` for a device or a pipe, which cannot be replaced by renaming.
     partial: Option<PathBuf>,
     writer: BufWriter<File>,
 }
 
 impl WholeFile {
-    /// Starts a file that will stand at `path`. If `path` is a symbolic link, the file replaces the target of the link.
+    /// Starts a file. [`commit`](Self::commit) moves it to `path`. If `path` is a symbolic link, the file replaces the target of the link.
     ///
     /// # Errors
-    /// If this process has read the file ([`protect_inputs`](super::protect_inputs)), or no file can be made there.
+    /// If this process has read the file ([`protect_inputs`](super::protect_inputs)), or if the file cannot be created.
     pub fn create(path: &Path) -> Result<Self> {
         check_output(path)?;
         let given = path;
@@ -66,10 +66,10 @@ impl WholeFile {
         })
     }
 
-    /// Writes part of it.
+    /// Writes part of the file.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// If the file cannot be written.
     pub fn write(
         &mut self,
         fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
@@ -77,10 +77,10 @@ impl WholeFile {
         fill(&mut self.writer).map_err(|e| Error::io(&self.given, "write", e))
     }
 
-    /// Makes it durable and puts it in place, over what stood there.
+    /// Flushes the file to disk and moves it to its path, replacing an existing file.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// If the file cannot be written.
     pub fn commit(mut self) -> Result<()> {
         let Some(partial) = self.partial.clone() else {
             return self.write(|writer| writer.flush());
@@ -96,19 +96,19 @@ impl WholeFile {
     }
 }
 
-/// Symbolic links that are followed one after the other, at most: as many as Linux follows. More: a loop is found later; fewer: long chains fail.
+/// Maximum length of a chain of symbolic links, as in Linux. If it is larger, loops are detected later; if it is smaller, long chains fail.
 const MAX_LINKS: usize = 40;
 
-/// Returns the path that a symbolic link leads to, or `path` itself if it is no link.
+/// Returns the target of a symbolic link, or `path` itself if it is not a link.
 ///
 /// # Errors
-/// If links lead to each other.
+/// If the links form a loop.
 fn link_target(path: &Path) -> Result<PathBuf> {
     let mut target = path.to_owned();
     for _ in 0..MAX_LINKS {
         match fs::read_link(&target) {
             Ok(next) => target = target.parent().unwrap_or(Path::new("")).join(next),
-            // It is no link, or is not there.
+            // The path is not a link, or does not exist.
             Err(_) => return Ok(target),
         }
     }
@@ -123,16 +123,16 @@ fn link_target(path: &Path) -> Result<PathBuf> {
 impl Drop for WholeFile {
     fn drop(&mut self) {
         if let Some(partial) = &self.partial {
-            // It is ours alone; that it cannot be removed changes nothing in what is reported.
+            // The temporary file belongs to this process; a failure to remove it does not affect the result.
             let _ = fs::remove_file(partial);
         }
     }
 }
 
-/// Writes a file through `fill`; on any failure what stood under `path` still stands there.
+/// Writes a file with `fill`. If writing fails, an existing file at `path` stays unchanged.
 ///
 /// # Errors
-/// It cannot be written; what `fill` says.
+/// If the file cannot be written, or if `fill` returns an error.
 pub fn write_whole(
     path: &Path,
     fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
@@ -142,10 +142,10 @@ pub fn write_whole(
     file.commit()
 }
 
-/// Writes bytes as a whole file.
+/// Writes bytes to a file, which is afterwards complete or unchanged.
 ///
 /// # Errors
-/// It cannot be written.
+/// If the file cannot be written.
 pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<()> {
     write_whole(path, |writer| writer.write_all(bytes))
 }

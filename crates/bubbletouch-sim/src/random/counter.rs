@@ -1,47 +1,47 @@
-//! Randomness by number: draws that are a function of a name and of numbers, for items of which only a few are looked at.
+//! Counter-based random numbers: functions of a name and of indices, for large sets of items of which only a few are needed.
 //!
-//! A [stream](super::Seed::rng) has to be drawn from its start; here the draws of group g at index t are those of a counter (g, t) under
-//! a key, in any order and on any thread. The counter is mixed by Philox4x32-10 \[PX\] into four words w of 32 bits, one for each item
-//! of the group: 4 g, 4 g + 1, 4 g + 2, 4 g + 3. Of them come
+//! A [stream](super::Seed::rng) must be drawn from its start. Here the draws of group g at index t are functions of the counter (g, t) and
+//! a key, in any order and on any thread. Philox4x32-10 \[PX\] converts the counter to four words w of 32 bits, one for each item
+//! of the group: 4 g, 4 g + 1, 4 g + 2, 4 g + 3. The words are converted to
 //!
 //! - uniform numbers, (w + ½) / 2³²;
-//! - normal numbers by Box and Muller, two of two: √(−2 ln u₀) (cos, sin)(2π u₁). None is beyond 6.77, where a normal number is once
-//!   in 10¹¹.
+//! - normal numbers in pairs by Box and Muller: √(−2 ln u₀) (cos, sin)(2π u₁). Their magnitude is at most 6.77, which a normal number exceeds
+//!   once in 10¹¹ draws.
 //!
-//! Logarithm, sine and cosine are sums of additions and products alone, so the bits are the same on any machine, and many groups are
+//! Logarithm, sine and cosine consist of additions and products only. The bits are therefore equal on any machine, and many groups can be
 //! computed at a time.
 
 use super::Seed;
 use std::f64::consts::{FRAC_PI_2, LN_2, SQRT_2};
 
-/// Items that share a counter.
+/// Number of items that share a counter.
 pub const GROUP: usize = 4;
 
-/// Constants of Philox4x32 \[PX\]: two multipliers, and what is added to the halves of the key after each round.
+/// Constants of Philox4x32 \[PX\]: two multipliers, the increments of the two halves of the key per round, and the number of rounds.
 const MULTIPLIERS: [u64; 2] = [0xD251_1F53, 0xCD9E_8D57];
 const WEYL: [u32; 2] = [0x9E37_79B9, 0xBB67_AE85];
 const N_ROUNDS: usize = 10;
 
-/// The lower half of a word of 64 bits.
+/// Mask of the lower half of a 64-bit word.
 const LOW: u64 = 0xFFFF_FFFF;
-/// The bits of 2⁵²: with a whole number below 2⁵² in the mantissa, the bits of their sum.
+/// Bits of 2⁵². An integer below 2⁵² in its mantissa gives the bits of the sum.
 const TWO_52: u64 = 0x4330_0000_0000_0000;
-/// The bits of 1.0, and of the mantissa.
+/// Bits of 1.0, and the mask of the mantissa.
 const ONE: u64 = 0x3FF0_0000_0000_0000;
 const MANTISSA: u64 = 0x000F_FFFF_FFFF_FFFF;
 
-/// Divisors of the terms of artanh s / s, and of those of sin a / a and cos a, in powers of s² and −a², the highest first. What is left out
-/// is below 1e-11.
+/// Divisors of the series of artanh s / s, sin a / a and cos a, in powers of s² and −a², the highest power first. The remainders
+/// are below 1e-11.
 const ARTANH: [f64; 7] = [13.0, 11.0, 9.0, 7.0, 5.0, 3.0, 1.0];
 const SIN: [f64; 6] = [39_916_800.0, 362_880.0, 5_040.0, 120.0, 6.0, 1.0];
 const COS: [f64; 7] = [479_001_600.0, 3_628_800.0, 40_320.0, 720.0, 24.0, 2.0, 1.0];
 
-/// The key of the draws of a name.
+/// Key of counter-based random numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CounterKey([u32; 2]);
 
 impl Seed {
-    /// The key of this name's draws by number.
+    /// Returns the key of the counter-based random numbers of this name.
     pub fn counter_key(&self) -> CounterKey {
         let half = |at: usize| u32::from_le_bytes([at, at + 1, at + 2, at + 3].map(|k| self.0[k]));
         CounterKey([half(0), half(4)])
@@ -49,7 +49,7 @@ impl Seed {
 }
 
 impl CounterKey {
-    /// Four uniform numbers above 0 and below 1 of each of N groups at an index, item by item.
+    /// Returns four uniform numbers in (0, 1) for each of N groups at an index, shape (GROUP, N).
     #[inline(always)]
     pub fn uniforms<const N: usize>(self, groups: &[u64; N], index: u64) -> [[f64; N]; GROUP] {
         let words = self.words(groups, index);
@@ -62,7 +62,7 @@ impl CounterKey {
         uniforms
     }
 
-    /// Four normal numbers of mean 0 and variance 1 of each of N groups at an index, item by item.
+    /// Returns four normal numbers of mean 0 and variance 1 for each of N groups at an index, shape (GROUP, N).
     #[inline(always)]
     pub fn normals<const N: usize>(self, groups: &[u64; N], index: u64) -> [[f64; N]; GROUP] {
         let [first, second, third, fourth] = self.words(groups, index);
@@ -70,7 +70,7 @@ impl CounterKey {
         [a, b, c, d]
     }
 
-    /// Philox4x32-10 of the counters (group, lower half of the index, upper half, 0): words of 32 bits.
+    /// Returns Philox4x32-10 of the counters (group, lower half of the index, upper half of the index, 0): 32-bit words.
     #[inline(always)]
     fn words<const N: usize>(self, groups: &[u64; N], index: u64) -> [[u64; N]; 4] {
         self.mixed([*groups, [index & LOW; N], [index >> 32; N], [0; N]])
@@ -94,20 +94,20 @@ impl CounterKey {
     }
 }
 
-/// A whole number below 2⁵² as a float.
+/// Converts an integer below 2⁵² to a float.
 #[inline(always)]
 fn whole(bits: u64) -> f64 {
     f64::from_bits(TWO_52 | bits) - f64::from_bits(TWO_52)
 }
 
-/// Two normal numbers of each pair of words.
+/// Returns two normal numbers for each pair of words.
 #[inline(always)]
 fn box_muller<const N: usize>(first: &[u64; N], second: &[u64; N]) -> [[f64; N]; 2] {
     let [mut x, mut y] = [[0.0; N]; 2];
     for k in 0..N {
         let uniform = (whole(first[k]) + 0.5) * (1.0 / 4_294_967_296.0);
         let radius = (-2.0 * logarithm(uniform)).sqrt();
-        // A quarter turn by the upper two bits, and the rest of the angle within π/4 either way.
+        // The upper two bits select a quarter turn; the rest gives an angle within ±π/4.
         let rest = whole(second[k] & 0x3FFF_FFFF) - 536_870_911.5;
         let (sin, cos) = sin_cos(rest * (FRAC_PI_2 / 1_073_741_824.0));
         let quarter = second[k] >> 30;
@@ -120,7 +120,7 @@ fn box_muller<const N: usize>(first: &[u64; N], second: &[u64; N]) -> [[f64; N];
     [x, y]
 }
 
-/// ln u of a normal float above zero: of u = 2ᵉ m with m within √2 of 1, e ln 2 + 2 artanh((m − 1) / (m + 1)).
+/// Returns ln u of a normal float above zero: for u = 2ᵉ m with m within a factor √2 of 1, e ln 2 + 2 artanh((m − 1) / (m + 1)).
 #[inline(always)]
 fn logarithm(u: f64) -> f64 {
     let bits = u.to_bits();
@@ -133,14 +133,14 @@ fn logarithm(u: f64) -> f64 {
     e * LN_2 + 2.0 * s * series(&ARTANH, s * s)
 }
 
-/// Sine and cosine of an angle within π/4 of zero.
+/// Returns the sine and cosine of an angle within ±π/4.
 #[inline(always)]
 fn sin_cos(angle: f64) -> (f64, f64) {
     let q = -angle * angle;
     (angle * series(&SIN, q), series(&COS, q))
 }
 
-/// Σ qⁿ / dₙ, the highest power first.
+/// Returns Σ qⁿ / dₙ, with the divisor of the highest power first.
 #[inline(always)]
 fn series<const N: usize>(divisors: &[f64; N], q: f64) -> f64 {
     let mut sum = 1.0 / divisors[0];

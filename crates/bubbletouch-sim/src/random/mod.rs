@@ -1,7 +1,7 @@
-//! Randomness by name: one ChaCha stream per name, never by call order.
+//! Named random streams: one ChaCha stream per name, independent of the order of calls.
 //!
-//! A name is a path such as `(2018, "noise", "mug", 17)`. Its SHA-256 is the key of a ChaCha8 stream, so
-//! any draw can be made alone, on any thread or machine, and is the same.
+//! A name is a path such as `(2018, "noise", "mug", 17)`. Its SHA-256 hash is the key of a ChaCha8 stream.
+//! Any draw can therefore be made alone, on any thread or machine, with equal results.
 //!
 //! ```
 //! use bubbletouch_sim::random::Seed;
@@ -23,27 +23,27 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use sha2::{Digest, Sha256};
 
-/// The name of a random stream; it grows by [`named`](Seed::named) and [`numbered`](Seed::numbered).
+/// Name of a random stream, extended by [`named`](Seed::named) and [`numbered`](Seed::numbered).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Seed([u8; 32]);
 
 impl Seed {
-    /// The root of all streams of a study.
+    /// Returns the root of all streams of a study.
     pub fn new(seed: u64) -> Self {
         Self(Sha256::digest(seed.to_le_bytes()).into())
     }
 
-    /// The child with this word appended to the name.
+    /// Returns the seed with a word appended to the name.
     pub fn named(&self, word: &str) -> Self {
         self.child(b"word", word.as_bytes())
     }
 
-    /// The child with this number appended to the name.
+    /// Returns the seed with a number appended to the name.
     pub fn numbered(&self, number: u64) -> Self {
         self.child(b"number", &number.to_le_bytes())
     }
 
-    /// The generator of this name's stream, at its start.
+    /// Returns the generator of the stream, at its start.
     pub fn rng(&self) -> ChaCha8Rng {
         ChaCha8Rng::from_seed(self.0)
     }

@@ -1,27 +1,27 @@
-//! Intervals around estimates.
+//! Confidence intervals of estimates.
 
 use statrs::distribution::{ContinuousCDF, Normal};
 
 use crate::{Error, Result};
 use std::collections::BTreeMap;
 
-/// An interval `low..=high`.
+/// Interval `low..=high`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
-    /// The lower end.
+    /// Lower end.
     pub low: f64,
-    /// The upper end.
+    /// Upper end.
     pub high: f64,
 }
 
-/// The counts of one test of an accuracy.
+/// Counts of one accuracy test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RowTest {
-    /// The number of the part of the rows that it tests: the fold, or 0 without folds.
+    /// Index of the tested part of the rows: the fold, or 0 without folds.
     pub part: usize,
-    /// Test rows.
+    /// Number of test rows.
     pub n_rows: usize,
-    /// Test rows that were recognised.
+    /// Number of correctly recognised test rows.
     pub n_correct: usize,
 }
 
@@ -36,15 +36,15 @@ impl RowTest {
 }
 
 impl Interval {
-    /// The Wilson score interval of a share, such as an accuracy: stays within 0..=1 and is right near its ends, where
-    /// the normal approximation is not (Wilson 1927; without continuity correction).
+    /// Returns the Wilson score interval of a proportion, such as an accuracy. It stays within 0..=1 and is valid near these ends, unlike
+    /// the normal approximation (Wilson 1927; without continuity correction).
     ///
-    /// `confidence` is the coverage, such as 0.95. The rows are taken as independent: touches of one object in
-    /// neighbouring poses are not quite, so the interval is rather too narrow than too wide. Of rows that are held out in
-    /// groups, the interval is over groups instead.
+    /// `confidence` is the coverage, such as 0.95. The rows are assumed to be independent. Touches of one object in
+    /// neighbouring poses are slightly dependent, so the interval is rather too narrow than too wide. If rows are held out in
+    /// groups, use an interval over groups instead.
     ///
     /// # Errors
-    /// No rows, more correct than rows, or a confidence outside 0..1.
+    /// If there are no rows, if more rows are correct than exist, or if the confidence is outside 0..1.
     pub fn wilson(n_correct: usize, n_rows: usize, confidence: f64) -> Result<Self> {
         if n_rows == 0 || n_correct > n_rows {
             return Err(Error::input(
@@ -61,12 +61,12 @@ impl Interval {
 
     /// Returns the Wilson score interval of the mean accuracy of several tests, such as the trials of a study.
     ///
-    /// The share is Σ n_correct / Σ n_rows if all tests have the same number of rows, else the mean of the tests' accuracies. Tests of the
-    /// same part (a fold) test the same rows, or other rows of the same touches, so the interval has the rows of one test per part: repeated
-    /// trials of one part add no rows, and k folds have the rows of all k.
+    /// The proportion is Σ n_correct / Σ n_rows if all tests have equally many rows, otherwise the mean of the tests' accuracies. Tests of one
+    /// part (fold) test equal rows, or other rows of equal touches. The interval therefore counts the rows of one test per part: repeated
+    /// trials of one part add no rows, and k folds add up the rows of all k parts.
     ///
     /// # Errors
-    /// No tests; those of [`wilson`](Self::wilson).
+    /// If there are no tests, or if [`wilson`](Self::wilson) would fail for one of them.
     pub fn wilson_of_tests(tests: &[RowTest], confidence: f64) -> Result<Self> {
         check_confidence(confidence)?;
         let (Some(first), true) = (tests.first(), tests.iter().all(RowTest::is_possible)) else {
@@ -75,7 +75,7 @@ impl Interval {
         };
         let n_tests = tests.len() as f64;
         let share = match tests.iter().all(|test| test.n_rows == first.n_rows) {
-            // The same bits as `wilson` has for equal shares.
+            // This branch gives the same bits as `wilson` for equal proportions.
             true => {
                 let n_correct: usize = tests.iter().map(|test| test.n_correct).sum();
                 n_correct as f64 / (first.n_rows * tests.len()) as f64
@@ -92,13 +92,13 @@ impl Interval {
         Ok(Self::score(share, n_rows as f64, z))
     }
 
-    /// The score interval of a share of n independent rows, z standard errors to either side.
+    /// Returns the score interval of a proportion `share` of n independent rows, for z standard errors.
     pub fn score(share: f64, n: f64, z: f64) -> Self {
         let z2 = z * z;
         let centre = (share + z2 / (2.0 * n)) / (1.0 + z2 / n);
         let variance = share * (1.0 - share) / n + z2 / (4.0 * n * n);
         let half_width = z * variance.sqrt() / (1.0 + z2 / n);
-        // At the ends the two terms are equal; rounding must not leave 0..=1 or exclude the estimate.
+        // At the ends the two terms are equal; clamping prevents rounding from leaving 0..=1 or excluding the estimate.
         Self {
             low: (centre - half_width).clamp(0.0, share),
             high: (centre + half_width).clamp(share, 1.0),
@@ -106,10 +106,10 @@ impl Interval {
     }
 }
 
-/// Refuses a coverage that is not between 0 and 1.
+/// Checks that a coverage is between 0 and 1.
 ///
 /// # Errors
-/// A confidence outside 0..1.
+/// If the confidence is outside 0..1.
 pub fn check_confidence(confidence: f64) -> Result<()> {
     if confidence > 0.0 && confidence < 1.0 {
         return Ok(());

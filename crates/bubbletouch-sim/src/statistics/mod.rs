@@ -4,7 +4,7 @@
 //! |---|---|
 //! | [`quantile`] | values → a quantile |
 //! | [`interval`] | counts or values → an estimate with its interval |
-//! | [`standard_errors`] | an estimate and its standard error → whether it is as expected |
+//! | [`standard_errors`] | an estimate and its standard error → a test against its expected value |
 
 pub mod interval;
 pub mod quantile;

@@ -1,6 +1,6 @@
-//! Quantiles, linear between neighbours: type 7 of Hyndman and Fan (American Statistician 50, 1996), NumPy's default.
+//! Quantiles with linear interpolation: type 7 of Hyndman and Fan (American Statistician 50, 1996), NumPy's default.
 
-/// The value that a part (0 to 1) of the values do not exceed; 0 of none. Sorts them.
+/// Returns the quantile at `part` (0 to 1), and sorts the values; returns 0 if there are no values.
 pub fn quantile(values: &mut [f64], part: f64) -> f64 {
     if values.is_empty() {
         return 0.0;
@@ -9,7 +9,7 @@ pub fn quantile(values: &mut [f64], part: f64) -> f64 {
     of_sorted(values, part)
 }
 
-/// The same of values that are sorted, at least one.
+/// Returns the quantile at `part` (0 to 1) of a non-empty sorted slice.
 pub fn of_sorted(values: &[f64], part: f64) -> f64 {
     let place = part * (values.len() - 1) as f64;
     let below = place as usize;
