@@ -1,4 +1,4 @@
-//! What a run prints at its end: tables at the width of the terminal.
+//! Text for the terminal: tables that fit its width.
 
 use crate::report::pictures::colours::Rgb;
 use crate::report::swept::{Setting, Swept, without};
@@ -10,25 +10,25 @@ use comfy_table::{
 };
 use std::io::IsTerminal;
 
-/// Lines of a table, at most.
+/// Maximum number of rows of a table.
 const MOST_LINES: usize = 40;
 
-/// Blanks between two columns.
+/// Number of spaces between two columns.
 const COLUMN_GAP: usize = 3;
 
-/// Which colours a stream may show.
+/// Colours that an output stream supports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ink {
-    /// No escape codes: a pipe, a file, `TERM=dumb`, or `NO_COLOR` set.
+    /// No colours: a pipe, a file, `TERM=dumb`, or `NO_COLOR` is set.
     Plain,
     /// The 256 colours of xterm.
     Colours256,
-    /// 24 bits.
+    /// 24-bit colours.
     TrueColour,
 }
 
 impl Ink {
-    /// What standard output may show now.
+    /// Returns the colours that standard output supports.
     pub fn of_stdout() -> Self {
         let variable = |name: &str| std::env::var(name).unwrap_or_default();
         let refused = !variable("NO_COLOR").is_empty() || variable("TERM") == "dumb";
@@ -41,17 +41,17 @@ impl Ink {
         }
     }
 
-    /// Escape code for the colour of letters.
+    /// Returns the escape code for a text colour.
     pub fn letter(self, colour: Rgb) -> String {
         self.code(38, colour)
     }
 
-    /// Escape code for the colour behind letters.
+    /// Returns the escape code for a background colour.
     pub fn ground(self, colour: Rgb) -> String {
         self.code(48, colour)
     }
 
-    /// Escape code for the terminal's own colours.
+    /// Returns the escape code for the terminal's default colours.
     pub fn reset(self) -> &'static str {
         match self {
             Self::Plain => "",
@@ -75,16 +75,16 @@ impl Ink {
 /// A column of a table as text.
 struct TextColumn {
     head: String,
-    /// Of each line.
+    /// Text of each line.
     said: Vec<String>,
     is_number: bool,
 }
 
-/// A table as text without escape codes, lines at most `width` letters long: settings that are the same in all rows once above it, then a
-/// line a row of what varies, was found and is the cost, as far as there is room.
+/// Returns a table as text without escape codes, in lines of at most `width` characters. Settings that are equal in all rows come first, once. Then each row
+/// has a line with its varying settings, values and costs, as far as there is room.
 ///
-/// Of more than 40 rows one setting runs across where settings tell all rows apart; else the text has the first rows, and says how many
-/// there are.
+/// A table of more than 40 rows is shown as a pivot table: one setting runs along the columns. If the settings do not distinguish all rows, the text contains
+/// the first 40 rows and the number of all rows.
 pub fn table_text(table: &Table, width: usize) -> String {
     if table.n_rows > MOST_LINES
         && let Some(text) = pivot_text(table, width)
@@ -110,7 +110,7 @@ pub fn table_text(table: &Table, width: usize) -> String {
     text
 }
 
-/// What a terminal has room for: what varies, then what came of it, then what it costs.
+/// Returns the columns to show: varying settings, then values and outcomes, then costs.
 fn shown_columns(table: &Table) -> Vec<Setting<'_>> {
     let rank = |setting: &Setting| match setting.column.role {
         Role::Choice | Role::Condition | Role::Subject => 0,
@@ -124,16 +124,16 @@ fn shown_columns(table: &Table) -> Vec<Setting<'_>> {
     shown
 }
 
-/// Whether a column tells something of the rows.
+/// Returns whether a column contains information about the rows.
 fn is_telling(table: &Table, setting: &Setting) -> bool {
     let mut rows = 0..table.n_rows;
     match setting.column.role {
         Role::Note => false,
-        // Of one row, the subject says what it is about.
+        // For a single row, the subject identifies it.
         Role::Subject if table.n_rows == 1 => true,
-        // A pair of objects is not said by the second alone, even if the first is the same in all rows.
+        // A pair of objects needs both names, even if the first is the same in all rows.
         Role::Subject => !setting.is_number() || setting.data.varies(rows),
-        // What is the same for all, or for none, says nothing.
+        // A value or cost column that is absent in all rows has no information.
         Role::Value(_) | Role::Cost if setting.is_number() => {
             rows.any(|row| setting.data.value(row).is_some())
         }
@@ -141,13 +141,13 @@ fn is_telling(table: &Table, setting: &Setting) -> bool {
     }
 }
 
-/// So many lines of columns from the left, as many as there is room for, and how many these are.
+/// Returns the first `n_lines` lines of as many columns as fit, and the number of these columns.
 fn columns_text(mut columns: Vec<TextColumn>, n_lines: usize, width: usize) -> (String, usize) {
     let mut used = 0;
     let fits = |column: &TextColumn| {
         let widest = column.said.iter().map(|text| letters(text)).max();
         let widest = widest.unwrap_or(0);
-        // A long note breaks over lines, a number never does.
+        // A long note wraps, a number does not.
         let wide = if column.is_number {
             widest
         } else {
@@ -171,9 +171,9 @@ fn columns_text(mut columns: Vec<TextColumn>, n_lines: usize, width: usize) -> (
         }
         let is_interval = |text: &String| text.contains('[');
         column.set_constraint(match text.said.iter().any(is_interval) {
-            // An interval broken over two lines cannot be read down the column.
+            // A wrapped interval would be hard to read.
             true => ColumnConstraint::ContentWidth,
-            // A heading breaks between words, and a number with its unit nowhere; the width includes the padding.
+            // Headings wrap between words; numbers with units do not wrap. The width includes the padding.
             false => {
                 let widest = text.said.iter().map(|text| letters(text)).max();
                 let unbroken = widest.filter(|_| text.is_number).unwrap_or(0);
@@ -189,14 +189,14 @@ fn columns_text(mut columns: Vec<TextColumn>, n_lines: usize, width: usize) -> (
     (lines, columns.len())
 }
 
-/// What is the same in all rows, in a line or more; empty if nothing is.
+/// Describes the settings that are equal in all rows. Empty if there are none.
 fn constants(table: &Table, width: usize) -> String {
     let rows: Vec<usize> = (0..table.n_rows).collect();
     if rows.len() < 2 {
         return String::new();
     }
     let fixed = Swept::of(table, &rows).fixed;
-    // An ideal world goes without saying.
+    // Conditions that are zero (ideal) are left out.
     let is_said = |setting: &&Setting| {
         let value = setting.data.value(0);
         let is_ideal = setting.column.role == Role::Condition && value == Some(Value::Number(0.0));
@@ -212,8 +212,8 @@ fn constants(table: &Table, width: usize) -> String {
     }
 }
 
-/// One setting across, the others down, and of each combination a value: for tables of more rows than a terminal has. None of a table whose
-/// rows settings do not tell apart.
+/// Returns a pivot table for tables with more rows than a terminal shows: one setting along the columns, the others along the rows. Returns `None` if the
+/// settings do not distinguish all rows.
 fn pivot_text(table: &Table, width: usize) -> Option<String> {
     let rows: Vec<usize> = (0..table.n_rows).collect();
     let swept = Swept::of(table, &rows);
@@ -262,7 +262,7 @@ fn pivot_text(table: &Table, width: usize) -> Option<String> {
     Some(constants(table, width) + &head + &text + &paragraph(&remark, width))
 }
 
-/// Rows of a table for people, without lines; numbers, which is all but the columns of texts, end at the right.
+/// Formats rows as aligned columns without lines. The columns with indices in `texts` are left-aligned, all others right-aligned.
 pub fn rows_text(
     header: &[&str],
     texts: &[usize],
@@ -279,7 +279,7 @@ pub fn rows_text(
     table.to_string()
 }
 
-/// A table with a line below its header alone, at least 20 letters wide, that breaks its texts to fit a width.
+/// Creates a table with a line below its header, at least 20 characters wide. Its texts wrap to fit the width.
 fn ruled_table(width: usize) -> TextTable {
     let mut table = TextTable::new();
     table.load_preset(presets::NOTHING);
@@ -298,7 +298,7 @@ fn letters(text: &str) -> usize {
     text.chars().count()
 }
 
-/// A text broken at spaces (not at U+00A0) into lines of at most `width` letters, with a line end after each.
+/// Wraps a text at spaces (not at U+00A0) into lines of at most `width` characters, each with a line end.
 pub(crate) fn paragraph(text: &str, width: usize) -> String {
     break_lines(text, |line| letters(line) <= width).join("\n") + "\n"
 }

@@ -27,7 +27,7 @@ impl Simulation<'_> {
     /// "#)?;
     /// let plan = ScenePlan::new("ball.toml", std::path::Path::new(""), spec)?;
     /// let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);
-    /// Moves down until the force on the palm is one newton.
+    /// // Moves down until the force on the palm is one newton.
     /// let mut height = 0.0;
     /// while simulation.observe()?.patches[0].wrench.force.z > -1.0 {
     ///     height -= 0.1e-3;

@@ -17,11 +17,11 @@ const SAGITTA: f64 = 0.02;
 /// Facets around a round shape, from and to. More than these take memory and move no taxel by a noticeable distance.
 const N_FACETS: [f64; 2] = [16.0, 720.0];
 
-/// Which shapes of which link.
+/// Selection of a link and its shapes.
 pub(super) struct LinkSurface<'a> {
     /// Name of the link.
     pub link: &'a str,
-    /// `None`: the collision shapes if the link has any, else the visual shapes.
+    /// Role of the shapes. `None`: the collision shapes if the link has any, else the visual shapes.
     pub role: Option<ShapeRole>,
 }
 
@@ -75,7 +75,7 @@ impl Reader<'_> {
     }
 }
 
-/// Shapes with a volume of the role; without a role, the collision shapes, or the visual shapes if there are none.
+/// Returns the shapes of a role that have a volume. Without a role: the collision shapes, or the visual shapes if there are none.
 fn solids(link: &Link, role: Option<ShapeRole>) -> Vec<&LinkShape> {
     let of = |role: ShapeRole| -> Vec<&LinkShape> {
         let shapes = link.shapes.iter();
@@ -99,7 +99,7 @@ fn kind(role: Option<ShapeRole>) -> &'static str {
     }
 }
 
-/// Reads the mesh that a URDF file in `folder` names, its numbers multiplied by the scale.
+/// Reads the mesh that a URDF file in `folder` names, and multiplies its coordinates by the scale.
 fn read_link_mesh(file: &str, scale: DVec3, folder: Option<&Path>) -> Result<TriangleMesh> {
     let Some(path) = find_mesh(file, folder.unwrap_or(Path::new(""))) else {
         let allowed =
@@ -119,8 +119,8 @@ fn read_link_mesh(file: &str, scale: DVec3, folder: Option<&Path>) -> Result<Tri
     TriangleMesh::new(&place, vertices.collect(), triangles.collect())
 }
 
-/// Returns the path of a mesh as a URDF file in `folder` writes it: relative to the folder, `file://…`, or `package://NAME/…`, which is looked
-/// for in each folder above as NAME/… and, because a copy of a package may have another name, without NAME.
+/// Returns the path of a mesh that a URDF file in `folder` names: relative to the folder, `file://…`, or `package://NAME/…`. A package path is searched for in
+/// each parent folder as NAME/… and without NAME, because a copy of a package may have another name.
 fn find_mesh(file: &str, folder: &Path) -> Option<PathBuf> {
     let in_package = ["package://", "model://"]
         .iter()
@@ -139,7 +139,7 @@ fn find_mesh(file: &str, folder: &Path) -> Option<PathBuf> {
     found.find(|path| path.is_file())
 }
 
-/// The triangles of a shape that is no mesh, about its own origin.
+/// Returns the facets of a shape that is not a mesh, in the shape's own frame.
 fn facets(geometry: &LinkGeometry, pitch: f64) -> Result<TriangleMesh> {
     let (vertices, triangles) = match *geometry {
         LinkGeometry::Box { size } => box_facets(size),
@@ -174,7 +174,7 @@ fn box_facets(size: DVec3) -> Facets {
     ((0..8).map(corner).collect(), halves.collect())
 }
 
-/// A ball that is cut at its equator, its halves moved apart by `half` along z each.
+/// Returns the facets of a ball or capsule: each hemisphere is shifted by `half` along z.
 fn ball(radius: f64, half: f64, pitch: f64) -> Facets {
     let n = n_facets(radius, pitch);
     let n_rings = n.div_ceil(4).max(2);
@@ -184,20 +184,20 @@ fn ball(radius: f64, half: f64, pitch: f64) -> Facets {
     };
     let pole = |sign: f64| (0.0, sign * (half + radius));
     let lower = (0..n_rings).rev().map(|ring| point(ring, -1.0));
-    // A ball has one equator.
+    // A ball has only one equator ring.
     let upper = (usize::from(half == 0.0)..n_rings).map(|ring| point(ring, 1.0));
     let profile = std::iter::once(pole(-1.0)).chain(lower).chain(upper);
     let profile: Vec<(f64, f64)> = profile.chain([pole(1.0)]).collect();
     revolved(&profile, n)
 }
 
-/// Facets around a circle so that their middles are within [`SAGITTA`] pitches of it: r (1 − cos(π/n)) ≤ sagitta.
+/// Returns the number of facets around a circle so that their middles are within [`SAGITTA`] pitches of it: r (1 − cos(π/n)) ≤ sagitta.
 fn n_facets(radius: f64, pitch: f64) -> usize {
     let cos = (1.0 - SAGITTA * pitch / radius).max(0.0);
     (PI / cos.acos()).ceil().clamp(N_FACETS[0], N_FACETS[1]) as usize
 }
 
-/// A profile (r, z), from its lower end on the axis to its upper one, turned about z in n facets.
+/// Returns the surface of revolution about z with n facets. The profile (r, z) runs from its lower to its upper end on the axis.
 fn revolved(profile: &[(f64, f64)], n: usize) -> Facets {
     let (lower, upper) = (profile[0].1, profile[profile.len() - 1].1);
     let rings = &profile[1..profile.len() - 1];

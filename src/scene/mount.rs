@@ -1,4 +1,4 @@
-//! What carries skins, and objects that ride along: the world, a link of a robot, an object.
+//! Mounts of patches and carried objects: on the world, a robot's link, or an object.
 
 use super::plan_robot::PlannedRobot;
 use super::reader::Reader;
@@ -8,31 +8,31 @@ use crate::error::Result;
 use crate::geometry::Pose;
 use crate::scene::spec_motion::PoseSpec;
 
-/// What carries something.
+/// Body that carries a patch or an object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Mount {
-    /// Nothing: it stays where it is, `world_from_mounted`.
+    /// The world; the pose `world_from_mounted` is constant.
     World(Pose),
-    /// A robot's link.
+    /// A link of a robot.
     Link {
-        /// The robot's number.
+        /// Index of the robot in the scene.
         robot: usize,
-        /// The link's number in the robot.
+        /// Index of the link in the robot.
         link: usize,
-        /// Where it is on the link.
+        /// Pose on the link.
         link_from_mounted: Pose,
     },
-    /// An object.
+    /// An object of the scene.
     Object {
-        /// Its number in the scene.
+        /// Index of the object in the scene.
         object: usize,
-        /// Where it is on the object.
+        /// Pose on the object.
         object_from_mounted: Pose,
     },
 }
 
 impl Mount {
-    /// Where what is mounted is, in the world.
+    /// Returns the pose of the mounted body, `world_from_mounted`.
     pub(super) fn place(&self, robots: &[RobotState], world_from_objects: &[Pose]) -> Pose {
         match self {
             Self::World(pose) => *pose,
@@ -50,7 +50,7 @@ impl Mount {
 }
 
 impl Reader<'_> {
-    /// What carries a patch.
+    /// Returns the mount of a patch.
     pub fn mount_of_patch(
         &self,
         key: &str,
@@ -81,7 +81,7 @@ impl Reader<'_> {
         })
     }
 
-    /// What carries something that names a robot and its link, or neither.
+    /// Returns the mount for the optional names of a robot and its link.
     pub fn mount(
         &self,
         key: &str,

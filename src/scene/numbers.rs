@@ -1,20 +1,20 @@
-//! One number for all, or a list of them.
+//! A number for all elements, or a list with one number for each.
 
 use serde::de::{Deserializer, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// `stiffness_n_per_m = 100.0` or `stiffness_n_per_m = [90.0, 110.0]`.
+/// A number for all elements or a list: `stiffness_n_per_m = 100.0` or `stiffness_n_per_m = [90.0, 110.0]`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Numbers {
-    /// One for all.
+    /// One number for all elements.
     One(f64),
-    /// One each.
+    /// One number for each element.
     Each(Vec<f64>),
 }
 
-// Not by serde's untagged enum: its error says only that nothing matched.
+// A manual implementation: the error of serde's untagged enum only states that no variant matched.
 impl<'de> Deserialize<'de> for Numbers {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_any(NumbersVisitor)

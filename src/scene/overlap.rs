@@ -1,4 +1,4 @@
-//! Objects that overlap a free object when a scene starts.
+//! Check for objects that overlap a free object at the start of a scene.
 
 use super::plan_object::{Movement, PlannedObject};
 use super::plan_robot::PlannedRobot;
@@ -9,10 +9,10 @@ use crate::geometry::Pose;
 use crate::inputs::check::Check;
 use crate::objects::{Model, Sphere};
 
-/// Objects overlap at most by this share of the smaller one's radius, however coarse their spheres are.
+/// Maximum overlap as a fraction of the smaller object's radius, which limits the tolerance for coarse spheres. A larger value accepts deeper overlaps.
 const MAX_SHARE: f64 = 0.5;
 
-/// An object where it starts.
+/// An object at its initial pose.
 struct Start<'a> {
     object: &'a PlannedObject,
     spheres: &'a [Sphere],
@@ -21,10 +21,10 @@ struct Start<'a> {
 
 /// Checks that no free object starts inside another object.
 ///
-/// Spheres may overlap by as much as both objects' spheres may stand out of their surfaces.
+/// The tolerated overlap is the sum of both objects' surface errors.
 ///
 /// # Errors
-/// The error names both objects and the overlap of their deepest spheres.
+/// If a free object overlaps another object by more than the tolerance; the error names both objects and the overlap of their deepest spheres.
 pub(super) fn check_starts(
     check: &Check,
     objects: &[PlannedObject],
@@ -55,7 +55,7 @@ pub(super) fn check_starts(
     let starts: Vec<Start> = starts.collect();
     for (number, other) in starts.iter().enumerate() {
         for first in &starts[..number] {
-            // The key is that of a free object: of two, the later one.
+            // The error has the key of a free object; of two free objects, the later one.
             let (free, other) = match is_free(other.object) {
                 true => (other, first),
                 false => (first, other),
@@ -83,7 +83,7 @@ pub(super) fn check_starts(
 }
 
 impl Start<'_> {
-    /// The ball around it in the world: centre and radius, metres.
+    /// Returns the bounding ball in the world frame: centre and radius, metres.
     fn ball(&self) -> Sphere {
         let (center, radius) = self.object.ball;
         Sphere {
@@ -92,7 +92,7 @@ impl Start<'_> {
         }
     }
 
-    /// Its spheres in the world that reach a ball, sorted by where they begin along x.
+    /// Returns the spheres in the world frame that intersect a ball, sorted by their smallest x coordinate.
     fn spheres_near(&self, ball: &Sphere) -> Vec<Sphere> {
         let placed = self.spheres.iter().map(|sphere| Sphere {
             center: self.pose.transform_point(sphere.center),
@@ -105,7 +105,7 @@ impl Start<'_> {
         near
     }
 
-    /// How deep the deepest two spheres of both are inside one another, metres; not positive if none are.
+    /// Returns the largest overlap of two spheres, one of each object, metres; 0 if there is no overlap.
     fn overlap(&self, other: &Self) -> f64 {
         let (own, others) = (
             self.spheres_near(&other.ball()),

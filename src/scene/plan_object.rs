@@ -1,4 +1,4 @@
-//! Objects of a scene: what they are made of, and how they move.
+//! Objects of a scene: contact models and motions.
 
 use super::mount::Mount;
 use super::plan_patch::PlannedPatch;
@@ -17,23 +17,23 @@ use crate::spelling::nearest_names;
 use crate::world::Motion;
 use glam::DVec3;
 
-/// An object whose motion is known, or what it needs to find its own.
+/// Object of a scene that can run.
 #[derive(Clone, Debug)]
 pub struct PlannedObject {
-    /// Its name in the scene.
+    /// Name in the scene.
     pub name: String,
-    /// What decides where it is.
+    /// Origin of the object's pose.
     pub movement: Movement,
-    /// What it is pushed for besides, if its motion is imposed.
+    /// Force control, if the motion is imposed and a force is given.
     pub press: Option<PlannedPress>,
-    /// A ball around it, in its own frame, metres.
+    /// Bounding ball (centre, radius), object frame, metres.
     pub(super) ball: (DVec3, f64),
-    /// How far its spheres may be from its surface, metres.
+    /// Maximum distance of the spheres from the object's surface, metres.
     pub(super) surface_error: f64,
 }
 
 impl ObjectSpec {
-    /// `surface_error_mm`, or its default beside patches of which the finest has this pitch.
+    /// Returns `surface_error_mm` or its default, which depends on the finest pitch of the patches.
     fn surface_error_or_default_mm(&self, finest_mm: f64, for_mesh: ModelSpec) -> f64 {
         let model = self.mesh.as_ref().map_or(ModelSpec::Mesh, |_| for_mesh);
         let default = || model.default_surface_error_mm(finest_mm);
@@ -41,20 +41,20 @@ impl ObjectSpec {
     }
 }
 
-/// What decides where an object is.
+/// Origin of an object's pose.
 #[derive(Clone, Debug)]
 pub enum Movement {
-    /// It goes where it is told, whatever it meets.
+    /// Imposed motion, independent of contacts.
     Imposed(Motion),
-    /// It goes where a robot's link goes.
+    /// Fixed on a robot's link.
     Carried(Mount),
-    /// Gravity and the skins.
+    /// Free object under gravity and contact forces.
     Free {
-        /// `world_from_object` before it comes to rest.
+        /// Initial pose `world_from_object`, before the first equilibrium.
         start: Pose,
-        /// Kilograms.
+        /// Mass, kilograms.
         mass: f64,
-        /// In its own frame, metres.
+        /// Centre of mass, object frame, metres.
         center_of_mass: DVec3,
     },
 }
@@ -102,7 +102,7 @@ impl Reader<'_> {
         Ok((object, model))
     }
 
-    /// That every model in memory is one of the scene's objects.
+    /// Checks that each model in memory belongs to an object of the scene.
     pub fn check_models(&self, objects: &[ObjectSpec]) -> Result<()> {
         let names = objects.iter().map(|object| object.name.as_str());
         for name in self.models.keys() {
@@ -115,7 +115,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// What an object is made of; a mesh becomes `model`.
+    /// Returns the contact model of an object. `model` selects the contact model of a mesh.
     fn model(
         &self,
         key: &str,
@@ -199,7 +199,7 @@ impl Reader<'_> {
         }
     }
 
-    /// What is in memory is taken as it is.
+    /// Returns a model in memory unchanged.
     fn model_in_memory(&self, key: &str, spec: &ObjectSpec, model: &Model) -> Result<Model> {
         let shape = [
             ("object", spec.object.is_some()),
@@ -256,7 +256,7 @@ impl Reader<'_> {
     }
 }
 
-/// A ball around a model: about the middle of its box.
+/// Returns a bounding ball, centred at the middle of the model's bounding box.
 fn ball(model: &Model) -> (DVec3, f64) {
     let bounds = model.bounds();
     let center = bounds.center();

@@ -1,4 +1,4 @@
-//! Skin of a scene: layouts and taxels, and what carries them.
+//! Patches of a scene: layouts, taxels and mounts.
 
 use super::link_surface::LinkSurface;
 use super::mount::Mount;
@@ -15,27 +15,27 @@ use crate::random::Seed;
 use crate::world::{DrapeRegion, Grid, Layout, Patch, Shears};
 use std::path::Path;
 
-/// A patch and where it is mounted.
+/// Patch of a scene that can run, with its mount.
 #[derive(Clone, Debug)]
 pub struct PlannedPatch {
     /// The patch.
     pub skin: Patch,
-    /// What carries it.
+    /// Body that carries the patch.
     pub mount: Mount,
-    /// The shear springs of its taxels, if it has friction.
+    /// Tangential springs of the taxels. `None` if the patch has no friction.
     pub shears: Option<Shears>,
-    /// Its signal, if it has any steps.
+    /// Signal chain. `None` if it has no steps.
     pub signal: Option<PlannedSignal>,
 }
 
 impl PlannedPatch {
-    /// Whether what was before decides what it feels: dampers and friction remember.
+    /// Returns whether the state depends on earlier steps: this holds for dampers and friction.
     pub fn remembers(&self) -> bool {
         let mut taxels = self.skin.taxels().all().iter();
         self.shears.is_some() || taxels.any(|taxel| taxel.damping > 0.0)
     }
 
-    /// Whether objects can drag it sideways.
+    /// Returns whether a taxel has a positive friction coefficient.
     pub fn has_friction(&self) -> bool {
         let shears = self.shears.iter().flat_map(|shears| shears.all());
         shears.into_iter().any(|shear| shear.friction > 0.0)
@@ -43,7 +43,7 @@ impl PlannedPatch {
 }
 
 impl LayoutSpec {
-    /// Between neighbours, mm.
+    /// Returns the distance of neighbours, mm.
     pub fn pitch_mm(&self) -> f64 {
         match *self {
             Self::Grid { pitch_mm, .. }
@@ -190,7 +190,7 @@ impl Reader<'_> {
         }
     }
 
-    /// The part of a mesh file, or of a link if there is no file, that carries taxels.
+    /// Returns the region of a mesh file, or of a link if `mesh` is `None`, that carries taxels.
     fn region(&self, key: &str, spec: &RegionSpec, mesh: Option<&Path>) -> Result<DrapeRegion> {
         let refuse = |given: &str, allowed: &str| Err(self.check.error(key, given, allowed));
         if spec.shapes.is_some() && spec.link.is_none() {

@@ -1,4 +1,4 @@
-//! Objects that are pushed onto a patch until it feels a force: their wishes, checked.
+//! Force control of pressed objects, with checked values.
 
 use super::numbers::Numbers;
 use super::plan_patch::PlannedPatch;
@@ -8,25 +8,25 @@ use crate::error::Result;
 use crate::inputs::check::{not_negative, positive};
 use glam::DVec3;
 
-/// What an object is pushed for.
+/// Force control of an object that is pressed onto a patch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlannedPress {
-    /// The number of the patch that is to feel the force.
+    /// Index of the patch whose force is controlled.
     pub patch: usize,
-    /// Where to: unit, in the world.
+    /// Direction of the travel: unit vector in the world frame.
     pub direction: DVec3,
-    /// When forces are wanted, seconds, ascending; at least one.
+    /// Times of the target forces, seconds, strictly ascending; at least one.
     pub times: Vec<f64>,
-    /// Σ k δ at these times, N, not negative; straight lines between them, the first and last beyond.
+    /// Target spring forces Σ k δ at these times, N, not negative. They are interpolated linearly and constant outside these times.
     pub forces: Vec<f64>,
-    /// Along the direction, m/s, positive.
+    /// Maximum speed along the direction, m/s, positive.
     pub speed: f64,
-    /// Metres from where the motion says, at most; positive.
+    /// Maximum travel from the pose of the motion, metres, positive.
     pub travel: f64,
 }
 
 impl PlannedPress {
-    /// The force that is wanted at a time, N.
+    /// Returns the target force at a time, N.
     pub fn force_at(&self, time: f64) -> f64 {
         let after = self.times.partition_point(|&t| t <= time);
         match (after.checked_sub(1), self.forces.get(after)) {
@@ -39,7 +39,7 @@ impl PlannedPress {
         }
     }
 
-    /// When the force is what it stays, seconds.
+    /// Returns the time of the last target force, seconds.
     pub fn end(&self) -> f64 {
         self.times.last().copied().unwrap_or(0.0)
     }

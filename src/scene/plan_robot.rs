@@ -1,4 +1,4 @@
-//! Robots of a scene, their motions checked.
+//! Robots of a scene with checked motions.
 
 use super::reader::Reader;
 use super::spec::RobotSpec;
@@ -9,23 +9,23 @@ use crate::world::{Joint, JointTrajectory, Motion, Robot};
 use ndarray::Array2;
 use std::path::{Path, PathBuf};
 
-/// A robot whose motion is known.
+/// Robot of a scene that can run.
 #[derive(Clone, Debug)]
 pub struct PlannedRobot {
-    /// Its name in the scene.
+    /// Name in the scene.
     pub name: String,
-    /// Its links and joints.
+    /// Links and joints.
     pub robot: Robot,
-    /// The folder of its URDF file, which the meshes of its links are relative to.
+    /// Folder of the URDF file. Mesh files of the links are relative to this folder.
     pub folder: Option<PathBuf>,
-    /// Where its base is.
+    /// Motion of the base.
     pub base: Motion,
-    /// Where its joints are; `None` if they stay at their [rest positions](Robot::rest_positions).
+    /// Motion of the joints. `None` if they stay at their [rest positions](Robot::rest_positions).
     pub joints: Option<JointTrajectory>,
 }
 
 impl PlannedRobot {
-    /// When it is where it stays, seconds.
+    /// Returns the time when the motion ends, seconds.
     pub fn end(&self) -> f64 {
         let joints = self.joints.as_ref().map_or(0.0, JointTrajectory::end);
         self.base.end().max(joints)
@@ -93,7 +93,7 @@ impl Reader<'_> {
         self.under(key, trajectory).map(Some)
     }
 
-    /// A row a way-point, a column a position of the robot; rad and m. Those that are not listed rest.
+    /// Returns the way-points, shape (n_times, n_coordinates), rad and m. Joints that are not listed stay at their rest positions.
     fn positions(&self, key: &str, joints: &JointsSpec, robot: &Robot) -> Result<Array2<f64>> {
         let key = &format!("{key}.positions");
         let n_times = joints.time_s.len();
@@ -109,7 +109,7 @@ impl Reader<'_> {
                 .enumerate()
                 .find_map(|(column, c)| {
                     let suffix = given.strip_prefix(&c.name)?;
-                    // A name is never without its unit here.
+                    // The first unit is empty: here, each name needs its unit.
                     let mut units = c.dimension.units().iter().skip(1);
                     units
                         .find(|(unit, _)| *unit == suffix)
@@ -146,7 +146,7 @@ impl Reader<'_> {
     }
 }
 
-/// Why no position of a scene moves a joint.
+/// Returns the reason why the scene cannot move a joint.
 fn stays(joint: &Joint, robot: &Robot) -> String {
     match joint.mimic {
         Some(mimic) => format!("mimics `{}`", robot.joints()[mimic.joint].name),

@@ -1,4 +1,4 @@
-//! What a patch's electronics make of what it feels: steps from deflections or forces to a signal, checked.
+//! Signal chain of a patch, with checked steps, from deflections or forces to sensor output.
 
 use super::frame::PatchReading;
 use super::reader::{MM, Reader};
@@ -12,24 +12,24 @@ use crate::spelling::nearest_names;
 use crate::world::Patch;
 use std::collections::BTreeMap;
 
-/// The key of smoothing, beside those of [noise](NOISES) and of sensor errors.
+/// Key of smoothing. Other keys are those of [noise](NOISES) and of sensor errors.
 const SMOOTHING: &str = "smoothing_mm";
 
-/// The signal of a patch, ready to be read.
+/// Signal chain of a patch, ready for use.
 #[derive(Clone, Debug)]
 pub struct PlannedSignal {
     chain: Chain,
-    /// What it begins with.
+    /// Input quantity of the chain.
     begins: Quantity,
 }
 
 impl PlannedSignal {
-    /// What its values are.
+    /// Returns the quantity of the output.
     pub fn quantity(&self) -> Quantity {
         self.chain.quantity()
     }
 
-    /// Reads what a patch feels, its noise of this name, at a share of the scene's time.
+    /// Writes the output of the chain to the reading. `name` is the seed of the noise; `share` is the elapsed fraction of the scene's duration.
     pub(super) fn read(
         &self,
         reading: &mut PatchReading,
@@ -55,7 +55,7 @@ impl PlannedSignal {
 }
 
 impl Reader<'_> {
-    /// Of a patch that has steps.
+    /// Returns the signal chain, or `None` if there are no steps.
     pub fn signal(
         &self,
         key: &str,

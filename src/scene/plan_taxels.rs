@@ -1,4 +1,4 @@
-//! What the taxels of a scene's patch are: numbers for all, lists, or columns of a CSV file.
+//! Taxel properties of a patch: one number for all, a list, or a column of a CSV file.
 
 use super::numbers::Numbers;
 use super::reader::{MM, Reader};
@@ -9,7 +9,7 @@ use crate::numbers_csv::NumberTable;
 use crate::spelling::nearest_names;
 use crate::world::{PerTaxel, Shear, Shears, Taxel, Taxels};
 
-/// Stiffness of taxels of which nothing is said, N/m.
+/// Default stiffness of taxels, N/m.
 const STIFFNESS: f64 = 100.0;
 
 const RADIUS: &str = "taxel_radius_mm";
@@ -20,18 +20,18 @@ const FRICTION: &str = "friction";
 const SHEAR: &str = "shear_stiffness_n_per_m";
 const NAMES: [&str; 6] = [RADIUS, STROKE, STIFF, DAMPING, FRICTION, SHEAR];
 
-/// Where the numbers of one patch are looked up.
+/// Source of the taxel properties of one patch.
 struct Lookup<'a> {
     reader: &'a Reader<'a>,
-    /// Of the patch.
+    /// Key of the patch in the scene file.
     key: &'a str,
-    /// A row a taxel.
+    /// Table of the CSV file, one row for each taxel.
     table: NumberTable,
     n_taxels: usize,
 }
 
 impl Reader<'_> {
-    /// The taxels of a patch and, if it has friction, their shear springs; defaults go into the spec.
+    /// Returns the taxels of a patch and, if it has friction, their tangential springs. Writes defaults into the spec.
     pub fn taxels(
         &self,
         key: &str,
@@ -97,7 +97,7 @@ impl Reader<'_> {
 }
 
 impl Lookup<'_> {
-    /// A property that there must be.
+    /// Returns a required property.
     fn needed(
         &self,
         name: &'static str,
@@ -112,7 +112,7 @@ impl Lookup<'_> {
         })
     }
 
-    /// A property as it was written, each number checked.
+    /// Returns a property from the scene file or the CSV file, after checking each number.
     fn find(
         &self,
         name: &'static str,
@@ -176,7 +176,7 @@ impl Lookup<'_> {
         self.reader.check.error(&key, given, allowed)
     }
 
-    /// One for all if all that it is made of is.
+    /// Returns equal values for all taxels if all inputs are equal for all taxels.
     fn each<T, const N: usize>(
         &self,
         of: [&PerTaxel<f64>; N],
@@ -190,7 +190,7 @@ impl Lookup<'_> {
     }
 }
 
-/// Reads a number a taxel of each property that the columns are; the error gives line and column, and a name that is none or is there twice.
+/// Reads a table with one row for each taxel and one column for each property. Errors give line and column; unknown and repeated column names are errors.
 fn read_table(place: &str, source: impl std::io::Read) -> Result<NumberTable> {
     let allowed = "a header and one row a taxel, of as many numbers";
     let table = NumberTable::read(place, source, allowed)?;

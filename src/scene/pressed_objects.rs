@@ -1,4 +1,4 @@
-//! Objects that are pushed onto a patch until it feels a force: how far each of them is.
+//! State of pressed objects: travel and force.
 
 use super::frame::{Held, ObjectReading};
 use super::plan::ScenePlan;
@@ -6,23 +6,23 @@ use super::skin_state::{PlacedObjects, SkinState};
 use crate::contact::{HeldForce, MovedObject, TaxelContact, Workspace};
 use crate::geometry::Pose;
 
-/// All objects of a scene that are pushed for a force.
+/// All pressed objects of a scene.
 #[derive(Clone, Debug)]
 pub(super) struct PressedObjects {
     all: Vec<Pressed>,
-    /// `patch_from_object`, one an object.
+    /// Pose of each object in the patch frame, `patch_from_object`.
     poses: Vec<Pose>,
     workspace: Workspace,
 }
 
-/// One of them.
+/// One pressed object.
 #[derive(Clone, Debug)]
 struct Pressed {
     object: usize,
     now: HeldForce,
-    /// N.
+    /// Target force, N.
     wanted: f64,
-    /// Its contacts with the patch that it is pushed onto: it goes on pressing what it presses, however deep it goes.
+    /// Contacts with the pressed patch. They persist, however far the object travels.
     contacts: Vec<TaxelContact>,
 }
 
@@ -43,8 +43,8 @@ impl PressedObjects {
         }
     }
 
-    /// Pushes each, in the order of the scene, from where its motion says that it is; `dt` seconds after the last time, endless at
-    /// the start.
+    /// Moves each pressed object, in the order of the scene, starting from the pose of its motion. `dt` is the time since the last call, seconds; it is
+    /// infinite at the start.
     pub fn push(
         &mut self,
         plan: &ScenePlan,
@@ -78,7 +78,7 @@ impl PressedObjects {
         }
     }
 
-    /// What a patch, by its number, touches of those that are pushed onto it.
+    /// Returns the contacts of a patch, by its index, with the objects that are pressed onto it.
     pub fn contacts_on<'a>(
         &'a self,
         plan: &'a ScenePlan,
@@ -94,7 +94,7 @@ impl PressedObjects {
             .flat_map(|pressed| &pressed.contacts)
     }
 
-    /// Reports how they are held.
+    /// Writes the readings of the pressed objects.
     pub fn read(&self, readings: &mut [ObjectReading]) {
         for pressed in &self.all {
             readings[pressed.object].held = Held::Pressed {
@@ -107,9 +107,9 @@ impl PressedObjects {
 }
 
 impl Pressed {
-    /// Goes towards the force that is wanted, at most `way` metres and up to `farthest` from where its motion says that it is.
+    /// Moves the object towards the target force: by at most `way` metres, and at most `farthest` metres from the pose of its motion.
     ///
-    /// `poses`: `patch_from_object`, one an object, that of this one as its motion says.
+    /// `poses`: pose of each object, `patch_from_object`. For this object, it is the pose of its motion.
     fn go(
         &mut self,
         moved: &MovedObject,
@@ -124,7 +124,7 @@ impl Pressed {
         for _ in 0..n_parts {
             let here = self.now.travel;
             let back = (here - step).max(0.0);
-            // Without a force it goes back whether it touches anything or not.
+            // If the target force is zero, the object moves back, with or without contacts.
             let travels = match is_let_go {
                 true => [back; 3],
                 false => [back, here, (here + step).min(farthest)],

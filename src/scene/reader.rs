@@ -1,4 +1,4 @@
-//! What all parts of a plan need: errors with file and key, poses, motions, files beside the scene's.
+//! Functions for all parts of a scene plan: errors with file and key, poses, motions, and related files.
 
 use super::spec::PlaneSpec;
 use crate::contact::equilibrium::HalfSpace;
@@ -18,22 +18,22 @@ use std::path::{Path, PathBuf};
 /// Metres in a millimetre.
 pub(super) const MM: f64 = 1e-3;
 
-/// The file that a scene is read from.
+/// Reader of a scene file.
 pub(super) struct Reader<'a> {
     pub check: Check<'a>,
-    /// What its paths are relative to.
+    /// Folder to which paths in the file are relative.
     pub folder: &'a Path,
     /// Objects in memory, by their names in the scene.
     pub models: &'a BTreeMap<String, Model>,
 }
 
 impl Reader<'_> {
-    /// The same, its error with the file and the key before what it says.
+    /// Adds the file and the key to the error of a result.
     pub fn under<T>(&self, key: &str, result: Result<T>) -> Result<T> {
         result.map_err(|error| error.under(format!("{}, key {key}: ", self.check.place)))
     }
 
-    /// The place of a name among those that `key` may say.
+    /// Returns the index of a name in the names that are allowed for `key`.
     pub fn known<'n>(
         &self,
         key: &str,
@@ -43,12 +43,12 @@ impl Reader<'_> {
         known(format!("{}, key {key}", self.check.place), name, names)
     }
 
-    /// Where a file of the scene is.
+    /// Returns the path of a file that the scene names.
     pub fn path(&self, path: &Path) -> PathBuf {
         self.folder.join(path)
     }
 
-    /// Opens a file of the scene; also its name for errors.
+    /// Opens a file that the scene names. Also returns its path for errors.
     pub fn open(&self, key: &str, path: &Path) -> Result<(String, BufReader<File>)> {
         let path = self.path(path);
         let place = path.display().to_string();
@@ -63,7 +63,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Finite numbers in a unit.
+    /// Converts finite numbers to SI units; `unit` is the factor.
     pub fn vector(&self, key: &str, numbers: [f64; 3], unit: f64) -> Result<DVec3> {
         for number in numbers {
             self.check
@@ -94,7 +94,7 @@ impl Reader<'_> {
         })
     }
 
-    /// How what is under `key` moves.
+    /// Returns the motion of the body under `key`.
     pub fn motion(&self, key: &str, at: &PoseSpec, motion: Option<&MotionSpec>) -> Result<Motion> {
         let start = self.pose(&format!("{key}.at"), at)?;
         let Some(motion) = motion else {

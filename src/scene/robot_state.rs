@@ -1,18 +1,18 @@
-//! A robot on its way: where its links are now.
+//! State of a robot during a simulation: joint positions and link poses.
 
 use super::plan_robot::PlannedRobot;
 use crate::error::Result;
 use crate::geometry::Pose;
 
-/// The links of a robot at one time.
+/// Joint positions and link poses of a robot at one instant.
 #[derive(Clone, Debug)]
 pub(super) struct RobotState {
     positions: Vec<f64>,
-    /// Whether they were set by hand, and no longer follow the plan.
+    /// Whether the positions were set manually and no longer follow the plan.
     are_set: bool,
-    /// `world_from_base`, if it was put somewhere by hand.
+    /// Manually set pose of the base, `world_from_base`.
     pub base: Option<Pose>,
-    /// One a link.
+    /// Pose of each link.
     pub world_from_link: Vec<Pose>,
 }
 
@@ -26,13 +26,13 @@ impl RobotState {
         }
     }
 
-    /// From now on its joints are here; rad and m, one a coordinate.
+    /// Sets the joint positions from now on, rad and m, one for each coordinate.
     pub fn set_positions(&mut self, positions: &[f64]) {
         self.positions.copy_from_slice(positions);
         self.are_set = true;
     }
 
-    /// Goes to where it is at a time.
+    /// Computes the link poses at a time, seconds.
     pub fn place(&mut self, robot: &PlannedRobot, time: f64) -> Result<()> {
         if let (Some(joints), false) = (&robot.joints, self.are_set) {
             joints.positions_into(time, &mut self.positions);

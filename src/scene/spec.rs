@@ -1,6 +1,6 @@
-//! A scene as it is written: the keys of its TOML file, in the units of its keys.
+//! Specification of a scene: the keys of its TOML file, in the units of the keys.
 //!
-//! Nothing is checked here beyond names and types; [`ScenePlan`](super::ScenePlan) does that.
+//! Only names and types are checked here; [`ScenePlan`](super::ScenePlan) checks the values.
 
 pub use super::numbers::Numbers;
 pub use super::spec_motion::*;
@@ -11,87 +11,87 @@ use crate::files::FilePath;
 use crate::toml_text;
 use serde::{Deserialize, Serialize};
 
-/// The file. Paths in it are relative to its folder.
+/// Specification of a scene. Paths are relative to the folder of the scene file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneSpec {
-    /// What happens, in a sentence.
+    /// Description of the scene, one sentence.
     pub title: String,
-    /// The longest step, ms. The time between two frames is cut into equal steps of at most this; any length is stable.
+    /// Maximum time step, ms. The time between two frames is divided into equal steps of at most this length; any length is stable.
     #[serde(default = "one")]
     pub dt_ms: f64,
-    /// Frames a second of the scene.
+    /// Number of frames per second of scene time.
     #[serde(default = "hundred")]
     pub output_hz: f64,
-    /// How long it lasts; until the last imposed motion ends when left out.
+    /// Duration of the scene. Default: until the last imposed motion ends.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub duration_s: Option<f64>,
-    /// What pulls free objects, in the world.
+    /// Gravity, world frame.
     #[serde(default = "earth")]
     pub gravity_m_per_s2: [f64; 3],
-    /// Root of all randomness: where draped taxels begin.
+    /// Seed of all random numbers, such as the start of a draped layout.
     #[serde(default = "seed")]
     pub seed: u64,
-    /// `[[robots]]`
+    /// Robots: `[[robots]]`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub robots: Vec<RobotSpec>,
-    /// `[[patches]]`
+    /// Patches of skin: `[[patches]]`.
     pub patches: Vec<PatchSpec>,
-    /// `[[objects]]`
+    /// Objects: `[[objects]]`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub objects: Vec<ObjectSpec>,
-    /// `[[planes]]`
+    /// Planes: `[[planes]]`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub planes: Vec<PlaneSpec>,
 }
 
-/// `[[planes]]`: a table, or any half-space that free objects do not enter.
+/// Rigid plane: `[[planes]]`. Free objects do not enter its half-space, for example a table.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlaneSpec {
-    /// Its name in this scene.
+    /// Name, unique in the scene.
     pub name: String,
-    /// A point of its surface, in the world.
+    /// Point on the surface, world frame.
     #[serde(default)]
     pub point_mm: [f64; 3],
-    /// Out of it, in the world; of any length.
+    /// Outward normal, world frame, of any length.
     #[serde(default = "up")]
     pub normal: [f64; 3],
 }
 
-/// `[[robots]]`: what carries patches.
+/// Robot that carries patches or objects: `[[robots]]`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RobotSpec {
-    /// Its name in this scene.
+    /// Name, unique in the scene.
     pub name: String,
-    /// Its URDF file.
+    /// URDF file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub urdf: Option<FilePath>,
-    /// Instead of `urdf`: one link without joints.
+    /// Robot of one link without joints, in place of `urdf`.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub floating: bool,
-    /// Where its base is, or starts.
+    /// Pose, or initial pose, of the base.
     #[serde(default)]
     pub at: PoseSpec,
-    /// How its base moves; not at all when left out.
+    /// Motion of the base. Default: no motion.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<MotionSpec>,
-    /// Where its joints are. A joint that is not listed stands at 0, or at the nearest limit.
+    /// Joint positions. A joint that is not listed stays at 0, or at the nearest limit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub joints: Option<JointsSpec>,
 }
 
 impl SceneSpec {
-    /// Reads a scene.
+    /// Parses the text of a scene file.
     ///
     /// # Errors
-    /// The error names the file, the line and the key.
+    /// If the text is not a valid scene; the error contains the file, the line and the key.
     pub fn parse(place: &str, text: &str) -> Result<Self> {
         toml_text::read(place, text)
     }
 
-    /// Whether a text of a scene has a key by the name that `rotation_deg` had, which this version still reads: `rpy_deg`.
+    /// Returns whether the text contains `rpy_deg`, the old name of `rotation_deg`, which is still read.
     pub fn has_old_names(text: &str) -> bool {
         fn is_old(value: &toml::Value) -> bool {
             match value {
@@ -106,7 +106,7 @@ impl SceneSpec {
         table.is_some_and(|table| is_old(&table.into()))
     }
 
-    /// Writes the scene with its defaults spelt out.
+    /// Returns the scene as TOML, including default values.
     pub fn to_toml(&self) -> String {
         toml::to_string(self).expect("every field of a scene has a TOML form")
     }

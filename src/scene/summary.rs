@@ -1,50 +1,50 @@
-//! What came of a scene: its largest numbers, frame by frame.
+//! Summary of a simulation: largest values over all frames.
 
 use super::frame::{Frame, FrameSink, Held};
 use crate::error::Result;
 
-/// The most that a patch felt in any frame.
+/// Largest values of a patch over all frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PatchPeaks {
-    /// Metres.
+    /// Deflection of a taxel, metres.
     pub deflection: f64,
-    /// Along the axes, of all taxels together, newtons.
+    /// Sum of the taxel forces along the axes, newtons.
     pub force: f64,
-    /// Taxels with a force.
+    /// Number of taxels with a force.
     pub n_touched: usize,
-    /// Taxels at their stroke.
+    /// Number of taxels at their stroke.
     pub n_saturated: usize,
-    /// Taxels in grazing contact.
+    /// Number of taxels in grazing contact.
     pub n_grazing: usize,
-    /// Friction of all taxels together, newtons.
+    /// Friction force on the patch, newtons.
     pub shear: f64,
-    /// Taxels whose tips go with the object.
+    /// Number of taxels with sticking contacts.
     pub n_sticking: usize,
-    /// Taxels whose tips have slipped.
+    /// Number of taxels with slipping contacts.
     pub n_slipping: usize,
 }
 
-/// What came of an object.
+/// Summary of an object over all frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ObjectSummary {
-    /// What holds it in the last frame.
+    /// Cause of the pose in the last frame.
     pub held: Held,
-    /// Frames in which it was unsettled.
+    /// Number of frames without equilibrium.
     pub n_unsettled: usize,
-    /// The most of a free object's [imbalance](crate::contact::equilibrium::Equilibrium::imbalance) in any frame; 0 of others.
+    /// Largest [imbalance](crate::contact::equilibrium::Equilibrium::imbalance) of a free object over all frames; 0 for other objects.
     pub imbalance: f64,
-    /// Frames in which it was pressed with another force than was wanted.
+    /// Number of frames in which the force on a pressed object differed from the target.
     pub n_off: usize,
 }
 
-/// Peaks so far; a sink that keeps no frames.
+/// Frame sink that computes the summary and stores no frames.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Summary {
-    /// Frames seen.
+    /// Number of frames so far.
     pub n_frames: usize,
-    /// One a patch, in the plan's order.
+    /// Largest values of each patch, in the order of the plan.
     pub patches: Vec<PatchPeaks>,
-    /// One an object, in the plan's order.
+    /// Summary of each object, in the order of the plan.
     pub objects: Vec<ObjectSummary>,
 }
 

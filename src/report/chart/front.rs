@@ -1,27 +1,27 @@
-//! The Pareto front of a chart's points: one in each panel for each condition of the world, since nobody chooses that.
+//! Pareto front of a chart's points. Each panel has one front for each condition of the world, because a designer cannot choose the condition.
 
 use super::view::{Place, View};
 use crate::report::swept::Setting;
 use crate::table::{Better, Role, front};
 use std::collections::HashMap;
 
-/// Points of fronts that are numbered and named below a chart, at most.
+/// Maximum number of front points that are numbered and listed below a chart.
 const MOST_NAMED: usize = 24;
 
-/// Points on fronts.
+/// Pareto fronts of a chart.
 pub(super) struct Front<'a> {
     view: &'a View<'a>,
-    /// Of each front its panel, and its points along x.
+    /// For each front, the index of its panel and its points along x.
     pub fronts: Vec<(usize, Vec<&'a Place>)>,
 }
 
-/// Whether more of y is better.
+/// Returns whether larger values of y are better.
 pub(super) fn is_more_better(view: &View) -> bool {
     let y = view.column(&view.spec.y).map(|y| y.column.role);
     !matches!(y, Ok(Role::Value(Better::Less) | Role::Cost))
 }
 
-/// What the legend calls the front.
+/// Returns the legend text of the front.
 pub(super) fn words(view: &View) -> String {
     let cost = match view.column(&view.spec.x) {
         Ok(x) if matches!(&x.column.unit[..], "s" | "ms" | "us" | "µs") => "faster",
@@ -31,7 +31,7 @@ pub(super) fn words(view: &View) -> String {
 }
 
 impl<'a> Front<'a> {
-    /// Of a chart; without points if it has none.
+    /// Computes the fronts of a chart. Without points if the specification has no front.
     pub fn of(view: &'a View) -> Self {
         let conditions = Setting::of_roles(view.table, &[Role::Condition]);
         let conditions: Vec<Setting> = conditions.collect();
@@ -45,7 +45,7 @@ impl<'a> Front<'a> {
             let rows: Vec<usize> = here.map(|place| place.row).collect();
             for group in Setting::groups(&conditions, view.table, &rows) {
                 let group = group.iter().map(|row| places[row]);
-                // Places keep the order of values, so they serve as well as these.
+                // The mapping of values to places is monotonic, so places replace values here.
                 let points: Vec<(f64, f64)> = group.clone().map(|p| (p.x, p.y)).collect();
                 let is_on = front(&points, |a, b| if more { a > b } else { a < b });
                 let on = group.zip(is_on).filter(|(_, is_on)| *is_on);
@@ -57,13 +57,13 @@ impl<'a> Front<'a> {
         Self { view, fronts }
     }
 
-    /// Whether a row is on it.
+    /// Returns whether a row is on a front.
     pub fn has(&self, row: usize) -> bool {
         let mut points = self.fronts.iter().flat_map(|(_, front)| front);
         points.any(|place| place.row == row)
     }
 
-    /// Points with their numbers, panel by panel along x; none if they are too many.
+    /// Returns the points with their numbers, panel by panel along x. Empty if there are more than can be listed.
     pub fn numbered(&self) -> impl Iterator<Item = (usize, &'a Place)> {
         let all = self.fronts.iter().flat_map(|front| &front.1);
         let n = all.clone().count();
@@ -71,19 +71,19 @@ impl<'a> Front<'a> {
         all.enumerate().map(|(number, place)| (number + 1, place))
     }
 
-    /// A line a numbered point.
+    /// Returns one line of text for each numbered point.
     pub fn list(&self) -> Vec<String> {
         self.said(self.numbered().map(|(_, place)| place))
     }
 
-    /// The ends of the first front, the cheaper first.
+    /// Describes the first and last point of the first front, the cheaper one first.
     pub fn ends(&self) -> Option<[String; 2]> {
         let (_, front) = self.fronts.first()?;
         let ends = [*front.first()?, *front.last()?];
         self.said(ends.into_iter()).try_into().ok()
     }
 
-    /// Of each point what was chosen, what it reaches, and what it costs.
+    /// Describes each point: its settings, its value and its cost.
     fn said(&self, places: impl Iterator<Item = &'a Place>) -> Vec<String> {
         let view = self.view;
         let settings =

@@ -1,4 +1,4 @@
-//! Pixels of a chart: heading above, panels below it side by side and row by row, ticks and titles around them.
+//! Pixel layout of a chart: the heading, below it a grid of panels, with ticks and titles around them.
 
 use super::legend::{Heading, LEFT, LegendEntry, RIGHT};
 use super::scale::{Scale, Tick, thin};
@@ -7,51 +7,51 @@ use crate::report::pictures::colours::{GRID, INK, MUTED};
 use crate::report::pictures::drawing::{Align, Area, Drawing, Stroke, TextStyle};
 use crate::report::text_width::{shorten, text_width, wrap};
 
-/// Letters of tick labels.
+/// Font size of tick labels, pixels.
 pub(super) const TICK: f64 = 12.0;
-/// Letters of titles.
+/// Font size of titles, pixels.
 const LABEL: u32 = 13;
-/// Pixels between panels.
+/// Gap between panels, pixels.
 const GAP: f64 = 26.0;
-/// Pixels of a chart across, at least, so that its title has room.
+/// Minimum width of a chart, pixels, so that the title has room.
 const NARROWEST: f64 = 560.0;
-/// Letters of a word beside a row, pixels.
+/// Maximum width of a label beside a row, pixels.
 const WIDEST: f64 = 230.0;
-/// Letters of a turned word below a column, pixels.
+/// Maximum height of a rotated label below a column, pixels.
 const DEEPEST: f64 = 160.0;
-/// Lines of a word below a column.
+/// Maximum number of lines of a label below a column.
 const MOST_LINES: usize = 3;
-/// Pixels of a line of a panel's title.
+/// Line height of a panel's title, pixels.
 const TITLE_LINE: f64 = 16.0;
 
-/// Where panels stand.
+/// Positions of the panels.
 pub(super) struct Layout {
     columns: usize,
-    /// Pixels across and down of one.
+    /// Width and height of a panel, pixels.
     size: (f64, f64),
-    /// Left of the first.
+    /// Left edge of the first panel, pixels.
     left: f64,
-    /// Pixels of the chart across.
+    /// Width of the chart, pixels.
     pub width: f64,
-    /// Lines of text above each.
+    /// Title lines above each panel.
     titles: Vec<Vec<String>>,
-    /// Pixels above each row, and more above the first one.
+    /// Height above each row of panels, and additional height above the first row, pixels.
     above: f64,
     above_first: f64,
     labels: XLabels,
     heading: Heading,
 }
 
-/// What stands below a panel: the lines of each tick's label, none of one without room.
+/// Labels below a panel: the lines of each tick's label. A label without room has no lines.
 struct XLabels {
     is_turned: bool,
     lines: Vec<Vec<String>>,
-    /// Pixels down.
+    /// Height of the labels, pixels.
     depth: f64,
 }
 
 impl Layout {
-    /// Of panels of a size in so many columns.
+    /// Arranges panels of a given size in a number of columns.
     pub fn of(view: &View, entries: Vec<LegendEntry>, columns: usize, size: (f64, f64)) -> Self {
         let labels = view.y.ticks.iter();
         let labels = labels.map(|tick| text_width(&tick.label, TICK).min(WIDEST));
@@ -82,13 +82,13 @@ impl Layout {
         }
     }
 
-    /// Where the last title ends.
+    /// Returns the lower edge of the titles, pixels.
     pub fn bottom(&self) -> f64 {
         let panels = self.panels();
         panels.y + panels.height + self.labels.depth + 26.0
     }
 
-    /// From the first panel to the last.
+    /// Returns the area of all panels.
     fn panels(&self) -> Area {
         let (across, down) = (self.columns, self.titles.len().div_ceil(self.columns));
         let top = self.heading.height() + self.above_first + self.above;
@@ -109,7 +109,7 @@ impl Layout {
         Area::new((x, y), self.size)
     }
 
-    /// The heading, and the titles that all panels have in common.
+    /// Draws the heading and the common axis titles.
     pub fn draw_titles(&self, drawing: &mut Drawing, view: &View) {
         self.heading.draw(drawing);
         let panels = self.panels();
@@ -123,7 +123,7 @@ impl Layout {
         drawing.text(beside, &text, style.angle(-90.0));
     }
 
-    /// A panel's title, grid and labels.
+    /// Draws the title, grid and labels of a panel.
     pub fn draw_axes(&self, drawing: &mut Drawing, view: &View, panel: usize) {
         let frame = self.frame(panel);
         let style = TextStyle::new(LABEL);
@@ -153,7 +153,7 @@ impl Layout {
     }
 }
 
-/// Lines at ticks, one between zero and the decades of a logarithmic axis, and the axes.
+/// Draws grid lines at ticks, a dashed line between zero and the decades of a logarithmic axis, and the axes.
 fn draw_grid(drawing: &mut Drawing, view: &View, frame: Area) {
     let grid = Stroke::new(GRID, 1.0);
     let shelf = Stroke {
@@ -176,7 +176,7 @@ fn draw_grid(drawing: &mut Drawing, view: &View, frame: Area) {
 }
 
 impl XLabels {
-    /// Words break into lines, or are turned where they are too wide or too long for that.
+    /// Wraps the labels. If one is too wide or has too many lines, all labels are rotated.
     fn of(scale: &Scale, width: f64) -> Self {
         let labels = scale.ticks.iter().map(|tick| &tick.label[..]);
         let mut is_turned = false;

@@ -1,4 +1,4 @@
-//! What stands above a chart's panels: title, fixed settings, and the legend.
+//! Heading of a chart: title, fixed settings, and the legend.
 
 use crate::report::pictures::colours::{INK, LINES, MUTED};
 use crate::report::pictures::drawing::{Area, Drawing, Stroke, TextStyle};
@@ -10,15 +10,15 @@ pub(super) const LEFT: f64 = 66.0;
 pub(super) const RIGHT: f64 = 18.0;
 /// Radius of a marker, pixels.
 pub(super) const MARKER_RADIUS: f64 = 4.2;
-/// The line of a Pareto front.
+/// Line style of a Pareto front.
 pub(super) const FRONT: Stroke = Stroke::new(INK, 1.4);
 const TITLE: u32 = 16;
 const SMALL: u32 = 12;
-/// Pixels of the mark before a text, across and down.
+/// Width and height of the mark before a text, pixels.
 const SWATCH: (f64, f64) = (28.0, 16.0);
-/// Pixels of the gap behind it.
+/// Gap between mark and text, pixels.
 const SWATCH_GAP: f64 = 6.0;
-/// Pixels between two entries.
+/// Gap between two entries, pixels.
 const GAP: f64 = 20.0;
 
 /// Title, fixed settings and legend, above the panels, so that nothing covers data.
@@ -31,34 +31,34 @@ pub(super) struct Heading {
 /// Draws a mark into an area.
 type DrawMark = Box<dyn Fn(&mut Drawing, Area)>;
 
-/// A mark and what it means.
+/// Legend entry: a mark and its meaning.
 pub(super) struct LegendEntry {
     text: String,
-    /// None of a text without a mark: the legend's title.
+    /// `None` for a text without a mark, as the legend's title.
     mark: Option<DrawMark>,
-    /// Whether the text names a series of marks, which a reader of a page can hide.
+    /// Whether the entry is a series of marks, which the reader of a page can hide.
     is_series: bool,
 }
 
 impl Heading {
-    /// A heading for a drawing of some width: lines break, and legend entries flow, within its margins.
+    /// Creates a heading for a drawing of the given width. Lines and legend entries wrap within the margins.
     pub(super) fn of(title: &str, settings: &str, entries: Vec<LegendEntry>, width: f64) -> Self {
         let inner = width - LEFT - RIGHT;
         Self {
-            // Bold letters are wider.
+            // Bold text is wider.
             title: wrap(title, 1.12 * f64::from(TITLE), inner),
             settings: wrap(settings, f64::from(SMALL), inner),
             legend: flow(entries, inner),
         }
     }
 
-    /// Pixels down.
+    /// Returns the height, pixels.
     pub(super) fn height(&self) -> f64 {
         let rows = self.title.len() + self.legend.len();
         26.0 + 21.0 * rows as f64 + 17.0 * self.settings.len() as f64
     }
 
-    /// Draws it at the top of a drawing.
+    /// Draws the heading at the top of a drawing.
     pub(super) fn draw(&self, drawing: &mut Drawing) {
         let mut y = 10.0;
         for line in &self.title {
@@ -82,7 +82,7 @@ impl Heading {
 }
 
 impl LegendEntry {
-    /// A text alone.
+    /// Creates an entry without a mark.
     pub(super) fn title(text: String) -> Self {
         Self {
             text,
@@ -91,7 +91,7 @@ impl LegendEntry {
         }
     }
 
-    /// A text behind a mark, which is drawn into an area as it is drawn among data.
+    /// Creates an entry with a mark, which looks like the marks in the chart.
     pub(super) fn new(text: String, mark: impl Fn(&mut Drawing, Area) + 'static) -> Self {
         let mark: DrawMark = Box::new(mark);
         Self {
@@ -101,7 +101,7 @@ impl LegendEntry {
         }
     }
 
-    /// Creates the entry of a series: a page lets readers hide the groups that have its text as `data-series`.
+    /// Creates the entry of a series. In a page, it hides and shows the groups whose `data-series` equals its text.
     pub(super) fn series(text: String, mark: impl Fn(&mut Drawing, Area) + 'static) -> Self {
         Self {
             is_series: true,
@@ -109,7 +109,7 @@ impl LegendEntry {
         }
     }
 
-    /// Pixels across.
+    /// Returns the width, pixels.
     fn width(&self) -> f64 {
         self.mark_width() + text_width(&self.text, f64::from(SMALL)) + GAP
     }
@@ -136,7 +136,7 @@ impl LegendEntry {
     }
 }
 
-/// Entries in rows no wider than `width`.
+/// Arranges entries in rows of at most `width` pixels.
 fn flow(entries: Vec<LegendEntry>, width: f64) -> Vec<Vec<LegendEntry>> {
     let mut rows: Vec<Vec<LegendEntry>> = Vec::new();
     let mut used = f64::INFINITY;
@@ -153,7 +153,7 @@ fn flow(entries: Vec<LegendEntry>, width: f64) -> Vec<Vec<LegendEntry>> {
     rows
 }
 
-/// The line of a number. Beyond the palette, shapes of markers come again in other colours.
+/// Returns the stroke of a line, by its index. If there are more lines than colours, the marker shapes repeat with other colours.
 pub(super) fn line_stroke(line: usize) -> Stroke {
     let colour = line + 3 * (line / LINES.len());
     Stroke::new(LINES[colour % LINES.len()], 2.0)

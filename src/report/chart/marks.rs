@@ -1,4 +1,4 @@
-//! Lines and points.
+//! Lines and points of a chart.
 
 use super::front::{self, Front};
 use super::layout::Layout;
@@ -8,9 +8,9 @@ use super::view::{Place, View};
 use crate::report::pictures::colours::{INK, MUTED, Rgb};
 use crate::report::pictures::drawing::{Align, Area, Drawing, Point, Stroke, TextStyle};
 
-/// Points beyond which each is small.
+/// Number of points above which all markers are small.
 const MANY: usize = 400;
-/// Pixels of a line of the list of a front.
+/// Line height in the list of a front, pixels.
 const LINE: f64 = 17.0;
 
 pub(super) fn draw(view: &View) -> Drawing {
@@ -118,7 +118,7 @@ impl Panel<'_> {
         }
         let fronts = self.front.fronts.iter();
         for (_, front) in fronts.filter(|(panel, _)| *panel == self.panel) {
-            // What a budget buys: level until the next point of the front.
+            // A front is a step function: constant until its next point.
             let ends = front.iter().skip(1).map(|place| place.x).chain([1.0]);
             let steps = front
                 .iter()
@@ -134,7 +134,7 @@ impl Panel<'_> {
         self.draw_numbers(drawing);
     }
 
-    /// Draws a part of a line in a group with the line's name; without a group if the chart has one line.
+    /// Draws a part of a line in a group with the line's name. If the chart has only one line, there is no group.
     fn draw_series(&self, drawing: &mut Drawing, line: usize, draw: impl FnOnce(&mut Drawing)) {
         match &self.view.lines.names[line][..] {
             "" => draw(drawing),
@@ -142,7 +142,7 @@ impl Panel<'_> {
         }
     }
 
-    /// Draws the intervals of a line as a band or as whiskers.
+    /// Draws the intervals of a line as a band or as error bars.
     fn draw_intervals(&self, drawing: &mut Drawing, line: usize, places: &[&Place]) {
         let colour = line_stroke(line).colour;
         if self.view.has_bands() && places.len() > 1 {
@@ -155,7 +155,7 @@ impl Panel<'_> {
         }
     }
 
-    /// Draws a line and its markers, those on the Pareto front last.
+    /// Draws a line and its markers. Markers on the Pareto front come last.
     fn draw_points(&self, drawing: &mut Drawing, line: usize, places: &[&Place]) {
         let view = self.view;
         if view.is_joined && places.len() > 1 {
@@ -184,7 +184,7 @@ impl Panel<'_> {
         self.frame.at(place.x, place.y)
     }
 
-    /// What is behind a front is paler, and of very many small.
+    /// Returns radius and colour of markers that are not on the front: paler if there is a front, and smaller if there are many points.
     fn behind(&self, colour: Rgb) -> (f64, Rgb) {
         let radius = match self.view.places.len() > MANY {
             true => 0.55 * MARKER_RADIUS,
@@ -208,7 +208,7 @@ impl Panel<'_> {
         }
     }
 
-    /// Each on the side where no point can be; of those that would touch, the later are left out.
+    /// Draws the numbers of front points on the side that contains no points. If two numbers overlap, the later one is left out.
     fn draw_numbers(&self, drawing: &mut Drawing) {
         let up = match front::is_more_better(self.view) {
             true => -8.0,

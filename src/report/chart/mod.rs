@@ -1,8 +1,8 @@
-//! Charts: what a [`ChartSpec`] says, of a table, as a [`Drawing`].
+//! Charts: a [`ChartSpec`] and a table → a [`Drawing`].
 //!
-//! One renderer for every chart: `view` finds rows, lines and panels in the table; `scale` says where values stand along an axis, as
-//! parts of its length; `layout` gives panels their pixels; `marks` and `tiles` draw what stands in them. The page embeds the drawings:
-//! each mark is a group with the number of its row, so that the script of the page finds the row's values.
+//! All charts have one renderer. `view` selects rows, lines and panels of the table. `scale` maps values to fractions of an axis. `layout` computes the pixels
+//! of the panels. `marks` and `tiles` draw the data. The page embeds the drawings: each mark is a group with its row number, so that the page's script finds
+//! the row's values.
 
 mod front;
 mod layout;
@@ -21,10 +21,10 @@ use crate::table::{ChartSpec, Mark, Table};
 use front::Front;
 use view::View;
 
-/// Draws a chart of one of these tables.
+/// Draws a chart of one of the given tables.
 ///
 /// # Errors
-/// A table or a column that the spec names and that is not there; no row that has a place in the chart.
+/// If the specification names a table or a column that does not exist, or no row has a place in the chart.
 pub fn draw(spec: &ChartSpec, tables: &[Table]) -> Result<Drawing> {
     let view = View::of(spec, tables)?;
     if view.places.is_empty() {
@@ -41,24 +41,24 @@ pub fn draw(spec: &ChartSpec, tables: &[Table]) -> Result<Drawing> {
     }
 }
 
-/// Where every row that a chart shows stands, as parts of the width and the height of its panel, from the left and from below.
+/// Returns the places of all drawn rows, as fractions of the width (from the left) and height (from below) of their panels.
 ///
 /// # Errors
-/// A table or a column that the spec names and that is not there.
+/// If the specification names a table or a column that does not exist.
 pub fn places(spec: &ChartSpec, tables: &[Table]) -> Result<Vec<Place>> {
     let view = View::of(spec, tables)?;
     Ok(view.places)
 }
 
-/// How many rows of its table a chart does not draw, and why, as it stands on the chart; empty if it draws all.
+/// Returns the text on the chart about rows that are not drawn: their number and the reasons. Empty if all rows are drawn.
 ///
 /// # Errors
-/// A table or a column that the spec names and that is not there.
+/// If the specification names a table or a column that does not exist.
 pub fn omitted(spec: &ChartSpec, tables: &[Table]) -> Result<String> {
     Ok(View::of(spec, tables)?.omitted())
 }
 
-/// What the cheapest and the best point of a chart's first front are, in words; none without a front.
+/// Describes the cheapest and the best point of the chart's first front. Returns `None` if there is no front.
 pub fn front_ends(spec: &ChartSpec, tables: &[Table]) -> Option<[String; 2]> {
     let view = View::of(spec, tables).ok()?;
     Front::of(&view).ends()

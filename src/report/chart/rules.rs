@@ -1,4 +1,4 @@
-//! Lines across a chart: chance, limits, published values.
+//! Reference lines of a chart: chance level, limits, published values.
 
 use super::legend::LegendEntry;
 use super::view::View;
@@ -6,10 +6,10 @@ use crate::report::pictures::colours::{INK, MUTED, PAPER};
 use crate::report::pictures::drawing::{Area, Drawing, Point, Stroke};
 use crate::table::{Along, At, Rule};
 
-/// How rules are told apart, in their order.
+/// Dash patterns of the reference lines, in order: pixels on and off.
 const DASHES: [(u32, u32); 4] = [(5, 4), (2, 3), (9, 3), (1, 2)];
 
-/// An entry a rule; rules of the same words share one.
+/// Returns one legend entry for each reference line. Lines with equal labels share an entry.
 pub(super) fn entries(view: &View) -> Vec<LegendEntry> {
     let rules = view.spec.rules.iter().enumerate();
     let rules = rules.filter(|(number, rule)| first_of(view, rule) == *number);
@@ -22,7 +22,7 @@ pub(super) fn entries(view: &View) -> Vec<LegendEntry> {
     entries.collect()
 }
 
-/// The number of the first rule of the same words.
+/// Returns the index of the first reference line with the label of `rule`.
 fn first_of(view: &View, rule: &Rule) -> usize {
     let mut rules = view.spec.rules.iter();
     let same = rules.position(|other| other.words == rule.words);
@@ -31,14 +31,14 @@ fn first_of(view: &View, rule: &Rule) -> usize {
 
 fn stroke(view: &View, rule: &Rule) -> Stroke {
     Stroke {
-        // On tiles of any colour.
+        // Dark lines are visible on tiles of any colour.
         colour: if view.is_tiles() { INK } else { MUTED },
         width: 1.3,
         dash: Some(DASHES[first_of(view, rule) % DASHES.len()]),
     }
 }
 
-/// Draws all rules of a panel.
+/// Draws all reference lines of a panel.
 pub(super) fn draw(drawing: &mut Drawing, view: &View, panel: usize, frame: Area) {
     for rule in &view.spec.rules {
         for line in lines(view, rule, panel) {
@@ -51,7 +51,7 @@ pub(super) fn draw(drawing: &mut Drawing, view: &View, panel: usize, frame: Area
     }
 }
 
-/// Where a rule runs in a panel, as parts of its width and height.
+/// Returns the polylines of a reference line in a panel, as fractions of the panel's width and height.
 fn lines(view: &View, rule: &Rule, panel: usize) -> Vec<Vec<Point>> {
     let (own, other) = match rule.along {
         Along::X => (&view.x, &view.y),
@@ -91,7 +91,7 @@ fn lines(view: &View, rule: &Rule, panel: usize) -> Vec<Vec<Point>> {
     if levels.len() < 2 || !is_function {
         return levels.into_iter().map(across).collect();
     }
-    // Level along each tile.
+    // The line is constant along each tile.
     let half = match view.is_tiles() {
         true => 0.5 / other.n_levels as f64,
         false => 0.0,

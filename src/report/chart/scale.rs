@@ -1,44 +1,44 @@
-//! Where values stand along an axis: the one scale of all charts.
+//! Axis scale of all charts: maps values to fractions of an axis.
 
 use crate::report::pictures::even_ticks::{even_ticks, tick_step};
 use crate::table::{Along, Column, Role, Scale as Spacing};
 
-/// Part of a logarithmic axis on which zero stands apart.
+/// Fraction of a logarithmic axis that is reserved for zero.
 pub(super) const SHELF: f64 = 0.09;
-/// Values up to which a swept axis has its ticks at them.
+/// Maximum number of distinct values of a swept axis for which each value has a tick. More values get round ticks.
 const MOST_SWEPT: usize = 40;
 
-/// Values along an axis, as parts of its length.
+/// Axis scale: maps values to fractions of the axis length.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scale {
-    /// Values, or their logarithms, in rising order, and where each stands: in proportion between them, others do.
+    /// Values (or their logarithms) in ascending order, with their places. Values between two anchors are interpolated linearly.
     anchors: Vec<(f64, f64)>,
     is_log: bool,
-    /// Where zero's part of a logarithmic axis ends.
+    /// End of the part of a logarithmic axis that is reserved for zero.
     pub shelf: Option<f64>,
-    /// How many words or tiles stand along it; 0 of numbers between two ends.
+    /// Number of words or tiles along the axis; 0 for a continuous axis.
     pub n_levels: usize,
-    /// Whether words stand along it, between which nothing is.
+    /// Whether the axis has words, with nothing between them.
     pub is_words: bool,
-    /// Where labels may stand, in rising order of their values.
+    /// Possible labels, in ascending order of their values.
     pub ticks: Vec<Tick>,
-    /// What runs along the axis.
+    /// Title of the axis.
     pub title: String,
 }
 
-/// A place on an axis that may have a label.
+/// Place on an axis that may have a label.
 #[derive(Clone, Debug)]
 pub(super) struct Tick {
-    /// Part of the axis.
+    /// Fraction of the axis length.
     pub at: f64,
-    /// What stands there.
+    /// Text of the label.
     pub label: String,
-    /// Whether its label comes before its neighbours' where there is no room for all.
+    /// Whether the label has priority over others if there is no room for all.
     pub is_round: bool,
 }
 
 impl Scale {
-    /// That covers these numbers of a column.
+    /// Creates a continuous scale that covers the given values of a column.
     pub fn of(column: &Column, values: &[f64], along: Along) -> Self {
         let is_swept = matches!(column.role, Role::Choice | Role::Condition | Role::Subject);
         let distinct = distinct(values);
@@ -49,7 +49,7 @@ impl Scale {
             (_, Along::Y) if !is_swept => {
                 let (low, high) = round_ends(&distinct);
                 match column.scale == Spacing::Share && column.unit.is_empty() {
-                    // However few of them the values reach, so that charts can be compared by eye.
+                    // Fractions always include 0 to 1, so that charts can be compared by eye.
                     true => (low.min(0.0), high.max(1.0)),
                     false => (low, high),
                 }
@@ -78,8 +78,7 @@ impl Scale {
         scale.with_ticks(&ticks, |&tick| column.tick(tick))
     }
 
-    /// That gives each value of a column a place of its own: words, which are numbered as they stand here, rows of them from above; or
-    /// the numbers of tiles.
+    /// Creates a scale with one place for each value of a column: words in the given order (from the top along y), or the numbers of tiles.
     pub fn of_levels(column: &Column, (values, words): (&[f64], &[String]), along: Along) -> Self {
         let is_words = column.scale == Spacing::Words;
         let levels = match is_words {
@@ -129,7 +128,7 @@ impl Scale {
         }
     }
 
-    /// Where a value stands, part of the axis; none for what has no place on it.
+    /// Returns the place of a value as a fraction of the axis, or `None` if it has no place.
     pub fn place(&self, value: f64) -> Option<f64> {
         if self.is_log && value == 0.0 {
             return self.shelf.map(|shelf| 0.5 * shelf);
@@ -151,7 +150,7 @@ impl Scale {
     }
 }
 
-/// Each once, in rising order.
+/// Returns the distinct finite values in ascending order.
 fn distinct(values: &[f64]) -> Vec<f64> {
     let mut distinct: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
     distinct.sort_by(f64::total_cmp);
@@ -159,7 +158,7 @@ fn distinct(values: &[f64]) -> Vec<f64> {
     distinct
 }
 
-/// A twelfth of a decade at least, so that equal values do not stand at the edges.
+/// Returns logarithmic ends with a margin of at least a twelfth of a decade, so that data do not lie on the edges.
 fn log_ends(values: &[f64]) -> (f64, f64) {
     let mut positive = values.iter().copied().filter(|&v| v > 0.0);
     let (low, high) = match (positive.next(), values.last()) {
@@ -170,7 +169,7 @@ fn log_ends(values: &[f64]) -> (f64, f64) {
     (low - margin, high + margin)
 }
 
-/// Round numbers around the values, and zero where it is not far.
+/// Returns round ends around the values. Includes zero if it is near.
 fn round_ends(values: &[f64]) -> (f64, f64) {
     let (mut low, mut high) = ends(values);
     if low > 0.0 && low < 0.6 * high {
@@ -186,7 +185,7 @@ fn round_ends(values: &[f64]) -> (f64, f64) {
     )
 }
 
-/// The first and the last of sorted values, apart.
+/// Returns the first and the last of sorted values; if they are equal, adds a margin.
 fn ends(values: &[f64]) -> (f64, f64) {
     let (Some(&low), Some(&high)) = (values.first(), values.last()) else {
         return (0.0, 1.0);
@@ -198,12 +197,12 @@ fn ends(values: &[f64]) -> (f64, f64) {
     (low - margin, high + margin)
 }
 
-/// Powers of ten; where these are fewer than three, multiples of them; where these are too, round numbers at equal steps.
+/// Returns the powers of ten. If there are fewer than three, returns 1, 2 and 5 times powers of ten; if these are too few, round numbers at equal steps.
 fn log_ticks(low: f64, high: f64) -> Vec<f64> {
     let multiples = |factors: &[u32]| -> Vec<f64> {
         let powers = low.floor() as i32..=high.ceil() as i32;
         let all = powers.flat_map(|power| factors.iter().map(move |factor| (factor, power)));
-        // The nearest number, which a product with a rounded power is not.
+        // Parsing gives the nearest number; a product with a rounded power does not.
         let all = all.filter_map(|(factor, power)| format!("{factor}e{power}").parse::<f64>().ok());
         all.filter(|tick| (low..=high).contains(&tick.log10()))
             .collect()
@@ -214,7 +213,8 @@ fn log_ticks(low: f64, high: f64) -> Vec<f64> {
     enough.unwrap_or_else(|| even_ticks(10f64.powf(low), 10f64.powf(high)))
 }
 
-/// Which ticks have room for their labels, each taking `half` of the axis to either side: the ends first, then round ones, then in order.
+/// Selects the ticks whose labels have room. Each label takes `half` of the axis to either side. The ends come first, then round ticks, then the others in
+/// order.
 pub(super) fn thin(ticks: &[Tick], half: impl Fn(&Tick) -> f64) -> Vec<bool> {
     let last = ticks.len().saturating_sub(1);
     let rank = |place: usize| match (place == 0 || place == last, ticks[place].is_round) {

@@ -1,4 +1,4 @@
-//! Tiles: a field at each x and y, filled by an outcome or a number.
+//! Tile charts: a tile at each x and y, filled by an outcome or a number.
 
 use super::layout::{Layout, TICK};
 use super::legend::LegendEntry;
@@ -11,19 +11,19 @@ use crate::report::swept::Setting;
 use crate::report::text_width::text_width;
 use crate::table::{Data, Role, Scale, Value};
 
-/// Colours of outcomes in the order in which the table first has them; told apart by lightness, too.
+/// Colours of outcomes, in the order of their first rows. They also differ in lightness.
 const OUTCOMES: [Rgb; 8] = [
     LINES[5], LINES[4], LINES[1], LINES[7], INK, LINES[2], LINES[3], LINES[0],
 ];
 const SIGN: u32 = 11;
-/// Rows and columns from which on tiles are small.
+/// Number of rows and columns from which on tiles are small.
 const MANY: usize = 20;
 
-/// How tiles look.
+/// Appearance of tiles.
 struct Look<'a> {
     fill: Setting<'a>,
     sign: Option<Setting<'a>>,
-    /// The smallest and the largest number that is shown.
+    /// Smallest and largest number in the chart.
     ends: (f64, f64),
 }
 
@@ -77,7 +77,7 @@ pub(super) fn draw(view: &View, fill: &str, sign: Option<&str>) -> Result<Drawin
     Ok(drawing)
 }
 
-/// On a ground of its own, so that no line runs through it: a minus would be read as a plus.
+/// Draws the sign on its own background, so that no reference line crosses it: a crossed minus would look like a plus.
 fn draw_sign(drawing: &mut Drawing, place: Area, colour: Rgb, sign: &str) {
     let width = text_width(sign, f64::from(SIGN)) + 4.0;
     let (x, y) = place.at(0.5, 0.5);
@@ -127,7 +127,7 @@ impl<'a> Look<'a> {
         }
     }
 
-    /// What is written on the tile of a row.
+    /// Returns the text on the tile of a row.
     fn sign(&self, row: usize) -> String {
         let sign = self.sign.filter(|sign| sign.data.value(row).is_some());
         let Setting { column, data } = sign.unwrap_or(self.fill);
@@ -139,7 +139,7 @@ impl<'a> Look<'a> {
         }
     }
 
-    /// The first letters of an outcome that none before it has.
+    /// Returns the first letters of an outcome that distinguish it from all outcomes before it.
     fn letter(&self, outcome: &str) -> String {
         let Data::Words { levels, .. } = self.fill.data else {
             return String::new();

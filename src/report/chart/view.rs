@@ -1,4 +1,4 @@
-//! What a chart shows of its table: rows, lines, panels, and where each row stands.
+//! Data of a chart: rows, lines, panels, and the place of each row.
 
 use super::scale::Scale;
 use crate::error::{Error, Result};
@@ -7,60 +7,60 @@ use crate::report::swept::Setting;
 use crate::table::{Along, At, ChartSpec, Data, Mark, Role, Scale as Spacing, Table, Value};
 use std::collections::{HashMap, HashSet};
 
-/// Lines up to which bands do not hide each other; more lines get a whisker at each point.
+/// Maximum number of lines with confidence bands. Bands of more lines would hide each other; error bars replace them.
 const MOST_BANDS: usize = 4;
-/// Points up to which whiskers can be told apart.
+/// Maximum number of points with error bars. More bars would not be distinguishable.
 const MOST_WHISKERS: usize = 80;
 
-/// A chart's spec with what it means of its table.
+/// A chart specification, applied to its table.
 pub(super) struct View<'a> {
     pub spec: &'a ChartSpec,
     pub table: &'a Table,
-    /// Rows that are shown.
+    /// Rows that pass the filters.
     pub rows: Vec<usize>,
-    /// Of each row that is shown its line, and the lines' names.
+    /// Line of each row, and the names of the lines.
     pub lines: Groups,
-    /// Of each row that is shown its panel, and the panels' names.
+    /// Panel of each row, and the names of the panels.
     pub panels: Groups,
     pub x: Scale,
     pub y: Scale,
-    /// Whether lines are joined along x: between words, or a number and what stands for none of it, there is nothing.
+    /// Whether points are joined by lines along x. Words and named numbers are not joined.
     pub is_joined: bool,
-    /// Of each panel what stands above it: `noise 10 %`, `RBF SVM`; empty where there is one, and in later rows of tiles.
+    /// Title of each panel: `noise 10 %`, `RBF SVM`. Empty if there is one panel, and in later rows of tiles.
     pub titles: Vec<String>,
-    /// Of each row of panels what it is: tiles have one for each of several lines.
+    /// Title of each row of panels. A tile chart has one row for each line group.
     pub row_titles: Vec<String>,
-    /// Rows that have a place, line by line along x.
+    /// Places of the rows, line by line along x.
     pub places: Vec<Place>,
 }
 
-/// Where a row stands in its panel.
+/// Place of a row in its panel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Place {
-    /// The row of the table.
+    /// Row of the table.
     pub row: usize,
-    /// The number of its panel.
+    /// Index of the panel.
     pub panel: usize,
-    /// The number of its line.
+    /// Index of the line.
     pub line: usize,
-    /// Part of the panel's width, from the left.
+    /// Fraction of the panel's width, from the left.
     pub x: f64,
-    /// Part of the panel's height, from below.
+    /// Fraction of the panel's height, from below.
     pub y: f64,
-    /// The ends of its interval, as `y`; none if it has none.
+    /// Ends of the confidence interval, on the scale of `y`. `None` if there is no interval.
     pub interval: Option<[f64; 2]>,
 }
 
-/// Rows by the values of some columns.
+/// Groups of rows with equal values in some columns.
 #[derive(Default)]
 pub(super) struct Groups {
-    /// What stands before the names: `classifier`; empty without columns.
+    /// Names of the columns: `classifier`. Empty without columns.
     pub heading: String,
-    /// Of each group its values in words; one empty name without columns.
+    /// Values of each group as text. Without columns, one empty name.
     pub names: Vec<String>,
-    /// The same for a title: a number says what it is of.
+    /// Values of each group as a title, in which numbers have the column's name.
     titles: Vec<String>,
-    /// The group of each row of the table; 0 of those that are not shown.
+    /// Group of each table row; 0 for rows that are not shown.
     pub of: Vec<usize>,
 }
 
@@ -97,7 +97,7 @@ impl<'a> View<'a> {
         let (mut x, y) = (column(&spec.x)?, column(&spec.y)?);
         x.column = spec.x_is.as_ref().unwrap_or(x.column);
         let y_values = values(&y, &rows, &[]);
-        // What is alike in rows and columns of tiles lies on the diagonal.
+        // Equal words have equal positions in rows and columns, so that matches of both lie on the diagonal.
         let x_values = values(&x, &rows, if is_tiles { &y_values.1 } else { &[] });
         let interval = y.column.interval.as_ref();
         let interval =
@@ -164,7 +164,7 @@ impl<'a> View<'a> {
         places
     }
 
-    /// Lines stand beside each other at a word, so that their whiskers do not hide each other.
+    /// Returns the horizontal offset of a line at a word, so that error bars of several lines do not overlap.
     fn beside(&self, line: usize) -> f64 {
         if !self.x.is_words || self.spec.mark != Mark::Line {
             return 0.0;
@@ -174,34 +174,34 @@ impl<'a> View<'a> {
         step * (line as f64 - 0.5 * (n - 1.0))
     }
 
-    /// Whether it shows tiles.
+    /// Returns whether the chart shows tiles.
     pub fn is_tiles(&self) -> bool {
         matches!(self.spec.mark, Mark::Tiles { .. })
     }
 
-    /// Whether intervals are bands: of few lines.
+    /// Returns whether intervals are bands. Only charts with few lines have bands.
     pub fn has_bands(&self) -> bool {
         self.has_interval() && self.is_joined && self.lines.names.len() <= MOST_BANDS
     }
 
-    /// Whether intervals are drawn: as bands or as whiskers.
+    /// Returns whether intervals are drawn, as bands or as error bars.
     pub fn has_interval(&self) -> bool {
         let is_many = self.spec.mark == Mark::Points && self.places.len() > MOST_WHISKERS;
         !is_many && self.places.iter().any(|place| place.interval.is_some())
     }
 
-    /// The number of the panel in which a place stands.
+    /// Returns the index of the panel that contains a place.
     pub fn panel_of(&self, place: &Place) -> usize {
         let row = if self.is_tiles() { place.line } else { 0 };
         row * self.panels.names.len() + place.panel
     }
 
-    /// A column by its name.
+    /// Returns a column, by name.
     pub fn column(&self, name: &str) -> Result<Setting<'a>> {
         column_of(self.spec, self.table, name)
     }
 
-    /// Draws the mark of a row in a group with its data: the row's number in the table, and its values along the axes with their units.
+    /// Draws the mark of a row in a group with its data: row number, and values along the axes with their units.
     pub fn draw_mark(&self, drawing: &mut Drawing, place: &Place, draw: impl FnOnce(&mut Drawing)) {
         let spec = self.spec;
         let words = |name: &str| {
@@ -235,7 +235,7 @@ impl<'a> View<'a> {
         drawing.group(&data, draw);
     }
 
-    /// What an interval is: what the words of its ends have in common before a comma, else both.
+    /// Describes the interval: the common text of both column names before a comma, or else both names.
     pub fn interval_words(&self) -> Option<String> {
         let words = |name: &str| Some(self.column(name).ok()?.column.words.as_ref());
         let [low, high] = self.column(&self.spec.y).ok()?.column.interval.as_ref()?;
@@ -246,7 +246,7 @@ impl<'a> View<'a> {
         })
     }
 
-    /// How many rows of the table are not drawn, and why; empty if all are.
+    /// Describes the rows that are not drawn: their number and the reasons. Empty if all rows are drawn.
     pub fn omitted(&self) -> String {
         let (n, n_shown) = (self.table.n_rows, self.rows.len());
         let drawn = self.drawn();
@@ -284,7 +284,7 @@ impl<'a> View<'a> {
         format!("{n_drawn} of {n} rows are drawn; {}.", said.join(", "))
     }
 
-    /// The rows that can be seen: a tile hides those before it in the same place.
+    /// Returns the visible rows. A tile hides earlier tiles in the same place.
     pub fn drawn(&self) -> Vec<usize> {
         let Mark::Tiles { fill, .. } = &self.spec.mark else {
             return self.places.iter().map(|place| place.row).collect();
@@ -303,7 +303,7 @@ impl<'a> View<'a> {
         rows
     }
 
-    /// Choices and conditions that have one value in the chart and stand nowhere in it, in words.
+    /// Describes the choices and conditions that are constant in the chart and not shown elsewhere in it.
     pub fn constants(&self) -> String {
         let spec = self.spec;
         let mut rows: Vec<usize> = self.places.iter().map(|place| place.row).collect();
@@ -327,7 +327,7 @@ impl<'a> View<'a> {
 }
 
 impl Groups {
-    /// By the values of columns in the order of first rows; by one column of numbers in rising order.
+    /// Groups rows by the values of columns, in the order of their first rows. Groups of a single numeric column are in ascending order.
     fn of(table: &Table, settings: &[Setting], rows: &[usize]) -> Self {
         let mut groups = Setting::groups(settings, table, rows);
         if let [one] = settings
@@ -355,7 +355,7 @@ impl Groups {
     }
 }
 
-/// Numbers of rows; of words, each row's place among them and the words that are there: in the order of `first`, then in that of the table.
+/// Returns the numbers of the rows. For words, returns each row's index and the words: in the order of `first`, then in the order of the table.
 fn values(one: &Setting, rows: &[usize], first: &[String]) -> (Vec<f64>, Vec<String>) {
     let (levels, codes) = match one.data {
         Data::Numbers(numbers) => {

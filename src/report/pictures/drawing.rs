@@ -1,8 +1,7 @@
-//! A drawing: text, lines and areas at pixel positions, written as SVG and as PNG.
+//! Vector drawing: text, lines and areas at pixel positions, written as SVG and as PNG.
 //!
-//! kuva carries the primitives, the font and both writers. Its ready-made plots are not used: they put ticks at powers of
-//! ten where a sweep needs them at its own values, and number their clip paths per process, so that the same table would
-//! not always be the same bytes.
+//! The crate kuva provides the primitives, the font and both writers. Its ready-made plots are not used for two reasons. They place ticks at powers of ten,
+//! but a sweep needs ticks at its own values. They number clip paths per process, so that equal tables would not always give equal bytes.
 
 use crate::error::Result;
 use crate::report::pictures::colours::{INK, PAPER, Rgb};
@@ -12,12 +11,12 @@ use kuva::render::color::Color;
 pub use kuva::render::render::TextAnchor as Align;
 use kuva::render::render::{PathData, Primitive, Scene, TextSpan, build_path};
 
-/// How much larger a drawing is drawn than it is, before [`Drawing::picture`] takes the mean of four elements.
+/// Scale of the rendering before [`Drawing::picture`] averages blocks of 2 × 2 pixels.
 ///
-/// kuva draws turned text and slanted lines jagged: at twice the size they become smooth. Smaller, and they do not.
+/// kuva renders rotated text and slanted lines with jagged edges. A scale of 4 makes them smooth; a smaller one does not.
 const FINE: u32 = 4;
 
-/// A place in a drawing, pixels from the top left corner: `(x, y)`.
+/// Position in a drawing, pixels from the top left corner: `(x, y)`.
 pub type Point = (f64, f64);
 
 /// An axis-aligned area.
@@ -27,14 +26,14 @@ pub struct Area {
     pub x: f64,
     /// Top edge, pixels.
     pub y: f64,
-    /// Pixels across.
+    /// Width, pixels.
     pub width: f64,
-    /// Pixels down.
+    /// Height, pixels.
     pub height: f64,
 }
 
 impl Area {
-    /// Of a top left corner, and pixels across and down.
+    /// Creates an area from its top left corner and its width and height in pixels.
     pub const fn new((x, y): Point, (width, height): (f64, f64)) -> Self {
         Self {
             x,
@@ -44,12 +43,12 @@ impl Area {
         }
     }
 
-    /// The same of the point in its middle.
+    /// Creates an area from its centre and its width and height in pixels.
     pub const fn around((x, y): Point, (width, height): (f64, f64)) -> Self {
         Self::new((x - 0.5 * width, y - 0.5 * height), (width, height))
     }
 
-    /// A place in it by parts of its width, from the left, and of its height, from below.
+    /// Returns a point, by its fraction of the width (from the left) and of the height (from below).
     pub fn at(&self, across: f64, up: f64) -> Point {
         (
             self.x + across * self.width,
@@ -58,21 +57,21 @@ impl Area {
     }
 }
 
-/// How a text looks.
+/// Style of a text.
 #[derive(Clone, Copy, Debug)]
 pub struct TextStyle {
     /// Font size, pixels.
     pub size: u32,
     /// Colour.
     pub colour: Rgb,
-    /// What stands at the given place.
+    /// Part of the text that lies at the given position.
     pub align: Align,
-    /// Clockwise turn about the given place, degrees.
+    /// Clockwise rotation about the given position, degrees.
     pub angle: f64,
 }
 
 impl TextStyle {
-    /// Level, left-aligned text in the ink colour.
+    /// Creates the style of horizontal, left-aligned text in the ink colour.
     pub const fn new(size: u32) -> Self {
         Self {
             size,
@@ -82,35 +81,35 @@ impl TextStyle {
         }
     }
 
-    /// The same with another alignment.
+    /// Sets the alignment.
     pub const fn align(self, align: Align) -> Self {
         Self { align, ..self }
     }
 
-    /// The same in another colour.
+    /// Sets the colour.
     pub const fn colour(self, colour: Rgb) -> Self {
         Self { colour, ..self }
     }
 
-    /// The same, turned.
+    /// Sets the rotation, degrees.
     pub const fn angle(self, angle: f64) -> Self {
         Self { angle, ..self }
     }
 }
 
-/// How a line looks.
+/// Style of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stroke {
     /// Colour.
     pub colour: Rgb,
     /// Width, pixels.
     pub width: f64,
-    /// Pixels on and off, or an unbroken line.
+    /// Lengths of dashes and gaps, pixels. `None` for a solid line.
     pub dash: Option<(u32, u32)>,
 }
 
 impl Stroke {
-    /// An unbroken line.
+    /// Creates the style of a solid line.
     pub const fn new(colour: Rgb, width: f64) -> Self {
         Self {
             colour,
@@ -120,21 +119,21 @@ impl Stroke {
     }
 }
 
-/// Shapes that mark the points of a line, so that colour alone never tells lines apart.
+/// Number of marker shapes. With shapes, lines differ not only by colour.
 pub const N_MARKERS: usize = 8;
 
-/// A drawing on white paper.
+/// Vector drawing on a white background.
 #[derive(Clone)]
 pub struct Drawing {
-    /// Pixels across.
+    /// Width, pixels.
     pub width: f64,
-    /// Pixels down.
+    /// Height, pixels.
     pub height: f64,
     elements: Vec<Primitive>,
 }
 
 impl Drawing {
-    /// An empty drawing of a size in pixels.
+    /// Creates an empty drawing, size in pixels.
     pub fn new(width: f64, height: f64) -> Self {
         Self {
             width: width.ceil(),
@@ -143,7 +142,7 @@ impl Drawing {
         }
     }
 
-    /// One line of text whose baseline runs through `at`.
+    /// Draws one line of text with its baseline at `at`.
     pub fn text(&mut self, at: Point, text: &str, style: TextStyle) {
         self.elements.push(Primitive::Text {
             x: snap(at.0),
@@ -157,7 +156,7 @@ impl Drawing {
         });
     }
 
-    /// One line of level, bold text.
+    /// Draws one line of horizontal bold text.
     pub fn bold_text(&mut self, at: Point, text: &str, style: TextStyle) {
         let mut span = TextSpan::plain(visible(text));
         span.bold = true;
@@ -171,12 +170,12 @@ impl Drawing {
         });
     }
 
-    /// A straight line.
+    /// Draws a straight line.
     pub fn line(&mut self, from: Point, to: Point, stroke: Stroke) {
         self.polyline(&[from, to], stroke);
     }
 
-    /// A line through points.
+    /// Draws a line through points.
     pub fn polyline(&mut self, points: &[Point], stroke: Stroke) {
         self.elements.push(Primitive::PolyLine {
             points: points.iter().map(|&(x, y)| (snap(x), snap(y))).collect(),
@@ -186,7 +185,7 @@ impl Drawing {
         });
     }
 
-    /// A filled polygon; opacity from 0 to 1.
+    /// Draws a filled polygon. The opacity is from 0 to 1.
     pub fn polygon(&mut self, points: &[Point], fill: Rgb, opacity: f64) {
         let corners: Vec<Point> = points.iter().map(|&(x, y)| (snap(x), snap(y))).collect();
         self.elements.push(Primitive::Path(Box::new(PathData {
@@ -199,7 +198,7 @@ impl Drawing {
         })));
     }
 
-    /// A filled area without a border.
+    /// Draws a filled rectangle without a border.
     pub fn area(&mut self, area: Area, fill: Rgb) {
         self.elements.push(Primitive::Rect {
             x: snap(area.x),
@@ -213,14 +212,14 @@ impl Drawing {
         });
     }
 
-    /// The border of an area.
+    /// Draws the border of a rectangle.
     pub fn frame(&mut self, area: Area, stroke: Stroke) {
         let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)];
         let corners = corners.map(|(across, up)| area.at(across, up));
         self.polyline(&corners, stroke);
     }
 
-    /// The marker of a line's number, filled, of a radius in pixels, with a white rim that parts it from what lies below.
+    /// Draws a filled marker whose shape depends on the line's index. Radius in pixels. A white rim separates the marker from the background.
     pub fn marker(&mut self, line: usize, at: Point, radius: f64, fill: Rgb) {
         for (radius, fill) in [(radius + 1.2, PAPER), (radius, fill)] {
             match line % N_MARKERS {
@@ -238,7 +237,7 @@ impl Drawing {
         }
     }
 
-    /// Draws a group of elements that carries `data-` attributes; only [`Self::svg_with_data`] contains the group.
+    /// Draws a group of elements with `data-` attributes. Only [`Self::svg_with_data`] contains the group.
     pub fn group(&mut self, data: &[(&str, &str)], draw: impl FnOnce(&mut Self)) {
         let attributes = data
             .iter()
@@ -252,7 +251,7 @@ impl Drawing {
         self.elements.push(Primitive::GroupEnd);
     }
 
-    /// Returns the drawing as an SVG file that scales to the width of its place; screen readers read `title`.
+    /// Returns the drawing as an SVG file that scales to the width of its container. `title` is the label for screen readers.
     pub fn svg(&self, title: &str) -> String {
         let is_drawn = |element: &&Primitive| {
             !matches!(element, Primitive::GroupStart { .. } | Primitive::GroupEnd)
@@ -261,7 +260,7 @@ impl Drawing {
         self.svg_of(elements.cloned().collect(), title)
     }
 
-    /// Returns the same SVG with the groups and their `data-` attributes, for the script of a page.
+    /// Returns the SVG with the groups and their `data-` attributes, for the script of a page.
     pub fn svg_with_data(&self, title: &str) -> String {
         self.svg_of(self.elements.clone(), title)
     }
@@ -278,23 +277,23 @@ impl Drawing {
         plain.replacen(opening, &scaled, 1) + "\n"
     }
 
-    /// The drawing as a PNG file with two picture elements a pixel.
+    /// Returns the drawing as a PNG file with two image pixels for each pixel of the drawing.
     ///
     /// # Errors
-    /// It cannot be drawn.
+    /// If the drawing cannot be rendered.
     pub fn png(&self) -> Result<Vec<u8>> {
         self.picture()?.png()
     }
 
-    /// The drawing as pixels, two a pixel of its own each way: a tenth of a second's work.
+    /// Renders the drawing with two image pixels for each pixel of the drawing, in about 0.1 s.
     ///
     /// # Errors
-    /// It cannot be drawn.
+    /// If the drawing cannot be rendered.
     pub fn picture(&self) -> Result<Picture> {
         Ok(self.pixels(FINE)?.halved())
     }
 
-    /// The drawing as pixels, so many a pixel of its own each way.
+    /// Renders the drawing with `scale` image pixels for each pixel of the drawing.
     pub(crate) fn pixels(&self, scale: u32) -> Result<Picture> {
         let mut elements = self.elements.clone();
         for element in &mut elements {
@@ -303,7 +302,7 @@ impl Drawing {
                 ..
             } = element
             {
-                // kuva scales everything but these.
+                // kuva scales all lengths except the dashes.
                 let lengths = dashes.split(' ').filter_map(|n| n.parse::<u32>().ok());
                 let lengths: Vec<String> = lengths.map(|n| (n * scale).to_string()).collect();
                 *dashes = lengths.join(" ");
@@ -324,7 +323,7 @@ impl Drawing {
     }
 }
 
-/// Text with the letters escaped that mean something in HTML and SVG.
+/// Escapes characters that have a meaning in HTML and SVG.
 pub fn escape(text: &str) -> String {
     let is_forbidden = |letter: char| letter.is_control() && !matches!(letter, '\n' | '\t');
     text.replace('&', "&amp;")
@@ -335,17 +334,17 @@ pub fn escape(text: &str) -> String {
         .replace(is_forbidden, " ")
 }
 
-/// kuva reads `$…$` as mathematics; an object's name is never that.
+/// Escapes `$`, because kuva parses `$…$` as mathematics.
 fn literal(text: &str) -> String {
     visible(text).replace('$', "\\$")
 }
 
-/// The text with spaces for control characters: XML forbids most of them, and none has a picture.
+/// Replaces control characters by spaces: XML forbids most of them, and they are invisible.
 fn visible(text: &str) -> String {
     text.replace(char::is_control, " ")
 }
 
-/// A quarter of a pixel is finer than the eye, and keeps the numbers in SVG files short.
+/// Rounds to a quarter of a pixel, which is not visible and keeps SVG files small.
 fn snap(position: f64) -> f64 {
     (position * 4.0).round() / 4.0
 }
@@ -354,7 +353,7 @@ fn colour([r, g, b]: Rgb) -> Color {
     Color::Rgb(r, g, b)
 }
 
-/// Corners of a regular polygon: square, triangle up, diamond, triangle down, pentagon, hexagon; then a star of four points.
+/// Returns the corners of a marker: square, triangle up, diamond, triangle down, pentagon, hexagon, or a star with four points.
 fn marker_outline(shape: usize, (x, y): Point, radius: f64) -> Vec<Point> {
     let (corners, turn, scale) = match shape {
         1 => (4, 45.0, 1.25),
@@ -375,7 +374,7 @@ fn marker_outline(shape: usize, (x, y): Point, radius: f64) -> Vec<Point> {
 }
 
 impl Picture {
-    /// Prints a drawing of its size on it: what is white in the drawing stays as it is.
+    /// Prints a drawing of equal size onto the picture. White areas of the drawing leave the picture unchanged.
     pub(crate) fn print(&mut self, drawing: &Drawing) -> Result<()> {
         for (value, ink) in self.rgb.iter_mut().zip(drawing.pixels(1)?.rgb) {
             *value = (*value).min(ink);

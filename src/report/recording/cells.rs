@@ -1,4 +1,4 @@
-//! Where the taxels of a skin stand in its picture: a cell each, squares side by side for a grid, discs for any other skin.
+//! Positions of taxels in a picture of a skin: adjacent squares for a grid, discs for any other layout.
 
 use super::header::RecordedPatch;
 use super::unrolled::unroll;
@@ -9,29 +9,29 @@ use crate::report::pictures::picture_axes::{Side, draw_map_axis, draw_scale_bar}
 use crate::world::Grid;
 use glam::DVec2;
 
-/// Pixels of a drawing along a map's height; it is at most twice as wide.
+/// Height of a map, pixels. The width is at most twice the height.
 const SIDE: f64 = 400.0;
-/// Cells of a grid that are shown each way, at most; longer grids are shown by the largest value of blocks.
+/// Maximum number of cells along each side of a grid. A larger grid is shown by the largest value of each block of taxels.
 const MOST_CELLS: usize = 400;
-/// Where maps begin.
+/// Left edge of maps, pixels.
 pub(super) const LEFT: f64 = 70.0;
 const TOP: f64 = 76.0;
-/// The largest radius of a disc, pixels.
+/// Maximum radius of a disc, pixels.
 const LARGEST_DISC: f64 = 24.0;
 
-/// The cells of a skin, pixels from the top left corner of the drawing.
+/// Cells of a skin, pixels from the top left corner of the drawing.
 pub(crate) struct Cells {
-    /// All cells.
+    /// Area of all cells.
     pub area: Area,
-    /// The middle of each: of a grid row by row, else one a taxel.
+    /// Centres of the cells: for a grid row by row, otherwise one for each taxel.
     pub places: Vec<DVec2>,
-    /// From the middle to the rim.
+    /// Half the side of a square, or the radius of a disc, pixels.
     pub radius: f64,
-    /// How far a point is from the middle, by its distances along x and y: makes squares or discs.
+    /// Norm of the distances along x and y: the maximum norm gives squares, the Euclidean norm gives discs.
     pub distance: fn(f64, f64) -> f64,
-    /// Taxels of a grid that a cell is wide and high.
+    /// Number of grid taxels along each side of a cell.
     pub block: usize,
-    /// What is seen, for people.
+    /// Description of the picture.
     pub sentence: String,
     pub pixels_per_metre: f64,
 }
@@ -49,7 +49,7 @@ impl Cells {
         }
     }
 
-    /// Of blocks of a grid's taxels, from a top left corner on, so many pixels wide and high each.
+    /// Creates cells for blocks of grid taxels, from a top left corner. `side` is the size of a cell, pixels.
     pub fn of_grid(grid: &Grid, block: usize, side: f64, (x, y): Point) -> Self {
         let (rows, columns) = (grid.ny.div_ceil(block), grid.nx.div_ceil(block));
         let area = Area::new((x, y), (side * columns as f64, side * rows as f64));
@@ -75,7 +75,7 @@ impl Cells {
     fn of_skin(patch: &RecordedPatch) -> Self {
         let unrolled = unroll(&patch.centers, &patch.axes);
         let places = unrolled.places;
-        // A single taxel is drawn as if it had a neighbour a millimetre away.
+        // For a single taxel, the radius assumes a neighbour at a distance of 1 mm.
         let radius = 0.47 * typical_distance(&places).unwrap_or(1e-3);
         let margin = DVec2::splat(1.6 * radius);
         let low = places.iter().fold(DVec2::INFINITY, |a, &b| a.min(b)) - margin;
@@ -99,7 +99,7 @@ impl Cells {
         }
     }
 
-    /// What is around the cells: axes in millimetres of a grid, a scale bar of another skin.
+    /// Draws axes in millimetres for a grid, or a scale bar for another layout.
     pub fn draw_frame(&self, drawing: &mut Drawing, is_grid: bool) {
         let area = self.area;
         if is_grid {
@@ -116,17 +116,17 @@ impl Cells {
     }
 }
 
-/// Pixels of each of so many cells in a row that have some room: whole ones, so that no seams part neighbours.
+/// Returns the cell size for `n_cells` cells in the given room: a whole number of pixels, so that there are no seams.
 pub(crate) fn whole_pixels(room: f64, n_cells: usize) -> f64 {
     (room / n_cells as f64).floor().max(1.0)
 }
 
-/// The median of distances to the nearest taxel, metres; of about 200 taxels, since it is a look, no number.
+/// Returns the median distance to the nearest taxel, metres, estimated from about 200 taxels. It only affects the appearance.
 fn typical_distance(places: &[DVec2]) -> Option<f64> {
     let sample = places.iter().step_by(places.len().div_ceil(200).max(1));
     let nearest = sample.filter_map(|place| {
         let squares = places.iter().map(|other| other.distance_squared(*place));
-        // Taxels behind each other have no distance in the picture.
+        // Taxels that overlap in the picture are ignored.
         let apart = squares.filter(|&square| square > 1e-12);
         apart.min_by(f64::total_cmp).map(f64::sqrt)
     });

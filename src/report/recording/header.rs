@@ -1,4 +1,4 @@
-//! What a recording is of: everything that does not change with time.
+//! Header of a recording: all data that are constant in time.
 
 use crate::error::{Error, Result};
 use crate::signal::Quantity;
@@ -8,44 +8,44 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::HashSet;
 
-/// What is known of the force on a taxel.
+/// Form of the recorded forces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ForceKind {
-    /// One number: along the axis.
+    /// Force along the axis, one number for each taxel.
     Normal,
-    /// Three numbers, patch frame.
+    /// Force vector in the patch frame, three numbers for each taxel.
     Vector,
 }
 
-/// A patch as a recording knows it.
+/// Patch of a recording.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RecordedPatch {
-    /// Unlike that of any other patch or object.
+    /// Name, unique among patches and objects.
     pub name: String,
-    /// Where the taxels rest, metres, patch frame; at least one.
+    /// Rest centres of the taxels, metres, patch frame; at least one.
     #[serde(skip)]
     pub centers: Vec<DVec3>,
-    /// Unit vectors away from the substrate, one a taxel.
+    /// Unit vectors away from the substrate, one for each taxel.
     #[serde(skip)]
     pub axes: Vec<DVec3>,
-    /// The grid, where the taxels are one: taxel = row · nx + column.
+    /// Grid layout, if the taxels form a grid: taxel = row · nx + column.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub grid: Option<Grid>,
-    /// What is recorded of the forces.
+    /// Form of the recorded forces.
     pub force: ForceKind,
-    /// What its signal is in, of a patch that has one.
+    /// Quantity of the signal. `None` if the patch has no signal chain.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub signal: Option<Quantity>,
 }
 
 impl RecordedPatch {
-    /// How many taxels.
+    /// Returns the number of taxels.
     pub fn n_taxels(&self) -> usize {
         self.centers.len()
     }
 
-    /// A patch whose taxels are a grid in the plane z = 0, axes along +z.
+    /// Creates a patch with a grid of taxels in the plane z = 0 and axes along +z.
     pub fn of_grid(name: impl Into<String>, grid: Grid, force: ForceKind) -> Self {
         let centers = (0..grid.n_taxels())
             .map(|taxel| DVec3::new(grid.x(taxel % grid.nx), grid.y(taxel / grid.nx), 0.0))
@@ -85,26 +85,26 @@ impl RecordedPatch {
     }
 }
 
-/// What a recording is of.
+/// Header of a recording: patches, objects and metadata.
 #[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub struct RecordingHeader {
-    /// The skin.
+    /// Recorded patches.
     pub patches: Vec<RecordedPatch>,
-    /// Names of the objects whose poses are recorded.
+    /// Names of the objects with recorded poses.
     pub objects: Vec<String>,
-    /// What else is to be known of it (seed, step, scene …), any JSON.
+    /// Additional metadata (seed, step, scene …), any JSON.
     #[serde(default)]
     pub about: Value,
 }
 
-/// Floats as NumPy names them, least significant byte first: `<f4`, `<f8`.
+/// Floating-point type with the least significant byte first; NumPy names `<f4`, `<f8`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Element {
     Single = 4,
     Double = 8,
 }
 
-/// A member of numbers, row by row.
+/// Numeric array in the zip file, with one row for each frame.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Member {
     pub name: String,
@@ -126,7 +126,7 @@ impl Member {
         format!("<f{}", self.element as usize)
     }
 
-    /// Of one row.
+    /// Returns the number of numbers in one row.
     pub fn n_numbers(&self) -> usize {
         self.row.iter().product()
     }
@@ -135,17 +135,17 @@ impl Member {
         self.n_numbers() * self.element as usize
     }
 
-    /// The array of so many rows.
+    /// Returns the shape of the array with `n_rows` rows.
     pub fn shape(&self, n_rows: usize) -> Vec<usize> {
         [&[n_rows], &self.row[..]].concat()
     }
 }
 
 impl RecordingHeader {
-    /// Whether it can be that of a recording.
+    /// Checks that the header is valid for a recording.
     ///
     /// # Errors
-    /// A patch that makes no sense, or a name that cannot be a member's.
+    /// If a patch is invalid, or a name is repeated or cannot be the name of a member.
     pub fn check(&self) -> Result<()> {
         self.patches.iter().try_for_each(RecordedPatch::check)?;
         let refuse = |given: String, allowed: &str| Err(Error::input("recording", given, allowed));
@@ -166,7 +166,7 @@ impl RecordingHeader {
         Ok(())
     }
 
-    /// Members with one row a frame: time, then deflection, force, signal (where there is one) and pose of each patch, then each object's pose.
+    /// Returns the members with one row for each frame: time; deflection, force, signal (if any) and pose of each patch; pose of each object.
     pub(super) fn members(&self) -> Vec<Member> {
         use Element::{Double, Single};
         let pose = |name: &String| Member::new(format!("{name}/pose"), Double, &[7]);
@@ -187,7 +187,7 @@ impl RecordingHeader {
         members
     }
 
-    /// The member with what a patch reported.
+    /// Returns the member with a quantity of a patch.
     pub(super) fn member(&self, patch: usize, quantity: Quantity) -> Member {
         let name = format!("{}/{}", self.patches[patch].name, quantity.name());
         let mut members = self.members().into_iter();
@@ -195,7 +195,7 @@ impl RecordingHeader {
         member.expect("a patch has a member of each quantity")
     }
 
-    /// The text of `meta`.
+    /// Returns the JSON text of `meta`.
     pub(super) fn meta(&self) -> String {
         let mut meta = serde_json::to_value(self).expect("strings and numbers make JSON");
         for (number, patch) in self.patches.iter().enumerate() {
@@ -206,7 +206,7 @@ impl RecordingHeader {
         meta.to_string()
     }
 
-    /// The header that `meta` tells of, still without centres and axes; the error says what is wrong with it.
+    /// Parses the JSON text of `meta`. The header has no centres and axes yet. The error describes the fault.
     pub(super) fn of_meta(text: &str) -> std::result::Result<Self, String> {
         let meta: Value = serde_json::from_str(text).map_err(|e| e.to_string())?;
         let (format, version) = (&meta["format"], &meta["version"]);

@@ -1,8 +1,8 @@
-//! Recordings as files: what a skin felt over time, streamed to an `.npz` that NumPy opens.
+//! Recordings: skin readings over time, written frame by frame to an `.npz` file that NumPy opens.
 //!
-//! In: a scene's [`Frame`](crate::scene::Frame)s ([`RecordingWriter`]). Out: a zip of `.npy`
-//! members, stored without compression, ZIP64 where it is needed; `np.load(path)` opens it without pickle. Nothing but a block
-//! of rows is held in memory: earlier blocks wait in a file without a name until the recording is whole. [`RecordingFile`] reads it back row by row.
+//! In: a scene's [`Frame`](crate::scene::Frame)s ([`RecordingWriter`]). Out: a zip of `.npy` members, stored without compression, as ZIP64 if necessary;
+//! `np.load(path)` opens it without pickle. Only a block of rows is in memory: earlier blocks are stored in an unnamed temporary file until the recording is
+//! complete. [`RecordingFile`] reads a recording row by row.
 //!
 //! | member | shape | holds |
 //! |---|---|---|
@@ -16,11 +16,11 @@
 //! | `PATCH/pose` | n_frames × 7 | f64, world from patch: x, y, z in metres, unit quaternion x, y, z, w |
 //! | `OBJECT/pose` | n_frames × 7 | f64, world from object, the same |
 //!
-//! `meta` is an object with `format` ("bubbletouch recording"), `version` (1), `patches` (each with `name`, `n_taxels`, `force`
-//! ("normal" or "vector") and, where the taxels are a grid, `grid` with `nx`, `ny`, `pitch_m`: taxel = row · nx + column),
-//! `objects` (names), and `about`: whatever the writer had to say.
+//! `meta` is an object with `format` ("bubbletouch recording"), `version` (1), `patches`, `objects` (names) and `about` (any metadata of the writer). Each
+//! patch has `name`, `n_taxels` and `force` ("normal" or "vector"). If the taxels form a grid, the patch also has `grid` with `nx`, `ny`, `pitch_m`: taxel =
+//! row · nx + column.
 //!
-//! [`skin_picture`] and [`animation`] draw.
+//! [`skin_picture`] draws still pictures of recordings, [`animation`] draws moving ones.
 
 pub mod animation;
 pub(super) mod cells;

@@ -1,4 +1,4 @@
-//! A recording read back from its file, a row or a block of rows at a time.
+//! Reader of recordings, which reads one row or one block of rows at a time.
 
 use super::header::{Element, Member, RecordingHeader};
 use crate::error::{Error, Result};
@@ -11,10 +11,10 @@ use std::path::{Path, PathBuf};
 use zip::ZipArchive;
 use zip::read::ZipFile;
 
-/// What is asked for where there is none.
+/// Expected content, for error messages.
 const A_RECORDING: &str = "a whole recording as bubbletouch writes it";
 
-/// An open recording: header and times in memory (8 bytes a frame, 48 a taxel), the rest on disk.
+/// Open recording. Header and times are in memory (8 bytes for each frame, 48 for each taxel); the other data stay on disk.
 pub struct RecordingFile {
     path: PathBuf,
     archive: ZipArchive<BufReader<File>>,
@@ -23,11 +23,10 @@ pub struct RecordingFile {
 }
 
 impl RecordingFile {
-    /// Opens a recording and checks that its members are all there and of the right shapes.
+    /// Opens a recording and checks that all members exist and have the right shapes.
     ///
     /// # Errors
-    /// The error says why the file cannot be read, or which member is missing, damaged or not as `meta` says. Members that do
-    /// not belong to a recording are let be.
+    /// If the file cannot be read, or a member is missing, damaged or inconsistent with `meta`. Other members are ignored.
     pub fn open(path: &Path) -> Result<Self> {
         let file = crate::files::open(path).map_err(|e| Error::unreadable(path, A_RECORDING, e))?;
         let archive = ZipArchive::new(BufReader::new(file))
@@ -62,21 +61,21 @@ impl RecordingFile {
         Ok(open)
     }
 
-    /// What the recording is of.
+    /// Returns the header of the recording.
     pub fn header(&self) -> &RecordingHeader {
         &self.header
     }
 
-    /// Seconds, one a frame.
+    /// Returns the times of all frames, seconds.
     pub fn time(&self) -> &[f64] {
         &self.time
     }
 
-    /// What a patch reported in one frame, one number a taxel: metres, or newtons (of vectors, the length). What stands before it in the
-    /// file is not read, and no checksum compared.
+    /// Returns a quantity of a patch in one frame, one number for each taxel: metres, or newtons (for vectors, the length). Only this row is read, so no
+    /// checksum is compared.
     ///
     /// # Errors
-    /// No such frame; a file that cannot be read.
+    /// If there is no such frame, or the file cannot be read.
     pub fn frame(&mut self, patch: usize, quantity: Quantity, frame: usize) -> Result<Vec<f64>> {
         if frame >= self.time.len() {
             let allowed = match self.time.len() {
@@ -94,12 +93,12 @@ impl RecordingFile {
         row.map_err(|e| self.damaged(&member.name, e))
     }
 
-    /// Visits what a patch reported in every frame, in time's order: `visit(frame, values)`; memory for one of them.
+    /// Calls `visit(frame, values)` for a quantity of a patch in every frame, in order. Only one frame is in memory.
     ///
-    /// The zip's checksum is checked at the end: then it is an error if a bit has changed.
+    /// At the end, the zip checksum is compared.
     ///
     /// # Errors
-    /// Those of [`frame`](Self::frame); a bit of the zip that has changed; what `visit` says.
+    /// As for [`frame`](Self::frame). Also if the checksum differs.
     pub fn each_frame(
         &mut self,
         patch: usize,
@@ -115,7 +114,7 @@ impl RecordingFile {
         visited.map_err(|e| self.damaged(&member.name, e))
     }
 
-    /// The text that describes the recording.
+    /// Reads the JSON text of `meta`.
     fn meta(&mut self) -> io::Result<String> {
         let mut entry = self.archive.by_name("meta.npy")?;
         read_npy_header(&mut entry)?;
@@ -143,8 +142,8 @@ impl RecordingFile {
     }
 }
 
-/// A member behind its header, and its number of rows; the error is one that is missing or not as it should be. The number follows from
-/// the size that the zip says, and the header must say the same: nothing is reserved for it.
+/// Returns a member after its header, and its number of rows. The number of rows follows from the size in the zip directory and must agree with the header, so
+/// no memory is allocated for a false header. An error describes a missing or invalid member.
 fn open_rows<'a>(
     archive: &'a mut ZipArchive<BufReader<File>>,
     member: &Member,
@@ -163,7 +162,7 @@ fn open_rows<'a>(
     }
 }
 
-/// Visits all rows; the zip's checksum is compared at the end.
+/// Calls `visit` for all rows. At the end, the zip checksum is compared.
 fn visit_rows(
     archive: &mut ZipArchive<BufReader<File>>,
     member: &Member,
@@ -175,7 +174,7 @@ fn visit_rows(
         entry.read_exact(&mut bytes)?;
         visit(row, &decode(&bytes, member));
     }
-    // Only the end of the member compares.
+    // The checksum is compared only at the end of the member.
     entry.read_to_end(&mut bytes).map(drop)
 }
 
@@ -193,7 +192,7 @@ fn read_row(
     Ok(decode(&bytes, member))
 }
 
-/// The numbers of a row; of forces as vectors their lengths, one a taxel.
+/// Returns the numbers of a row. For force vectors, returns their lengths, one for each taxel.
 fn decode(bytes: &[u8], member: &Member) -> Vec<f64> {
     let numbers: Vec<f64> = match member.element {
         Element::Single => {

@@ -1,4 +1,4 @@
-//! What is in a recording, as a table for people.
+//! Summary of a recording as a table for the terminal.
 
 use super::reader::RecordingFile;
 use crate::error::Result;
@@ -6,10 +6,10 @@ use crate::report::terminal::rows_text;
 use crate::signal::Quantity;
 use crate::table::short_number;
 
-/// Frames and time, patches with their peaks, objects, and what the writer had to say; every number is read.
+/// Returns frames and times, patches with their largest values, objects, and metadata. Reads all data of the file.
 ///
 /// # Errors
-/// A file that cannot be read.
+/// If the file cannot be read.
 pub fn recording_table(file: &mut RecordingFile) -> Result<String> {
     let mut text = time_sentence(file.time()) + "\n";
     let n_patches = file.header().patches.len();
@@ -38,7 +38,7 @@ pub fn recording_table(file: &mut RecordingFile) -> Result<String> {
     Ok(text)
 }
 
-/// A patch and its largest values over all frames.
+/// Returns the row of a patch, with its largest values over all frames.
 fn row(file: &mut RecordingFile, patch: usize) -> Result<Vec<String>> {
     let (mut most_touched, mut peak_frame) = (0, 0);
     let (mut peak_deflection, mut peak_force) = (0.0, 0.0);

@@ -1,4 +1,4 @@
-//! The writer: frames in as they come, an `.npz` out at the end.
+//! Writer of recordings: receives frames one by one and writes an `.npz` file.
 
 use super::header::{Element, Member, RecordingHeader};
 use crate::error::{Error, Result};
@@ -14,20 +14,20 @@ use std::path::Path;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
-/// Bytes of rows in memory. Smaller: more and shorter reads and writes; larger: the processor's caches no longer hold them when they are written.
+/// Size of the rows in memory, bytes. A smaller value causes more and shorter reads and writes; with a larger one, the rows exceed the processor's cache.
 const BLOCK: usize = 2 << 20;
 
-/// An `.npz` in the making. [`finish`](Self::finish) puts it in place; dropped before, it leaves nothing behind.
+/// Writer of an `.npz` recording. [`finish`](Self::finish) completes the file; if the writer is dropped before, no file remains.
 ///
-/// It holds about 2 MiB of rows in memory, whatever the number of frames (a frame, if that is larger). A member of a zip stands in one
-/// piece, so earlier rows wait in a file without a name beside the target: while it is finished, the disk holds the numbers twice.
+/// The writer keeps about 2 MiB of rows in memory (or one frame, if it is larger), for any number of frames. A member of a zip file is contiguous. Therefore,
+/// earlier rows are stored in an unnamed temporary file beside the target. While the recording is completed, the disk contains the data twice.
 ///
-/// Invariant: `blocks` begins with `n_blocks` blocks, each with the rows of one member after those of another.
+/// Invariant: `blocks` starts with `n_blocks` blocks. Each block contains the rows of all members, one member after the other.
 pub struct RecordingWriter {
     header: RecordingHeader,
     target: WholeFile,
     members: Vec<Member>,
-    /// Of each member, those since the last block.
+    /// Rows of each member since the last block.
     rows: Vec<Vec<u8>>,
     rows_per_block: usize,
     blocks: File,
@@ -37,10 +37,10 @@ pub struct RecordingWriter {
 }
 
 impl RecordingWriter {
-    /// Starts a recording that will stand at `path`.
+    /// Starts a recording at `path`.
     ///
     /// # Errors
-    /// What [`RecordingHeader::check`] says, or why nothing can be written there.
+    /// As for [`RecordingHeader::check`]. Also if the file cannot be created.
     pub fn create(path: &Path, header: RecordingHeader) -> Result<Self> {
         header.check()?;
         let target = WholeFile::create(path)?;
@@ -63,11 +63,10 @@ impl RecordingWriter {
         })
     }
 
-    /// Adds a frame, patches and objects in the header's order.
+    /// Appends a frame with its patches and objects in the order of the header.
     ///
     /// # Errors
-    /// The error names a time that does not increase, or patches, objects or taxels that are not the header's, or says why nothing can be
-    /// written; the frame is then not in the recording.
+    /// If the time does not increase, the patches, objects or taxels differ from the header, or a write fails. The frame is then not part of the recording.
     pub fn push(&mut self, frame: &Frame) -> Result<()> {
         let place = || format!("recording, frame {}", self.n_frames);
         let (time, last) = (frame.time, self.last_time);
@@ -110,16 +109,16 @@ impl RecordingWriter {
         Ok(())
     }
 
-    /// Puts the recording in its place; returns how many frames it has.
+    /// Completes the recording and returns its number of frames.
     ///
     /// # Errors
-    /// Why it cannot be written.
+    /// If the file cannot be written.
     pub fn finish(mut self) -> Result<usize> {
         let (rows_per_block, n_frames) = (self.rows_per_block as u64, self.n_frames);
         let block_bytes = rows_per_block * frame_bytes(&self.members) as u64;
         let (blocks, mut place) = (&mut self.blocks, 0);
         self.target.write(|file| {
-            // Not dropped where a write fails: it would try again, and say so on standard error.
+            // If a write fails, the zip writer is not dropped: its destructor would write again and print the error.
             let mut zip = ManuallyDrop::new(ZipWriter::new(file));
             for (name, bytes) in constant_members(&self.header) {
                 start(&mut zip, &name)?;
@@ -145,12 +144,12 @@ impl RecordingWriter {
     }
 }
 
-/// Of all members together.
+/// Returns the size of a frame over all members, bytes.
 fn frame_bytes(members: &[Member]) -> usize {
     members.iter().map(Member::row_bytes).sum()
 }
 
-/// Starts a member that may be beyond 4 GiB; all with the same time, so that equal recordings are equal bytes.
+/// Starts a member, which may exceed 4 GiB. All members have the same modification time, so that equal recordings give equal bytes.
 fn start(zip: &mut ZipWriter<&mut BufWriter<File>>, name: &str) -> io::Result<()> {
     let options = SimpleFileOptions::default()
         .compression_method(CompressionMethod::Stored)
@@ -159,7 +158,7 @@ fn start(zip: &mut ZipWriter<&mut BufWriter<File>>, name: &str) -> io::Result<()
     Ok(zip.start_file(format!("{name}.npy"), options)?)
 }
 
-/// What does not change with time: `meta`, centres and axes.
+/// Returns the members that are constant in time: `meta`, centres and axes.
 fn constant_members(header: &RecordingHeader) -> Vec<(String, Vec<u8>)> {
     let meta = header.meta();
     let code_points = meta.chars().flat_map(|c| u32::from(c).to_le_bytes());
@@ -176,7 +175,7 @@ fn constant_members(header: &RecordingHeader) -> Vec<(String, Vec<u8>)> {
     members
 }
 
-/// What each member gets of a frame.
+/// Returns the numbers of a frame for each member.
 fn numbers(frame: &Frame) -> Vec<Vec<f64>> {
     let mut numbers = vec![vec![frame.time]];
     for patch in &frame.patches {
@@ -192,7 +191,7 @@ fn numbers(frame: &Frame) -> Vec<Vec<f64>> {
     numbers
 }
 
-/// Position and quaternion as they are stored.
+/// Returns position and quaternion in storage order.
 fn seven(pose: &Pose) -> Vec<f64> {
     let (t, q) = (pose.translation, pose.rotation);
     vec![t.x, t.y, t.z, q.x, q.y, q.z, q.w]
