@@ -1,4 +1,4 @@
-//! The kinds of study under their first path, `bubbletouch::kinds`: [`studies`](crate::studies).
+//! The kinds of study under the short path `bubbletouch::kinds`; their code is in [`studies`](crate::studies).
 
 pub use crate::studies::*;
 

@@ -9,8 +9,8 @@
 //! | [`evaluation`] | labels | a [confusion matrix](evaluation::metrics), [fused](evaluation::fusion) touches, [where to touch next](evaluation::next_touch) |
 //! | [`statistics`] | scores of trials | [intervals](statistics::interval), [comparisons](statistics::comparison), [what each source of chance brings](statistics::variance) |
 //!
-//! A [`Classifier`](classifiers::classifier::Classifier) learns its scaling, its choices and its model from training rows alone, and test rows
-//! are only ever predicted. Everything is deterministic; whatever is drawn comes from a named [`Seed`](crate::random::Seed).
+//! A [`Classifier`](classifiers::classifier::Classifier) fits its scaling, its parameters and its model on training rows only; test rows are only predicted.
+//! All results are deterministic, because random numbers come from a named [`Seed`](crate::random::Seed).
 //!
 //! ```
 //! use bubbletouch::random::Seed;

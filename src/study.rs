@@ -1,4 +1,4 @@
-//! The names of studies under one path, `bubbletouch::study`, for programs. Their code stands in [`engine`](crate::engine), [`inputs`](crate::inputs) and
+//! Names of recognition studies under the short path `bubbletouch::study`. Their code is in [`engine`](crate::engine), [`inputs`](crate::inputs) and
 //! [`studies::recognition`](crate::studies::recognition).
 
 pub use crate::engine::axis::Axis;

@@ -1,10 +1,10 @@
-//! Work that may fail without ending the run that it is part of.
+//! Work that may fail without ending the run to which it belongs.
 
 use crate::error::Result;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Does some work. What goes wrong in it is said in words, a panic too: a defect in one piece is no reason to lose a night's work on the
-/// others. If the first failure is to end the run, it is the error.
+/// Runs `work` and returns its result. An error or a panic becomes a message, so that one failed work item does not end a long run. If `fail_fast` is set, the
+/// first failure is returned as the error.
 pub fn attempt<T>(
     fail_fast: bool,
     work: impl FnOnce() -> Result<T>,
@@ -19,7 +19,7 @@ pub fn attempt<T>(
     })
 }
 
-/// What a panic said.
+/// Returns the message of a panic.
 fn words(panic: &(dyn std::any::Any + Send)) -> &str {
     let text = panic.downcast_ref::<&str>().copied();
     let text = text.or_else(|| panic.downcast_ref::<String>().map(String::as_str));

@@ -1,15 +1,15 @@
-//! `[axes]`: any key of a study with the values that it takes one after the other, in all combinations.
+//! `[axes]`: keys of a study with the values that they take, in all combinations.
 //!
 //! ```toml
 //! [axes]
 //! "touches.depth_mm" = [1.0, 2.0, 4.0]
 //! "skin.stiffness_n_per_m" = [500.0, 2000.0]
 //! ```
-//! The key stands here in place of its own table. Each combination is a study of its own, checked as any study is; a key that takes a list
-//! where it stands is an axis there, and may be written in either place. `"touches.offset_{x,y}_mm"` sets two keys together.
+//! A key in `[axes]` replaces the key in its own table. Each combination is a study of its own and is checked like any study. A key that accepts a list in its
+//! own table is an axis there, too, and may be written in either place. `"touches.offset_{x,y}_mm"` sets two keys together.
 //!
-//! With `combine = "one_at_a_time"` the study runs as its tables are, and from there each axis alone goes through its values. The keys may then have values
-//! in their tables, too.
+//! With `combine = "one_at_a_time"`, the first configuration has the values of the study's own tables. From there, each axis alone takes its values. The keys
+//! may then have values in their tables, too.
 
 use crate::error::{Error, Result};
 use crate::inputs::check::MOST_VALUES;
@@ -24,12 +24,12 @@ use std::sync::Arc;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// What a study may say in `[axes]`.
+/// Rules of a kind of study for keys in `[axes]`.
 #[derive(Clone, Copy, Debug)]
 pub struct AxisRules {
-    /// Keys that take a list where they stand: given in `[axes]`, they are put there.
+    /// Returns whether a key accepts a list in its own table. Such keys are moved from `[axes]` to their table.
     pub in_place: fn(&str) -> bool,
-    /// Keys that cannot differ within a study, with all below them.
+    /// Keys that must be equal within a study, including all keys below them.
     pub refused: &'static [&'static str],
 }
 
@@ -40,43 +40,44 @@ pub enum CombineSpec {
     /// All combinations of their values.
     #[default]
     All,
-    /// The first values of all axes (of `[axes]`: the study as its tables are), and from there each axis alone through its values.
+    /// A base configuration, and variants of it in which one axis alone takes its values. The base has the first values of all axes; for `[axes]`, the values
+    /// of the study's tables.
     OneAtATime,
 }
 
-/// The axes that a study names itself, the first changing slowest.
+/// Axes in `[axes]`; the last axis changes fastest.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StudyAxes {
-    /// In the order in which they are written.
+    /// Axes, in the order in which they are written.
     pub axes: Vec<StudyAxis>,
-    /// How they are combined.
+    /// How the axes are combined.
     pub combine: CombineSpec,
 }
 
-/// A key and its values.
+/// One axis: a key and its values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StudyAxis {
-    /// Its path: `touches.depth_mm`, or `touches.offset_{x,y}_mm` of two keys.
+    /// Path of the key: `touches.depth_mm`, or `touches.offset_{x,y}_mm` for two keys.
     pub key: String,
-    /// Whether a column of every configuration has its values already.
+    /// Whether the tables already have a column with these values.
     pub has_column: bool,
-    /// At least one, each once.
+    /// Distinct values, at least one.
     pub values: Vec<toml::Value>,
-    /// The line of the file on which it stands; none of an axis that no file has.
+    /// Line of the file on which the key stands; `None` if the axis does not come from a file.
     pub line: Option<usize>,
 }
 
-/// Where a configuration is on the axes of its study.
+/// Values of a configuration on the axes of its study.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AxisValues {
-    /// The number of the combination, from 0.
+    /// Number of the combination, from 0.
     pub number: usize,
-    /// The value on each axis.
+    /// Value on each axis.
     pub values: Arc<[AxisValue]>,
 }
 
 impl AxisValues {
-    /// Returns the values of a combination in tables that have these [columns](StudyAxes::columns).
+    /// Returns the values of a combination for tables with these [columns](StudyAxes::columns).
     pub fn new(
         number: usize,
         (axes, columns): (&StudyAxes, &[Column]),
@@ -100,17 +101,17 @@ impl AxisValues {
     }
 }
 
-/// A value on an axis, as tables have it.
+/// Value on one axis, as written in tables.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AxisValue {
-    /// What the axis is.
+    /// Column of the axis.
     pub column: Column,
-    /// A number, a truth value, or a text; a list or a table is the text of it. `None` if another axis is varied and the key has no such value.
+    /// A number, a truth value, or a text; lists and tables are written as text. `None` if another axis is varied and the key has no such value.
     pub value: Option<toml::Value>,
 }
 
-/// The table in which the last key of a path stands, made with those on the way where there is none, and that key; none through something
-/// that is no table.
+/// Returns the table that contains the last key of a path, and that key. Missing tables along the path are created. Returns `None` if a part of the path is
+/// not a table.
 fn table_at<'t, 'k>(
     table: &'t mut toml::Table,
     path: &'k str,
@@ -123,10 +124,10 @@ fn table_at<'t, 'k>(
     table_at(inner.as_table_mut()?, rest)
 }
 
-/// A table with a value at a path of keys, in place of what was there; tables on the way are made.
+/// Returns a copy of `table` with `value` at the path `key`. Missing tables along the path are created, and an existing value is replaced.
 ///
 /// # Errors
-/// A path without a key, or through something that is no table.
+/// If the path is empty, or if a part of it is not a table.
 pub fn with_value(table: &toml::Table, key: &str, value: toml::Value) -> Result<toml::Table> {
     let mut changed = table.clone();
     match table_at(&mut changed, key) {
@@ -141,11 +142,11 @@ pub fn with_value(table: &toml::Table, key: &str, value: toml::Value) -> Result<
     }
 }
 
-/// A study and its axes; in the study each of their keys has its first value, but keys of lists have all.
+/// Reads a study and its axes. In the returned study, each key of an axis has its first value; keys that accept lists have all values.
 ///
 /// # Errors
-/// What the study's reader refuses; an axis without values, with one twice, of a key that is given elsewhere too or that cannot be an
-/// axis. Each names file, line and key.
+/// If the study is invalid. If an axis has no values, has a value twice, has a key that is also given elsewhere, or has a key that cannot be an axis.
+/// The error names the file, the line and the key.
 pub fn read<S: DeserializeOwned>(
     place: &str,
     text: &str,
@@ -167,7 +168,7 @@ pub fn read<S: DeserializeOwned>(
             }
         }
     }
-    // In the order in which they are written.
+    // Axes are kept in the order in which they are written.
     found.sort_by_key(|(_, start, _)| *start);
     let mut axes = StudyAxes {
         combine: take_combine(place, text, &mut found)?,
@@ -213,7 +214,7 @@ pub fn read<S: DeserializeOwned>(
     Ok((study, axes))
 }
 
-/// The lists below a table, by their paths and where they begin.
+/// Returns the lists below a table, with their paths and the positions at which they begin.
 fn leaves<'i>(
     prefix: String,
     table: DeTable<'i>,
@@ -243,7 +244,7 @@ fn take_combine(
     CombineSpec::deserialize(value).map_err(|error| Error::toml(place, text, &error))
 }
 
-/// The values of a list; of anything else none.
+/// Returns the values of a list; an empty list for any other value.
 fn list(place: &str, text: &str, value: &Spanned<DeValue>) -> Result<Vec<toml::Value>> {
     let DeValue::Array(values) = value.get_ref() else {
         return Ok(Vec::new());
@@ -263,7 +264,7 @@ fn find<'t, 'i>(table: &'t DeTable<'i>, key: &str) -> Option<&'t DeValue<'i>> {
     }
 }
 
-/// Puts a value, written from `start` on, at a path where none is; `None` if there is one, or no table on the way.
+/// Inserts a value at a path, with `start` as its position in the text. Returns `None` if the path has a value or a part of it is not a table.
 fn insert<'i>(
     table: &mut DeTable<'i>,
     key: &str,
@@ -281,7 +282,7 @@ fn insert<'i>(
 }
 
 impl StudyAxis {
-    /// An error about it: file, line and key first.
+    /// Returns an error about the axis; its place consists of file, line and key.
     fn error(&self, place: &str, given: impl ToString, allowed: impl ToString) -> Error {
         let line = self.line.map_or(String::new(), |line| format!(":{line}"));
         let place = format!("{place}{line}, axes.{:?}", self.key);
@@ -336,13 +337,13 @@ impl StudyAxis {
         }
     }
 
-    /// Returns the path without braces, and without what only says how a value is spread.
+    /// Returns the path without braces, and without a suffix that only describes a distribution.
     fn path(&self) -> String {
         let path = self.key.replace(['{', '}', ',', ' '], "");
         path.strip_suffix(".within").unwrap_or(&path).to_owned()
     }
 
-    /// Returns the name of its column, if nothing else has it: the key without its tables; of a key of test touches with `test_`.
+    /// Returns the preferred name of the axis's column: the last part of the key, with the prefix `test_` for keys of test touches.
     fn name(&self) -> String {
         let path = self.path();
         let last = path.rsplit('.').next().unwrap_or(&path);
@@ -352,7 +353,7 @@ impl StudyAxis {
         }
     }
 
-    /// Its column in tables of results, where the names of others are taken.
+    /// Returns the column of the axis in result tables; `is_taken` tells which names other columns use.
     pub fn column(&self, is_taken: impl Fn(&str) -> bool) -> Column {
         let last = self.name();
         let last = &last[..];
@@ -360,7 +361,7 @@ impl StudyAxis {
             true => self.path().replace('.', "_"),
             false => last.to_owned(),
         };
-        // It lives as long as the program, as names that are written there do: those of a row's fields must.
+        // The name is leaked, because the names of columns must be `'static`.
         let name: &'static str = name.leak();
         let found = UNITS.iter().find_map(|(suffix, unit)| {
             let words = last.strip_suffix(suffix)?;
@@ -377,14 +378,14 @@ impl StudyAxis {
         Column::new(name, self.role(), words, unit, scale(numbers)).optional()
     }
 
-    /// Returns the value that a study has at its key; `None` if it has none, or none of the kind of its values.
+    /// Returns the value of the key in a study; `None` if the study has no value, or a value of another type than the axis.
     fn own(&self, study: &toml::Table) -> Option<toml::Value> {
         let own = value_at(study, self.keys().first()?)?;
         let is_number = self.values.iter().all(|value| number(value).is_some());
         (!is_number || number(own).is_some()).then(|| own.clone())
     }
 
-    /// Whether a study has a value at all of its keys.
+    /// Returns whether a study has this value at all keys of the axis.
     fn is_at(&self, study: &toml::Table, value: &toml::Value) -> bool {
         let has = |key: &String| value_at(study, key).is_some_and(|own| is_same(own, value));
         self.keys().iter().all(has)
@@ -396,17 +397,17 @@ impl StudyAxis {
     }
 }
 
-/// Beginning of the keys that test touches have instead of the study's.
+/// Prefix of keys that apply to test touches only.
 const OF_TESTS: &str = "test.";
 
-/// Words of keys whose last word says too little.
+/// Descriptions of keys whose last part is not clear by itself.
 const WORDS: [(&str, &str); 3] = [
     ("skin.sensed", "sensed quantity"),
     ("recognition.keep_together", "group held out"),
     ("recognition.split", "poses held out"),
 ];
 
-/// Units by the ends of keys, longer ends first.
+/// Units by suffix of the key, longer suffixes first.
 const UNITS: [(&str, &str); 15] = [
     ("_n_s_per_m", "N·s/m"),
     ("_mm_per_s", "mm/s"),
@@ -425,9 +426,8 @@ const UNITS: [(&str, &str); 15] = [
     ("_g", "g"),
 ];
 
-/// Roles by the beginnings of keys; all others are choices. How deep, how far along, how often and how fast one presses is chosen; where the
-/// object lies, how it is turned and how slippery it is is not. How touches are split, in which groups, and what was recorded is a condition of the
-/// experiment: a designer who could choose the split would choose the easiest.
+/// Roles by prefix of the key; all other keys are choices. Depth, slide, frequency and speed of a press are choices. Pose and friction of the object are
+/// conditions. The split, its groups and recorded data are conditions of the experiment: as a choice, the easiest split would always win.
 const ROLES: [(&str, Role); 19] = [
     (OF_TESTS, Role::Condition),
     ("seed", Role::Subject),
@@ -450,11 +450,11 @@ const ROLES: [(&str, Role); 19] = [
     ("objects.", Role::Condition),
 ];
 
-/// From this ratio of the largest to the smallest on, numbers lie along an axis by their logarithm. Larger, and the small ones of a sweep
-/// by powers of two lie on each other; smaller, and evenly spread ones look uneven. A zero stands apart.
+/// Ratio of the largest to the smallest value from which an axis is logarithmic. If it is larger, the small values of a sweep by powers of two overlap on a
+/// linear axis. If it is smaller, evenly spaced values look uneven. Zero is drawn separately.
 const LOG_FROM: f64 = 16.0;
 
-/// Whether two values are the same; 1 and 1.0 are.
+/// Returns whether two values are equal; 1 and 1.0 are equal.
 fn is_same(one: &toml::Value, other: &toml::Value) -> bool {
     match (number(one), number(other)) {
         (Some(one), Some(other)) => one == other,
@@ -477,18 +477,18 @@ fn scale(numbers: Option<Vec<f64>>) -> Scale {
 }
 
 impl StudyAxes {
-    /// Whether there are none.
+    /// Returns whether there are no axes.
     pub fn is_empty(&self) -> bool {
         self.axes.is_empty()
     }
 
-    /// Whether a key is one of them.
+    /// Returns whether a key belongs to one of the axes.
     pub fn has(&self, key: &str) -> bool {
         let mut axes = self.axes.iter();
         axes.any(|axis| axis.keys().iter().any(|own| own == key))
     }
 
-    /// Returns the columns of axes that have none in every configuration, where the names of others are taken.
+    /// Returns the columns of the axes that have no column of their own yet; `is_taken` tells which names other columns use.
     pub fn columns(&self, is_taken: impl Fn(&str) -> bool) -> Vec<Column> {
         let column = |axis: &StudyAxis| {
             let alike = self.axes.iter().filter(|other| other.name() == axis.name());
@@ -499,7 +499,7 @@ impl StudyAxes {
         shown.map(column).collect()
     }
 
-    /// How many combinations of values there are.
+    /// Returns the number of combinations of values.
     pub fn n_combinations(&self) -> f64 {
         let lengths = self.axes.iter().map(|axis| axis.values.len() as f64);
         match self.combine {
@@ -508,7 +508,7 @@ impl StudyAxes {
         }
     }
 
-    /// Returns every combination of a value of each axis, the first axis changing slowest; `None` where the axis is left as `study` has it.
+    /// Returns the combinations of values, the last axis changing fastest. `None` means that the axis keeps its value in `study`.
     fn combinations(&self, study: &toml::Table) -> Vec<Vec<Option<toml::Value>>> {
         if self.combine == CombineSpec::OneAtATime {
             let mut all = vec![vec![None; self.axes.len()]];
@@ -533,11 +533,11 @@ impl StudyAxes {
         all
     }
 
-    /// Returns each combination of values with the study that has it: `study` with these at the axes' keys. Of an axis that is left as the study has it, the
-    /// value is the study's own.
+    /// Returns each combination of values with the study that results from it: `study` with the values at the axes' keys. If an axis keeps its value, the
+    /// listed value is that of the study.
     ///
     /// # Errors
-    /// A value that the study's reader refuses; the error names the axis.
+    /// If a value is invalid for the study; the error names the axis.
     pub fn variants<S: Serialize + DeserializeOwned>(
         &self,
         place: &str,
@@ -566,7 +566,7 @@ impl StudyAxes {
         all.collect()
     }
 
-    /// What is said of a combination that a check refuses: first the axes whose keys the check speaks of, or all of them.
+    /// Returns the error for a combination that a check rejects. The error lists the axes whose keys the message mentions, or all axes.
     pub fn refused(&self, place: &str, values: &[Option<toml::Value>], said: &str) -> Error {
         let all = || {
             let axes = self.axes.iter().zip(values);
@@ -588,7 +588,7 @@ impl StudyAxes {
     }
 }
 
-/// A study as TOML: without the keys of its axes, and with their table at its end, in their order.
+/// Returns a study as TOML, without the keys of its axes, followed by the table `[axes]` in its original order.
 pub fn to_toml<S: Serialize>(study: &S, axes: &StudyAxes) -> String {
     const HAS_FORM: &str = "every field of a study has a TOML form";
     if axes.is_empty() {
@@ -771,7 +771,7 @@ mod tests {
             "human_touch_frames"
         );
         assert_eq!(column("seed", "[1]").role, Role::Subject);
-        // How touches are split and what was recorded is no choice of a designer.
+        // The split and the recorded data are not choices of a designer.
         for key in [
             "recognition.split",
             "recognition.keep_together",

@@ -1,4 +1,4 @@
-//! An axis of a sweep as it is written: one value, or a list of them.
+//! An axis of a sweep in a study file: one value or a list of values.
 
 use serde::de::value::SeqAccessDeserializer;
 use serde::de::{self, IntoDeserializer, SeqAccess, Visitor};
@@ -6,7 +6,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use std::fmt;
 use std::marker::PhantomData;
 
-/// One value, or a list of them: an axis.
+/// An axis: one value or a list of values.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Axis<T> {
@@ -17,7 +17,7 @@ pub enum Axis<T> {
 }
 
 impl<T: Clone> Axis<T> {
-    /// The values, in their order.
+    /// Returns the values, in their order.
     pub fn values(&self) -> Vec<T> {
         match self {
             Self::One(value) => vec![value.clone()],
@@ -25,14 +25,14 @@ impl<T: Clone> Axis<T> {
         }
     }
 
-    /// Those of a key that may be left out, which is one value.
+    /// Returns the values of an optional key; a missing key counts as the single value `None`.
     pub fn of(axis: &Option<Self>) -> Vec<Option<T>> {
         let values = axis.as_ref().map(Self::values);
         values.map_or(vec![None], |values| values.into_iter().map(Some).collect())
     }
 }
 
-/// Written out, because an untagged enum forgets which value was wrong and what would have been right.
+/// Implemented by hand, because an untagged enum loses which value was wrong and what is allowed.
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for Axis<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
         deserializer.deserialize_any(AxisVisitor(PhantomData))
@@ -65,7 +65,7 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for AxisVisitor<T> {
     }
 }
 
-/// An axis of the number one.
+/// Returns an axis with the single value 1.
 pub(crate) fn one_value() -> Axis<usize> {
     Axis::One(1)
 }

@@ -1,7 +1,7 @@
 //! The engine of all studies: axes, work items, the journal, shards, progress and provenance.
 //!
-//! The engine runs the [work items](work_items) of a study and knows nothing of what they measure. It keeps each finished item in the
-//! [`journal`], so that an interrupted run continues, and divides items among shards ([`shard`]).
+//! The engine runs the [work items](work_items) of a study independently of what they measure. It stores each finished item in the [`journal`], so that an
+//! interrupted run continues, and divides items among shards ([`shard`]).
 
 pub(crate) mod attempt;
 pub mod axes;

@@ -1,7 +1,7 @@
-//! The program that computes results.
+//! Identity of the program that computes results.
 
-/// Program and version.
+/// Name and version of the program.
 pub const PROGRAM: &str = concat!("bubbletouch ", env!("CARGO_PKG_VERSION"));
 
-/// Hash of the sources that the program was built from: equal hashes, equal results.
+/// Hash of the source code from which the program was built. Programs with equal hashes compute equal results.
 pub const SOURCE: &str = env!("BUBBLETOUCH_SOURCE");

@@ -1,21 +1,20 @@
-//! What a running study tells whoever listens: which stage it is in, and how far.
+//! Progress of a running study: the current stage and the number of finished steps.
 
-/// A listener to the stages of a run. Calls come from one thread at a time for `stage` and `finish`, from any thread for
-/// `advance`.
+/// Receiver of progress reports. `stage` and `finish` are called by one thread at a time, `advance` by any thread.
 pub trait Progress: Sync {
-    /// A stage begins; it will advance `total` steps. A stage that is still open ends.
+    /// Begins a stage of `total` steps and ends the previous stage.
     fn stage(&self, name: &str, total: u64);
-    /// `n` more steps of the stage are done.
+    /// Advances the stage by `n` steps.
     fn advance(&self, n: u64);
-    /// Announces the number of work items of a run. It is called once, before the first stage.
+    /// Sets the number of work items of a run. It is called once, before the first stage.
     fn expect(&self, _n_items: usize) {}
-    /// Counts one of these work items as finished. Calls come from any thread.
+    /// Counts one work item as finished. It may be called by any thread.
     fn item_finished(&self) {}
-    /// The last stage ends; the message says what came of the run.
+    /// Ends the last stage; the message describes the result of the run.
     fn finish(&self, message: &str);
 }
 
-/// Listens to nothing: for tests, libraries and `--quiet`.
+/// Ignores all progress reports: for tests, libraries and `--quiet`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Silent;
 

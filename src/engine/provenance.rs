@@ -1,4 +1,4 @@
-//! Where results come from: the program, the machine, the study and its objects.
+//! Provenance of results: the program, the machine, the study and its objects.
 
 use crate::contact::Instructions;
 use crate::engine::journal::identity::Identity;
@@ -11,87 +11,87 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-/// The commit at which sources last changed, `-changed` if they were not those of it, `unknown` outside a repository.
+/// Commit of the last change of the source code; `…-changed` if the sources were modified after it, `unknown` outside a repository.
 const COMMIT: &str = env!("BUBBLETOUCH_COMMIT");
 
-/// What built the program.
+/// Compiler that built the program.
 const RUSTC: &str = env!("BUBBLETOUCH_RUSTC");
 
-/// What it was built for.
+/// Target platform of the program.
 const TARGET: &str = env!("BUBBLETOUCH_TARGET");
 
 pub use crate::files::MANIFEST_FILE;
 
-/// The subcommand in the manifest of a folder without a run whose charts and page were made again.
+/// Subcommand in the manifest of a folder without a run whose charts and page were made again.
 pub const REPORT: &str = "report";
 
-/// `manifest.json`: where the files of a folder come from.
+/// `manifest.json`: provenance of the files of a result folder.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
-    /// The study's name; empty in manifests of earlier versions.
+    /// Name of the study; empty in manifests of earlier versions.
     #[serde(default)]
     pub study: String,
-    /// The command that makes the folder again; empty in manifests of earlier versions.
+    /// Command that reproduces the folder; empty in manifests of earlier versions.
     #[serde(default)]
     pub command: String,
-    /// The folder of the study's file, to which paths in it are relative; empty in manifests of earlier versions.
+    /// Folder of the study file, to which paths in the study are relative; empty in manifests of earlier versions.
     #[serde(default)]
     pub paths_from: PathBuf,
-    /// Program and version.
+    /// Name and version of the program.
     pub program: String,
-    /// Hash of its sources.
+    /// Hash of the program's source code.
     pub source: String,
-    /// Its commit.
+    /// Commit of the program's source code.
     pub commit: String,
-    /// What built it.
+    /// Compiler that built the program.
     pub rustc: String,
-    /// What it was built for.
+    /// Target platform of the program.
     pub target: String,
-    /// The processor's name, or `unknown`.
+    /// Name of the processor, or `unknown`.
     pub cpu: String,
-    /// Its best vector instructions, by which products of the learning engine round; none in manifests of earlier versions.
+    /// Widest vector instructions of the processor, which affect the rounding of matrix products in learning. `None` in manifests of earlier versions.
     #[serde(default)]
     pub instructions: Option<Instructions>,
-    /// Threads that the machine runs at once.
+    /// Number of hardware threads of the machine.
     pub cores: usize,
-    /// Threads that the last run used.
+    /// Number of threads of the last run.
     pub threads: usize,
-    /// The last run's start and end, UTC.
+    /// Start of the last run, UTC.
     pub started: String,
-    /// Its end.
+    /// End of the last run, UTC.
     pub ended: String,
-    /// Most bytes of memory that the last run held, where the system tells.
+    /// Peak memory of the last run, bytes; `None` if the system does not report it.
     #[serde(default)]
     pub peak_memory_bytes: Option<u64>,
-    /// Cells that the last run found finished, counted once a trial.
+    /// Number of configurations that were finished before the last run, counted once per trial.
     pub n_finished_before: usize,
-    /// Root of all randomness.
+    /// Seed of all random numbers.
     pub seed: u64,
-    /// Cells of the study, or pieces of its work.
+    /// Number of configurations, or of work items, of the study.
     pub n_cells: usize,
-    /// Trials of each; a piece holds its trials.
+    /// Number of trials per configuration; 1 if trials are part of a work item.
     pub n_trials: usize,
-    /// Cells that failed, counted once a trial.
+    /// Number of failed configurations, counted once per trial.
     pub n_failed: usize,
-    /// SHA-256 of `study.toml`: the study with every default spelt out.
+    /// SHA-256 of `study.toml`, the study with all defaults written out.
     pub study_sha256: String,
-    /// SHA-256 of what each object is made of, by its name.
+    /// SHA-256 of each object's content, by the name of the object.
     pub objects_sha256: BTreeMap<String, String>,
-    /// SHA-256 of the tables that hold no times, by their file's name.
+    /// SHA-256 of the tables without times, by file name.
     pub tables_sha256: BTreeMap<String, String>,
-    /// SHA-256 of those that do, which no two runs share; empty in manifests of earlier versions.
+    /// SHA-256 of the tables with times, which differ between runs; empty in manifests of earlier versions.
     #[serde(default)]
     pub times_sha256: BTreeMap<String, String>,
-    /// SHA-256 of all other files of the folder but this one, by name: charts, pictures and the page. `None` in manifests of earlier versions.
+    /// SHA-256 of all other files of the folder except this one, by name: charts, pictures and the page. `None` in manifests of earlier versions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub files_sha256: Option<BTreeMap<String, String>>,
-    /// How the intervals and p-values of the tables are made, by table and columns.
+    /// Methods by which the intervals and p-values of the tables are computed, by table and columns.
     #[serde(default)]
     pub methods: BTreeMap<String, String>,
 }
 
 impl Manifest {
-    /// Of a run that began then and ends now, on this machine: what it is of, which is left open, is empty.
+    /// Returns the manifest of a run on this machine that began at `started` and ends now. Fields that describe the study's results are empty.
     pub fn ended(identity: &Identity, started: SystemTime) -> Self {
         Self {
             program: identity.program.clone(),
@@ -115,7 +115,7 @@ impl Manifest {
     /// Reads the manifest of a folder of results. Returns `None` if there is none, or only that of a page made by `bubbletouch report`.
     ///
     /// # Errors
-    /// It cannot be read, or is not of this program.
+    /// If the file cannot be read or was not written by this program.
     pub fn read(folder: &Path) -> Result<Option<Self>> {
         let path = folder.join(MANIFEST_FILE);
         if !path.exists() {
@@ -131,21 +131,21 @@ impl Manifest {
             .map_err(|e| Error::input(path.display(), e, "a manifest of this program"))
     }
 
-    /// Seconds from the last run's start to its end; none if they are not times of day.
+    /// Returns the wall-clock time of the last run, seconds; `None` if its start or end is not a valid time.
     pub fn wall_s(&self) -> Option<f64> {
         let time = |text: &str| DateTime::parse_from_rfc3339(text).ok();
         let (start, end) = (time(&self.started)?, time(&self.ended)?);
         Some((end - start).num_milliseconds() as f64 / 1e3)
     }
 
-    /// As JSON with a line a value.
+    /// Returns the manifest as JSON with one value per line.
     pub fn to_json(&self) -> String {
         let json = serde_json::to_string_pretty(self);
         json.expect("every field has a JSON form") + "\n"
     }
 }
 
-/// The processor's name where the system tells it.
+/// Returns the name of the processor if the system reports it.
 fn cpu() -> String {
     let of_system = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let name = of_system.lines().find_map(|line| {
@@ -155,7 +155,7 @@ fn cpu() -> String {
     name.unwrap_or_else(|| "unknown".to_owned())
 }
 
-/// `2026-11-22T06:30:00.250Z`
+/// Returns a time in the form `2026-11-22T06:30:00.250Z`.
 fn time(time: SystemTime) -> String {
     DateTime::<Utc>::from(time).to_rfc3339_opts(SecondsFormat::Millis, true)
 }

@@ -1,32 +1,32 @@
-//! A part of a study's work that one process does, without knowing of the others.
+//! Shard: the part of a study's work that one process computes, independently of the other processes.
 
 use crate::error::{Error, Result};
 use std::fmt::{self, Display};
 use std::str::FromStr;
 
-/// Part `index` of `count`, written `3/8`.
+/// Shard `index` of `count`, written `3/8`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
-    /// From 1 to `count`.
+    /// Index of the shard, from 1 to `count`.
     index: usize,
-    /// At least 1.
+    /// Number of shards, at least 1.
     count: usize,
 }
 
 impl Shard {
-    /// All parts of a whole, first to last.
+    /// Returns all shards, first to last.
     pub fn all(count: usize) -> impl Iterator<Item = Self> {
         (1..=count).map(move |index| Self { index, count })
     }
 
-    /// Its number, from 1.
+    /// Returns the index of the shard, from 1.
     pub fn index(&self) -> usize {
         self.index
     }
 
-    /// Whether this part holds a piece of work, given the number of its group of pieces and its own among all pieces.
+    /// Returns whether this shard contains a work item, given the number of its group and its number among all items.
     ///
-    /// Pieces of a group share what comes before them, so whole groups are dealt out as long as there is one for everybody.
+    /// Items of a group share preparatory work. Whole groups are therefore distributed if there are at least as many groups as shards.
     pub fn takes(&self, (group, n_groups): (usize, usize), piece: usize) -> bool {
         let number = match n_groups >= self.count {
             true => group,
@@ -35,7 +35,7 @@ impl Shard {
         number % self.count == self.index - 1
     }
 
-    /// The name of a file of this part: `journal.jsonl` is `journal.3-of-8.jsonl`.
+    /// Returns the name of this shard's variant of a file: `journal.jsonl` becomes `journal.3-of-8.jsonl`.
     pub fn file_name(&self, whole: &str) -> String {
         let (stem, ending) = whole.rsplit_once('.').unwrap_or((whole, ""));
         format!("{stem}.{}-of-{}.{ending}", self.index, self.count)

@@ -1,4 +1,4 @@
-//! A study of any kind, as the commands see it.
+//! Type-erased study, as used by all commands.
 
 use crate::engine::journal::identity::Identity;
 use crate::engine::journal::journal_file::Journal;
@@ -11,36 +11,36 @@ use crate::report::page::StudyAbout;
 use crate::table::Table;
 use std::path::Path;
 
-/// A study that is loaded and checked.
+/// A loaded and checked study of any kind.
 pub trait AnyStudy: Send {
-    /// What its results depend on.
+    /// Returns the content on which the study's results depend.
     fn identity(&self) -> &Identity;
 
-    /// How many work items it has.
+    /// Returns the number of work items.
     fn n_all(&self) -> usize;
 
-    /// What it asks, and what it will take.
+    /// Returns a description of the study: its question, its size and the memory that it needs.
     ///
     /// # Errors
-    /// It cannot be done within the memory that it may take.
+    /// If the study does not fit into the memory limit.
     fn plan(&self) -> Result<String>;
 
-    /// Of a part, those of which a journal does not say what came of them.
+    /// Returns the number of work items in `part` that have no result in the journal.
     fn n_pending(&self, part: Part, journal: &Journal) -> usize;
 
     /// Returns the number of work items in `part` that have not succeeded according to the journal.
     fn n_without_success(&self, part: Part, journal: &Journal) -> usize;
 
-    /// Does what is left.
+    /// Runs the pending work items.
     ///
     /// # Errors
-    /// The journal cannot be written; what an item fails of, if the first to fail ends the run; too little memory for any item.
+    /// If the journal cannot be written, if an item fails and the first failure ends the run, or if the memory does not suffice for a single item.
     fn run(&self, options: &RunOptions) -> Result<Outcome>;
 
-    /// Writes tables, charts and page, the study and the manifest, of which what is known of the run is given.
+    /// Writes the tables, charts and page, the study file and the manifest of the run.
     ///
     /// # Errors
-    /// What cannot be drawn; a file that cannot be written.
+    /// If a chart cannot be drawn or a file cannot be written.
     fn write(
         &self,
         folder: &Path,
@@ -49,27 +49,27 @@ pub trait AnyStudy: Send {
         chart_format: ChartFormat,
     ) -> Result<()>;
 
-    /// What a person reads at the end, in lines of about `width` letters.
+    /// Returns the summary for the terminal, wrapped at `width` characters.
     fn words(&self, outcome: &Outcome, width: usize) -> String;
 
-    /// Runs `n` items again that are drawn by `draw`, and says what they were.
+    /// Re-runs `n` work items, drawn at random with the seed `draw`, and compares them with the stored results. Returns a description of the items.
     ///
     /// # Errors
-    /// A row of a folder that is not the same again.
+    /// If a recomputed row differs from the row in the folder.
     fn verify(&self, folder: &Path, n: usize, draw: u64, progress: &dyn Progress)
     -> Result<String>;
 
-    /// Writes the charts, pictures and page of a folder again, from its tables; question and answers are the study's.
+    /// Rewrites the charts, pictures and page of a folder from its tables; question and answers come from the study.
     ///
     /// # Errors
-    /// A table that cannot be read; a file that cannot be written.
+    /// If a table cannot be read or a file cannot be written.
     fn report(&self, folder: &Path, about: StudyAbout) -> Result<()>;
 }
 
-/// What came of a study.
+/// Result of a run.
 pub struct Outcome {
-    /// All tables, that of what failed among them.
+    /// All tables, including the table of failed work items.
     pub tables: Vec<Table>,
-    /// How many work items failed.
+    /// Number of failed work items.
     pub n_failed: usize,
 }

@@ -1,13 +1,13 @@
-//! Work within a ceiling of memory.
+//! Work within a memory limit.
 
 use crate::engine::work_items::scale::Scale;
 use crate::error::{Error, Result};
 use crate::inputs::memory::GIB;
 
-/// Threads on which the work items of a study stay within so many bytes; all of them where there is no ceiling.
+/// Returns the number of threads with which the study stays within the memory limit; all threads if there is no limit.
 ///
 /// # Errors
-/// Not even one item at a time does.
+/// If even one work item at a time exceeds the limit.
 pub fn threads_within(scale: &Scale, ceiling: Option<u64>) -> Result<usize> {
     let Some(ceiling) = ceiling else {
         return Ok(rayon::current_num_threads());
@@ -24,10 +24,10 @@ pub fn threads_within(scale: &Scale, ceiling: Option<u64>) -> Result<usize> {
     })
 }
 
-/// Does something on as many threads as there is memory for; what comes of it is the same on any number.
+/// Runs `work` on as many threads as the memory limit allows. The result does not depend on the number of threads.
 ///
 /// # Errors
-/// Those of [`threads_within`]; those of the work.
+/// If [`threads_within`] or `work` fails.
 pub fn within_memory<T: Send>(
     scale: &Scale,
     ceiling: Option<u64>,

@@ -1,10 +1,10 @@
-//! Rows by what they are rows of.
+//! Grouping of rows by a key.
 
 use crate::error::Result;
 use crate::table::{Columns, File, Table};
 use serde::Serialize;
 
-/// Things of the same key together, keys in the order of their first.
+/// Groups elements with equal keys, in the order in which the keys first occur.
 pub(super) fn grouped<'a, T, K: PartialEq>(
     things: impl IntoIterator<Item = &'a T>,
     key: impl Fn(&T) -> K,
@@ -20,7 +20,7 @@ pub(super) fn grouped<'a, T, K: PartialEq>(
     groups
 }
 
-/// Rows of what something is, what was found of it and what it costs, as a table of what was found and one of what it costs.
+/// Returns two tables of the same configurations: one with the results, one with the costs.
 pub(super) fn found_and_cost<C, F, T>(
     found: &File<(C, F)>,
     cost: &File<(C, T)>,

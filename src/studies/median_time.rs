@@ -1,9 +1,9 @@
-//! What something takes, by the clock.
+//! Measurement of computing time.
 
 use crate::quantile::quantile;
 use std::time::Instant;
 
-/// Median seconds of doing something to each of some things, one after the other; 0 of none.
+/// Returns the median wall-clock time of `act`, called for each of `things` in sequence, seconds; 0 if there are none.
 pub(super) fn median_s<T>(things: impl IntoIterator<Item = T>, mut act: impl FnMut(T)) -> f64 {
     let seconds = things.into_iter().map(|thing| {
         let start = Instant::now();

@@ -1,7 +1,7 @@
-//! The kinds of study: a folder each, and a line each in `KINDS`.
+//! The kinds of study: one folder and one entry in `KINDS` for each kind.
 //!
-//! A kind says which [work items](crate::engine::work_items) a study has and measures them, and gives tables, charts, pictures and answers
-//! ([`Study`]). [`AnyStudy`] is what all commands see of a study: whatever can be done with one kind can be done with all.
+//! A kind lists the [work items](crate::engine::work_items) of a study, measures them, and makes tables, charts, pictures and answers ([`Study`]). All
+//! commands use [`AnyStudy`], so that every command works with every kind.
 
 pub(crate) mod any_study;
 pub(crate) mod ceiling;
@@ -38,14 +38,14 @@ use crate::toml_numbers::with_line;
 use crate::toml_text;
 use std::path::Path;
 
-/// A kind, for those who do not know which.
+/// Type-erased kind of study, as stored in the registry.
 struct Entry {
     about: About,
     load: fn(&Source) -> Result<Box<dyn AnyStudy>>,
     tables: TableFiles,
 }
 
-/// All kinds.
+/// Registry of all kinds.
 const KINDS: &[Entry] = &[
     entry::<object_detail::ObjectDetailStudy>(),
     entry::<reconstruction::ReconstructionStudy>(),
@@ -54,7 +54,7 @@ const KINDS: &[Entry] = &[
     RECOGNITION,
 ];
 
-/// The kind of every file that no table makes another.
+/// Kind of a study file that has no table of another kind.
 const RECOGNITION: Entry = entry::<recognition::study::RecognitionStudy>();
 
 const fn entry<K: Study>() -> Entry {
@@ -65,22 +65,22 @@ const fn entry<K: Study>() -> Entry {
     }
 }
 
-/// Which kind a study is of; none where no table tells.
+/// Returns the kind of a study; `None` if the file has no table of a kind.
 pub fn about(text: &str) -> Option<About> {
     find(text).map(|entry| entry.about)
 }
 
-/// Reads and checks a study of any kind; one of which no table tells is taken for recognition.
+/// Reads and checks a study of any kind. A file without a table of a kind is read as a recognition study.
 ///
 /// # Errors
-/// Those of its [`Study::load`].
+/// If the kind's [`Study::load`] fails.
 pub fn load(source: &Source) -> Result<Box<dyn AnyStudy>> {
     check_removed(&source.place, &source.text)?;
     let entry = find(&source.text).unwrap_or(&RECOGNITION);
     with_folder(source.folder.clone(), || (entry.load)(source))
 }
 
-/// Reads and checks the plans of a recognition study, one for each combination of its own axes.
+/// Reads and checks the plans of a recognition study, one for each combination of the values in `[axes]`.
 ///
 /// # Errors
 /// If the study is of another kind, or a key is unknown or out of its range.
@@ -92,13 +92,13 @@ pub fn recognition_plans(source: &Source) -> Result<Vec<(AxisValues, Plan)>> {
 /// Loads a recognition study with its objects.
 ///
 /// # Errors
-/// Those of [`recognition_plans`]; an object that cannot be read; touches that memory cannot hold.
+/// If [`recognition_plans`] fails, an object cannot be read, or the touches exceed the memory.
 pub fn load_recognition_study(source: &Source) -> Result<recognition::study::RecognitionStudy> {
     check_recognition(source)?;
     recognition::study::load_study(source)
 }
 
-/// Refuses a study of another kind than recognition.
+/// Returns an error if the study is not a recognition study.
 fn check_recognition(source: &Source) -> Result<()> {
     match about(&source.text) {
         Some(about) if about.table != RECOGNITION.about.table => {
@@ -110,7 +110,7 @@ fn check_recognition(source: &Source) -> Result<()> {
     }
 }
 
-/// Checks before a study is loaded that a folder can take its results: no file that the run writes is of somebody else.
+/// Checks before loading a study that a folder can take its results, without replacing files that other programs or users wrote.
 ///
 /// # Errors
 /// If the folder has such a file, or one that this command has read; the error names the file.
@@ -120,10 +120,10 @@ pub fn check_folder(study: &str, folder: &Path) -> Result<()> {
     OwnedFiles::read(folder, RUN)?.check_results(tables)
 }
 
-/// The tables of a folder of results of any kind, and which kind that is. Nothing that the study is about is loaded.
+/// Reads the tables of a result folder of any kind, and returns its kind. Files that the study refers to are not loaded.
 ///
 /// # Errors
-/// A folder without a study; a table that cannot be read, or has other columns.
+/// If the folder has no study, or a table cannot be read or has other columns.
 pub fn read_tables(folder: &Path) -> Result<(About, Vec<Table>)> {
     let Source { place, text, .. } = Source::of_results(folder)?;
     check_removed(&place, &text)?;
@@ -131,16 +131,16 @@ pub fn read_tables(folder: &Path) -> Result<(About, Vec<Table>)> {
     Ok((entry.about, entry.tables.read(folder)?))
 }
 
-/// Returns the table of the work items of a folder that failed, or `None` if it has no such table or none failed.
+/// Returns the table of failed work items of a folder, or `None` if no item failed.
 ///
 /// # Errors
-/// A table that cannot be read, or has other columns.
+/// If the table cannot be read or has other columns.
 pub fn read_failures(folder: &Path) -> Result<Option<Table>> {
     let found = loaded::FAILURES.read_if_there(folder)?;
     Ok(found.filter(|failures| failures.n_rows > 0))
 }
 
-/// Tables of studies of a kind that exists no more, and what takes its place.
+/// Tables of removed kinds of study, each with its replacement.
 const REMOVED: [(&str, &str); 2] = [
     (
         "speed_accuracy",
@@ -154,7 +154,7 @@ const REMOVED: [(&str, &str); 2] = [
     ),
 ];
 
-/// Refuses a study of a kind that exists no more.
+/// Returns an error if the study is of a removed kind.
 fn check_removed(place: &str, text: &str) -> Result<()> {
     let table = toml_text::table(text).unwrap_or_default();
     match REMOVED.iter().find(|(key, _)| table.contains_key(*key)) {
@@ -167,7 +167,7 @@ fn check_removed(place: &str, text: &str) -> Result<()> {
     }
 }
 
-/// Text that is not TOML is told so by whoever reads the study.
+/// Returns the kind whose table the text contains; `None` also for invalid TOML, which the reader of the study reports.
 fn find(text: &str) -> Option<&'static Entry> {
     let table = toml_text::table(text)?;
     let mut kinds = KINDS.iter();

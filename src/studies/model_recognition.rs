@@ -1,6 +1,6 @@
-//! Classifiers that learn from touches of models and are tested on touches of the objects themselves.
+//! Classifiers that are trained on touches of models and tested on touches of the objects themselves.
 //!
-//! Every object has the same number of touches; the leading ones train, the others test.
+//! Every object has the same number of touches. The first touches train, the others test.
 
 use crate::error::{Error, Result};
 use crate::learning::classifiers::trained_classifier::TrainedClassifier;
@@ -10,7 +10,7 @@ use bubbletouch_svm::dataset::{Dataset, dataset};
 use ndarray::{Array1, ArrayView2, Axis, concatenate, s};
 use std::ops::Range;
 
-/// An error, of a place, unless there are so many objects that one can be taken for another.
+/// Returns an error about `place` if there are fewer than two objects.
 pub(super) fn check_apart(place: &str, n_objects: usize) -> Result<()> {
     match n_objects {
         0 | 1 => {
@@ -21,7 +21,7 @@ pub(super) fn check_apart(place: &str, n_objects: usize) -> Result<()> {
     }
 }
 
-/// Some touches of every object (n_touches × m of each), with the object's number as their label.
+/// Returns some touches of every object (n_touches × m each), labelled with the object's number.
 pub(super) fn touches_of<'a>(
     objects: impl Iterator<Item = ArrayView2<'a, f64>>,
     touches: Range<usize>,
@@ -34,7 +34,7 @@ pub(super) fn touches_of<'a>(
     Ok(dataset(features, Array1::from_iter(labels))?)
 }
 
-/// The share of a classifier's right answers to some touches, 0 to 1, with its 95 % Wilson interval.
+/// Returns the fraction of correct answers of a classifier, 0 to 1, with its 95 % Wilson interval.
 pub(super) fn accuracy(classifier: &TrainedClassifier, test: &Dataset) -> Result<(f64, Interval)> {
     let answers = classifier.labels(test.records.view())?;
     let pairs = answers.iter().zip(&test.targets);

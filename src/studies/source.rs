@@ -1,4 +1,4 @@
-//! Where a study comes from, and what overrides it.
+//! Source of a study, and the options that override it.
 
 use crate::error::{Error, Result};
 use crate::files::SetName;
@@ -7,29 +7,29 @@ use crate::studies::recognition::spec::recorded::RecordedSpec;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
-/// A study's text, and what was asked for beside it.
+/// Text of a study, and the options of the command line that override it.
 #[derive(Clone, Debug, Default)]
 pub struct Source {
-    /// What errors call it: its file.
+    /// Name in error messages: the path of the study file.
     pub place: String,
-    /// TOML.
+    /// Content of the study, TOML.
     pub text: String,
-    /// The folder that paths in it are relative to.
+    /// Folder to which paths in the study are relative.
     pub folder: PathBuf,
-    /// Meshes or a file of objects that replace its objects.
+    /// Meshes or a file of objects that replace the study's objects.
     pub objects: Option<PathBuf>,
-    /// Root of all randomness that replaces its own.
+    /// Seed that replaces the study's seed.
     pub seed: Option<u64>,
-    /// Where packed meshes are kept from run to run.
+    /// Folder of cached packed meshes.
     pub packings: Option<PathBuf>,
-    /// Where its results go: what memory cannot hold is put there while it runs.
+    /// Result folder, which also stores temporary data that exceed the memory.
     pub results: PathBuf,
-    /// Most bytes to hold; `None`: no ceiling.
+    /// Memory limit, bytes; `None`: unlimited.
     pub memory: Option<u64>,
 }
 
 impl Source {
-    /// A text on its own, with nothing that overrides it.
+    /// Creates a source from a text, without overriding options.
     pub fn of_text(place: &str, text: &str) -> Self {
         Self {
             place: place.to_owned(),
@@ -38,10 +38,10 @@ impl Source {
         }
     }
 
-    /// The study of a folder of results, with nothing that overrides it.
+    /// Returns the study of a result folder, without overriding options.
     ///
     /// # Errors
-    /// There is none, or it cannot be read.
+    /// If the folder has no study or the study cannot be read.
     pub fn of_results(folder: &Path) -> Result<Self> {
         let path = folder.join("study.toml");
         let allowed = "the study of a folder that bubbletouch run wrote";
@@ -50,12 +50,12 @@ impl Source {
         Ok(Self::of_text(&path.display().to_string(), &text))
     }
 
-    /// The study's seed, or the one that replaces it.
+    /// Returns the overriding seed, or the seed of the study.
     pub fn seed(&self, of_study: u64) -> u64 {
         self.seed.unwrap_or(of_study)
     }
 
-    /// Puts the objects that were asked for in the place of the study's.
+    /// Replaces the study's objects if other objects are given.
     pub fn replace_objects(&self, objects: &mut ObjectsSpec) {
         let Some(given) = &self.objects else {
             return;
@@ -69,7 +69,7 @@ impl Source {
         }
     }
 
-    /// Looks for recorded frames in the folder that was asked for.
+    /// Replaces the folder of recorded frames if another folder is given.
     pub fn replace_recorded(&self, recorded: &mut RecordedSpec) {
         let Some(folder) = &self.objects else {
             return;
@@ -79,19 +79,19 @@ impl Source {
         }
     }
 
-    /// An error if objects were asked for; `why` says what the study has instead.
+    /// Checks that no replacement objects are given; `why` explains what the study has instead.
     ///
     /// # Errors
-    /// They were.
+    /// If replacement objects are given.
     pub fn refuse_objects(&self, why: &str) -> Result<()> {
         let given = self.objects.as_ref().map(|path| path.display());
         refuse("--objects", given, why)
     }
 
-    /// An error if a seed was asked for; `why` says why there is none.
+    /// Checks that no replacement seed is given; `why` explains why the study has no seed.
     ///
     /// # Errors
-    /// It was.
+    /// If a replacement seed is given.
     pub fn refuse_seed(&self, why: &str) -> Result<()> {
         refuse("--seed", self.seed, why)
     }

@@ -1,4 +1,4 @@
-//! A kind of study: the trait that all of them implement, and what they say of themselves.
+//! The trait that every kind of study implements, and the descriptions that a kind provides.
 
 use crate::engine::progress::Progress;
 use crate::engine::work_items::{
@@ -13,50 +13,50 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// What a kind of study is, before any study of it is read.
+/// Description of a kind of study, available before a study file is read.
 #[derive(Clone, Copy, Debug)]
 pub struct About {
-    /// The table of a study's file that only this kind has.
+    /// Table of a study file that only this kind has.
     pub table: &'static str,
-    /// In words: `a study that …`.
+    /// Description of the kind, in words: `a study that …`.
     pub words: &'static str,
-    /// Which studies go on with each other's work.
+    /// Rule that decides which studies may resume each other's work.
     pub resumes: Resumes,
 }
 
-/// Which studies of a kind go on with each other's work.
+/// Rule that decides which studies of a kind may resume each other's work.
 #[derive(Clone, Copy, Debug)]
 pub enum Resumes {
-    /// Studies that differ at most in these keys, with all below them: words, or keys that tell which work there is and not what comes of any of it.
+    /// Studies that differ only in these keys and the keys below them. The keys are texts, or select work items without changing their results.
     ButFor(&'static [&'static str]),
-    /// Studies that share work items with results: the name of an item is made of all its inputs.
+    /// Studies that share work items with results; the name of an item is derived from all its inputs.
     SharedWork,
 }
 
-/// What a study's file says, and what that is about.
+/// Content of a study file and of the files that it refers to.
 #[derive(Clone, Debug, Default)]
 pub struct Facts {
-    /// The study with every default spelt out, as TOML.
+    /// The study as TOML, with all defaults written out.
     pub toml: String,
-    /// What it asks.
+    /// Question of the study.
     pub question: String,
-    /// What was expected before it ran; may be empty.
+    /// Expectation of the author before the first run; may be empty.
     pub expected: String,
-    /// Root of all randomness; 0 where nothing is random.
+    /// Seed of all random numbers; 0 if nothing is random.
     pub seed: u64,
-    /// SHA-256 of what the study's text does not say: objects and other files, by name.
+    /// SHA-256 of content outside the study file, such as objects and other files, by name.
     pub content: BTreeMap<String, String>,
-    /// How intervals and p-values are made, by table and columns.
+    /// Methods by which intervals and p-values are computed, by table and columns.
     pub methods: Vec<(&'static str, &'static str)>,
 }
 
 impl Facts {
-    /// Of a study as it is written, and of what that does not say.
+    /// Creates the facts of a study from its specification and the hashes of its other content.
     pub fn of(spec: &impl Serialize, content: BTreeMap<String, String>) -> Self {
         Self::of_toml(toml_text::write(spec), content)
     }
 
-    /// Of its TOML with every default: question, expected and seed stand in it.
+    /// Creates the facts of a study from its TOML with all defaults; question, expectation and seed are read from it.
     pub fn of_toml(toml: String, content: BTreeMap<String, String>) -> Self {
         let table = toml_text::table(&toml).unwrap_or_default();
         let words = |key| table.get(key).and_then(toml::Value::as_str);
@@ -72,21 +72,21 @@ impl Facts {
     }
 }
 
-/// A [`File`] of rows of any type.
+/// A [`File`] with rows of any type.
 pub trait AnyFile: Sync {
-    /// See [`File::name`].
+    /// Returns the name of the file; see [`File::name`].
     fn name(&self) -> &'static str;
 
-    /// See [`File::read`].
+    /// Reads the file of a folder; see [`File::read`].
     ///
     /// # Errors
-    /// Those of it.
+    /// If [`File::read`] fails.
     fn read(&self, folder: &Path) -> Result<Table>;
 
-    /// See [`File::read_if_there`].
+    /// Reads the file of a folder if it exists; see [`File::read_if_there`].
     ///
     /// # Errors
-    /// Those of it.
+    /// If [`File::read_if_there`] fails.
     fn read_if_there(&self, folder: &Path) -> Result<Option<Table>>;
 }
 
@@ -104,14 +104,14 @@ impl<R: Columns> AnyFile for File<R> {
     }
 }
 
-/// The files of a study's tables.
+/// Files of a study's result tables.
 #[derive(Clone, Copy)]
 pub enum TableFiles {
-    /// Files that every study of the kind writes, in their order, and behind them those of parts that a study may leave out.
+    /// Files that every study of the kind writes, in order, followed by files of optional parts.
     Listed {
-        /// Files that are always there.
+        /// Files that every study writes.
         always: &'static [&'static dyn AnyFile],
-        /// Files of parts that a study may leave out.
+        /// Files of optional parts of a study.
         of_parts: &'static [&'static dyn AnyFile],
     },
     /// Tables whose columns depend on the study.
@@ -124,7 +124,7 @@ pub enum TableFiles {
 }
 
 impl TableFiles {
-    /// Tables in files that every study of the kind writes.
+    /// Creates a list of files that every study of the kind writes.
     pub const fn always(always: &'static [&'static dyn AnyFile]) -> Self {
         Self::Listed {
             always,
@@ -162,28 +162,28 @@ impl TableFiles {
     }
 }
 
-/// Findings of a study: what the page and the terminal show of its tables.
+/// Findings of a study, computed from its tables for the page and the terminal.
 #[derive(Default)]
 pub struct Findings {
     /// Charts, the most important first.
     pub charts: Vec<ChartSpec>,
-    /// Answers in sentences: at the top of the page and at the end of the run.
+    /// Answers in sentences, shown at the top of the page and at the end of the run.
     pub answers: Vec<String>,
-    /// Notes of tables, by the name of their file.
+    /// Notes about tables, by the name of the table's file.
     pub notes: Vec<(&'static str, String)>,
-    /// Makes the text at the end of a run, wrapped at a number of characters. `None`: the first table with a found value, and the answers.
+    /// Function that makes the text at the end of a run, wrapped at a number of characters. `None`: the first table with a value, and the answers.
     pub summary: Option<fn(&[Table], usize) -> String>,
 }
 
-/// A kind of study. The engine does the rest: it runs, keeps, resumes, shards, merges, plans, verifies and reports studies.
+/// A kind of study. The engine runs, resumes, shards, merges, plans, verifies and reports studies of any kind.
 pub trait Study: Send + Sized + Sync + 'static {
-    /// The kind.
+    /// Description of the kind.
     const ABOUT: About;
 
     /// The files of [`tables`](Self::tables).
     const TABLES: TableFiles;
 
-    /// Rows that a work item gives.
+    /// Rows that a work item produces.
     type Rows: ItemRows;
 
     /// Reads and checks a study, and loads its objects.
@@ -192,7 +192,7 @@ pub trait Study: Send + Sized + Sync + 'static {
     /// If a key is unknown or out of its range, or a file cannot be read. The error names place, key and what is allowed.
     fn load(source: &Source) -> Result<Self>;
 
-    /// Returns the content of the study's file and of what it refers to.
+    /// Returns the content of the study file and of the files that it refers to.
     ///
     /// # Errors
     /// If a file that the study depends on cannot be read.
@@ -204,16 +204,17 @@ pub trait Study: Send + Sized + Sync + 'static {
     /// Lists all work items in the order of their rows.
     fn work_items(&self) -> Vec<WorkItem>;
 
-    /// Computes the pending items, in any order and on any threads. What several items need is made for pending items only.
+    /// Computes the pending items, in any order and on any threads. Data that several items share are computed only if an item is pending.
     ///
     /// # Errors
-    /// Those of [`PendingItems::finish`], or of what no item can do without.
+    /// If [`PendingItems::finish`] fails, or data that all items need cannot be computed.
     fn measure(&self, pending: &PendingItems<Self::Rows>) -> Result<()>;
 
-    /// Sets in the rows of an item what its number decides, such as numbers of configurations: rows in the journal may be of a study with other axes.
+    /// Sets the values in the rows of an item that depend on its number, such as numbers of configurations. Rows in the journal may come from a study with
+    /// other axes.
     fn place(&self, _number: usize, _rows: &mut Self::Rows) {}
 
-    /// Describes an item, by its number, for failures.
+    /// Describes an item for failure messages, given its number.
     fn item_words(&self, _number: usize, item: &WorkItem) -> String {
         item.name.clone()
     }
@@ -230,7 +231,7 @@ pub trait Study: Send + Sized + Sync + 'static {
     /// If a file that the findings need cannot be read.
     fn findings(&self, tables: &[Table]) -> Result<Findings>;
 
-    /// Returns pictures that are no charts, and further sections of the page.
+    /// Returns pictures other than charts, and further sections of the page.
     ///
     /// # Errors
     /// If a picture cannot be made.
@@ -239,10 +240,10 @@ pub trait Study: Send + Sized + Sync + 'static {
     }
 }
 
-/// Computes all items of a study that the options select; see [`StudyRun::run`].
+/// Computes the items of a study that the options select; see [`StudyRun::run`].
 ///
 /// # Errors
-/// Those of [`StudyRun::run`].
+/// If [`StudyRun::run`] fails.
 pub(crate) fn run_items<S: Study>(
     study: &S,
     items: &[WorkItem],
@@ -255,10 +256,10 @@ pub(crate) fn run_items<S: Study>(
     )
 }
 
-/// Runs a whole study at once without a journal; the first item that fails ends the run.
+/// Runs a whole study without a journal; the first item that fails ends the run.
 ///
 /// # Errors
-/// The error of the item that failed.
+/// If an item fails; the error is that of the item.
 pub fn run_whole<S: Study>(study: &S, progress: &dyn Progress) -> Result<S::Rows> {
     let items = study.work_items();
     Ok(run_items(study, &items, &RunOptions::whole(progress))?.0)

@@ -1,12 +1,12 @@
-//! Work items that run again beside the rows that stand in a folder.
+//! Comparison of recomputed work items with the rows of a result folder.
 
 use crate::error::{Error, Result};
 use crate::table::Table;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Returns how many rows without times stand in a folder as they came out again. If `is_whole`, all work items ran again, and whole tables
-/// are compared: a row more or less, or a summary that differs, is noticed.
+/// Returns the number of rows without times that equal the recomputed rows. If `is_whole` is set, all work items were recomputed, and whole tables are
+/// compared; missing or additional rows and different summaries are then errors.
 ///
 /// # Errors
 /// If a row differs; the error names file and line.
@@ -69,7 +69,7 @@ fn columns_of(text: &str, header: &str) -> Option<String> {
     String::from_utf8(writer.into_inner().ok()?).ok()
 }
 
-/// Leading letters that two rows share: rows begin with what they are about.
+/// Returns the number of leading bytes that two rows share. Rows begin with their configuration.
 fn n_alike(a: &str, b: &str) -> usize {
     let pairs = a.bytes().zip(b.bytes());
     pairs.take_while(|(a, b)| a == b).count()

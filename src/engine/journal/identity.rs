@@ -1,4 +1,4 @@
-//! What a study's results depend on.
+//! The content on which a study's results depend.
 
 use super::line::Records;
 use crate::engine::work_items::WorkItem;
@@ -9,29 +9,29 @@ use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::sync::Arc;
 
-/// Everything that decides the bytes of a study's tables.
+/// Everything that determines the bytes of a study's tables.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Identity {
-    /// Program and version.
+    /// Name and version of the program.
     pub program: String,
-    /// Hash of the program's sources.
+    /// Hash of the program's source code.
     pub source: String,
-    /// The study with every default spelt out, as TOML.
+    /// The study as TOML, with all defaults written out.
     pub study: String,
-    /// SHA-256 of what each object is made of, by its name.
+    /// SHA-256 of each object's content, by the name of the object.
     pub objects: BTreeMap<String, String>,
-    /// Which other studies are the same; unknown of an identity that was read.
+    /// Rule that decides which other studies may share a journal; not stored in journals.
     #[serde(skip)]
     same: SameStudy,
 }
 
-/// Which studies of the same program and objects go on with each other's work.
+/// Rule that decides which studies of the same program and objects may resume each other's work.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SameStudy {
-    /// Studies that differ at most in these keys, with all below them.
+    /// Studies that differ only in these keys and the keys below them.
     ButFor(&'static [&'static str]),
-    /// Studies whose journal has a result of these work items. Their names are made of all inputs, so that a study takes no result of another for its own; a
-    /// study that shares no result is refused because its tables would replace all that there are.
+    /// Studies whose journal has a result of one of these work items. The names of the items are derived from all inputs, so results cannot be mixed up. A
+    /// study that shares no result is rejected, because its tables would replace all existing ones.
     SharesWork(Arc<[WorkItem]>),
 }
 
@@ -42,7 +42,7 @@ impl Default for SameStudy {
 }
 
 impl SameStudy {
-    /// Whether a study with a journal may differ in a key from this one.
+    /// Returns the test whether a study with a journal may differ from this one in a key.
     fn may_differ(&self, records: &Records) -> Box<dyn Fn(&str) -> bool> {
         match self {
             Self::ButFor(keys) => Box::new(|key| keys.iter().any(|name| is_at(key, name))),
@@ -61,7 +61,7 @@ impl SameStudy {
 }
 
 impl Identity {
-    /// The identity of a study as it is written out, for this program.
+    /// Creates the identity of a study, given as TOML, for this program.
     pub fn new(study: String, objects: BTreeMap<String, String>, same: SameStudy) -> Self {
         Self {
             program: crate::engine::program::PROGRAM.to_owned(),
@@ -72,7 +72,7 @@ impl Identity {
         }
     }
 
-    /// Returns the differences between the study that a journal was begun with and this one, a line each.
+    /// Returns the differences between the study that started a journal and this one, one per line.
     pub fn differences(&self, (begun, records): (&Self, &Records)) -> Vec<String> {
         let may_differ = self.same.may_differ(records);
         let [theirs, ours] = [begun, self].map(|identity| identity.facts(&may_differ));
@@ -86,10 +86,10 @@ impl Identity {
         names.into_iter().map(line).collect()
     }
 
-    /// Checks that this study goes on with a journal; `place` is the journal's.
+    /// Checks that this study may resume a journal at `place`.
     ///
     /// # Errors
-    /// If the journal was begun with another study; the error lists the differences.
+    /// If the journal was started by another study; the error lists the differences.
     pub fn check_same(&self, of: (&Self, &Records), place: &str) -> Result<()> {
         let differences = self.differences(of);
         if differences.is_empty() {
@@ -103,7 +103,7 @@ impl Identity {
         ))
     }
 
-    /// Returns what the identity consists of, by name: the values of the study's keys, but for those that may differ, the program and the objects.
+    /// Returns the parts of the identity by name: the program, the objects, and the study's keys except those that may differ.
     fn facts(&self, may_differ: impl Fn(&str) -> bool) -> BTreeMap<String, String> {
         let mut facts = BTreeMap::new();
         if let Some(table) = toml_text::table(&self.study) {
@@ -118,7 +118,7 @@ impl Identity {
     }
 }
 
-/// Every value of a table by its dotted key.
+/// Adds every value of a table by its dotted key.
 fn add_keys(prefix: &str, table: &toml::Table, values: &mut BTreeMap<String, String>) {
     for (key, value) in table {
         match value {

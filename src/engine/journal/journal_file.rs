@@ -1,4 +1,4 @@
-//! The journal of a run: one file, one writer at a time.
+//! The journal of a run: one file with one writer at a time.
 
 use crate::engine::journal::identity::Identity;
 use crate::engine::journal::line::{Decoded, NO_STUDY, Records, decode, encode};
@@ -12,22 +12,21 @@ use std::path::{Path, PathBuf};
 use std::sync::{LazyLock, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
-/// The journal's name in a folder of results.
+/// Name of the journal in a result folder.
 pub const JOURNAL_FILE: &str = "journal.jsonl";
 
-/// The key of the first line.
+/// Key of the first line.
 const HEADER: &str = "study";
 
-/// A line is with the system when [`Journal::keep`] returns, so that it outlives the process, and on the disk within this
-/// time, so that little is lost with the power. Waiting for the disk after each line would cost cells of a millisecond more
-/// than themselves.
+/// Interval at which lines are flushed to the disk. When [`Journal::keep`] returns, the operating system has the line, so it survives the end of the process.
+/// A larger interval loses more results in a power failure. A flush after each line would take longer than a work item of a millisecond.
 const SYNC_INTERVAL: Duration = Duration::from_millis(100);
 
-/// What a run has finished, on disk; or a journal that keeps nothing.
+/// Finished results of a run on disk; or a journal that stores nothing.
 #[derive(Debug, Default)]
 pub struct Journal {
     path: PathBuf,
-    /// What its lines said when it was opened; its header is taken out.
+    /// Records that the journal contained when it was opened, without its header.
     before: Decoded,
     writer: Mutex<Option<Writer>>,
 }
@@ -36,22 +35,22 @@ pub struct Journal {
 struct Writer {
     file: File,
     synced: Instant,
-    /// A line may be torn at the end: nothing may follow it.
+    /// Whether a write failed. The last line may then be incomplete, and no line may follow it.
     is_broken: bool,
 }
 
 impl Journal {
-    /// A journal that knows nothing and keeps nothing.
+    /// Returns a journal without records that stores nothing.
     pub fn none() -> &'static Self {
         static NONE: LazyLock<Journal> = LazyLock::new(Journal::default);
         &NONE
     }
 
-    /// Opens the journal of this study, or starts one, at `path` in a folder that exists. A torn last line is cut off.
+    /// Opens the journal of a study at `path`, or creates it in an existing folder. An incomplete last line is removed.
     ///
     /// # Errors
-    /// Another process has it open; it was begun with another study (the error says what differs); its first line does not say with
-    /// which; it is damaged before its last line, or has lines of two studies; it cannot be read or written.
+    /// If another process has the journal open, or the journal was started by another study (the error lists the differences). If its first line does
+    /// not identify a study. If it is damaged before its last line or has lines of two studies. If it cannot be read or written.
     pub fn open(path: &Path, identity: &Identity) -> Result<Self> {
         let (mut file, bytes) = read_locked(path)?;
         let (begun, mut journal) = Self::of_bytes(path, &bytes)?;
@@ -75,10 +74,10 @@ impl Journal {
         Ok(journal)
     }
 
-    /// The records that stand in a journal, by key, whoever is writing to it; none where there is no file, or nothing whole in it.
+    /// Reads the identity and the records of a journal, even while another process writes to it. Returns `None` if there is no file or no complete line.
     ///
     /// # Errors
-    /// It cannot be read, or is damaged, as of [`open`](Self::open).
+    /// If the file cannot be read or is damaged, as for [`open`](Self::open).
     pub fn read(path: &Path) -> Result<Option<(Identity, Self)>> {
         let bytes = match std::fs::read(path) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
@@ -88,14 +87,14 @@ impl Journal {
         Ok(identity.map(|identity| (identity, journal)))
     }
 
-    /// What a file holds, and the study that it was begun with: none where no line is whole.
+    /// Returns the content of a file and the study that started it; `None` if no line is complete.
     fn of_bytes(path: &Path, bytes: &[u8]) -> Result<(Option<Identity>, Self)> {
         let damaged = |(line, given): (usize, &str)| {
             let allowed = "a journal as it was written; --fresh starts over and keeps the old results beside the new";
             Error::input(format!("{}: line {line}", path.display()), given, allowed)
         };
         let mut before = decode(HEADER, bytes).map_err(damaged)?;
-        // What an interrupted write leaves of the first line is its beginning; anything else is not of this program.
+        // An interrupted write leaves a prefix of the first line; any other content was not written by this program.
         if before.n_whole == 0 && !begins_header(bytes) {
             return Err(damaged((1, NO_STUDY)));
         }
@@ -111,7 +110,7 @@ impl Journal {
         Ok((begun, journal))
     }
 
-    /// What was kept under a key before this journal was opened; `None` too for a record of another kind.
+    /// Returns the record that the journal had under `key` when it was opened. Returns `None` if there is none, or if it has another type.
     pub fn get<R: DeserializeOwned>(&self, key: &str) -> Option<R> {
         serde_json::from_str(self.before.records.get(key)?.get()).ok()
     }
@@ -121,15 +120,15 @@ impl Journal {
         &self.before.records
     }
 
-    /// Keeps a record: when this returns, the end of the process cannot lose it.
+    /// Stores a record. After this function returns, the record survives the end of the process.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// If the journal cannot be written.
     pub fn keep(&self, key: &str, record: &impl Serialize) -> Result<()> {
         self.append(key, record).map(|_| ())
     }
 
-    /// Writes a line, unless this journal keeps nothing; its checksum.
+    /// Appends a line and returns its checksum; returns 0 if this journal stores nothing.
     fn append(&self, key: &str, record: &impl Serialize) -> Result<u32> {
         let Some(writer) = &mut *self.lock() else {
             return Ok(0);
@@ -139,11 +138,11 @@ impl Journal {
         kept.map_err(|e| Error::io(&self.path, "write", e))
     }
 
-    /// Adds what another journal of the same study holds and this one did not hold when it was opened. If a work item failed in one journal and
-    /// succeeded in the other, the success is kept.
+    /// Adds the records of another journal of the same study that this one did not have when it was opened. If a work item failed in one journal and succeeded
+    /// in the other, the success is kept.
     ///
     /// # Errors
-    /// This journal cannot be written.
+    /// If this journal cannot be written.
     pub fn take_from(&mut self, other: Self) -> Result<()> {
         for (key, record) in other.before.records {
             let known = self.before.records.get(&key);
@@ -155,28 +154,28 @@ impl Journal {
         Ok(())
     }
 
-    /// Waits until everything is on the disk.
+    /// Flushes all lines to the disk.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// If the journal cannot be written.
     pub fn sync(&self) -> Result<()> {
         let synced = self.lock().as_mut().map_or(Ok(()), Writer::sync);
         synced.map_err(|e| Error::io(&self.path, "write", e))
     }
 
-    /// As [`sync`](Self::sync), and no thread writes from then on: for a process that is about to end.
+    /// Flushes all lines to the disk and blocks further writes, for a process that is about to end.
     ///
     /// # Errors
-    /// They cannot be written.
+    /// If the journal cannot be written.
     pub fn stop(&self) -> Result<()> {
-        // Never given back: who wants to write waits for the end.
+        // The lock is never released: other writers block until the process ends.
         let mut writer = std::mem::ManuallyDrop::new(self.lock());
         let synced = writer.as_mut().map_or(Ok(()), Writer::sync);
         synced.map_err(|e| Error::io(&self.path, "write", e))
     }
 
     fn lock(&self) -> MutexGuard<'_, Option<Writer>> {
-        // A thread that panicked while it wrote has left a broken writer, and that knows it.
+        // A thread that panicked during a write leaves a writer that is marked as broken.
         self.writer
             .lock()
             .unwrap_or_else(|poisoned| poisoned.into_inner())
@@ -204,7 +203,7 @@ impl Writer {
     }
 }
 
-/// Whether bytes are the beginning of a first line: a checksum of 8 hexadecimal digits, a space and the key.
+/// Returns whether bytes begin like a first line: a checksum of 8 hexadecimal digits, a space and the key.
 fn begins_header(bytes: &[u8]) -> bool {
     let expected = format!(" {{\"key\":\"{HEADER}\"");
     let is_digit = |byte: &u8| byte.is_ascii_hexdigit();
@@ -213,13 +212,13 @@ fn begins_header(bytes: &[u8]) -> bool {
     digits.iter().all(is_digit) && rest[..n] == expected.as_bytes()[..n]
 }
 
-/// Whether a record is that of a failed work item, `{"Err":…}`.
+/// Returns whether a record describes a failed work item, `{"Err":…}`.
 fn is_failure(record: &RawValue) -> bool {
     type Outcome = std::result::Result<IgnoredAny, String>;
     serde_json::from_str(record.get()).is_ok_and(|outcome: Outcome| outcome.is_err())
 }
 
-/// Keeps a journal from other processes as long as the file is open.
+/// Locks a journal against other processes as long as the file is open.
 pub(crate) fn lock(path: &Path, file: &File) -> Result<()> {
     file.try_lock().map_err(|error| match error {
         TryLockError::WouldBlock => Error::input(
@@ -231,7 +230,7 @@ pub(crate) fn lock(path: &Path, file: &File) -> Result<()> {
     })
 }
 
-/// Opens a journal, or makes an empty one, for this process alone, and reads it.
+/// Opens or creates a journal for this process alone, and reads it.
 fn read_locked(path: &Path) -> Result<(File, Vec<u8>)> {
     let file = OpenOptions::new()
         .read(true)

@@ -1,20 +1,20 @@
-//! A line of a journal: a checksum, a space, and JSON.
+//! A line of a journal: a checksum, a space and JSON.
 //!
 //! ```text
 //! 1c291ca3 {"key":"piece 0f3a, trial 0","record":{…}}
 //! ```
 //!
-//! The checksum of the first line, which names the study, is the CRC-32 of its JSON; that of every other line goes on from it, and so does not
-//! fit a journal of another study.
+//! The checksum of the first line, which identifies the study, is the CRC-32 of its JSON. Each other checksum continues that of the first line, so that a line
+//! does not fit a journal of another study.
 
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 use std::collections::BTreeMap;
 
-/// Records by key, as JSON; of those with the same key the last.
+/// Records by key, as JSON; the last record of a key counts.
 pub type Records = BTreeMap<String, Box<RawValue>>;
 
-/// What is wrong with a first line that names no study.
+/// Message for a first line that does not identify a study.
 pub const NO_STUDY: &str =
     "is no record of a study: nothing says which study the finished work is of";
 const CHANGED: &str = "does not match its checksum: it was changed, or is of another study than line 1 or of an earlier version";
@@ -31,7 +31,7 @@ struct Line {
     record: Box<RawValue>,
 }
 
-/// One line with its end, and its checksum; `first` is that of the journal's first line, 0 for this line itself.
+/// Returns a line with its line break, and its checksum. `first` is the checksum of the journal's first line, or 0 for the first line itself.
 pub fn encode(first: u32, key: &str, record: &impl Serialize) -> serde_json::Result<(u32, String)> {
     let json = serde_json::to_string(&Written { key, record })?;
     let checksum = checksum(first, &json);
@@ -44,21 +44,21 @@ fn checksum(first: u32, json: &str) -> u32 {
     hasher.finalize()
 }
 
-/// What the whole lines of a file say.
+/// Content of the complete lines of a file.
 #[derive(Debug, Default)]
 pub struct Decoded {
-    /// The record of the first line, if that is whole.
+    /// Record of the first line, if that line is complete.
     pub header: Option<Box<RawValue>>,
-    /// Its checksum, from which those of all other lines go on.
+    /// Checksum of the first line, from which the checksums of all other lines continue.
     pub first: u32,
     /// Records of the other lines.
     pub records: Records,
-    /// Bytes up to the end of the last whole line.
+    /// Number of bytes up to the end of the last complete line.
     pub n_whole: usize,
 }
 
-/// Reads a file whose first line has the key `header`, up to a torn line at its end; the error says which line, from 1, no interrupted write
-/// leaves behind, and what is wrong with it.
+/// Decodes a file whose first line has the key `header`, up to an incomplete line at its end. An error contains the number, from 1, of a line that no
+/// interrupted write explains, and the defect.
 pub fn decode(header: &str, bytes: &[u8]) -> Result<Decoded, (usize, &'static str)> {
     let mut decoded = Decoded::default();
     for (number, line) in bytes.split_inclusive(|&byte| byte == b'\n').enumerate() {
@@ -71,7 +71,7 @@ pub fn decode(header: &str, bytes: &[u8]) -> Result<Decoded, (usize, &'static st
             (Some((_, line)), 1..) => {
                 decoded.records.insert(line.key, line.record);
             }
-            // It was torn: a whole one with another checksum is of another study.
+            // An incomplete last line was interrupted; a complete line with another checksum belongs to another study.
             (None, _) if decoded.n_whole + line.len() == bytes.len() && split(line).is_none() => {
                 break;
             }
@@ -89,7 +89,7 @@ fn decode_line(first: u32, line: &[u8]) -> Option<(u32, Line)> {
     (written == format!("{checksum:08x}")).then_some((checksum, line))
 }
 
-/// The checksum, the JSON and what it says, of a line that is whole.
+/// Returns the checksum, the JSON and the decoded content of a complete line.
 fn split(line: &[u8]) -> Option<(&str, &str, Line)> {
     let line = std::str::from_utf8(line.strip_suffix(b"\n")?).ok()?;
     let (written, json) = line.split_once(' ')?;

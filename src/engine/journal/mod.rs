@@ -1,9 +1,11 @@
-//! Journal: what a run has finished, on disk as soon as it is finished, so that the next run goes on from there.
+//! Journal: finished results on disk, so that an interrupted run can be resumed.
 //!
-//! A [`Journal`] is a file of lines beside the tables, one a finished piece of work, each with its checksum. Its first line
-//! is the [`Identity`] of the study: a run on another study, other objects or by another program is refused, with what
-//! differs, and so is a journal without such a line or with lines of two studies. What a line keeps goes by all that it depends on, so
-//! that a study with more values on its axes, or more trials, goes on from what is there. A process that is killed loses the work in flight and nothing else: the line that it was writing is recognised as
+//! A [`Journal`] is a text file beside the tables, with one line and one checksum for each finished work item. Its first line is the [`Identity`] of the
+//! study. A run of another study, with other objects or by another program, is rejected with a list of the differences. A journal without such a line, or with
+//! lines of two studies, is rejected, too.
+//!
+//! The key of a line depends on all inputs of the result. A study with more values on its axes, or more trials, therefore reuses the existing results. A
+//! process that is killed loses only the items that it was computing: an incomplete last line is detected and removed, and its item is computed again.
 //! torn, dropped, and its work done again.
 
 pub(crate) mod identity;

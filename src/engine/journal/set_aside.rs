@@ -1,4 +1,4 @@
-//! Old results, kept beside the new.
+//! Old results, kept beside new ones.
 
 use crate::engine::journal::journal_file::{JOURNAL_FILE, lock};
 use crate::error::{Error, Result};
@@ -6,12 +6,11 @@ use crate::files::{MANIFEST_FILE, OwnedFiles, RUN, input_within};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
-/// Renames a folder of results to the first free of `NAME.1`, `NAME.2` …; its new name, or `None` where there is none. If `folder` is a
-/// symbolic link, the folder that it leads to is renamed, and the link remains.
+/// Renames a folder of results to the first free name of `NAME.1`, `NAME.2`, … Returns the new name, or `None` if there is no folder. If `folder` is a
+/// symbolic link, its target is renamed, and the link remains.
 ///
 /// # Errors
-/// If the folder holds files but is none of results, or holds a file that this command reads; a run is still writing to it; it cannot be
-/// renamed.
+/// If the folder has files but no results, or contains a file that this command reads. If a run is still writing to it. If it cannot be renamed.
 pub fn set_aside(folder: &Path) -> Result<Option<PathBuf>> {
     check_set_aside(folder)?;
     if !folder.exists() {
@@ -36,16 +35,16 @@ pub fn set_aside(folder: &Path) -> Result<Option<PathBuf>> {
     let free = free.expect("there is no last number");
     fs::rename(folder, &free).map_err(|e| Error::io(folder, "rename", e))?;
     if is_link {
-        // The link leads to the new folder.
+        // The symbolic link then points to a new folder.
         fs::create_dir(folder).map_err(|e| Error::io(folder, "create folder", e))?;
     }
     Ok(Some(free))
 }
 
-/// Checks that a folder can be renamed: it is absent, empty, or of results, and holds no file that this command reads.
+/// Checks that a folder can be renamed: it is absent, empty, or a result folder, and contains no file that this command reads.
 ///
 /// # Errors
-/// If it is anything else.
+/// If the folder cannot be renamed.
 pub fn check_set_aside(folder: &Path) -> Result<()> {
     if !folder.exists() {
         return Ok(());
@@ -68,7 +67,7 @@ pub fn check_set_aside(folder: &Path) -> Result<()> {
     })
 }
 
-/// Whether a folder holds files, but neither a manifest of a run nor a journal.
+/// Returns whether a folder has files, but neither a manifest nor a journal.
 fn is_foreign(folder: &Path) -> Result<bool> {
     let mut entries = fs::read_dir(folder).map_err(|e| Error::io(folder, "read", e))?;
     if entries.next().is_none() {
@@ -82,7 +81,7 @@ fn is_foreign(folder: &Path) -> Result<bool> {
         return Ok(false);
     }
     let mut entries = fs::read_dir(folder).map_err(|e| Error::io(folder, "read", e))?;
-    // The journals of shards.
+    // Journals of shards count, too.
     Ok(!entries.any(|entry| {
         entry.is_ok_and(|entry| {
             let name = entry.file_name();

@@ -1,5 +1,5 @@
-//! Numbers that may be infinite or none at all, in JSON, which has no words for them: `#[serde(with = "any_number")]` for fields of rows
-//! that may hold such. Finite ones are JSON's own; the others are the words that a CSV file has.
+//! Optional numbers in JSON that may be infinite or NaN: `#[serde(with = "any_number")]` for such fields of rows. Finite numbers are JSON numbers; all other
+//! values are texts as in CSV files.
 
 use serde::de::{self, Deserialize, Deserializer};
 use serde::{Serialize, Serializer};
@@ -11,10 +11,10 @@ enum Written {
     Words(String),
 }
 
-/// Writes a number, or its absence.
+/// Serializes an optional number.
 ///
 /// # Errors
-/// Those of the serializer.
+/// If the serializer fails.
 pub fn serialize<S: Serializer>(
     number: &Option<f64>,
     serializer: S,
@@ -26,10 +26,10 @@ pub fn serialize<S: Serializer>(
     written.serialize(serializer)
 }
 
-/// Reads it back.
+/// Deserializes an optional number.
 ///
 /// # Errors
-/// Words that are no number; those of the deserializer.
+/// If a text is not a number, or the deserializer fails.
 pub fn deserialize<'de, D: Deserializer<'de>>(
     deserializer: D,
 ) -> std::result::Result<Option<f64>, D::Error> {

@@ -1,8 +1,7 @@
-//! Work items: the work of a study in named, independent parts.
+//! Work items: named, independent parts of a study's work.
 //!
-//! A study lists its items, measures those that are pending, and makes its tables of their rows. A [`StudyRun`] does the rest: it keeps each item
-//! in the [journal](crate::engine::journal) as soon as it is finished, reads it from there when the study continues, records failures, and
-//! divides items among shards.
+//! A study lists its items, measures the pending ones, and makes tables from their rows. A [`StudyRun`] stores each finished item in the
+//! [journal](crate::engine::journal), reads stored items when the study continues, records failures, and divides items among shards.
 
 pub use crate::engine::work_items::work_item::WorkItem;
 pub mod any_number;

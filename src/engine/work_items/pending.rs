@@ -1,4 +1,4 @@
-//! The items that a run does.
+//! The work items that a run computes.
 
 use crate::engine::attempt::attempt;
 use crate::engine::progress::Progress;
@@ -9,20 +9,20 @@ use crate::error::Result;
 use std::collections::BTreeMap;
 use std::sync::Mutex;
 
-/// The items that are left to a run, for whoever measures them: by their number among all items.
+/// Pending work items of a run, identified by their number among all items.
 pub struct PendingItems<'a, R> {
     options: RunOptions<'a>,
-    /// What is told how far the run is. Each finished item advances it by one.
+    /// Receiver of progress reports. Each finished item advances it by one.
     pub progress: &'a dyn Progress,
     items: &'a [WorkItem],
-    /// Of each item.
+    /// Whether each item is pending.
     is_left: Vec<bool>,
-    /// By number, once it is finished.
+    /// Results of finished items, by number.
     results: Mutex<BTreeMap<usize, ItemResult<R>>>,
 }
 
 impl<'a, R: ItemRows> PendingItems<'a, R> {
-    /// Some of all items.
+    /// Selects the pending ones among all items.
     pub(crate) fn new(
         options: &RunOptions<'a>,
         (items, is_left): (&'a [WorkItem], Vec<bool>),
@@ -36,31 +36,31 @@ impl<'a, R: ItemRows> PendingItems<'a, R> {
         }
     }
 
-    /// How many there are.
+    /// Returns the number of pending items.
     pub fn n(&self) -> usize {
         self.left().count()
     }
 
-    /// Their numbers.
+    /// Returns the numbers of the pending items.
     fn left(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.items.len()).filter(|&number| self.is_left[number])
     }
 
-    /// Whether a item is to be done.
+    /// Returns whether an item is pending.
     pub fn has(&self, number: usize) -> bool {
         self.is_left[number]
     }
 
-    /// Those of some things whose items are to be done, with their numbers: these go up from that of the first.
+    /// Returns the elements of `all` whose item is pending, with the numbers of their items. The items are numbered consecutively from `first`.
     pub fn of<T>(&self, first: usize, all: impl IntoIterator<Item = T>) -> Vec<(usize, T)> {
         let numbered = (first..).zip(all);
         numbered.filter(|(number, _)| self.has(*number)).collect()
     }
 
-    /// Does a item that is left, if it is, and keeps what came of it.
+    /// Computes an item with `measure` and stores its result; does nothing if the item is not pending.
     ///
     /// # Errors
-    /// The journal cannot be written; what went wrong, if the first failure ends the run.
+    /// If the journal cannot be written, or if `measure` fails and the first failure ends the run.
     pub fn finish(&self, number: usize, measure: impl FnOnce() -> Result<R>) -> Result<()> {
         if !self.is_left[number] {
             return Ok(());
@@ -69,10 +69,10 @@ impl<'a, R: ItemRows> PendingItems<'a, R> {
         self.keep(number, result)
     }
 
-    /// What several items need first; if it cannot be had, all of them fail of it.
+    /// Computes data that several items need. If `make` fails, all pending items in `numbers` are recorded as failed, and the result is `None`.
     ///
     /// # Errors
-    /// As of [`finish`](Self::finish).
+    /// If the journal cannot be written, or if `make` fails and the first failure ends the run.
     pub fn prepare<T>(
         &self,
         numbers: &[usize],
@@ -98,7 +98,7 @@ impl<'a, R: ItemRows> PendingItems<'a, R> {
             item.name
         );
         self.options.journal.keep(&item.key(), &result)?;
-        // What a thread that panicked held is whole: nothing is inserted in parts.
+        // The map is consistent even after a panic, because each insertion is one operation.
         let results = self.results.lock();
         let mut results = results.unwrap_or_else(|poisoned| poisoned.into_inner());
         results.insert(number, result);
@@ -107,7 +107,7 @@ impl<'a, R: ItemRows> PendingItems<'a, R> {
         Ok(())
     }
 
-    /// Of each item whether it was to be done, and what came of those that were and were not passed over, by number.
+    /// Returns, for each item, whether it was pending, and the results of the finished items by number.
     pub(crate) fn into_results(self) -> (Vec<bool>, BTreeMap<usize, ItemResult<R>>) {
         let results = self.results.into_inner();
         let results = results.unwrap_or_else(|poisoned| poisoned.into_inner());

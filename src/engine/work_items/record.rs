@@ -1,12 +1,12 @@
-//! What a journal keeps of a item.
+//! Record of a work item in a journal.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// Rows of a study's tables, and what else its tables are made of. A journal has them as JSON: numbers that may be infinite say
+/// Rows of a study's tables and other data from which the tables are made. The journal stores them as JSON: fields that may be infinite or NaN need
 /// `#[serde(with = "any_number")]`.
 pub trait ItemRows: Default + Serialize + DeserializeOwned + Send {
-    /// Puts the rows of the next item behind those that are there.
+    /// Appends the rows of the next item.
     fn append(&mut self, next: Self);
 }
 
@@ -31,7 +31,7 @@ impl<A: ItemRows, B: ItemRows, C: ItemRows> ItemRows for (A, B, C) {
     }
 }
 
-/// What came of a item: rows, or what went wrong.
+/// Result of a work item: its rows, or an error message.
 pub type ItemResult<R> = std::result::Result<R, String>;
 
 #[cfg(test)]

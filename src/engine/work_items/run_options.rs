@@ -5,34 +5,34 @@ use crate::engine::progress::Progress;
 use crate::engine::shard::Shard;
 use std::collections::BTreeSet;
 
-/// Which items of a study a run does.
+/// Work items of a study that a run computes.
 #[derive(Clone, Copy, Debug)]
 pub enum Part<'a> {
-    /// All.
+    /// All items.
     All,
-    /// One of several equal parts.
+    /// The items of one shard.
     Shard(Shard),
-    /// Those of these numbers.
+    /// The items with these numbers.
     Only(&'a BTreeSet<usize>),
 }
 
-/// How a run goes about its items.
+/// Options of a run.
 #[derive(Clone, Copy)]
 pub struct RunOptions<'a> {
-    /// Where finished items are looked for and kept.
+    /// Journal from which finished items are read and in which new ones are stored.
     pub journal: &'a Journal,
-    /// Whether the first item that fails ends the run.
+    /// Whether the first failure of an item ends the run.
     pub fail_fast: bool,
-    /// Whether items that failed in an earlier run are tried again.
+    /// Whether items that failed in an earlier run are computed again.
     pub retries: bool,
-    /// Which items to do.
+    /// Items to compute.
     pub part: Part<'a>,
-    /// What is told how far the run is.
+    /// Receiver of progress reports.
     pub progress: &'a dyn Progress,
 }
 
 impl<'a> RunOptions<'a> {
-    /// All at once; nothing is kept, and the first item that fails ends the run.
+    /// Returns options that compute all items without a journal; the first failure ends the run.
     pub fn whole(progress: &'a dyn Progress) -> Self {
         Self {
             journal: Journal::none(),

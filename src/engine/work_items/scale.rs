@@ -1,33 +1,34 @@
-//! How large a study of items is, told before it runs.
+//! Size of a study, known before it runs.
 
 use crate::inputs::memory::Bytes;
 use crate::spelling::counted;
 
-/// Bytes of the program, its objects and the pictures that it draws at the end, about.
+/// Approximate memory of the program, its objects and the pictures that it draws at the end, bytes.
 const PROGRAM_BYTES: f64 = 2e8;
 
-/// What a kind of study knows of its size.
+/// Size of a study: counts and memory.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scale {
-    /// What is touched, in words.
+    /// Description of the touched objects.
     pub objects: String,
-    /// Touches, in words.
+    /// Description of the touches.
     pub touches: String,
-    /// Combinations of settings.
+    /// Number of combinations of settings.
     pub n_configurations: usize,
-    /// Bytes held at once beside those of every program, about.
+    /// Approximate memory of the study's shared data, bytes, in addition to the memory of the program.
     pub bytes: f64,
-    /// Bytes more of each work item that is under way, about.
+    /// Approximate additional memory of each work item that is being computed, bytes.
     pub item_bytes: f64,
 }
 
 impl Scale {
-    /// Bytes with a single work item at a time.
+    /// Returns the memory needed to compute one work item at a time, bytes.
     pub fn least_bytes(&self) -> f64 {
         self.bytes_at_once(1)
     }
 
-    /// Work items at a time, at most as many as there are threads, that take no more than so many bytes; none if a single one takes more.
+    /// Returns the largest number of concurrent work items, up to the number of threads, that fits into `ceiling` bytes. Returns `None` if a single item does
+    /// not fit.
     pub fn n_at_once(&self, ceiling: f64) -> Option<usize> {
         let n_threads = (1..=rayon::current_num_threads()).rev();
         let mut within = n_threads.filter(|&n| self.bytes_at_once(n) <= ceiling);

@@ -1,9 +1,9 @@
-//! What several work items need.
+//! Data that several work items share.
 
 use crate::error::Result;
 use std::sync::OnceLock;
 
-/// Made by the first work item that needs it, for all. Two that need it at the same moment may both make it.
+/// Data computed by the first work item that needs them. Two items that need them at the same time may both compute them.
 #[derive(Debug)]
 pub struct Shared<T>(OnceLock<T>);
 
@@ -14,10 +14,10 @@ impl<T> Default for Shared<T> {
 }
 
 impl<T> Shared<T> {
-    /// It, made if nobody has made it yet.
+    /// Returns the data; computes them with `make` if they do not exist yet.
     ///
     /// # Errors
-    /// What it cannot be made for; the next one tries again.
+    /// If `make` fails; the next call tries again.
     pub fn get(&self, make: impl FnOnce() -> Result<T>) -> Result<&T> {
         if let Some(made) = self.0.get() {
             return Ok(made);

@@ -1,4 +1,4 @@
-//! A run of the work items of a study.
+//! A run of a study's work items.
 
 use crate::engine::work_items::pending::PendingItems;
 use crate::engine::work_items::record::{ItemResult, ItemRows};
@@ -8,15 +8,15 @@ use crate::error::Result;
 use crate::row;
 
 row! {
-/// A item that failed: a row of `failures.csv`.
+/// Failed work item: a row of `failures.csv`.
 pub struct ItemFailure {
-    /// The item, in words.
+    /// Description of the item.
     work_item: String => Subject "work item";
-    /// What went wrong.
+    /// Error message.
     error: String => Note;
 } }
 
-/// A run of the work items of a study, after the journal was read.
+/// A run of a study's work items, created after the journal was read.
 pub struct StudyRun<'a, R> {
     items: &'a [WorkItem],
     /// The result of each item in the journal, if any.
@@ -46,10 +46,11 @@ impl<'a, R: ItemRows> StudyRun<'a, R> {
         self.pending.n()
     }
 
-    /// Computes the pending items with `measure`. Returns the rows of all items that did not fail, now or before, in the order of items, and the items that
-    /// failed. Except for times the rows are the same as if all items were computed at once.
+    /// Computes the pending items with `measure`. Returns the rows of all items that did not fail in this or an earlier run, in the order of items, and the
+    /// failed items. Except for times, the rows are the same as if all items were computed at once.
     ///
-    /// `place(number, rows)` sets what the number of an item decides, such as numbers of configurations. `words(number)` describes an item for failures.
+    /// `place(number, rows)` sets the values that depend on an item's number, such as numbers of configurations. `words(number)` describes an item for
+    /// failures.
     ///
     /// # Errors
     /// If the journal cannot be written, if an item fails and the first failure ends the run, or if `measure` fails as a whole.
@@ -90,7 +91,7 @@ impl<'a, R: ItemRows> StudyRun<'a, R> {
     }
 }
 
-/// Whether a item, by its number, belongs to a part.
+/// Returns whether an item, given by its number, belongs to `part`.
 fn is_in<'a>(items: &'a [WorkItem], part: Part<'a>) -> impl Fn(usize) -> bool + 'a {
     let groups = items.iter().map(|item| item.group);
     let n_groups = groups.max().map_or(0, |last| last + 1);

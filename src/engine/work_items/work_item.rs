@@ -2,26 +2,26 @@
 
 use crate::inputs::content_hash::short_hash;
 
-/// Hexadecimal digits of what a item depends on. Fewer: two of one name may be taken for each other.
+/// Number of hexadecimal digits of the hash of an item's content. With fewer digits, two items of one name may collide.
 const CONTENT_DIGITS: usize = 16;
 
-/// A item of a study's work.
+/// A work item of a study.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WorkItem {
-    /// The name. Items of one name have the same rows.
+    /// Name of the item. Items with equal names have equal rows.
     pub name: String,
-    /// What its rows depend on beside its name and the keys of the study that may not change; nothing
-    /// where these say all. Its number is no part of either: a study may have more items the next time.
+    /// Inputs of the rows that neither the name nor the fixed keys of the study describe; may be empty. The item's number is not an input, because a later
+    /// study may have more items.
     pub content: String,
-    /// Number of its group, from 0 without gaps: items of a group share what has to be made before them, so that one shard does all of
-    /// them as long as there is a group for every shard.
+    /// Number of the item's group, from 0 without gaps. Items of a group share preparatory work, so one shard computes all of them if there are enough groups
+    /// for every shard.
     pub group: usize,
-    /// Whether the rows are results. If not, the item makes what results need, and a study that shares no more than such items is another study.
+    /// Whether the rows are results. Otherwise the item prepares data for results; studies that share only such items are different studies.
     pub is_result: bool,
 }
 
 impl WorkItem {
-    /// A item whose name says all that it depends on.
+    /// Creates an item whose name describes all inputs of its rows.
     pub fn new(name: String, group: usize) -> Self {
         Self {
             name,
@@ -31,7 +31,7 @@ impl WorkItem {
         }
     }
 
-    /// What a journal calls it.
+    /// Returns the item's key in a journal.
     pub(crate) fn key(&self) -> String {
         match self.content.is_empty() {
             true => format!("piece {}", self.name),
@@ -39,7 +39,7 @@ impl WorkItem {
         }
     }
 
-    /// The same, depending on something more.
+    /// Adds inputs on which the item's rows depend.
     pub fn made_of(mut self, content: impl std::fmt::Debug) -> Self {
         self.content = short_hash(format!("{content:?}"), CONTENT_DIGITS);
         self

@@ -1,162 +1,162 @@
-//! The tables of a study of object detail: one plain struct a row, one field a column.
+//! Rows of the tables of an object-detail study: one plain struct for each kind of row, one field for each column.
 
 use crate::learning::classifiers::ClassifierKind;
 use crate::row;
 use crate::studies::object_detail::spec::DetailMethod;
 
-/// What people call methods.
+/// Names of methods in charts and tables.
 const METHODS: &[(&str, &str)] = &[("mesh", "exact mesh")];
 
 row! {
-/// A model of an object: a row of `object_detail.csv` begins with it, and one of `timing.csv`.
+/// Model of an object; each row of `object_detail.csv` and `timing.csv` begins with these columns.
 pub struct DetailCell {
-    /// The object's name.
+    /// Name of the object.
     object: String => Subject;
-    /// What stands for it.
+    /// Method that replaces the mesh.
     method: DetailMethod => Choice "model" named METHODS;
-    /// Of the packing that it is, or has as many spheres as, mm.
+    /// Tolerance of the packing, mm. For methods without a tolerance, the tolerance of the packing with the same number of spheres.
     tolerance_mm: Option<f64> => Choice "packed within" in "mm": Log;
-    /// 0 for the mesh.
+    /// Number of spheres; 0 for the mesh.
     n_spheres: usize => Cost "spheres": Log;
 } }
 
 row! {
-/// How near a model is to its mesh (with the [`DetailCell`] before it: a row of `object_detail.csv`).
+/// Deviation of a model from its mesh. A row of `object_detail.csv` is a [`DetailCell`] followed by a `DetailScore`.
 pub struct DetailScore {
-    /// Mean distance of the two surfaces, seen from points of the mesh: `protrusion_mean_mm` + `gap_mean_mm`, mm.
+    /// Mean distance between the two surfaces, measured at points of the mesh: `protrusion_mean_mm` + `gap_mean_mm`, mm.
     surface_error_mm: f64 => Value(Less) "mean distance of the surfaces" in "mm": Log;
-    /// Mean distance of the spheres' surface outside the mesh, mm.
+    /// Mean distance by which the spheres protrude from the mesh, mm.
     protrusion_mean_mm: f64 => Value(Less) "mean protrusion" in "mm": Log;
-    /// 95th percentile of it.
+    /// 95th percentile of the protrusion, mm.
     protrusion_p95_mm: f64 => Value(Less) "protrusion, 95th percentile" in "mm": Log;
-    /// The largest.
+    /// Largest protrusion, mm.
     protrusion_max_mm: f64 => Value(Less) "largest protrusion" in "mm": Log;
-    /// Mean distance of the mesh outside the spheres, mm.
+    /// Mean distance by which the mesh lies outside the spheres, mm.
     gap_mean_mm: f64 => Value(Less) "mean gap" in "mm": Log;
-    /// 95th percentile of it.
+    /// 95th percentile of the gap, mm.
     gap_p95_mm: f64 => Value(Less) "gap, 95th percentile" in "mm": Log;
-    /// The largest.
+    /// Largest gap, mm.
     gap_max_mm: f64 => Value(Less) "largest gap" in "mm": Log;
-    /// Touches that met the mesh.
+    /// Number of touches that reached the mesh.
     n_touches: usize => Note "touches": Linear;
-    /// Touches that met nothing.
+    /// Number of touches that reached nothing.
     n_missed: usize => Note "touches that met nothing": Linear;
-    /// Taxels that the mesh touches, all touches.
+    /// Number of taxels that the mesh touches, over all touches.
     n_taxels: usize => Note "touched taxels": Linear;
-    /// |deflection − that of the mesh|, mean over taxels that either touches, mm.
+    /// Difference |deflection − deflection by the mesh|, mean over taxels that either model touches, mm.
     error_mm: f64 => Value(Less) "deflection error" in "mm": Log;
-    /// 95th percentile over the same, mm.
+    /// 95th percentile of the deflection difference over these taxels, mm.
     error_p95_mm: f64 => Value(Less) "deflection error, 95th percentile" in "mm": Log;
-    /// How far the patch is drawn back for `error_after_offset_mm`, mm; negative if it is pushed on.
+    /// Distance by which the patch is retracted for `error_after_offset_mm`, mm; negative if it is advanced.
     offset_mm: f64 => Note "best constant offset" in "mm": Linear;
-    /// `error_mm` with the constant offset that makes it least.
+    /// `error_mm` with the constant offset that minimises it.
     error_after_offset_mm: f64 => Value(Less) "deflection error after offset" in "mm": Log;
-    /// `error_p95_mm` with the same offset.
+    /// `error_p95_mm` with the constant offset of `error_after_offset_mm`.
     error_after_offset_p95_mm: f64 => Value(Less) "deflection error after offset, 95th percentile" in "mm": Log;
-    /// `error_mm` where the model is touched as far past its own first contact as the mesh past its, as studies touch.
+    /// `error_mm` if mesh and model are each pressed to the same depth past their own first contact, as in other studies.
     error_own_contact_mm: f64 => Value(Less) "deflection error past own contact" in "mm": Log;
 } }
 
 row! {
-/// What a model costs (with the [`DetailCell`] before it: a row of `timing.csv`).
+/// Cost of a model. A row of `timing.csv` is a [`DetailCell`] followed by a `DetailTime`.
 pub struct DetailTime {
-    /// Microseconds a touch, one thread, median over touches.
+    /// Time per touch on one thread, median over touches, µs.
     us_per_touch: f64 => Cost "time of a touch" in "µs": Log;
-    /// Seconds to make the model beside other work on all threads; to read it, if it was kept.
+    /// Time to compute the model while other work runs on all threads, or to read a cached model, seconds.
     prepare_s: f64 => Cost "time to make the model" in "s": Log;
-    /// Whether the model was kept from a run before.
+    /// Whether the model was cached by an earlier run.
     was_kept: bool => Note "kept from a run before";
 } }
 
 row! {
-/// A method at a level over all objects: a row of `object_detail_summary.csv`.
+/// Results of a method and tolerance over all objects: a row of `object_detail_summary.csv`.
 pub struct DetailSummary {
-    /// What stands for the meshes.
+    /// Method that replaces the meshes.
     method: DetailMethod => Choice "model" named METHODS;
-    /// The level, mm; none for methods without levels.
+    /// Tolerance, mm; `None` for methods without tolerances.
     tolerance_mm: Option<f64> => Choice "packed within" in "mm": Log;
-    /// Objects.
+    /// Number of objects.
     n_objects: usize => Note "objects": Linear;
-    /// Lower quartile of the spheres an object.
+    /// Lower quartile of the number of spheres per object.
     n_spheres_q1: f64 => Note "quartiles of spheres, lower": Log;
-    /// Median.
+    /// Median of the number of spheres per object.
     n_spheres_median: f64 => Cost "spheres an object": Log between [n_spheres_q1, n_spheres_q3];
-    /// Upper quartile.
+    /// Upper quartile of the number of spheres per object.
     n_spheres_q3: f64 => Note "quartiles of spheres, upper": Log;
     /// Lower quartile of [`DetailScore::surface_error_mm`].
     surface_error_q1_mm: f64 => Note "quartiles of mean distance of the surfaces, lower" in "mm": Log;
-    /// Median.
+    /// Median of [`DetailScore::surface_error_mm`].
     surface_error_median_mm: f64 => Value(Less) "mean distance of the surfaces" in "mm": Log between [surface_error_q1_mm, surface_error_q3_mm];
-    /// Upper quartile.
+    /// Upper quartile of [`DetailScore::surface_error_mm`].
     surface_error_q3_mm: f64 => Note "quartiles of mean distance of the surfaces, upper" in "mm": Log;
     /// Lower quartile of the larger of `protrusion_max_mm` and `gap_max_mm`.
     surface_error_max_q1_mm: f64 => Note "quartiles of largest distance of the surfaces, lower" in "mm": Log;
-    /// Median.
+    /// Median of the larger of `protrusion_max_mm` and `gap_max_mm`.
     surface_error_max_median_mm: f64 => Value(Less) "largest distance of the surfaces" in "mm": Log between [surface_error_max_q1_mm, surface_error_max_q3_mm];
-    /// Upper quartile.
+    /// Upper quartile of the larger of `protrusion_max_mm` and `gap_max_mm`.
     surface_error_max_q3_mm: f64 => Note "quartiles of largest distance of the surfaces, upper" in "mm": Log;
     /// Lower quartile of [`DetailScore::error_mm`].
     error_q1_mm: f64 => Note "quartiles of deflection error, lower" in "mm": Log;
-    /// Median.
+    /// Median of [`DetailScore::error_mm`].
     error_median_mm: f64 => Value(Less) "deflection error" in "mm": Log between [error_q1_mm, error_q3_mm];
-    /// Upper quartile.
+    /// Upper quartile of [`DetailScore::error_mm`].
     error_q3_mm: f64 => Note "quartiles of deflection error, upper" in "mm": Log;
-    /// The worst object's.
+    /// Largest [`DetailScore::error_mm`] of an object.
     error_worst_mm: f64 => Value(Less) "deflection error of the worst object" in "mm": Log;
     /// Lower quartile of [`DetailScore::error_after_offset_mm`].
     error_after_offset_q1_mm: f64 => Note "quartiles of deflection error after offset, lower" in "mm": Log;
-    /// Median.
+    /// Median of [`DetailScore::error_after_offset_mm`].
     error_after_offset_median_mm: f64 => Value(Less) "deflection error after offset" in "mm": Log between [error_after_offset_q1_mm, error_after_offset_q3_mm];
-    /// Upper quartile.
+    /// Upper quartile of [`DetailScore::error_after_offset_mm`].
     error_after_offset_q3_mm: f64 => Note "quartiles of deflection error after offset, upper" in "mm": Log;
-    /// The worst object's.
+    /// Largest [`DetailScore::error_after_offset_mm`] of an object.
     error_after_offset_worst_mm: f64 => Value(Less) "deflection error after offset of the worst object" in "mm": Log;
     /// Median of [`DetailScore::error_own_contact_mm`].
     error_own_contact_median_mm: f64 => Value(Less) "deflection error past own contact" in "mm": Log;
-    /// The worst object's.
+    /// Largest [`DetailScore::error_own_contact_mm`] of an object.
     error_own_contact_worst_mm: f64 => Value(Less) "deflection error past own contact of the worst object" in "mm": Log;
-    /// Median over objects of `error_after_offset_mm` / that of the packing of the same level, if there is one.
+    /// Ratio of `error_after_offset_mm` to that error of the packing with the same tolerance, median over objects; `None` without such a packing.
     times_packing: Option<f64> => Value(Less) "times the error of the packing": Log;
 } }
 
 row! {
-/// A classifier that learned from one level of models: a row of `object_detail_recognition.csv`.
+/// Accuracy of a classifier trained on the models of one method and tolerance: a row of `object_detail_recognition.csv`.
 pub struct DetailRecognition {
-    /// What stood for the meshes in training.
+    /// Method that replaced the meshes in training.
     method: DetailMethod => Choice "learned from" named METHODS;
-    /// The level, mm; none for methods without levels.
+    /// Tolerance, mm; `None` for methods without tolerances.
     tolerance_mm: Option<f64> => Choice "packed within" in "mm": Log;
-    /// What learned.
+    /// Kind of classifier.
     classifier: ClassifierKind => Choice named ClassifierKind::NAMES;
-    /// Objects to tell apart.
+    /// Number of objects to distinguish.
     n_objects: usize => Note "objects": Linear;
-    /// Training rows, all objects.
+    /// Number of training rows of all objects.
     n_training: usize => Note "training touches": Linear;
-    /// Test rows, all objects.
+    /// Number of test rows of all objects.
     n_test: usize => Note "test touches": Linear;
-    /// Measurements a row.
+    /// Number of measurements per row.
     n_measurements: usize => Note "measurements": Linear;
-    /// Median over objects of [`DetailScore::error_own_contact_mm`]: what is learned is felt past the models' own contact.
+    /// Median over objects of [`DetailScore::error_own_contact_mm`]; training touches are also pressed past the model's own contact.
     error_own_contact_median_mm: f64 => Value(Less) "median deflection error past own contact" in "mm": Log;
-    /// Share of right answers to touches of the meshes themselves, 0 to 1.
+    /// Fraction of correct answers to touches of the meshes, 0 to 1.
     accuracy_on_mesh: f64 => Value(More) "accuracy on the exact meshes": Share between [accuracy_on_mesh_low, accuracy_on_mesh_high];
-    /// Lower end of its 95 % Wilson interval.
+    /// Lower end of the 95 % Wilson interval of `accuracy_on_mesh`.
     accuracy_on_mesh_low: f64 => Note "95 % interval, lower end": Share;
-    /// Upper end.
+    /// Upper end of the 95 % Wilson interval of `accuracy_on_mesh`.
     accuracy_on_mesh_high: f64 => Note "95 % interval, upper end": Share;
-    /// Share of right answers to the same touches of the models that it learned from, 0 to 1.
+    /// Fraction of correct answers to the same touches of the models used in training, 0 to 1.
     accuracy_on_itself: f64 => Value(More) "accuracy on the models learned from": Share between [accuracy_on_itself_low, accuracy_on_itself_high];
-    /// Lower end of its 95 % Wilson interval.
+    /// Lower end of the 95 % Wilson interval of `accuracy_on_itself`.
     accuracy_on_itself_low: f64 => Note "95 % interval, lower end": Share;
-    /// Upper end.
+    /// Upper end of the 95 % Wilson interval of `accuracy_on_itself`.
     accuracy_on_itself_high: f64 => Note "95 % interval, upper end": Share;
-    /// Optimisation problems that stopped at the solver's iteration cap.
+    /// Number of optimisation problems that stopped at the solver's iteration cap.
     n_capped: usize => Note "fits stopped at the iteration cap": Linear;
 } }
 
 row! {
-/// What a touch of a method at a level takes (with the [`DetailSummary`] before it: a row of `object_detail_cost.csv`).
+/// Time per touch of a method and tolerance. A row of `object_detail_cost.csv` is a [`DetailSummary`] followed by a `LevelTime`.
 pub struct LevelTime {
-    /// Microseconds a touch, one thread, median over objects.
+    /// Time per touch on one thread, median over objects, µs.
     us_per_touch_median: f64 => Cost "time of a touch, one thread" in "µs": Log;
 } }

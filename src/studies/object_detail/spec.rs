@@ -1,4 +1,4 @@
-//! A study of object detail as it is written.
+//! Specification of an object-detail study: the keys of its TOML file.
 
 use crate::inputs::defaults::count;
 use crate::inputs::objects_spec::ObjectsSpec;
@@ -10,13 +10,13 @@ use serde::{Deserialize, Serialize};
 
 study_file! {
 pub struct ObjectDetailStudySpec {
-    /// What is touched: meshes.
+    /// Touched objects, given as meshes.
     pub objects: ObjectsSpec,
-    /// What touches; one array.
+    /// The skin, a single array.
     pub skin: SkinSpec,
-    /// How it touches.
+    /// The touches.
     pub touches: TouchesSpec,
-    /// What the meshes become.
+    /// Models that replace the meshes.
     pub object_detail: ObjectDetailSpec,
 } }
 
@@ -24,14 +24,14 @@ pub struct ObjectDetailStudySpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ObjectDetailSpec {
-    /// How far packed spheres may be from the mesh, mm: one level each.
+    /// Tolerances, mm: largest distances of packed spheres from the mesh.
     pub tolerances_mm: Vec<f64>,
-    /// What stands for the mesh.
+    /// Methods that replace the mesh.
     pub methods: Vec<DetailMethod>,
-    /// Points of a mesh at which the distance to the spheres is measured.
+    /// Number of points of a mesh at which the distance to the spheres is measured.
     #[serde(default = "count::<5000>")]
     pub surface_points: usize,
-    /// Classifiers that learn from the models and are tested on the meshes; none when left out.
+    /// Classifiers that are trained on the models and tested on the meshes. Default: none.
     #[serde(default)]
     pub recognition: Option<DetailRecognitionSpec>,
 }
@@ -40,39 +40,40 @@ pub struct ObjectDetailSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DetailRecognitionSpec {
-    /// Touches of each object that train, drawn as the study's touches are.
+    /// Number of training touches of each object, drawn like the study's touches.
     pub training_touches: usize,
-    /// Further touches of each object that test.
+    /// Number of further touches of each object for testing.
     pub test_touches: usize,
-    /// How frames are compressed.
+    /// Ensemble that compresses the frames.
     #[serde(default = "default_ensemble")]
     pub ensemble: Ensemble,
-    /// To how many measurements.
+    /// Number of measurements per frame.
     pub measurements: usize,
-    /// What learns; with the parameters of [`Classifier::new`](crate::learning::classifiers::classifier::Classifier::new).
+    /// Classifiers, with the parameters of [`Classifier::new`](crate::learning::classifiers::classifier::Classifier::new).
     pub classifiers: Vec<ClassifierKind>,
 }
 
 impl DetailRecognitionSpec {
-    /// Touches of each object, those that test included.
+    /// Returns the number of training and test touches of each object.
     pub(super) fn n_touches(&self) -> usize {
         self.training_touches + self.test_touches
     }
 }
 
-/// What stands for a mesh.
+/// Method that replaces a mesh by a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DetailMethod {
-    /// The mesh itself, touched exactly: what the others are compared with. Measured in any case.
+    /// The exact mesh, which is the reference for all other methods. It is always measured.
     Mesh,
-    /// Spheres within each tolerance.
+    /// Packed spheres within each tolerance.
     Packing,
-    /// One sphere a vertex \[BT\].
+    /// One sphere per vertex \[BT\].
     VertexSpheres,
-    /// The same around so many of the vertices, spread evenly, as each packing has spheres (all vertices if it has more).
+    /// One sphere at each of a number of evenly spread vertices. For each packing, the number equals the packing's number of spheres, or the number of all
+    /// vertices if that is smaller.
     DecimatedVertexSpheres,
-    /// The largest spheres inside the mesh that touch it at as many points as each packing has spheres
+    /// The largest spheres inside the mesh that touch it at a number of points equal to the number of spheres of each packing
     /// ([`medial_spheres`](crate::packing::medial_spheres)).
     MedialSpheres,
 }

@@ -1,144 +1,144 @@
-//! The result tables of a study of a whole body: one plain struct a row, one field a column.
+//! Rows of the result tables of a whole-body study: one plain struct for each kind of row, one field for each column.
 
 use crate::row;
 use serde::{Deserialize, Serialize};
 
-/// What a row belongs to.
+/// Series of measurements to which a row belongs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Series {
-    /// An object on the robot.
+    /// An object touches the robot.
     Scene,
-    /// The skin grows, the touch does not.
+    /// The skin grows while the touch stays the same.
     Skin,
-    /// The touch grows, the skin does not.
+    /// The touch grows while the skin stays the same.
     Touch,
-    /// The object's spheres grow, skin and touch do not.
+    /// The number of the object's spheres grows while skin and touch stay the same.
     Spheres,
 }
 
 row! {
-/// What was measured: a scene, or a rung of a ladder.
+/// Measured case: a scene, or one size in a scaling series.
 pub struct BodyCase {
-    /// What it belongs to.
+    /// Series to which the case belongs.
     series: Series => Note;
-    /// The scene, or the rung.
+    /// Name of the scene or of the size.
     name: String => Subject "scene or rung";
-    /// Taxels of the body.
+    /// Number of taxels of the body.
     n_taxels: usize => Condition "taxels of the body": Log;
-    /// Its patches.
+    /// Number of patches of the body.
     n_patches: usize => Condition "patches": Log;
-    /// Spheres of the object.
+    /// Number of spheres of the object.
     n_spheres: usize => Condition "spheres": Log;
 } }
 
 row! {
-/// What happened on the way (with the [`BodyCase`] before it: a row of `whole_body.csv`).
+/// Counts of a simulated case. A row of `whole_body.csv` is a [`BodyCase`] followed by a `BodyCount`.
 pub struct BodyCount {
-    /// Steps.
+    /// Number of steps.
     n_steps: usize => Note "steps": Linear;
-    /// Taxels with a deflection, mean over steps.
+    /// Number of taxels with a deflection, mean over steps.
     touched_mean: f64 => Value(Neither) "touched taxels": Log;
-    /// The fewest.
+    /// Smallest number of taxels with a deflection in a step.
     touched_min: usize => Note "fewest touched": Linear;
-    /// The most.
+    /// Largest number of taxels with a deflection in a step.
     touched_max: usize => Note "most touched": Linear;
-    /// Taxels at their stroke that the object would push further, mean over steps.
+    /// Number of taxels at their stroke that the object would push further, mean over steps.
     saturated_mean: f64 => Value(Neither) "saturated taxels": Linear;
-    /// Patches that were looked at, mean over steps.
+    /// Number of visited patches, mean over steps.
     patches_visited_mean: f64 => Value(Neither) "patches visited": Linear;
-    /// Patches with a touched taxel, mean over steps.
+    /// Number of patches with a touched taxel, mean over steps.
     patches_touched_mean: f64 => Value(Neither) "patches touched": Linear;
-    /// Spheres for which rows, rings or tiles of taxels were looked at, counted on each patch where they were, mean over steps.
+    /// Number of spheres for which rows, rings or tiles of taxels were evaluated, summed over patches, mean over steps.
     spheres_evaluated_mean: f64 => Value(Neither) "spheres evaluated": Linear;
-    /// Spheres that were left out before that, counted on each patch near the object, mean over steps.
+    /// Number of spheres that were rejected before evaluation, summed over patches near the object, mean over steps.
     spheres_rejected_mean: f64 => Value(Neither) "spheres rejected": Linear;
     /// Sum of all deflections over taxels and steps, mm.
     deflection_sum_mm: f64 => Note "sum of deflections" in "mm": Linear;
-    /// Memory of the body and what it remembers at rest, bytes a taxel.
+    /// Memory of the body and its state at rest, bytes per taxel.
     bytes_per_taxel: f64 => Cost "memory of a taxel" in "bytes": Linear;
 } }
 
 row! {
-/// What a scene was taken for (a row of `sensed.csv`).
+/// Recognition of the object in a scene: a row of `sensed.csv`.
 pub struct BodySensed {
-    /// The scene.
+    /// Name of the scene.
     scene: String => Subject;
-    /// The compression.
+    /// Name of the compression.
     compression: String => Choice;
-    /// Sum of all measurements' sizes over steps, mm.
+    /// Sum of the magnitudes of all measurements over steps, mm.
     measurement_sum_mm: f64 => Note "sum of measurements" in "mm": Linear;
-    /// What most steps were taken for; of equals the first of the objects.
+    /// Most frequent decision over the steps; in a tie the first of the objects.
     decision: String => Outcome;
-    /// By how many of the steps.
+    /// Fraction of the steps with this decision.
     decision_share: f64 => Note "share of the steps": Share;
 } }
 
 row! {
-/// How well objects are told apart from a compression (a row of `recognition.csv`).
+/// Accuracy of object recognition with a compression: a row of `recognition.csv`.
 pub struct BodyRecognition {
-    /// The compression: `sbhe_32` has blocks of 32 taxels.
+    /// Name of the compression; `sbhe_32` has blocks of 32 taxels.
     compression: String => Choice;
-    /// m.
+    /// Number m of measurements.
     n_measurements: usize => Choice "measurements": Linear;
-    /// Numbers of Φ that are not zero, a taxel.
+    /// Number of non-zero entries of Φ per taxel.
     entries_per_taxel: f64 => Cost "entries of a taxel": Log;
-    /// Share of the taxels that some measurement reads.
+    /// Fraction of the taxels that at least one measurement reads.
     read_share: f64 => Note "share of the taxels read": Share;
-    /// Memory of Φ by columns, bytes a taxel.
+    /// Memory of Φ, stored by columns, bytes per taxel.
     bytes_per_taxel: f64 => Cost "memory of a taxel" in "bytes": Log;
-    /// Objects that are told apart.
+    /// Number of objects to distinguish.
     n_objects: usize => Condition "objects": Linear;
-    /// Training touches, all objects.
+    /// Number of training touches of all objects.
     n_training: usize => Note "training touches": Linear;
-    /// Test touches, all objects.
+    /// Number of test touches of all objects.
     n_test: usize => Note "test touches": Linear;
-    /// Share of the test touches that were recognised.
+    /// Fraction of recognised test touches, 0 to 1.
     accuracy: f64 => Value(More): Share between [accuracy_low, accuracy_high];
-    /// Lower end of its 95 % interval.
+    /// Lower end of the 95 % interval of the accuracy.
     accuracy_low: f64 => Note "95 % interval, lower end": Share;
-    /// Upper end of it.
+    /// Upper end of the 95 % interval of the accuracy.
     accuracy_high: f64 => Note "95 % interval, upper end": Share;
     /// Binary SVMs that stopped at the solver's iteration cap.
     n_capped: usize => Note "capped SVMs": Linear;
 } }
 
-/// What is timed.
+/// Timed stage of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Stage {
-    /// The step of the skin.
+    /// Simulation of the skin.
     Press,
-    /// Measurements of what is touched.
+    /// Compression of the touched taxels into measurements.
     Compress,
-    /// The decision.
+    /// Classification of the measurements.
     Classify,
-    /// All three.
+    /// All three stages together.
     Whole,
 }
 
 row! {
-/// What was timed (between [`BodyCase`] and [`StepTime`]: a row of `timing.csv`).
+/// Timed stage. A row of `timing.csv` is a [`BodyCase`], a `BodyStage` and a [`StepTime`].
 pub struct BodyStage {
-    /// What.
+    /// The stage.
     stage: Stage => Note;
-    /// The compression; empty for `press`.
+    /// Name of the compression; empty for `press`.
     compression: String => Choice;
-    /// Threads that a large touch is shared by.
+    /// Number of threads that share a large touch.
     n_threads: usize => Choice "threads": Linear;
 } }
 
 row! {
-/// How much was touched while a step of the skin was timed with all threads (between [`BodyCase`] and [`StepTime`]: a row of `steps.csv`).
+/// Size of the touch in a step that was timed with all threads. A row of `steps.csv` is a [`BodyCase`], a `BodyTouch` and a [`StepTime`].
 pub struct BodyTouch {
-    /// Taxels with a deflection, to two digits.
+    /// Number of taxels with a deflection, rounded to two digits.
     touched: f64 => Condition "touched taxels, about": Log;
-    /// The same, mean over steps.
+    /// Number of taxels with a deflection, mean over steps.
     touched_mean: f64 => Note "touched taxels": Log;
 } }
 
 row! {
-/// What a step cost.
+/// Computing time of a step.
 pub struct StepTime {
     /// Median over steps, µs.
     us_median: f64 => Cost "time of a step" in "us": Log between [us_p05, us_p95];
@@ -146,22 +146,22 @@ pub struct StepTime {
     us_p05: f64 => Note "5th to 95th percentile, lower end" in "us": Log;
     /// 95th percentile, µs.
     us_p95: f64 => Note "5th to 95th percentile, upper end" in "us": Log;
-    /// By the median.
+    /// Steps per second, computed from the median.
     steps_per_s: f64 => Value(More) "steps a second": Log;
 } }
 
-/// What came of a scene or a rung.
+/// Results of a scene or of one size of a scaling series.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Driven {
-    /// Which.
+    /// The measured case.
     pub case: BodyCase,
-    /// What happened.
+    /// Counts of the simulation.
     pub count: BodyCount,
-    /// The press, then of each compression all stages; where there are threads, at the end the press with one.
+    /// Times of the press, then of all stages of each compression. With several threads, the press with one thread follows.
     pub times: Vec<(BodyStage, StepTime)>,
-    /// One a compression.
+    /// Recognition results, one for each compression.
     pub sensed: Vec<BodySensed>,
 }
 
-/// Rows of work items: of compressions, and of scenes and rungs.
+/// Rows of work items: recognition results of compressions, and results of scenes and scaling series.
 pub type WholeBodyRows = (Vec<BodyRecognition>, Vec<Driven>);

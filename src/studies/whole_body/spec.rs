@@ -1,4 +1,4 @@
-//! A study of a whole body as it is written.
+//! Specification of a whole-body study: the keys of its TOML file.
 
 use crate::files::FilePath;
 use crate::inputs::defaults::{count, number};
@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 study_file! {
 pub struct WholeBodyStudySpec {
-    /// Everything else.
+    /// All settings of the study.
     pub whole_body: WholeBodySpec,
 } }
 
@@ -17,114 +17,114 @@ pub struct WholeBodyStudySpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WholeBodySpec {
-    /// The URDF file of what is covered, beside the study's own.
+    /// URDF file of the covered robot, relative to the study file.
     pub robot: FilePath,
     /// Distance between taxels, mm.
     #[serde(default = "number::<1>")]
     pub pitch_mm: f64,
-    /// Side of a patch, about, mm.
+    /// Approximate side length of a patch, mm.
     #[serde(default = "number::<100>")]
     pub patch_mm: f64,
-    /// Whether flat ends of cylinders are covered, too.
+    /// Whether the flat ends of cylinders are covered, too.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub flat_ends: bool,
-    /// ρ, mm; half the pitch when left out.
+    /// Taxel radius ρ, mm. Default: half the pitch.
     pub taxel_radius_mm: Option<f64>,
-    /// s, mm.
+    /// Stroke s, mm.
     #[serde(default = "number::<2>")]
     pub stroke_mm: f64,
-    /// k, N/m.
+    /// Stiffness k, N/m.
     #[serde(default = "number::<100>")]
     pub stiffness_n_per_m: f64,
-    /// c, N·s/m.
+    /// Damping c, N·s/m.
     #[serde(default)]
     pub damping_n_s_per_m: f64,
-    /// Length of a step, ms.
+    /// Duration of a step, ms.
     #[serde(default = "number::<1>")]
     pub step_ms: f64,
-    /// Steps that are measured of each scene and rung.
+    /// Number of measured steps for each scene and each size of a scaling series.
     #[serde(default = "count::<1000>")]
     pub steps: usize,
-    /// How far the spheres of an object may be from its surface, mm.
+    /// Largest distance between an object's spheres and its surface, mm.
     #[serde(default = "default_surface_error_mm")]
     pub surface_error_mm: f64,
-    /// What happens to the robot.
+    /// Simulated scenes.
     pub scenes: Vec<BodySceneSpec>,
-    /// How what is touched is compressed.
+    /// Compression of the touched taxels.
     pub sensing: BodySensingSpec,
-    /// What is recognised.
+    /// Recognised objects and their touches.
     pub recognition: BodyRecognitionSpec,
-    /// What a step costs by size; nothing of it when left out.
+    /// Sizes for the measurement of computing time. Default: none.
     pub ladders: Option<LaddersSpec>,
 }
 
-/// `[[whole_body.scenes]]`: an object that goes along a path.
+/// `[[whole_body.scenes]]`: an object that moves along a path.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodySceneSpec {
-    /// What the scene is called.
+    /// Name of the scene.
     pub name: String,
-    /// A built-in object, its box about its own origin; or `parts`.
+    /// Name of a built-in object, with the centre of its bounding box at its origin; replaces `parts`.
     pub object: Option<String>,
-    /// What the object is made of, in its own frame.
+    /// Parts of the object, in its own frame.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub parts: Vec<BodyPartSpec>,
-    /// The link in whose frame the object is placed and moves.
+    /// Link in whose frame the object is placed and moves.
     pub link: String,
-    /// Where the object's origin is, mm; with `depth_mm`, where it aims.
+    /// Position of the object's origin, mm; with `depth_mm`, the target of its approach.
     #[serde(default)]
     pub at_mm: [f64; 3],
-    /// How it is turned: roll, pitch, yaw about the link's axes, degrees.
+    /// Orientation of the object: roll, pitch, yaw about the link's axes, degrees.
     #[serde(default, alias = "rotation_deg")]
     pub turn_deg: [f64; 3],
-    /// With `depth_mm`: from where it comes to `at_mm`, a direction.
+    /// With `depth_mm`: direction from `at_mm` to the start of the approach.
     #[serde(default = "default_from")]
     pub from: [f64; 3],
-    /// How far it goes past first contact, mm. When left out, it is at `at_mm` itself.
+    /// Travel past first contact, mm. Without this key, the object is placed at `at_mm`.
     pub depth_mm: Option<f64>,
-    /// To and fro by so much, mm, as a sine of the period.
+    /// Amplitude of a sinusoidal translation, mm.
     #[serde(default)]
     pub moves_mm: [f64; 3],
-    /// To and fro about the link's z axis by so much, degrees, as the same sine.
+    /// Amplitude of a sinusoidal rotation about the link's z axis, degrees; in phase with `moves_mm`.
     #[serde(default)]
     pub swing_deg: f64,
-    /// Period of the sine, ms.
+    /// Period of the sinusoidal motion, ms.
     #[serde(default = "number::<1000>")]
     pub period_ms: f64,
-    /// Joints that are not at zero, degrees by name.
+    /// Joint angles by joint name, degrees; all other joints are at zero.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub posture_deg: BTreeMap<String, f64>,
 }
 
-/// A part of an object.
+/// Part of an object.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum BodyPartSpec {
-    /// A ball.
+    /// Ball.
     Ball {
-        /// Its diameter, mm.
+        /// Diameter, mm.
         diameter_mm: f64,
-        /// Its middle, mm.
+        /// Centre, mm.
         #[serde(default)]
         at_mm: [f64; 3],
     },
-    /// A cylinder about z with a half ball on each end.
+    /// Cylinder about z with a hemisphere on each end.
     Capsule {
-        /// Its diameter, mm.
+        /// Diameter, mm.
         diameter_mm: f64,
-        /// Along z, both half balls included, mm.
+        /// Length along z including both hemispheres, mm.
         length_mm: f64,
-        /// Its middle, mm.
+        /// Centre, mm.
         #[serde(default)]
         at_mm: [f64; 3],
     },
-    /// A torus about z: arms that close.
+    /// Torus about z, such as arms around the robot.
     Torus {
-        /// Of the circle in the middle of the tube, mm.
+        /// Diameter of the centre line of the tube, mm.
         ring_diameter_mm: f64,
-        /// Of the tube, mm.
+        /// Diameter of the tube, mm.
         tube_diameter_mm: f64,
-        /// Its middle, mm.
+        /// Centre, mm.
         #[serde(default)]
         at_mm: [f64; 3],
     },
@@ -134,39 +134,39 @@ pub enum BodyPartSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodySensingSpec {
-    /// Measurements a frame.
+    /// Number of measurements per frame.
     pub measurements: usize,
-    /// How they are made: `sbhe` and `sparse`, whose entries are few.
+    /// Ensembles with sparse matrices: `sbhe` and `sparse`.
     pub ensembles: Vec<Ensemble>,
-    /// Taxels of a Hadamard block, powers of two; each is a compression of its own.
+    /// Numbers of taxels in a Hadamard block, powers of two; each gives a compression of its own.
     #[serde(default = "default_blocks")]
     pub sbhe_blocks: Vec<usize>,
 }
 
-/// `[whole_body.recognition]`: touches of built-in objects at one place.
+/// `[whole_body.recognition]`: touches of built-in objects at one location.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodyRecognitionSpec {
-    /// Built-in objects.
+    /// Names of built-in objects.
     pub objects: Vec<String>,
-    /// The link in whose frame they are placed.
+    /// Link in whose frame the objects are placed.
     pub link: String,
-    /// Where they aim, mm.
+    /// Target of the approach, mm.
     pub at_mm: [f64; 3],
-    /// From where they come, a direction.
+    /// Direction from the target to the start of the approach.
     #[serde(default = "default_from")]
     pub from: [f64; 3],
-    /// They miss by up to so much either way across, mm.
+    /// Largest random offset from the target across the approach, mm.
     #[serde(default)]
     pub offset_mm: f64,
-    /// They are turned about the link's z axis by up to so much either way, degrees.
+    /// Largest random rotation about the link's z axis, degrees.
     #[serde(default)]
     pub yaw_deg: f64,
-    /// They go between these past first contact, mm.
+    /// Range of the random travel past first contact, mm.
     pub depth_mm: [f64; 2],
-    /// Touches of each object that train.
+    /// Number of training touches of each object.
     pub training_touches: usize,
-    /// Touches of each object that test.
+    /// Number of test touches of each object.
     pub test_touches: usize,
 }
 
@@ -174,27 +174,27 @@ pub struct BodyRecognitionSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LaddersSpec {
-    /// Rungs of the skin, taxels.
+    /// Numbers of taxels in the series of growing skins.
     pub taxels: Vec<usize>,
-    /// On each of them, but for those that have no room for it: taxels touched, about.
+    /// Approximate numbers of touched taxels for each of these skins, if the skin is large enough.
     pub touched_at_taxels: Vec<usize>,
-    /// Rungs of the touch, taxels, about.
+    /// Approximate numbers of touched taxels in the series of growing touches.
     pub touched: Vec<usize>,
-    /// Rungs of the object, spheres; the first makes the cushion of the other ladders; half are on its far side.
+    /// Numbers of spheres in the series of growing objects, half of them on the far side. The first number is used in the other series.
     pub spheres: Vec<usize>,
-    /// Taxels touched on the rungs of the object, about.
+    /// Approximate number of touched taxels in the series of growing objects.
     pub touched_at_spheres: usize,
-    /// Taxels of the skin on the rungs of the touch and of the object.
+    /// Number of taxels of the skin in the series of growing touches and objects.
     pub taxels_at_touch: usize,
 }
 
 impl BodyRecognitionSpec {
-    /// Touches of each object.
+    /// Returns the number of touches of each object.
     pub fn of_each(&self) -> usize {
         self.training_touches + self.test_touches
     }
 
-    /// Touches of all objects.
+    /// Returns the number of touches of all objects.
     pub fn n_touches(&self) -> usize {
         self.objects.len() * self.of_each()
     }

@@ -266,7 +266,8 @@ pub struct PublishedSpec {
 impl StudySpec {
     /// Reads a study from the text of its file.
     ///
-    /// # Errors If the text is not a valid study. The error names the file, the line and the key.
+    /// # Errors
+    /// If the text is not a valid study. The error names the file, the line and the key.
     pub fn parse(place: &str, text: &str) -> Result<Self> {
         let (spec, axes) = axes::read::<Self>(place, text, AXIS_RULES)?;
         Ok(Self { axes, ..spec })
