@@ -1,4 +1,4 @@
-//! The labelled measurements: linfa's data set, checked before any classifier sees it.
+//! Labelled measurements as linfa's data set, with checks of their validity.
 
 use linfa::DatasetBase;
 use ndarray::{Array1, Array2, ArrayBase, ArrayView1, ArrayView2, Axis, Data, Ix2};
@@ -8,20 +8,20 @@ use crate::{Error, Result};
 /// Labelled measurements: linfa's data set of `features` (n_rows × m) and one label per row, `0..n_classes`.
 pub type Dataset = DatasetBase<Array2<f64>, Array1<usize>>;
 
-/// A data set of features (n_rows × m) and labels (n_rows), checked.
+/// Creates a checked data set from features (n_rows × m) and labels (n_rows).
 ///
 /// # Errors
-/// No rows, no columns, another number of labels than rows, or a NaN or infinite feature (named by row and column).
+/// If there are no rows or columns, the number of labels differs from the number of rows, or a feature is NaN or infinite (the error names row and column).
 pub fn dataset(features: Array2<f64>, labels: Array1<usize>) -> Result<Dataset> {
     check_features(features.view())?;
     check_labels(features.nrows(), labels.view())?;
     Ok(DatasetBase::new(features, labels))
 }
 
-/// The rows of a data set at these indices, in this order (a copy).
+/// Returns a copy of the rows at the given indices, in the given order.
 ///
 /// # Errors
-/// An index beyond the last row.
+/// If an index is beyond the last row.
 pub fn rows(data: &Dataset, indices: &[usize]) -> Result<Dataset> {
     if let Some(&row) = indices.iter().find(|&&row| row >= data.records.nrows()) {
         let last = data.records.nrows();
@@ -35,10 +35,10 @@ pub fn rows(data: &Dataset, indices: &[usize]) -> Result<Dataset> {
     dataset(features, data.targets.select(Axis(0), indices))
 }
 
-/// Refuses empty features and any that is NaN or infinite, naming its row and column.
+/// Checks that the features are not empty and all finite.
 ///
 /// # Errors
-/// Empty features, or a NaN or infinite one.
+/// If the features are empty, or one is NaN or infinite; the error names row and column.
 pub fn check_features(features: ArrayView2<f64>) -> Result<()> {
     let (n_rows, n_columns) = features.dim();
     if n_rows == 0 || n_columns == 0 {
@@ -68,10 +68,10 @@ pub fn check_features(features: ArrayView2<f64>) -> Result<()> {
     }
 }
 
-/// Whether no value is NaN or infinite. Without an early way out, several are looked at side by side.
+/// Returns whether all values are finite. The loop has no early exit, so that it runs in vector instructions.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub fn all_finite(values: &[f64]) -> bool {
-    /// All bits of an exponent are set in NaN and in infinities alone.
+    /// Exponent bits; all of them are set only in NaN and infinities.
     const EXPONENT: u64 = 0x7ff << 52;
     let mut is_bad = 0;
     for value in values {
@@ -80,10 +80,10 @@ pub fn all_finite(values: &[f64]) -> bool {
     is_bad == 0
 }
 
-/// Refuses labels that are not one per row.
+/// Checks that there is one label per row.
 ///
 /// # Errors
-/// Another number of labels than rows.
+/// If the number of labels differs from the number of rows.
 pub fn check_labels(n_rows: usize, labels: ArrayView1<usize>) -> Result<()> {
     if labels.len() == n_rows {
         return Ok(());
@@ -95,10 +95,10 @@ pub fn check_labels(n_rows: usize, labels: ArrayView1<usize>) -> Result<()> {
     ))
 }
 
-/// Refuses features of another width than the model was trained on, and any that is NaN or infinite.
+/// Checks that the features have the width of the training data and are finite.
 ///
 /// # Errors
-/// Another number of columns than `width`, or a NaN or infinite feature.
+/// If the number of columns differs from `width`, or a feature is NaN or infinite.
 pub fn check_width<D: Data<Elem = f64>>(features: &ArrayBase<D, Ix2>, width: usize) -> Result<()> {
     if features.ncols() != width {
         return Err(Error::input(
@@ -113,7 +113,7 @@ pub fn check_width<D: Data<Elem = f64>>(features: &ArrayBase<D, Ix2>, width: usi
     check_features(features.view())
 }
 
-/// The distinct labels, ascending.
+/// Returns the distinct labels, ascending.
 pub fn distinct(labels: ArrayView1<usize>) -> Vec<usize> {
     let mut classes = labels.to_vec();
     classes.sort_unstable();
@@ -121,10 +121,10 @@ pub fn distinct(labels: ArrayView1<usize>) -> Vec<usize> {
     classes
 }
 
-/// The distinct labels of data that a classifier can be trained on.
+/// Returns the distinct labels, after checking that a classifier can be trained on the data.
 ///
 /// # Errors
-/// Empty data, a NaN or infinite feature, another number of labels than rows, or a single class.
+/// If the data are empty, a feature is NaN or infinite, the number of labels differs from the number of rows, or there is a single class.
 pub fn checked_classes(data: &Dataset) -> Result<Vec<usize>> {
     check_features(data.records.view())?;
     check_labels(data.records.nrows(), data.targets.view())?;
@@ -140,7 +140,7 @@ pub fn checked_classes(data: &Dataset) -> Result<Vec<usize>> {
     Ok(classes)
 }
 
-/// For every row, the position of its label in `classes` (ascending, and holding every label).
+/// Returns the position of each row's label in `classes`, which is ascending and contains every label.
 pub fn positions(labels: ArrayView1<usize>, classes: &[usize]) -> Vec<usize> {
     labels
         .iter()

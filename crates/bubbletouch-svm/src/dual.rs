@@ -1,21 +1,20 @@
-//! The solution of one binary soft-margin problem, whatever solved it.
+//! Solution of a binary soft-margin problem, common to all solvers.
 
-/// The solution of one binary dual problem: maximise `Σ_i a_i − ½ Σ_ij a_i a_j y_i y_j K(x_i, x_j)` over `0 ≤ a_i ≤ C`,
-/// `Σ_i y_i a_i = 0`, with y = +1 for positive rows and −1 for the others. The decision function is
-/// `f(x) = Σ_i y_i a_i K(x_i, x) − ρ`.
+/// Solution of a binary dual problem: maximise `Σ_i a_i − ½ Σ_ij a_i a_j y_i y_j K(x_i, x_j)` subject to `0 ≤ a_i ≤ C` and `Σ_i y_i a_i = 0`. Positive rows
+/// have
+/// y = +1, negative rows y = −1. The decision function is `f(x) = Σ_i y_i a_i K(x_i, x) − ρ`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DualSolution {
-    /// `y_i a_i`, per row of the problem: positive for positive rows, 0 for rows that are no support vectors.
+    /// Coefficients `y_i a_i` per row of the problem: 0 for rows that are not support vectors, positive only for positive rows.
     pub coefficients: Vec<f64>,
-    /// ρ.
+    /// Offset ρ of the decision function.
     pub rho: f64,
-    /// The dual objective that was reached.
+    /// Value of the dual objective.
     pub objective: f64,
-    /// How far the optimality (KKT) conditions are violated, in units of the decision value; `None` where the solver does
-    /// not say.
+    /// Largest violation of the optimality (KKT) conditions, in units of the decision value; `None` if the solver does not compute it.
     pub violation: Option<f64>,
-    /// Iterations that it took; `None` where the solver does not say.
+    /// Number of iterations; `None` if the solver does not count them.
     pub n_iterations: Option<u64>,
-    /// Whether the solver stopped at its iteration cap short of its tolerance.
+    /// Whether the solver stopped at its iteration cap before reaching its tolerance.
     pub is_capped: bool,
 }

@@ -1,24 +1,24 @@
-//! Input that cannot be used.
+//! Error type for invalid input.
 
-/// The result of everything that can fail here.
+/// Result type of this crate.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// Input that cannot be used: where, what was given there, and what is allowed there.
+/// Invalid input: the place, the given value, and the allowed values.
 ///
-/// The text reads `<place>: <given>; <allowed>`.
+/// The message has the form `<place>: <given>; <allowed>`.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{place}: {given}; {allowed}")]
 pub struct Error {
     /// The parameter, or the row and column of the data.
     pub place: String,
-    /// What was given there.
+    /// The given value.
     pub given: String,
-    /// What is allowed there.
+    /// The allowed values.
     pub allowed: String,
 }
 
 impl Error {
-    /// An error from anything printable.
+    /// Creates an error from printable values.
     pub fn input(place: impl ToString, given: impl ToString, allowed: impl ToString) -> Self {
         Self {
             place: place.to_string(),
@@ -28,7 +28,7 @@ impl Error {
     }
 }
 
-/// linfa's traits ask this of the errors of every classifier.
+/// linfa's traits require this conversion.
 impl From<linfa::Error> for Error {
     fn from(error: linfa::Error) -> Self {
         Self::input(

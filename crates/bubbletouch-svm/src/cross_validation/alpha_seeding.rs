@@ -1,21 +1,21 @@
-//! Alpha seeding: a start for one fold from the solution of another.
+//! Alpha seeding: the solution of one fold gives the start for the next fold.
 //!
-//! Two folds of k share all but 2/k of their rows. The multipliers of rows that one fold trains on and the other does not go
-//! to the most similar rows that it gains [DeCoste, Wagstaff 2000; Wen et al. 2017], so that `Σβ = 0` and the bounds hold as
-//! before.
+//! Two of k folds share all but 2/k of their rows. The multipliers of removed rows are moved to the most similar added rows [DeCoste, Wagstaff 2000; Wen et
+//! al. 2017].
+//! The constraint `Σβ = 0` and the bounds remain satisfied.
 
 use std::ops::Range;
 
 use crate::linalg::scalar::Scalar;
 
-/// Rows of a problem that one fold trains on and another does not.
+/// Rows of a problem that are training rows of one fold but not of the next.
 pub(crate) struct AlphaSeeding {
     /// Removed and added rows of each class, ascending.
     sides: [(Vec<usize>, Vec<usize>); 2],
 }
 
 impl AlphaSeeding {
-    /// Creates the seeding from one fold to another, from the labels of all rows; the label of a row that a fold holds out is 0.
+    /// Creates the seeding from one fold to the next, given the labels of all rows in both folds. Held-out rows have the label 0.
     pub fn new((before, labels): (&[f64], &[f64]), positive: &Range<usize>) -> Self {
         let mut sides = [(); 2].map(|()| (Vec::new(), Vec::new()));
         for (at, (before, label)) in before.iter().zip(labels).enumerate() {
@@ -29,7 +29,8 @@ impl AlphaSeeding {
         Self { sides }
     }
 
-    /// Transfers β to the next fold. Returns `None` if a removed row's multiplier cannot be redistributed: all added rows of its class have one.
+    /// Transfers β to the next fold. Returns `None` if a removed row's multiplier cannot be redistributed, because all added rows of its class already have
+    /// one.
     /// `similar` returns the kernel values of a row.
     pub fn transfer<'k, T: Scalar>(
         &self,
@@ -60,7 +61,7 @@ mod tests {
     use super::*;
     use ndarray::Array2;
 
-    /// Rows on a line, the first four positive; similarity falls with distance.
+    /// Rows on a line, the first four positive; the similarity falls with the distance.
     const AT: [f64; 8] = [0.0, 1.0, 2.0, 3.0, 0.4, 1.4, 2.4, 3.4];
 
     fn seed(beta: &[f64], was: &[usize], is: &[usize]) -> Option<Vec<f64>> {
@@ -78,7 +79,7 @@ mod tests {
     #[test]
     fn multipliers_of_lost_rows_go_to_the_most_similar_gained_rows_of_their_class() {
         let beta = [0.5, 0.0, 0.0, 1.0, -0.7, 0.0, -0.8, 0.0];
-        // Rows 3 and 4 are lost; 1, 2, 5 and 7 are gained.
+        // Rows 3 and 4 are removed; rows 1, 2, 5 and 7 are added.
         let found = seed(&beta, &[0, 3, 4, 6], &[0, 1, 2, 5, 6, 7]);
         assert_eq!(found.unwrap(), [0.5, 0.0, 1.0, 0.0, 0.0, -0.7, -0.8, 0.0]);
     }

@@ -1,4 +1,4 @@
-//! The choice of C and γ by cross-validation on training rows; test rows are never seen.
+//! Choice of C and γ by cross-validation on training rows; test rows are not used.
 
 use ndarray::{Array1, Array2, ArrayView1};
 use serde::{Deserialize, Serialize};
@@ -14,47 +14,51 @@ use crate::svm_params::SvmParams;
 use crate::training::Goal;
 use crate::{Error, Result};
 
-/// What may be chosen.
+/// Candidate values of C and γ.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Candidates {
-    /// Values of C; at least one.
+    /// Candidate values of C; at least one.
     pub c: Vec<f64>,
-    /// Values of γ as multiples of the kernel's own γ, which is [`Gamma::Scale`]'s of the training rows unless it is a number; empty: the kernel's own γ.
-    /// A linear kernel has none.
+    /// Candidate values of γ as multiples of the kernel's own γ; empty to use the kernel's own γ. The kernel's own γ is its number, or [`Gamma::Scale`] of
+    /// the training rows.
+    /// A linear kernel has no γ.
     pub gamma_scales: Vec<f64>,
 }
 
-/// A candidate and how it did.
+/// A candidate and its validation accuracy.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Tried {
-    /// C.
+    /// Penalty C.
     pub c: f64,
-    /// γ as a number; `None` for a linear kernel.
+    /// Value of γ; `None` for a linear kernel.
     pub gamma: Option<f64>,
-    /// Validation rows recognised, over all folds, as a fraction.
+    /// Fraction of validation rows recognised over all folds, 0..=1.
     pub accuracy: f64,
 }
 
-/// What was chosen, and from what.
+/// Result of the choice of C and γ.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Chosen {
     /// The most accurate candidate.
     pub best: Tried,
-    /// All of them: γ by γ, ascending, C ascending within.
+    /// All candidates in ascending order of γ, then of C.
     pub tried: Vec<Tried>,
-    /// Solves, of all folds and candidates, that stopped at the iteration cap.
+    /// Number of solves, over all folds and candidates, that stopped at the iteration cap.
     pub n_capped: usize,
 }
 
-/// Tries every C with every γ on every fold, and keeps the most accurate; of equals the smaller γ, then the smaller C
-/// (smoother, more regularised, and faster).
+/// Evaluates every C with every γ on every fold, and returns the most accurate candidate. Of equal candidates, the smaller γ is taken, then the smaller C
+/// (smoother, more
+/// regularised, and faster).
 ///
-/// `training` holds scaled training rows alone; the scaling may have seen all of them (not their labels). `folds` split
-/// those rows. The whole grid is evaluated on one matrix of products. A duplicated candidate counts once.
+/// `training` contains only scaled training rows; the scaling may be fitted to all of them, without labels. `folds` split these rows. The whole grid is
+/// evaluated on one
+/// matrix of products. Duplicated candidates count once.
 ///
 /// # Errors
-/// No candidates or one out of range, no folds, a row beyond the training rows, a fold whose training rows have a single
-/// class, what [`SvmParams::train`] refuses, or more rows than the matrix has memory for.
+/// If there are no candidates or folds, a candidate is out of range, or a fold contains a row beyond the training rows or a single class. If
+/// [`SvmParams::train`]
+/// returns an error, or the matrix exceeds the memory limit.
 pub fn choose(
     params: &SvmParams,
     training: &Dataset,
@@ -84,11 +88,12 @@ pub fn choose(
     Ok(Chosen::of(tried.collect(), n_capped))
 }
 
-/// [`choose`] of C alone, for any classifier: `train` learns from rows with a C, and gives what labels others and how many
-/// of its solves stopped at their cap.
+/// Chooses C as [`choose`] does, for any classifier. `train` fits a classifier to rows with a given C; it returns a prediction function and the number of
+/// capped
+/// solves.
 ///
 /// # Errors
-/// As [`choose`], and what `train` refuses.
+/// Returns the errors of [`choose`] and of `train`.
 pub fn choose_c<P, E>(
     train: impl Fn(&Dataset, f64) -> Result<(P, usize), E>,
     training: &Dataset,
@@ -125,7 +130,7 @@ where
 }
 
 impl Chosen {
-    /// The first of the most accurate.
+    /// Returns the first of the most accurate candidates.
     fn of(tried: Vec<Tried>, n_capped: usize) -> Self {
         let better = |best: Tried, &tried: &Tried| {
             if tried.accuracy > best.accuracy {
@@ -153,7 +158,7 @@ fn ascending(values: &[f64]) -> Vec<f64> {
     values
 }
 
-/// The kernel with every γ that is asked for, ascending.
+/// Returns the kernel with each candidate γ, ascending.
 fn kernels(
     params: &SvmParams,
     (training, statistics): (&Dataset, &RowStatistics),
@@ -214,7 +219,7 @@ fn rows_exist(training: &Dataset, part: &[usize]) -> Result<()> {
     }
 }
 
-/// Validation rows recognised (kernels.len() × path.len()), and capped solves.
+/// Returns the numbers of recognised validation rows (kernels.len() × path.len()), and the number of capped solves.
 fn on_one_matrix(
     params: &SvmParams,
     (training, statistics): (&Dataset, &RowStatistics),
@@ -239,7 +244,7 @@ fn on_one_matrix(
     grid(params, &sorted, folds, kernels, goal)
 }
 
-/// Rows by class, and within a class by fold: what a fold trains on then lies in few runs.
+/// Sorts the rows by class, and within a class by fold; the training rows of a fold then form few contiguous runs.
 fn by_fold<T: SolverScalar>(
     (training, centre): (&Dataset, ArrayView1<f64>),
     folds: &[Split],
@@ -260,7 +265,7 @@ fn grid<T: SolverScalar>(
     kernels: &[KernelFunction],
     goal: Goal,
 ) -> Result<(Array2<usize>, usize)> {
-    // Three matrices at most: products, the kernel made of them, and the part that a fold trains on.
+    // Up to three matrices are in memory: the products, the kernel values, and the part of a fold's training rows.
     let most = (params.memory_bytes / (3 * size_of::<T>())).isqrt();
     let n_rows = sorted.points().len();
     if n_rows > most {
@@ -292,7 +297,7 @@ mod tests {
         dataset(features, Array1::from_iter((0..n).map(|i| i % 3))).unwrap()
     }
 
-    /// Folds of rows whose classes take turns: all classes are in each.
+    /// Returns folds of rows whose classes alternate, so that each fold contains all classes.
     fn folds_of(n_rows: usize, k: usize) -> Vec<Split> {
         let fold_of = |row: usize| (row / 3) % k;
         let fold = |fold: usize| {
@@ -302,7 +307,7 @@ mod tests {
         (0..k).map(fold).collect()
     }
 
-    /// The same by training a model for each fold and candidate.
+    /// Computes the reference result by training a model for each fold and candidate.
     fn one_by_one(
         params: &SvmParams,
         training: &Dataset,
@@ -367,7 +372,7 @@ mod tests {
 
     #[test]
     fn of_equally_good_candidates_the_smoothest_is_kept() {
-        // Far apart: whatever C and gamma, everything is recognised.
+        // The classes are far apart: with any C and γ, all rows are recognised.
         let features = Array2::from_shape_fn((60, 2), |(i, j)| {
             (i % 2) as f64 * 50.0 + ((i + j) as f64).sin()
         });

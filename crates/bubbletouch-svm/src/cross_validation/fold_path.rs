@@ -1,8 +1,8 @@
-//! A binary problem on the rows of all folds, solved for one fold after the other along C.
+//! A binary problem on the rows of all folds, solved fold by fold along C.
 //!
-//! Rows that a fold holds out keep their place: their label is 0 and so is their multiplier, and their f is less what the
-//! decision function adds up to there, so that a fold's rows are judged by what the solver knows already. A fold starts from
-//! the multipliers of the last one where the objective is higher there than at the last C's, stretched.
+//! Held-out rows keep their position; their label and multiplier are 0. Their f is the negative decision sum, so validation rows are scored by the solver's
+//! own
+//! values. A fold starts from the previous fold's multipliers, or from the previous C's rescaled multipliers, whichever has the higher objective.
 
 use std::ops::Range;
 
@@ -12,31 +12,31 @@ use crate::smo::Smo;
 use crate::smo::SolverScalar;
 use crate::training::Goal;
 
-/// A fold's problem, solved for every C.
+/// Solutions of a fold's problem for all C.
 pub(crate) struct FoldPath {
-    /// 1 for positive rows, −1 for negative ones, 0 for those that are held out.
+    /// Labels: 1 for positive rows, −1 for negative rows, 0 for held-out rows.
     labels: Vec<f64>,
-    /// By C, as far as a larger C changes them.
+    /// Solutions in ascending order of C, up to the last C that changes the solution.
     pub solutions: Vec<FoldSolution>,
 }
 
-/// The solution of a fold's problem for one C, or for several that it is the same for.
+/// Solution of a fold's problem for one C, or for several C with equal solutions.
 pub(crate) struct FoldSolution {
-    /// Which these are, by number.
+    /// Indices of these C in the path.
     pub numbers: Range<usize>,
     /// β of all rows of the problem.
     pub beta: Vec<f64>,
-    /// `y − Kβ` of all rows, y being 0 where a row is held out.
+    /// `y − Kβ` of all rows, with y = 0 for held-out rows.
     pub f: Vec<f64>,
-    /// ρ.
+    /// Offset ρ of the decision function.
     pub rho: f64,
     /// Whether the solver stopped at its cap.
     pub is_capped: bool,
 }
 
 impl FoldPath {
-    /// Tells of one fold after the other, given the labels of each, one a row of the Gram matrix; those of `positive` are of
-    /// the positive class.
+    /// Iterates over the solved folds of a pair of classes. `folds` contains the labels of each fold, one per row of the Gram matrix; the rows of `positive`
+    /// are positive.
     pub fn of_pair<T: SolverScalar>(
         gram: &mut Dense<T>,
         (folds, positive): (Vec<Vec<f64>>, &Range<usize>),
@@ -64,8 +64,9 @@ impl FoldPath {
         }
     }
 
-    /// The same for a class against all others. Classes that no hyperplane parts from the rest have values that are equal
-    /// within the tolerance, and the largest wins: there the start decides. So it starts from nothing, as training does.
+    /// Iterates over the solved folds of one class against all others. If a class is not separable from the rest, several decision values can be equal within
+    /// the tolerance.
+    /// The start then determines the winner, so each fold starts from zero, as in training.
     pub fn of_class<T: SolverScalar>(
         gram: &mut Dense<T>,
         folds: Vec<Vec<f64>>,
@@ -79,7 +80,7 @@ impl FoldPath {
         }
     }
 
-    /// β and f of one C with the multipliers of lost rows moved to gained ones.
+    /// Returns β and f for one C, with the multipliers of removed rows transferred to added rows.
     fn moved<T: SolverScalar>(
         &self,
         number: usize,
@@ -98,7 +99,7 @@ impl FoldPath {
     }
 }
 
-/// Solves for every C, ascending, until a solution holds for all larger ones.
+/// Solves for each C in ascending order, until the solution holds for all larger C.
 fn along<T: SolverScalar>(
     mut smo: Smo<Dense<T>>,
     goal: Goal,
@@ -109,7 +110,7 @@ fn along<T: SolverScalar>(
     for (number, &c) in goal.path.iter().enumerate() {
         let reached = smo.reach(c, goal.tolerance, |gram| seed(gram, number));
         let (beta, f) = smo.variables();
-        // Where no multiplier is kept down by its bound, a larger C changes nothing.
+        // If no multiplier is at its upper bound, a larger C does not change the solution.
         let holds_for_larger = reached.is_solved && beta.iter().all(|beta| beta.abs() < c);
         let end = if holds_for_larger { n_path } else { number + 1 };
         solutions.push(FoldSolution {
@@ -126,14 +127,14 @@ fn along<T: SolverScalar>(
     solutions
 }
 
-/// The Gram matrix times the labels of each fold, which are those of all rows but for 0 where the fold holds a row out.
+/// Returns the product of the Gram matrix with each fold's labels, which equal the labels of all rows except 0 for held-out rows.
 fn sums_of_folds<T: SolverScalar>(
     gram: &mut Dense<T>,
     all: &[f64],
     folds: &[Vec<f64>],
 ) -> Vec<Vec<f64>> {
     let held_out: Vec<Vec<f64>> = folds.iter().map(|labels| difference(all, labels)).collect();
-    // Rows that one fold holds out, as is usual, are in the sum of what folds hold out already.
+    // Rows held out by exactly one fold (the usual case) are already contained in the sums of held-out rows.
     let rest = held_out.iter().fold(all.to_vec(), |a, b| difference(&a, b));
     let of_held_out: Vec<Vec<f64>> = held_out.iter().map(|rows| gram.times(rows)).collect();
     let mut of_all = gram.times(&rest);
@@ -187,7 +188,7 @@ mod tests {
         let folds: Vec<Vec<f64>> = (0..3)
             .map(|fold| all.iter().map(|&at| label(at, fold)).collect())
             .collect();
-        // A kernel that leaves the classes mixed, and one by which each row is alone: then a large C bounds no multiplier.
+        // A kernel that mixes the classes, and one that isolates each row: then no multiplier reaches a large C.
         for gamma in [1.0, 1e6] {
             let mut whole = gram(gamma, &all);
             let mut fold = 0;
@@ -202,7 +203,7 @@ mod tests {
         }
     }
 
-    /// A fold's solutions are those of its rows alone.
+    /// Asserts that a fold's solutions equal the solutions on its training rows alone.
     fn assert_is_alone((gamma, path): (f64, &FoldPath), fold: usize, goal: Goal) {
         let rows: Vec<usize> = (0..N).filter(|at| at % 3 != fold).collect();
         let own: Vec<f64> = rows.iter().map(|&at| label(at, fold)).collect();
@@ -235,7 +236,7 @@ mod tests {
         let mut whole = gram(1.0, &(0..N).collect::<Vec<_>>());
         let label = |at: usize| if POSITIVE.contains(&at) { 1.0 } else { -1.0 };
         let all: Vec<f64> = (0..N).map(label).collect();
-        // Rows that one fold holds out, that two do and that none does.
+        // Rows held out by one fold, by two folds, and by none.
         for held_out in [[0, 1, 2], [0, 1, 1], [0, 0, 0]] {
             let kept = |fold: usize, at: usize| f64::from(u8::from(at % 3 != held_out[fold]));
             let labels = |fold: usize| (0..N).map(|at| all[at] * kept(fold, at)).collect();

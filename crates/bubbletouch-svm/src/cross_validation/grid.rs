@@ -1,10 +1,10 @@
 //! Cross-validation of a whole grid of C and kernels on one matrix of products.
 //!
-//! All folds and all candidates share the products of rows with each other: a pair's part of a kernel is made of them once for
-//! all folds, which [leave rows out](crate::cross_validation::fold_path). Along C each solution starts from the last, that of a pair
-//! at the first C from all multipliers at their bounds and, from the second fold on,
-//! [from that of the fold before](super::alpha_seeding) where that is nearer. Validation rows are
-//! [judged](super::validation_scorer) by their own class's problems first.
+//! All folds and candidates share the products of rows. The kernel values of a pair of classes are computed once for all folds, which
+//! [hold out rows](crate::cross_validation::fold_path). Along C, each solution starts from the previous one. For the first C, a pair starts with all
+//! multipliers at
+//! their bounds. From the second fold on, it starts from [the previous fold](super::alpha_seeding) if that start is closer. Validation rows are
+//! [scored](super::validation_scorer) by the problems of their own class first.
 
 use ndarray::{Array1, Array2};
 
@@ -19,37 +19,38 @@ use crate::smo::SolverScalar;
 use crate::split::Split;
 use crate::training::Goal;
 
-/// Folds whose solutions are held at once: as many as are usual, so that many take no more memory.
+/// Maximum number of folds whose solutions are held at once. If larger, more memory is used; if smaller, usual numbers of folds need several passes.
 const FOLDS_AT_ONCE: usize = 8;
 
-/// Neighbouring classes whose pairs with as many others come together: of 140 rows each, kernel values of 5 MB.
+/// Classes per block: the pairs of two blocks are solved together and share kernel values (5 MB for 140 rows per class).
 const CLASSES_AT_ONCE: usize = 8;
 
 /// Training rows and their division into folds.
 pub(crate) struct Grid<'a, T> {
-    /// The rows, by class.
+    /// The rows, sorted by class.
     pub sorted: &'a Sorted<T>,
-    /// How they are divided, by their own numbers; a row counts once in a fold.
+    /// Division into folds, by original row numbers; a row counts once in a fold.
     pub folds: &'a [Split],
     /// One-vs-one or one-vs-rest.
     pub multiclass: Multiclass,
 }
 
-/// A fold in terms of sorted rows.
+/// A fold, expressed in sorted rows.
 struct Fold {
-    /// Whether each row is trained on.
+    /// Whether each row is a training row.
     is_training: Vec<bool>,
-    /// Whether any row of each class is.
+    /// Whether each class has a training row.
     is_class: Vec<bool>,
     validation: Vec<usize>,
 }
 
 impl<T: SolverScalar> Grid<'_, T> {
-    /// Validation rows recognised, over all folds, per kernel and C (kernels.len() × path.len()), and solves stopped at the
-    /// iteration cap.
+    /// Returns the number of recognised validation rows over all folds, per kernel and C (kernels.len() × path.len()), and the number of solves stopped at
+    /// the iteration
+    /// cap.
     pub fn n_correct(&self, kernels: &[KernelFunction], goal: Goal) -> (Array2<usize>, usize) {
         let rows = (self.sorted.points(), self.sorted.ranges());
-        // One kernel, of several γ: all are made of the same numbers.
+        // The kernels differ only in γ, so they share the pairwise numbers.
         let pairwise = kernels[0].own_pairwise(rows.0.all().values);
         let folds: Vec<Fold> = self.folds.iter().map(|split| self.fold(split)).collect();
         let mut counts = Array2::zeros((kernels.len(), goal.path.len()));
@@ -85,7 +86,7 @@ impl<T: SolverScalar> Grid<'_, T> {
         }
     }
 
-    /// Solves all problems of some folds, and judges their validation rows.
+    /// Solves all problems of some folds and scores their validation rows.
     fn score(
         &self,
         folds: &[Fold],
@@ -134,7 +135,7 @@ impl<T: SolverScalar> Grid<'_, T> {
         ValidationScorer::new((known, &fold.is_class), ranges, self.multiclass, n_path)
     }
 
-    /// All problems with their numbers; pairs of neighbouring classes come together, so that their part of the kernel stays in the cache.
+    /// Returns all problems with their numbers. Pairs of neighbouring classes are adjacent, so that their kernel values stay in the cache.
     fn problems(&self) -> Vec<(usize, (usize, Option<usize>))> {
         let problems = self.multiclass.problems(self.sorted.ranges().len());
         let mut problems: Vec<_> = problems.into_iter().enumerate().collect();
@@ -143,7 +144,7 @@ impl<T: SolverScalar> Grid<'_, T> {
         problems
     }
 
-    /// The labels of a problem's rows in each fold, 0 where it holds a row out.
+    /// Returns the labels of a problem's rows in each fold; held-out rows have the label 0.
     fn labels(
         &self,
         (positive, negative): (usize, Option<usize>),

@@ -1,4 +1,4 @@
-//! The choice of C and γ: all folds of a grid from one matrix of products.
+//! Choice of C and γ by cross-validation: all folds and candidates share one matrix of products.
 
 pub(crate) mod alpha_seeding;
 pub mod choice;

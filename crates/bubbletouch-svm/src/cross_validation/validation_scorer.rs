@@ -1,8 +1,8 @@
 //! Scores of a fold: which of its validation rows are classified correctly.
 //!
-//! What its own class's problems say of a row is known as they are solved. A row that its class wins in each of them is recognised,
-//! whatever the others say: every other class has lost one. The rest are put to the vote of all problems, by the matrix products of
-//! [prediction](crate::predict).
+//! The results of a row's own class are known as soon as its problems are solved. If the class wins all its pairs, the row is recognised, because every other
+//! class has
+//! lost a pair. The remaining rows are classified by the votes of all problems, with the matrix products of [prediction](crate::predict).
 
 use std::ops::Range;
 
@@ -15,32 +15,33 @@ use crate::multiclass::Multiclass;
 use crate::predict::class_weights::{ClassWeights, weighted_sums};
 use crate::predict::voting::VoteCounter;
 
-/// Rows put to the vote at once: a bound on the memory of their kernel values.
+/// Number of rows classified by votes at once; bounds the memory of their kernel values.
 const ROWS_AT_ONCE: usize = 512;
 
-/// Scorer of the validation rows of a fold; it takes the problems as they are solved.
+/// Scorer of the validation rows of a fold; it receives the problems as they are solved.
 pub(crate) struct ValidationScorer<T> {
     multiclass: Multiclass,
-    /// All problems, by the positions of their classes, in the order of [`Multiclass::problems`].
+    /// All problems, given by the positions of their classes, in the order of [`Multiclass::problems`].
     problems: Vec<(usize, Option<usize>)>,
-    /// Whether each class is trained on.
+    /// Whether each class has training rows.
     is_class: Vec<bool>,
-    /// Rows whose class is trained on, ascending, with the position of that class.
+    /// Validation rows whose class has training rows, ascending, with the position of the class.
     rows: Vec<(usize, usize)>,
-    /// Whether each row's own class loses a problem, by C.
+    /// Whether each row's own class loses a problem, for each C.
     is_beaten: Array2<bool>,
-    /// β by C and class.
+    /// Coefficients β for each C and class.
     weights: Vec<Vec<ClassWeights<T>>>,
-    /// ρ: C × problems.
+    /// Offsets ρ: C × problems.
     rho: Array2<f64>,
-    /// Whether any problem's solution is another than for the C before, by C.
+    /// For each C, whether any problem's solution differs from the solution for the previous C.
     is_new: Vec<bool>,
     n_capped: usize,
 }
 
 impl<T: Scalar> ValidationScorer<T> {
-    /// Of these validation rows, each with the position of its class, and whether each class is trained on; along so many C. The
-    /// rows of all classes lie in these ranges.
+    /// Creates a scorer for `rows` (row, position of its class) and `n_path` values of C. `is_class` contains whether each class has training rows; `ranges`
+    /// contains the rows
+    /// of all classes.
     pub fn new(
         (rows, is_class): (Vec<(usize, usize)>, &[bool]),
         ranges: &[Range<usize>],
@@ -65,12 +66,12 @@ impl<T: Scalar> ValidationScorer<T> {
         }
     }
 
-    /// Solves stopped at the iteration cap.
+    /// Returns the number of solves stopped at the iteration cap.
     pub fn n_capped(&self) -> usize {
         self.n_capped
     }
 
-    /// Takes a problem's solution for some C.
+    /// Adds a problem's solution for one or several C.
     pub fn take(&mut self, problem: usize, solution: &FoldSolution) {
         let numbers = solution.numbers.clone();
         self.is_new[numbers.start] = true;
@@ -97,7 +98,7 @@ impl<T: Scalar> ValidationScorer<T> {
         }
     }
 
-    /// Notes which validation rows of a class lose a pair: `−f` is what its decision function adds up to before ρ.
+    /// Records which validation rows of a class lose a pair. Their decision value before subtracting ρ is `−f`.
     fn look(
         &mut self,
         number: usize,
@@ -113,7 +114,7 @@ impl<T: Scalar> ValidationScorer<T> {
         }
     }
 
-    /// Rows that are recognised, by C.
+    /// Returns the number of recognised rows for each C.
     pub fn n_right(&self, kernel: &ProductKernel<T>) -> Vec<usize> {
         let is_settled =
             |at: &usize| self.is_pairs() && !self.is_beaten.row(*at).iter().any(|x| *x);
@@ -133,7 +134,7 @@ impl<T: Scalar> ValidationScorer<T> {
         n_right
     }
 
-    /// Of some rows with these kernel values, those whose own class wins all its pairs or is elected.
+    /// Counts the rows whose own class wins all its pairs or wins the vote, given their kernel values.
     fn n_elected(&self, number: usize, some: &[usize], values: ArrayView2<T>) -> usize {
         let is_open = |place: &usize| !self.is_pairs() || self.is_beaten[[some[*place], number]];
         let open: Vec<usize> = (0..some.len()).filter(is_open).collect();
@@ -170,7 +171,7 @@ mod tests {
         Array2::from_shape_fn((N, N), |(i, j)| (-(at(i) - at(j)).powi(2)).exp())
     }
 
-    /// β with no pattern, 0 where a row is not trained on; the last C's again at some C.
+    /// Returns irregular β, with 0 for held-out rows; some C repeat the β of the previous C.
     fn path(members: &[usize], own: &Range<usize>, is_training: &[bool]) -> Vec<Vec<f64>> {
         let beta = |c: f64, at: usize| {
             let size = (c * (0.6 + (at as f64 * 2.3 + c).sin())).clamp(0.0, c);
@@ -193,7 +194,7 @@ mod tests {
         for multiclass in [Multiclass::OneVsOne, Multiclass::OneVsRest] {
             let mut scorer =
                 ValidationScorer::new((rows.clone(), &[true; 4]), &RANGES, multiclass, C.len());
-            // Votes of each row, or values, by C.
+            // Votes or decision values of each row, for each C.
             let mut scores = vec![vec![[0.0; 4]; rows.len()]; C.len()];
             for (problem, (positive, negative)) in multiclass.problems(4).into_iter().enumerate() {
                 let own = RANGES[positive].clone();
