@@ -1,4 +1,4 @@
-//! Kernel values between classes, computed for many classes at once.
+//! Kernel values between classes, computed for groups of classes.
 
 use std::ops::Range;
 
@@ -7,10 +7,10 @@ use ndarray::ArrayViewMut2;
 use crate::gram::sorted::Sorted;
 use crate::linalg::scalar::Scalar;
 
-/// Rows of a group of classes, at least, while classes last: enough that a product's time goes into its multiplications.
+/// Minimum number of rows of a group of classes, while classes remain. If smaller, matrix products are inefficient.
 const GROUP_ROWS: usize = 512;
 
-/// The classes whose rows these are, in groups of about [`GROUP_ROWS`] rows.
+/// Divides the classes, given by their row ranges, into groups of about [`GROUP_ROWS`] rows.
 pub(crate) fn groups(ranges: &[Range<usize>]) -> Vec<Range<usize>> {
     let mut groups: Vec<Range<usize>> = Vec::new();
     for class in 0..ranges.len() {
@@ -28,12 +28,12 @@ pub(crate) fn groups(ranges: &[Range<usize>]) -> Vec<Range<usize>> {
 pub(crate) struct Group<'a, T> {
     sorted: &'a Sorted<T>,
     rows: Range<usize>,
-    /// Those of its rows with each other, row by row.
+    /// Kernel values of the group's rows with each other, row by row.
     own: Vec<T>,
 }
 
 impl<'a, T: Scalar> Group<'a, T> {
-    /// Of these classes.
+    /// Computes the kernel values of the given classes.
     pub fn new(sorted: &'a Sorted<T>, classes: &Range<usize>) -> Self {
         let rows = sorted.rows_of(classes);
         let points = sorted.points().range(rows.clone());
@@ -45,7 +45,7 @@ impl<'a, T: Scalar> Group<'a, T> {
         }
     }
 
-    /// Bytes that groups take, with the kernel values between two of them.
+    /// Returns the bytes of all groups' kernel values, including those between two groups.
     pub fn bytes(sorted: &Sorted<T>, groups: &[Range<usize>]) -> usize {
         let sizes = || groups.iter().map(|group| sorted.rows_of(group).len());
         let squares: usize = sizes().map(|n| n * n).sum();
@@ -53,7 +53,7 @@ impl<'a, T: Scalar> Group<'a, T> {
         (squares + largest * largest) * size_of::<T>()
     }
 
-    /// Kernel values of another group's rows with these: row by row, in the memory of the last ones.
+    /// Computes the kernel values of another group's rows with this group's rows, row by row; `values` is overwritten.
     pub fn with(&self, other: &Self, values: &mut Vec<T>) {
         let size = (other.rows.len(), self.rows.len());
         values.resize(size.0 * size.1, T::zero());
@@ -64,7 +64,7 @@ impl<'a, T: Scalar> Group<'a, T> {
         others.write_kernel(own, &self.sorted.kernel(), values);
     }
 
-    /// Of kernel values with this group those of some rows with some of its own, row by row; all rows begin with `first`.
+    /// Selects kernel values of some rows with some of this group's rows, row by row. `values` contains the rows from `first` on.
     fn part<'v>(
         &self,
         (values, first): (&'v [T], usize),
@@ -78,12 +78,12 @@ impl<'a, T: Scalar> Group<'a, T> {
             .collect()
     }
 
-    /// Kernel values of some of its rows with others of its, row by row.
+    /// Returns the kernel values of some of this group's rows with others of its rows, row by row.
     pub fn own_part(&self, rows: &Range<usize>, columns: &Range<usize>) -> Vec<&[T]> {
         self.part((&self.own, self.rows.start), rows, columns)
     }
 
-    /// Kernel values of another group's rows with its own, of those that [`with`](Self::with) gave.
+    /// Selects kernel values of another group's rows with this group's rows from the result of [`with`](Self::with).
     pub fn part_with<'v>(
         &self,
         other: &Self,

@@ -1,4 +1,4 @@
-//! A Gram matrix too large to hold.
+//! Gram matrix that exceeds the memory limit.
 
 use ndarray::{Array2, Axis};
 
@@ -9,33 +9,33 @@ use crate::kernel::KernelFunction;
 use crate::linalg::lanes::padded;
 use crate::linalg::scalar::Scalar;
 
-/// A Gram matrix too large to hold: rows are computed when asked for, and the latest kept.
+/// Gram matrix that exceeds the memory limit: rows are computed on demand, and the most recently used rows are cached.
 pub(crate) struct Cached<'a, T> {
     points: &'a CenteredRows<T>,
     kernel: KernelFunction,
     stride: usize,
     diagonal: Vec<T>,
     inverses: InverseCurvatures<T>,
-    /// Bytes that kept rows, and a part of the matrix, may take.
+    /// Maximum bytes of the cached rows and of a part of the matrix.
     limit: usize,
     rows: Vec<Kept<T>>,
-    /// Where row i is kept.
+    /// Position of row i in the cache.
     place: Vec<Option<usize>>,
     n_asked: u64,
 }
 
-/// A row in the cache.
+/// A cached row.
 struct Kept<T> {
     row: usize,
     last_asked: u64,
     values: Vec<T>,
 }
 
-/// Kernel rows computed at once for a weighted sum.
+/// Number of kernel rows computed at once for a weighted sum.
 const BLOCK: usize = 256;
 
 impl<'a, T: Scalar> Cached<'a, T> {
-    /// K of these points; kept rows take at most `limit` bytes, but two are always kept.
+    /// Creates the Gram matrix of the given points. The cached rows take at most `limit` bytes, but at least two rows are cached.
     pub fn new(points: &'a CenteredRows<T>, kernel: KernelFunction, limit: usize) -> Self {
         let n = points.len();
         let mut diagonal = points.all().diagonal(&kernel);
@@ -55,7 +55,7 @@ impl<'a, T: Scalar> Cached<'a, T> {
         }
     }
 
-    /// Makes sure that row i is kept, and says where.
+    /// Ensures that row i is cached; returns its position.
     fn fetch(&mut self, i: usize) -> usize {
         self.n_asked += 1;
         let at = match self.place[i] {
@@ -77,7 +77,7 @@ impl<'a, T: Scalar> Cached<'a, T> {
         at
     }
 
-    /// An empty place, or that of the row that was not asked for the longest.
+    /// Returns an empty position, or the position of the least recently used row.
     fn make_room(&mut self) -> usize {
         let most = (self.limit / (self.stride * size_of::<T>()).max(1)).max(2);
         if self.rows.len() < most {
@@ -107,7 +107,7 @@ impl<T: Scalar> Gram<T> for Cached<'_, T> {
     fn rows(&mut self, i: usize, j: usize) -> (&[T], &[T]) {
         self.fetch(i);
         let at_j = self.fetch(j);
-        // Row i was asked for last before j, so it was not j's that replaced it.
+        // Row i was used immediately before row j, so row j has not replaced it.
         let at_i = self.place[i].unwrap_or(at_j);
         (&self.rows[at_i].values, &self.rows[at_j].values)
     }

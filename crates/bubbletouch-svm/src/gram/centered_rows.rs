@@ -1,4 +1,4 @@
-//! Rows of features in the precision that kernels are computed in, and their kernel values by matrix products.
+//! Feature rows in the precision of the kernel values, and their kernel values by matrix products.
 
 use std::ops::Range;
 
@@ -10,26 +10,26 @@ use crate::linalg::products::multiply;
 use crate::linalg::row_products::Rows;
 use crate::linalg::scalar::Scalar;
 
-/// Rows (n × m) moved to a centre, with their squared norms.
+/// Rows (n × m) minus a centre, with their squared norms.
 ///
-/// Some kernels may be taken about any centre: a constant added to all features changes no RBF distance,
-/// and of a linear decision function only ρ, since the coefficients sum to zero. About the mean, products are small and
-/// keep their digits.
+/// For some kernels, the centre is arbitrary. A constant added to all features does not change RBF distances. In a linear decision function it changes only
+/// ρ, because
+/// the coefficients sum to zero. About the mean, products are small and lose fewer digits.
 #[derive(Clone, Debug)]
 pub(crate) struct CenteredRows<T> {
     /// n × m.
     values: Array2<T>,
-    /// `|x|²` per row.
+    /// Squared norm `|x|²` of each row.
     norms: Array1<T>,
 }
 
 impl<T: Scalar> CenteredRows<T> {
-    /// Features (n × m) less the centre (m).
+    /// Subtracts the centre (m) from the features (n × m).
     pub fn new(features: ArrayView2<f64>, centre: ArrayView1<f64>) -> Self {
         Self::of_rows(features.rows().into_iter(), centre)
     }
 
-    /// Rows (m each) less the centre (m).
+    /// Subtracts the centre (m) from rows of m values.
     pub fn of_rows<'a>(
         rows: impl ExactSizeIterator<Item = ArrayView1<'a, f64>>,
         centre: ArrayView1<f64>,
@@ -37,7 +37,7 @@ impl<T: Scalar> CenteredRows<T> {
         Self::of_rows_and(rows, centre, |_| ())
     }
 
-    /// The same, and what each row's move tells.
+    /// Subtracts the centre from rows, and calls `told` with the [`CenteredRow`] of each row.
     pub fn of_rows_and<'a>(
         rows: impl ExactSizeIterator<Item = ArrayView1<'a, f64>>,
         centre: ArrayView1<f64>,
@@ -48,7 +48,7 @@ impl<T: Scalar> CenteredRows<T> {
         let mut values = Vec::with_capacity(n_rows * centre.len());
         let mut norms = Vec::with_capacity(n_rows);
         for row in rows {
-            // Row by row: memory that is filled first and written later passes twice.
+            // The rows are written one by one: filling the whole memory first would pass over it twice.
             let start = values.len();
             values.resize(start + centre.len(), T::zero());
             let own = &mut values[start..];
@@ -56,7 +56,7 @@ impl<T: Scalar> CenteredRows<T> {
                 Some(row) => center_row(own, row, &centre),
                 None => center_row(own, &row.to_vec(), &centre),
             };
-            // Of what is kept, and rounded like products: distances come from both.
+            // The norm is computed from the stored values with the rounding of the products, because distances combine both.
             let own = ArrayView1::from(&*own);
             norms.push(own.dot(&own));
             told(moved);
@@ -67,7 +67,7 @@ impl<T: Scalar> CenteredRows<T> {
         Self { values, norms }
     }
 
-    /// Their coordinates along some directions (k × m): n × k.
+    /// Returns the coordinates of the rows along the given directions (k × m): n × k.
     pub fn along(&self, directions: ArrayView2<T>) -> Self {
         let mut values = Array2::zeros((self.len(), directions.nrows()));
         multiply(self.values.view(), directions, values.view_mut());
@@ -75,7 +75,7 @@ impl<T: Scalar> CenteredRows<T> {
         Self { values, norms }
     }
 
-    /// The rows where they lie.
+    /// Returns a view of the rows in memory.
     pub fn in_place(&self) -> Rows<'_, T> {
         Rows {
             values: self.values.as_slice().expect("rows are stored one by one"),
@@ -83,7 +83,7 @@ impl<T: Scalar> CenteredRows<T> {
         }
     }
 
-    /// n.
+    /// Returns the number of rows n.
     pub fn len(&self) -> usize {
         self.values.nrows()
     }
@@ -98,7 +98,7 @@ impl<T: Scalar> CenteredRows<T> {
         Array2::from_shape_vec((rows.len(), n_features), values).expect("whole rows were copied")
     }
 
-    /// Some rows, by number.
+    /// Copies the rows with the given numbers.
     pub fn select(&self, rows: &[usize]) -> Self {
         Self {
             values: self.rows(rows),
@@ -106,7 +106,7 @@ impl<T: Scalar> CenteredRows<T> {
         }
     }
 
-    /// Some rows, by ascending number, in the memory of all.
+    /// Keeps the rows with the given ascending numbers, in the existing memory.
     pub fn keep(self, rows: &[usize]) -> Self {
         let n_features = self.values.ncols();
         let norms = self.norms.select(Axis(0), rows);
@@ -125,18 +125,18 @@ impl<T: Scalar> CenteredRows<T> {
         }
     }
 
-    /// One of them, and its squared norm.
+    /// Returns a row and its squared norm.
     #[inline]
     pub fn row(&self, row: usize) -> (&[T], T) {
         (self.in_place().row(row), self.norms[row])
     }
 
-    /// All of them.
+    /// Returns a view of all rows.
     pub fn all(&self) -> PointsView<'_, T> {
         self.range(0..self.len())
     }
 
-    /// Some of them, by range.
+    /// Returns a view of a range of rows.
     pub fn range(&self, rows: Range<usize>) -> PointsView<'_, T> {
         PointsView {
             values: self.values.slice(s![rows.clone(), ..]),
@@ -145,7 +145,7 @@ impl<T: Scalar> CenteredRows<T> {
     }
 }
 
-/// Some [`CenteredRows`].
+/// View of some [`CenteredRows`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PointsView<'a, T> {
     /// n × m.
@@ -154,7 +154,7 @@ pub(crate) struct PointsView<'a, T> {
 }
 
 impl<T: Scalar> PointsView<'_, T> {
-    /// `K(x, x)` per row.
+    /// Returns `K(x, x)` per row.
     pub fn diagonal(&self, kernel: &KernelFunction) -> Vec<T> {
         self.norms
             .iter()
@@ -162,14 +162,14 @@ impl<T: Scalar> PointsView<'_, T> {
             .collect()
     }
 
-    /// `K(x_i, z_j)`: n × n of the others.
+    /// Returns `K(x_i, z_j)` with n other rows: shape n_rows × n.
     pub fn kernel(&self, others: PointsView<T>, kernel: &KernelFunction) -> Array2<T> {
         let mut values = Array2::zeros((self.values.nrows(), others.values.nrows()));
         self.write_kernel(others, kernel, values.view_mut());
         values
     }
 
-    /// The same into n × n of the others.
+    /// Writes `K(x_i, z_j)` with n other rows into `to`, shape n_rows × n.
     pub fn write_kernel(
         &self,
         others: PointsView<T>,
@@ -180,14 +180,14 @@ impl<T: Scalar> PointsView<'_, T> {
         self.apply(to, others, kernel);
     }
 
-    /// `K(x_i, x_j)`: n × n.
+    /// Returns `K(x_i, x_j)`: n × n.
     pub fn own_kernel(&self, kernel: &KernelFunction) -> Array2<T> {
         let mut values = kernel.own_pairwise(self.values);
         self.apply(values.view_mut(), *self, kernel);
         values
     }
 
-    /// Turns [pairwise numbers](KernelFunction::pairwise) with the others into kernel values, in place.
+    /// Converts [pairwise numbers](KernelFunction::pairwise) with other rows to kernel values, in place.
     pub fn apply(
         &self,
         mut pairwise: ArrayViewMut2<T>,

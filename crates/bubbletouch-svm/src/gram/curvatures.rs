@@ -1,27 +1,26 @@
-//! The inverse of the dual objective's curvature along the lines that move two variables, row by row of the Gram matrix.
+//! Inverse curvatures of the dual objective along pairs of variables, row by row of the Gram matrix.
 //!
-//! The same rows are asked for again and again: at every C, and in cross-validation in every fold.
+//! Rows are reused at every C and in every fold of a cross-validation.
 
 use crate::linalg::scalar::Scalar;
 
-/// Curvature along a pair's line, at least, relative to the Gram matrix's largest entry: equal rows with unequal labels
-/// have none.
+/// Minimum curvature along a pair's line, relative to the Gram matrix's largest entry. Equal rows with different labels have zero curvature.
 const SMALLEST_CURVATURE: f64 = 1e-12;
 
-/// Rows up to which all are kept: 4 MB of f32.
+/// Maximum number of rows for which all inverse curvatures are stored: 4 MB of f32.
 const MAX_KEPT: usize = 1000;
 
-/// The smallest curvature that counts, given the diagonal.
+/// Returns the minimum curvature, given the diagonal.
 fn smallest<T: Scalar>(diagonal: &[T]) -> T {
     let largest = diagonal.iter().fold(T::zero(), |a, &b| a.max(b));
     (T::of(SMALLEST_CURVATURE) * largest).max(T::min_positive_value())
 }
 
-/// Rows of inverse curvatures, kept from when each is first asked for where a matrix has few rows.
+/// Rows of inverse curvatures. If the matrix has few rows, they are stored at first use.
 #[derive(Clone, Debug)]
 pub(crate) struct InverseCurvatures<T> {
     values: Vec<T>,
-    /// Which rows are kept; empty where none is, and the values are those of the row asked for last.
+    /// Whether each row is stored. Empty if no rows are stored; `values` then contains the last requested row.
     is_here: Vec<bool>,
     smallest: T,
 }
@@ -35,7 +34,7 @@ impl<T: Scalar> InverseCurvatures<T> {
         }
     }
 
-    /// Of another matrix of n rows, with this diagonal, padded like a row; in the memory of the last.
+    /// Resets the storage for another matrix of n rows with the given padded diagonal; reuses the memory.
     pub fn renew(&mut self, n: usize, diagonal: &[T]) {
         let n_kept = if n <= MAX_KEPT { n } else { 0 };
         self.is_here.clear();
@@ -47,12 +46,12 @@ impl<T: Scalar> InverseCurvatures<T> {
         self.smallest = smallest(diagonal);
     }
 
-    /// The smallest curvature that counts.
+    /// Returns the minimum curvature.
     pub fn smallest(&self) -> T {
         self.smallest
     }
 
-    /// Those along the lines of i and each other, given row i and the diagonal.
+    /// Returns the inverse curvatures along the lines of variable i and each other variable, given row i and the diagonal.
     #[inline(always)]
     pub fn of_row(&mut self, i: usize, row: &[T], diagonal: &[T]) -> &[T] {
         let (place, is_here) = match self.is_here.get_mut(i) {
@@ -67,7 +66,7 @@ impl<T: Scalar> InverseCurvatures<T> {
     }
 }
 
-/// `1 / (K_ii + K_jj − 2 K_ij)`, the curvature at least the smallest.
+/// Writes `1 / (K_ii + K_jj − 2 K_ij)`; the curvature is at least `smallest`.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn write<T: Scalar>(to: &mut [T], (row, diagonal): (&[T], &[T]), (own, smallest): (T, T)) {
     let n = to.len();
@@ -103,7 +102,7 @@ mod tests {
                 }
             }
         }
-        // Equal rows.
+        // Two equal rows.
         let mut inverses = InverseCurvatures::new();
         inverses.renew(2, &[1.0_f32; 16]);
         let found = inverses.of_row(0, &[1.0; 16], &[1.0; 16]);

@@ -1,4 +1,4 @@
-//! Gram matrices as the solver reads them: two rows at a time, the diagonal, a weighted sum of rows, a part.
+//! Gram matrices as needed by the solver: two rows at a time, the diagonal, weighted sums of rows, and submatrices.
 
 use ndarray::{ArrayView1, ArrayView2, ArrayViewMut2, s};
 
@@ -8,45 +8,45 @@ use crate::linalg::lanes::padded;
 use crate::linalg::scalar::Scalar;
 use crate::linalg::transposed::write_columns;
 
-/// K of one binary problem, n × n, symmetric and positive semidefinite. Rows are padded to whole lanes with zeros.
+/// Gram matrix K of a binary problem, n × n, symmetric and positive semidefinite. Rows are padded with zeros to whole lanes.
 pub(crate) trait Gram<T> {
-    /// n.
+    /// Returns n.
     fn len(&self) -> usize;
-    /// Rows i and j.
+    /// Returns rows i and j.
     fn rows(&mut self, i: usize, j: usize) -> (&[T], &[T]);
-    /// Row i and the diagonal, padded like a row.
+    /// Returns row i and the diagonal, padded like a row.
     fn row_and_diagonal(&mut self, i: usize) -> (&[T], &[T]);
-    /// `1 / (K_ii + K_jj − 2 K_ij)` for each j, padded like a row; at most that of the smallest curvature that counts.
+    /// Returns `1 / (K_ii + K_jj − 2 K_ij)` for each j, padded like a row. The curvature is at least [`smallest_curvature`](Self::smallest_curvature).
     fn inverse_curvatures(&mut self, i: usize) -> &[T];
-    /// The smallest curvature that counts.
+    /// Returns the minimum curvature.
     fn smallest_curvature(&self) -> T;
-    /// `K β`, summed in f64 (n values).
+    /// Returns `K β`, summed in f64 (n values).
     fn times(&mut self, beta: &[f64]) -> Vec<f64>;
-    /// Takes `K β` from f.
+    /// Subtracts `K β` from f.
     fn take_times(&mut self, beta: &[f64], f: &mut [f64]) {
         for (f, product) in f.iter_mut().zip(self.times(beta)) {
             *f -= product;
         }
     }
-    /// Whether a part of this many rows would fit in memory.
+    /// Returns whether a submatrix of n rows would fit in memory.
     fn fits(&self, n: usize) -> bool;
-    /// The rows and columns at these indices.
+    /// Returns the submatrix of the rows and columns at the given indices.
     fn part(&mut self, indices: &[usize]) -> Dense<T>;
 }
 
-/// A Gram matrix that is held whole.
+/// A Gram matrix stored as a whole.
 #[derive(Clone, Debug)]
 pub(crate) struct Dense<T> {
     n: usize,
     stride: usize,
-    /// n rows of `stride` values.
+    /// Matrix values: n rows of `stride` values.
     values: Vec<T>,
     diagonal: Vec<T>,
     inverses: InverseCurvatures<T>,
 }
 
 impl<T: Scalar> Default for Dense<T> {
-    /// No rows yet.
+    /// Creates an empty matrix.
     fn default() -> Self {
         Self {
             n: 0,
@@ -59,13 +59,12 @@ impl<T: Scalar> Default for Dense<T> {
 }
 
 impl<T: Scalar> Dense<T> {
-    /// Bytes that a matrix of n rows takes.
+    /// Returns the bytes of a matrix of n rows.
     pub fn bytes(n: usize) -> usize {
         n * padded(n) * size_of::<T>()
     }
 
-    /// Takes on a new matrix of n rows, in the memory of the old one; `fill` writes the n values of each row, or leaves what
-    /// is written later.
+    /// Replaces the matrix by one of n rows, in the existing memory. `fill` writes the n values of each row; values not filled must be written later.
     pub fn refill(&mut self, n: usize, mut fill: impl FnMut(usize, &mut [T])) {
         self.n = n;
         self.stride = padded(n);
@@ -81,13 +80,12 @@ impl<T: Scalar> Dense<T> {
         self.inverses.renew(n, &self.diagonal);
     }
 
-    /// A whole matrix.
+    /// Copies a whole matrix.
     pub fn of_whole(&mut self, whole: ArrayView2<T>) {
         self.refill(whole.nrows(), |i, to| copy(to, whole.row(i)));
     }
 
-    /// A symmetric matrix of two groups of rows: those within each, and those of the second with the first, which `write`
-    /// writes.
+    /// Builds the symmetric matrix of two groups of rows from the blocks within each group. `write` writes the block of the second group with the first.
     pub fn of_blocks(
         &mut self,
         [own, others]: [ArrayView2<T>; 2],
@@ -114,7 +112,7 @@ impl<T: Scalar> Dense<T> {
         }
     }
 
-    /// A row.
+    /// Returns a row.
     #[inline(always)]
     pub fn row(&self, i: usize) -> &[T] {
         &self.values[i * self.stride..(i + 1) * self.stride]
@@ -172,7 +170,7 @@ impl<T: Scalar> Gram<T> for Dense<T> {
     }
 }
 
-/// Copies these columns of a row.
+/// Copies the given columns of a row.
 pub(crate) fn gather<T: Copy>(to: &mut [T], from: &[T], columns: &[usize]) {
     for (to, &column) in to.iter_mut().zip(columns) {
         *to = from[column];

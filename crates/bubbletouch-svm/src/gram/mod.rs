@@ -7,7 +7,7 @@
 //! | `between` | classes → kernel values within and between groups of classes |
 //! | `product_kernel` | all rows → one matrix of products, from which kernels of several γ follow |
 //! | `matrix` | kernel values → the Gram matrix of a problem, held whole |
-//! | `part`, `cached` | the same from blocks held elsewhere, and from rows computed on demand |
+//! | `part`, `cached` | blocks stored elsewhere, or rows computed on demand → the Gram matrix of a problem |
 //! | `curvatures`, `row_sums` | a row → inverse curvatures; β → weighted sums of rows |
 
 pub(crate) mod between;

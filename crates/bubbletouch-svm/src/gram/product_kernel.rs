@@ -1,5 +1,6 @@
-//! Kernel values made of the pairwise numbers of all rows (products, of most kernels) when they are asked for: those within classes
-//! once, those between two when their pair is solved, those of a row when it is judged.
+//! Kernel values computed from pairwise numbers of all rows (products, for most kernels). Values within classes are computed once, values between two classes
+//! when their
+//! pair is solved, and values of a validation row when it is scored.
 
 use std::ops::Range;
 
@@ -10,20 +11,20 @@ use crate::gram::matrix::Dense;
 use crate::kernel::KernelFunction;
 use crate::linalg::scalar::Scalar;
 
-/// A kernel on rows whose pairwise numbers are known.
+/// Kernel on rows with known pairwise numbers.
 pub(crate) struct ProductKernel<'a, T> {
     points: &'a CenteredRows<T>,
-    /// Where the rows of each class are.
+    /// Row range of each class.
     ranges: &'a [Range<usize>],
-    /// n × n.
+    /// Pairwise numbers, n × n.
     pairwise: ArrayView2<'a, T>,
     kernel: KernelFunction,
-    /// Values of the rows of each class with each other.
+    /// Kernel values within each class.
     within: Vec<Array2<T>>,
 }
 
 impl<'a, T: Scalar> ProductKernel<'a, T> {
-    /// Of rows, class by class, whose pairwise numbers are these.
+    /// Creates the kernel for rows sorted by class, given their pairwise numbers.
     pub fn new(
         (points, ranges): (&'a CenteredRows<T>, &'a [Range<usize>]),
         pairwise: ArrayView2<'a, T>,
@@ -44,7 +45,7 @@ impl<'a, T: Scalar> ProductKernel<'a, T> {
         own
     }
 
-    /// Writes the kernel values of the rows of a class with those of another.
+    /// Writes the kernel values of a class's rows with the rows of another class.
     fn write(&self, (class, other): (usize, usize), mut to: ArrayViewMut2<T>) {
         let (rows, others) = (self.ranges[class].clone(), self.ranges[other].clone());
         let pairwise = self.pairwise.slice(s![rows.clone(), others.clone()]);
@@ -53,20 +54,20 @@ impl<'a, T: Scalar> ProductKernel<'a, T> {
         rows.apply(to, others, &self.kernel);
     }
 
-    /// Those of all rows with each other.
+    /// Writes the kernel values of all rows with each other.
     pub fn write_all(&self, to: &mut Dense<T>) {
         let (mut values, all) = (self.pairwise.to_owned(), self.points.all());
         all.apply(values.view_mut(), all, &self.kernel);
         to.of_whole(values.view());
     }
 
-    /// Those of the rows of two classes with each other, of which the first comes first.
+    /// Writes the Gram matrix of two classes; the rows of the first class come first.
     pub fn write_pair(&self, (first, second): (usize, usize), to: &mut Dense<T>) {
         let within = [first, second].map(|class| self.within[class].view());
         to.of_blocks(within, |below| self.write((second, first), below));
     }
 
-    /// Those of some rows with all.
+    /// Returns the kernel values of some rows with all rows.
     pub fn rows(&self, rows: &[usize]) -> Array2<T> {
         let mut values = self.pairwise.select(Axis(0), rows);
         let own = self.points.select(rows);

@@ -2,14 +2,14 @@
 
 use crate::linalg::scalar::Scalar;
 
-/// The first n values of `Σ β_j row_j`, in f64.
+/// Returns the first n values of `Σ β_j row_j`, in f64.
 pub(crate) fn weighted_sum<'a, T: Scalar>(
     n: usize,
     beta: &[f64],
     row: impl Fn(usize) -> &'a [T],
 ) -> Vec<f64> {
     let mut sums = vec![0.0; n];
-    // Without branches: which rows weigh has no pattern.
+    // The loop has no branches, because the pattern of non-zero β is unpredictable.
     let (mut weighing, mut n_weighing) = (vec![0; beta.len()], 0);
     for (j, &beta) in beta.iter().enumerate() {
         weighing[n_weighing] = j;
@@ -24,7 +24,7 @@ pub(crate) fn weighted_sum<'a, T: Scalar>(
     sums
 }
 
-/// Four rows one after the other: the sums are read and written a quarter as often.
+/// Adds four rows in one pass, so that the sums are read and written a quarter as often.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn add_four<T: Scalar>(sums: &mut [f64], rows: &[(&[T], f64); 4]) {
     let n = sums.len();

@@ -1,4 +1,4 @@
-//! Training rows sorted by class, about their centre.
+//! Training rows sorted by class and centred.
 
 use std::ops::Range;
 
@@ -10,7 +10,7 @@ use crate::gram::centered_rows::CenteredRows;
 use crate::kernel::KernelFunction;
 use crate::linalg::scalar::Scalar;
 
-/// Returns each pair of classes `(a, b)` with a < b, a of one range of classes and b of another, which may be the same.
+/// Returns each pair of classes `(a, b)` with a < b, where a is in one range of classes and b in another; the ranges may be equal.
 pub(crate) fn pairs(
     own: Range<usize>,
     other: Range<usize>,
@@ -18,7 +18,7 @@ pub(crate) fn pairs(
     own.flat_map(move |a| other.clone().filter(move |&b| b > a).map(move |b| (a, b)))
 }
 
-/// Training rows sorted by class, about their centre.
+/// Training rows sorted by class and centred.
 #[derive(Clone)]
 pub(crate) struct Sorted<T> {
     points: CenteredRows<T>,
@@ -31,14 +31,14 @@ pub(crate) struct Sorted<T> {
     classes: Vec<usize>,
     kernel: KernelFunction,
     centre: Array1<f64>,
-    /// The square of the largest distance of a row from it.
+    /// Square of the largest distance of a row from the centre.
     farthest: f64,
-    /// `(x − c)·c` per sorted row, for ρ about the origin with a linear kernel; empty for the others.
+    /// `(x − c)·c` per sorted row, which gives ρ about the origin for a linear kernel; empty for other kernels.
     centre_products: Vec<f64>,
 }
 
 impl<T: Scalar> Sorted<T> {
-    /// Sorts rows by class; within a class they keep their order.
+    /// Sorts rows by class; the order within a class is preserved.
     pub fn new(
         data: &Dataset,
         classes: &[usize],
@@ -89,7 +89,7 @@ impl<T: Scalar> Sorted<T> {
         }
     }
 
-    /// The same rows by their coordinates along some directions (k × m).
+    /// Returns the sorted rows in their coordinates along the given directions (k × m).
     pub fn along(&self, directions: ArrayView2<T>) -> Self {
         Self {
             points: self.points.along(directions),
@@ -104,42 +104,42 @@ impl<T: Scalar> Sorted<T> {
         }
     }
 
-    /// The rows, class by class.
+    /// Returns the rows, sorted by class.
     pub fn points(&self) -> &CenteredRows<T> {
         &self.points
     }
 
-    /// The rows alone.
+    /// Returns the rows without the sorting.
     pub fn into_points(self) -> CenteredRows<T> {
         self.points
     }
 
-    /// The original number of each sorted row.
+    /// Returns the original number of each sorted row.
     pub fn order(&self) -> &[usize] {
         &self.order
     }
 
-    /// Where each original row is among the sorted ones.
+    /// Returns the sorted position of each original row.
     pub fn place(&self) -> &[usize] {
         &self.place
     }
 
-    /// The kernel of all problems.
+    /// Returns the kernel of all problems.
     pub fn kernel(&self) -> KernelFunction {
         self.kernel
     }
 
-    /// What was subtracted from every row.
+    /// Returns the centre that was subtracted from every row.
     pub fn centre(&self) -> ArrayView1<'_, f64> {
         self.centre.view()
     }
 
-    /// The square of the largest distance of a row from the centre.
+    /// Returns the square of the largest distance of a row from the centre.
     pub fn farthest(&self) -> f64 {
         self.farthest
     }
 
-    /// ρ of a problem's decision function about the centre.
+    /// Returns ρ of a problem's decision function about the centre.
     pub fn rho_about_centre(&self, problem: &BinaryProblem) -> f64 {
         problem.solution.rho
             - self.moved(
@@ -148,7 +148,7 @@ impl<T: Scalar> Sorted<T> {
             )
     }
 
-    /// What the centre adds to ρ, for coefficients of these sorted rows; 0 for kernels other than the linear one.
+    /// Returns the change of ρ due to the centre, for coefficients of the given sorted rows; 0 for kernels other than the linear one.
     pub fn moved(&self, rows: impl Iterator<Item = usize>, coefficients: &[f64]) -> f64 {
         if self.centre_products.is_empty() {
             return 0.0;
@@ -158,12 +158,12 @@ impl<T: Scalar> Sorted<T> {
             .sum()
     }
 
-    /// The classes, ascending.
+    /// Returns the classes, ascending.
     pub fn classes(&self) -> &[usize] {
         &self.classes
     }
 
-    /// Each class with its sorted rows.
+    /// Returns each class with its range of sorted rows.
     pub fn classes_and_ranges(&self) -> impl Iterator<Item = (usize, Range<usize>)> + '_ {
         self.classes
             .iter()
@@ -171,23 +171,23 @@ impl<T: Scalar> Sorted<T> {
             .zip(self.ranges.iter().cloned())
     }
 
-    /// The sorted rows of each class.
+    /// Returns the range of sorted rows of each class.
     pub fn ranges(&self) -> &[Range<usize>] {
         &self.ranges
     }
 
-    /// The rows of neighbouring classes.
+    /// Returns the rows of neighbouring classes.
     pub fn rows_of(&self, classes: &Range<usize>) -> Range<usize> {
         self.ranges[classes.start].start..self.ranges[classes.end - 1].end
     }
 
-    /// All pairs of classes, by their positions: (0, 1), (0, 2), …, (1, 2), ….
+    /// Returns all pairs of classes by their positions: (0, 1), (0, 2), …, (1, 2), ….
     pub fn all_pairs(&self) -> impl Iterator<Item = (usize, usize)> + use<T> {
         let all = 0..self.classes.len();
         pairs(all.clone(), all)
     }
 
-    /// Sorted numbers of the rows of two classes.
+    /// Returns the sorted positions of the rows of two classes.
     pub fn pair_rows(&self, a: usize, b: usize) -> Vec<usize> {
         self.ranges[a]
             .clone()
