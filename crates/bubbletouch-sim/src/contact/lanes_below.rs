@@ -1,6 +1,6 @@
 //! Lanes of a vector whose values are below a limit.
 
-/// Iterator over the lanes whose values are below a limit, ascending. It is a type of its own because the compiler does not use vector
+/// Iterator over the lanes whose values are below a limit, ascending. Implemented as a named type because the compiler does not use vector
 /// instructions in closures.
 #[derive(Clone, Copy, Default)]
 pub struct LanesBelow {

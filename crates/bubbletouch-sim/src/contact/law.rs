@@ -24,7 +24,7 @@
 
 use super::LanesBelow;
 
-/// Returns the deflection, metres, above which a taxel of this stroke (metres) is saturated. It exceeds the stroke by rounding (1e-12 of the
+/// Returns the deflection, metres, above which a taxel of this stroke (metres) is saturated: the stroke plus rounding (1e-12 of the
 /// stroke), so that a press to a depth of exactly the stroke saturates no taxel.
 pub fn saturation_limit(stroke: f64) -> f64 {
     stroke * (1.0 + 1e-12)

@@ -216,8 +216,8 @@ mod tests {
     use glam::{DQuat, DVec2};
     use rand::Rng;
 
-    /// Two objects of seven spheres inside of one another, of an obstacle, and of a plane, on a bed that is tilted in the world, deep enough for
-    /// some stops, in a step of its dampers, held by some of its tips.
+    /// Two objects of seven spheres penetrate each other, an obstacle and a plane, and press a tilted bed of taxels deeply enough for some stops.
+    /// The step includes dampers, and some tangential springs act on the objects.
     #[test]
     fn gradient_and_hessian_are_the_differences_of_the_energy() {
         let taxel = Taxel {

@@ -1,21 +1,21 @@
-//! How a touch goes in time: from state to state, each movement of least jerk.
+//! Time course of a touch: states, connected by minimum-jerk movements.
 
-/// What changes during a touch.
+/// State of the hand relative to the touched place.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct State {
-    /// Of the hand above first contact, metres; negative while it presses.
+    /// Height of the hand above first contact, metres; negative while the hand presses.
     pub height: f64,
-    /// Slid along the skin, metres.
+    /// Displacement along the skin, metres.
     pub slid: f64,
-    /// How far the fingers have closed, 0 to 1.
+    /// Closing of the fingers, 0 to 1.
     pub closed: f64,
 }
 
-/// States one after the other.
+/// Sequence of states.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Course {
     start: State,
-    /// Seconds (not negative), and the state at their end.
+    /// Duration of each phase, seconds (not negative), and the state at its end.
     phases: Vec<(f64, State)>,
 }
 
@@ -27,22 +27,22 @@ impl Course {
         }
     }
 
-    /// The state that it ends in so far.
+    /// Returns the final state.
     pub fn end(&self) -> State {
         self.phases.last().map_or(self.start, |phase| phase.1)
     }
 
-    /// Goes on to a state.
+    /// Appends a movement to a state.
     pub fn go(&mut self, seconds: f64, to: State) {
         self.phases.push((seconds, to));
     }
 
-    /// Stays.
+    /// Appends a pause.
     pub fn wait(&mut self, seconds: f64) {
         self.go(seconds, self.end());
     }
 
-    /// Goes down to `-depth`, of which the last `rise` seconds are below the height 0.
+    /// Appends a descent to `-depth`; its last `rise` seconds are below the height 0.
     pub fn press(&mut self, depth: f64, rise: f64) {
         let from = self.end();
         let above = time_of_share(from.height / (from.height + depth));
@@ -53,19 +53,19 @@ impl Course {
         self.go(rise / (1.0 - above), to);
     }
 
-    /// Goes up to a height, of which the first `fall` seconds are below the height 0.
+    /// Appends an ascent to a height; its first `fall` seconds are below the height 0.
     pub fn lift(&mut self, height: f64, fall: f64) {
         let from = self.end();
         let below = time_of_share(-from.height / (height - from.height));
         self.go(fall / below, State { height, ..from });
     }
 
-    /// Seconds.
+    /// Returns the duration, seconds.
     pub fn duration(&self) -> f64 {
         self.phases.iter().map(|phase| phase.0).sum()
     }
 
-    /// The state at a time in seconds; before the start and after the end it stays.
+    /// Returns the state at a time in seconds; constant before the start and after the end.
     pub fn at(&self, time: f64) -> State {
         let (mut begin, mut from) = (0.0, self.start);
         for &(seconds, to) in &self.phases {
@@ -85,15 +85,15 @@ impl Course {
     }
 }
 
-/// Share of the way after a share of the time, both 0 to 1 \[FH\].
+/// Returns the fraction of a minimum-jerk movement completed after a fraction of its time, both 0 to 1 \[FH\].
 fn least_jerk(t: f64) -> f64 {
     t * t * t * (10.0 - t * (15.0 - 6.0 * t))
 }
 
-/// Share of the time after which a share of the way is gone.
+/// Returns the fraction of the time after which a fraction of the movement is completed.
 fn time_of_share(way: f64) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
-    // Each halving gains a bit of the 53.
+    // Each bisection gains one of the 53 bits.
     for _ in 0..53 {
         let middle = 0.5 * (low + high);
         match least_jerk(middle) < way {

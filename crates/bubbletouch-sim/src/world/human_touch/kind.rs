@@ -1,22 +1,22 @@
-//! The kinds of touch.
+//! Kinds of human touch.
 
 use serde::{Deserialize, Serialize};
 
-/// What a hand does.
+/// Gesture of a hand on a forearm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TouchKind {
-    /// Touches once, shortly.
+    /// One short touch.
     Tap,
-    /// The same for longer.
+    /// One long touch.
     Hold,
     /// Slides along the arm.
     Stroke,
-    /// Presses with the flat hand, and deeper while it pushes along the skin.
+    /// Presses with the flat hand, and presses deeper while it pushes along the skin.
     Shove,
     /// Touches several times.
     Pat,
-    /// Closes its fingers around the arm.
+    /// Closes the fingers around the arm.
     Grab,
 }
 
@@ -31,7 +31,7 @@ pub const TOUCH_KINDS: [TouchKind; 6] = [
 ];
 
 impl TouchKind {
-    /// One word, as in files.
+    /// Returns the name of the kind in files, one word.
     pub fn name(self) -> &'static str {
         match self {
             Self::Tap => "tap",

@@ -1,4 +1,4 @@
-//! How a hand is held: which part of it comes first, and how its fingers are bent.
+//! Posture of a hand: orientation, and bending of the fingers.
 
 use super::TouchKind;
 use crate::geometry::Pose;
@@ -7,32 +7,32 @@ use glam::{DQuat, DVec3};
 use rand::Rng;
 use std::f64::consts::FRAC_PI_2;
 
-/// How far the spheres of a hand may be from its surface, metres: larger, and a finger is felt as a row of balls; smaller, and a frame
-/// costs more (of 100 spheres it takes 10 to 30 µs).
+/// Largest distance between the spheres of a hand and its surface, metres. Larger: a finger acts like a row of balls; smaller: a frame costs
+/// more (10 to 30 µs for 100 spheres).
 const SURFACE_ERROR: f64 = 0.5e-3;
 
-/// How far a hand may be out of level, radians. Larger, and a flat hand, which does not give way, touches with the ball of the thumb or
+/// Largest inclination of a hand, radians. Larger: a flat hand, which is rigid, touches with the ball of the thumb or
 /// a finger alone.
 const LEVEL: f64 = 0.03;
 
-/// The fingers of a fist, as a share of [`Hand::curled`].
+/// Bending of the fingers of a fist, as a fraction of [`Hand::curled`].
 const FIST: f64 = 0.85;
 
-/// A hand that does not move yet.
+/// Hand before its motion.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Posture {
-    /// Its fingers when it is open.
+    /// Hand with open fingers.
     pub open: Hand,
-    /// The same when it is closed; only a grip closes.
+    /// Hand with closed fingers; equal to the open hand unless the touch is a grab.
     pub closed: Hand,
-    /// Rotation from the hand's frame to that of the place that it touches: x back along the arm, y around it, z away from it.
+    /// Rotation from the hand's frame to the frame of the touched place: x back along the arm, y around it, z away from it.
     pub place_from_hand: DQuat,
-    /// What is above that place, metres in the hand's frame.
+    /// Point of the hand above the touched place, metres, in the hand's frame.
     pub anchor: DVec3,
 }
 
 impl Posture {
-    /// Draws one: `fingers` fingertips (1 to 4), the flat hand (5), or a grip.
+    /// Draws a posture with `fingers` fingertips (1 to 4), the flat hand (5), or the hand of a grab.
     pub fn draw(
         kind: TouchKind,
         (length, fingers, yaw): (f64, usize, f64),
@@ -44,7 +44,7 @@ impl Posture {
             false => Hand::curled(FIST),
         };
         open.length = length;
-        // Fingertips first: the wrist is higher.
+        // Fingertips touch first: the wrist is higher.
         let mut pitch = rng.gen_range(-LEVEL..=LEVEL);
         if !is_flat {
             pitch = -rng.gen_range(0.35..=0.8);
@@ -57,7 +57,7 @@ impl Posture {
             open.fingers[..fingers].fill(straight);
         }
         if is_flat {
-            // Else it would be the thumb that a flat hand lies on.
+            // Otherwise a flat hand would lie on its thumb.
             open.thumb.knuckle = -0.3;
         }
         let roll = rng.gen_range(-LEVEL..=LEVEL);
@@ -72,8 +72,8 @@ impl Posture {
         }
     }
 
-    /// Closes the fingers until each would be `grip` metres in the skin of an arm of radius `surface`, the hand itself being at
-    /// `-depth`; a finger that does not reach the arm closes to a fist.
+    /// Closes the fingers until each would be `grip` metres deep in the skin of an arm of radius `surface`, with the hand at
+    /// `-depth`. A finger that does not reach the arm closes to a fist.
     pub fn close(&mut self, surface: f64, depth: f64, grip: f64) {
         let height = self.first_contact(surface) - depth;
         let fist = Hand::curled(1.0);
@@ -94,7 +94,7 @@ impl Posture {
         }
     }
 
-    /// The hand with its fingers closed by a share, 0 to 1.
+    /// Returns the hand with its fingers closed by a fraction, 0 to 1.
     pub fn hand(&self, share: f64) -> Hand {
         let mut hand = self.open;
         for digit in 0..5 {
@@ -103,7 +103,7 @@ impl Posture {
         hand
     }
 
-    /// How high the anchor is above an arm of radius `surface` when the open hand first touches it, metres.
+    /// Returns the height of the anchor above an arm of radius `surface` at first contact of the open hand, metres.
     pub fn first_contact(&self, surface: f64) -> f64 {
         let hand = spheres(&self.open);
         let heights = hand
@@ -113,7 +113,7 @@ impl Posture {
         heights.fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// The height of the anchor at which a ball touches; `None` if it passes beside the arm.
+    /// Returns the height of the anchor at which a ball touches; `None` if the ball passes beside the arm.
     fn touches_at(&self, ball: &Sphere, surface: f64) -> Option<f64> {
         let at = self.place_from_hand * (ball.center - self.anchor);
         let reach = ball.radius + surface;
@@ -121,15 +121,15 @@ impl Posture {
         (square > 0.0).then(|| square.sqrt() - at.z - surface)
     }
 
-    /// How deep a ball is in the arm when the anchor is at a height, metres; negative outside.
+    /// Returns the penetration of a ball into the arm with the anchor at a height, metres; negative outside.
     fn sunk(&self, ball: Sphere, surface: f64, height: f64) -> f64 {
         let at = self.place_from_hand * (ball.center - self.anchor);
         ball.radius + surface - at.y.hypot(at.z + height + surface)
     }
 
-    /// `patch_from_hand` when the anchor is `height` metres above a place of the arm.
+    /// Returns `patch_from_hand` for the anchor at `height` metres above a place of the arm.
     pub fn pose(&self, (along, around): (f64, f64), radius: f64) -> Pose {
-        // The place's frame at +x (x is −z of the arm, y stays, z is its x), then around the arm.
+        // The frame of the place at +x (its x is −z of the arm, y is unchanged, z is the arm's x), rotated around the arm.
         let rotation = DQuat::from_rotation_z(around) * DQuat::from_rotation_y(FRAC_PI_2);
         let place = radius * (rotation * DVec3::Z) + along * DVec3::Z;
         let patch_from_hand = rotation * self.place_from_hand;
@@ -137,13 +137,13 @@ impl Posture {
     }
 }
 
-/// The spheres of a hand, within [`SURFACE_ERROR`].
+/// Returns the spheres of a hand, within [`SURFACE_ERROR`].
 pub(super) fn spheres(hand: &Hand) -> SphereUnion {
     let solid = hand.solid().expect("fingers between open and closed");
     solid.pack(SURFACE_ERROR).expect("a hand takes few spheres")
 }
 
-/// Sets a digit (0 to 3 are fingers, 4 is the thumb) a share of the way from one hand to another.
+/// Sets a digit (0 to 3 are fingers, 4 is the thumb) by interpolation between two hands.
 fn bend(hand: &mut Hand, from: &Hand, to: &Hand, (digit, share): (usize, f64)) {
     let between = |a: f64, b: f64| a + share * (b - a);
     let pose = |a: &FingerPose, b: &FingerPose| FingerPose {
@@ -160,7 +160,7 @@ fn bend(hand: &mut Hand, from: &Hand, to: &Hand, (digit, share): (usize, f64)) {
     }
 }
 
-/// The least share from which on something is so, to 1e-4; 1 if it never is. It is looked for in steps, since a finger can pass.
+/// Returns the least fraction for which a condition holds, to 1e-4; 1 if there is none. The search takes steps, because a finger can move past the arm.
 fn first_share(is_so: impl Fn(f64) -> bool) -> f64 {
     const STEPS: usize = 40;
     let share = |step: usize| step as f64 / STEPS as f64;
@@ -178,7 +178,7 @@ fn first_share(is_so: impl Fn(f64) -> bool) -> f64 {
     high
 }
 
-/// The middle of the touching part: of the straight fingers' tips, or of the flat hand near its knuckles.
+/// Returns the middle of the touching part: the fingertips, or a point near the knuckles of the flat hand.
 fn anchor(hand: &Hand, fingers: usize) -> DVec3 {
     let strands = hand.strands();
     match fingers {
@@ -193,7 +193,7 @@ fn anchor(hand: &Hand, fingers: usize) -> DVec3 {
     }
 }
 
-/// Balls along the phalanges of a digit (0 to 3 are fingers, 4 is the thumb).
+/// Returns balls along the phalanges of a digit (0 to 3 are fingers, 4 is the thumb).
 fn phalanges(hand: &Hand, digit: usize) -> Vec<Sphere> {
     const STEPS: usize = 6;
     let strand = if digit == 4 { Hand::THUMB } else { digit };

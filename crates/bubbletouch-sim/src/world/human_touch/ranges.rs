@@ -1,50 +1,50 @@
-//! What the parameters of a touch are drawn from.
+//! Ranges from which the parameters of a touch are drawn.
 
 use super::TouchKind;
 use crate::error::{Error, Result};
 use std::ops::RangeInclusive;
 
-/// Ranges of the parameters of one kind of touch, drawn uniformly; those that a kind has no use for are not drawn.
+/// Ranges of the parameters of one kind of touch, drawn uniformly. Parameters that a kind does not use are not drawn.
 ///
-/// The usual ones are our choice, but for the length of the hand.
+/// The default ranges are our choice, except for the length of the hand.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TouchRanges {
     /// Length of the hand, metres; adults have 0.16 to 0.21 \[BK\].
     pub hand_length: RangeInclusive<f64>,
-    /// How many fingers touch: 1 to 4 are fingertips, 5 is the flat hand. (A shove is flat and a grab a grip, whatever stands here.)
+    /// Numbers of touching fingers: 1 to 4 are fingertips, 5 is the flat hand. Ignored by shove (flat) and grab.
     pub fingers: Vec<usize>,
-    /// Where on the arm, metres from its middle along its axis.
+    /// Place along the arm's axis, metres from the middle.
     pub along: RangeInclusive<f64>,
-    /// Where around it, radians.
+    /// Angle around the arm, radians.
     pub around: RangeInclusive<f64>,
-    /// How far the fingers are turned from across the arm towards its axis, radians.
+    /// Angle of the fingers from across the arm towards its axis, radians.
     pub yaw: RangeInclusive<f64>,
-    /// Above the skin when the hand starts and ends, metres.
+    /// Height of the hand above the skin at the start and the end, metres.
     pub clearance: RangeInclusive<f64>,
-    /// How far the hand goes past first contact, metres.
+    /// Depth of the hand past first contact, metres.
     pub depth: RangeInclusive<f64>,
-    /// From first contact to this depth, and back, seconds each.
+    /// Time from first contact to the depth, and back, seconds each.
     pub rise: RangeInclusive<f64>,
-    /// At this depth, seconds.
+    /// Time at the depth, seconds.
     pub hold: RangeInclusive<f64>,
-    /// Pat: contacts.
+    /// Pat: number of contacts.
     pub contacts: RangeInclusive<usize>,
-    /// Pat: how far the hand goes up between them, metres.
+    /// Pat: height of the hand between contacts, metres.
     pub lift: RangeInclusive<f64>,
-    /// Stroke, shove: the way along the skin, metres.
+    /// Stroke, shove: length of the path along the skin, metres.
     pub travel: RangeInclusive<f64>,
-    /// Stroke, shove: its mean speed, metres a second.
+    /// Stroke, shove: mean speed, metres per second.
     pub speed: RangeInclusive<f64>,
-    /// Stroke, shove: its direction from lengthwise, radians; either way along the arm is as likely.
+    /// Stroke, shove: angle from the arm's axis, radians; both directions along the arm are equally likely.
     pub direction: RangeInclusive<f64>,
-    /// Grab: seconds in which the fingers close, and open.
+    /// Grab: time in which the fingers close, and open, seconds each.
     pub closing: RangeInclusive<f64>,
-    /// Grab: how far each finger would go into the skin, metres.
+    /// Grab: depth of each finger in the skin, metres.
     pub grip: RangeInclusive<f64>,
 }
 
 impl TouchRanges {
-    /// Of a kind.
+    /// Returns the default ranges of a kind.
     pub fn usual(kind: TouchKind) -> Self {
         let tap = Self {
             hand_length: 0.165..=0.205,
@@ -70,7 +70,7 @@ impl TouchRanges {
                 hold: 0.25..=1.6,
                 ..tap
             },
-            // Faster than the few cm/s that are felt as most pleasant, so that a touch ends in time.
+            // Faster than the few cm/s that people rate as most pleasant, to keep the touch short.
             TouchKind::Stroke => Self {
                 along: -0.01..=0.01,
                 travel: 0.03..=0.09,
@@ -107,10 +107,10 @@ impl TouchRanges {
         }
     }
 
-    /// Refuses a range that is empty or not finite, or in which a touch would make no sense.
+    /// Checks the ranges.
     ///
     /// # Errors
-    /// Such a range, by its name.
+    /// If a range is empty, not finite, or outside the values for which a touch is defined; the error names the range.
     pub fn check(&self) -> Result<()> {
         let length = "lengths above 0 to 0.2 m, the smaller first";
         let seconds = "0.02 to 10 s, the shorter first";
@@ -131,7 +131,7 @@ impl TouchRanges {
             ("grip", &self.grip, 1e-6, 0.2, length),
         ] {
             let (first, last) = (*range.start(), *range.end());
-            // A NaN is in no order.
+            // NaN fails every comparison.
             if !(low <= first && first <= last && last <= high) {
                 let given = format!("{first} to {last}");
                 return Err(Error::input(format!("range of {name}"), given, allowed));

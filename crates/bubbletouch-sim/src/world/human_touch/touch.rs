@@ -1,4 +1,4 @@
-//! One touch: its parameters as they were drawn, and where they put the hand.
+//! One touch: its drawn parameters, and the resulting motion of the hand.
 
 use super::course::{Course, State};
 use super::posture::{Posture, spheres};
@@ -12,7 +12,7 @@ use rand_chacha::ChaCha8Rng;
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 
-/// A touch of a forearm.
+/// Touch of a forearm by a hand.
 ///
 /// ```
 /// use bubbletouch_sim::random::Seed;
@@ -29,49 +29,49 @@ use std::ops::RangeInclusive;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct HumanTouch {
-    /// Its kind.
+    /// Kind of the touch.
     pub kind: TouchKind,
-    /// How many fingertips touch (1 to 4); 5 is the flat hand, or a grip.
+    /// Number of touching fingertips (1 to 4); 5 is the flat hand, or a grab.
     pub fingers: usize,
-    /// Where on the arm the touch begins: metres from its middle along its axis (+z).
+    /// Place along the arm's axis (+z) where the touch begins, metres from the middle.
     pub along: f64,
-    /// Where around it, radians from +x.
+    /// Angle around the arm where the touch begins, radians from +x.
     pub around: f64,
-    /// Metres past first contact, where the hand presses most; of a grab, the palm's.
+    /// Largest depth of the hand past first contact, metres; the palm's depth for a grab.
     pub depth: f64,
-    /// Seconds from first contact to that depth, and back.
+    /// Time from first contact to the largest depth, and back, seconds each.
     pub rise: f64,
-    /// Seconds at that depth, each contact.
+    /// Time of each contact at the largest depth, seconds.
     pub hold: f64,
-    /// How often the hand touches.
+    /// Number of contacts.
     pub contacts: usize,
-    /// The way along the skin, metres.
+    /// Length of the path along the skin, metres.
     pub travel: f64,
-    /// Its direction, radians from +z towards larger angles around the arm.
+    /// Direction of the path, radians from +z towards larger angles around the arm.
     pub direction: f64,
-    /// Of the skin, metres from the arm's axis.
+    /// Distance of the skin from the arm's axis, metres.
     pub surface: f64,
-    /// Of the anchor above the skin where the open hand first touches it, metres.
+    /// Height of the anchor above the skin at first contact of the open hand, metres.
     first_contact: f64,
     posture: Posture,
     course: Course,
 }
 
-/// A hand at an instant of a touch.
+/// State of the hand at one instant of a touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HandState {
-    /// Its size and how its fingers are bent.
+    /// Size of the hand, and bending of its fingers.
     pub hand: Hand,
-    /// Where it is: metres, in the frame whose z axis is the arm's.
+    /// Pose of the hand, metres, in the frame whose z axis is the arm's.
     pub patch_from_hand: Pose,
-    /// Above first contact of the open hand, metres; negative while it presses.
+    /// Height above first contact of the open hand, metres; negative while the hand presses.
     pub height: f64,
-    /// How far its fingers have closed, 0 to 1.
+    /// Closing of the fingers, 0 to 1.
     pub closed: f64,
 }
 
 impl HandState {
-    /// The hand as spheres, in its own frame.
+    /// Returns the hand as spheres, in its own frame.
     pub fn spheres(&self) -> SphereUnion {
         spheres(&self.hand)
     }
@@ -83,7 +83,7 @@ impl HumanTouch {
     /// Every parameter is uniform in its range, and independent of all others.
     ///
     /// # Errors
-    /// A range that [`TouchRanges::check`] refuses; a surface that is not 5 to 500 mm away.
+    /// If [`TouchRanges::check`] refuses a range, or `surface` is not between 5 and 500 mm.
     pub fn draw(kind: TouchKind, ranges: &TouchRanges, surface: f64, seed: &Seed) -> Result<Self> {
         ranges
             .check()
@@ -134,7 +134,7 @@ impl HumanTouch {
                 course.wait(hold);
             }
             TouchKind::Shove => {
-                // It lays the hand on, then pushes.
+                // First the hand is laid on, then it pushes.
                 course.press(0.4 * depth, rise);
                 slide(&mut course, seconds, travel, depth);
                 course.wait(hold);
@@ -175,16 +175,16 @@ impl HumanTouch {
         })
     }
 
-    /// Seconds from when the hand starts in the air to when it is back there.
+    /// Returns the time between the start and the end of the touch, seconds; at both the hand is in the air.
     pub fn duration(&self) -> f64 {
         self.course.duration()
     }
 
-    /// The hand at a time in seconds; before the start and after the end it stays in the air.
+    /// Returns the hand at a time in seconds; constant, in the air, before the start and after the end.
     pub fn at(&self, time: f64) -> HandState {
         let state = self.course.at(time);
         let (sin, cos) = self.direction.sin_cos();
-        // The way is about the place: half of it comes before.
+        // The path is centred on the place: half of it lies before.
         let slid = state.slid - 0.5 * self.travel;
         let along = self.along + slid * cos;
         let around = self.around + slid * sin / self.surface;
@@ -198,7 +198,7 @@ impl HumanTouch {
     }
 }
 
-/// Slides while it goes to a depth.
+/// Appends a slide along the skin during which the depth changes.
 fn slide(course: &mut Course, seconds: f64, travel: f64, depth: f64) {
     let to = State {
         height: -depth,
@@ -208,7 +208,7 @@ fn slide(course: &mut Course, seconds: f64, travel: f64, depth: f64) {
     course.go(seconds, to);
 }
 
-/// Closes the fingers, or opens them.
+/// Appends a movement that closes or opens the fingers.
 fn close(course: &mut Course, seconds: f64, closed: f64) {
     let to = State {
         closed,

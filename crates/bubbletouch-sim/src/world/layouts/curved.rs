@@ -1,4 +1,4 @@
-//! Layouts around the z axis of the patch frame, as on forearms, fingers and elbows.
+//! Layouts around the z axis of the patch frame, for forearms, fingers and elbows.
 
 use super::layout::Layout;
 use super::limits::{check_angle, check_count};
@@ -10,42 +10,42 @@ use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
 impl Layout {
-    /// A grid bent around a cylinder: rings of taxels around the z axis, ascending, each from its right to its left end; axes
+    /// Creates a grid bent around a cylinder: rings of taxels around the z axis, ascending, each from its right to its left end. Axes
     /// point away from the z axis.
     ///
-    /// - `radius`: of the rest centres, metres;
-    /// - `length`: between the first and the last ring, metres, not negative; the middle is at z = 0;
-    /// - `arc`: radians, above 0 to 2π, its middle at +x. Its ends have taxels; a ring that leaves a gap of less than half a
-    ///   pitch is closed;
-    /// - `pitch`: metres along the surface, met as well as whole numbers of rings and columns allow. A length or an arc
-    ///   shorter than 0.75 pitches has one ring or column, in its middle.
+    /// - `radius`: radius to the rest centres, metres.
+    /// - `length`: distance between the first and the last ring, metres, not negative; the middle is at z = 0.
+    /// - `arc`: angle, radians, above 0 to 2π, with its middle at +x. Both ends have taxels. If the remaining gap is less than half a
+    ///  pitch, the ring is closed.
+    /// - `pitch`: distance along the surface, metres, adjusted to whole numbers of rings and columns. A length or an arc
+    ///  shorter than 0.75 pitches has one ring or column, in its middle.
     ///
     /// # Errors
-    /// The error names an argument out of its range, or a layout of more than [`MAX_TAXELS`](crate::world::MAX_TAXELS).
+    /// If an argument is out of its range, or the layout has more than [`MAX_TAXELS`](crate::world::MAX_TAXELS) taxels.
     pub fn cylinder(radius: f64, length: f64, arc: f64, pitch: f64) -> Result<Self> {
         Ok(Self::from(Extrusion::cylinder(radius, length, arc, pitch)?))
     }
 
-    /// A square or oblong grid bent around a [`cylinder`](Self::cylinder) of this radius (of the rest centres, metres): its rows become
-    /// rings, its columns run along z.
+    /// Creates a rectangular grid bent around a [`cylinder`](Self::cylinder) of this radius (to the rest centres, metres). Rows become
+    /// rings; columns run along z.
     ///
     /// # Errors
-    /// Those of [`cylinder`](Self::cylinder).
+    /// If [`cylinder`](Self::cylinder) fails.
     pub fn bent_grid(grid: &Grid, radius: f64) -> Result<Self> {
         let side = |n: usize| (n - 1) as f64 * grid.pitch;
         let arc = side(grid.nx) / radius;
         Self::cylinder(radius, side(grid.ny), arc.max(1e-9), grid.pitch)
     }
 
-    /// Rings of taxels on a sphere around the origin, from its pole at +z outwards; axes point away from the centre.
+    /// Creates rings of taxels on a sphere around the origin, from its pole at +z outwards; axes point away from the centre.
     ///
-    /// - `radius`: of the rest centres, metres;
-    /// - `half_angle`: from the pole to the last ring, radians, above 0 to π: π/2 is half a sphere, π a whole one;
-    /// - `pitch`: metres along the surface, met as well as whole numbers of rings and of taxels in a ring allow. A cap
-    ///   smaller than 0.75 pitches from its pole to its end is the one taxel at its pole.
+    /// - `radius`: radius to the rest centres, metres.
+    /// - `half_angle`: angle from the pole to the last ring, radians, above 0 to π; π/2 is half a sphere, π a whole one.
+    /// - `pitch`: distance along the surface, metres, adjusted to whole numbers of rings and of taxels per ring. A cap
+    ///  smaller than 0.75 pitches from its pole to its end has one taxel, at the pole.
     ///
     /// # Errors
-    /// The error names an argument out of its range, or a layout of more than [`MAX_TAXELS`](crate::world::MAX_TAXELS).
+    /// If an argument is out of its range, or the layout has more than [`MAX_TAXELS`](crate::world::MAX_TAXELS) taxels.
     pub fn sphere_cap(radius: f64, half_angle: f64, pitch: f64) -> Result<Self> {
         positive("taxel pitch", pitch, "m")?;
         positive("cap radius", radius, "m")?;

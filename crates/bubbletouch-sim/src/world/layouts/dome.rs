@@ -1,4 +1,4 @@
-//! Layouts on a part of a sphere: rings of taxels, each with as many as it has room for.
+//! Layouts on a part of a sphere: rings of taxels at about equal distances.
 
 use super::limits::{check_angle, check_count};
 use crate::error::Result;
@@ -6,48 +6,49 @@ use crate::text::in_range::positive;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
-/// A lune of a sphere around the origin, from its pole at +z, cut into rings of taxels whose axes point away from the centre.
+/// Lune of a sphere around the origin, from its pole at +z, divided into rings of taxels whose axes point away from the centre.
 ///
-/// Taxels are numbered ring by ring from the pole, each ring by ascending angle. Invariant: rings ascend in polar angle, none
-/// empty; `directions` are of length one.
+/// Taxels are numbered ring by ring from the pole, each ring by ascending angle. Invariant: rings ascend in polar angle, none is
+/// empty; `directions` have length one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dome {
     radius: f64,
     rings: Vec<DomeRing>,
-    /// n_taxels: cosine and sine of the angle from +x towards +y.
+    /// Cosine and sine of each taxel's angle from +x towards +y, shape (n_taxels,).
     directions: Vec<DVec2>,
 }
 
-/// Taxels at one angle from the pole.
+/// Ring of taxels at one angle from the pole.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DomeRing {
     /// Cosine of the angle from the pole.
     pub cos: f64,
-    /// Its sine.
+    /// Sine of the angle from the pole.
     pub sin: f64,
-    /// The number of its first taxel.
+    /// Number of the first taxel.
     pub first: usize,
-    /// How many taxels, at least 1.
+    /// Number of taxels, at least 1.
     pub n: usize,
-    /// Angle of the first from +x towards +y, radians.
+    /// Angle of the first taxel from +x towards +y, radians.
     pub start: f64,
-    /// From one to the next, radians.
+    /// Angle between adjacent taxels, radians.
     pub step: f64,
 }
 
 impl Dome {
-    /// Rest centres and axes, ring by ring.
+    /// Returns rest centres and axes, ring by ring.
     pub(crate) fn taxels(&self) -> impl Iterator<Item = (DVec3, DVec3)> {
         let axes = self.axes().map(DVec3::normalize);
         axes.map(|axis| (self.radius * axis, axis))
     }
 
-    /// Covers a lune: `polar` radians from the pole (above 0 to π), `arc` radians wide (above 0 to 2π), its middle at +x.
+    /// Creates a lune: `polar` radians from the pole (above 0 to π), `arc` radians wide (above 0 to 2π), with its middle at +x.
     ///
-    /// Rings are about `pitch` apart, and the taxels of a ring as well as whole numbers allow; half a step is left at every edge, so that taxels
-    /// go on at the same distance on a lune or a cylinder beside it.
+    /// Rings are about `pitch` apart, as are the taxels of a ring, adjusted to whole numbers. Half a step is left at every edge, so that taxels
+    /// of an adjacent lune or cylinder continue at equal distances.
     ///
     /// # Errors
+    /// If an argument is out of its range, or the layout has too many taxels.
     /// The error names an argument out of its range, or a layout of too many taxels.
     pub fn new(radius: f64, polar: f64, arc: f64, pitch: f64) -> Result<Self> {
         positive("taxel pitch", pitch, "m")?;
@@ -82,27 +83,27 @@ impl Dome {
         })
     }
 
-    /// Of the rest centres, metres.
+    /// Returns the radius to the rest centres, metres.
     pub fn radius(&self) -> f64 {
         self.radius
     }
 
-    /// The rings, from the pole.
+    /// Returns the rings, from the pole.
     pub fn rings(&self) -> &[DomeRing] {
         &self.rings
     }
 
-    /// n_taxels: cosine and sine of each taxel's angle around the pole.
+    /// Returns the cosine and sine of each taxel's angle around the pole, shape (n_taxels,).
     pub fn directions(&self) -> &[DVec2] {
         &self.directions
     }
 
-    /// How many taxels.
+    /// Returns the number of taxels.
     pub fn n_taxels(&self) -> usize {
         self.directions.len()
     }
 
-    /// The axes of all taxels, unit.
+    /// Returns the axes of all taxels, unit.
     pub fn axes(&self) -> impl Iterator<Item = DVec3> + Clone {
         self.rings.iter().flat_map(|ring| {
             let directions = &self.directions[ring.first..ring.first + ring.n];
@@ -130,7 +131,7 @@ mod tests {
         ] {
             let layout = Layout::from(Dome::new(radius, polar, arc, pitch).unwrap());
             for distance in nearest_distances(layout.centers()) {
-                // Three around a pole are as near as 0.86 of a pitch; the lone first of a narrow lune has none so near.
+                // Three taxels around a pole are as near as 0.86 pitches; the single first taxel of a narrow lune has no neighbour so near.
                 assert!((0.7..1.5).contains(&(distance / pitch)), "{distance}");
             }
             let area = arc * radius * radius * (1.0 - polar.cos());

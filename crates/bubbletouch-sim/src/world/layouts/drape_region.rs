@@ -1,24 +1,24 @@
-//! The part of a mesh that a draped layout covers, and which places of it can carry a taxel.
+//! Region of a mesh that a draped layout covers, and test for places that can carry a taxel.
 
 use crate::error::{Error, Result};
 use crate::geometry::Aabb;
 use crate::mesh::{Bvh, TriangleMesh};
 use glam::DVec3;
 
-/// A ray starts this share of the mesh's size ahead of the surface. Larger: walls nearer than this do not stop a ray; smaller: the triangle
-/// that a taxel lies on does.
+/// Distance of a ray's start from the surface, relative to the mesh's size. Larger: walls nearer than this do not stop a ray; smaller: the triangle
+/// of the taxel stops the ray.
 const AHEAD: f64 = 1e-6;
-/// A ray is moved sideways by this share of the mesh's size, so that it does not pass through an edge by symmetry.
+/// Lateral offset of a ray, relative to the mesh's size, so that it does not pass through an edge by symmetry.
 const ASIDE: f64 = 1e-8;
 
-/// Part of a surface. A place belongs to it if all conditions that are given hold.
+/// Region of a surface. A place belongs to the region if all given conditions hold.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DrapeRegion {
-    /// A box that contains the place; metres, in the mesh's frame.
+    /// Box that contains the place; metres, in the mesh's frame.
     pub bounds: Option<Aabb>,
-    /// A plane, by a point (metres) and a normal of any length: the place is on the side that the normal points to.
+    /// Plane, given by a point (metres) and a normal of any length; the place is on the side to which the normal points.
     pub beyond: Option<(DVec3, DVec3)>,
-    /// Numbers of triangles, one of which contains the place.
+    /// Numbers of triangles, one of which must contain the place.
     pub triangles: Option<Vec<usize>>,
 }
 
@@ -26,7 +26,7 @@ impl DrapeRegion {
     /// Checks the region for a mesh.
     ///
     /// # Errors
-    /// If a number is not finite, a box ends before it begins, a normal is zero, or the mesh has no such triangle.
+    /// If a number is not finite, a box is empty, a normal is zero, or a triangle does not exist in the mesh.
     pub fn check(&self, mesh: &TriangleMesh) -> Result<()> {
         let refuse = |given: String, allowed: &str| Err(Error::input("region", given, allowed));
         if let Some(Aabb { min, max }) = self.bounds
@@ -48,7 +48,7 @@ impl DrapeRegion {
         }
     }
 
-    /// For each triangle of a mesh whether it may carry taxels.
+    /// Returns for each triangle of a mesh whether it may carry taxels.
     pub(crate) fn mask(&self, mesh: &TriangleMesh) -> Vec<bool> {
         let mut mask = vec![self.triangles.is_none(); mesh.n_triangles()];
         for &number in self.triangles.iter().flatten() {
@@ -57,7 +57,7 @@ impl DrapeRegion {
         mask
     }
 
-    /// Whether a place is in the box and beyond the plane.
+    /// Returns whether a place is in the box and beyond the plane.
     pub(crate) fn contains(&self, place: DVec3) -> bool {
         let is_in_box =
             |bounds: Aabb| place.cmpge(bounds.min).all() && place.cmple(bounds.max).all();
@@ -66,10 +66,10 @@ impl DrapeRegion {
     }
 }
 
-/// Rays from the surface of a mesh.
+/// Ray casting from the surface of a mesh.
 pub(crate) struct Rays {
     bvh: Bvh,
-    /// The diagonal of the box around the mesh, metres.
+    /// Diagonal of the mesh's bounding box, metres.
     size: f64,
 }
 
@@ -80,7 +80,7 @@ impl Rays {
         Self { bvh, size }
     }
 
-    /// Whether a ray from a place of the surface along a unit direction meets no triangle.
+    /// Returns whether a ray from a place of the surface along a unit direction meets no triangle.
     pub fn is_free(&self, place: DVec3, direction: DVec3) -> bool {
         let (x, y) = direction.any_orthonormal_pair();
         let origin = place + ASIDE * self.size * (0.8 * x + 0.6 * y);

@@ -1,4 +1,4 @@
-//! A layout draped over a triangle mesh: taxels at least so far apart, and no place without one nearby.
+//! Layout draped over a triangle mesh: taxels keep a minimum distance, and every place has a taxel nearby.
 
 use super::drape_region::{DrapeRegion, Rays};
 use crate::error::{Error, Result};
@@ -10,41 +10,41 @@ use glam::DVec3;
 use rand::seq::SliceRandom;
 use std::collections::{BTreeMap, HashMap};
 
-/// The least distance between taxels, in pitches. Places taken at random until none is left that far from all others hold
-/// about 0.7 / distance² a square: at 0.83 as many as a grid of the pitch.
+/// Smallest distance between taxels, in pitches. If random places are added until no further place has this distance from all others, there are
+/// about 0.7 / distance² per square pitch: at 0.83 as many as on a grid of the pitch.
 const LEAST: f64 = 0.83;
-/// The longest edge of a piece of surface, in pitches. Smaller: taxels find more room, and more memory is used; larger: the
+/// Longest edge of a piece of surface, in pitches. Smaller: taxels are packed more densely, and more memory is used; larger: the
 /// surface between two pieces may be farther from a taxel than a pitch (0.83 + 2/3 of this).
 const PIECE: f64 = 0.25;
-/// Pieces of surface, at most: some 100,000 taxels, in 2 GB. The bound also holds for triangles that are long but have no area.
+/// Largest number of pieces: some 100,000 taxels, in 2 GB. The bound also covers long triangles without area.
 const MAX_PIECES: usize = 1 << 24;
-/// Below this cosine between their normals two pieces are the two sides of a sheet, and do not keep each other's taxels away.
+/// Cosine between normals below which two pieces belong to opposite sides of a thin sheet; their taxels may then be close together.
 const OPPOSED: f64 = -0.5;
 
 impl Layout {
-    /// Taxels spread over the outer surface of a whole mesh: [`draped_on`](Self::draped_on) without a region.
+    /// Distributes taxels over the outer surface of a whole mesh: [`draped_on`](Self::draped_on) without a region.
     ///
     /// # Errors
-    /// Those of [`draped_on`](Self::draped_on).
+    /// If [`draped_on`](Self::draped_on) fails.
     pub fn draped(mesh: &TriangleMesh, pitch: f64, seed: &Seed) -> Result<Self> {
         Self::draped_on(mesh, pitch, &DrapeRegion::default(), seed)
     }
 
-    /// Taxels spread over a region of a mesh's outer surface, as many as on a grid of this pitch (metres), in the order of its triangles.
+    /// Distributes taxels over a region of a mesh's outer surface, as many as on a grid of this pitch (metres), ordered by triangle.
     ///
     /// The outer surface consists of the places whose axis leaves the mesh freely: a ray along the axis does not meet the mesh again. Other
     /// places, such as the walls of a cavity, carry no taxel; [`n_left_out`](Self::n_left_out) counts the taxels that they would carry.
     ///
-    /// Each taxel is at least 0.83 pitches from the others (but those on the back of a thin sheet), and every place of the outer surface
-    /// is within a pitch of one. Places are taken in random order and kept if they are far enough from all before them (dart
-    /// throwing): the same seed gives the same taxels. It takes about 0.3 ms a taxel.
+    /// Each taxel is at least 0.83 pitches from the others, except those on the back of a thin sheet. Every place of the outer surface
+    /// is within a pitch of a taxel. Random places are accepted if they are far enough from all accepted ones (dart
+    /// throwing); equal seeds give equal taxels. The run time is about 0.3 ms per taxel.
     ///
-    /// Axes are the mean normals of the surface within half a pitch, so that the facets of a scan do not show and the sides
-    /// of a box stay flat; where a mean normal meets the mesh again, the axis is the normal of the taxel's own triangle.
+    /// Axes are the mean normals of the surface within half a pitch. This smooths the facets of a scan and keeps the sides
+    /// of a box flat. If a ray along a mean normal meets the mesh again, the axis is the normal of the taxel's own triangle.
     ///
     /// # Errors
-    /// If the pitch is not positive, the surface has no area, an open mesh has no [known outside](TriangleMesh::turned_outwards), the
-    /// region contains no place of the outer surface, or the pitch is too fine for the surface: there is memory for some 100,000 taxels.
+    /// If the pitch is not positive, the surface has no area, an open mesh has no [known outside](TriangleMesh::turned_outwards), or the
+    /// region contains no place of the outer surface. Also if the pitch is so fine that more than some 100,000 taxels would be needed.
     pub fn draped_on(
         mesh: &TriangleMesh,
         pitch: f64,
@@ -77,7 +77,7 @@ impl Layout {
         let mask = region.mask(mesh);
         order
             .retain(|&index| mask[pieces[index].triangle] && region.contains(pieces[index].middle));
-        // Taxels, and places inside the mesh that would carry one.
+        // Taxels on the outer surface, and places inside the mesh that would carry one.
         let (mut taxels, mut inner) = (Taken::new(LEAST * pitch), Taken::new(LEAST * pitch));
         let mut n_left_out = 0;
         for &index in &order {
@@ -114,9 +114,9 @@ impl Layout {
     }
 }
 
-/// A small triangle of the surface.
+/// Small triangle of the surface.
 struct Piece {
-    /// The number of its triangle in the mesh.
+    /// Number of the mesh's triangle that contains the piece.
     triangle: usize,
     middle: DVec3,
     /// Unit.
@@ -125,9 +125,9 @@ struct Piece {
     area: f64,
 }
 
-/// Cuts every triangle that has a normal until no edge is longer; `None` if that takes too many pieces.
+/// Divides every triangle with a normal until no edge is longer than `longest_edge`; `None` if this takes too many pieces.
 fn pieces(mesh: &TriangleMesh, longest_edge: f64) -> Option<Vec<Piece>> {
-    // An equilateral triangle is the largest piece there can be.
+    // The largest possible piece is an equilateral triangle.
     let largest = 0.25 * 3f64.sqrt() * longest_edge * longest_edge;
     if mesh.area() / largest > MAX_PIECES as f64 {
         return None;
@@ -160,8 +160,8 @@ fn pieces(mesh: &TriangleMesh, longest_edge: f64) -> Option<Vec<Piece>> {
     Some(pieces)
 }
 
-/// The mean normal of the surface around each taxel, of length one, in the order of their pieces. What faces away from the
-/// taxel's own piece does not count.
+/// Returns the mean normal of the surface around each taxel, of length one, in the order of their pieces. Pieces that face away from the
+/// taxel's own piece are ignored.
 fn mean_normals(pieces: &[Piece], taxels: &Taken, within: f64) -> BTreeMap<usize, DVec3> {
     let mut sums: BTreeMap<usize, DVec3> = BTreeMap::new();
     for piece in pieces {
@@ -177,15 +177,15 @@ fn mean_normals(pieces: &[Piece], taxels: &Taken, within: f64) -> BTreeMap<usize
     sums
 }
 
-/// The pieces that have become taxels, by the cube of space that they lie in.
+/// Pieces that have become taxels, stored by cubic cells of space.
 struct Taken {
-    /// Of the cubes, metres. Twice a distance: whatever is within it lies in at most eight.
+    /// Side of a cell, metres: twice a distance, so that a ball of this radius meets at most eight cells.
     side: f64,
     cubes: HashMap<[i64; 3], Vec<(usize, DVec3)>>,
 }
 
 impl Taken {
-    /// None yet; for distances up to this one, metres.
+    /// Creates an empty set for searches up to the distance `within`, metres.
     fn new(within: f64) -> Self {
         Self {
             side: 2.0 * within,
@@ -198,7 +198,7 @@ impl Taken {
         self.cubes.entry(cube).or_default().push((piece, place));
     }
 
-    /// Those nearer to a place than `within` metres.
+    /// Returns the pieces nearer to a place than `within` metres.
     fn near(&self, place: DVec3, within: f64) -> impl Iterator<Item = usize> {
         let (low, high) = (self.cube(place - within), self.cube(place + within));
         let columns = (low[0]..=high[0]).flat_map(move |x| (low[1]..=high[1]).map(move |y| [x, y]));

@@ -1,7 +1,7 @@
-//! Layouts that are one row of taxels repeated along a straight line: grids, and parts of cylinders.
+//! Layouts that repeat one row of taxels along a straight line: grids, and parts of cylinders.
 //!
-//! Such a layout is known by one row and by where the rows are, whereas a [`Layout`] has 48 bytes a taxel: bodies of millions
-//! of taxels are made of them.
+//! An extrusion stores only one row and the positions of the rows, whereas a [`Layout`] needs 48 bytes per taxel. Bodies with millions
+//! of taxels consist of extrusions.
 
 use super::limits::{check_angle, check_count};
 use super::ring::{Ring, ends_of_steps, n_steps};
@@ -11,10 +11,10 @@ use crate::world::Grid;
 use glam::{DMat3, DVec2, DVec3};
 use std::f64::consts::TAU;
 
-/// A row of taxels (in the plane of u and v) repeated along w.
+/// Row of taxels (in the plane of u and v) repeated along w.
 ///
 /// Taxel `row · n_columns + column` rests at `places[column]` in the plane and at `rows[row]` along w; its axis is
-/// `axes[column]`, in the plane. Invariant: as many axes as places, none empty; all finite; axes of length one; rows ascend.
+/// `axes[column]`, in the plane. Invariant: as many axes as places, not empty; all finite; axes of length one; rows ascend.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Extrusion {
     places: Vec<DVec2>,
@@ -24,7 +24,7 @@ pub struct Extrusion {
 }
 
 impl Extrusion {
-    /// Rest centres and axes, row by row.
+    /// Returns rest centres and axes, row by row.
     pub(crate) fn taxels(&self) -> impl Iterator<Item = (DVec3, DVec3)> {
         let patch_from_uvw = self.uvw_from_patch.transpose();
         self.rows.iter().flat_map(move |&w| {
@@ -36,10 +36,10 @@ impl Extrusion {
         })
     }
 
-    /// The grid of [`Layout::grid`](crate::world::Layout::grid): u, v, w are the patch's x, z, y.
+    /// Creates the grid of [`Layout::grid`](crate::world::Layout::grid): u, v, w are the patch's x, z, y.
     ///
     /// # Errors
-    /// The error names what is out of its range: see [`Grid::check`].
+    /// If [`Grid::check`] refuses the grid.
     pub fn grid(grid: &Grid) -> Result<Self> {
         grid.check()?;
         check_count("taxel grid", grid.nx as f64 * grid.ny as f64)?;
@@ -53,11 +53,11 @@ impl Extrusion {
         })
     }
 
-    /// A grid bent around a cylinder: what [`Layout::cylinder`](crate::world::Layout::cylinder) says of its taxels, arguments and errors. u, v, w are the
+    /// Creates a grid bent around a cylinder, with the arguments and taxels of [`Layout::cylinder`](crate::world::Layout::cylinder). u, v, w are the
     /// patch's x, y, z.
     ///
     /// # Errors
-    /// Those of [`Layout::cylinder`](crate::world::Layout::cylinder).
+    /// If [`Layout::cylinder`](crate::world::Layout::cylinder) fails.
     pub fn cylinder(radius: f64, length: f64, arc: f64, pitch: f64) -> Result<Self> {
         positive("taxel pitch", pitch, "m")?;
         positive("cylinder radius", radius, "m")?;
@@ -89,27 +89,27 @@ impl Extrusion {
         })
     }
 
-    /// n_columns rest centres in the plane of u and v, metres.
+    /// Returns the rest centres in the plane of u and v, metres, shape (n_columns,).
     pub fn places(&self) -> &[DVec2] {
         &self.places
     }
 
-    /// n_columns axes, unit, away from the substrate, in the plane of u and v.
+    /// Returns the axes, unit, away from the substrate, in the plane of u and v, shape (n_columns,).
     pub fn axes(&self) -> &[DVec2] {
         &self.axes
     }
 
-    /// Where the rows are along w, metres, ascending.
+    /// Returns the positions of the rows along w, metres, ascending.
     pub fn rows(&self) -> &[f64] {
         &self.rows
     }
 
-    /// Takes vectors of the patch frame to u, v, w.
+    /// Returns the matrix that maps vectors of the patch frame to u, v, w.
     pub fn uvw_from_patch(&self) -> DMat3 {
         self.uvw_from_patch
     }
 
-    /// How many taxels.
+    /// Returns the number of taxels.
     pub fn n_taxels(&self) -> usize {
         self.places.len() * self.rows.len()
     }

@@ -7,22 +7,21 @@ use crate::error::{Error, Result};
 use crate::text::in_range::positive;
 use glam::DVec3;
 
-/// Rows of a hexagonal lattice are this many pitches apart: √3 / 2.
+/// Distance between rows of a hexagonal lattice, in pitches: √3 / 2.
 const ROWS: f64 = 0.866_025_403_784_438_6;
 
 impl Layout {
-    /// `ny` rows of `nx` taxels, every other row moved by half a pitch, so that each inner taxel has six neighbours at exactly
-    /// `pitch` metres; row (patch y, ascending) by row, centred on the origin.
+    /// Creates `ny` rows of `nx` taxels, every other row shifted by half a pitch, so that each inner taxel has six neighbours at exactly
+    /// `pitch` metres. Taxels are numbered row by row (patch y, ascending) and centred on the origin.
     ///
     /// # Errors
-    /// The error names a pitch that is not positive, or a number of taxels that is zero or beyond
-    /// [`MAX_TAXELS`](crate::world::MAX_TAXELS).
+    /// If the pitch is not positive, or the number of taxels is zero or exceeds [`MAX_TAXELS`](crate::world::MAX_TAXELS).
     pub fn hexagonal(nx: usize, ny: usize, pitch: f64) -> Result<Self> {
         positive("taxel pitch", pitch, "m")?;
         check_count("hexagonal layout", nx as f64 * ny as f64)?;
         let middle = |n: usize| 0.5 * (n as f64 - 1.0);
         let taxels = (0..ny).flat_map(|row| {
-            // A single row is not moved.
+            // A single row is not shifted.
             let stagger = if ny == 1 { 0.0 } else { 0.25 };
             let shift = if row % 2 == 0 { -stagger } else { stagger };
             let y = (row as f64 - middle(ny)) * ROWS * pitch;
@@ -34,16 +33,15 @@ impl Layout {
         Ok(Self::of_taxels(taxels))
     }
 
-    /// The places of a hexagonal lattice around the origin that are no farther from it than `radius` metres: the nearest
-    /// neighbours of each taxel are exactly `pitch` metres away; row by row.
+    /// Creates the part of a hexagonal lattice within `radius` metres of the origin, row by row. The nearest neighbours of each
+    /// taxel are exactly `pitch` metres away. A radius below the pitch yields one taxel, at the origin.
     ///
     /// # Errors
-    /// The error names a length that is not positive, or a disc of more than [`MAX_TAXELS`](crate::world::MAX_TAXELS). A
-    /// radius below the pitch leaves the one taxel in the middle.
+    /// If a length is not positive, or the disc has more than [`MAX_TAXELS`](crate::world::MAX_TAXELS) taxels.
     pub fn disc(radius: f64, pitch: f64) -> Result<Self> {
         positive("taxel pitch", pitch, "m")?;
         positive("disc radius", radius, "m")?;
-        // A place on the rim belongs to the disc, however it was rounded.
+        // Rounding must not exclude a place on the rim.
         let reach = radius / pitch * (1.0 + 1e-9);
         check_count(
             "disc layout",
@@ -64,15 +62,14 @@ impl Layout {
         Ok(Self::of_taxels(taxels))
     }
 
-    /// Rings of taxels around the origin, the first at the `inner` and the last at the `outer` radius (metres); ring by ring,
+    /// Creates rings of taxels around the origin, the first at the `inner` and the last at the `outer` radius (metres). Taxels are numbered ring by ring,
     /// from +x towards +y.
     ///
-    /// The pitch is met as well as whole numbers of rings and of taxels in a ring allow: rings are between 0.75 and 1.5
+    /// The pitch is adjusted to whole numbers of rings and of taxels per ring: rings are between 0.75 and 1.5
     /// pitches apart. An annulus narrower than 0.75 pitches is a single ring in the middle.
     ///
     /// # Errors
-    /// The error names a length that is not positive, radii that are not in ascending order, or a ring of more than
-    /// [`MAX_TAXELS`](crate::world::MAX_TAXELS).
+    /// If a length is not positive, the radii are not in ascending order, or a ring has more than [`MAX_TAXELS`](crate::world::MAX_TAXELS) taxels.
     pub fn annulus(inner: f64, outer: f64, pitch: f64) -> Result<Self> {
         positive("taxel pitch", pitch, "m")?;
         positive("annulus inner radius", inner, "m")?;
@@ -122,7 +119,7 @@ mod tests {
 
     #[test]
     fn a_disc_holds_every_place_of_its_lattice_within_the_radius() {
-        // Around a place of a hexagonal lattice lie 6 neighbours at 1, 6 at √3, 6 at 2, 12 at √7 pitches.
+        // In a hexagonal lattice a place has 6 neighbours at 1, 6 at √3, 6 at 2 and 12 at √7 pitches.
         for (radius, n) in [(0.5, 1), (1.0, 7), (1.8, 13), (2.0, 19), (2.7, 31)] {
             assert_eq!(Layout::disc(radius, 1.0).unwrap().n_taxels(), n, "{radius}");
         }

@@ -1,4 +1,4 @@
-//! Where the taxels of a skin rest, and which way they point.
+//! Rest centres and axes of the taxels of a skin.
 
 use super::limits::check_count;
 use crate::error::{Error, Result};
@@ -7,17 +7,17 @@ use crate::world::{Dome, Extrusion, Grid};
 use glam::{DMat3, DVec3};
 use std::sync::OnceLock;
 
-/// Deviation of an axis's length from one, at most. Two written digits round to less. A larger bound would accept vectors that are no
-/// unit vectors, a smaller one would refuse what files contain.
+/// Largest deviation of an axis's length from one. Two written digits round to less. Larger: vectors are accepted that are not
+/// unit vectors; smaller: typical files are refused.
 const MAX_LENGTH_ERROR: f64 = 0.01;
 
-/// Deviation of a unit vector's length from one by rounding of its coordinates, at most.
+/// Largest deviation of a unit vector's length from one by rounding of its coordinates.
 const UNIT_ROUNDING: f64 = 1e-9;
 
 /// Rest centres and axes of taxels, in the patch frame.
 ///
-/// Invariant: as many axes as centres; all finite; axes of length one. A layout that is a rule (a grid, an [`Extrusion`], a [`Dome`])
-/// remembers it, and has 48 bytes a taxel only once somebody asks for all of them.
+/// Invariant: as many axes as centres; all finite; axes of length one. A layout that follows a rule (a grid, an [`Extrusion`], a [`Dome`])
+/// stores the rule, and computes the 48 bytes per taxel only on demand.
 ///
 /// | family | shape | taxels |
 /// |---|---|---|
@@ -35,16 +35,16 @@ pub struct Layout {
     n_left_out: usize,
 }
 
-/// How taxels lie.
+/// Rule by which taxels are arranged.
 #[derive(Clone, Debug)]
 pub(crate) enum Rule {
-    /// In rows and columns.
+    /// Rows and columns.
     Grid(Grid),
     /// One row repeated along a line.
     Rows(Extrusion),
     /// Rings on a sphere.
     Dome(Dome),
-    /// Anywhere.
+    /// No rule: arbitrary places.
     None,
 }
 
@@ -54,7 +54,7 @@ struct Places {
     axes: Vec<DVec3>,
 }
 
-/// The same taxels, numbered alike.
+/// Layouts are equal if they have equal taxels in equal order.
 impl PartialEq for Layout {
     fn eq(&self, other: &Self) -> bool {
         self.places() == other.places()
@@ -62,11 +62,11 @@ impl PartialEq for Layout {
 }
 
 impl Layout {
-    /// Any places (metres) with any axes (unit, away from the substrate). Axes are normalised: files write them with few digits.
+    /// Creates a layout of arbitrary places (metres) and axes (unit, away from the substrate). Axes are normalised, because files contain few digits.
     ///
     /// # Errors
-    /// The error names the first taxel (from 1) whose place or axis cannot be used, such as an axis whose length differs from one by
-    /// more than 1 %, or the lengths if they differ.
+    /// If a place or an axis is invalid, such as an axis whose length differs from one by more than 1 %; the error names the first such taxel
+    /// (from 1). Also if the two lists differ in length.
     pub fn new(centers: Vec<DVec3>, mut axes: Vec<DVec3>) -> Result<Self> {
         if centers.len() != axes.len() {
             return Err(Error::input(
@@ -93,7 +93,7 @@ impl Layout {
                     "a vector of length one, within 1 %",
                 ));
             }
-            // An axis that is a unit vector to rounding keeps its bits.
+            // Axes that are unit vectors to rounding keep their bits.
             if (length - 1.0).abs() > UNIT_ROUNDING {
                 *axis = axis.normalize();
             }
@@ -101,17 +101,17 @@ impl Layout {
         Ok(Self::of_places(Places { centers, axes }))
     }
 
-    /// A grid in the plane z = 0, row (patch y, ascending) by row; the layout remembers that it is one.
+    /// Creates a grid in the plane z = 0, row by row (patch y, ascending). [`as_grid`](Self::as_grid) returns this grid.
     ///
     /// # Errors
-    /// The error names what is out of its range: see [`Grid::check`].
+    /// If [`Grid::check`] refuses the grid.
     pub fn grid(grid: &Grid) -> Result<Self> {
         grid.check()?;
         check_count("taxel grid", grid.nx as f64 * grid.ny as f64)?;
         Ok(Self::of_rule(Rule::Grid(*grid)))
     }
 
-    /// How many taxels.
+    /// Returns the number of taxels.
     pub fn n_taxels(&self) -> usize {
         match &self.rule {
             Rule::Grid(grid) => grid.n_taxels(),
@@ -121,7 +121,7 @@ impl Layout {
         }
     }
 
-    /// Taxels that a [draped](Self::draped_on) layout leaves out, because their axes would meet the mesh again; 0 for other layouts.
+    /// Returns the number of taxels omitted by a [draped](Self::draped_on) layout because their axes would meet the mesh again; 0 for other layouts.
     pub fn n_left_out(&self) -> usize {
         self.n_left_out
     }
@@ -130,12 +130,12 @@ impl Layout {
         Self { n_left_out, ..self }
     }
 
-    /// n_taxels rest centres, metres.
+    /// Returns the rest centres, metres, shape (n_taxels,).
     pub fn centers(&self) -> &[DVec3] {
         &self.places().centers
     }
 
-    /// n_taxels axes, unit, pointing away from the substrate.
+    /// Returns the axes, unit, pointing away from the substrate, shape (n_taxels,).
     pub fn axes(&self) -> &[DVec3] {
         &self.places().axes
     }
@@ -149,27 +149,27 @@ impl Layout {
         })
     }
 
-    /// How its taxels lie.
+    /// Returns the rule by which the taxels are arranged.
     pub(crate) fn rule(&self) -> &Rule {
         &self.rule
     }
 
-    /// The frame of one taxel: columns x, y (across its axis) and z (its axis) in the patch frame, a rotation.
+    /// Returns the frame of one taxel, a rotation: columns x, y (perpendicular to its axis) and z (its axis) in the patch frame.
     ///
-    /// x and y are those of the patch, turned by the least rotation that takes the patch's z to the axis; of an axis that
-    /// points below the patch's xy plane, x and −y by the least rotation that takes −z there. So the taxels of a flat skin have
-    /// the patch's x and y, and those of a dome differ no more than their axes do; the frames jump only where the axes
+    /// If the axis points above the patch's xy plane, the frame is the patch's, rotated by the smallest rotation that takes the patch's z to the axis.
+    /// Otherwise the frame consists of x and −y of the patch, rotated by the smallest rotation from −z to the axis. The taxels of a flat skin therefore
+    /// have the patch's x and y, and frames on a dome vary as little as their axes. Frames are discontinuous only where axes
     /// cross the xy plane.
     ///
     /// # Panics
-    /// If there are not that many.
+    /// If the taxel does not exist.
     pub fn frame(&self, taxel: usize) -> DMat3 {
         let axis = self.axes()[taxel];
         let (x, y) = axis.any_orthonormal_pair();
         DMat3::from_cols(x, y, axis)
     }
 
-    /// The grid that it was made from, if it was.
+    /// Returns the grid from which the layout was made; `None` for other layouts.
     pub fn as_grid(&self) -> Option<&Grid> {
         match &self.rule {
             Rule::Grid(grid) => Some(grid),
@@ -177,7 +177,7 @@ impl Layout {
         }
     }
 
-    /// The same taxels elsewhere in the patch frame; no grid any more.
+    /// Returns the layout moved in the patch frame; the result is no longer a grid.
     #[must_use]
     pub fn moved(&self, pose: &Pose) -> Self {
         let taxels = self.centers().iter().zip(self.axes());
@@ -188,7 +188,7 @@ impl Layout {
         moved.with_left_out(self.n_left_out)
     }
 
-    /// What a family has made: taxels whose axes are all of length one.
+    /// Creates a layout from taxels whose axes all have length one.
     pub(crate) fn of_taxels(taxels: impl IntoIterator<Item = (DVec3, DVec3)>) -> Self {
         Self::of_places(taxels.into_iter().collect())
     }

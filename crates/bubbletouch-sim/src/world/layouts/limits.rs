@@ -2,10 +2,10 @@
 
 use crate::error::{Error, Result};
 
-/// Taxels of one layout, at most: more is a pitch in the wrong unit, and a hundred bytes each.
+/// Largest number of taxels of a layout, each about a hundred bytes. More indicate a pitch in the wrong unit.
 pub const MAX_TAXELS: usize = 1 << 22;
 
-/// Refuses layouts without taxels, and those with more than [`MAX_TAXELS`]; `about`: how many there will be.
+/// Returns an error if a layout has no taxels or more than [`MAX_TAXELS`]; `about` is the expected number.
 pub(super) fn check_count(place: &str, about: f64) -> Result<()> {
     if about >= 1.0 && about <= MAX_TAXELS as f64 {
         return Ok(());
@@ -17,7 +17,7 @@ pub(super) fn check_count(place: &str, about: f64) -> Result<()> {
     ))
 }
 
-/// The error is an angle that is not above zero, or larger than `largest` radians.
+/// Returns an error unless an angle is above zero and at most `largest` radians.
 pub(super) fn check_angle(place: &str, angle: f64, largest: f64) -> Result<()> {
     if angle > 0.0 && angle <= largest {
         return Ok(());

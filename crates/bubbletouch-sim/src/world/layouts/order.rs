@@ -1,14 +1,14 @@
-//! The taxels of a layout in an order that keeps neighbours together.
+//! Reordering of a layout's taxels so that neighbours have near numbers.
 
 use crate::world::Layout;
 use glam::DVec3;
 
-/// Taxels that are to be together at last, and so many of those, and so on: the tiles of a body's patch.
+/// Taxels in the smallest group of neighbours: the tiles of a body's patch.
 const TILE: usize = 8;
 
 impl Layout {
-    /// The same taxels in an order in which each 8, 64, 512 and so on from the first on are neighbours, and which taxel of this layout
-    /// each of them is. The same layout always gives the same order.
+    /// Returns the layout in an order in which each aligned group of 8, 64, 512 and so on consists of neighbours, and each taxel's number in
+    /// this layout. The order is deterministic.
     pub fn with_neighbours_together(&self) -> (Self, Vec<usize>) {
         let mut order: Vec<usize> = (0..self.n_taxels()).collect();
         halve(&mut order, self.centers());
@@ -17,7 +17,7 @@ impl Layout {
     }
 }
 
-/// Halves taxels across the longest side of where they are, at a whole number of the largest parts, until a tile is left.
+/// Splits taxels across the longest side of their bounding box, at a multiple of the largest group, until a tile remains.
 fn halve(order: &mut [usize], centers: &[DVec3]) {
     if order.len() <= TILE {
         return;
@@ -31,7 +31,7 @@ fn halve(order: &mut [usize], centers: &[DVec3]) {
     let low = all().fold(DVec3::INFINITY, DVec3::min);
     let high = all().fold(DVec3::NEG_INFINITY, DVec3::max);
     let side = (high - low).max_position();
-    // Ties by number: the order depends on nothing but the taxels.
+    // Ties are broken by number, so that the order depends on the taxels only.
     order.select_nth_unstable_by(half, |&a, &b| {
         let order = centers[a][side].total_cmp(&centers[b][side]);
         order.then(a.cmp(&b))
@@ -62,7 +62,7 @@ mod tests {
             let mut all = order.clone();
             all.sort_unstable();
             assert!(all.into_iter().eq(0..n));
-            // A tile of n points in a unit square is a part of it of about 8 / n.
+            // Each tile covers about 8 / n of the unit square with n points.
             for tile in ordered.centers().chunks(TILE) {
                 let far = tile.iter().map(|c| c.distance(tile[0])).fold(0.0, f64::max);
                 assert!(far < 4.0 * (8.0 / n as f64).sqrt(), "{n} {far}");

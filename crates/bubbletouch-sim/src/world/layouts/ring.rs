@@ -1,32 +1,32 @@
-//! Rings around the z axis, which annuli, cylinders and caps are made of.
+//! Rings around the z axis, from which annuli, cylinders and caps are built.
 
 use glam::DVec3;
 use std::f64::consts::TAU;
 
-/// A circle around the z axis.
+/// Circle around the z axis.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ring {
-    /// Metres, not negative.
+    /// Radius, metres, not negative.
     pub radius: f64,
-    /// z, metres.
+    /// Height z, metres.
     pub height: f64,
 }
 
 impl Ring {
-    /// Places evenly around it, about `pitch` metres apart and the first one at +x; at least one.
+    /// Returns places on the ring, evenly spaced by about `pitch` metres, the first at +x; at least one.
     pub fn places(self, pitch: f64) -> impl Iterator<Item = DVec3> {
         let n = n_steps(TAU * self.radius, pitch).max(1);
         (0..n).map(move |k| self.place(TAU * k as f64 / n as f64))
     }
 
-    /// The place at an angle from +x towards +y, radians.
+    /// Returns the place at an angle from +x towards +y, radians.
     pub fn place(self, angle: f64) -> DVec3 {
         let (sin, cos) = angle.sin_cos();
         DVec3::new(self.radius * cos, self.radius * sin, self.height)
     }
 }
 
-/// Into how many equal steps of about a pitch a length is cut: of between 0.75 and 1.5 pitches; none if it is shorter.
+/// Returns the number of equal steps, each between 0.75 and 1.5 pitches, into which a length is divided; 0 if the length is shorter.
 pub(crate) fn n_steps(length: f64, pitch: f64) -> usize {
     if length < 0.75 * pitch {
         return 0;
@@ -34,7 +34,7 @@ pub(crate) fn n_steps(length: f64, pitch: f64) -> usize {
     (length / pitch).round() as usize
 }
 
-/// Where the ends of n equal steps are in a length about zero, as shares of it: from −0.5 to 0.5, or 0 alone.
+/// Returns the ends of n equal steps of a length centred at zero, relative to the length: from −0.5 to 0.5, or 0 alone.
 pub(crate) fn ends_of_steps(n: usize) -> impl Iterator<Item = f64> + Clone {
     (0..=n).map(move |step| match n {
         0 => 0.0,
@@ -42,7 +42,7 @@ pub(crate) fn ends_of_steps(n: usize) -> impl Iterator<Item = f64> + Clone {
     })
 }
 
-/// Of each taxel of a layout the distance to its nearest neighbour.
+/// Returns for each taxel of a layout the distance to its nearest neighbour.
 #[cfg(test)]
 pub(super) fn nearest_distances(centers: &[DVec3]) -> Vec<f64> {
     let nearest = |i: usize| {

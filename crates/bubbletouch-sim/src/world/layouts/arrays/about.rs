@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 
 /// Description of an array layout.
 pub struct LayoutAbout {
-    /// Name for people.
+    /// Name of the layout in texts.
     pub words: &'static str,
     /// Places the taxels on the area of a square grid; the second argument is the radius of curvature, metres.
     pub taxels: fn(&Grid, f64) -> Result<Layout>,
@@ -26,7 +26,7 @@ pub struct LayoutAbout {
 pub struct Curved {
     /// Smallest radius, metres, for a square array of this side, metres.
     pub least_radius: fn(f64) -> f64,
-    /// Words for what the layout covers at the smallest radius.
+    /// Description of the covered part at the smallest radius.
     pub half: &'static str,
 }
 

@@ -18,14 +18,14 @@ pub const ABOUT: LayoutAbout = LayoutAbout {
 
 fn taxels(grid: &Grid, radius: f64) -> Result<Layout> {
     let (side, pitch) = (grid.nx as f64 * grid.pitch, grid.pitch);
-    // The outermost taxels feel half a pitch beyond their ring.
+    // The outermost taxels cover half a pitch beyond their ring.
     let whole = (1.0 - side * side / (TAU * radius * radius)).acos();
     let half_angle = (whole - 0.5 * pitch / radius).max(1e-9);
     let cap = Layout::sphere_cap(radius, half_angle, pitch)?;
     Ok(cap.moved(&Pose::from_translation(-radius * DVec3::Z)))
 }
 
-/// Returns the azimuthal equidistant projection: as far from the middle as along the surface, in the same direction.
+/// Returns the azimuthal equidistant projection: distances from the middle are those along the surface, directions are kept.
 fn place_on_plane(center: DVec3, radius: f64) -> DVec2 {
     let away = center.truncate();
     let angle = away.length().atan2(center.z + radius);

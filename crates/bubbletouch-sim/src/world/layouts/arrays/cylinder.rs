@@ -18,7 +18,7 @@ pub const ABOUT: LayoutAbout = LayoutAbout {
     })
 };
 
-/// Moves the middle of a cylinder around z, at +x, to the origin, its axis along z and its rings along y.
+/// Returns the pose that moves the middle of a cylinder around z, at +x, to the origin, with the axis along z and the rings along y.
 fn up(radius: f64) -> Pose {
     let rotation = DMat3::from_cols(DVec3::Z, DVec3::X, DVec3::Y);
     Pose {

@@ -1,9 +1,9 @@
-//! Arrays of taxels that can be compared: one file and one line below for each layout.
+//! Comparable arrays of taxels; each layout is one file and one line below.
 //!
-//! Each has a taxel for each square of a pitch, and together the taxels cover the area of a square grid, n × n pitches. The number of taxels is within a few
+//! An array has one taxel per square of a pitch, and its taxels cover the area of a square grid, n × n pitches. The number of taxels is within a few
 //! per cent of n². In the patch frame the middle is at the origin, with its axis along +z.
 //!
-//! The pitch of an array is the side of a square with the area per taxel, in every layout. In a hexagonal lattice of that density the six
+//! The pitch of an array is the side of a square with the area per taxel, in every layout. In a hexagonal lattice of this density the six
 //! neighbours of a taxel are [farther away](ArrayLayout::neighbour_distance): 2.149 mm at a pitch of 2 mm.
 
 #[macro_use]
@@ -16,7 +16,7 @@ use about::LayoutAbout;
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
-// All that the rest of the program knows of a layout follows from its line here and from the file that it names.
+// The rest of the program uses only a layout's line here and the file that the line names.
 array_layouts! {
     Grid grid "Rows and columns.";
     Hexagonal hexagonal "Staggered rows: each taxel has six neighbours, 1.0746 pitches away.";
@@ -66,7 +66,7 @@ impl ArrayLayout {
         }
         if let Some(curved) = &about.curved {
             let least = (curved.least_radius)(grid.nx as f64 * grid.pitch);
-            // A layout that fits exactly is not refused for its last bit.
+            // Rounding must not exclude a layout that fits exactly.
             if !(radius.is_finite() && radius >= least * (1.0 - 1e-9)) {
                 let given = format!("a radius of {} mm", 1e3 * radius);
                 let half = curved.half;
