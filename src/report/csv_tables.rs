@@ -1,28 +1,28 @@
-//! Result tables as CSV, out and in.
+//! Reader of result tables in CSV files.
 //!
-//! Floats are written in the shortest form that reads back as the same bits, so equal tables are equal bytes. An absent
-//! value is an empty field. A table without rows has its header, but for columns that only some studies have.
+//! Floats have the shortest form that reads back as the same bits, so that equal tables have equal bytes. An absent value is an empty field. A table without
+//! rows has a header without the optional columns.
 
 use crate::error::{Error, Result};
 use crate::table::csv_place;
 use serde::de::DeserializeOwned;
 use std::path::Path;
 
-/// What failed, and why.
+/// File of failed work items and their errors.
 pub const FAILURES_FILE: &str = "failures.csv";
 
-/// How often limits of the model were reached, beside the tables.
+/// File that counts how often limits of the model were reached.
 pub const LIMITS_FILE: &str = "limits.csv";
-/// The row of limits that counts touches without contact.
+/// Name of the row that counts touches without contact.
 pub const MISSED_TOUCHES: &str = "touches that met nothing";
 
-/// What is asked for where a table is missing.
+/// Expected content, for error messages.
 const A_TABLE: &str = "a table of results as bubbletouch run writes it";
 
 /// Reads a table.
 ///
 /// # Errors
-/// The error names the file and the line.
+/// If the file cannot be read or has invalid rows; the error contains the file and the line.
 pub fn read_rows<R: DeserializeOwned>(path: &Path) -> Result<Vec<R>> {
     let file = crate::files::open(path).map_err(|e| Error::unreadable(path, A_TABLE, e))?;
     csv::Reader::from_reader(file)

@@ -1,4 +1,4 @@
-//! The files of a study's folder: all of them made before the first is written.
+//! Files of a study's folder. All contents are computed before the first file is written.
 
 use crate::error::{Error, Result};
 use crate::files::write_bytes;
@@ -6,21 +6,21 @@ use crate::table::Table;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A file that will stand in a folder: its name and its content.
+/// Name and content of a file in a folder.
 pub type NamedFile = (String, Vec<u8>);
 
-/// The files of tables.
+/// Returns the files of tables.
 pub fn table_files(tables: &[Table]) -> Vec<NamedFile> {
-    // A table that is made of others has no file.
+    // A table that is derived from others has no file.
     let files = tables.iter().filter(|table| !table.csv.is_empty());
     let files = files.map(|table| (table.file.to_owned(), table.csv.clone()));
     files.collect()
 }
 
-/// Makes a folder if it is missing and writes every file whole, in this order; returns their paths.
+/// Creates a folder if it is missing and writes all files in order, each completely or not at all. Returns their paths.
 ///
 /// # Errors
-/// A file that is in the folder's way or cannot be written.
+/// If the folder's path is a file, or a file cannot be written.
 pub fn write_files(folder: &Path, files: Vec<NamedFile>) -> Result<Vec<PathBuf>> {
     if fs::metadata(folder).is_ok_and(|meta| !meta.is_dir()) {
         let allowed = "a folder, or a name that is free";

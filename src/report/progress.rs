@@ -1,4 +1,4 @@
-//! Progress of a run: bars on a terminal, one line per stage elsewhere, and JSON lines for programs that start a run.
+//! Progress of a run: bars on a terminal, one line for each stage elsewhere, and JSON lines for programs that start a run.
 //!
 //! ```text
 //! {"event":"stage","name":"recognise 32×32 at 2 mm","total":240}
@@ -16,13 +16,13 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use std::time::{Duration, Instant};
 use std::{fmt, thread};
 
-/// Interval between two reports on a stage, also if nothing advances. Longer: a program waits longer for news; shorter: more lines.
+/// Interval between two reports on a stage, even without progress. A longer interval delays the reports; a shorter one writes more lines.
 const INTERVAL: Duration = Duration::from_millis(200);
 
 /// Layout of a bar.
 const BAR: &str = "{prefix:>14} [{bar:32}] {pos}/{len}, {rate}, {left}";
 
-/// Returns the listener for standard error: bars, or plain lines if it is not a terminal.
+/// Returns the progress listener for standard error: bars, or plain lines if it is not a terminal.
 pub fn to_stderr() -> Box<dyn Progress> {
     let is_dumb = std::env::var("TERM").is_ok_and(|term| term == "dumb");
     match std::io::stderr().is_terminal() && !is_dumb {
@@ -31,12 +31,12 @@ pub fn to_stderr() -> Box<dyn Progress> {
     }
 }
 
-/// Returns the listener that writes one event per line. A writer that fails does not stop the run.
+/// Returns a progress listener that writes one event per line. A writer that fails does not stop the run.
 pub fn json_lines(writer: impl Write + Send + 'static) -> Box<dyn Progress> {
     Box::new(Events::new(Form::Json, writer))
 }
 
-/// The current stage.
+/// Current stage of a run.
 struct Stage {
     name: String,
     total: u64,
@@ -58,14 +58,14 @@ impl Stage {
         self.start.elapsed().as_secs_f64()
     }
 
-    /// The line that remains of a stage that ended.
+    /// Returns the line that remains after the end of the stage.
     fn summary(&self) -> String {
         let Self { name, done, .. } = self;
         format!("{name:>14}: {done} in {:.1} s", self.seconds())
     }
 }
 
-/// A bar for the stage and a bar for all work items of the run.
+/// Progress bars: one for the stage and one for all work items of the run.
 struct Bars {
     screen: MultiProgress,
     shown: Mutex<Shown>,
@@ -158,7 +158,7 @@ impl Drop for Bars {
 
 /// Writes the steps per second of a bar.
 fn write_rate(state: &ProgressState, text: &mut dyn fmt::Write) {
-    // A text of a bar always takes what is written.
+    // Writing to the text of a bar cannot fail.
     let _ = write!(text, "{:.2}/s", state.per_sec());
 }
 
@@ -170,7 +170,7 @@ fn write_left(state: &ProgressState, text: &mut dyn fmt::Write) {
     };
 }
 
-/// Output without a terminal.
+/// Format of the output without a terminal.
 #[derive(Clone, Copy, PartialEq)]
 enum Form {
     /// One line at the end of each stage.
@@ -179,7 +179,7 @@ enum Form {
     Json,
 }
 
-/// Writes lines or events. The threads of a run share the state.
+/// Progress listener that writes lines or events. The threads of a run share the state.
 struct Events<W: Write>(Arc<Mutex<State<W>>>);
 
 struct State<W: Write> {
@@ -259,7 +259,7 @@ fn report_regularly<W: Write>(state: &Weak<Mutex<State<W>>>) {
 }
 
 impl<W: Write> State<W> {
-    /// Writes and flushes a whole line, so that nobody reads a part. A closed output must not end a run.
+    /// Writes and flushes a complete line, so that readers never see a part. A closed output must not end a run.
     fn write(&mut self, line: &impl std::fmt::Display) {
         let written = self.writer.write_all(format!("{line}\n").as_bytes());
         let _ = written.and_then(|()| self.writer.flush());

@@ -30,13 +30,13 @@ impl RunClock {
         (self.n_finished, self.n_items)
     }
 
-    /// Seconds since the start, at the instant `now`.
+    /// Returns the seconds from the start to the instant `now`.
     pub fn elapsed_s(&self, now: Instant) -> f64 {
         now.duration_since(self.start).as_secs_f64()
     }
 
-    /// Returns the estimated seconds until the last work item is finished, if each pending one takes as long as the finished ones did on
-    /// average; `None` while nothing is known.
+    /// Returns the estimated seconds until the last work item is finished. The estimate is the mean time of finished items times the number of pending ones.
+    /// Returns `None` if no item is finished.
     pub fn left_s(&self, now: Instant) -> Option<f64> {
         let n_pending = self.n_items.saturating_sub(self.n_finished);
         match (n_pending, self.n_finished) {

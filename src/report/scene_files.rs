@@ -1,4 +1,4 @@
-//! A scene as files: a recording, a table of wrenches, and the scene as it was resolved.
+//! Files of a simulated scene: a recording, a table of wrenches, and the resolved scene.
 
 use super::recording::{ForceKind, RecordedPatch, RecordingHeader, RecordingWriter};
 use crate::error::Result;
@@ -7,8 +7,7 @@ use crate::scene::{Frame, FrameSink, PatchReading, PlannedPatch, PlannedSignal, 
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// What a patch feels at one instant, all its taxels together, in its frame: a row of `wrenches.csv`. Numbers have as many digits as bring
-/// the same bits back.
+/// Row of `wrenches.csv`: wrench and contact counts of one patch at one instant, in the patch frame. Numbers have enough digits to read back as the same bits.
 #[derive(Serialize)]
 struct WrenchRow<'a> {
     time_s: f64,
@@ -18,15 +17,15 @@ struct WrenchRow<'a> {
     fx_n: f64,
     fy_n: f64,
     fz_n: f64,
-    /// About the patch's origin.
+    /// Torque about the patch's origin.
     tx_nm: f64,
     ty_nm: f64,
     tz_nm: f64,
-    /// The centre of pressure: empty where there is no contact.
+    /// Centre of pressure; empty without contact.
     cop_x_m: Option<f64>,
     cop_y_m: Option<f64>,
     cop_z_m: Option<f64>,
-    /// Empty for a patch without friction.
+    /// Contact modes; empty for a patch without friction.
     n_sticking: Option<usize>,
     n_slipping: Option<usize>,
 }
@@ -35,8 +34,8 @@ const RECORDING: &str = "recording.npz";
 const WRENCHES: &str = "wrenches.csv";
 const SCENE: &str = "scene.toml";
 
-/// The files of a scene in the making: `recording.npz`, `wrenches.csv` (in the frame of each patch, on the patch) and `scene.toml`
-/// in one folder. [`finish`](Self::finish) puts them in place; dropped before, it leaves nothing behind.
+/// Writer of the files of a scene in one folder: `recording.npz`, `wrenches.csv` (wrenches on each patch, in its frame) and `scene.toml`.
+/// [`finish`](Self::finish) completes the files. If the writer is dropped before, no file remains.
 pub struct SceneFiles {
     folder: PathBuf,
     claimed: DataFolder,
@@ -47,10 +46,11 @@ pub struct SceneFiles {
 }
 
 impl SceneFiles {
-    /// Starts the files in a folder that is there.
+    /// Starts the files in an existing folder.
     ///
     /// # Errors
-    /// If the folder has such a file that no simulation wrote; the error names it. Otherwise the error is a name that a recording cannot have (such as one with a slash), or why nothing can be written.
+    /// If the folder contains such a file that no simulation wrote, a name is not valid in a recording (such as one with a slash), or a file cannot be
+    /// written.
     pub fn create(folder: &Path, plan: &ScenePlan) -> Result<Self> {
         let claimed = DataFolder::claim(folder, "simulate", [RECORDING, WRENCHES, SCENE])?;
         let header = RecordingHeader {
@@ -81,10 +81,10 @@ impl SceneFiles {
         })
     }
 
-    /// Puts all files in place.
+    /// Completes all files.
     ///
     /// # Errors
-    /// They cannot be written.
+    /// If a file cannot be written.
     pub fn finish(self) -> Result<()> {
         self.claimed.write_manifest()?;
         self.recording.finish()?;

@@ -1,11 +1,11 @@
-//! What came of a scene, as tables for people.
+//! Summary of a scene as tables for the terminal.
 
 use crate::report::terminal::rows_text;
 use crate::scene::{Held, Movement, ScenePlan, Summary};
 use crate::table::short_number;
 use crate::world::Motion;
 
-/// One table of patches with their peaks over all frames, one of objects with what holds them at the end.
+/// Returns a table of patches with their largest values over all frames, and a table of objects with their final states.
 pub fn scene_table(plan: &ScenePlan, summary: &Summary) -> String {
     let mut text = format!("{}\n", patches(plan, summary));
     for patch in &plan.patches {
@@ -81,7 +81,7 @@ fn objects(plan: &ScenePlan, summary: &Summary) -> String {
     rows_text(&["object", "parts", "at the end"], &[0, 1, 2], rows)
 }
 
-/// What holds an object, in words.
+/// Describes the final state of an object.
 fn ending(movement: &Movement, held: &Held) -> String {
     match held {
         Held::Imposed => match movement {

@@ -1,36 +1,36 @@
-//! The content of a study's page and folder beside its tables.
+//! Content of a study's page and folder.
 
 use crate::report::page::Section;
 use crate::table::{ChartSpec, Table};
 
-/// A picture that is no chart: frames, bodies, objects.
+/// Picture that is not a chart: frames, spheres, objects.
 pub struct NamedPicture {
-    /// File name without ending.
+    /// File name without extension.
     pub name: String,
-    /// What it shows, in words.
+    /// Title of the picture.
     pub title: String,
-    /// A PNG file's bytes.
+    /// Content of the PNG file.
     pub png: Vec<u8>,
     /// Width and height in the page, pixels.
     pub size: (usize, usize),
 }
 
-/// What a study found, for whoever shows it.
+/// Results of a study, as input of reports.
 #[derive(Clone, Copy)]
 pub struct Found<'a> {
-    /// All tables.
+    /// All tables of the study.
     pub tables: &'a [Table],
-    /// What is charted, the most telling first.
+    /// Specifications of the charts, the most important first.
     pub charts: &'a [ChartSpec],
-    /// What was found, in sentences.
+    /// Answers to the study's question, one sentence each.
     pub answers: &'a [String],
 }
 
-/// What a folder has beside tables, charts and answers.
+/// Additional content of a study's folder.
 #[derive(Default)]
 pub struct Beyond {
-    /// Pictures that are no charts.
+    /// Pictures that are not charts.
     pub pictures: Vec<NamedPicture>,
-    /// Sections of the page.
+    /// Additional sections of the page.
     pub sections: Vec<Section>,
 }

@@ -1,4 +1,4 @@
-//! The folder of a study of any kind but for its tables: charts, pictures and the page.
+//! Files of a study's folder except the tables: charts, pictures and the page.
 
 use crate::error::Result;
 use crate::report::chart;
@@ -10,15 +10,15 @@ use crate::report::terminal::{paragraph, table_text};
 use crate::table::{ChartSpec, Role, Table};
 use rayon::prelude::*;
 
-/// Charts that are drawn, unless all are asked for, and charts in the page. With more, the page is too large for a phone and drawing takes
+/// Maximum number of charts in the page, and of drawn charts unless all are requested. With more charts, the page is too large for a phone, and drawing takes
 /// minutes.
 pub const MOST_CHARTS: usize = 24;
 
-/// The files of charts, pictures and the page, with what else there is, which is made while charts are drawn. A chart that no row has a
-/// place in is left out.
+/// Returns the files of charts, pictures and the page. `beyond` computes additional content while the charts are drawn. Charts without any drawable row are
+/// left out.
 ///
 /// # Errors
-/// What cannot be drawn.
+/// If a chart or picture cannot be drawn.
 pub fn files_with(
     about: &StudyAbout,
     found: &Found,
@@ -49,7 +49,7 @@ pub fn files_with(
         }
         beside.charts.push(drawing.svg_with_data(title));
     }
-    // More would make the page slow.
+    // More charts would make the page slow.
     charts.truncate(MOST_CHARTS);
     let found = Found {
         charts: &charts,
@@ -63,10 +63,10 @@ pub fn files_with(
     Ok(files)
 }
 
-/// A page alone.
+/// Returns only the page.
 ///
 /// # Errors
-/// What cannot be drawn.
+/// If a chart cannot be drawn.
 pub(super) fn page_of(about: &StudyAbout, found: &Found) -> Result<String> {
     let draw = |spec: &ChartSpec| {
         let drawing = chart::draw(spec, found.tables)?;
@@ -79,7 +79,7 @@ pub(super) fn page_of(about: &StudyAbout, found: &Found) -> Result<String> {
     Ok(study_page(about, found, &beside))
 }
 
-/// What a person reads at the end of a run, in lines of about `width` letters: the first of some tables, the answers, then the others.
+/// Returns the terminal summary of a run, wrapped at about `width` characters: the first table, the answers, then the other tables.
 pub fn words_of(tables: &[&Table], answers: &[String], width: usize) -> String {
     let first = tables.first();
     let mut words = first.map_or_else(String::new, |table| table_text(table, width) + "\n");
@@ -92,7 +92,7 @@ pub fn words_of(tables: &[&Table], answers: &[String], width: usize) -> String {
     words
 }
 
-/// The first table in which something was found.
+/// Returns the first table with rows that has a value or outcome column.
 pub fn first_found(tables: &[Table]) -> Option<&Table> {
     let is_found = |role: Role| matches!(role, Role::Value(_) | Role::Outcome);
     let mut tables = tables.iter().filter(|table| table.n_rows > 0);

@@ -247,7 +247,7 @@ fn cost_words(one: &ColumnDifferences) -> String {
     let [middle, least, most] = [0.5, 0.0, 1.0].map(|q| short_number(quantile(&mut ratios, q)));
     let words = &one.column.words;
     let n_changed = one.rows.iter().filter(|row| row.difference != 0.0).count();
-    // Ratios are rounded, so a small change could look like no change.
+    // Ratios are rounded: a small change can round to 1.
     let small = match n_changed > 0 && [&middle, &least, &most].iter().all(|ratio| *ratio == "1") {
         true => format!(
             " {n_changed} of {} settings differ by less than that says.",

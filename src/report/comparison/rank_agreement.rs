@@ -250,7 +250,7 @@ mod tests {
     pub struct DesignRow {
         /// An array's.
         taxels: usize => Choice: Linear;
-        /// Which.
+        /// Name of the design.
         ensemble: String => Choice;
         /// About.
         ratio: f64 => Choice in ":1": Log;

@@ -1,26 +1,26 @@
-//! What a study says of itself, beside its tables.
+//! Metadata of a study for its page.
 
 use crate::engine::provenance::Manifest;
 use crate::report::chart_format::ChartFormat;
 
-/// What a study says of itself, beside its tables.
+/// Metadata of a study: name, question, provenance and report options.
 #[derive(Clone, Debug, Default)]
 pub struct StudyAbout {
-    /// The study's name.
+    /// Name of the study.
     pub name: String,
-    /// What it asks.
+    /// Question of the study.
     pub question: String,
-    /// What was expected before it ran; may be empty.
+    /// Result that was expected before the run; may be empty.
     pub expected: String,
-    /// Seconds from start to end; NaN if they are not known.
+    /// Duration of the run, seconds; NaN if unknown.
     pub wall_s: f64,
-    /// The command that makes the folder again.
+    /// Command that reproduces the folder.
     pub command: String,
     /// Program and version: `bubbletouch 0.1.0`.
     pub program: String,
-    /// Where the results come from, if known.
+    /// Provenance of the results, if known.
     pub manifest: Option<Manifest>,
-    /// Whether every chart is drawn as a file, however many there are.
+    /// Whether all charts are written as files, without an upper limit.
     pub all_charts: bool,
     /// File format of the charts.
     pub chart_format: ChartFormat,

@@ -1,4 +1,4 @@
-//! The section "What to choose": the Pareto fronts of the table that offers choices.
+//! The section "What to choose": Pareto fronts of the table that contains choices with values and costs.
 
 use crate::report::advice::{Asked, Offer, Offers};
 use crate::report::pictures::drawing::escape;
@@ -6,11 +6,11 @@ use crate::report::study_content::Found;
 use crate::report::swept::Setting;
 use crate::table::{Role, Value};
 
-/// Rows of a front that are listed.
+/// Maximum number of listed rows of a front.
 const MAX_ROWS: usize = 200;
 
-/// Returns a table for each cost: in each condition, the choices that are better than all that cost as much or less. Empty if no table
-/// offers choices.
+/// Returns a table for each cost: in each condition, the choices that are better than all with equal or lower cost. Empty if no table has choices with values
+/// and costs.
 pub(crate) fn choices_html(found: &Found) -> String {
     let Ok(offers) = Offers::of(found.tables, &Asked::default()) else {
         return String::new();

@@ -1,30 +1,30 @@
-//! What every page has: head, question, contents, sections, foot.
+//! Common parts of all pages: head, question, contents, sections, foot.
 
 use super::about::StudyAbout;
 use crate::report::pictures::drawing::escape;
 
 const TEMPLATE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
-/// `elements.js` comes first: the others use it.
+/// Scripts of the page. `elements.js` comes first, because the others use it.
 const SCRIPT: [&str; 3] = [
     include_str!("script/elements.js"),
     include_str!("script/charts.js"),
     include_str!("script/tables.js"),
 ];
 
-/// A part of a page with a heading.
+/// Section of a page.
 #[derive(Clone, Debug, Default)]
 pub struct Section {
-    /// Where links lead; letters and hyphens.
+    /// Anchor of links to the section; letters and hyphens.
     pub id: &'static str,
-    /// Its heading.
+    /// Heading of the section.
     pub title: &'static str,
-    /// HTML below the heading; a section without is left out.
+    /// HTML below the heading. A section with an empty body is left out.
     pub body: String,
 }
 
 impl Section {
-    /// A section.
+    /// Creates a section.
     pub fn new(id: &'static str, title: &'static str, body: String) -> Self {
         Self { id, title, body }
     }
@@ -41,7 +41,7 @@ impl Section {
     }
 }
 
-/// Returns a page of sections with the HTML of its foot; sections without a body are left out.
+/// Returns a page of sections. `foot` is the HTML of the page's foot. Sections without a body are left out.
 pub(crate) fn html(about: &StudyAbout, sections: &[Section], foot: &str) -> String {
     let sections = sections.iter().filter(|section| !section.body.is_empty());
     let paragraph = |class: &str, before: &str, text: &str| match text {
@@ -66,7 +66,7 @@ pub(crate) fn html(about: &StudyAbout, sections: &[Section], foot: &str) -> Stri
     })
 }
 
-/// What a name stands for, in a list of such; the name is HTML.
+/// Returns an entry of a definition list. The name is HTML, the value is text.
 pub(crate) fn definition(name: &str, value: &str) -> String {
     let class = match value.len() > 60 {
         true => " class=\"long\"",
@@ -76,7 +76,7 @@ pub(crate) fn definition(name: &str, value: &str) -> String {
     format!("<div{class}><dt>{name}</dt><dd>{value}</dd></div>")
 }
 
-/// The first sentence large, the others as a list; empty if there is none.
+/// Returns the first sentence in large type and the others as a list. Empty if there is none.
 pub(crate) fn sentences_html(sentences: &[String]) -> String {
     let Some((first, others)) = sentences.split_first() else {
         return String::new();
@@ -90,7 +90,7 @@ pub(crate) fn sentences_html(sentences: &[String]) -> String {
     format!("<p class=\"answer\">{}</p>{list}", unbroken(first))
 }
 
-/// A sentence as HTML whose lines do not break between a number and its unit or its sign.
+/// Returns a sentence as HTML without line breaks between a number and its unit or sign.
 pub(crate) fn unbroken(text: &str) -> String {
     let parts = [" mm", " %", " = ", " ms"];
     parts.iter().fold(escape(text), |text, part| {
@@ -98,7 +98,7 @@ pub(crate) fn unbroken(text: &str) -> String {
     })
 }
 
-/// Replaces each `{{name}}` of a template once, left to right: what is put in is never searched again.
+/// Replaces each `{{name}}` of a template once, from left to right. Inserted text is not searched again.
 fn fill(template: &str, value: impl Fn(&str) -> String) -> String {
     let mut parts = template.split("{{");
     let mut filled = parts.next().unwrap_or_default().to_owned();

@@ -1,7 +1,7 @@
-//! `report.html`: one page with everything in it, that needs no network.
+//! The page `report.html`: one HTML file with all results, which works without a network.
 //!
-//! In: tables, charts as SVG, pictures, and the name and question of the study. Out: HTML. All charts and tables are in the HTML; the
-//! script adds tooltips, hides series, and sorts, searches and saves tables.
+//! In: tables, charts as SVG, pictures, and the name and question of the study. Out: HTML with all charts and tables. The script adds tooltips, hides series,
+//! and sorts, searches and saves tables.
 
 mod about;
 mod choices;

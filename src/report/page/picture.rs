@@ -1,8 +1,8 @@
-//! Pictures in a page.
+//! Pictures of a page.
 
 use crate::report::pictures::drawing::escape;
 
-/// The element of a PNG file, with its width and height in pixels; the title is for those who cannot see it.
+/// Returns the HTML element of a PNG file with its width and height in pixels. The title is the text for screen readers.
 pub(crate) fn png_element(png: &[u8], (width, height): (usize, usize), title: &str) -> String {
     let (data, title) = (base64(png), escape(title));
     format!(
@@ -10,13 +10,13 @@ pub(crate) fn png_element(png: &[u8], (width, height): (usize, usize), title: &s
     )
 }
 
-/// Returns an `<svg>` or `<img>` element in its frame, which has the given attributes.
+/// Returns a `<figure>` with the given attributes that contains an `<svg>` or `<img>` element.
 pub(crate) fn figure(attributes: &str, element: &str, title: &str) -> String {
     let title = escape(title);
     format!("<figure {attributes} tabindex=\"0\" aria-label=\"{title}\">{element}</figure>")
 }
 
-/// RFC 4648 with padding.
+/// Encodes bytes as base64 (RFC 4648) with padding.
 fn base64(bytes: &[u8]) -> String {
     const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);

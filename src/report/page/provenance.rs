@@ -1,4 +1,4 @@
-//! Where the results come from, for the page.
+//! Provenance of the results, for the page.
 
 use super::frame::definition;
 use crate::engine::provenance::Manifest;
@@ -6,7 +6,7 @@ use crate::report::pictures::drawing::escape;
 use crate::spelling::counted;
 use std::collections::BTreeMap;
 
-/// Program, machine, times, and hashes.
+/// Returns program, machine, times and hashes as HTML.
 pub(crate) fn provenance_html(manifest: &Manifest) -> String {
     let Manifest { program, cpu, .. } = manifest;
     let [cores, threads] = [(manifest.cores, "core"), (manifest.threads, "thread")]

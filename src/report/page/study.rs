@@ -1,4 +1,4 @@
-//! The page of a study of any kind.
+//! Page of a study of any kind.
 
 use super::about::StudyAbout;
 use super::choices::choices_html;
@@ -12,23 +12,23 @@ use crate::report::study_content::{Beyond, Found, NamedPicture};
 use crate::table::{ChartSpec, Mark, Table, short_number};
 use std::collections::HashMap;
 
-/// Bytes of all charts in a page. With more, the page opens slowly; with less, charts of some hundred points become links.
+/// Maximum size of all charts in a page, bytes. A larger value makes the page slow; with a smaller one, charts of some hundred points become links.
 const MAX_CHART_BYTES: usize = 1_200_000;
-/// Bytes of all tables in a page. With more, the page opens slowly; with less, tables of some hundred rows lose their last rows.
+/// Maximum size of all tables in a page, bytes. A larger value makes the page slow; with a smaller one, tables of some hundred rows are cut.
 const MAX_TABLE_BYTES: usize = 1_200_000;
 
-/// Parts of a page beside tables and answers.
+/// Parts of a page other than tables and answers.
 #[derive(Default)]
 pub(crate) struct Beside {
-    /// The charts as SVG with the data of their marks, in the order of the specs.
+    /// Charts as SVG with the data of their marks, in the order of the specifications.
     pub charts: Vec<String>,
-    /// Names of charts that were not drawn.
+    /// Names of the charts that were not drawn.
     pub left_out: Vec<String>,
-    /// Pictures that are no charts, and sections of its own, which come before the tables.
+    /// Pictures that are not charts, and additional sections, which come before the tables.
     pub beyond: Beyond,
 }
 
-/// The page.
+/// Returns the page of a study as HTML.
 pub(crate) fn page(about: &StudyAbout, found: &Found, beside: &Beside) -> String {
     let pictures = beside.beyond.pictures.iter().map(picture_html).collect();
     let mut sections = vec![
@@ -56,7 +56,7 @@ fn picture_html(picture: &NamedPicture) -> String {
     )
 }
 
-/// Returns the charts; those that are too large for the page as links to their files.
+/// Returns the charts as HTML. Charts that are too large for the page become links to their files.
 fn charts_html(about: &StudyAbout, found: &Found, beside: &Beside) -> String {
     let mut bytes = 0;
     let ending = match about.chart_format {
@@ -96,7 +96,7 @@ fn charts_html(about: &StudyAbout, found: &Found, beside: &Beside) -> String {
     charts.collect::<String>() + &not_drawn(&beside.left_out)
 }
 
-/// Which charts have no file, and how they get one.
+/// Describes the charts that have no file, and how to draw them.
 fn not_drawn(left_out: &[String]) -> String {
     let (Some(first), Some(last)) = (left_out.first(), left_out.last()) else {
         return String::new();
@@ -110,7 +110,7 @@ fn not_drawn(left_out: &[String]) -> String {
     )
 }
 
-/// Returns all tables. Charted tables, then small ones, get their place in the page first; of the others the first rows remain.
+/// Returns all tables as HTML. Charted tables come first, then small ones, until the page is full. Of the other tables, only the first rows are included.
 fn tables_html(found: &Found) -> String {
     let is_charted = |table: &Table| found.charts.iter().any(|chart| chart.table == table.file);
     let mut order: Vec<&Table> = found.tables.iter().filter(|t| t.n_rows > 0).collect();
@@ -138,7 +138,7 @@ fn tables_html(found: &Found) -> String {
                 )
             }
         };
-        // A table that is made of others has no file.
+        // A table that is derived from others has no file.
         let name = match table.csv.is_empty() {
             true => String::new(),
             false => format!("{file}. "),

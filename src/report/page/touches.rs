@@ -1,4 +1,4 @@
-//! Sample touches as heat maps, side by side on one scale of colours.
+//! Sample touches as heat maps, side by side on one colour scale.
 
 use crate::error::Result;
 use crate::report::page::picture::png_element;
@@ -12,14 +12,14 @@ use crate::report::pictures::snapshots::Snapshots;
 use crate::table::short_number;
 use ndarray::Array2;
 
-/// Taxels a side up to which each has a pixel of its own.
+/// Maximum number of pixels along each side of a heat map. Larger frames show the largest value of each block of taxels.
 const MOST_CELLS: usize = 96;
-/// Touches in a page, at most: each is some kilobytes.
+/// Maximum number of touches in a page; each has some kilobytes.
 const MOST_TOUCHES: usize = 120;
-/// Steps between the colours of a heat map.
+/// Number of colour steps of a heat map.
 const N_COLOURS: f64 = 128.0;
 
-/// A set of touches; the error says which frame nobody can draw.
+/// Returns a set of touches as HTML. The error contains the name of a frame that cannot be drawn.
 pub fn touches_html(set: &Snapshots) -> Result<String> {
     for (name, frame) in &set.frames {
         check_frame(frame).map_err(|error| error.under(format!("{name}: ")))?;
@@ -71,11 +71,11 @@ fn image(places: &Array2<f64>, title: &str) -> Result<String> {
     Ok(png_element(&pixels.png()?, size, title))
 }
 
-/// A pixel a value between 0 and 1; row 0, the lowest y, at the bottom.
+/// Returns one pixel for each value from 0 to 1. Row 0, the lowest y, is at the bottom.
 fn pixels(places: &Array2<f64>) -> Picture {
     let (height, width) = places.dim();
     let rows = places.outer_iter().rev();
-    // Few colours are small files.
+    // A small number of colours gives small files.
     let colour = |place: &f64| heat((place * N_COLOURS).round() / N_COLOURS);
     Picture {
         width,

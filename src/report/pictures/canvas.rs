@@ -1,29 +1,29 @@
-//! The rays of a picture, and what they meet of spheres or of another surface.
+//! Ray casting of pictures: rays, and their hits on spheres or another surface.
 
 use crate::objects::Sphere;
 use glam::{DMat3, DVec2, DVec3};
 use rayon::prelude::*;
 
-/// Rays a pixel, each way: a picture of rays is halved.
+/// Number of rays for each pixel, along each side. The picture of the rays is then scaled down by this factor.
 const SUPERSAMPLING: usize = 2;
 
-/// What a ray of the picture meets first.
+/// First hit of a ray.
 #[derive(Clone, Copy)]
 pub(crate) struct Hit {
-    /// Towards the eye, metres.
+    /// Coordinate towards the viewer, metres.
     pub height: f64,
-    /// In the frame of the picture: right, up, towards the eye.
+    /// Unit normal in the picture frame: right, up, towards the viewer.
     pub normal: DVec3,
-    /// Which of the spheres; 0 of another surface.
+    /// Index of the sphere; 0 for another surface.
     pub part: usize,
 }
 
-/// Right, up and towards the eye, in the object's frame: the eye stands before the object (−y), 30° to the right of it and 38° up.
+/// Returns the axes right, up and towards the viewer, in the object frame. The viewer is in front of the object (−y), 30° to the right and 38° up.
 pub(crate) fn three_quarter_view() -> DMat3 {
     view_from(30f64.to_radians(), 38f64.to_radians())
 }
 
-/// The same from so many radians to the right of the object and up.
+/// Returns the axes right, up and towards the viewer. The viewer is in front of the object (−y), turned by both angles, radians.
 pub(crate) fn view_from(azimuth: f64, elevation: f64) -> DMat3 {
     let right = DVec3::new(azimuth.cos(), azimuth.sin(), 0.0);
     let back = DVec3::new(azimuth.sin(), -azimuth.cos(), 0.0);
@@ -31,22 +31,22 @@ pub(crate) fn view_from(azimuth: f64, elevation: f64) -> DMat3 {
     DMat3::from_cols(right, towards_eye.cross(right), towards_eye)
 }
 
-/// A supersampled part of a picture that shows an object.
+/// Supersampled part of a picture that shows an object.
 pub(crate) struct Canvas {
-    /// Rays a row.
+    /// Number of rays in a row.
     pub width: usize,
-    /// Rays a column.
+    /// Number of rays in a column.
     pub height: usize,
-    /// Rays a metre.
+    /// Number of rays per metre.
     pub scale: f64,
-    /// The point of the view's plane in the middle.
+    /// Centre of the canvas in the view plane, metres.
     middle: DVec2,
-    /// Object from picture: right, up, towards the eye.
+    /// Rotation from the picture frame (right, up, towards the viewer) to the object frame.
     view: DMat3,
 }
 
 impl Canvas {
-    /// Spheres in the middle of width × height pixels, as large as `room` (pixels each way) allows.
+    /// Creates a canvas with the spheres in the middle of width × height pixels, as large as `room` (width and height, pixels) allows.
     pub fn new(view: DMat3, spheres: &[Sphere], [width, height]: [usize; 2], room: DVec2) -> Self {
         let (mut low, mut high) = (DVec2::MAX, DVec2::MIN);
         for sphere in spheres {
@@ -63,12 +63,12 @@ impl Canvas {
         }
     }
 
-    /// The scale of the picture.
+    /// Returns the number of pixels per metre.
     pub fn pixels_per_metre(&self) -> f64 {
         self.scale / SUPERSAMPLING as f64
     }
 
-    /// What the rays meet of spheres.
+    /// Returns the hits of all rays on spheres.
     pub fn hits(&self, spheres: &[Sphere]) -> Vec<Option<Hit>> {
         let mut hits: Vec<Option<Hit>> = vec![None; self.width * self.height];
         let size = DVec2::new(self.width as f64, self.height as f64);
@@ -86,7 +86,7 @@ impl Canvas {
                     let forward = (1.0 - offset.length_squared()).sqrt();
                     let height = center.z + sphere.radius * forward;
                     let hit = &mut hits[row * self.width + column];
-                    // Beside the sphere the height is NaN, which is above nothing.
+                    // Outside the sphere, the height is NaN, and the comparison is false.
                     if height > hit.map_or(f64::NEG_INFINITY, |hit| hit.height) {
                         *hit = Some(Hit {
                             height,
@@ -100,10 +100,10 @@ impl Canvas {
         hits
     }
 
-    /// What the rays meet of a surface, given by where a ray from a point meets it and its outward unit normal there
-    /// (metres, frame of the object).
+    /// Returns the hits of all rays on a surface. `first_hit` takes start and direction of a ray and returns the hit point and the outward unit normal
+    /// (metres, object frame).
     ///
-    /// Rays start outside `radius`, which is that of a ball about `middle` that holds the object.
+    /// Rays start outside a ball with this centre (`middle`) and `radius`, which must contain the object.
     pub fn cast(
         &self,
         first_hit: impl Fn(DVec3, DVec3) -> Option<(DVec3, DVec3)> + Sync,
@@ -124,7 +124,7 @@ impl Canvas {
         rays.map(ray).collect()
     }
 
-    /// The point of a ray at a height towards the eye, in the frame of the object.
+    /// Returns the point of a ray at the coordinate `height` towards the viewer, object frame.
     pub fn point(&self, index: usize, height: f64) -> DVec3 {
         let ray = DVec2::new(
             (index % self.width) as f64 + 0.5 - 0.5 * self.width as f64,

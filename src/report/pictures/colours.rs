@@ -1,21 +1,21 @@
-//! Colours: for lines that a colour-blind reader tells apart, and for values as a heat map.
+//! Colours of lines, distinguishable for colour-blind readers, and colour maps of values.
 
 use kuva::plot::ColorMap;
 
-/// Red, green, blue.
+/// Colour: red, green, blue.
 pub type Rgb = [u8; 3];
 
-/// Text and axes.
+/// Colour of text and axes.
 pub const INK: Rgb = [0x1f, 0x23, 0x28];
-/// Secondary text.
+/// Colour of secondary text.
 pub const MUTED: Rgb = [0x5c, 0x63, 0x6b];
-/// Grid lines.
+/// Colour of grid lines.
 pub const GRID: Rgb = [0xe4, 0xe6, 0xe9];
-/// The picture's ground.
+/// Background colour.
 pub const PAPER: Rgb = [0xff, 0xff, 0xff];
 
-/// Line colours: Okabe and Ito's palette (2008) without its yellow, which is too pale on white;
-/// then a purple, since a study can compare eight classifiers.
+/// Line colours: palette of Okabe and Ito (2008) without yellow, which is too pale on white. The last colour is purple, because a study can compare eight
+/// classifiers.
 pub const LINES: [Rgb; 8] = [
     [0x00, 0x72, 0xb2],
     [0xd5, 0x5e, 0x00],
@@ -27,17 +27,17 @@ pub const LINES: [Rgb; 8] = [
     [0x6a, 0x3d, 0x9a],
 ];
 
-/// Colour of a value between 0 and 1 (others are clamped) on a perceptually uniform map: dark is low.
+/// Returns the colour of a value from 0 to 1 (others are clamped) in a perceptually uniform map; low values are dark.
 pub fn heat(value: f64) -> Rgb {
     of_map(&ColorMap::Viridis, value)
 }
 
-/// Colour of a number between the least, 0, and the most, 1 (others are clamped): pale to dark blue. The least is not white, which is none.
+/// Returns the colour of a value from 0 to 1 (others are clamped): pale to dark blue. The colour of 0 is not white, because white means absent.
 pub fn tint(part: f64) -> Rgb {
     of_map(&ColorMap::Blues, 0.12 + 0.88 * part.clamp(0.0, 1.0))
 }
 
-/// Colour of a value between −1 and 1 (others are clamped): dark blue, white at 0, dark red; the colour-blind tell them apart.
+/// Returns the colour of a value from −1 to 1 (others are clamped): dark blue, white at 0, dark red. The map is suitable for colour-blind readers.
 pub fn diverging(value: f64) -> Rgb {
     of_map(&ColorMap::RedBlue, 0.5 * (1.0 - value))
 }
@@ -46,10 +46,10 @@ fn of_map(map: &ColorMap, value: f64) -> Rgb {
     map.map_rgb(value).map_or(INK, |(r, g, b)| [r, g, b])
 }
 
-/// Black or white, whichever is read more easily on the colour.
+/// Returns black or white, whichever has more contrast with the background.
 pub fn text_on(ground: Rgb) -> Rgb {
     let [r, g, b] = ground.map(f64::from);
-    // Rec. 709 luma: enough to tell light from dark.
+    // Rec. 709 luma is sufficient to distinguish light and dark colours.
     if 0.2126 * r + 0.7152 * g + 0.0722 * b < 140.0 {
         PAPER
     } else {

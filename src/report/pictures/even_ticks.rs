@@ -1,13 +1,13 @@
-//! Round values at even distances, for axes.
+//! Round, evenly spaced values for axes.
 
-/// Multiples of a round step between two ends.
+/// Returns the multiples of a round step between two ends.
 pub(crate) fn even_ticks(low: f64, high: f64) -> Vec<f64> {
     let step = tick_step(high - low);
     let (first, last) = (
         (low / step - 1e-9).ceil() as i64,
         (high / step + 1e-9).floor() as i64,
     );
-    // A quotient by the inverse is the nearest number to what is meant, which the product is not: 3 × 0.1.
+    // Division by the inverse step gives the nearest floating-point number; multiplication does not: 3 × 0.1.
     let value = |tick: i64| match step < 1.0 {
         true => tick as f64 / (1.0 / step).round(),
         false => tick as f64 * step,
@@ -15,7 +15,7 @@ pub(crate) fn even_ticks(low: f64, high: f64) -> Vec<f64> {
     (first..=last).map(value).collect()
 }
 
-/// 1, 2 or 5 times a power of ten: about five steps over a length.
+/// Returns 1, 2 or 5 times a power of ten, so that a length has about five steps.
 pub(crate) fn tick_step(length: f64) -> f64 {
     let raw = length / 5.0;
     let power = 10f64.powf(raw.log10().floor());

@@ -1,4 +1,4 @@
-//! The picture of a fit: an object, the spheres that stand for it, and how far apart the two are.
+//! Picture of a fit: an object, the spheres that approximate it, and the distance between both.
 
 use crate::error::{Error, Result};
 use crate::mesh::Surface;
@@ -15,22 +15,21 @@ use crate::table::short_number;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-/// What spheres stand for.
+/// Object that the spheres approximate.
 pub enum Original {
-    /// A mesh and how it is understood.
+    /// A mesh, and its interpretation as a solid body or an open surface.
     Mesh(Box<Surface>, Body),
-    /// A solid made of shapes.
+    /// A solid made of primitive shapes.
     Solid(Solid),
 }
 
-/// Three panels of `tile` × `tile` pixels: the original, the spheres with every sphere visible, and the spheres painted by
-/// their signed distance from the original (positive: outside it; from a sheet all distances are positive), with a colour
-/// bar in millimetres.
+/// Draws three panels of `tile` × `tile` pixels: the original, the single spheres, and the spheres coloured by their signed distance from the original, with a
+/// colour bar in millimetres. Distances are positive outside the original; for an open surface, all distances are positive.
 ///
-/// The same bytes for the same input.
+/// Equal input gives equal bytes.
 ///
 /// # Errors
-/// A tile of fewer than 200 or more than 6,000 pixels.
+/// If a tile has fewer than 200 or more than 6,000 pixels.
 pub fn fit_picture(
     name: &str,
     original: &Original,
@@ -95,7 +94,7 @@ pub fn fit_picture(
 }
 
 impl Original {
-    /// Where a ray from outside meets it first, within a length of it, and the unit normal there, towards the start.
+    /// Returns the first hit of a ray from outside, within a length, and the unit normal there, towards the start of the ray.
     fn first_hit(&self, start: DVec3, direction: DVec3, length: f64) -> Option<(DVec3, DVec3)> {
         match self {
             Self::Mesh(surface, _) => {
@@ -113,7 +112,7 @@ impl Original {
         }
     }
 
-    /// Signed distance of a point, metres.
+    /// Returns the signed distance of a point from the surface, metres.
     fn distance(&self, point: DVec3) -> f64 {
         match self {
             Self::Mesh(surface, Body::Solid) => surface.signed_distance(point),
@@ -125,7 +124,7 @@ impl Original {
     }
 }
 
-/// Sphere tracing: each step is as long as the distance to the surface, so that none passes it (Hart 1996).
+/// Finds a hit by sphere tracing: each step is as long as the distance to the surface, so that no step passes the surface (Hart 1996).
 fn march(solid: &Solid, start: DVec3, direction: DVec3, length: f64) -> Option<(DVec3, DVec3)> {
     const MAX_STEPS: usize = 400;
     let near = 1e-6 * length;
@@ -148,16 +147,16 @@ fn march(solid: &Solid, start: DVec3, direction: DVec3, length: f64) -> Option<(
     None
 }
 
-/// What the colours of the third panel mean, metres.
+/// Colour scale of the third panel, metres.
 struct Scale {
     lowest: f64,
     highest: f64,
-    /// The colours reach from minus this to this.
+    /// The colours cover the range from −`end` to `end`.
     end: f64,
 }
 
 impl Scale {
-    /// Covers all distances that are seen but for the extreme hundredth, which would leave the others pale.
+    /// Creates a scale for all visible distances except the extreme 1 %, which would make the other colours pale.
     fn of(seen: &[Option<Hit>], distances: &[f64]) -> Self {
         let of_hit = |(hit, &distance): (&Option<Hit>, &f64)| hit.is_some().then_some(distance);
         let mut distances: Vec<f64> = seen.iter().zip(distances).filter_map(of_hit).collect();
@@ -169,7 +168,7 @@ impl Scale {
         }
     }
 
-    /// A bar under the third panel, with its ends and its middle in millimetres.
+    /// Draws a colour bar below the third panel, with its ends and its middle in millimetres.
     fn draw(&self, drawing: &mut Drawing, side: f64, style: TextStyle) {
         let corner = (2.25 * side, (13.0 / 14.0 * side).floor());
         let bar = Area::new(corner, (0.5 * side, (0.02 * side).max(4.0)));
@@ -185,7 +184,7 @@ impl Scale {
     }
 }
 
-/// With a sign always, a true minus.
+/// Formats a length in millimetres with its sign. A negative number has a true minus sign.
 fn signed_millimetres(metres: f64) -> String {
     let sign = if metres < 0.0 { "−" } else { "+" };
     format!("{sign}{}", short_number((1e6 * metres.abs()).round() / 1e3))

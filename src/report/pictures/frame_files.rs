@@ -1,4 +1,4 @@
-//! One frame as a file, in the format that its name asks for.
+//! One frame as a file; the file extension selects the format.
 
 use crate::error::{Error, Result};
 use crate::files::{write_bytes, write_whole};
@@ -14,14 +14,14 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
 
-/// Writes deflections of a grid (ny × nx, metres): `.csv`, `.npz` or `.png` by the name's ending.
+/// Writes deflections of a grid (ny × nx, metres) as `.csv`, `.npz` or `.png`, by the file extension.
 ///
 /// - `.csv`: ny lines of nx numbers with 17 significant digits, no header.
 /// - `.npz`: arrays `deflection` (ny × nx), `x` (nx) and `y` (ny), metres, f64; opens with `np.load`.
 /// - `.png`: a heat map.
 ///
 /// # Errors
-/// Another ending, a shape that is not the grid's, a picture of a frame with values that are not finite.
+/// If the extension is another one, the shape differs from the grid, or a picture would contain values that are not finite.
 pub fn write_frame(path: &Path, deflection: &Array2<f64>, grid: &Grid) -> Result<()> {
     let ending = path.extension().and_then(|ending| ending.to_str());
     if deflection.dim() != (grid.ny, grid.nx) {
@@ -55,7 +55,7 @@ pub fn write_frame(path: &Path, deflection: &Array2<f64>, grid: &Grid) -> Result
     }
 }
 
-/// A frame as CSV: every number with 17 significant digits, so that it reads back as the same bits.
+/// Formats a frame as CSV. Each number has 17 significant digits, so that it reads back as the same bits.
 pub fn frame_csv(frame: &Array2<f64>) -> String {
     let line = |row: ArrayView1<f64>| {
         let numbers: Vec<String> = row.iter().map(|value| format!("{value:.16e}")).collect();

@@ -1,4 +1,4 @@
-//! A frame as a heat map: the scale of its colours, and what of a large frame is shown.
+//! Heat map of a frame: its colour scale, and the reduction of large frames to blocks.
 
 use crate::error::{Error, Result};
 use crate::report::pictures::colours::{Rgb, heat};
@@ -6,12 +6,12 @@ use crate::signal::Quantity;
 use crate::table::short_number;
 use ndarray::{Array2, ArrayView2};
 
-/// How many taxels a grid has and how far apart they are: `64 × 64 taxels, pitch 3.5 mm`.
+/// Describes size and pitch of a grid: `64 × 64 taxels, pitch 3.5 mm`.
 pub(crate) fn grid_sentence((nx, ny): (usize, usize), pitch_mm: f64) -> String {
     format!("{nx} × {ny} taxels, pitch {} mm", short_number(pitch_mm))
 }
 
-/// What is said of cells that stand for `block` × `block` taxels, behind another sentence; nothing of those that do not.
+/// Describes cells of `block` × `block` taxels, as the end of a sentence. Empty for single taxels.
 pub(crate) fn block_sentence(block: usize) -> String {
     match block {
         1 => String::new(),
@@ -19,19 +19,19 @@ pub(crate) fn block_sentence(block: usize) -> String {
     }
 }
 
-/// The lowest and the highest shown value that colours stand for.
+/// Colour scale: the displayed values of the darkest and lightest colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColourScale {
     /// What the values are of.
     pub quantity: Quantity,
-    /// Darkest colour: 0, or the lowest value if that is below.
+    /// Value of the darkest colour, in displayed units: 0, or the lowest value if it is negative.
     pub low: f64,
-    /// Lightest colour.
+    /// Value of the lightest colour, in displayed units.
     pub high: f64,
 }
 
 impl ColourScale {
-    /// The scale that covers values as they are stored, in shown units. Zeros get 0 … 1.
+    /// Returns the scale that covers the given stored values. If all values are zero, the scale is 0 … 1.
     pub fn over<'a>(values: impl IntoIterator<Item = &'a f64>, quantity: Quantity) -> Self {
         let mut scale = Self {
             quantity,
@@ -48,22 +48,22 @@ impl ColourScale {
         scale
     }
 
-    /// Place on the scale, 0 … 1, of a value as it is stored.
+    /// Returns the place of a stored value on the scale, 0 … 1.
     pub fn place(&self, value: f64) -> f64 {
         let shown = value * self.quantity.factor();
         ((shown - self.low) / (self.high - self.low)).clamp(0.0, 1.0)
     }
 
-    /// The colour of a value as it is stored.
+    /// Returns the colour of a stored value.
     pub(crate) fn colour(&self, value: f64) -> Rgb {
         heat(self.place(value))
     }
 }
 
-/// Whether a frame can be drawn.
+/// Checks that a frame can be drawn.
 ///
 /// # Errors
-/// No taxels, or a value that is not a number.
+/// If the frame has no taxels, or a value that is not finite.
 pub fn check_frame(frame: &Array2<f64>) -> Result<()> {
     let (ny, nx) = frame.dim();
     if frame.is_empty() {
@@ -84,7 +84,7 @@ pub fn check_frame(frame: &Array2<f64>) -> Result<()> {
     }
 }
 
-/// A smaller frame of the largest values of blocks `block` taxels wide and high (fewer at the far edges).
+/// Returns a smaller frame with the largest value of each block of taxels. `block` is (rows, columns); blocks at the far edges may be smaller.
 pub fn largest_of_blocks(frame: &Array2<f64>, block: (usize, usize)) -> Array2<f64> {
     let (ny, nx) = frame.dim();
     let (down, across) = (block.0.max(1), block.1.max(1));

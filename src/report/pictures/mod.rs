@@ -1,4 +1,4 @@
-//! Pictures: drawings of lines and texts, and frames, bodies and objects in pixels.
+//! Pictures: vector drawings, and raster pictures of frames, spheres and objects.
 
 pub(crate) mod canvas;
 pub mod colours;

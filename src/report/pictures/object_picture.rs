@@ -1,4 +1,4 @@
-//! The picture of objects: their spheres seen from above and to the side, in tiles.
+//! Picture of objects: their spheres in an oblique view, arranged in tiles.
 
 use crate::error::{Error, Result};
 use crate::objects::SphereUnion;
@@ -9,13 +9,13 @@ use crate::report::pictures::picture_axes::draw_scale_bar;
 use crate::report::pictures::shaded_view::{Lighting, PAINT};
 use glam::DVec2;
 
-/// Objects, each at its own scale, in rows of `n_columns` tiles of `tile` × `tile` pixels: orthographic, z up, light
-/// background, its name above and a bar of known length below.
+/// Draws objects, each at its own scale, in rows of `n_columns` tiles of `tile` × `tile` pixels. The view is orthographic with z up, on a light background.
+/// Each tile has the object's name above and a scale bar below.
 ///
-/// The same bytes for the same input.
+/// Equal input gives equal bytes.
 ///
 /// # Errors
-/// No objects, no columns, or tiles of fewer than 64 pixels.
+/// If there are no objects or columns, or tiles have fewer than 64 pixels.
 pub fn contact_sheet(
     objects: &[(&str, &SphereUnion)],
     n_columns: usize,

@@ -1,26 +1,26 @@
-//! A picture of pixels, and the PNG file that holds it.
+//! Raster picture and its PNG file.
 
 use crate::error::{Error, Result};
 
-/// Brightness of blank paper, 0 to 255.
+/// Brightness of the blank background, 0 to 255.
 pub(crate) const BACKGROUND: u8 = 250;
 
-/// An opaque picture, rows from the top, 3 bytes a pixel.
+/// Opaque raster picture, rows from the top, 3 bytes for each pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
-    /// Pixels.
+    /// Width, pixels.
     pub width: usize,
-    /// Pixels.
+    /// Height, pixels.
     pub height: usize,
     /// Red, green, blue; length 3 × width × height.
     pub rgb: Vec<u8>,
 }
 
 impl Picture {
-    /// The picture as a PNG file's bytes.
+    /// Returns the picture as a PNG file.
     ///
     /// # Errors
-    /// It has no pixels.
+    /// If the picture has no pixels.
     pub fn png(&self) -> Result<Vec<u8>> {
         let mut bytes = Vec::new();
         let mut encoder = png::Encoder::new(&mut bytes, self.width as u32, self.height as u32);
@@ -32,7 +32,7 @@ impl Picture {
         Ok(bytes)
     }
 
-    /// Of a PNG file's bytes; opaque.
+    /// Decodes an opaque PNG file.
     pub(crate) fn of_png(png: &[u8]) -> Result<Self> {
         let mut reader = png::Decoder::new(std::io::Cursor::new(png))
             .read_info()
@@ -42,8 +42,8 @@ impl Picture {
         let (width, height) = (info.width as usize, info.height as usize);
         let n_samples = info.color_type.samples();
         let mut rgb = vec![0; 3 * width * height];
-        // Slices and plain loops: this package is compiled without optimisation, where iterators over 5 million pixels take most of the
-        // time of a small study.
+        // Slices and plain loops: this crate is compiled without optimisation, where iterators over 5 million pixels would take most of the time of a small
+        // study.
         let (from, to) = (&elements[..], &mut rgb[..]);
         let (mut source, mut target) = (0, 0);
         while target < to.len() {
@@ -56,7 +56,7 @@ impl Picture {
         Ok(Self { width, height, rgb })
     }
 
-    /// The same at half the size (rounded down), each pixel the mean of four.
+    /// Returns the picture at half the size (rounded down); each pixel is the mean of four.
     pub(crate) fn halved(&self) -> Self {
         let (width, height) = (self.width / 2, self.height / 2);
         let mut rgb = vec![0; 3 * width * height];
@@ -84,9 +84,9 @@ impl Picture {
         Self { width, height, rgb }
     }
 
-    /// Paper of a size in pixels, each side 64 to 20,000.
+    /// Creates a blank picture, each side 64 to 20,000 pixels.
     pub(crate) fn blank(width: usize, height: usize) -> Result<Self> {
-        // The largest side that a table of 100 × 100 tiles of 200 pixels needs.
+        // The maximum is the side of a table of 100 × 100 tiles of 200 pixels.
         let sides = 64..=20_000;
         if !(sides.contains(&width) && sides.contains(&height)) {
             return Err(Error::input(
@@ -99,7 +99,7 @@ impl Picture {
         Ok(Self { width, height, rgb })
     }
 
-    /// Copies another picture to a place from the top left corner, as far as it is on the paper.
+    /// Copies another picture to the given top left corner. Parts outside this picture are cut off.
     pub(crate) fn paste(&mut self, other: &Self, [left, top]: [usize; 2]) {
         let n = 3 * other.width.min(self.width - left);
         let rows = self.rgb.chunks_mut(3 * self.width).skip(top);

@@ -1,4 +1,4 @@
-//! Axes, bars of colours and bars of length: what says how large and how much the things in a picture are.
+//! Axes, colour bars and scale bars of pictures.
 
 use super::even_ticks::even_ticks;
 use crate::report::pictures::colours::{INK, Rgb, heat};
@@ -6,7 +6,7 @@ use crate::report::pictures::drawing::{Align, Area, Drawing, Point, Stroke, Text
 use crate::report::pictures::heat_map::ColourScale;
 use crate::table::short_number;
 
-/// Where an axis stands.
+/// Side of an area where an axis is drawn.
 #[derive(Clone, Copy)]
 pub(crate) enum Side {
     Below,
@@ -14,7 +14,7 @@ pub(crate) enum Side {
     Right,
 }
 
-/// Round ticks from the value at the left, or below, to that at the right, or above, and a title.
+/// Draws an axis with round ticks and a title. `low` is the value at the left or lower end, `high` at the right or upper end.
 pub(crate) fn draw_axis(
     drawing: &mut Drawing,
     area: Area,
@@ -43,7 +43,7 @@ pub(crate) fn draw_axis(
     drawing.text(at, title, style.align(Align::Middle).angle(angle));
 }
 
-/// An axis in millimetres beside a map of an array centred on its origin, so many millimetres long: x below, y to the left.
+/// Draws an axis in millimetres beside a map that is centred on its origin: x below, y on the left. `length` is the length of the map, mm.
 pub(crate) fn draw_map_axis(drawing: &mut Drawing, area: Area, side: Side, length: f64) {
     let title = match side {
         Side::Below => "x (mm)",
@@ -52,7 +52,7 @@ pub(crate) fn draw_map_axis(drawing: &mut Drawing, area: Area, side: Side, lengt
     draw_axis(drawing, area, side, (-0.5 * length, 0.5 * length), title);
 }
 
-/// A bar of colours to the right of what it explains, `area` wide and high.
+/// Draws a colour bar in an area, with its axis on the right.
 pub(crate) fn draw_colour_bar(drawing: &mut Drawing, scale: ColourScale, area: Area) {
     draw_colours(drawing, area, heat);
     drawing.frame(area, Stroke::new(INK, 1.0));
@@ -60,12 +60,12 @@ pub(crate) fn draw_colour_bar(drawing: &mut Drawing, scale: ColourScale, area: A
     draw_axis(drawing, area, Side::Right, (scale.low, scale.high), &title);
 }
 
-/// Colours from 0 to 1 along the longer side of an area: rightwards, or up.
+/// Draws colours for 0 to 1 along the longer side of an area, to the right or upwards.
 pub(crate) fn draw_colours(drawing: &mut Drawing, area: Area, colour: impl Fn(f64) -> Rgb) {
     const STEPS: usize = 64;
     for step in 0..STEPS {
         let [from, to] = [step, step + 1].map(|step| step as f64 / STEPS as f64);
-        // Each reaches to the end, so that no gap shines through between two steps.
+        // Each colour extends to the end of the area, so that there are no gaps between steps.
         let (across, up) = match area.width > area.height {
             true => (from, 0.0),
             false => (0.0, from),
@@ -76,7 +76,7 @@ pub(crate) fn draw_colours(drawing: &mut Drawing, area: Area, colour: impl Fn(f6
     }
 }
 
-/// A bar of a round length, at most so many pixels long, with its length above it.
+/// Draws a scale bar of a round length, at most `longest` pixels, with the length above it.
 pub(crate) fn draw_scale_bar(
     drawing: &mut Drawing,
     (x, y): Point,
@@ -90,7 +90,7 @@ pub(crate) fn draw_scale_bar(
     drawing.text((x, y - 5.0), &text, TextStyle::new(12).align(Align::Middle));
 }
 
-/// The longest of 1, 2, 5, 10, … that fits.
+/// Returns the largest of 1, 2, 5, 10, … that is at most `largest`.
 fn bar_length(largest: f64) -> f64 {
     let power = 10f64.powf(largest.log10().floor());
     let steps = [5.0, 2.0, 1.0].map(|step| step * power);

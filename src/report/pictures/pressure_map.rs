@@ -1,4 +1,4 @@
-//! One frame for the eye: a drawing in the terminal.
+//! Pressure map of one frame as terminal text.
 
 use crate::error::Result;
 use crate::report::pictures::colours::heat;
@@ -10,16 +10,16 @@ use crate::signal::Quantity;
 use crate::table::short_number;
 use ndarray::Array2;
 
-/// Darkness for the plain terminal, from nothing to the peak.
+/// Characters of the plain pressure map, from zero to the peak.
 const RAMP: &[u8] = b" .:-=+*#%@";
 
-/// A frame drawn with characters, at most `width` columns wide, the highest y on top.
+/// Draws a frame with characters, at most `width` columns wide, with the highest y on top.
 ///
-/// With colours, half blocks show two rows of taxels a line; without, ten ASCII characters from blank to `@`. Long arrays are shown by the
-/// largest value of blocks, and the text says so.
+/// With colours, half-block characters show two rows of taxels in each line. Without colours, ten ASCII characters from blank to `@` show the values. For a
+/// wide array, each place shows the largest value of a block of taxels, and the text states the block size.
 ///
 /// # Errors
-/// A frame without taxels, or with a value that is not finite.
+/// If the frame has no taxels, or a value that is not finite.
 pub fn pressure_text(
     frame: &Array2<f64>,
     pitch_mm: f64,
@@ -35,7 +35,7 @@ pub fn pressure_text(
     let mut text = String::new();
     let (wide, lines) = match ink {
         Ink::Plain => {
-            // A character is about twice as high as wide: two rows a line, or two characters a taxel where they fit.
+            // A character is about twice as high as wide. A line shows two rows, or each taxel takes two characters if they fit.
             let (wide, down) = match 2 * nx <= inside {
                 true => (2, 1),
                 false => (1, 2 * block),
@@ -66,7 +66,7 @@ pub fn pressure_text(
     Ok(text)
 }
 
-/// Where the largest value is, and how many taxels are above zero.
+/// Describes the position of the largest value and the number of taxels above zero.
 pub(crate) fn peak_sentence(frame: &Array2<f64>, pitch_mm: f64, quantity: Quantity) -> String {
     let (ny, nx) = frame.dim();
     let touched = frame.iter().filter(|&&value| value > 0.0).count();
@@ -107,7 +107,7 @@ fn ascii_lines(shown: &Array2<f64>, scale: ColourScale, wide: usize) -> Vec<Stri
     let character = |value: &f64| {
         let place = scale.place(*value);
         let step = (place * RAMP.len() as f64) as usize;
-        // Whatever is above the lowest value shows: a light touch is not no touch.
+        // Every value above the lowest one is visible: a light touch differs from no touch.
         let step = if place > 0.0 { step.max(1) } else { 0 };
         char::from(RAMP[step.min(RAMP.len() - 1)])
     };

@@ -1,4 +1,4 @@
-//! Surfaces drawn for the eye: orthographic, softly lit, with outlines.
+//! Shaded pictures of surfaces: orthographic, with soft light and outlines.
 
 use crate::report::pictures::canvas::{Canvas, Hit};
 use crate::report::pictures::colours::Rgb;
@@ -9,19 +9,19 @@ use rayon::prelude::*;
 /// Slate blue, for objects without colours of their own.
 pub(crate) const PAINT: Rgb = [142, 178, 214];
 
-/// What light makes of a surface.
+/// Lighting of a surface.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Lighting {
-    /// Bumps are smoothed away, so that the eye sees the shape and not its spheres.
+    /// Smoothed normals, so that the shape is visible and not the single spheres.
     Smoothed,
-    /// Every sphere and every face shows.
+    /// True normals: every sphere and every face is visible.
     Plain,
-    /// Paint as it is: colours mean values.
+    /// No shading: colours represent values.
     Unlit,
 }
 
 impl Canvas {
-    /// Paints what rays met, ray by ray, on the part of a picture whose top left corner is given.
+    /// Paints the hits of all rays on the part of a picture with the given top left corner.
     pub fn paint(
         &self,
         picture: &mut Picture,
@@ -47,7 +47,7 @@ impl Canvas {
             } else {
                 1.0
             };
-            // A number beyond 255 becomes 255.
+            // The conversion limits values above 255 to 255.
             paint(index, hit).map(|value| (f64::from(value) * light * outline).round() as u8)
         };
         let rays: Vec<Rgb> = (0..hits.len()).into_par_iter().map(ray).collect();
@@ -59,9 +59,9 @@ impl Canvas {
         picture.paste(&rays.halved(), corner);
     }
 
-    /// Whether a neighbouring ray sees something far behind this one: an inner or outer outline of the object.
+    /// Returns whether a neighbouring ray hits a point far behind this one: an inner or outer outline of the object.
     fn is_outline(&self, hits: &[Option<Hit>], index: usize, hit: &Hit) -> bool {
-        // A slope of 80° between rays is not yet a step.
+        // A slope of 80° between rays does not count as an outline.
         let step = 8.0 / self.scale;
         let is_behind = |ray: Option<usize>| match ray.and_then(|ray| hits.get(ray)) {
             None => false,
@@ -73,7 +73,7 @@ impl Canvas {
             .any(|stride| is_behind(index.checked_sub(stride)) || is_behind(Some(index + stride)))
     }
 
-    /// Normals averaged over neighbours at like depth, so that the eye sees the shape and not its spheres.
+    /// Returns normals averaged over neighbours of similar depth.
     fn smooth_normals(&self, hits: &[Option<Hit>]) -> Vec<DVec3> {
         let reach = (self.width.min(self.height) / 150).max(1);
         let mut normals = normals_of(hits);
@@ -100,7 +100,7 @@ impl Canvas {
     }
 }
 
-/// Brightness under a lamp and a weaker one that fills the shades.
+/// Returns the brightness under a main light and a weaker fill light.
 fn lit(normal: DVec3) -> f64 {
     let lamp = DVec3::new(-0.45, 0.65, 0.62).normalize();
     let fill = DVec3::new(0.8, 0.1, 0.6).normalize();

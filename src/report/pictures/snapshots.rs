@@ -1,4 +1,4 @@
-//! Frames side by side on one colour scale, as in Figure 4 of \[BT\].
+//! Several frames side by side on one colour scale, as in Figure 4 of \[BT\].
 
 use crate::error::{Error, Result};
 use crate::report::pictures::colours::{INK, MUTED};
@@ -13,28 +13,28 @@ use crate::signal::Quantity;
 use crate::world::Grid;
 use ndarray::Array2;
 
-/// Cells of a frame that are shown each way, at most; larger frames are shown by the largest value of blocks.
+/// Maximum number of cells along each side of a frame. A larger frame is shown by the largest value of each block of taxels.
 const MOST_CELLS: usize = 128;
-/// Frames side by side, at most.
+/// Maximum number of frames in a row.
 const MOST_COLUMNS: usize = 4;
 
-/// Touches on one scale of colours.
+/// Frames of touches with a common colour scale.
 #[derive(Clone, Debug)]
 pub struct Snapshots {
     /// Names and frames (ny × nx, row = y ascending), metres or newtons.
     pub frames: Vec<(String, Array2<f64>)>,
-    /// Millimetres between taxels.
+    /// Distance of taxels, millimetres.
     pub pitch_mm: f64,
-    /// What the frames hold.
+    /// Quantity of the frames.
     pub quantity: Quantity,
-    /// What was pressed how, and the noise.
+    /// Caption: the objects, the touches and the noise.
     pub caption: String,
 }
 
-/// Draws named frames, four a row, with a common colour bar and the caption below; two picture elements a pixel.
+/// Draws named frames, four in a row, with a common colour bar and the caption below. The picture has two image pixels for each drawing pixel.
 ///
 /// # Errors
-/// No frames, or one that [`check_frame`] rejects.
+/// If there are no frames, or [`check_frame`] rejects one.
 pub fn snapshots(set: &Snapshots) -> Result<Picture> {
     let Snapshots {
         frames, pitch_mm, ..

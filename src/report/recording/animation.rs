@@ -1,6 +1,6 @@
-//! A recording that moves: an animated PNG, which browsers and image viewers play, in the colours of all other pictures.
+//! Animation of a recording: an animated PNG, which browsers and image viewers play, in the colours of all other pictures.
 //!
-//! GIF is not written: it would need one more crate to hold fewer colours in larger files.
+//! GIF is not supported: it would need another crate, and has fewer colours and larger files.
 
 use super::reader::RecordingFile;
 use super::skin_picture::{Picture, SkinPicture};
@@ -11,15 +11,15 @@ use crate::signal::Quantity;
 use png::{BitDepth, BlendOp, ColorType, Encoder, EncodingError};
 use std::path::Path;
 
-/// Frames that an animation shows at most; of longer recordings it shows fewer a second. Larger files tire browsers.
+/// Maximum number of frames of an animation. Longer recordings show fewer frames per second; larger files are slow in browsers.
 pub const MOST_SHOWN: usize = 600;
 
-/// How a recording is played.
+/// Playback settings of an animation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Playback {
-    /// Seconds of the recording in a second of the animation, positive: 0.1 is ten times slower than it was.
+    /// Speed, seconds of the recording per second of the animation, positive. At 0.1, the animation is ten times slower than real time.
     pub speed: f64,
-    /// Pictures in a second of the animation, at most; above 0, up to 50, which is all that browsers show.
+    /// Maximum number of pictures per second, above 0 and up to 50, the limit of browsers.
     pub fps: f64,
 }
 
@@ -32,22 +32,22 @@ impl Default for Playback {
     }
 }
 
-/// A frame and how long it stands.
+/// Frame of an animation with its duration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShownFrame {
-    /// Its number in the recording.
+    /// Frame index in the recording.
     pub frame: usize,
-    /// Milliseconds of the animation.
+    /// Duration, milliseconds.
     pub milliseconds: u64,
 }
 
-/// Which frames an animation shows, and for how long: what was the newest frame at each tick of the playback, each once.
+/// Selects the frames of an animation and their durations: the newest recorded frame at each tick of the playback, without repetitions.
 ///
-/// The first and the last frame are among them; if there would be more than [`MOST_SHOWN`], ticks are further apart. A frame stands until the
-/// next was recorded, the last as long as the one before it (alone, one second). `time` in seconds, increasing.
+/// The first and the last frame are always selected. If there would be more than [`MOST_SHOWN`] frames, ticks are further apart. A frame is shown until the
+/// next one was recorded. The last frame is shown as long as the one before it; a single frame, for one second. `time` is in seconds, increasing.
 ///
 /// # Errors
-/// A playback out of its range; no frames.
+/// If a playback setting is out of its range, or there are no frames.
 pub fn shown_frames(time: &[f64], playback: &Playback) -> Result<Vec<ShownFrame>> {
     let Playback { speed, fps } = *playback;
     if !(speed.is_finite() && speed > 0.0 && fps > 0.0 && fps <= 50.0) {
@@ -61,7 +61,7 @@ pub fn shown_frames(time: &[f64], playback: &Playback) -> Result<Vec<ShownFrame>
         return Err(Error::input("animation", "no frames", "at least one"));
     };
     let tick = (speed / fps).max((last - first) / (MOST_SHOWN - 2) as f64);
-    // Times are sums of steps: a frame that is due at a tick may be off by their rounding.
+    // Times are sums of steps; the tolerance covers their rounding errors.
     let slack = 1e-6 * tick;
     let n_ticks = ((last - first + slack) / tick) as usize;
     let newest = |at: usize| {
@@ -84,12 +84,12 @@ pub fn shown_frames(time: &[f64], playback: &Playback) -> Result<Vec<ShownFrame>
     Ok(shown)
 }
 
-/// Writes a patch of a recording as an animated PNG that loops, all frames on one scale; returns what it shows.
+/// Writes a patch of a recording as an animated PNG that loops, with one colour scale for all frames. Returns the shown frames.
 ///
-/// Memory: a picture and the file.
+/// The memory holds one picture and the file.
 ///
 /// # Errors
-/// Those of [`shown_frames`] and of the recording; a file that cannot be written.
+/// As for [`shown_frames`]. Also if the recording cannot be read or the file cannot be written.
 pub fn write_animation(
     path: &Path,
     recording: &mut RecordingFile,
@@ -121,7 +121,7 @@ pub fn write_animation(
     Ok(shown)
 }
 
-/// The line above a frame: its time, with as many digits as the recording's steps need, and its number.
+/// Returns the line above a frame: its index and its time, with as many digits as the recording's steps need.
 pub fn frame_note(time: &[f64], frame: usize) -> String {
     let n = time.len();
     let step = (time[n - 1] - time[0]) / n.saturating_sub(1).max(1) as f64;
@@ -149,7 +149,7 @@ fn start(
     encoder.write_header()
 }
 
-/// Draws only the rows that change since the frame before, transparent where they do not: a tenth of the bytes.
+/// Appends a frame: only the rows that changed since the frame before, with unchanged pixels transparent. This needs a tenth of the bytes.
 fn add(
     film: &mut png::Writer<&mut Vec<u8>>,
     before: Option<&Picture>,
@@ -160,7 +160,7 @@ fn add(
     let same =
         |at: usize| before.is_some_and(|before| before.rgb[3 * at..3 * at + 3] == pixels[at]);
     let changed = |row: &usize| !(row * now.width..(row + 1) * now.width).all(same);
-    // A frame has at least one row.
+    // A frame must have at least one row.
     let first = (0..now.height).find(changed).unwrap_or(0);
     let last = (first..now.height).rfind(changed).unwrap_or(first);
     let part = first * now.width..(last + 1) * now.width;
@@ -171,14 +171,14 @@ fn add(
     let part: Vec<u8> = part.collect();
     let (numerator, denominator) = delay(shown.milliseconds);
     film.set_frame_delay(numerator, denominator)?;
-    // First back to the top: the rows must fit from wherever the last ones were.
+    // The position is reset first, because the new rows must fit at the position of the previous ones.
     film.set_frame_position(0, 0)?;
     film.set_frame_dimension(now.width as u32, (last + 1 - first) as u32)?;
     film.set_frame_position(0, first as u32)?;
     film.write_image_data(&part)
 }
 
-/// A delay as APNG writes it: a fraction of seconds with 16 bits above and below.
+/// Returns a delay in the form of APNG: a fraction of seconds with a 16-bit numerator and denominator.
 fn delay(milliseconds: u64) -> (u16, u16) {
     match u16::try_from(milliseconds) {
         Ok(milliseconds) => (milliseconds, 1000),

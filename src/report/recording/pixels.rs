@@ -1,10 +1,10 @@
-//! Cells as pixels: a drawing of four thousand of them takes the chart library a tenth of a second; this, some milliseconds.
+//! Cells as pixels. For four thousand cells, the drawing crate takes a tenth of a second; this code takes some milliseconds.
 
 use super::cells::Cells;
 use crate::report::pictures::colours::Rgb;
 use crate::report::pictures::picture::Picture;
 
-/// Colours all cells, one colour each, in a picture that is `fine` times as large as the drawing.
+/// Paints all cells, one colour each, in a picture that is `fine` times as large as the drawing.
 pub(crate) fn paint(picture: &mut Picture, cells: &Cells, fine: f64, colours: &[Rgb]) {
     let radius = fine * cells.radius;
     let range = |middle: f64, n: usize| {
@@ -17,7 +17,7 @@ pub(crate) fn paint(picture: &mut Picture, cells: &Cells, fine: f64, colours: &[
             for column in range(middle.x, picture.width) {
                 let x = (column as f64 + 0.5 - middle.x).abs();
                 let y = (row as f64 + 0.5 - middle.y).abs();
-                // As if the rim were straight within a pixel.
+                // Anti-aliasing: the rim is approximated as straight within a pixel.
                 let cover = (radius - (cells.distance)(x, y) + 0.5).clamp(0.0, 1.0);
                 let at = 3 * (row * picture.width + column);
                 for (value, &colour) in picture.rgb[at..at + 3].iter_mut().zip(colour) {

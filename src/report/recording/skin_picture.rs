@@ -1,4 +1,4 @@
-//! Any frame of a patch of any shape as a picture: cells of a grid, or dots where the taxels are.
+//! Picture of one frame of a patch: cells of a grid, or discs at the taxels of another layout.
 
 use super::cells::{Cells, LEFT};
 use super::header::RecordedPatch;
@@ -13,12 +13,12 @@ use crate::report::text_width::text_width;
 use crate::world::Grid;
 use ndarray::ArrayView2;
 
-/// The line that changes from frame to frame: its top and height, and its width at least.
+/// Top, height and minimum width of the note above the map, which changes from frame to frame, pixels.
 const NOTE: (f64, f64, f64) = (48.0, 18.0, 320.0);
-/// A raster has two picture elements a pixel of its drawing.
+/// Number of image pixels for each drawing pixel, along each side.
 const FINE: f64 = 2.0;
 
-/// What is the same in all pictures of a patch: paper, axes or scale bar, colour bar, and where the taxels are.
+/// Common parts of all pictures of a patch: background, axes or scale bar, colour bar, and positions of the taxels.
 pub struct SkinPicture {
     background: Picture,
     cells: Cells,
@@ -28,14 +28,14 @@ pub struct SkinPicture {
 }
 
 impl SkinPicture {
-    /// Prepares the pictures of a patch, all on one scale.
+    /// Prepares the pictures of a patch with one colour scale.
     ///
-    /// A grid is drawn as a heat map with axes in millimetres. Of another skin each taxel is a dot: a flat one is seen from
-    /// above, a cylinder unrolled, a part of a sphere flattened about its middle; another is seen from the side to which its
-    /// axes point, and from behind. The picture says which, and has a scale bar.
+    /// A grid is drawn as a heat map with axes in millimetres. Each taxel of another layout is drawn as a disc. A flat patch is seen from above; a cylinder is
+    /// unrolled; a part of a sphere is flattened about its middle. Any other patch is seen from the side to which its axes point, and from behind. The picture
+    /// states the view and has a scale bar.
     ///
     /// # Errors
-    /// Taxels that cannot be laid out.
+    /// If the picture cannot be rendered.
     pub fn new(patch: &RecordedPatch, scale: ColourScale) -> Result<Self> {
         let cells = Cells::of(patch);
         let mut drawing = paper(&patch.name, &cells, scale);
@@ -49,15 +49,15 @@ impl SkinPicture {
         })
     }
 
-    /// Columns and rows of pixels.
+    /// Returns width and height, pixels.
     pub fn size(&self) -> (usize, usize) {
         (self.background.width, self.background.height)
     }
 
-    /// The picture of a frame, one value a taxel (metres or newtons); `note` is a line above it, such as the time.
+    /// Returns the picture of a frame with one value for each taxel (metres or newtons). `note` is a line above the map, such as the time.
     ///
     /// # Errors
-    /// The error names a number of values that is not that of the taxels, or a value that is not finite.
+    /// If the number of values differs from the number of taxels, or a value is not finite.
     pub fn frame(&self, values: &[f64], note: &str) -> Result<Picture> {
         if values.len() != self.n_taxels {
             return Err(Error::input(
@@ -94,7 +94,7 @@ impl SkinPicture {
     }
 }
 
-/// Title, a line below it, and the colour bar.
+/// Draws the title, the line below it, and the colour bar.
 fn paper(name: &str, cells: &Cells, scale: ColourScale) -> Drawing {
     let (area, below) = (cells.area, &cells.sentence);
     let corner = (area.x + area.width + 18.0, area.y);

@@ -1,40 +1,40 @@
-//! A skin laid flat: where each taxel is drawn.
+//! Projection of a skin onto a plane: the position of each taxel in the picture.
 //!
-//! Flat skins are seen from above. Cylinders are unrolled, parts of spheres flattened about their middle with true
-//! distances from it (azimuthal equidistant); both are recognised by p = c + R n, which their places and axes obey (without the
-//! part along the cylinder's axis). All else is seen from the side that shows most, and from behind if some taxels face away.
+//! Flat skins are seen from above. Cylinders are unrolled. Parts of spheres are flattened about their middle with true distances from it (azimuthal
+//! equidistant projection). Cylinders and spheres are detected by p = c + R n for their places p and axes n (for a cylinder, without the axial parts). Any
+//! other skin is seen from the side to which its axes point, and also from behind if some taxels face away.
 
 use crate::table::short_number;
 use glam::{DMat3, DVec2, DVec3};
 
-/// Cosine of the angle between axes up to which a skin is flat: 10°, which shortens nothing by more than 1.5 %.
+/// Minimum cosine between the axes of a flat skin and their mean (10°). The projection then shortens lengths by at most 1.5 %.
 const FLAT: f64 = 0.985;
-/// How far places may be from p = c + R n, in parts of R. Larger calls an ellipsoid a sphere; smaller refuses a printed shape.
+/// Maximum residual of p = c + R n, relative to R. A larger value accepts ellipsoids as spheres; a smaller one rejects printed shapes.
 const FIT: f64 = 0.05;
-/// Radians from the middle up to which a sphere is flattened: beyond, the rim is drawn more than twice as long as it is.
+/// Maximum angle from the middle of a flattened sphere, radians. Beyond it, the rim is drawn more than twice as long as it is.
 const WIDEST_CAP: f64 = 1.9;
 
-/// Taxels in a plane.
+/// Positions of taxels in a plane.
 pub(super) struct Unrolled {
-    /// One a taxel: metres to the right and up.
+    /// Position of each taxel, metres to the right and up.
     pub places: Vec<DVec2>,
-    /// How it was laid flat, for people.
+    /// Description of the projection.
     pub sentence: String,
 }
 
-/// To the right, up and towards an eye that looks against `towards_eye`: y is up where it looks along z, as in a heat map; else z is.
+/// Returns the axes right, up and towards the viewer. If the view is along z, y is up, as in a heat map; otherwise z is up.
 fn view_from(towards_eye: DVec3) -> DMat3 {
     let is_above = towards_eye.z.abs() > 0.7;
     upright(towards_eye, if is_above { DVec3::Y } else { DVec3::Z })
 }
 
-/// The same; `up` is not along the line of sight.
+/// Returns the axes right, up and towards the viewer for a given up direction, which must not be parallel to the view.
 fn upright(towards_eye: DVec3, up: DVec3) -> DMat3 {
     let right = up.cross(towards_eye).normalize();
     DMat3::from_cols(right, towards_eye.cross(right), towards_eye).transpose()
 }
 
-/// Lays a skin flat; `axes` are unit vectors, one a place (metres).
+/// Projects a skin onto a plane. `axes` are unit vectors, one for each centre (metres).
 pub(super) fn unroll(centers: &[DVec3], axes: &[DVec3]) -> Unrolled {
     let middle = mean(axes).normalize_or_zero();
     let round = match axes.iter().all(|axis| axis.dot(middle) > FLAT) {
@@ -48,7 +48,7 @@ fn mean(vectors: &[DVec3]) -> DVec3 {
     vectors.iter().sum::<DVec3>() / vectors.len() as f64
 }
 
-/// R of p = c + R n (negative: hollow), if the places obey it.
+/// Returns R of p = c + R n if all places satisfy the equation. A negative R is a concave surface.
 fn radius_of(places: &[DVec3], axes: &[DVec3]) -> Option<f64> {
     let (mean_place, mean_axis) = (mean(places), mean(axes));
     let pairs = || places.iter().zip(axes);
@@ -66,7 +66,7 @@ fn cylinder(centers: &[DVec3], axes: &[DVec3]) -> Option<Unrolled> {
     let crosses = axes.iter().map(|axis| axes[0].cross(*axis));
     let widest = crosses.max_by(|a, b| a.length_squared().total_cmp(&b.length_squared()))?;
     let along = widest.try_normalize()?;
-    // The end that points along an axis of the patch is up.
+    // The end of the cylinder that points along a patch axis is up.
     let sign = along.to_array().into_iter().fold(0.0, larger).signum();
     let along = sign * along;
     if axes.iter().any(|axis| axis.dot(along).abs() > 0.1) {
@@ -80,13 +80,13 @@ fn cylinder(centers: &[DVec3], axes: &[DVec3]) -> Option<Unrolled> {
     let front = if front.length() > 0.1 {
         flat(&front).normalize()
     } else {
-        // All around: the cut is behind, seen from where the eye would stand.
+        // A full cylinder is cut on the side that is opposite the viewer.
         flat(&view_from(along).row(0)).normalize()
     };
     let right = upright(front, along).row(0);
     let places = centers.iter().zip(&spokes).map(|(center, spoke)| {
         let angle = spoke.dot(right).atan2(spoke.dot(front));
-        // Which side of the cut a taxel on it is on, rounding shall not decide.
+        // Rounding must not decide on which side of the cut a taxel is drawn.
         let angle = if angle > std::f64::consts::PI - 1e-9 {
             -std::f64::consts::PI
         } else {
@@ -121,7 +121,7 @@ fn cap(centers: &[DVec3], axes: &[DVec3]) -> Option<Unrolled> {
     })
 }
 
-/// The side to which the axes point on the whole, or that of the two broad sides which is along +x, +y or +z.
+/// Projects a skin from the mean direction of its axes. If there is none, projects from the broad side along +x, +y or +z.
 fn sides(centers: &[DVec3], axes: &[DVec3]) -> Unrolled {
     let mean = mean(axes);
     let towards_eye = if mean.length() > 0.1 {
@@ -142,7 +142,7 @@ fn sides(centers: &[DVec3], axes: &[DVec3]) -> Unrolled {
     if !axes.iter().any(faces_away) {
         return Unrolled { places, sentence };
     }
-    // Seen from behind, right is left; beside what is seen from the front, a tenth of its width and 2 mm apart.
+    // In the view from behind, right is left. The two views are separated by a tenth of the width plus 2 mm.
     let low = places.iter().fold(DVec2::INFINITY, |a, &b| a.min(b)).x;
     let high = places.iter().fold(DVec2::NEG_INFINITY, |a, &b| a.max(b)).x;
     let mirror = high + 0.05 * (high - low) + 1e-3;
@@ -161,14 +161,14 @@ fn larger(a: f64, b: f64) -> f64 {
     if b.abs() > a.abs() { b } else { a }
 }
 
-/// `a sphere of radius 20 mm`; of a negative radius, its inside.
+/// Describes a shape: `a sphere of radius 20 mm`. A negative radius means the inside.
 fn round(shape: &str, radius: f64) -> String {
     let side = if radius < 0.0 { "the inside of " } else { "" };
     let radius_mm = short_number(radius.abs() * 1e3);
     format!("{side}a {shape} of radius {radius_mm} mm")
 }
 
-/// `+z` within half a degree, or three components.
+/// Describes a direction: `+z` if it is within half a degree of an axis, or three components.
 fn direction(vector: DVec3) -> String {
     for (axis, name) in DVec3::AXES.into_iter().zip(["x", "y", "z"]) {
         let along = vector.dot(axis);
@@ -176,7 +176,7 @@ fn direction(vector: DVec3) -> String {
             return format!("{}{name}", if along > 0.0 { '+' } else { '−' });
         }
     }
-    // Adding zero makes −0 plain.
+    // Adding zero turns −0 into 0.
     let parts = vector.to_array().map(|c| (100.0 * c).round() / 100.0 + 0.0);
     let parts = parts.map(|c| format!("{c:.2}").replace('-', "−"));
     format!("({})", parts.join(", "))
