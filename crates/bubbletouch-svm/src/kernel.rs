@@ -1,6 +1,7 @@
-//! Kernels of the support vector machines: all that tells one from another, so that a new one is a case of each `match` here.
+//! Kernels of the support vector machines. A new kernel is added as a case of each `match` in this file.
 //!
-//! A kernel value is a function of one pairwise number, which all γ share (the product x·z, of matrix products), and of the rows' squared norms.
+//! A kernel value is a function of one pairwise number and of the squared norms of both rows. The pairwise number (for most kernels the product x·z) is
+//! common to all γ.
 
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, ArrayViewMut2};
 use serde::{Deserialize, Serialize};
@@ -11,50 +12,51 @@ use crate::linalg::scalar::Scalar;
 use crate::row_statistics::RowStatistics;
 use crate::{Error, Result};
 
-/// The largest exponent of an RBF kernel, γ times the squared distance between two rows, for f32: the exponent's rounding is
-/// the kernel value's relative error.
+/// Maximum exponent of an RBF kernel (γ times the squared distance of two rows) for f32. The rounding error of the exponent is the relative error of the
+/// kernel value.
 const SINGLE_EXPONENT: f64 = 1e4;
 
-/// The width parameter γ of a kernel, in inverse squared feature units; of a Laplacian one in inverse feature units.
+/// Width parameter γ of a kernel, in inverse squared feature units; for a Laplacian kernel, in inverse feature units.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Gamma {
-    /// `1 / (m · var(X))`, the variance taken over all training features; 1 where that is 0 (scikit-learn's default). Of a Laplacian
-    /// kernel `1 / (m · √var(X))`.
+    /// scikit-learn's default `1 / (m · var(X))`, where the variance is taken over all training features; 1 if the variance is 0. For a Laplacian kernel
+    /// `1 / (m · √var(X))`.
     Scale,
-    /// A number above 0.
+    /// A given number above 0.
     Value(f64),
 }
 
 /// The kernel `K(x, z)` of a support vector machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kernel {
-    /// `x·z`.
+    /// Linear kernel `x·z`.
     Linear,
-    /// `exp(−γ|x − z|²)`.
+    /// Gaussian kernel `exp(−γ|x − z|²)`.
     Rbf {
-        /// γ.
+        /// Width parameter γ.
         gamma: Gamma,
     },
-    /// `exp(−γ|x − z|₁)`, of the sum of absolute differences: a feature that is far off counts less than with [`Rbf`](Self::Rbf). Slower:
-    /// distances of this kind are no matrix product.
+    /// Laplacian kernel `exp(−γ|x − z|₁)` of the sum of absolute differences. Outlying features have less influence than with [`Rbf`](Self::Rbf). The kernel
+    /// is slower,
+    /// because these distances are not computed by matrix products.
     Laplacian {
-        /// γ.
+        /// Width parameter γ.
         gamma: Gamma,
     },
-    /// `(γ x·z + c₀)^d`.
+    /// Polynomial kernel `(γ x·z + c₀)^d`.
     Polynomial {
-        /// γ.
+        /// Scale parameter γ.
         gamma: Gamma,
-        /// c₀ ≥ 0 (a negative one makes the dual problem non-convex).
+        /// Constant c₀ ≥ 0 (a negative constant makes the dual problem non-convex).
         coef0: f64,
-        /// d ≥ 1.
+        /// Degree d ≥ 1.
         degree: u32,
     },
 }
 
 impl Kernel {
-    /// The same kernel with another γ; a linear one has none.
+    /// Returns a copy of the kernel with another γ; a linear kernel is unchanged.
     pub fn with_gamma(self, gamma: Gamma) -> Self {
         match self {
             Self::Linear => Self::Linear,
@@ -68,7 +70,7 @@ impl Kernel {
         }
     }
 
-    /// Returns γ as it was given, or `None` for a linear kernel.
+    /// Returns γ as given, or `None` for a linear kernel.
     pub fn gamma(&self) -> Option<Gamma> {
         match *self {
             Self::Linear => None,
@@ -78,7 +80,7 @@ impl Kernel {
         }
     }
 
-    /// What γ is if nobody says, of the training features (n_rows × m).
+    /// Returns the value of [`Gamma::Scale`] for the training features (n_rows × m).
     pub fn gamma_scale(&self, features: ArrayView2<f64>) -> f64 {
         let variance = variance(features);
         let spread = match self {
@@ -135,9 +137,9 @@ impl Kernel {
     }
 }
 
-/// Of all features.
+/// Returns the variance over all features.
 fn variance(features: ArrayView2<f64>) -> f64 {
-    // Two plain passes; ndarray's own variance divides at every value.
+    // Two simple passes; ndarray's variance performs a division for every value.
     let n = features.len() as f64;
     let mean = features.sum() / n;
     let of_row = |row: ArrayView1<f64>| match row.as_slice() {
@@ -147,7 +149,7 @@ fn variance(features: ArrayView2<f64>) -> f64 {
     features.rows().into_iter().map(of_row).sum::<f64>() / n
 }
 
-/// `Σ (x − mean)²`.
+/// Returns `Σ (x − mean)²`.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn squares_about(mean: f64, values: &[f64]) -> f64 {
     let (lanes, last) = values.as_chunks::<8>();
@@ -161,7 +163,7 @@ fn squares_about(mean: f64, values: &[f64]) -> f64 {
     squares.iter().sum::<f64>() + last.sum::<f64>()
 }
 
-/// A kernel with every parameter a number.
+/// A kernel with all parameters as numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum KernelFunction {
     Linear,
@@ -171,8 +173,9 @@ pub(crate) enum KernelFunction {
 }
 
 impl KernelFunction {
-    /// Refuses rows whose largest squared norm is so large that some kernel value is infinite. None exceeds those of a row
-    /// with itself, nor a squared distance four times the largest squared norm.
+    /// Returns an error if the largest squared norm makes some kernel value infinite. No kernel value exceeds `K(x, x)` of the row with the largest norm, and
+    /// no squared
+    /// distance exceeds four times the largest squared norm.
     fn check(&self, norm: f64) -> Result<()> {
         let largest = match *self {
             Self::Linear | Self::Rbf { .. } | Self::Laplacian { .. } => 4.0 * norm,
@@ -192,7 +195,7 @@ impl KernelFunction {
         ))
     }
 
-    /// γ, of a kernel that has one.
+    /// Returns γ, or `None` for a kernel without γ.
     pub fn gamma(&self) -> Option<f64> {
         match *self {
             Self::Linear => None,
@@ -202,8 +205,9 @@ impl KernelFunction {
         }
     }
 
-    /// Returns the centre about which the kernel is computed: the mean of the rows if a constant that is added to all features changes only ρ of a
-    /// decision function, else the origin. About the mean products are small, and keep their digits.
+    /// Returns the centre that is subtracted from rows. If a constant added to all features changes only ρ of a decision function, the centre is the mean of
+    /// the rows. Otherwise
+    /// it is the origin. About the mean, products are small and lose fewer digits.
     pub fn centre(&self, statistics: &RowStatistics) -> Array1<f64> {
         match self {
             Self::Linear | Self::Rbf { .. } | Self::Laplacian { .. } => statistics.mean.clone(),
@@ -211,24 +215,25 @@ impl KernelFunction {
         }
     }
 
-    /// The largest `K(x, x)` of rows of which the farthest is so far from the centre (squared), where f32 has the digits for
-    /// values of rows so far apart; `None`: it has not.
+    /// Returns the largest `K(x, x)` of rows, given the squared distance `farthest` of the farthest row from the centre; `None` if f32 is not accurate enough
+    /// for such rows.
     pub fn largest_in_single(&self, farthest: f64) -> Option<f64> {
         match *self {
             Self::Linear => Some(farthest),
-            // Where exponents are large, K is nearly the identity and coefficients are near 1, whatever C.
+            // For large exponents, K is nearly the identity and coefficients are near 1 for any C.
             Self::Rbf { gamma } if 4.0 * gamma * farthest > SINGLE_EXPONENT => None,
             Self::Rbf { .. } => Some(1.0),
             Self::Laplacian { .. } => None,
-            // A power is rounded as often as it is multiplied. Products about a centre are mostly far below the largest, powers about no
-            // centre are not: of a cubic kernel at C K = 4e3 the optimality conditions are met to three tolerances of 1e-3.
+            // Each multiplication of a power adds a rounding error. Most centred products are far below the maximum; powers about the origin are not.
+            // Example: for a cubic
+            // kernel at C K = 4e3, the violation of the optimality conditions is three times the tolerance of 1e-3.
             Self::Polynomial { degree, .. } => {
                 Some(10.0 * f64::from(degree) * self.of_norm(farthest))
             }
         }
     }
 
-    /// The pairwise numbers of rows (n_left × m) with others (n × m), which values are made of: into n_left × n.
+    /// Writes the pairwise numbers of rows (n_left × m) and other rows (n × m), from which kernel values are computed: shape n_left × n.
     pub fn pairwise<T: Scalar>(
         &self,
         left: ArrayView2<T>,
@@ -241,7 +246,7 @@ impl KernelFunction {
         }
     }
 
-    /// The same of one row (m) with others, each of which lies in one piece.
+    /// Writes the pairwise numbers of one row (m) and other rows, each a contiguous slice.
     pub fn pairwise_of_row<T: Scalar>(&self, row: &[T], others: &[&[T]], to: &mut [T]) {
         match self {
             Self::Laplacian { .. } => {
@@ -253,12 +258,12 @@ impl KernelFunction {
         }
     }
 
-    /// The same of all rows (n × m) with each other: n × n.
+    /// Returns the pairwise numbers of all rows (n × m) with each other: n × n.
     pub fn own_pairwise<T: Scalar>(&self, rows: ArrayView2<T>) -> Array2<T> {
         with_each_other(rows, |left, right, to| self.pairwise(left, right, to))
     }
 
-    /// `K(x, x)` of a row's squared norm.
+    /// Returns `K(x, x)`, given the squared norm of x.
     pub fn of_norm<T: Scalar>(&self, norm: T) -> T {
         match *self {
             Self::Linear => norm,
@@ -275,7 +280,7 @@ impl KernelFunction {
         }
     }
 
-    /// Values in place of a row's pairwise numbers, of its squared norm and the others'.
+    /// Replaces a row's pairwise numbers by kernel values, given the squared norms of the row and of the other rows.
     pub fn of_pairwise<T: Scalar>(&self, pairwise: &mut [T], norm: T, norms: &[T]) {
         match *self {
             Self::Linear => {}
@@ -293,7 +298,7 @@ impl KernelFunction {
     }
 }
 
-/// `(γ p + c₀)^d` in place of each product.
+/// Replaces each product p by `(γ p + c₀)^d`.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn polynomials<T: Scalar>(products: &mut [T], base: (T, T), degree: u32) {
     let (lanes, last) = products.as_chunks_mut::<16>();
@@ -305,7 +310,7 @@ fn polynomials<T: Scalar>(products: &mut [T], base: (T, T), degree: u32) {
     }
 }
 
-/// Those of some values side by side, by squaring.
+/// Computes `(γ p + c₀)^d` of N values in parallel, by repeated squaring.
 #[inline(always)]
 fn powers<T: Scalar, const N: usize>(
     mut values: [T; N],
@@ -327,7 +332,7 @@ fn powers<T: Scalar, const N: usize>(
     powers
 }
 
-/// `|x|² + |z|² − 2 x·z` in place of each product, not below 0.
+/// Replaces each product by `|x|² + |z|² − 2 x·z`, at least 0.
 #[multiversion::multiversion(targets("x86_64+avx2+fma"))]
 fn distances<T: Scalar>(products: &mut [T], norm: T, norms: &[T]) {
     let two = T::one() + T::one();
@@ -341,7 +346,7 @@ fn distances<T: Scalar>(products: &mut [T], norm: T, norms: &[T]) {
     }
 }
 
-/// `|x − z|₁` of rows x with rows z: the same bits in either order and with any instructions.
+/// Writes `|x − z|₁` of rows x and rows z. The result is bitwise equal for both orders of the arguments and for all instruction sets.
 fn absolute_differences<T: Scalar>(
     left: ArrayView2<T>,
     right: ArrayView2<T>,
@@ -356,7 +361,7 @@ fn absolute_differences<T: Scalar>(
     }
 }
 
-/// Those of one row with rows that follow each other.
+/// Writes `|x − z|₁` of one row x and consecutive rows z.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn absolute_differences_of<T: Scalar>(left: &[T], rows: &[T], to: &mut [T]) {
     let (left_lanes, left_last) = left.as_chunks::<16>();
@@ -399,7 +404,7 @@ mod tests {
     }
 
     fn assert_powers<T: Scalar>(tolerance: f64) {
-        // More than a whole number of registers.
+        // The length is not a multiple of the register width.
         let products: Vec<f64> = (0..37).map(|i| f64::from(i) * 0.03 - 0.4).collect();
         for degree in 1..=20 {
             let mut powers: Vec<T> = products.iter().map(|&product| T::of(product)).collect();

@@ -1,4 +1,4 @@
-//! Soft-margin support vector machines for [`linfa`]: LIBSVM's problem and answers, from shared kernel matrices.
+//! Soft-margin support vector machines for [`linfa`]: LIBSVM's problem and results, computed from shared kernel matrices.
 //!
 //! ```
 //! use bubbletouch_svm::kernel::{Gamma, Kernel};
@@ -20,29 +20,31 @@
 //! # Ok::<(), bubbletouch_svm::Error>(())
 //! ```
 //!
-//! # Words
+//! # Terms
 //!
-//! - A **data set** is linfa's: features (n_rows × m, `f32` or `f64`) and one label (a `usize`) for each row.
-//! - A **binary problem** separates the rows of a positive class from those of a negative class, or of all others ([`Multiclass`]).
-//! - A **decision value** is what a binary problem gives a row: above 0 for the positive class.
-//! - **C** is the cost of a unit of margin violation; **γ** is the width parameter of a kernel.
+//! - A **data set** is a linfa data set: features (n_rows × m, `f32` or `f64`) and one label (a `usize`) per row.
+//! - A **binary problem** separates the rows of a positive class from the rows of a negative class, or from all other rows ([`Multiclass`]).
+//! - A **decision value** is the value of a binary problem's decision function for a row: positive for the positive class.
+//! - **C** is the penalty per unit of margin violation; **γ** is the width parameter of a kernel.
 //!
 //! # How it works
 //!
-//! A binary problem decides by the sign of `f(x) = Σ_i y_i a_i K(x_i, x) − ρ`. The multipliers minimise
+//! The decision function is `f(x) = Σ_i y_i a_i K(x_i, x) − ρ`; its sign gives the class. The multipliers minimise
 //! `½ Σ_ij a_i a_j y_i y_j K(x_i, x_j) − Σ_i a_i` over `0 ≤ a_i ≤ C`, `Σ_i y_i a_i = 0`.
 //!
 //! 1. **Rows** are checked, sorted by class and centred, in single or double precision (`gram::sorted`, `row_statistics`).
 //! 2. **Kernel values** `K(x_i, x_j)` between two classes are computed once for all problems, by matrix products of the rows (`gram`, `linalg`).
-//! 3. **Each problem** is solved by sequential minimal optimisation (`smo`). With `β_i = y_i a_i`, a solution is optimal when no variable that can
-//!    be raised has a larger `y_i − (Kβ)_i` than one that can be lowered. Slow convergence ends by the linear equations of the free variables
-//!    (`smo::active_set`); well separated classes are solved on the rows near the margin (`screening`).
-//! 4. **Along C and over folds**, each solution starts from the previous one ([`cross_validation`]).
-//! 5. **Prediction** is one matrix product for all problems, and the vote of their signs ([`predict`]).
+//! 3. **Each problem** is solved by sequential minimal optimisation (`smo`). With `β_i = y_i a_i`, a solution is optimal if no variable that can be raised
+//! has a larger
+//!    `y_i − (Kβ)_i` than one that can be lowered. If convergence is slow, the linear equations of the free variables are solved (`smo::active_set`). Well
+//! separated
+//!    classes are solved on the rows near the margin (`screening`).
+//! 4. **Along C and over folds**, each solution starts from the previous solution ([`cross_validation`]).
+//! 5. **Prediction** computes one matrix product for all problems and counts the votes of their signs ([`predict`]).
 //!
-//! | room | input → output |
+//! | module | input → output |
 //! |---|---|
-//! | `linalg` | matrices → products, factors; the two precisions |
+//! | `linalg` | matrices → products, factors; f32 and f64 |
 //! | `row_statistics`, [`dataset`] | features and labels → checked rows, their mean and size |
 //! | [`kernel`], `gram` | rows → kernel values, Gram matrices of binary problems |
 //! | `smo` | a Gram matrix and C → the solution of a binary problem |
@@ -52,15 +54,15 @@
 //! | [`cross_validation`] | candidates of C and γ → the best ones |
 //! | [`linear_svm`], [`classifiers`] | a data set → linear SVMs and other classifiers |
 //!
-//! # Which solver trains which SVM
+//! # Solvers
 //!
-//! | parameters | solver | stops when | memory |
+//! | parameters | solver | stopping criterion | memory |
 //! |---|---|---|---|
 //! | [`SvmParams`], any kernel, rows ≥ 1,000, C · K ≤ 1e5, tolerance ≥ 1e-4 | SMO on kernel values in `f32` | KKT violation ≤ `tolerance` in decision values, or 10 million iterations (100 a row if more) | n² · 4 bytes, or the latest rows within `memory_bytes` |
-//! | [`SvmParams`], any kernel, otherwise | the same in `f64` | the same | n² · 8 bytes, or as above |
+//! | [`SvmParams`], any kernel, otherwise | SMO on kernel values in `f64` | as for `f32` | n² · 8 bytes, or the latest rows within `memory_bytes` |
 //! | [`linear_svm::LinearSvmParams`] | dual coordinate descent, one-vs-rest, regularised bias (LIBLINEAR's problem) | spread of projected gradients ≤ `tolerance`, or `max_passes` | n · m |
 //!
-//! The module [`classifiers`] has classifiers of other kinds which repeat exactly, with their reasons to differ from linfa's.
+//! The module [`classifiers`] contains classifiers of other kinds with exactly reproducible results, and their differences from linfa's classifiers.
 //!
 //! # Sources
 //!

@@ -8,16 +8,15 @@ use serde::{Deserialize, Serialize};
 )]
 #[serde(rename_all = "snake_case")]
 pub enum Multiclass {
-    /// One classifier per pair of classes; each votes, and the class with the most votes wins. On a tie, the lowest
-    /// of the tied class indices wins (LIBSVM's rule).
+    /// One classifier per pair of classes; each votes, and the class with the most votes wins. On a tie, the lowest class index wins (LIBSVM's rule).
     #[default]
     OneVsOne,
-    /// One classifier per class against all others; the largest decision value wins. On a tie, the lowest index.
+    /// One classifier per class against all others; the largest decision value wins. On a tie, the lowest class index wins.
     OneVsRest,
 }
 
 impl Multiclass {
-    /// Returns the binary problems of n classes: the positive class, and the negative class (`None`: all others).
+    /// Returns the binary problems of n classes as pairs of a positive and a negative class (`None`: all others).
     pub(crate) fn problems(self, n: usize) -> Vec<(usize, Option<usize>)> {
         match self {
             Self::OneVsOne => (0..n)

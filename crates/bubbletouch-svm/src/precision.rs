@@ -7,12 +7,12 @@ use ndarray::{Array1, Array2, ArrayBase, CowArray, Data, Ix2};
 
 use crate::dataset::Dataset;
 
-/// The precision of features: `f32` or `f64`. Models are trained and asked in `f64`.
+/// Precision of features: `f32` or `f64`. Models are trained and evaluated in `f64`.
 pub trait Precision: linfa::Float {
-    /// Returns the data set in double precision; a copy only of single precision.
+    /// Returns the data set in double precision; only single precision is copied.
     fn double(data: &DatasetBase<Array2<Self>, Array1<usize>>) -> Cow<'_, Dataset>;
 
-    /// Returns the features (n_rows × m) in double precision; a copy only of single precision.
+    /// Returns the features (n_rows × m) in double precision; only single precision is copied.
     fn double_features<D: Data<Elem = Self>>(
         features: &ArrayBase<D, Ix2>,
     ) -> CowArray<'_, f64, Ix2>;

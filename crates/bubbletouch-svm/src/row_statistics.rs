@@ -1,11 +1,11 @@
-//! Mean and size of training rows, found in one pass.
+//! Mean and largest norm of training rows, computed in one pass.
 
 use ndarray::{Array1, ArrayView2};
 
 use crate::Result;
 use crate::dataset::check_features;
 
-/// Sums side by side, so that no addition waits for the one before.
+/// Number of parallel partial sums, so that no addition waits for the previous one.
 const LANES: usize = 8;
 
 /// Statistics of training rows (n × m).
@@ -13,7 +13,7 @@ const LANES: usize = 8;
 pub(crate) struct RowStatistics {
     /// Mean of the rows (m).
     pub mean: Array1<f64>,
-    /// The largest squared length of a row; infinite where it is beyond what a number holds.
+    /// Largest squared norm of a row; infinite if it exceeds the range of f64.
     pub largest_norm: f64,
 }
 
@@ -34,7 +34,7 @@ impl RowStatistics {
             largest_norm = largest_norm.max(norm);
         }
         if !all_finite {
-            // Or only too large to square.
+            // The features may also be finite but too large to square.
             check_features(features)?;
             largest_norm = f64::INFINITY;
         }
@@ -45,7 +45,7 @@ impl RowStatistics {
     }
 }
 
-/// Adds a row to the sums; its squared length.
+/// Adds a row to the sums; returns its squared norm.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn add_row(sums: &mut [f64], row: &[f64]) -> f64 {
     let (sums, last_sums) = sums.as_chunks_mut::<LANES>();

@@ -6,38 +6,39 @@ use serde::{Deserialize, Serialize};
 use crate::Result;
 use crate::dataset::{check_features, check_width};
 
-/// How features are scaled before a classifier sees them.
+/// Scaling of features before training and prediction.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
 )]
 #[serde(rename_all = "snake_case")]
 pub enum Scaling {
-    /// As they are.
+    /// No scaling.
     None,
-    /// Each feature to mean 0 and standard deviation 1.
+    /// Scales each feature to mean 0 and standard deviation 1.
     #[default]
     Standard,
-    /// All features to mean 0 and, with one common factor, mean square 1: angles and ratios of distances stay.
+    /// Scales all features to mean 0 and, with one common factor, to mean square 1; preserves angles and ratios of distances.
     Overall,
 }
 
-/// A scaling that has seen its training rows: `x ↦ (x − offset) / scale`, per feature.
+/// A scaling fitted to training rows: `x ↦ (x − offset) / scale`, per feature.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FittedScaling {
-    /// What is subtracted, per feature (m), in feature units.
+    /// Offset subtracted from each feature (m), in feature units.
     pub offset: Array1<f64>,
-    /// What it is divided by, per feature (m), in feature units; 1 where a feature is constant (it becomes 0).
+    /// Divisor of each feature (m), in feature units; 1 if the feature is constant (its scaled value is 0).
     pub scale: Array1<f64>,
 }
 
 impl Scaling {
-    /// Fits to the training features (n_rows × m).
+    /// Fits the scaling to the training features (n_rows × m).
     ///
-    /// Standard deviations are the population's (divided by n), as scikit-learn's `StandardScaler`. A feature whose
-    /// spread is within rounding of its mean counts as constant.
+    /// Standard deviations are population values (divided by n), as in scikit-learn's `StandardScaler`. A feature counts as constant if its spread is within
+    /// the rounding
+    /// error of its mean.
     ///
     /// # Errors
-    /// Empty features, or a NaN or infinite one.
+    /// If the features are empty, or a feature is NaN or infinite.
     pub fn fit(self, features: ArrayView2<f64>) -> Result<FittedScaling> {
         check_features(features)?;
         let n_columns = features.ncols();
@@ -60,10 +61,10 @@ impl Scaling {
 }
 
 impl FittedScaling {
-    /// The scaled features (n_rows × m).
+    /// Returns the scaled features (n_rows × m).
     ///
     /// # Errors
-    /// Another number of columns than in training, or a NaN or infinite feature.
+    /// If the number of columns differs from training, or a feature is NaN or infinite.
     pub fn apply(&self, features: ArrayView2<f64>) -> Result<Array2<f64>> {
         check_width(&features, self.offset.len())?;
         if self.changes_nothing() {
@@ -72,14 +73,14 @@ impl FittedScaling {
         Ok((&features - &self.offset) / &self.scale)
     }
 
-    /// Whether scaled features are the features themselves.
+    /// Returns whether the scaling is the identity.
     pub fn changes_nothing(&self) -> bool {
         self.offset.iter().all(|&offset| offset == 0.0)
             && self.scale.iter().all(|&scale| scale == 1.0)
     }
 }
 
-/// Population variance per feature; exactly 0 where the spread is within rounding of the mean.
+/// Returns the population variance of each feature; exactly 0 if the spread is within the rounding error of the mean.
 fn variances(features: ArrayView2<f64>, mean: ArrayView1<f64>) -> Array1<f64> {
     let n_rows = features.nrows() as f64;
     let mut variance = Array1::<f64>::zeros(features.ncols());
@@ -92,7 +93,7 @@ fn variances(features: ArrayView2<f64>, mean: ArrayView1<f64>) -> Array1<f64> {
     ndarray::Zip::from(&mut variance)
         .and(mean)
         .for_each(|variance, &mean| {
-            // The computed mean is off by up to about n/2 roundings; scikit-learn uses a bound of the same form.
+            // The error of the computed mean is up to about n/2 roundings; scikit-learn uses a bound of equal form.
             let rounding = n_rows * f64::EPSILON * mean.abs();
             if *variance <= rounding * rounding {
                 *variance = 0.0;
@@ -123,7 +124,7 @@ mod tests {
 
     #[test]
     fn a_constant_feature_becomes_zero_and_not_noise() {
-        // 0.1 has no exact binary form: the mean of 1,000 copies is not exactly 0.1.
+        // 0.1 has no exact binary representation: the mean of 1,000 copies is not exactly 0.1.
         let features = Array2::from_elem((1000, 1), 0.1);
         for scaling in [Scaling::Standard, Scaling::Overall] {
             let fitted = scaling.fit(features.view()).unwrap();

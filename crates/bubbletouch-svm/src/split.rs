@@ -1,7 +1,8 @@
-//! Which rows train and which test: seeded splits, stratified by class, or keeping whole groups apart.
+//! Splits of rows into training and test rows: random with a seed, stratified by class, or by whole groups.
 //!
-//! Every split puts every class into `train` and `test`, and every row exactly once into one of them ([`given_hold_out`] may leave rows out).
-//! Rows are drawn by named streams (one per class), so one class's split does not depend on the others' rows.
+//! Every split contains rows of every class in both `train` and `test`. Every row is in exactly one of them, except rows left out by [`given_hold_out`]. Rows
+//! are drawn
+//! from one named stream per class, so the split of a class does not depend on the rows of other classes.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,24 +13,24 @@ use crate::dataset::check_labels;
 use crate::streams::DynStreams;
 use crate::{Error, Result};
 
-/// Rows to train on and rows to test on, by index.
+/// Training rows and test rows, by index.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Split {
-    /// Training rows in drawing order: one of each class in turn, each class's rows shuffled. So a smaller training
-    /// set is a prefix of a larger one; see [`at_most`](Split::at_most).
+    /// Training rows in drawing order: the classes alternate, and the rows of each class are shuffled. A smaller training set is therefore a prefix of a
+    /// larger one; see
+    /// [`at_most`](Split::at_most).
     pub train: Vec<usize>,
     /// Test rows, ascending.
     pub test: Vec<usize>,
 }
 
 impl Split {
-    /// The split with only the first `per_class` training rows of each class; the test rows stay.
+    /// Returns the split with only the first `per_class` training rows of each class; the test rows are unchanged.
     ///
-    /// The training rows are a prefix of this split's, so the sets of a learning curve are nested.
-    /// `labels` holds the label of every row of the data set.
+    /// The training rows are a prefix of this split's, so the sets of a learning curve are nested. `labels` contains the label of every row of the data set.
     ///
     /// # Errors
-    /// `per_class` is 0 or above the number of training rows of some class.
+    /// If `per_class` is 0 or exceeds the number of training rows of some class.
     pub fn at_most(&self, labels: ArrayView1<usize>, per_class: usize) -> Result<Split> {
         let mut counts = BTreeMap::<usize, usize>::new();
         for &row in &self.train {
@@ -50,11 +51,10 @@ impl Split {
         })
     }
 
-    /// A split of this split's training rows (such as a validation split), given in positions within `train`, as
-    /// rows of the whole data set.
+    /// Converts a split of this split's training rows (such as a validation split) from positions within `train` to rows of the whole data set.
     ///
     /// # Panics
-    /// If `inner` holds a position beyond the training rows.
+    /// If `inner` contains a position beyond the training rows.
     pub fn within_train(&self, inner: &Split) -> Split {
         let whole = |positions: &[usize]| positions.iter().map(|&i| self.train[i]).collect();
         let mut test: Vec<usize> = whole(&inner.test);
@@ -66,21 +66,21 @@ impl Split {
     }
 }
 
-/// Where a row belongs.
+/// Assignment of a row in a hold-out split.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// It is learned from.
+    /// The row is a training row.
     Train,
-    /// It is tested.
+    /// The row is a test row.
     Test,
-    /// Neither.
+    /// The row is not used.
     LeftOut,
 }
 
-/// Stratified hold-out: of each class's n rows, `test_fraction · n` rounded (1 to n − 1) are tested.
+/// Stratified hold-out: of the n rows of each class, `test_fraction · n` (rounded, 1 to n − 1) are test rows.
 ///
 /// # Errors
-/// A fraction outside 0 < f < 1, or a class with a single row.
+/// If the fraction is outside 0 < f < 1, or a class has a single row.
 pub fn stratified_hold_out(
     labels: ArrayView1<usize>,
     test_fraction: f64,
@@ -98,10 +98,10 @@ pub fn stratified_hold_out(
     split(labels, &drawn, &sides)
 }
 
-/// Hold-out of given rows: one side a row. Only the order of training rows is drawn.
+/// Hold-out with given sides, one per row. Only the order of the training rows is random.
 ///
 /// # Errors
-/// Another number of sides than labels, or a class that is left with no training or no test row.
+/// If the numbers of sides and labels differ, or a class has no training or no test row.
 pub fn given_hold_out(
     labels: ArrayView1<usize>,
     sides: &[Side],
@@ -114,11 +114,12 @@ pub fn given_hold_out(
     split(labels, &draw_rows(labels, seed), sides)
 }
 
-/// Stratified k-fold: k splits whose test rows are disjoint and cover all rows; a class's rows, and all rows, spread
-/// over the folds as evenly as can be (counts differ by at most 1).
+/// Stratified k-fold: k splits with disjoint test rows that cover all rows. The rows of each class, and all rows, are distributed as evenly as possible:
+/// counts differ
+/// by at most 1.
 ///
 /// # Errors
-/// k below 2, or a class with fewer than k rows.
+/// If k is below 2, or a class has fewer than k rows.
 pub fn stratified_k_fold(
     labels: ArrayView1<usize>,
     k: usize,
@@ -138,14 +139,14 @@ pub fn stratified_k_fold(
     folds(labels, &drawn, &fold_of, k)
 }
 
-/// Group hold-out: whole groups (a pose, an offset, all copies of one touch) are tested, none of their rows trained on.
+/// Group hold-out: test rows are whole groups (a pose, an offset, all copies of one touch), so no row of a test group is a training row.
 ///
-/// Groups that hold the same set of classes form a stratum; of its n groups, `test_fraction · n` rounded (1 to n − 1)
-/// are tested. Strata of a single group are pooled. `groups` holds one number per row.
+/// Groups with equal sets of classes form a stratum. Of its n groups, `test_fraction · n` (rounded, 1 to n − 1) are test groups. Strata of a single group are
+/// pooled.
+/// `groups` contains one group number per row.
 ///
 /// # Errors
-/// A fraction outside 0 < f < 1, another number of groups than labels, or a class that is left with no training or no
-/// test row.
+/// If the fraction is outside 0 < f < 1, the numbers of groups and labels differ, or a class has no training or no test row.
 pub fn group_hold_out(
     labels: ArrayView1<usize>,
     groups: ArrayView1<usize>,
@@ -168,13 +169,12 @@ pub fn group_hold_out(
     split(labels, &draw_rows(labels, seed), &sides)
 }
 
-/// Group k-fold: k splits whose test rows are disjoint and cover all rows, each group tested in exactly one fold.
+/// Group k-fold: k splits with disjoint test rows that cover all rows; each group is in the test rows of exactly one fold.
 ///
-/// Groups go in random order, larger ones first, to the fold that holds the fewest rows so far.
+/// Groups are assigned in random order, larger groups first, to the fold with the fewest rows so far.
 ///
 /// # Errors
-/// k below 2, fewer than k groups, another number of groups than labels, or a class that is left with no training or
-/// no test row in some fold.
+/// If k is below 2, there are fewer than k groups, the numbers of groups and labels differ, or a class has no training or no test row in some fold.
 pub fn group_k_fold(
     labels: ArrayView1<usize>,
     groups: ArrayView1<usize>,
@@ -218,7 +218,7 @@ pub fn group_k_fold(
     )
 }
 
-/// Refuses k folds if a class has rows in fewer than k groups: a fold would have no test row of that class.
+/// Returns an error if a class has rows in fewer than k groups: some fold would have no test row of the class.
 fn check_groups_of_classes(
     labels: ArrayView1<usize>,
     groups: ArrayView1<usize>,
@@ -240,7 +240,7 @@ fn check_groups_of_classes(
     }
 }
 
-/// Each class's rows, shuffled by the class's own stream.
+/// Returns the rows of each class, shuffled by the stream of the class.
 fn draw_rows(labels: ArrayView1<usize>, seed: &dyn DynStreams) -> BTreeMap<usize, Vec<usize>> {
     let mut drawn = BTreeMap::<usize, Vec<usize>>::new();
     for (row, &class) in labels.iter().enumerate() {
@@ -252,7 +252,7 @@ fn draw_rows(labels: ArrayView1<usize>, seed: &dyn DynStreams) -> BTreeMap<usize
     drawn
 }
 
-/// Groups by the set of classes they hold; strata of one group are pooled into the last.
+/// Returns the groups by their sets of classes; strata of one group are pooled into the last stratum.
 fn strata(labels: ArrayView1<usize>, groups: ArrayView1<usize>) -> Vec<Vec<usize>> {
     let mut classes_of = BTreeMap::<usize, Vec<usize>>::new();
     for (&class, &group) in labels.iter().zip(groups) {
@@ -274,7 +274,7 @@ fn strata(labels: ArrayView1<usize>, groups: ArrayView1<usize>) -> Vec<Vec<usize
     strata
 }
 
-/// How many of `n` are tested: `n · fraction` rounded, but at least 1 and at most n − 1.
+/// Returns the number of test elements of `n`: `n · fraction` rounded, at least 1 and at most n − 1.
 fn share(n: usize, fraction: f64) -> usize {
     ((n as f64 * fraction).round() as usize).clamp(1.min(n - 1), n - 1)
 }
@@ -300,7 +300,7 @@ fn side(is_test: bool) -> Side {
     }
 }
 
-/// The split in its stated order; refuses one that leaves a class without a training or without a test row.
+/// Creates the split in its documented order; returns an error if a class has no training or no test row.
 fn split(
     labels: ArrayView1<usize>,
     drawn: &BTreeMap<usize, Vec<usize>>,

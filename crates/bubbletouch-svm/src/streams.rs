@@ -1,9 +1,9 @@
-//! Random numbers by name: one stream for each name, so that a class or a tree draws the same whatever else is trained.
+//! Named random streams: one stream per name, so that the draws of a class or a tree do not depend on other models.
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-/// A name of random streams that grows by words and numbers, such as `tree 3 rows`.
+/// Name of a random stream, extended by words and numbers, such as `tree 3 rows`.
 pub trait Streams: Copy + 'static {
     /// Returns the name with this word appended.
     fn named(&self, word: &str) -> Self;

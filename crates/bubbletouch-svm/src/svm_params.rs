@@ -28,19 +28,17 @@ pub enum Solver {
     /// Sequential minimal optimisation on shared Gram matrices.
     #[default]
     Smo,
-    /// Dual coordinate descent: linear kernel and one-vs-rest, with a regularised bias (LIBLINEAR's problem); see
-    /// [`linear_svm`](crate::linear_svm).
+    /// Dual coordinate descent for the linear kernel and one-vs-rest, with a regularised bias (LIBLINEAR's problem); see [`linear_svm`](crate::linear_svm).
     CoordinateDescent,
 }
 
-/// Rows below which kernel values are always f64: it costs nothing that a person would notice.
+/// Number of rows below which kernel values are always f64, because the additional time is negligible.
 const SINGLE_FROM_ROWS: usize = 1000;
-/// The smallest tolerance that f32 kernel values can be trusted with.
+/// Minimum tolerance for f32 kernel values; smaller tolerances are near their rounding error.
 const SINGLE_TOLERANCE: f64 = 1e-4;
-/// The largest C · K(x, x), and the largest K(x, x), for f32: rounding of K, 6e-8 of it, is multiplied by coefficients of at
-/// most C.
+/// Maximum of C · K(x, x), and of K(x, x), for f32: coefficients of at most C multiply the rounding error of K, which is 6e-8 of K.
 const SINGLE_MOST: f64 = 1e5;
-/// Bytes of kernel values held at once, unless asked otherwise: one-vs-rest on 16,384 rows in f32.
+/// Default maximum size of the kernel values held at once, bytes: one-vs-rest on 16,384 rows in f32.
 pub const DEFAULT_MEMORY_BYTES: usize = 2 << 30;
 
 /// Parameters of a soft-margin SVM. Implements linfa's [`Fit`].

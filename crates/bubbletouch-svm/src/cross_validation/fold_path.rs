@@ -35,7 +35,7 @@ pub(crate) struct FoldSolution {
 }
 
 impl FoldPath {
-    /// Iterates over the solved folds of a pair of classes. `folds` contains the labels of each fold, one per row of the Gram matrix; the rows of `positive`
+    /// Solves a pair of classes fold by fold; calls `told` with each solved fold. `folds` contains the labels of each fold, one per row of the Gram matrix; the rows of `positive`
     /// are positive.
     pub fn of_pair<T: SolverScalar>(
         gram: &mut Dense<T>,
@@ -64,7 +64,7 @@ impl FoldPath {
         }
     }
 
-    /// Iterates over the solved folds of one class against all others. If a class is not separable from the rest, several decision values can be equal within
+    /// Solves one class against all others, fold by fold; calls `told` with each solved fold. If a class is not separable from the rest, several decision values can be equal within
     /// the tolerance.
     /// The start then determines the winner, so each fold starts from zero, as in training.
     pub fn of_class<T: SolverScalar>(

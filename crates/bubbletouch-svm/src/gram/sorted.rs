@@ -22,11 +22,11 @@ pub(crate) fn pairs(
 #[derive(Clone)]
 pub(crate) struct Sorted<T> {
     points: CenteredRows<T>,
-    /// The original number of each sorted row.
+    /// Original number of each sorted row.
     order: Vec<usize>,
-    /// Where each original row is.
+    /// Sorted position of each original row.
     place: Vec<usize>,
-    /// The sorted rows of each class.
+    /// Range of sorted rows of each class.
     ranges: Vec<Range<usize>>,
     classes: Vec<usize>,
     kernel: KernelFunction,

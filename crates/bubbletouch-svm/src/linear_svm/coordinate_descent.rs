@@ -1,9 +1,10 @@
 //! Dual coordinate descent for the binary linear SVM with hinge loss [Hsieh et al. 2008, algorithm 3; LIBLINEAR].
 //!
-//! Minimise `½|w|² − Σ_i a_i` over `0 ≤ a_i ≤ C`, with `w = Σ_i y_i a_i x_i`. One coordinate at a time, in random order,
-//! a_i takes its best value `clamp(a_i − G/|x_i|², 0, C)` with `G = y_i w·x_i − 1`, and w follows. A row whose
-//! multiplier sits at a bound and whose gradient pushes it there by more than any violation of the last pass is left
-//! out (shrunk) until the rest has converged; then all rows are looked at again.
+//! Minimises `½|w|² − Σ_i a_i` over `0 ≤ a_i ≤ C`, with `w = Σ_i y_i a_i x_i`. The coordinates are updated one at a time, in random order: a_i is set to its
+//! optimum
+//! `clamp(a_i − G/|x_i|², 0, C)` with `G = y_i w·x_i − 1`, and w is updated. Shrinking: a row is skipped if its multiplier is at a bound and its gradient
+//! pushes it there
+//! by more than any violation of the last pass. When the remaining rows have converged, all rows are visited again.
 
 use ndarray::{Array2, ArrayView2, s};
 use rand::Rng;
@@ -11,14 +12,14 @@ use rand::Rng;
 use crate::linear_svm::params::LinearSvmParams;
 use crate::{Error, Result};
 
-/// Lanes of the inner products: the rows are padded to a multiple of it. Fewer would leave vector units idle, more
-/// would only pad.
+/// Number of lanes of the inner products; rows are padded to a multiple. If smaller, vector units are partly idle; if larger, the padding grows without
+/// benefit.
 const LANES: usize = 8;
 
-/// A change of a multiplier, or a gradient, smaller than this is rounding.
+/// Changes of multipliers, and gradients, below this value are rounding errors.
 pub(crate) const ROUNDING: f64 = 1e-12;
 
-/// The multipliers of a solved problem, and how the solver ended.
+/// Multipliers of a solved problem, and the state of the solver at the end.
 #[derive(Clone, Debug)]
 pub(crate) struct Solved {
     /// Signed multipliers: `w = Σ a_i x_i`.
@@ -27,7 +28,7 @@ pub(crate) struct Solved {
     pub is_capped: bool,
 }
 
-/// Training rows with the bias feature appended and padded by zeros: contiguous, in f64.
+/// Training rows with an appended bias feature, padded with zeros: contiguous, in f64.
 #[derive(Clone, Debug)]
 pub(crate) struct Rows {
     values: Array2<f64>,
@@ -59,24 +60,24 @@ impl Rows {
         self.squared_norms.len()
     }
 
-    /// m + 1, padded.
+    /// Returns m + 1, padded to whole lanes.
     pub(crate) fn width(&self) -> usize {
         self.values.ncols()
     }
 
     pub(crate) fn row(&self, row: usize) -> &[f64] {
         let width = self.width();
-        // In standard layout by construction.
+        // The matrix is in standard layout by construction.
         &self.values.as_slice().unwrap_or_default()[row * width..][..width]
     }
 
-    /// `|x|²`, at least 1 (the bias feature).
+    /// Returns `|x|²`, at least 1 because of the bias feature.
     pub(crate) fn squared_norm(&self, row: usize) -> f64 {
         self.squared_norms[row]
     }
 }
 
-/// Solves one binary problem with y = `sign` (±1 per row): the signed multipliers `y_i a_i`.
+/// Solves one binary problem with y = `sign` (±1 per row); returns the signed multipliers `y_i a_i`.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn solve(
     rows: &Rows,
@@ -89,13 +90,13 @@ pub(crate) fn solve(
     let mut w = vec![0.0; rows.width()];
     let mut order: Vec<usize> = (0..n_rows).collect();
     let mut n_active = n_rows;
-    // The projected gradients of the last pass spanned these; a row beyond them is shrunk.
+    // Range of the projected gradients of the last pass; rows beyond it are shrunk.
     let mut bounds = (f64::NEG_INFINITY, f64::INFINITY);
     for pass in 1..=params.max_passes {
         let mut seen = (f64::INFINITY, f64::NEG_INFINITY);
         let mut visited = 0;
         while visited < n_active {
-            // 32 bits: the draw takes as long as a short row's product.
+            // 32 bits, because the draw takes as long as a short row's product.
             let other = visited + rng.gen_range(0..(n_active - visited) as u32) as usize;
             order.swap(visited, other);
             let i = order[visited];
@@ -144,7 +145,7 @@ fn solved(alpha: Vec<f64>, sign: &[f64], n_passes: usize, is_capped: bool) -> So
     }
 }
 
-/// `a·b`, of padded rows.
+/// Returns `a·b` of padded rows.
 #[inline(always)]
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let (a, b) = (a.as_chunks::<LANES>().0, b.as_chunks::<LANES>().0);
@@ -157,7 +158,7 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     sums.iter().sum()
 }
 
-/// `w += factor · x`, of padded rows.
+/// Computes `w += factor · x` for padded rows.
 #[inline(always)]
 pub(crate) fn add_scaled(w: &mut [f64], factor: f64, x: &[f64]) {
     let n = w.len().min(x.len());

@@ -1,10 +1,12 @@
-//! Linear soft-margin SVMs. By default [`svm`](crate) trains them, on a kernel matrix, as it does other kernels.
+//! Linear soft-margin SVMs without a kernel matrix. By default, the [SMO solver](crate) trains linear SVMs on a kernel matrix.
 //!
-//! With `solver = "coordinate_descent"` and `multiclass = "one_vs_rest"` this module trains them without a kernel matrix: memory n × m, whatever n.
-//! The bias is the weight of an added feature of constant 1, and so is regularised with the others, as in LIBLINEAR
-//! (`intercept_scaling = 1`): centre the features, or expect a bias closer to 0 than the kernel SVM's.
+//! With `solver = "coordinate_descent"` and `multiclass = "one_vs_rest"`, this module trains linear SVMs in memory n × m. The bias is the weight of an
+//! additional feature
+//! with the constant value 1, and is regularised with the other weights, as in LIBLINEAR (`intercept_scaling = 1`). Centre the features; otherwise the bias
+//! is closer to
+//! 0 than the kernel SVM's.
 //!
-//! One-vs-rest: for each class `½|w|² + C Σ_i max(0, 1 − y_i w·x_i)`, by dual coordinate descent.
+//! One-vs-rest: for each class, dual coordinate descent minimises `½|w|² + C Σ_i max(0, 1 − y_i w·x_i)`.
 
 mod coordinate_descent;
 mod model;

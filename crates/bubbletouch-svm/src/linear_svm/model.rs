@@ -10,16 +10,16 @@ use crate::linear_svm::coordinate_descent::{self, Rows};
 use crate::linear_svm::params::LinearSvmParams;
 use crate::streams::DynStreams;
 
-/// How a problem's solver ended.
+/// Convergence of the solver of one binary problem.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Convergence {
-    /// The objective in the weights; the optimum is at most this.
+    /// Primal objective, computed from the weights; an upper bound of the optimum.
     pub primal: f64,
-    /// The objective in the multipliers; the optimum is at least this. `primal − dual` is the duality gap.
+    /// Dual objective, computed from the multipliers; a lower bound of the optimum. The duality gap is `primal − dual`.
     pub dual: f64,
-    /// Passes over the rows.
+    /// Number of passes over the rows.
     pub n_passes: usize,
-    /// Whether it stopped at [`LinearSvmParams::max_passes`], short of its tolerance.
+    /// Whether the solver stopped at [`LinearSvmParams::max_passes`] before reaching its tolerance.
     pub is_capped: bool,
 }
 
@@ -32,11 +32,12 @@ pub struct LinearSvm {
 }
 
 impl LinearSvmParams {
-    /// Trains on labelled measurements. The order in which rows are visited is drawn by `seed`.
+    /// Trains on labelled rows. The order of visits to the rows is drawn from `seed`.
     ///
     /// # Errors
-    /// C, tolerance or cap out of range, empty data, a NaN or infinite feature or one whose square overflows, another
-    /// number of labels than rows, or a single class.
+    /// If C, the tolerance or the cap is out of range, the data are empty, or a feature is NaN, infinite or too large to square. If the number of labels
+    /// differs from the
+    /// number of rows, or there is a single class.
     pub fn train(&self, data: &Dataset, seed: &dyn DynStreams) -> Result<LinearSvm> {
         self.check()?;
         let classes = checked_classes(data)?;
@@ -59,7 +60,7 @@ impl LinearSvmParams {
         Ok(self.against_rest(data, classes, &label, multipliers, &ends))
     }
 
-    /// Weights and duality gaps of the binary problems, from their multipliers (n_classes × n_rows).
+    /// Returns the weights and duality gaps of the binary problems, given their multipliers (n_classes × n_rows).
     fn against_rest(
         &self,
         data: &Dataset,
@@ -99,12 +100,12 @@ impl LinearSvmParams {
 }
 
 impl LinearSvm {
-    /// Weights and biases.
+    /// Returns the weights and biases.
     pub fn model(&self) -> &LinearModel {
         &self.model
     }
 
-    /// How each problem's solver ended: one per class.
+    /// Returns the convergence of each class's problem.
     pub fn convergence(&self) -> &[Convergence] {
         &self.convergence
     }
@@ -127,7 +128,7 @@ impl ClassModel for LinearSvm {
     }
 }
 
-/// `w_k = Σ_i a_ki x_i` and `b_k = Σ_i a_ki`, afresh from the multipliers: no rounding of the updates is left.
+/// Computes `w_k = Σ_i a_ki x_i` and `b_k = Σ_i a_ki` from the multipliers, without the accumulated rounding of the updates.
 fn weights(multipliers: &Array2<f64>, features: ArrayView2<f64>) -> LinearModel {
     LinearModel {
         weights: multipliers.dot(&features),
@@ -135,7 +136,7 @@ fn weights(multipliers: &Array2<f64>, features: ArrayView2<f64>) -> LinearModel 
     }
 }
 
-/// `|w_k|² + b_k²` per class.
+/// Returns `|w_k|² + b_k²` per class.
 fn squared_norms(model: &LinearModel) -> Array1<f64> {
     let weights = model.weights.slice(s![.., ..]);
     weights.map_axis(Axis(1), |w| w.dot(&w)) + model.bias.mapv(|b| b * b)

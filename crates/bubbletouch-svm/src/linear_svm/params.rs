@@ -2,18 +2,19 @@
 
 use crate::{Error, Result};
 
-/// Passes over the rows after which a solver gives up: scikit-learn's default for LinearSVC.
+/// Default maximum number of passes over the rows: scikit-learn's default for LinearSVC.
 pub const MAX_PASSES: usize = 1000;
 
 /// Parameters of a linear SVM.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinearSvmParams {
-    /// C > 0: what a unit of margin violation costs.
+    /// Penalty C > 0 per unit of margin violation.
     pub c: f64,
-    /// The largest violation of the optimality conditions (spread of projected gradients) when the solver stops, in
-    /// units of the margin; above 0. scikit-learn's default for LinearSVC is 1e-4.
+    /// Stopping tolerance, above 0: the largest violation of the optimality conditions (spread of projected gradients), in units of the margin.
+    /// scikit-learn's default for
+    /// LinearSVC is 1e-4.
     pub tolerance: f64,
-    /// Passes over the rows after which the solver gives up and says so; at least 1.
+    /// Maximum number of passes over the rows, at least 1; beyond it, the solver stops and marks the problem as capped.
     pub max_passes: usize,
 }
 
