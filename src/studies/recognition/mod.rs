@@ -1,6 +1,6 @@
-//! Studies that recognise objects.
+//! Recognition studies: studies that recognise objects by touch.
 //!
-//! Data flow one way, a folder a stage; a stage imports only from stages above it in this table.
+//! Data flow in one direction. Each stage is a folder, and a stage imports only from stages above it in this table.
 //!
 //! | stage | in → out |
 //! |---|---|

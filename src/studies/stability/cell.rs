@@ -1,4 +1,4 @@
-//! One cell: a scene simulated in one way, and judged.
+//! One configuration: simulation of a scene by a method, and evaluation of the result.
 
 use crate::contact::equilibrium::{
     EquilibriumSolver, FreeObject, Ground, Outcome as EquilibriumOutcome, PlacedSkin,
@@ -20,27 +20,27 @@ use glam::DVec3;
 use std::slice::from_ref;
 use std::time::Instant;
 
-/// What a method says at the moment of judgement.
+/// Result of a method at the time of evaluation.
 #[derive(Default)]
 struct Answer {
-    /// How it broke before; the rest is then nothing.
+    /// Kind of failure, if the simulation failed; all other fields are then zero or empty.
     broken: Option<Outcome>,
-    /// Σ f, newtons, against what it must be, as a share of that.
+    /// Relative force error, |Σ f − expected| / expected.
     force_imbalance: f64,
-    /// n_taxels at the moment of judgement, metres.
+    /// Deflections at the time of evaluation, metres, shape (n_taxels,).
     deflection: Vec<f64>,
-    /// Σ |δ| after the release, metres; 0 where nothing is released.
+    /// Sum of deflections |δ| after the release, metres; 0 if nothing is released.
     left_over: f64,
-    /// 0 where nothing is stepped.
+    /// Number of steps; 0 if the method does not step through time.
     n_steps: usize,
 }
 
-/// Times of what takes less than this are medians of several, seconds: one alone says what else the machine did.
+/// Duration below which times are medians of several runs, seconds; a single short run is dominated by other load of the machine.
 const SHORT: f64 = 5e-3;
-/// Of so many.
+/// Number of runs of short simulations.
 const N_REPEATS: usize = 9;
 
-/// Simulates and judges a cell with these taxels before they are damped.
+/// Simulates and evaluates a configuration, given its taxels without dampers.
 pub(super) fn measure(
     cell: &StabilityCell,
     undamped: Taxel,
@@ -82,15 +82,15 @@ pub(super) fn measure(
     Ok(best.expect("at least one try"))
 }
 
-/// How many times stiffer than the tolerance asks: the ball sinks in by its share of every taxel.
+/// Ratio of the contact stiffness to the stiffness that just meets the tolerance. The penetration reduces the deflection of every taxel.
 const SAFETY: f64 = 4.0;
 
-/// What a careful author of a penalty method tries: as stiff as the error allows, and as stiff as the step allows.
+/// Returns the two contact stiffnesses to try: the lowest that meets the tolerance, and the highest that is stable with the time step.
 fn contact_stiffnesses(cell: &StabilityCell, scene: &CellScene) -> Result<[f64; 2]> {
     let (taxel, truth) = (&scene.taxel, &scene.truth);
     let deepest = truth.deflection.iter().copied().fold(0.0, f64::max);
     let n_at_least = |least: f64| truth.deflection.iter().filter(|d| **d >= least).count();
-    // The taxels that are in as far as any share what the stops carry.
+    // The taxels with the largest deflection share the load of the stops.
     let of_stops = truth.stops / n_at_least(deepest * (1.0 - 1e-9)) as f64;
     let heaviest = taxel.stiffness * deepest + of_stops;
     let needed = taxel.stiffness.max(heaviest / taxel.stroke);
@@ -157,7 +157,7 @@ fn integrator(
         #[cfg(feature = "rapier")]
         (method, _) if method.is_engine() => {
             use crate::dynamics::{RapierSettings, RapierWorld};
-            // The plan gives an engine its iterations.
+            // The plan sets the iterations of every engine.
             let n = cell.solver_iterations.unwrap_or(1);
             let settings = match method {
                 ContactMethod::RapierSkinSim => RapierSettings::skin_sim(system, n),
@@ -172,12 +172,12 @@ fn integrator(
             };
             Ok(Box::new(RapierWorld::new(system, settings)?))
         }
-        // The plan leaves out what is not built, and ours does not step.
+        // The plan omits methods that are not built; the quasi-static method does not step.
         _ => Ok(Box::new(ImplicitEuler::new(system))),
     }
 }
 
-/// Ours, for a free ball, or several one upon the other in a tube: they may turn and move aside, too.
+/// Solves the equilibrium of one free ball, or of several stacked in a tube, with the quasi-static method. The balls may rotate and move sideways.
 fn put_to_rest(scene: &CellScene, mass: f64, n_balls: usize) -> Result<Answer> {
     let cradle = &scene.cradle;
     let spheres = cradle.ball.spheres().expect("a ball is a sphere");
@@ -211,7 +211,7 @@ fn put_to_rest(scene: &CellScene, mass: f64, n_balls: usize) -> Result<Answer> {
     })
 }
 
-/// Ours, for a plunger: it goes on until the springs carry its weight.
+/// Presses a plunger with the quasi-static method until the springs carry its weight.
 fn press_to_weight(scene: &CellScene) -> Result<Answer> {
     let (cradle, weight) = (&scene.cradle, scene.force);
     let ball = from_ref(&cradle.ball);
@@ -229,7 +229,7 @@ fn press_to_weight(scene: &CellScene) -> Result<Answer> {
     })
 }
 
-/// Ours, for an imposed ball: the time loop of damped taxels.
+/// Simulates a ball with imposed motion on damped taxels with the quasi-static method.
 fn press_and_release(cell: &StabilityCell, scene: &CellScene, plan: &VelocityPlan) -> Answer {
     let (dt, patch) = (cell.dt_s, &scene.cradle.patch);
     let frames = scene.frames(dt);

@@ -1,12 +1,12 @@
-//! What is charted: a map for each part of a study, and what taxels on joints cost.
+//! Charts of a stability study: a map for each part, and the computing time against the number of taxels.
 
 use crate::dynamics::skin_sim::UNSTABLE_JOINTS;
 use crate::studies::stability::plan::StabilityPlan;
 use crate::table::{Along, At, ChartSpec, Mark, Rule, Table};
 
 impl StabilityPlan {
-    /// Maps of parts with several methods and several steps or masses: time steps across, taxel masses up, a panel a method and a row of
-    /// panels a setting; then the ladder of joints.
+    /// Returns the charts: maps for parts with several methods and several time steps or masses, followed by charts of growing arrays. A map has time steps
+    /// along x and taxel masses along y, one column of panels per method and one row per setting.
     pub(crate) fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
         let (cells, joints) = (&tables[0], &tables[3]);
         let mut charts: Vec<ChartSpec> = Vec::new();
@@ -27,7 +27,7 @@ impl StabilityPlan {
         charts
     }
 
-    /// How often each method is right, the best first.
+    /// Returns the number of right results of each method, in descending order.
     pub(crate) fn answers(&self, tables: &[Table]) -> Vec<String> {
         let summary = &tables[1];
         let methods = summary.groups(&["method", "solver_iterations"], 0..summary.n_rows);
@@ -51,7 +51,7 @@ impl StabilityPlan {
     }
 }
 
-/// Of one part.
+/// Returns the map of one part.
 fn map(cells: &Table, rows: &[usize]) -> ChartSpec {
     let scene = cells.word("scene", rows[0]);
     let what = match scene {
@@ -90,7 +90,7 @@ fn map(cells: &Table, rows: &[usize]) -> ChartSpec {
     chart
 }
 
-/// Tiles of outcomes.
+/// Returns the mark that draws outcomes as tiles.
 fn tiles(sign: &str) -> Mark {
     Mark::Tiles {
         fill: "outcome".to_owned(),
@@ -98,14 +98,14 @@ fn tiles(sign: &str) -> Mark {
     }
 }
 
-/// Those of some columns that have several values in these rows.
+/// Returns the columns that have several values in these rows.
 fn varying(table: &Table, columns: &[&str], rows: &[usize]) -> Vec<String> {
     let varies = |column: &str| table.groups(&[column], rows.iter().copied()).len() > 1;
     let varying = columns.iter().filter(|column| varies(column));
     varying.map(|column| (*column).to_owned()).collect()
 }
 
-/// Of each time step what joints cost, then what comes of all of them.
+/// Returns the computing time against the number of joints for each time step, followed by a chart of the outcomes.
 fn joint_charts(joints: &Table) -> Vec<ChartSpec> {
     let all: Vec<usize> = (0..joints.n_rows).collect();
     if all.is_empty() {

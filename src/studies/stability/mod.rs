@@ -1,21 +1,20 @@
-//! Where does each way to simulate contact break?
+//! Stability studies: the limits of each method of contact simulation.
 //!
-//! A file with a `[stability]` table is such a study: [`StabilityStudySpec`] (as written) → [`StabilityPlan`] (checked, SI) →
+//! A file with a `[stability]` table is a stability study: [`StabilityStudySpec`] (as written) → [`StabilityPlan`] (checked, SI) →
 //! [`run_whole`](crate::studies::study::run_whole) → [its tables](rows).
 //!
-//! A ball comes down on a **cradle**, a square patch whose taxels it meets nearly all at once (all within a quarter of their stroke), in
-//! one of five [scenes](StabilityScene). Two or four balls lie one upon the other in a smooth tube, since without friction a stack that
-//! nothing holds has no rest but the one in which it lies down; upright in the tube the taxels carry all of its weight, and the walls
-//! nothing. Every scene has a moment at which the exact answer is known without any time stepping (the
-//! taxels are where the ball holds them; the springs carry its weight, [`rest`](crate::dynamics::rest)), and is judged there:
+//! A ball is lowered onto a square array whose taxels it touches nearly at once (all within a quarter of their stroke), in one of five
+//! [scenes](StabilityScene). In two scenes, two or four balls are stacked in a smooth tube. Without friction, a free stack has no stable upright state. In the
+//! tube, the taxels carry the whole weight and the walls carry nothing. In every scene, the exact result is known at one time without time stepping: the ball
+//! prescribes the deflections, or the springs carry the weight ([`rest`](crate::dynamics::rest)). Each method is evaluated at this time:
 //!
-//! - **force imbalance**: |Σ f − what it must be| as a share of that, at the end (of the hold, if the ball's motion is imposed).
-//! - **deflection error**: Σ |δ − δ\*| / Σ δ\*, there, and for an imposed ball also after the release, where all taxels are out.
-//! - **outcome**: [`right`](Outcome::Right) if both are at most [`TOLERANCE`]; else [`inaccurate`](Outcome::Inaccurate), unless it broke: a
-//!   number is not finite, there is more energy than the scene can have, or contact was missed (taxels are not half as far in as they
-//!   must be, or the ball is through the stops).
+//! - **force imbalance**: |Σ f − expected| / expected, at the end of the simulation or, for an imposed motion, of the hold.
+//! - **deflection error**: Σ |δ − δ\*| / Σ δ\* at this time. For an imposed motion it includes the time after the release, when all deflections must be zero.
+//! - **outcome**: [`right`](Outcome::Right) if both errors are at most [`TOLERANCE`], otherwise [`inaccurate`](Outcome::Inaccurate). A simulation fails if a
+//! number is not finite, if the energy exceeds that of the scene, or if contact is missed (deflections less than half of the expected ones, or the ball below
+//! the stops).
 //!
-//! Dynamic methods run until the slowest motion of a scene has died out to 5e-5, at least [`LEAST_STEPS`] steps and half a second.
+//! Dynamic methods run until the slowest motion of a scene has decayed to 5e-5, and for at least [`LEAST_STEPS`] steps and half a second.
 
 mod cell;
 mod charts;

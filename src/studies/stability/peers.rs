@@ -1,19 +1,20 @@
-//! What other programs make of the same cells, as they left it in a file.
+//! Results of other programs for the same configurations, read from a file.
 
 use crate::error::Result;
 use crate::report::csv_tables::read_rows;
 use crate::studies::stability::plan::StabilityPlan;
 use crate::studies::stability::rows::{PeerSource, StabilityCell, StabilityRow};
 
-/// Rows of cells that a plan has but for the method, and who measured them: `MuJoCo 4.0.0, 2026-11-22`. Nothing where there is no file.
+/// Returns the rows of other programs whose configuration differs from the plan only in the method, and their source: `MuJoCo 4.0.0, 2026-11-22`. Returns
+/// nothing if there is no file.
 ///
 /// # Errors
-/// The file is no such table; the error names it and the line.
+/// If the file is not such a table; the error names the file and the line.
 pub(super) fn peer_rows(plan: &StabilityPlan) -> Result<(Vec<StabilityRow>, String)> {
     let Some(path) = plan.peers.as_ref().filter(|path| path.exists()) else {
         return Ok(Default::default());
     };
-    // A line is read once for each of its parts: serde's flattening takes an empty field for an empty text.
+    // Each line is read once for each struct, because serde's flattening reads an empty field as an empty text.
     let cells = read_rows::<StabilityCell>(path)?.into_iter();
     let found = cells.zip(read_rows(path)?).zip(read_rows(path)?);
     let mut sources: Vec<String> = Vec::new();
@@ -30,7 +31,7 @@ pub(super) fn peer_rows(plan: &StabilityPlan) -> Result<(Vec<StabilityRow>, Stri
     Ok((rows, sources.join("; ")))
 }
 
-/// Whether the plan has a cell that differs in the method only.
+/// Returns whether the plan has a configuration that differs only in the method.
 fn is_asked(plan: &StabilityPlan, cell: &StabilityCell) -> bool {
     let is_like = |(other, _): &(StabilityCell, _)| {
         let of_method = StabilityCell {

@@ -1,4 +1,4 @@
-//! A study of stability that can run: every key checked, its cells laid out.
+//! Plan of a stability study: checked keys and the list of configurations.
 
 use crate::error::Result;
 use crate::inputs::check::{COUNT, Check, Range};
@@ -11,21 +11,21 @@ use crate::studies::stability::spec::{
 use crate::world::Taxel;
 use std::path::{Path, PathBuf};
 
-/// Settings of a study of stability, ready to run.
+/// Checked settings of a stability study.
 #[derive(Clone, Debug)]
 pub struct StabilityPlan {
-    /// As it was written.
+    /// Specification as written in the file.
     pub spec: StabilityStudySpec,
-    /// Part by part, each with its taxels before they are damped; methods that this build does not have are left out.
+    /// Configurations, ordered by part, each with its taxel without damper. Methods that this build does not contain are omitted.
     pub cells: Vec<(StabilityCell, Taxel)>,
-    /// Where the rows of other programs are.
+    /// Path of the rows of other programs.
     pub peers: Option<PathBuf>,
 }
 
-/// Taxels a side, at most: a million and more of bodies is no question of stability.
+/// Largest number of taxels along a side. Larger arrays take long and show nothing new about stability.
 const MOST_TAXELS: usize = 256;
 
-/// What the numbers of a part may be.
+/// Ranges of the numeric keys of a part.
 const KEYS: [(&str, Range); 9] = [
     ("methods", Range::Any),
     ("taxels", COUNT),
@@ -39,10 +39,10 @@ const KEYS: [(&str, Range); 9] = [
 ];
 
 impl StabilityPlan {
-    /// Checks a study that lies in `folder`.
+    /// Checks a study whose file is in `folder`.
     ///
     /// # Errors
-    /// The error names `place` (the file) and the first key that is out of its range.
+    /// If a key is out of its range; the error names `place` (the file) and the key.
     pub fn new(place: &str, folder: &Path, spec: StabilityStudySpec) -> Result<Self> {
         let check = Check { place };
         let wanted = &spec.stability;
@@ -83,7 +83,7 @@ impl Check<'_> {
             return Err(error(["methods", "MuJoCo", allowed]));
         }
         let sides = wanted.taxels.values();
-        // Even, so that the ball lies between four taxels and not on one.
+        // The number is even, so that the ball lies between four taxels.
         if let Some(n) = sides.iter().find(|&&n| n % 2 != 0 || n > MOST_TAXELS) {
             let allowed = format!("even numbers from 2 to {MOST_TAXELS}");
             return Err(error(["taxels", &n.to_string(), &allowed]));
@@ -136,8 +136,8 @@ impl Check<'_> {
     }
 }
 
-/// M or, where it is given so, M over the number of taxels; none where the ball's motion is imposed. The error is a key, what was given, and
-/// what is allowed.
+/// Returns the masses M of the ball, or `None` for an imposed motion; a given mass per taxel is converted. An error consists of the key, the given value and
+/// the allowed values.
 fn object_masses(
     part: &StabilityPartSpec,
 ) -> std::result::Result<Vec<Option<f64>>, [&'static str; 3]> {

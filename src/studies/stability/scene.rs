@@ -1,4 +1,4 @@
-//! A cell's scene: cradle, ball, dampers, how long it takes, and the exact answer.
+//! Scene of one configuration: the array, the ball, the dampers, the duration, and the exact result.
 
 use crate::contact::equilibrium::HalfSpace;
 use crate::dynamics::{Drive, Rest, System, rest, skin_sim};
@@ -10,24 +10,25 @@ use crate::studies::stability::spec::StabilityScene;
 use crate::world::{Grid, Layout, Patch, Phase, Taxel, Taxels, VelocityPlan};
 use glam::DVec3;
 
-/// g, m/s².
+/// Gravity g, m/s².
 pub(super) const GRAVITY: f64 = 9.81;
-/// Of an imposed ball, m/s.
+/// Speed of a ball whose motion is imposed, m/s.
 const SPEED: f64 = 0.5;
-/// From where an imposed ball starts to first contact, metres.
+/// Distance from the start of an imposed motion to first contact, metres.
 const APPROACH: f64 = 2e-3;
-/// A hold takes at least so long, seconds.
+/// Shortest duration of a hold, seconds.
 const LEAST_HOLD: f64 = 0.2;
-/// What is left of the slowest motion at the end of a hold or of a run: e to the minus this, 5e-5.
+/// A hold and a run last until the slowest motion has decayed by e^−10 = 5e-5.
 const DECAY: f64 = 10.0;
-/// A hold takes at least so many steps.
+/// Smallest number of steps in a hold.
 const LEAST_HOLD_STEPS: f64 = 5.0;
-/// Travel within which taxels are met, in strokes: all are within 1.25 of them; much further, the ball would be behind the substrate.
+/// Travel within which taxels count as reachable, in strokes. All taxels are reached within 1.25 strokes. With a much larger travel, the ball would be behind
+/// the substrate.
 const REACH: f64 = 1.5;
-/// A free ball is watched at least so long, seconds.
+/// Shortest simulated time of a free ball, seconds.
 const LEAST_TIME: f64 = 0.5;
 
-/// All taxels of a cradle under a ball; see the module's title page.
+/// Array of taxels under a ball that touches all of them nearly at once; see the documentation of the module.
 #[derive(Clone, Debug)]
 pub(super) struct Cradle {
     pub patch: Patch,
@@ -36,27 +37,27 @@ pub(super) struct Cradle {
     pub pose: Pose,
 }
 
-/// A cell's scene, ready to be simulated in any way.
+/// Scene of a configuration, independent of the simulation method.
 #[derive(Clone, Debug)]
 pub(super) struct CellScene {
     pub cradle: Cradle,
     pub taxel: Taxel,
-    /// Of the ball.
+    /// Motion or gravity of the ball.
     pub drive: Drive,
-    /// What must be at the moment of judgement.
+    /// Exact result at the time of evaluation.
     pub truth: Rest,
-    /// Σ f at that moment, newtons.
+    /// Exact total force Σ f at the time of evaluation, newtons.
     pub force: f64,
-    /// The moment of judgement, seconds: the end of the hold, or the end.
+    /// Time of evaluation, seconds: the end of the hold, or of the simulation.
     judged: f64,
-    /// The end, seconds.
+    /// End of the simulation, seconds.
     end: f64,
-    /// Joules that the scene never has.
+    /// Energy above which the simulation counts as unstable, joules.
     pub energy_limit: f64,
 }
 
 impl Cradle {
-    /// A square of `side` taxels a side under a ball as large as it.
+    /// Creates a square array with `side` taxels along a side, under a ball whose radius is the side length of the array.
     fn new(side: usize, taxel: Taxel) -> Result<Self> {
         let grid = Grid {
             nx: side,
@@ -76,7 +77,7 @@ impl Cradle {
         let layout = Layout::new(places.map(center).collect(), vec![DVec3::Z; side * side])?;
         let center = DVec3::ZERO;
         let ball = SphereUnion::new(vec![Sphere { center, radius }])?;
-        // The innermost taxels are met first.
+        // The ball touches the innermost taxels first.
         let innermost = DVec3::new(0.5 * grid.pitch, 0.5 * grid.pitch, 0.0).length_squared();
         let lift = reach - 0.25 * taxel.stroke * innermost / corner;
         Ok(Self {
@@ -86,12 +87,12 @@ impl Cradle {
         })
     }
 
-    /// Where an imposed ball starts.
+    /// Returns the initial pose of a ball whose motion is imposed.
     fn above(&self) -> Pose {
         Pose::from_translation(self.pose.translation + APPROACH * DVec3::Z)
     }
 
-    /// Where the balls of a stack lie that is at first contact, from below: `patch_from_object`.
+    /// Returns the poses of a stack of balls at first contact, from bottom to top: `patch_from_object`.
     pub fn stack(&self, n_balls: usize) -> impl Iterator<Item = Pose> {
         let radius = self
             .ball
@@ -102,7 +103,7 @@ impl Cradle {
             .map(move |number| Pose::from_translation(self.pose.translation + above(number)))
     }
 
-    /// The walls of a tube that holds a stack upright: half-spaces that the balls touch and do not push.
+    /// Returns the walls of a tube that keeps a stack upright: half-spaces that the balls touch without force.
     pub fn tube(&self) -> Vec<HalfSpace> {
         let radius = self
             .ball
@@ -116,8 +117,7 @@ impl Cradle {
         inwards.map(wall).into()
     }
 
-    /// As the methods with mass see it: taxels of this mass, and the ball of a cell at a pose, with those taxels that it meets within a
-    /// reach, metres, and with what is stacked on it.
+    /// Returns the system for dynamic methods. It contains the taxels within `reach` metres of the ball's start and the balls stacked on the first one.
     fn system(&self, cell: &StabilityCell, drive: &Drive, reach: f64) -> Result<System<'_>> {
         let pose = match drive {
             Drive::Free { .. } => self.pose,
@@ -133,7 +133,7 @@ impl Cradle {
 }
 
 impl CellScene {
-    /// Of a cell, with its taxels before they are damped.
+    /// Creates the scene of a configuration from the taxel without its damper.
     pub fn new(cell: &StabilityCell, undamped: Taxel) -> Result<Self> {
         let cradle = Cradle::new(cell.taxels, undamped)?;
         let mut scene = match cell.object_mass_kg {
@@ -145,13 +145,13 @@ impl CellScene {
         Ok(scene)
     }
 
-    /// Everything as the methods with mass see it.
+    /// Returns the system for dynamic methods.
     pub fn system(&self, cell: &StabilityCell) -> Result<System<'_>> {
         let reach = APPROACH + REACH * self.taxel.stroke;
         self.cradle.system(cell, &self.drive, reach)
     }
 
-    /// The steps of `dt` seconds after which something is looked at, from 1: the moment of judgement, and the end where that is another.
+    /// Returns the steps of `dt` seconds after which the state is evaluated, from 1: the time of evaluation, and the end if it differs.
     pub fn frames(&self, dt: f64) -> Vec<usize> {
         let end = (self.end / dt).ceil() as usize;
         match self.judged < self.end {
@@ -171,7 +171,7 @@ impl CellScene {
         let truth = rest(&system).expect("a free ball over taxels comes to rest");
         let n_touched = truth.deflection.iter().filter(|d| **d > 0.0).count();
         let all = cell.scene.n_balls() as f64 * mass;
-        // What each taxel has to move, itself included.
+        // Mass that each taxel moves, including its own.
         let share = all / n_touched as f64 + m;
         let damping = match cell.scene {
             StabilityScene::Plunger => k * skin_sim::DAMPING / skin_sim::STIFFNESS,
@@ -186,7 +186,7 @@ impl CellScene {
             force: all * GRAVITY,
             judged: end,
             end,
-            // It begins with none, and all that it gains by falling goes into springs and dampers.
+            // The scene starts without kinetic energy. All potential energy of the fall goes into springs and dampers.
             energy_limit: all * GRAVITY * taxel.stroke,
             taxel: Taxel { damping, ..taxel },
             drive,
@@ -213,7 +213,7 @@ impl CellScene {
         let travel = APPROACH + depth;
         let starts = system.starts().iter();
         let deflection: Vec<f64> = starts.map(|start| (travel - start).max(0.0)).collect();
-        // What springs hold at the deepest, and what taxels have that are hit at twice the speed.
+        // Upper bound: the energy of the springs at full depth, and of taxels hit at twice the speed.
         let n_taxels = deflection.len() as f64;
         let most = 0.5 * n_taxels * (k * depth * depth + m * (2.0 * SPEED).powi(2));
         Ok(Self {
@@ -233,19 +233,19 @@ impl CellScene {
     }
 }
 
-/// The rate of decay of the slower motion of `m ẍ + c ẋ + k x = 0`, per second.
+/// Returns the decay rate of the slower solution of `m ẍ + c ẋ + k x = 0`, per second.
 fn slowest(k: f64, c: f64, m: f64) -> f64 {
     let half = 0.5 * c / m;
     let inside = half * half - k / m;
     if inside > 0.0 {
-        // Without cancellation: k/m over the faster rate.
+        // k/m divided by the faster rate avoids cancellation.
         (k / m) / (half + inside.sqrt())
     } else {
         half
     }
 }
 
-/// Steps of a free ball, at least.
+/// Smallest number of steps of a free ball.
 pub const LEAST_STEPS: f64 = 50.0;
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Runs a study of stability, and makes its tables.
+//! Runs a stability study and makes its tables.
 
 use crate::engine::work_items::pending::PendingItems;
 use crate::engine::work_items::scale::Scale;
@@ -59,7 +59,7 @@ impl Study for StabilityPlan {
     }
 
     fn scale(&self) -> Scale {
-        // Of a taxel: the state, its history and an engine's body.
+        // Memory of a taxel: its state, its history and an engine's body.
         const TAXEL_BYTES: f64 = 2000.0;
         let n_taxels = self.cells.iter().map(|(cell, _)| cell.n_taxels());
         let most = n_taxels.max().unwrap_or(0);
@@ -72,7 +72,7 @@ impl Study for StabilityPlan {
         }
     }
 
-    /// By their settings: which cells there are depends on what the program was built with.
+    /// Items are named by their settings, because the list of configurations depends on the features of the build.
     fn work_items(&self) -> Vec<WorkItem> {
         let items = self.cells.iter().enumerate();
         let items = items.map(|(group, (cell, taxel))| {
@@ -88,7 +88,7 @@ impl Study for StabilityPlan {
     fn measure(&self, left: &PendingItems<Self::Rows>) -> Result<()> {
         left.progress.stage("stability", left.n() as u64);
         let cells = self.cells.par_iter().enumerate();
-        // One at a time: a cell takes from microseconds to a minute.
+        // Items are distributed one by one, because their times range from microseconds to a minute.
         let cells = cells.with_max_len(1);
         cells.try_for_each(|(number, (cell, undamped))| {
             left.finish(number, || {
@@ -100,7 +100,7 @@ impl Study for StabilityPlan {
 
     fn tables(&self, mut rows: Self::Rows) -> Result<Vec<Table>> {
         let (peers, _) = peer_rows(self)?;
-        // Behind those of the parts that have such a cell.
+        // Rows of other programs follow the rows of the parts that contain their configuration.
         for row in peers {
             let behind = rows.partition_point(|(cell, ..)| cell.part <= row.0.part);
             rows.insert(behind, row);
@@ -113,7 +113,7 @@ impl Study for StabilityPlan {
 
     fn findings(&self, tables: &[Table]) -> Result<Findings> {
         let sources = peer_rows(self)?.1;
-        // Charts of a table carry its note.
+        // Charts of a table carry the note of the table.
         let mut tables = tables.to_vec();
         tables[0].note.clone_from(&sources);
         Ok(Findings {
@@ -125,7 +125,7 @@ impl Study for StabilityPlan {
     }
 }
 
-/// A row a scene, method and number of iterations, in the order of first occurrence.
+/// Returns one row per scene, method and number of iterations, in the order of first occurrence.
 fn summary(rows: &[StabilityRow]) -> Vec<StabilitySummary> {
     let settings = grouped(rows, |(cell, ..)| {
         (cell.scene, cell.method, cell.solver_iterations)
@@ -154,10 +154,10 @@ fn summary(rows: &[StabilityRow]) -> Vec<StabilitySummary> {
     settings.into_iter().map(summarise).collect()
 }
 
-/// Arrays of different sizes that make a ladder, at least.
+/// Smallest number of array sizes in a series of growing arrays.
 const LEAST_RUNGS: usize = 3;
 
-/// The plungers whose taxels carry the same on most sizes of arrays; none where no three sizes do.
+/// Returns the plunger configurations with the load per taxel that occurs on the most array sizes; empty if fewer than three sizes share a load.
 fn joints(rows: &[StabilityRow]) -> Vec<Joints> {
     let plungers = rows.iter();
     let plungers = plungers.filter(|(cell, ..)| cell.scene == StabilityScene::Plunger);
@@ -184,7 +184,7 @@ fn joints(rows: &[StabilityRow]) -> Vec<Joints> {
     all
 }
 
-/// Mass of the ball over the number of taxels, kg, but for rounding.
+/// Returns the ball's mass divided by the number of taxels, kg, rounded so that equal loads compare equal.
 fn carried(cell: &StabilityCell) -> f64 {
     let load = cell.object_mass_kg.unwrap_or(0.0) / cell.n_taxels() as f64;
     let digits = format!("{load:.9e}");

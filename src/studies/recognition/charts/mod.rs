@@ -1,4 +1,4 @@
-//! What a study of recognition shows of its tables: charts, sentences, and what its page has beside those of any study.
+//! Charts, answers and further page sections of a recognition study.
 
 pub(crate) mod answers;
 pub(crate) mod filled;

@@ -1,4 +1,4 @@
-//! The frames of an array's touches: made once, read by every cell, and kept in memory.
+//! The frames of an array's touches: simulated once, shared by all configurations, and stored in memory.
 
 pub mod array_press;
 pub mod human_samples;

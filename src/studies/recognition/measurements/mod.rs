@@ -1,4 +1,4 @@
-//! Measurements of frames, and features made of them.
+//! Measurements of frames, and features computed from them.
 
 pub mod images;
 pub mod measurement;

@@ -1,4 +1,4 @@
-//! Groups of cells that share their measurements, and the families and fits within them.
+//! Groups of configurations that share their measurements, and the families within them.
 
 use crate::inputs::sensor_errors::TestedOn;
 use crate::sensing::Ensemble;
@@ -7,26 +7,26 @@ use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::rows::cell::Cell;
 use crate::studies::recognition::rows::image_features::FeaturesOfImages;
 
-/// Cells that are read from the same measurements.
+/// Configurations that are computed from the same measurements.
 #[derive(Clone, Debug)]
 pub struct Group {
     /// Index into the plan's arrays.
     pub array: usize,
-    /// Frames a touch.
+    /// Number of frames per touch.
     pub frames: usize,
-    /// What happens to the signal.
+    /// Strengths of the signal steps.
     pub condition: Condition,
-    /// The skin that test touches are made with.
+    /// Skin of the test touches.
     pub tested_on: TestedOn,
-    /// How measurements are made.
+    /// Ensemble of the measurement matrix.
     pub ensemble: Ensemble,
-    /// Its cells, family by family.
+    /// Configurations, ordered by family.
     pub cells: Vec<Cell>,
 }
 
 impl Group {
-    /// Its cells by family. The cells of a family learn from the same rows of the same features: they differ only in C
-    /// and in which touches are fused, those with the same C following each other.
+    /// Returns the configurations by family. A family shares the rows of the same features; its configurations differ only in C and in the fused touches.
+    /// Configurations with equal C are adjacent.
     pub fn families(&self) -> impl Iterator<Item = &[Cell]> {
         let family = |cell: &Cell| {
             let (m, kind) = (cell.measurements, cell.classifier);
@@ -40,7 +40,7 @@ impl Group {
         self.cells.chunk_by(move |a, b| family(a) == family(b))
     }
 
-    /// How many times each touch is read.
+    /// Returns the number of readings of each touch.
     pub fn n_readings(&self, plan: &Plan) -> usize {
         let asked = plan.spec.recognition.training_readings.unwrap_or(1);
         if self.condition.is_random_by_reading() {
@@ -50,7 +50,7 @@ impl Group {
         }
     }
 
-    /// What its cells learn from that is made of images, each once.
+    /// Returns the distinct image features of the group's configurations.
     pub fn features_of_images(&self) -> Vec<FeaturesOfImages> {
         let mut all: Vec<FeaturesOfImages> =
             self.cells.iter().filter_map(Cell::of_images).collect();
@@ -63,7 +63,7 @@ impl Group {
         all
     }
 
-    /// The measurements that serve every cell: of the largest m if smaller ones are its prefixes, else one set per m.
+    /// Returns the numbers of measurements to compute: only the largest m if smaller sets are prefixes of it, otherwise every m.
     pub fn projected(&self) -> Vec<usize> {
         let mut counts: Vec<usize> = self.cells.iter().map(|c| c.measurements).collect();
         counts.sort_unstable();

@@ -1,4 +1,4 @@
-//! Which kind of touch: the checks of `[human_touch]`, and what its keys are in SI units.
+//! Checks of `[human_touch]`, and conversion of its keys to SI units.
 
 use crate::error::Result;
 use crate::inputs::check::Check;
@@ -11,30 +11,30 @@ use crate::studies::recognition::spec::study::StudySpec;
 use crate::world::{Layout, Patch, Taxels};
 
 impl HumanTouchSpec {
-    /// From the axis of the arm to the outside of its skin, metres.
+    /// Returns the distance from the axis of the arm to the outside of its skin, metres.
     pub fn surface(&self) -> f64 {
         self.arm_radius_mm * MM
     }
 
-    /// Seconds between frames.
+    /// Returns the time between frames, seconds.
     pub fn interval(&self) -> f64 {
         1.0 / self.frames_hz
     }
 
-    /// F, frames a touch.
+    /// Returns the number F of frames per touch.
     pub fn n_frames(&self) -> usize {
         (self.duration_s * self.frames_hz).round() as usize + 1
     }
 
-    /// Seconds from the first frame to the last.
+    /// Returns the time from the first frame to the last, seconds.
     pub fn duration(&self) -> f64 {
         (self.n_frames() - 1) as f64 * self.interval()
     }
 
-    /// An array bent around the arm: rows are rings, columns run along it, the middle is at +x.
+    /// Returns the array bent around the arm: rows are rings, columns run along the arm, and the middle is at +x.
     ///
     /// # Errors
-    /// An array that does not fit around the arm.
+    /// If the array does not fit around the arm.
     pub fn skin(&self, array: &TaxelArray) -> Result<Patch> {
         let taxel = *array.taxel();
         let layout = Layout::bent_grid(array.grid(), self.surface() - taxel.radius)?;
@@ -43,7 +43,7 @@ impl HumanTouchSpec {
 }
 
 impl Check<'_> {
-    /// What a study has instead of objects, if it has; and nothing that only objects have.
+    /// Checks `[human_touch]`: a study has objects or human touches, and no keys that need objects beside human touches.
     pub fn human_touch(&self, spec: &StudySpec, arrays: &[TaxelArray]) -> Result<()> {
         let Some(human) = &spec.human_touch else {
             if spec.places_objects() && spec.touches == TouchesSpec::default() {
@@ -76,7 +76,7 @@ impl Check<'_> {
         arrays.try_for_each(|array| self.fits_around(human, array))
     }
 
-    /// An array leaves a gap of a pitch at least on the arm's other side, and no layout rounds its rows and columns.
+    /// Checks that the array leaves a gap of at least one pitch on the other side of the arm, and that its layout has rows and columns.
     fn fits_around(&self, human: &HumanTouchSpec, array: &TaxelArray) -> Result<()> {
         let grid = array.grid();
         let radius = human.surface() - array.taxel().radius;

@@ -1,4 +1,4 @@
-//! From frames to objects, and which touches train and which test: the checks of `[sensing]` and `[recognition]`.
+//! Checks of `[sensing]` and `[recognition]`: compression, features, classifiers and splits.
 
 use crate::engine::axis::Axis;
 use crate::error::{Error, Result};
@@ -16,18 +16,18 @@ use crate::studies::recognition::spec::study::{RecognitionSpec, SensingSpec, Stu
 use crate::world::RestPoses;
 use bubbletouch_sim::features::Features;
 
-/// Most that a copy is tilted about each axis where a study does not say, degrees. More, and images lose what was not touched; less, and
-/// they are of tilts that were learned.
+/// Default of the largest tilt of a copy about each axis, degrees. If it is larger, images lack parts that were not touched. If it is smaller, the copies add
+/// no new tilts.
 const DEFAULT_TILT_DEG: f64 = 5.0;
 
-/// Keys of which a study has one at most.
+/// Pairs of keys that exclude each other.
 const ONE_OF: [[&str; 2]; 3] = [
     ["c", "choose_c"],
     ["gamma", "choose_gamma"],
     ["test_fraction", "folds"],
 ];
 
-/// Keys that belong beside one of others.
+/// Keys that require one of some other keys.
 const BESIDE: [(&str, &[&str]); 4] = [
     ("choose_touches", &["choose_c", "choose_gamma"]),
     ("tilted_copies_deg", &["tilted_copies"]),
@@ -36,7 +36,7 @@ const BESIDE: [(&str, &[&str]); 4] = [
 ];
 
 impl Check<'_> {
-    /// A ratio or measurements, no more than any array has taxels.
+    /// Checks `[sensing]`: a ratio or a number of measurements, at most the number of taxels of every array.
     pub fn sensing(&self, sensing: &SensingSpec, arrays: &[TaxelArray]) -> Result<()> {
         self.table("sensing", sensing)?;
         if sensing.ratio.is_some() && sensing.measurements.is_some() {
@@ -66,7 +66,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Ensembles of a kind of study that has no frames to learn one from.
+    /// Rejects learned ensembles in studies that have no frames to learn from.
     pub fn drawn(&self, key: &str, ensembles: impl IntoIterator<Item = Ensemble>) -> Result<()> {
         let mut ensembles = ensembles.into_iter();
         match ensembles.find(|ensemble| ensemble.is_learned()) {
@@ -79,7 +79,7 @@ impl Check<'_> {
         }
     }
 
-    /// The keys of `[recognition]`: each in its range, none that contradicts another, none that nothing has a use for.
+    /// Checks `[recognition]`: each key in its range, no contradictions, no key without effect.
     pub fn recognition(&self, recognition: &RecognitionSpec) -> Result<()> {
         let given = self.table("recognition", recognition)?;
         for [first, second] in ONE_OF {
@@ -97,7 +97,7 @@ impl Check<'_> {
                 return Err(self.error(&format!("recognition.{key}"), value, allowed));
             }
         }
-        // With folds there may be no rows of the rarest objects for them.
+        // With folds, the rarest objects may have too few rows for the inner folds.
         let is_open = recognition.choose_c.is_some() || recognition.choose_gamma.is_some();
         if let Some(folds) = recognition.choose_folds
             && !is_open
@@ -120,7 +120,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Each hyper-parameter that is not as by default has a classifier that uses it, and the solver can train every SVM.
+    /// Checks that each hyper-parameter that differs from its default is used by a classifier, and that the solver can train every SVM.
     fn parameters(&self, recognition: &RecognitionSpec, given: &toml::Table) -> Result<()> {
         let usual: toml::Table = RecognitionSpec::usual();
         let kinds = recognition.classifier.values();
@@ -150,7 +150,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Features of images: of one value a taxel.
+    /// Checks image features, which need one value per taxel.
     pub fn images(&self, recognition: &RecognitionSpec, arrays: &[TaxelArray]) -> Result<()> {
         let mut features = recognition.features.values().into_iter();
         let Some(features) = features.find(|features| features.of_image().is_some()) else {
@@ -187,7 +187,7 @@ impl Check<'_> {
         }
     }
 
-    /// What is made of a touch's frames: no more of them than there are.
+    /// Checks the combination of frames, which must not need more frames than a touch has.
     pub fn over_time(&self, recognition: &RecognitionSpec, frames: &[usize]) -> Result<()> {
         let fewest = frames.iter().copied().min().unwrap_or(0);
         let values = Axis::of(&recognition.over_time);
@@ -207,13 +207,13 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// A split by poses: nothing beside it that splits otherwise.
+    /// Checks a split by poses: no other key may define the split.
     pub fn split(&self, spec: &StudySpec) -> Result<()> {
         let recognition = &spec.recognition;
         if recognition.split == PoseSplit::Random {
             return Ok(());
         }
-        // Beside an axis it says what the random split of that axis holds out.
+        // If the split is an axis, the key describes the random split among its values.
         let is_axis = spec.axes.has("recognition.split");
         let given = [
             ("keep_together", recognition.keep_together.is_some()),
@@ -236,7 +236,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// A next touch that is chosen: where there is one, in a pose that can be commanded whatever the object.
+    /// Checks the choice of the next touch. It needs several touches per decision, and poses that a robot can command for any object.
     pub fn next_touch(&self, spec: &StudySpec) -> Result<()> {
         let recognition = &spec.recognition;
         let Some(chosen) = recognition.chosen_next().next() else {
@@ -263,7 +263,7 @@ impl Check<'_> {
         Err(self.error("recognition.next_touch", format!("{name}{given}"), allowed))
     }
 
-    /// Folds that trials come out even with.
+    /// Checks that the number of trials is a multiple of the number of folds.
     pub fn folds(&self, spec: &StudySpec) -> Result<()> {
         match spec.recognition.folds {
             Some(k) if !spec.trials.is_multiple_of(k) => {
@@ -276,7 +276,7 @@ impl Check<'_> {
 }
 
 impl SensingSpec {
-    /// The axis of m on an array of `n_taxels`, each at least 1: all taxels where nothing is asked.
+    /// Returns the numbers m of measurements on an array of `n_taxels`, each at least 1; all taxels if neither ratio nor number is given.
     pub fn measurements_on(&self, n_taxels: usize) -> Vec<usize> {
         let of_ratio = |ratio: f64| ((n_taxels as f64 / ratio).round() as usize).max(1);
         match (&self.ratio, &self.measurements) {
@@ -288,18 +288,18 @@ impl SensingSpec {
 }
 
 impl RecognitionSpec {
-    /// A table `[recognition]` in which every key has its default.
+    /// Returns a table `[recognition]` in which every key has its default.
     fn usual() -> toml::Table {
         let usual: Self = toml::from_str("classifier = []").expect("all other keys have defaults");
         toml::Table::try_from(usual).expect("every field of a study has a TOML form")
     }
 
-    /// The fraction of touches held out for testing, where there are no folds.
+    /// Returns the fraction of touches held out for testing, if there are no folds.
     pub fn test_share(&self) -> f64 {
         self.test_fraction.unwrap_or(0.25)
     }
 
-    /// How far behind the foremost point these features see: those of measurements the whole scale.
+    /// Returns the depth windows of the features; features of measurements have none.
     pub fn foremost(&self, features: Features) -> Vec<Option<f64>> {
         match features.of_image() {
             Some(_) => Axis::of(&self.foremost_full_scale),
@@ -307,7 +307,7 @@ impl RecognitionSpec {
         }
     }
 
-    /// Copies of training touches: none for features of measurements.
+    /// Returns the numbers of tilted copies; features of measurements have none.
     pub fn copies(&self, features: Features) -> Vec<Option<usize>> {
         match features.of_image() {
             Some(_) => Axis::of(&self.tilted_copies),
@@ -315,7 +315,7 @@ impl RecognitionSpec {
         }
     }
 
-    /// How the touches after the first of k are chosen: of one there are none, and all choices are the same.
+    /// Returns the policies for the touches after the first of k. For k = 1 all policies are equal.
     pub fn next_touches(&self, k: usize) -> Vec<Option<NextTouch>> {
         match (k, &self.next_touch) {
             (1, Some(_)) => vec![Some(NextTouch::Random)],
@@ -323,31 +323,31 @@ impl RecognitionSpec {
         }
     }
 
-    /// The choices among them that are not random.
+    /// Returns the policies that are not random.
     pub fn chosen_next(&self) -> impl Iterator<Item = NextTouch> {
         let all = self.next_touch.iter().flat_map(Axis::values);
         all.filter(|next| *next != NextTouch::Random)
     }
 
-    /// Whether any goes by answers to training touches.
+    /// Returns whether a policy uses decisions on training touches.
     pub fn is_informed(&self) -> bool {
         let mut chosen = self.chosen_next();
         chosen.any(|next| next == NextTouch::MostInformative)
     }
 
-    /// Most that a copy is tilted, radians.
+    /// Returns the largest tilt of a copy, radians.
     pub fn copies_tilt(&self) -> f64 {
         self.tilted_copies_deg
             .unwrap_or(DEFAULT_TILT_DEG)
             .to_radians()
     }
 
-    /// Folds of the cross-validation that chooses C and γ.
+    /// Returns the number of folds of the inner cross-validation.
     pub fn n_choice_folds(&self) -> usize {
         self.choose_folds.unwrap_or(5)
     }
 
-    /// What stays on one side of a split, and how near is together where values are drawn.
+    /// Returns the groups that a split does not divide, with the distances below which drawn values are neighbours.
     pub fn kept_together(&self) -> Option<KeepTogether> {
         Some(KeepTogether {
             kind: self.keep_together.or(self.split.group())?,
@@ -356,7 +356,7 @@ impl RecognitionSpec {
         })
     }
 
-    /// The C axis, for classifiers that have one; `None` is a C chosen by cross-validation.
+    /// Returns the values of C for classifiers that have one; `None` is a C chosen by cross-validation.
     pub fn penalties(&self) -> Vec<Option<f64>> {
         match (&self.c, &self.choose_c) {
             (_, Some(_)) => vec![None],

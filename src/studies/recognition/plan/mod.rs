@@ -1,4 +1,4 @@
-//! A recognition study that can run: checked keys in SI units.
+//! The plan of a recognition study: checked keys in SI units.
 
 pub mod group;
 pub(crate) mod human;

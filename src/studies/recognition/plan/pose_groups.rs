@@ -1,11 +1,10 @@
-//! Which touches stay on one side of a split: those that share listed values, and those near each other where values are drawn.
+//! Groups of touches that a split does not divide: touches with equal listed values, or touches whose drawn values are close.
 //!
-//! Listed values: touches with the same values on the grouping axes are a group, whatever their object.
+//! Listed values: touches with equal values on the grouping axes form a group, whatever their object.
 //!
-//! Values that are spread uniformly: touches of an object are neighbours if they share the listed grouping axes and differ by less than the
-//! stated distance on *each* drawn one (a yaw of 359° is 2° from one of 1°). A group is everything that neighbours connect (single
-//! linkage), so a touch of another group is at least that distance away on some axis. Touches of different objects are never neighbours:
-//! they carry different labels.
+//! Values that are spread uniformly: two touches of an object are neighbours if their listed values are equal and they differ by less than the stated distance
+//! on *each* drawn axis (a yaw of 359° is 2° from one of 1°). A group consists of all touches connected by neighbours (single linkage). A touch of another
+//! group is therefore at least that distance away on some axis. Touches of different objects are never neighbours, because their labels differ.
 
 use crate::error::{Error, Result};
 use crate::studies::recognition::spec::pose_split::GroupSpec;
@@ -14,19 +13,19 @@ use ndarray::Array1;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-/// What stays together.
+/// Rule that defines groups of touches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KeepTogether {
-    /// The axes that make a group.
+    /// Axes whose values define a group.
     pub kind: GroupSpec,
-    /// Drawn offsets and depths nearer than this are neighbours, metres, positive.
+    /// Distance below which drawn offsets and depths are neighbours, metres, positive.
     pub metres: Option<f64>,
-    /// Drawn yaws and tilts nearer than this are neighbours, radians, positive.
+    /// Angle below which drawn yaws and tilts are neighbours, radians, positive.
     pub radians: Option<f64>,
 }
 
 impl GroupSpec {
-    /// The axes that it is of.
+    /// Returns the axes that define the group.
     fn axes(self) -> &'static [TouchAxis] {
         use TouchAxis::{Depth, OffsetX, OffsetY, Rest, TiltX, TiltY, Yaw};
         match self {
@@ -41,7 +40,7 @@ impl GroupSpec {
 }
 
 impl KeepTogether {
-    /// Below what distance values of a drawn axis are neighbours.
+    /// Returns the distance below which values of a drawn axis are neighbours.
     fn distance(&self, axis: TouchAxis) -> Result<f64> {
         let (distance, key) = match axis {
             TouchAxis::Yaw | TouchAxis::TiltX | TouchAxis::TiltY => {
@@ -56,17 +55,17 @@ impl KeepTogether {
         })
     }
 
-    /// One group number a touch.
+    /// Returns the group number of each touch.
     ///
     /// # Errors
-    /// A drawn axis without a distance.
+    /// If an axis is drawn and no distance is given for it.
     pub fn groups(&self, touched: &[&[Touch]]) -> Result<Array1<usize>> {
         let mut numbers = BTreeMap::new();
         let mut keys = Vec::new();
         for (object, touched) in touched.iter().enumerate() {
             let touches = *touched;
             let drawn = self.drawn(touches)?;
-            // Without drawn axes a group is of all objects.
+            // Without drawn axes, a group extends over all objects.
             let of_object = (!drawn.is_empty()).then_some(object);
             let listed = touches.iter().map(|touch| self.listed(touch));
             let listed: Vec<Vec<usize>> = listed.collect();
@@ -79,7 +78,7 @@ impl KeepTogether {
         Ok(keys.into())
     }
 
-    /// The axes whose values are drawn, with their distances.
+    /// Returns the axes whose values are drawn, with their distances.
     fn drawn(&self, touches: &[Touch]) -> Result<Vec<(TouchAxis, f64)>> {
         let is_drawn = |axis: &&TouchAxis| {
             let mut indices = touches.iter().map(|touch| touch.indices[**axis as usize]);
@@ -89,7 +88,7 @@ impl KeepTogether {
         axes.map(|&axis| Ok((axis, self.distance(axis)?))).collect()
     }
 
-    /// The indices of the values on the other axes.
+    /// Returns the indices of the values on the listed axes.
     fn listed(&self, touch: &Touch) -> Vec<usize> {
         let axes = self.kind.axes().iter();
         let indices = axes.map(|&axis| touch.indices[axis as usize]);
@@ -97,13 +96,13 @@ impl KeepTogether {
     }
 }
 
-/// For each touch the first of those that neighbours connect it with.
+/// Returns, for each touch, the first touch of its connected component.
 fn connected(touches: &[Touch], listed: &[Vec<usize>], drawn: &[(TouchAxis, f64)]) -> Vec<usize> {
     let mut first: Vec<usize> = (0..touches.len()).collect();
     let Some(&(along, distance)) = drawn.first() else {
         return first;
     };
-    // Sorted along one axis, only touches within its distance are compared; a yaw comes once more a turn later.
+    // After sorting along one axis, only touches within its distance are compared. A yaw is inserted a second time, one turn later.
     let mut order: Vec<(f64, usize)> = Vec::new();
     for (number, touch) in touches.iter().enumerate() {
         let value = touch.value(along);
@@ -144,7 +143,7 @@ fn are_neighbours(a: &Touch, b: &Touch, drawn: &[(TouchAxis, f64)]) -> bool {
     drawn.iter().all(|&(axis, distance)| apart(axis) < distance)
 }
 
-/// The first of a touch's group; shortens the way there.
+/// Returns the root of a touch's component and shortens the path to it (union-find).
 fn root(first: &mut [usize], mut number: usize) -> usize {
     while first[number] != number {
         first[number] = first[first[number]];

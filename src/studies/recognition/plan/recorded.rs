@@ -1,4 +1,4 @@
-//! Recorded frames: the checks of `[recorded]`, and the array that read them.
+//! Checks of `[recorded]`, and the array that recorded the frames.
 
 use crate::engine::axis::Axis;
 use crate::error::{Error, Result};
@@ -14,7 +14,7 @@ use crate::world::{ArrayLayout, Grid};
 use glam::DVec2;
 
 impl RecordedSpec {
-    /// Notes how many values a taxel of the skin reads.
+    /// Sets the number of values per taxel from the quantity that the skin reads.
     pub(crate) fn settle_values(&mut self, skin: &SkinSpec) {
         self.n_values = match skin.sensed.unwrap_or_default() {
             SensedSpec::Shear => 3,
@@ -22,10 +22,10 @@ impl RecordedSpec {
         };
     }
 
-    /// How touches are read that are recorded, as a study of pressed objects says it: their frames, and whether time goes on between them.
+    /// Returns the equivalent of `[touches]` for recorded touches: the number of frames, and a speed if time passes between them.
     ///
     /// # Errors
-    /// Those of [`shape_of`](Self::shape_of).
+    /// If [`shape_of`](Self::shape_of) fails.
     pub(crate) fn as_touches(&self) -> Result<TouchesSpec> {
         let moves =
             self.frame_interval_s.is_some() || self.speed_mm_per_s > 0.0 && self.depths.is_some();
@@ -38,7 +38,7 @@ impl RecordedSpec {
 }
 
 impl Check<'_> {
-    /// The array that read what a study has recorded; it has nothing beside it that makes touches.
+    /// Returns the array that recorded the frames, after checking that the study has no keys that make touches.
     pub fn recorded(&self, recorded: &RecordedSpec, spec: &StudySpec) -> Result<Vec<TaxelArray>> {
         let StudySpec {
             objects, touches, ..
@@ -58,7 +58,7 @@ impl Check<'_> {
         let (key, allowed) = ("recorded.zero", "a finite number");
         let zero = match recorded.zero {
             ZeroSpec::One(zero) => self.value(key, zero, f64::is_finite, allowed)?,
-            // The zeros of the file are compared with the full scale when the frames are read.
+            // Zeros from a file are compared with the full scale when the frames are read.
             ZeroSpec::Each(_) => f64::NEG_INFINITY,
         };
         if let Some(full_scale) = recorded.full_scale
@@ -106,7 +106,7 @@ impl Check<'_> {
         Ok(vec![array])
     }
 
-    /// Speeds and times between frames.
+    /// Checks the keys of speed and time between frames.
     fn of_time(&self, recorded: &RecordedSpec, spec: &StudySpec) -> Result<()> {
         self.value(
             "recorded.speed_mm_per_s",

@@ -1,4 +1,4 @@
-//! What touches what: the checks of `[objects]`, `[skin]` and `[touches]`.
+//! Checks of `[objects]`, `[skin]` and `[touches]`.
 
 use crate::engine::axis::Axis;
 use crate::error::Result;
@@ -11,17 +11,17 @@ use crate::studies::recognition::spec::scene::{RangeSpec, SkinSpec, SpreadSpec, 
 use crate::studies::recognition::spec::study::StudySpec;
 use crate::world::{Grid, Placement, Spread, Taxel, TouchAxis};
 
-/// The least distance between taxels of all arrays, metres.
+/// Returns the smallest pitch of all arrays, metres.
 fn finest_pitch(arrays: &[TaxelArray]) -> f64 {
     let pitches = arrays.iter().map(TaxelArray::pitch);
     pitches.fold(f64::INFINITY, f64::min)
 }
 
 impl ObjectsSpec {
-    /// Sets the defaults that depend on the arrays: the model of meshes and how far spheres may be from surfaces.
+    /// Sets the defaults that depend on the arrays: the model of meshes and the largest distance of spheres from surfaces.
     pub(crate) fn settle_surface_error(&mut self, arrays: &[TaxelArray]) {
         if self.meshes.is_some() {
-            // Written down, so that a study tells which model it was run with.
+            // The default is written out, so that the study records the model it was run with.
             self.model.get_or_insert_default();
         }
         let finest = finest_pitch(arrays);
@@ -32,7 +32,7 @@ impl ObjectsSpec {
         self.settle_sizes(arrays);
     }
 
-    /// Says how large objects may be whose files have no unit.
+    /// Sets the allowed sizes of objects whose files have no unit.
     pub(crate) fn settle_sizes(&mut self, arrays: &[TaxelArray]) {
         let feels = |array: &TaxelArray| {
             let grid = array.grid();
@@ -44,7 +44,7 @@ impl ObjectsSpec {
 }
 
 impl SkinSpec {
-    /// Each taxel of an array with this pitch.
+    /// Returns the taxel of an array with this pitch.
     pub(crate) fn taxel(&self, pitch_mm: f64) -> Taxel {
         Taxel {
             radius: self.taxel_radius_mm.unwrap_or(0.5 * pitch_mm) * MM,
@@ -75,7 +75,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// What layouts need, and what some of them cannot have.
+    /// Checks the keys that layouts need, and rejects keys that a layout does not support.
     pub fn layout(&self, spec: &StudySpec) -> Result<()> {
         let SkinSpec {
             layout,
@@ -136,7 +136,7 @@ impl Check<'_> {
         Ok(arrays)
     }
 
-    /// The arrays of a study that has square grids alone.
+    /// Returns the arrays of a study that supports only square grids.
     pub fn grids(&self, skin: &SkinSpec) -> Result<Vec<TaxelArray>> {
         let only = |key: &str, what: &str| {
             let allowed = format!("no such key: only studies of recognition have {what}");
@@ -154,7 +154,7 @@ impl Check<'_> {
         self.arrays(skin)
     }
 
-    /// The array of a study that has no axis of arrays; `allowed` says so.
+    /// Returns the array of a study that supports a single array; `allowed` describes this in the error.
     pub fn one_array(&self, skin: &SkinSpec, allowed: &str) -> Result<TaxelArray> {
         let mut arrays = self.grids(skin)?;
         match (arrays.pop(), arrays.len()) {
@@ -178,7 +178,7 @@ impl Check<'_> {
         }
     }
 
-    /// Where touches are of a study whose touches are one frame each, and do not slide.
+    /// Returns the placement of touches for a study whose touches have one frame and no slide.
     pub fn placement(&self, touches: &TouchesSpec) -> Result<Placement> {
         let of_recognition = [
             ("slide_mm", touches.slide_mm.is_some()),
@@ -192,7 +192,7 @@ impl Check<'_> {
         self.placed(touches)
     }
 
-    /// Where touches are.
+    /// Returns the placement of touches.
     pub fn placed(&self, touches: &TouchesSpec) -> Result<Placement> {
         self.table("touches", touches)?;
         let degree = std::f64::consts::PI / 180.0;
@@ -213,7 +213,7 @@ impl Check<'_> {
         })
     }
 
-    /// Converts the values of an axis to SI units. Depths are positive, all others finite. Values that are the same pose are one value.
+    /// Converts the values of an axis to SI units. Depths must be positive, all other values finite. Values that describe the same pose are merged.
     fn spread(
         &self,
         (axis, key): (TouchAxis, &str),

@@ -1,23 +1,23 @@
-//! What the taxels of an array read of a touch.
+//! Quantity that the taxels of an array read.
 
 use crate::random::Seed;
 use crate::world::Shear;
 
-/// What a taxel reads.
+/// Quantity that a taxel reads.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Sensed {
-    /// How far it is pushed in: metres, until a step of the signal makes it a force.
+    /// Deflection, metres; a step of the signal chain may convert it to a force.
     #[default]
     Deflection,
-    /// The force along its axis, newtons.
+    /// Force along the taxel's axis, newtons.
     Force,
-    /// The forces along and across its axis, newtons, with these shear springs at the tips: three channels, of which the second and the third are
-    /// along x and y of the taxel's [frame](crate::world::Layout::frame).
+    /// Forces along and across the taxel's axis, newtons, with these shear springs: three channels. The second and third are along x and y of the taxel's
+    /// [frame](crate::world::Layout::frame).
     Shear(Shear),
 }
 
 impl Sensed {
-    /// Numbers that a taxel reads.
+    /// Returns the number of values that a taxel reads.
     pub fn n_channels(&self) -> usize {
         match self {
             Self::Deflection | Self::Force => 1,
@@ -25,7 +25,7 @@ impl Sensed {
         }
     }
 
-    /// What people call it.
+    /// Returns the name of the quantity.
     pub fn words(&self) -> &'static str {
         match self {
             Self::Deflection => "deflection",
@@ -35,7 +35,7 @@ impl Sensed {
     }
 }
 
-/// The name of a channel of something that has a name.
+/// Returns the seed of a channel; the first channel has the given seed.
 pub(crate) fn of_channel(named: &Seed, channel: usize) -> Seed {
     match channel {
         0 => *named,

@@ -1,4 +1,4 @@
-//! What taxels read and how touches slide: the checks of `skin.sensed` and `touches.slide_mm`, and the arrays that these make.
+//! Checks of `skin.sensed` and `touches.slide_mm`, and the arrays that result from them.
 
 use crate::error::Result;
 use crate::inputs::check::Check;
@@ -12,7 +12,7 @@ use crate::world::Shear;
 use glam::DVec2;
 
 impl Check<'_> {
-    /// What skins need that read shear, and touches that slide, and what these cannot have.
+    /// Checks the keys of skins that read shear and of touches that slide.
     pub fn shear(&self, spec: &StudySpec) -> Result<()> {
         self.of_sensed(spec)?;
         let touches = &spec.touches;
@@ -52,7 +52,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// The arrays of a study, with what they read and how they slide.
+    /// Returns the arrays of a study, with the quantity that they read and their slide.
     pub fn touching_arrays(
         &self,
         skin: &SkinSpec,
@@ -68,7 +68,7 @@ impl Check<'_> {
 }
 
 impl SkinSpec {
-    /// What its taxels read.
+    /// Returns the quantity that the taxels read.
     pub(crate) fn sensed(&self) -> Sensed {
         match self.sensed.unwrap_or_default() {
             SensedSpec::Deflection => Sensed::Deflection,

@@ -1,4 +1,4 @@
-//! The checks of `[signal]`, and the conditions that its axes make.
+//! Checks of `[signal]`, and the conditions that result from its axes.
 
 use crate::engine::axes::CombineSpec;
 use crate::engine::axis::Axis;
@@ -18,12 +18,12 @@ pub struct Condition {
     pub noise: f64,
     /// Standard deviation of the smoothing, metres.
     pub smoothing: f64,
-    /// What the skin and its reader do.
+    /// Strengths of the sensor errors.
     pub strengths: Strengths,
 }
 
 impl Check<'_> {
-    /// What the noise is measured in, and its axis, on taxels that read so.
+    /// Returns the unit of the noise and its axis, for the quantity that the taxels read.
     pub fn noise(
         &self,
         signal: &SignalSpec,
@@ -58,7 +58,7 @@ impl Check<'_> {
         Err(self.error(&key, given, allowed))
     }
 
-    /// The strengths of sensor errors, and that the press moves while frames are read where one shows only then.
+    /// Checks the strengths of sensor errors. If an error acts only while the press moves, the press must move while frames are read.
     pub fn sensor_errors(&self, signal: &SignalSpec, touches: &TouchesSpec) -> Result<()> {
         let range = |strength: &Strength| Range::Of(strength.is_allowed, strength.allowed);
         let ranges = all_strengths().map(|(_, strength)| (strength.key, range(strength)));
@@ -83,7 +83,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// The press moves while frames are read.
+    /// Checks that the press moves while frames are read.
     fn moves(&self, key: &str, touches: &TouchesSpec) -> Result<()> {
         if touches.frames.values().iter().all(|&frames| frames < 2) {
             let given = "given, but every touch is read once, at rest";
@@ -96,7 +96,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Test skins: another one shows only if something belongs to a skin.
+    /// Checks the skin of test touches; another skin needs a sensor error that belongs to a skin.
     pub fn tested_on(&self, signal: &SignalSpec) -> Result<()> {
         let is_of_skin =
             |step: &StepSpec| matches!(step, StepSpec::Error(error) if error.about().is_of_skin);
@@ -110,8 +110,8 @@ impl Check<'_> {
         Err(self.error("signal.tested_on", given, allowed))
     }
 
-    /// Each step at most once, and none whose axis is set but which is not listed, nor the other way round if it does
-    /// nothing without: it would be silently ignored.
+    /// Checks the steps: each at most once. A step whose axis is set must be listed, and a listed step without effect needs its axis; it would otherwise be
+    /// ignored silently.
     pub fn steps(&self, signal: &SignalSpec) -> Result<()> {
         const KEY: &str = "signal.steps";
         if !signal.steps.is_empty() {
@@ -143,7 +143,7 @@ fn key(strength: &Strength) -> String {
 }
 
 impl SignalSpec {
-    /// How many conditions there are.
+    /// Returns the number of conditions.
     pub(crate) fn n_conditions(&self) -> f64 {
         let axes = self.axes.given();
         let lengths = axes.map(|(.., axis)| axis.values().len() as f64);
@@ -155,7 +155,7 @@ impl SignalSpec {
 }
 
 impl Plan {
-    /// Every condition of the signal that the study asks for: all combinations of its axes, or each axis alone.
+    /// Returns every condition of the signal: all combinations of its axes, or each axis alone.
     pub fn conditions(&self) -> Vec<Condition> {
         let signal = &self.spec.signal;
         let first = |condition: Condition, (key, step, axis): &SignalAxis| {
@@ -171,7 +171,7 @@ impl Plan {
             };
             match signal.combine {
                 CombineSpec::OneAtATime => conditions.extend(with(first, &values[1..])),
-                // The first axis changes slowest.
+                // The last axis changes fastest.
                 CombineSpec::All => {
                     let all = conditions.into_iter();
                     conditions = all.flat_map(|condition| with(condition, &values)).collect();
@@ -183,13 +183,13 @@ impl Plan {
 }
 
 impl Condition {
-    /// Whether two readings of one touch differ.
+    /// Returns whether two readings of one touch differ.
     pub fn is_random_by_reading(&self) -> bool {
         let mut present = self.strengths.present();
         self.noise > 0.0 || present.any(|(error, ..)| error.about().is_random_by_reading)
     }
 
-    /// The same with another value on an axis.
+    /// Returns the condition with another value on one axis.
     pub(crate) fn with(mut self, (key, step): (&str, StepSpec), value: f64) -> Self {
         match step {
             StepSpec::Noise => self.noise = value,

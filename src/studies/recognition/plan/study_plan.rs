@@ -1,7 +1,7 @@
-//! A study that can run: every key of its [`StudySpec`] checked, every unit SI.
+//! Plan of a recognition study: every key of its [`StudySpec`] checked and converted to SI units.
 //!
-//! The checks of `plan.rs`, `scene.rs` (arrays, taxels, placement), `shear.rs`, `signal.rs`, `learning.rs`, `human.rs` and
-//! `recorded.rs` convert millimetres, degrees and fractions into metres, radians and absolute values. Other stages get SI units.
+//! The checks in `scene.rs` (arrays, taxels, placement), `shear.rs`, `signal.rs`, `learning.rs`, `human.rs` and `recorded.rs` convert millimetres, degrees and
+//! fractions into metres, radians and absolute values. Later stages use SI units only.
 
 use crate::engine::axes::AxisValues;
 use crate::error::Result;
@@ -18,10 +18,10 @@ use crate::world::Placement;
 use std::collections::HashSet;
 use std::sync::Arc;
 
-/// Trials of a study, at most: each has its split in memory before the first runs.
+/// Largest number of trials of a study; the splits of all trials are in memory before the first trial runs.
 pub(crate) const MOST_TRIALS: usize = 100_000;
 
-/// A converted number as a person wrote it: 30, not 29.999999999999996. Numbers that are no decimal of nine places stay as they are.
+/// Rounds a converted number to the decimal that was written: 30, not 29.999999999999996. Numbers that are not decimals of nine places are unchanged.
 pub fn as_written(value: f64) -> f64 {
     let decimal = (value * 1e9).round() / 1e9;
     match (decimal - value).abs() <= 4.0 * f64::EPSILON * value.abs() {
@@ -30,24 +30,24 @@ pub fn as_written(value: f64) -> f64 {
     }
 }
 
-/// A study, ready to run: its axes and settings as they are written, and what these are in SI units.
+/// Checked study: its axes and settings as written, and their values in SI units.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// As it was written.
+    /// Specification as written in the file.
     pub spec: StudySpec,
-    /// One array per value of the resolution axis and the size axis.
+    /// Arrays, one for each combination of pitch and size.
     pub arrays: Vec<TaxelArray>,
-    /// How touches are drawn; of nothing in a study of human touches.
+    /// Distribution of touch poses; unused in studies of human touches.
     pub placement: Placement,
-    /// Approach speed at the moment of reading, m/s.
+    /// Approach speed at the time of reading, m/s.
     pub speed: f64,
-    /// What the noise axis is measured in.
+    /// Unit of the noise axis.
     pub noise_unit: NoiseUnit,
-    /// The axis of frames a touch.
+    /// Numbers of frames per touch.
     pub frames: Vec<usize>,
-    /// What stays on one side of a split.
+    /// Groups of touches that a split does not divide.
     pub keep_together: Option<KeepTogether>,
-    /// The plan of test touches, if the study has `[test]`: all but its touches and their signal is of no account.
+    /// Plan of the test touches, if the study has `[test]`. Only its touches and their signal are used.
     pub tested: Option<Arc<Plan>>,
 }
 
@@ -55,17 +55,17 @@ impl Plan {
     /// Checks a study.
     ///
     /// # Errors
-    /// The error names `place` (the file) and the first key that is out of its range.
+    /// If a key is out of its range; the error names `place` (the file) and the first such key.
     pub fn new(place: &str, spec: StudySpec) -> Result<Self> {
         let plan = Self::with_any_keys(place, spec)?;
         Check { place }.unused_keys(&plan.spec)?;
         Ok(plan)
     }
 
-    /// Checks a study as [`new`](Self::new) does, but for keys that cannot act.
+    /// Checks a study as [`new`](Self::new) does, but accepts keys without effect.
     ///
     /// # Errors
-    /// The error names `place` (the file) and the first key that is out of its range.
+    /// If a key is out of its range; the error names `place` (the file) and the first such key.
     pub(crate) fn with_any_keys(place: &str, mut spec: StudySpec) -> Result<Self> {
         let check = Check { place };
         check.count("trials", spec.trials, MOST_TRIALS)?;
@@ -129,10 +129,11 @@ impl Plan {
         Ok(plan)
     }
 
-    /// A plan for each combination of a study's own axes, the first alone where it has none; each says the whole study.
+    /// Returns a plan for each combination of the values in `[axes]`, or a single plan if there are no axes. Each plan contains the specification of the whole
+    /// study.
     ///
     /// # Errors
-    /// Those of [`Plan::new`], which name the axis.
+    /// If [`Plan::new`] fails; the error names the axis.
     pub fn variants(place: &str, spec: StudySpec) -> Result<Vec<(AxisValues, Self)>> {
         if spec.axes.is_empty() {
             return Ok(vec![(AxisValues::default(), Self::new(place, spec)?)]);
@@ -155,14 +156,14 @@ impl Plan {
         Ok(plans)
     }
 
-    /// How many cells the study has at most, counted without laying any out: values that name the same m twice, or a C for a classifier
-    /// that has none, make no further cells.
+    /// Returns an upper bound of the number of configurations. Equal values of m, or values of C for a classifier without C, do not give further
+    /// configurations.
     pub fn n_cells(&self) -> f64 {
         let lengths = self.spec.axis_lengths().map(|(_, n)| n as f64);
         self.spec.signal.n_conditions() * lengths.product::<f64>()
     }
 
-    /// The m axis on an array; a ratio axis can name the same m twice on a small one.
+    /// Returns the numbers m of measurements on an array; different ratios may give equal m on a small array.
     pub(crate) fn measurement_counts(&self, array: &TaxelArray, ensemble: Ensemble) -> Vec<usize> {
         let n_values = array.n_values();
         if ensemble.about().is_whole_frame {
@@ -176,7 +177,7 @@ impl Plan {
 }
 
 impl Plan {
-    /// A noise level in words: `5 % of full scale`.
+    /// Returns a description of a noise level: `5 % of full scale`.
     pub fn describe_noise(&self, level: f64) -> String {
         match self.noise_unit {
             NoiseUnit::FullScale => format!("{} % of full scale", (level * 1e8).round() / 1e6),

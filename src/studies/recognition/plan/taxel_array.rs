@@ -1,4 +1,4 @@
-//! Arrays of taxels that a study touches with.
+//! Arrays of taxels with which a study touches objects.
 
 use crate::error::Result;
 use crate::inputs::units::millimetres;
@@ -12,29 +12,30 @@ use ndarray::Array2;
 use std::fmt;
 use std::sync::Arc;
 
-/// Cells of a picture in a pitch: staggered rows are seen as such.
+/// Picture cells per pitch; with fewer cells, the offset of staggered rows is not visible.
 const PICTURE_CELLS: f64 = 3.0;
 
-/// A square grid of taxels, or a layout that is made as dense and as large; what they read; and how they are drawn along what they touch.
+/// Array of taxels: its layout, the quantity that it reads, and its slide along the object. A layout other than the square grid has the density and the size
+/// of the grid.
 #[derive(Clone)]
 pub struct TaxelArray {
     grid: Grid,
     taxel: Taxel,
     layout: ArrayLayout,
-    /// Of curvature, metres; 0 of a flat layout.
+    /// Radius of curvature, metres; 0 for a flat layout.
     radius: f64,
     sensed: Sensed,
     slide: DVec2,
-    /// Whether it is known where its taxels are; otherwise the grid is a row of them.
+    /// Whether the positions of the taxels are known; otherwise the grid is a single row of taxels.
     is_placed: bool,
     patch: Arc<Patch>,
 }
 
 impl TaxelArray {
-    /// A layout in place of a square grid's; `radius`: of curvature, metres, of no use to a flat one.
+    /// Creates an array with a layout of the density and size of `grid`. `radius` is the radius of curvature, metres; flat layouts ignore it.
     ///
     /// # Errors
-    /// A grid or a taxel that cannot be; a radius around which it does not fit.
+    /// If the grid or the taxel is invalid, or the layout does not fit the radius.
     pub fn new(layout: ArrayLayout, (grid, taxel): (Grid, Taxel), radius: f64) -> Result<Self> {
         let patch = match layout {
             ArrayLayout::Grid => Patch::grid(grid, taxel)?,
@@ -55,10 +56,10 @@ impl TaxelArray {
         })
     }
 
-    /// The same that reads something else, and slides along its own x and y (metres) once it is pressed.
+    /// Sets the quantity that the taxels read, and the slide along the array's x and y axes after the press, metres.
     ///
     /// # Errors
-    /// Shear springs that cannot be.
+    /// If the shear springs are invalid.
     pub fn reading(mut self, sensed: Sensed, slide: DVec2) -> Result<Self> {
         if let Sensed::Shear(shear) = &sensed {
             shear.check()?;
@@ -67,50 +68,50 @@ impl TaxelArray {
         Ok(self)
     }
 
-    /// The same of taxels of which nothing says where they are.
+    /// Marks the positions of the taxels as unknown.
     pub fn without_places(mut self) -> Self {
         self.is_placed = false;
         self
     }
 
-    /// Whether it is known where its taxels are.
+    /// Returns whether the positions of the taxels are known.
     pub fn is_placed(&self) -> bool {
         self.is_placed
     }
 
-    /// Its taxels.
+    /// Returns the patch with the array's taxels.
     pub fn patch(&self) -> &Patch {
         &self.patch
     }
 
-    /// The square grid: that it is, or that the layout is as dense and as large as.
+    /// Returns the square grid that the array consists of, or whose density and size the layout has.
     pub fn grid(&self) -> &Grid {
         &self.grid
     }
 
-    /// How its taxels lie.
+    /// Returns the layout of the taxels.
     pub fn layout(&self) -> ArrayLayout {
         self.layout
     }
 
-    /// What its taxels read.
+    /// Returns the quantity that the taxels read.
     pub fn sensed(&self) -> &Sensed {
         &self.sensed
     }
 
-    /// Whether it is a square grid that reads what pushes it in and does not slide.
+    /// Returns whether the array is a square grid that reads only the normal direction and does not slide.
     pub fn is_plain(&self) -> bool {
         self.layout == ArrayLayout::Grid
             && self.sensed.n_channels() == 1
             && self.slide == DVec2::ZERO
     }
 
-    /// Whether its taxels lie in straight rows and columns, one pitch apart along the surface.
+    /// Returns whether the taxels form straight rows and columns, one pitch apart along the surface.
     pub fn is_image(&self) -> bool {
         self.layout.is_image()
     }
 
-    /// Rows and columns of its images, and their pixels' size, metres: a square around all taxels.
+    /// Returns the number of rows and columns of the array's images, and the side of a pixel, metres. The image is a square around all taxels.
     pub fn image(&self) -> ((usize, usize), f64) {
         let (n, pitch) = (self.grid.nx, self.pitch());
         if self.is_image() {
@@ -118,70 +119,70 @@ impl TaxelArray {
         }
         let farthest = |far: f64, place: DVec2| far.max(place.abs().max_element());
         let half = self.chart_places().into_iter().fold(0.0, farthest);
-        // Places are centres: a pixel's side is between the outermost two of a row and what they feel.
+        // Positions are centres of taxels. A pixel is the distance between the outermost centres plus one pitch, divided by the number of pixels.
         ((n, n), (2.0 * half + pitch) / n as f64)
     }
 
-    /// How its taxels make images; `None` where they are pixels.
+    /// Returns the mapping from taxels to image pixels; `None` if taxels are pixels.
     pub fn chart(&self) -> Option<Chart> {
         let chart = || Chart::new(&self.chart_places(), self.pitch(), self.image());
         (!self.is_image()).then(chart)
     }
 
-    /// Where taxels are on a plane, metres: on a flat patch where they are, on a sphere as far along its surface from the middle, in the same direction
-    /// (the azimuthal equidistant projection).
+    /// Returns the positions of the taxels on a plane, metres. On a sphere, distance along the surface and direction from the middle are preserved (azimuthal
+    /// equidistant projection).
     fn chart_places(&self) -> Vec<DVec2> {
         let place = |center: &DVec3| self.layout.place_on_plane(*center, self.radius);
         self.patch.layout().centers().iter().map(place).collect()
     }
 
-    /// How far it goes along its own x and y once it is pressed, metres.
+    /// Returns the slide along the array's x and y axes after the press, metres.
     pub fn slide(&self) -> DVec2 {
         self.slide
     }
 
-    /// What each of its taxels is.
+    /// Returns the parameters of a taxel.
     pub fn taxel(&self) -> &Taxel {
         &self.taxel
     }
 
-    /// How many taxels.
+    /// Returns the number of taxels.
     pub fn n_taxels(&self) -> usize {
         self.patch.n_taxels()
     }
 
-    /// How many numbers a frame has: one or more a taxel, channel by channel.
+    /// Returns the number of values of a frame: one or more per taxel, ordered by channel.
     pub fn n_values(&self) -> usize {
         self.sensed.n_channels() * self.n_taxels()
     }
 
-    /// Rows and columns; `None` where a layout has none.
+    /// Returns the numbers of rows and columns; `None` if the layout has no rows and columns.
     pub fn sides(&self) -> Option<(usize, usize)> {
         self.layout.sides(&self.grid).filter(|_| self.is_placed)
     }
 
-    /// Rows and columns; one row of all taxels where a layout has none.
+    /// Returns the numbers of rows and columns; a layout without them counts as one row.
     pub fn shape(&self) -> (usize, usize) {
         self.sides().unwrap_or((1, self.n_taxels()))
     }
 
-    /// Rows and columns of a frame: those of its channels below each other.
+    /// Returns the numbers of rows and columns of a frame, in which the channels are stacked vertically.
     pub fn frame_shape(&self) -> (usize, usize) {
         let (rows, columns) = self.shape();
         (self.sensed.n_channels() * rows, columns)
     }
 
-    /// Metres between taxels of the square grid.
+    /// Returns the pitch of the square grid, metres.
     pub fn pitch(&self) -> f64 {
         self.grid.pitch
     }
 
-    /// In words: `64×64 at 2 mm`.
+    /// Returns a short description: `64×64 at 2 mm`.
     pub fn describe(&self) -> String {
         self.say("×", "")
     }
 
-    /// The same with its taxels named: `64 × 64 taxels at 2 mm`.
+    /// Returns a description that contains the word taxels: `64 × 64 taxels at 2 mm`.
     pub fn describe_taxels(&self) -> String {
         self.say(" × ", " taxels")
     }
@@ -203,8 +204,8 @@ impl TaxelArray {
         }
     }
 
-    /// The cells of its pictures and the taxel that each shows: rows and columns; of a layout that is drawn otherwise the nearest taxel to each
-    /// of three cells a pitch, seen along the axis in the middle, and none where none is near.
+    /// Returns the taxel shown in each cell of a picture, shape (rows, columns). Images have one cell per taxel. Other layouts are projected along the axis of
+    /// the middle, with three cells per pitch. Each cell shows its nearest taxel, or none if all taxels are far away.
     pub fn picture_cells(&self) -> Array2<Option<usize>> {
         let (ny, nx) = self.shape();
         if self.is_image() {
@@ -226,7 +227,7 @@ impl TaxelArray {
         })
     }
 
-    /// Millimetres between the cells of a picture.
+    /// Returns the distance between the cells of a picture, mm.
     pub fn picture_pitch_mm(&self) -> f64 {
         match self.is_image() {
             true => millimetres(self.pitch()),
@@ -235,7 +236,7 @@ impl TaxelArray {
     }
 }
 
-/// All that its frames depend on: the patch is made of the other fields.
+/// Writes all inputs of the array's frames. The patch is derived from the other fields.
 impl fmt::Debug for TaxelArray {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let Self {
@@ -256,7 +257,7 @@ impl fmt::Debug for TaxelArray {
     }
 }
 
-/// The skin of a study's array: the same in each touch and trial.
+/// Returns the seed of an array's skin, which is the same in every touch and trial.
 pub(crate) fn skin(study: &Seed, array: &TaxelArray) -> Seed {
     let (ny, nx) = array.shape();
     let sides = study.named("skin").numbered(nx as u64);
@@ -265,10 +266,11 @@ pub(crate) fn skin(study: &Seed, array: &TaxelArray) -> Seed {
 }
 
 impl TaxelArray {
-    /// The signal of each channel, with the steps that a skin of some name has: channels are read by converters of their own, so each has a name, and
-    /// noise, of its own; the first has that of the skin.
+    /// Returns the signal chain of each channel, with the steps returned by `steps` for the channel's seed. Each channel has its own converter and therefore
+    /// its own seed and noise; the first channel has the seed of the skin.
     ///
     /// # Errors
+    /// If [`Chain::new`] fails.
     /// Those of [`Chain::new`].
     pub fn chains(
         &self,

@@ -1,4 +1,4 @@
-//! `[test]`: keys that test touches have instead of the study's.
+//! `[test]`: keys with which test touches differ from training touches.
 //!
 //! ```toml
 //! [test]
@@ -7,8 +7,8 @@
 //! [axes]
 //! "test.signal.dead_fraction" = [0.0, 0.1, 0.2]
 //! ```
-//! The study with these keys in place of its own is planned as any study is. Its touches have the numbers of the study's touches, so splits are those of
-//! the study; projections, features and classifiers are learned from the study's training touches.
+//! The study with these keys is planned like any study. Its touches have the same numbers as the study's touches, so the splits are equal. Projections,
+//! features and classifiers are fitted to the study's training touches.
 
 use crate::engine::axis::Axis;
 use crate::error::{Error, Result};
@@ -21,7 +21,7 @@ use crate::studies::recognition::spec::study::StudySpec;
 use std::sync::Arc;
 use toml::{Table, Value};
 
-/// Tables of which test touches may have keys of their own, in studies that place objects and in others.
+/// Tables whose keys may differ for test touches, for studies that place objects and for other studies.
 const TABLES: &[&str] = &["objects", "skin", "touches", "signal"];
 const TABLES_OF_OTHERS: &[&str] = &["signal"];
 
@@ -34,7 +34,7 @@ const SHARED: [&str; 4] = [
 ];
 
 impl Check<'_> {
-    /// Returns the plan of test touches, or `None` if they are made as training touches are. `plan`: the study without `[test]`.
+    /// Returns the plan of the test touches, or `None` if they are made like training touches. `plan` is the study without `[test]`.
     ///
     /// # Errors
     /// If a key cannot differ for test touches or is out of its range, or if a taxel of the test touches has no counterpart in training touches.
@@ -52,7 +52,7 @@ impl Check<'_> {
             return Err(self.error("test.touches", given, "other tables of [test]"));
         }
         let mut study = Table::try_from(StudySpec {
-            // A seed of the command line may be larger than TOML's numbers.
+            // TOML integers have 63 bits; a seed from the command line may be larger.
             seed: 0,
             test: Table::new(),
             ..spec.clone()
@@ -95,7 +95,7 @@ impl Check<'_> {
         Ok(Some(Arc::new(tested)))
     }
 
-    /// Returns the error with the key as it is written in `[test]`, if it names a key of that table.
+    /// Returns the error with the key as written in `[test]`, if the error names a key of that table.
     fn under_test(&self, error: Error, test: &Table) -> Error {
         let Error::Input {
             place,
@@ -119,7 +119,8 @@ impl Check<'_> {
         }
     }
 
-    /// Refuses test touches whose frames are not those that are learned, taxel by taxel, and lists where the axis belongs to the study.
+    /// Checks that the frames of test and training touches have the same taxels and values. If an axis belongs to the study, `[test]` must not list values for
+    /// it.
     fn check_alike(&self, plan: &Plan, tested: &Plan) -> Result<()> {
         let shapes = |plan: &Plan| -> Vec<_> {
             let arrays = plan.arrays.iter();
@@ -150,14 +151,14 @@ impl Check<'_> {
 }
 
 impl Plan {
-    /// Returns the axes of the signal of test touches that `test` has.
+    /// Returns the signal axes that `[test]` sets.
     fn own_signal<'a>(&'a self, test: &'a Table) -> impl Iterator<Item = &'a SignalAxis> {
         let own = test.get("signal").and_then(Value::as_table);
         let given = self.spec.signal.axes.given();
         given.filter(move |(key, ..)| own.is_some_and(|own| own.contains_key(*key)))
     }
 
-    /// Returns the condition of the signal of test touches where training touches have `learned`.
+    /// Returns the signal condition of test touches if training touches have the condition `learned`.
     pub fn tested_condition(&self, learned: Condition) -> Condition {
         let Some(tested) = &self.tested else {
             return learned;

@@ -1,30 +1,30 @@
-//! What a trial draws anew: a split and a projection of its own, or every split with every projection.
+//! Numbers of the split and the projection of each trial.
 
 use crate::error::Result;
 use crate::inputs::check::Check;
 use crate::studies::recognition::spec::study::StudySpec;
 
-/// Trial t has split t and projection t; with P `projections_per_split`, split t / P and projection t mod P, so that each split meets each of
-/// P projections. Noise and what else is drawn is drawn anew in each.
+/// Trial t has split t and projection t. With P `projections_per_split`, trial t has split t / P and projection t mod P, so that each split is combined with P
+/// projections. All other random numbers are drawn anew in each trial.
 impl StudySpec {
-    /// The number of a trial's split.
+    /// Returns the number of a trial's split.
     pub fn split_of(&self, trial: usize) -> usize {
         trial / self.projections_per_split.unwrap_or(1)
     }
 
-    /// The number of a trial's projection.
+    /// Returns the number of a trial's projection.
     pub fn projection_of(&self, trial: usize) -> usize {
         projection_of(self.projections_per_split, trial)
     }
 }
 
-/// Returns the number of a trial's projection: the trial's own, or one of so many that every split meets.
+/// Returns the number of a trial's projection: the trial's own, or one of `projections_per_split` shared by all splits.
 pub(crate) fn projection_of(projections_per_split: Option<usize>, trial: usize) -> usize {
     projections_per_split.map_or(trial, |n| trial % n)
 }
 
 impl Check<'_> {
-    /// `projections_per_split`, and whether trials come out even.
+    /// Checks `projections_per_split`: the number of trials must be a multiple of it.
     pub fn repeats(&self, spec: &StudySpec) -> Result<()> {
         const KEY: &str = "projections_per_split";
         let Some(n_projections) = spec.projections_per_split else {

@@ -1,4 +1,4 @@
-//! Keys of `[skin]` and `[signal]` that cannot act beside the other keys of a study: each is refused.
+//! Checks for keys of `[skin]` and `[signal]` that have no effect with the other keys of a study.
 
 use crate::engine::axes::CombineSpec;
 use crate::error::Result;
@@ -8,8 +8,7 @@ use crate::studies::recognition::spec::signal::StepSpec;
 use crate::studies::recognition::spec::study::StudySpec;
 
 impl Check<'_> {
-    /// Checks that dampers, friction and combinations can act. An axis of the study whose other values use a key is enough,
-    /// and so are test touches of their own.
+    /// Checks that dampers, friction and combinations have an effect. One value of an axis that uses a key suffices, as do separate test touches.
     pub fn unused_keys(&self, spec: &StudySpec) -> Result<()> {
         if !spec.test.is_empty() {
             return Ok(());
@@ -27,7 +26,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// The damper pushes back on taxels that move: it acts where a force is read while the press goes on.
+    /// Checks the damper. It acts on moving taxels, and so affects only forces that are read during the press.
     fn used_damper(&self, spec: &StudySpec) -> Result<()> {
         let (skin, touches, axes) = (&spec.skin, &spec.touches, &spec.axes);
         let sensed = skin.sensed.unwrap_or_default();
@@ -61,7 +60,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// The friction of tips. A tip of a flat array that is pressed straight on stays where it first touches: only tips that go along the object rub.
+    /// Checks the friction. It acts only on taxels that move along the object; the taxels of a flat array that is pressed straight on do not.
     fn used_friction(&self, spec: &StudySpec) -> Result<()> {
         let (skin, axes) = (&spec.skin, &spec.axes);
         let rubs = spec.touches.slide_mm.is_some_and(|slide| slide > 0.0)
@@ -72,7 +71,7 @@ impl Check<'_> {
             || ["touches.slide_mm", "skin.layout"]
                 .iter()
                 .any(|key| axes.has(key));
-        // Recorded frames keep the description of the skin that read them.
+        // A study of recorded frames may describe the skin completely.
         if spec.recorded.is_some() {
             return Ok(());
         }

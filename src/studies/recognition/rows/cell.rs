@@ -1,4 +1,4 @@
-//! The settings of a cell: every axis of a study at one value. The first columns of a row of results.
+//! Configuration of a recognition study: one value of every axis. These are the first columns of a row of results.
 
 use crate::engine::axes::AxisValues;
 use crate::inputs::sensor_errors::{Strengths, TestedOn, strength_columns};
@@ -22,8 +22,8 @@ const OVER_TIME: &[(&str, &str)] = &[
 ];
 const CHOSEN: &[(&str, &str)] = &[("", "chosen")];
 
-/// Declares the configuration of a cell: each parameter with its type, its column, and when the column is there. Struct, columns and rows in files follow from
-/// this one list, in its order.
+/// Declares a configuration: each parameter with its type, its column, and the condition under which the column exists. Struct, columns and file format are
+/// generated from this list, in its order.
 macro_rules! configuration {
     ($(#[$of_cell:meta])* pub struct $cell:ident {
         $($(#[$of_field:meta])* $field:ident: $type:ty => $how:ident $(($role:ident, $words:literal, $unit:literal, $scale:ident))? $(named $names:expr)?;)*
@@ -43,7 +43,7 @@ macro_rules! configuration {
             }
         }
 
-        /// All columns except those of the axes that a study names itself.
+        /// Returns all columns except those of the axes in `[axes]`.
         impl Columns for $cell {
             fn columns() -> Vec<Column> {
                 let mut columns = Vec::new();
@@ -61,67 +61,66 @@ macro_rules! configuration {
 }
 
 configuration! {
-/// The settings of one cell of a sweep: every axis at one value.
+/// One configuration of a study: one value of every axis.
 pub struct Cell {
-    /// Number of the cell, from 0, in sweep order.
+    /// Number of the configuration, from 0, in sweep order.
     cell: usize => always (Note, "cell", "", Linear);
-    /// Millimetres between taxels.
+    /// Pitch of the taxels, mm.
     pitch_mm: f64 => always (Choice, "pitch", "mm", Linear);
-    /// Taxel columns.
+    /// Number of taxel columns.
     nx: usize => always (Note, "taxels along x", "", Linear);
-    /// Taxel rows.
+    /// Number of taxel rows.
     ny: usize => always (Note, "taxels along y", "", Linear);
-    /// Rows and columns of its images.
+    /// Numbers of rows and columns of the array's images.
     image_shape: (usize, usize) => hidden;
     /// Side length of the array along x: nx × pitch.
     size_mm: f64 => always (Choice, "array size", "mm", Linear);
     /// Noise standard deviation, in `noise_unit`.
     noise_std: f64 => always (Condition, "noise", "%", Share);
-    /// What `noise_std` is measured in.
+    /// Unit of `noise_std`.
     noise_unit: NoiseUnit => always (Note, "noise unit", "", Words);
-    /// Standard deviation of the Gaussian smoothing, millimetres; 0 for none.
+    /// Standard deviation of the Gaussian smoothing, mm; 0 without smoothing.
     smoothing_mm: f64 => always (Choice, "smoothing", "mm", Linear);
-    /// How strong each sensor error is: a column for each strength that the study has.
+    /// Strength of each sensor error; one column for each strength that the study has.
     strengths: Strengths => each_strength;
-    /// The skin that test touches are made with; only if the study has the key.
+    /// Skin of the test touches. Present only if the study has the key.
     tested_on: Option<TestedOn> => if_given (Condition, "tested on", "", Words);
-    /// How measurements are made.
+    /// Ensemble of the measurement matrix.
     ensemble: Ensemble => always (Choice, "ensemble", "", Words) named Ensemble::NAMES;
-    /// Measurements a frame, m.
+    /// Number m of measurements per frame.
     measurements: usize => always (Choice, "m", "", Log);
     /// Compression ratio n / m.
     ratio: f64 => always (Choice, "compression", ":1", Log);
-    /// Frames a touch, F: a row of features has F · m values.
+    /// Number F of frames per touch; a row of features has F · m values.
     frames: usize => always (Choice, "frames a touch", "", Log);
-    /// What is made of the frames, if not all of them one after the other; only if the study has the key.
+    /// How the frames of a touch are combined. Present only if the study has the key; otherwise frames are concatenated.
     over_time: Option<OverTime> => if_given (Choice, "over time", "", Words) named OVER_TIME;
-    /// What is made of the measurements.
+    /// Features computed from the measurements.
     features: Features => always (Choice, "features", "", Words) named Features::NAMES;
-    /// How far behind the foremost point features of images see, as a fraction of the full scale, 1 of all others; only if the study
-    /// has the key.
+    /// Depth window of image features behind the foremost point, as a fraction of the full scale; 1 for other features. Present only if the study has the key.
     foremost_full_scale: Option<f64> => if_given (Choice, "foremost", "%", Share);
-    /// Copies of each training touch, tilted at random; only if the study has the key.
+    /// Number of randomly tilted copies of each training touch. Present only if the study has the key.
     tilted_copies: Option<usize> => if_given (Choice, "tilted copies", "", Linear);
-    /// Which classifier.
+    /// Kind of classifier.
     classifier: ClassifierKind => always (Choice, "classifier", "", Words) named ClassifierKind::NAMES;
-    /// Soft-margin penalty C; empty when it is chosen by cross-validation, or when the classifier has none.
+    /// Penalty C; empty if C is chosen by cross-validation or the classifier has none.
     c: Option<f64> => always (Choice, "C", "", Log) named CHOSEN;
-    /// Training touches an object, at most.
+    /// Largest number of training touches per object.
     train_touches: usize => always (Choice, "training touches", "", Log);
-    /// Fraction of them with another object's label; only if the study has the key.
+    /// Fraction of training touches with another object's label. Present only if the study has the key.
     mislabelled_fraction: Option<f64> => if_given (Condition, "mislabelled", "%", Share);
-    /// How many times as many the most frequent object has as the rarest; only if the study has the key.
+    /// Ratio of the training touches of the most frequent to the least frequent object. Present only if the study has the key.
     class_imbalance: Option<f64> => if_given (Condition, "class imbalance", ":1", Log);
-    /// Test touches of an object that are decided on together, by the sum of their scores.
+    /// Number of test touches of an object that are fused into one decision by the sum of their scores.
     fused_touches: usize => always (Choice, "touches fused", "", Log);
-    /// How the touches after the first of these are chosen; only if the study has the key.
+    /// Policy that chooses the touches after the first. Present only if the study has the key.
     next_touch: Option<NextTouch> => if_given (Choice, "next touch", "", Words);
-    /// Where it is on the study's own axes: a column for each.
+    /// Values on the axes in `[axes]`, one column for each axis.
     variant: AxisValues => each_axis;
 } }
 
 impl Cell {
-    /// Returns the inputs of its features.
+    /// Returns the inputs of the configuration's features.
     pub fn rows(&self) -> RowInputs {
         let is_of_images = self.features.of_image().is_some();
         RowInputs {
@@ -135,12 +134,12 @@ impl Cell {
         }
     }
 
-    /// What it learns from, where that is made of images.
+    /// Returns the image features of the configuration; `None` if its features are not computed from images.
     pub(crate) fn of_images(&self) -> Option<FeaturesOfImages> {
         self.rows().of_images()
     }
 
-    /// Numbers that a touch is told by.
+    /// Returns the number of features of a touch.
     pub fn n_features(&self) -> usize {
         self.rows().n_features()
     }
@@ -183,7 +182,7 @@ mod if_given {
     }
 }
 
-/// Parameters that follow from others and have no column.
+/// Parameters that are derived from others and have no column.
 mod hidden {
     use super::*;
 
@@ -194,7 +193,7 @@ mod hidden {
     }
 }
 
-/// A column for each strength of a sensor error that the study has.
+/// One column for each strength of a sensor error that the study has.
 mod each_strength {
     use super::*;
 
@@ -217,7 +216,7 @@ mod each_strength {
     }
 }
 
-/// A column for each axis that the study names itself.
+/// One column for each axis in `[axes]`.
 mod each_axis {
     use super::*;
 
@@ -241,7 +240,7 @@ mod each_axis {
 pub(crate) mod tests {
     use super::*;
 
-    /// A cell for tests to start from: 32 × 32 taxels at 2 mm, 16:1.
+    /// Example configuration for tests: 32 × 32 taxels at 2 mm, 16:1.
     pub(crate) fn cell() -> Cell {
         Cell {
             cell: 0,

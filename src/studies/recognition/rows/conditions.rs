@@ -1,13 +1,13 @@
-//! Cells by the condition of the world that they are in: what is best is told within each.
+//! Grouping of configurations by the condition of the world; the best configuration is selected within each condition.
 
 use crate::error::Result;
 use crate::studies::recognition::rows::cell::Cell;
 use crate::table::{Columns, File, Role, Table};
 
-/// The settings of some cells, without scores.
+/// Returns a table of the settings of configurations, without scores.
 ///
 /// # Errors
-/// A cell that has no form in a table.
+/// If a configuration cannot be written as a row of a table.
 pub fn settings_of(cells: &[&Cell]) -> Result<Table> {
     let axes = cells.first().map(|cell| cell.variant.values.iter());
     let axes = axes.into_iter().flatten();
@@ -16,16 +16,16 @@ pub fn settings_of(cells: &[&Cell]) -> Result<Table> {
     File::<Cell>::new("cells.csv", "Cells", "").of_columns(columns, cells)
 }
 
-/// The places of cells that share a condition, in the order in which cells first have it.
+/// Returns the indices of the configurations of each condition, in the order of first occurrence.
 ///
 /// # Errors
-/// Those of [`settings_of`].
+/// If [`settings_of`] fails.
 pub fn by_condition<'a>(cells: impl IntoIterator<Item = &'a Cell>) -> Result<Vec<Vec<usize>>> {
     let cells = settings_of(&cells.into_iter().collect::<Vec<_>>())?;
     Ok(cells.groups(&cells.of_role(Role::Condition), 0..cells.n_rows))
 }
 
-/// The place of the most accurate of some accuracies, of equals the first; none of none.
+/// Returns the index of the largest accuracy, in a tie the first; `None` if there are no accuracies.
 pub fn most_accurate(accuracies: impl IntoIterator<Item = (usize, f64)>) -> Option<usize> {
     let better = |best: (usize, f64), other: (usize, f64)| match other.1 > best.1 {
         true => other,

@@ -1,14 +1,14 @@
-//! Features of images that cells learn from.
+//! Image features of configurations.
 
 use bubbletouch_sim::features::Join;
 
-/// What cells of a group learn from.
+/// Image features that configurations of a group use.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FeaturesOfImages {
-    /// Which.
+    /// Which image features are computed.
     pub join: Join,
-    /// Of what is so far behind the foremost point, as a fraction of the full scale.
+    /// Depth window behind the foremost point, as a fraction of the full scale.
     pub foremost: Option<f64>,
-    /// From how many measurements.
+    /// Number of measurements from which the images are estimated.
     pub measurements: usize,
 }

@@ -1,4 +1,4 @@
-//! Inputs of the rows of features that a cell learns from.
+//! Inputs of the feature rows of a configuration.
 
 use crate::learning::data::over_time::OverTime;
 use crate::studies::recognition::rows::image_features::FeaturesOfImages;
@@ -7,24 +7,24 @@ use bubbletouch_sim::features::Features;
 /// Inputs of the features of a touch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RowInputs {
-    /// Rows and columns of the images of frames.
+    /// Numbers of rows and columns of the images of frames.
     pub image_shape: (usize, usize),
-    /// Measurements of a frame, m.
+    /// Number m of measurements per frame.
     pub measurements: usize,
-    /// Frames of a touch, F.
+    /// Number F of frames per touch.
     pub frames: usize,
-    /// How the frames are combined; `None`: one after the other.
+    /// How the frames are combined; `None` if they are concatenated.
     pub over_time: Option<OverTime>,
     /// Features of a frame's measurements.
     pub features: Features,
-    /// Depth, behind the foremost point, up to which features of images see, as a fraction of the full scale.
+    /// Depth window of image features behind the foremost point, as a fraction of the full scale.
     pub foremost_full_scale: Option<f64>,
-    /// Tilted copies of each training touch.
+    /// Number of tilted copies of each training touch.
     pub n_copies: usize,
 }
 
 impl RowInputs {
-    /// Returns the features of images among them; `None` if features are of measurements.
+    /// Returns the image features; `None` if the features are computed from measurements.
     pub fn of_images(&self) -> Option<FeaturesOfImages> {
         Some(FeaturesOfImages {
             join: self.features.of_image()?,

@@ -1,4 +1,4 @@
-//! Studies that recognise objects, in work items: a family of cells in a trial each, and the touches of each array.
+//! Recognition studies as work items: one item per family of configurations and trial, and one per array for its touches.
 
 pub(crate) mod kind;
 pub(crate) mod limits;
