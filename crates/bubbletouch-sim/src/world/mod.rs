@@ -1,15 +1,15 @@
-//! World: taxels, layouts, touches and robots → what presses where.
+//! World: taxels, layouts, touches and robots → poses of patches and objects.
 //!
-//! Frames: in the **patch frame** the taxels of a flat [`Patch`] rest in the plane z = 0 with their axes along +z, away from the substrate;
-//! on another [`Layout`] each taxel has its own place and axis.
-//! In the **table frame** z points up and objects rest on z = 0.
+//! Frames: in the **patch frame** the taxels of a flat [`Patch`] rest in the plane z = 0 with their axes along +z, away from the substrate.
+//! On other [`Layout`]s each taxel has its own place and axis.
+//! In the **table frame** z points up, and objects rest on z = 0.
 //!
 //! | stage | input → output |
 //! |---|---|
 //! | `layouts` | a pitch and a shape → places and axes of taxels ([`Layout`]) |
-//! | `patch`, `taxel`, `shear` | a layout and properties of taxels → a [`Patch`], its search tree |
+//! | `patch`, `taxel`, `shear` | a layout and properties of taxels → a [`Patch`] and its search tree |
 //! | `neighbours` | a patch → the neighbours of each taxel ([`Neighbours`]) |
-//! | `rest` | an object → the poses in which it rests on a table ([`RestPose`]) |
+//! | `rest` | an object → its resting poses on a table ([`RestPose`]) |
 //! | `placement`, `touches` | ranges of offsets, turns and depths → [`Touch`]es |
 //! | `robot` | URDF → links and joints ([`Robot`]) |
 //! | `motion`, `trajectory` | way points → poses and joint positions over time |

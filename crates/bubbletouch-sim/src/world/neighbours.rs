@@ -1,42 +1,43 @@
-//! Which taxels of a skin are neighbours, and how far apart they are along its surface.
+//! Neighbours among the taxels of a skin, and their distances along its surface.
 //!
-//! Two taxels are neighbours if no third one lies in the ball of which they are the ends of a diameter (a Gabriel graph): four of an inner
-//! taxel of a grid, six of a hexagonal one, whatever the pitch, and on any curved layout those around a taxel. Taxels whose axes oppose
-//! each other are the two sides of a sheet, and do not see each other. Taxels at one place are neighbours, and have the same others. Places farther
-//! apart than three times the local spacing are no neighbours: a gap in the skin.
+//! Two taxels are neighbours if no third one lies in the ball whose diameter they span (a Gabriel graph). An inner taxel of a grid has four
+//! neighbours, one of a hexagonal layout six, at any pitch; on curved layouts the neighbours are the surrounding taxels. Taxels with opposed
+//! axes belong to opposite sides of a thin sheet and are not neighbours. Taxels at one place are neighbours, and share their other neighbours. Places
+//! farther apart than three times the local spacing are not neighbours: the skin has a gap.
 //!
-//! Along the surface the way from one taxel to another is the arc that turns as far as their axes do: chord · (θ/2) / sin(θ/2), θ the angle
-//! between the axes. It is exact on planes, on spheres, and across and along cylinders.
+//! The distance along the surface is the length of an arc that turns as far as the axes do: chord · (θ/2) / sin(θ/2), with θ the angle
+//! between the axes. This is exact on planes, on spheres, and across and along cylinders.
 
 use super::Patch;
 use glam::DVec3;
 
-/// The longest way between neighbours, as a multiple of the local spacing (see `around`). Smaller: sparse places of draped layouts lose some
+/// Largest distance between neighbours, as a multiple of the local spacing (see `around`). Smaller: sparse places of draped layouts lose some
 /// neighbours; larger: taxels at both edges of a gap in the skin become neighbours.
 const REACH: f64 = 3.0;
-/// Two taxels nearer than this share of a taxel's radius are at the same place: their distance tells nothing of the spacing.
+/// Distance, relative to a taxel's radius, below which two taxels are at one place; such a distance is not a spacing.
 const COINCIDENT: f64 = 0.01;
-/// Taxels in one line after which no taxel across it is looked for. Larger: rows farther apart are neighbours, and long lines take longer.
+/// Number of taxels in one line after which the search for a taxel beside the line ends. Larger: more distant rows become neighbours, long lines take
+/// longer.
 const MAX_IN_LINE: usize = 256;
-/// Cosine between the directions to two taxels, above which they lie along one line.
+/// Cosine between the directions to two taxels above which both lie along one line.
 const ALONG: f64 = std::f64::consts::FRAC_1_SQRT_2;
-/// Below this cosine between their axes two taxels are the two sides of a sheet.
+/// Cosine between axes below which two taxels belong to opposite sides of a thin sheet.
 const OPPOSED: f64 = -0.5;
-/// What rounding may add to a square of a distance: the corners of a square are on the ball around its diagonal.
+/// Factor that covers rounding of squared distances: the corners of a square lie exactly on the ball around its diagonal.
 const ROUNDING: f64 = 1.0 + 1e-9;
 
-/// The neighbours of every taxel of a skin.
+/// Neighbours of every taxel of a skin.
 ///
 /// Invariant: symmetric; each list ascends.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Neighbours {
-    /// Where the neighbours of each taxel begin, and behind the last where they end.
+    /// Start of each taxel's neighbours in the list, followed by the end of the last.
     starts: Vec<usize>,
     taxels: Vec<u32>,
 }
 
 impl Neighbours {
-    /// Finds them; about a microsecond a taxel.
+    /// Finds the neighbours; about a microsecond per taxel.
     pub fn of(skin: &Patch) -> Self {
         let mut pairs: Vec<[u32; 2]> = Vec::new();
         for taxel in 0..skin.n_taxels() {
@@ -57,28 +58,28 @@ impl Neighbours {
         }
     }
 
-    /// How many taxels there are.
+    /// Returns the number of taxels.
     pub fn n_taxels(&self) -> usize {
         self.starts.len() - 1
     }
 
-    /// Those of a taxel, by their numbers in the layout, ascending.
+    /// Returns the neighbours of a taxel, by their numbers in the layout, ascending.
     ///
     /// # Panics
-    /// If there are not that many taxels.
+    /// If the taxel does not exist.
     pub fn of_taxel(&self, taxel: usize) -> impl Iterator<Item = usize> {
         let neighbours = &self.taxels[self.starts[taxel]..self.starts[taxel + 1]];
         neighbours.iter().map(|&other| other as usize)
     }
 
-    /// The most that a taxel has.
+    /// Returns the largest number of neighbours of a taxel.
     pub fn most(&self) -> usize {
         let counts = self.starts.windows(2).map(|ends| ends[1] - ends[0]);
         counts.max().unwrap_or(0)
     }
 
-    /// Returns the taxels that are no farther from `taxel` than `reach` metres along the surface, itself included, with their distances: those
-    /// of the same side, and those that steps from neighbour to neighbour lead to within that reach, such as around a thin finger.
+    /// Returns the taxels within `reach` metres of `taxel` along the surface, including itself, with their distances. Taxels whose axes are opposed
+    /// count only if steps between neighbours within `reach` lead to them, such as around a thin finger.
     pub fn within(&self, skin: &Patch, taxel: usize, reach: f64) -> Vec<(usize, f64)> {
         let near = others_within(skin, taxel, reach.min(size(skin)));
         let near = near
@@ -101,7 +102,7 @@ impl Neighbours {
     }
 }
 
-/// How far two taxels are from each other along the surface, metres.
+/// Returns the distance of two taxels along the surface, metres.
 fn along_surface(skin: &Patch, [a, b]: [usize; 2]) -> f64 {
     let (centers, axes) = (skin.layout().centers(), skin.layout().axes());
     let half = 0.5 * axes[a].angle_between(axes[b]);
@@ -109,8 +110,8 @@ fn along_surface(skin: &Patch, [a, b]: [usize; 2]) -> f64 {
     centers[a].distance(centers[b]) * bent
 }
 
-/// Returns the others of the same side within [`REACH`] times the local spacing, nearest first. The spacing is the distance to the nearest
-/// taxel across the line to the nearest one: rows far apart are neighbours, however dense each row is.
+/// Returns the other taxels on this side within [`REACH`] times the local spacing, nearest first. The spacing is the distance to the nearest
+/// taxel across the direction of the nearest one. Distant rows are therefore neighbours, however dense each row is.
 fn around(skin: &Patch, taxel: usize) -> Vec<usize> {
     let centers = skin.layout().centers();
     let away = |other: usize| centers[other] - centers[taxel];
@@ -133,7 +134,7 @@ fn around(skin: &Patch, taxel: usize) -> Vec<usize> {
                 return others;
             }
             Some(spacing) => radius = REACH * spacing,
-            // All lie in one line: the spacing is that of the line.
+            // If all taxels lie in one line, the spacing is the distance along this line.
             None if radius > size || others.len() > MAX_IN_LINE => {
                 let nearest = others.iter().find(is_apart);
                 let reach = nearest.map_or(0.0, |&other| REACH * away(other).length());
@@ -146,7 +147,7 @@ fn around(skin: &Patch, taxel: usize) -> Vec<usize> {
     }
 }
 
-/// The diagonal of the box around all taxels, metres.
+/// Returns the diagonal of the bounding box of all taxels, metres.
 fn size(skin: &Patch) -> f64 {
     let bounds = skin.tree().bounds();
     bounds.map_or(0.0, |bounds| bounds.size().length())
@@ -166,7 +167,7 @@ fn others_within(skin: &Patch, taxel: usize, radius: f64) -> Vec<usize> {
     others
 }
 
-/// Whether none of some taxels is between two. A taxel at the place of one of the two is not between them.
+/// Returns whether none of some taxels is between two. A taxel at the place of one of the two is not between them.
 fn is_free(skin: &Patch, [a, b]: [usize; 2], around: &[usize]) -> bool {
     let centers = skin.layout().centers();
     let middle: DVec3 = 0.5 * (centers[a] + centers[b]);
@@ -222,7 +223,7 @@ mod tests {
         let hexagonal = Neighbours::of(&skin(Layout::hexagonal(9, 9, PITCH).unwrap()));
         assert_eq!(hexagonal.of_taxel(40).count(), 6);
         assert_eq!(hexagonal.most(), 6);
-        // Around a whole cylinder no row ends.
+        // The rows of a whole cylinder have no ends.
         let cylinder = Layout::cylinder(0.02, 0.05, 2.0 * PI, PITCH).unwrap();
         let counts = counts(&Neighbours::of(&skin(cylinder)));
         assert!(counts.iter().all(|n| (3..=4).contains(n)), "{counts:?}");
@@ -276,7 +277,7 @@ mod tests {
             let arc = radius * 0.07 * taxel.abs_diff(5) as f64;
             assert!((distance - arc).abs() < 1e-12, "{taxel}");
         }
-        // Five before, itself, seven behind: 1.4 mm each.
+        // Five taxels before, the taxel itself and seven behind: 1.4 mm each.
         assert_eq!(found.len(), 13);
         let places =
             (0..10).map(|k| DVec3::new(PITCH * f64::from(k % 5), 0.0, 1e-4 * f64::from(k / 5)));
@@ -302,7 +303,7 @@ mod tests {
             let found: Vec<usize> = neighbours.of_taxel(13).collect();
             assert_eq!(found, [4, 12, 14, 22], "{across} m");
         }
-        // The edges of a cuff that is open by 90 degrees.
+        // The edges of a cuff with an opening of 90 degrees.
         let cuff = skin(Layout::cylinder(0.02, 0.01, 1.5 * PI, PITCH).unwrap());
         let neighbours = Neighbours::of(&cuff);
         let centers = cuff.layout().centers();

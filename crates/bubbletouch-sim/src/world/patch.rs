@@ -1,4 +1,4 @@
-//! A patch of skin of any shape.
+//! Patch of skin of any shape.
 
 use super::taxel_tree::TaxelTree;
 use super::{Grid, Layout, Taxel, Taxels};
@@ -6,44 +6,44 @@ use crate::error::Result;
 use glam::DVec3;
 use std::sync::OnceLock;
 
-/// A rigid substrate with taxels of any layout, equal or not.
+/// Rigid substrate with taxels in any layout, with equal or individual properties.
 ///
-/// Invariant: one taxel for all or one each; the trees are those of the layout and the taxels.
+/// Invariant: one set of taxel properties for all or one each; the trees belong to the layout and the taxels.
 #[derive(Clone, Debug)]
 pub struct Patch {
     name: String,
     layout: Layout,
     taxels: Taxels,
     even_grid: Option<EvenGrid>,
-    /// Made when they are asked for.
+    /// Created on first use.
     tree: OnceLock<TaxelTree>,
     ahead: OnceLock<Travelling>,
 }
 
-/// A flat grid of taxels that objects push alike.
+/// Flat grid of taxels with equal radius and stroke.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct EvenGrid {
     pub grid: Grid,
-    /// ρ of all, metres.
+    /// Radius ρ of all taxels, metres.
     pub radius: f64,
-    /// s of all, metres.
+    /// Stroke s of all taxels, metres.
     pub stroke: f64,
     /// Height of the substrate, metres: [`Taxel::substrate`].
     pub behind: f64,
 }
 
-/// The taxels of a patch as they travel along a direction.
+/// Taxels of a patch with axes along a direction of travel.
 #[derive(Clone, Debug)]
 pub(crate) struct Travelling {
     pub taxels: TaxelTree,
-    /// How far the foremost of them is along the direction, its radius included, metres.
+    /// Largest coordinate of a taxel along the direction, including its radius, metres.
     pub front: f64,
-    /// Whether all their own axes are the direction: then each is pushed in as far as it travels past what it met.
+    /// Whether the taxels' own axes equal the direction; their deflections then equal the travel past their contact.
     pub is_flat: bool,
 }
 
 impl Travelling {
-    /// Along a unit vector.
+    /// Creates the taxels for travel along a unit vector.
     pub fn new(patch: &Patch, direction: DVec3) -> Self {
         let (layout, taxels) = (&patch.layout, &patch.taxels);
         let places = layout.centers().iter().enumerate();
@@ -57,11 +57,11 @@ impl Travelling {
 }
 
 impl Patch {
-    /// Checks the taxels. What presses need is made at the first of them: about a microsecond a taxel.
+    /// Creates a patch and checks its taxels. The search tree is built at the first press: about a microsecond per taxel.
     ///
     /// # Errors
-    /// The error names a property out of its range and its taxel (from 1), or the numbers of taxels and places if they
-    /// differ; it begins with the patch's name.
+    /// If a property of a taxel is out of its range, or the numbers of taxels and places differ. The message begins with the patch's name and contains the
+    /// taxel (from 1).
     pub fn new(
         name: impl Into<String>,
         layout: impl Into<Layout>,
@@ -72,10 +72,10 @@ impl Patch {
         Ok(Self::of_checked(name, layout, taxels))
     }
 
-    /// A flat rectangular grid of equal taxels, called `patch`.
+    /// Creates a flat rectangular grid of equal taxels with the name `patch`.
     ///
     /// # Errors
-    /// Those of [`Grid::check`] and [`Taxel::check`]; too many taxels.
+    /// If [`Grid::check`] or [`Taxel::check`] fails, or there are too many taxels.
     pub fn grid(grid: Grid, taxel: Taxel) -> Result<Self> {
         let layout = Layout::grid(&grid)?;
         taxel.check()?;
@@ -97,38 +97,38 @@ impl Patch {
         }
     }
 
-    /// What it is called.
+    /// Returns the name of the patch.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Where the taxels rest.
+    /// Returns the rest centres and axes of the taxels.
     pub fn layout(&self) -> &Layout {
         &self.layout
     }
 
-    /// What the taxels are.
+    /// Returns the properties of the taxels.
     pub fn taxels(&self) -> &Taxels {
         &self.taxels
     }
 
-    /// How many taxels.
+    /// Returns the number of taxels.
     pub fn n_taxels(&self) -> usize {
         self.layout.n_taxels()
     }
 
-    /// Its taxels, so that those near a ball are found.
+    /// Returns the search tree over the taxels, which finds those near a ball.
     pub fn tree(&self) -> &TaxelTree {
         let make = || TaxelTree::new(&self.layout, &self.taxels);
         self.tree.get_or_init(make)
     }
 
-    /// Its taxels as they travel along z.
+    /// Returns the taxels for travel along z.
     pub(crate) fn ahead(&self) -> &Travelling {
         self.ahead.get_or_init(|| Travelling::new(self, DVec3::Z))
     }
 
-    /// The grid that it is, if all its taxels are as large and go as deep.
+    /// Returns the grid, if the layout is one and all taxels have equal radius and stroke.
     pub(crate) fn even_grid(&self) -> Option<&EvenGrid> {
         self.even_grid.as_ref()
     }

@@ -1,14 +1,14 @@
-//! A property of every taxel of a patch: one for all, or one each.
+//! Property of the taxels of a patch: one value for all, or one each.
 
 use super::taxel::Taxel;
 use crate::error::{Error, Result};
 
-/// What the taxels of a patch have, in the order of its layout.
+/// Property of the taxels of a patch, in the order of its layout.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PerTaxel<T> {
-    /// All the same.
+    /// One value for all taxels.
     Equal(T),
-    /// One each, in the order of the layout.
+    /// One value per taxel, in the order of the layout.
     Each(Vec<T>),
 }
 
@@ -22,10 +22,10 @@ impl<T> From<T> for PerTaxel<T> {
 }
 
 impl<T> PerTaxel<T> {
-    /// That of one taxel.
+    /// Returns the value of one taxel.
     ///
     /// # Panics
-    /// If there are not that many.
+    /// If the taxel does not exist.
     pub fn at(&self, taxel: usize) -> &T {
         match self {
             Self::Equal(equal) => equal,
@@ -33,8 +33,9 @@ impl<T> PerTaxel<T> {
         }
     }
 
-    /// Whether there are as many as a patch has places, or one, and each is allowed; errors name the patch, and a taxel (from 1) if there is
-    /// one each.
+    /// Checks that there is one value, or one for each place of the patch, and that each is valid. Errors contain the patch's name, and the taxel (from 1)
+    /// if
+    /// there is one value each.
     pub(super) fn check(
         &self,
         patch: &str,
@@ -57,7 +58,7 @@ impl<T> PerTaxel<T> {
         Ok(())
     }
 
-    /// Each value that there is: one, or as many as taxels.
+    /// Returns the stored values: one, or one per taxel.
     pub fn all(&self) -> &[T] {
         match self {
             Self::Equal(equal) => std::slice::from_ref(equal),

@@ -1,12 +1,12 @@
-//! Where and how a patch touches an object that rests on the table.
+//! Placement of touches: pose of a patch relative to an object that rests on the table.
 //!
 //! The object rests in one of its poses with its bounding box centred at x = y = 0, turned by the yaw about the table's z. The
-//! patch comes from above, facing down. Its axis passes through the offset (x, y) at the height of the object's top; it
-//! is tilted there about its own x, then about its own y:
+//! patch comes from above, facing down. Its axis passes through the offset (x, y) at the height of the object's top. There the patch
+//! is tilted about its own x, then about its own y:
 //!
 //! patch_from_table = R_y(tilt_y)⁻¹ · R_x(tilt_x)⁻¹ · F · T(−offset_x, −offset_y, −height), F = half a turn about x.
 //!
-//! How far along its own axis the patch goes is left to the contact stage: to first contact, then `depth` further.
+//! The travel of the patch along its own axis is determined by the contact stage: to first contact, then `depth` further.
 
 use super::rest::{RestPose, as_modelled, stable_poses};
 use crate::error::{Error, Result};
@@ -16,19 +16,19 @@ use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// Half a turn about x: the patch's z points down. Written out, so that it is exact.
+/// Half a turn about x: the patch's z points down. Written as constants, so that the rotation is exact.
 const FACING_DOWN: DQuat = DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0);
 
-/// Values that differ by less than this many metres or radians are the same pose. It is far below what any skin feels and far above rounding; if it
-/// were larger, fine steps would be merged, and if it were smaller, 0.1 + 0.2 and 0.3 would be two poses.
+/// Difference, metres or radians, below which two values are the same pose: far below the resolution of any skin and far above rounding. Larger:
+/// fine steps would be merged; smaller: 0.1 + 0.2 and 0.3 would be two poses.
 const SAME_POSE: f64 = 1e-9;
 
-/// Which values a coordinate of a touch takes. SI units: metres, radians.
+/// Values of one coordinate of a touch, in SI units: metres, radians.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Spread {
-    /// One of these, all different, at least one.
+    /// Listed values, all different, at least one.
     Values(Vec<f64>),
-    /// Anything from `low` up to `high`, uniformly.
+    /// Uniform distribution from `low` to `high`.
     Uniform {
         /// Smallest value.
         low: f64,
@@ -37,19 +37,19 @@ pub enum Spread {
     },
 }
 
-/// Which resting poses are touched.
+/// Resting poses in which an object is touched.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RestPoses {
-    /// The object's own z points up.
+    /// The pose of the model, with the object's own z up.
     #[default]
     AsModelled,
-    /// The poses in which the object can rest on the table.
+    /// The stable resting poses on the table.
     Stable,
 }
 
 impl RestPoses {
-    /// The poses of one object.
+    /// Returns the resting poses of one object.
     pub fn of(self, object: &Model) -> Vec<RestPose> {
         match self {
             Self::AsModelled => vec![as_modelled(object)],
@@ -58,10 +58,10 @@ impl RestPoses {
     }
 }
 
-/// A coordinate of a touch.
+/// Coordinate of a touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TouchAxis {
-    /// The resting pose.
+    /// Resting pose.
     Rest,
     /// Offset along table x.
     OffsetX,
@@ -78,7 +78,7 @@ pub enum TouchAxis {
 }
 
 impl TouchAxis {
-    /// The word in a study file and in a table's header, without its unit.
+    /// Returns the name of the axis in study files and table headers, without its unit.
     pub fn name(self) -> &'static str {
         match self {
             Self::Rest => "rest",
@@ -91,11 +91,11 @@ impl TouchAxis {
         }
     }
 
-    /// Returns the spread of listed values, in which values that are the same pose are one value, the first. So yaws of 0 and a full turn are one yaw.
+    /// Returns the spread of listed values, keeping the first of values that are the same pose. Yaws of 0 and a full turn, for example, are one yaw.
     pub fn listed(self, values: Vec<f64>) -> Spread {
         let mut first: Vec<usize> = (0..values.len()).collect();
         let pairs = self.same_poses(&values);
-        // Pairs are a chain of neighbours: two passes bring the first of a chain to all of its members.
+        // The pairs form chains of neighbours: two passes assign the first value of a chain to all its members.
         for &(one, other) in pairs.iter().chain(pairs.iter().rev()) {
             let earlier = first[one].min(first[other]);
             (first[one], first[other]) = (earlier, earlier);
@@ -105,7 +105,7 @@ impl TouchAxis {
         Spread::Values(kept.map(|(_, (value, _))| value).collect())
     }
 
-    /// Returns pairs of places of values that are the same pose: those closer than [`SAME_POSE`], of yaws modulo a turn.
+    /// Returns pairs of indices of values that are the same pose: values closer than [`SAME_POSE`], for yaws modulo a turn.
     pub(super) fn same_poses(self, values: &[f64]) -> Vec<(usize, usize)> {
         let is_turn = self == Self::Yaw;
         let place = |value: f64| {
@@ -127,20 +127,20 @@ impl TouchAxis {
     }
 }
 
-/// How the touches of an object are chosen; [`touches`](super::touches()) does it.
+/// Rules for choosing the touches of an object; [`touches`](super::touches()) applies them.
 ///
 /// - No uniform spread, no `per_object`: every combination, resting poses × values; the first of [`TouchAxis`] runs slowest.
 /// - No uniform spread, `per_object` given: that many different combinations, drawn without replacement, all equally likely.
 /// - A uniform spread: `per_object` touches, each drawn alone by its number; resting poses by their probability.
 ///
-/// Drawn touches nest: fewer `per_object` are the first of more.
+/// Drawn touches are nested: the touches for a smaller `per_object` are the first ones for a larger.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Placement {
     /// Resting poses of the object.
     pub rest: RestPoses,
-    /// Where the patch's axis passes, along table x from the middle of the object's box; metres.
+    /// Offset of the patch's axis along table x from the middle of the object's box; metres.
     pub offset_x: Spread,
-    /// The same along table y; metres.
+    /// Offset of the patch's axis along table y; metres.
     pub offset_y: Spread,
     /// Turn of the object about table z; radians.
     pub yaw: Spread,
@@ -150,7 +150,7 @@ pub struct Placement {
     pub tilt_y: Spread,
     /// Travel past first contact; metres, zero or positive.
     pub depth: Spread,
-    /// How many touches of each object; every combination if `None`.
+    /// Number of touches of each object; every combination if `None`.
     pub per_object: Option<usize>,
 }
 
@@ -159,7 +159,7 @@ pub struct Placement {
 pub struct Touch {
     /// Index of the resting pose.
     pub rest: usize,
-    /// Where the patch's axis passes at the height of the object's top, table x and y, metres.
+    /// Offset of the patch's axis at the height of the object's top, table x and y, metres.
     pub offset: [f64; 2],
     /// Turn of the object about table z, radians.
     pub yaw: f64,
@@ -167,12 +167,12 @@ pub struct Touch {
     pub tilt: [f64; 2],
     /// Travel past first contact, metres.
     pub depth: f64,
-    /// For each of [`TouchAxis`], which of the listed values this is; `None` where the spread is uniform.
+    /// For each [`TouchAxis`], the index among the listed values; `None` if the spread is uniform.
     pub indices: [Option<usize>; 7],
 }
 
 impl Placement {
-    /// Touches of an object that has one resting pose.
+    /// Returns the number of touches of an object with one resting pose.
     pub fn n_touches(&self) -> f64 {
         let n_values = |(_, spread): (_, &Spread)| match spread {
             Spread::Values(values) => values.len() as f64,
@@ -186,11 +186,11 @@ impl Placement {
 }
 
 impl Touch {
-    /// What this touch shares with others of its group: its value's index on each of these axes. Splits keep whole groups
+    /// Returns the group of this touch: the index of its value on each of these axes. Splits keep whole groups
     /// (an offset, a yaw, a resting pose) out of training.
     ///
     /// # Errors
-    /// An axis whose values are spread uniformly: no two touches share one.
+    /// If the values of an axis are uniformly distributed: no two touches share one.
     pub fn group(&self, axes: &[TouchAxis]) -> Result<Vec<usize>> {
         let index = |axis: &TouchAxis| {
             self.indices[*axis as usize].ok_or_else(|| {
@@ -204,7 +204,7 @@ impl Touch {
         axes.iter().map(index).collect()
     }
 
-    /// The value on an axis, SI; of a resting pose its number.
+    /// Returns the value on an axis, in SI units; for the resting pose its number.
     pub fn value(&self, axis: TouchAxis) -> f64 {
         match axis {
             TouchAxis::Rest => self.rest as f64,
@@ -217,8 +217,8 @@ impl Touch {
         }
     }
 
-    /// The object's pose in the patch frame, before the patch moves along its own axis: for the zero touch, the top of the
-    /// object's box lies in the plane z = 0 and the rest of it in front (z > 0).
+    /// Returns the object's pose in the patch frame before the patch travels along its axis. With zero offsets and angles, the top of the
+    /// object's box lies in the plane z = 0 and the rest of the box in front (z > 0).
     pub fn patch_from_object(&self, rest: &RestPose) -> Pose {
         let yawed = Pose::from_rotation(DQuat::from_rotation_z(self.yaw));
         let to_axis = DVec3::new(-self.offset[0], -self.offset[1], -rest.height);
@@ -231,7 +231,7 @@ impl Touch {
 }
 
 impl Placement {
-    /// The spread of each axis but [`TouchAxis::Rest`], in product order.
+    /// Returns the spread of each axis except [`TouchAxis::Rest`], in product order.
     pub fn spreads(&self) -> [(TouchAxis, &Spread); 6] {
         [
             (TouchAxis::OffsetX, &self.offset_x),
@@ -295,7 +295,7 @@ mod tests {
         let mut touch = touch();
         touch.yaw = FRAC_PI_2;
         let pose = touch.patch_from_object(&REST);
-        // Object x points along table y, which the patch, flipped about x, sees as −y.
+        // Object x points along table y, which is −y of the patch, because the patch is rotated about x by half a turn.
         close(pose.transform_vector(DVec3::X), DVec3::NEG_Y);
         close(pose.transform_vector(DVec3::Y), DVec3::NEG_X);
     }
@@ -329,12 +329,12 @@ mod tests {
         let half = std::f64::consts::PI;
         let yaws = [-half, 1.0, half, 0.0, TAU, 1.0 - TAU, 3.0 * half, -1e-12];
         assert_eq!(listed(TouchAxis::Yaw, &yaws), [-half, 1.0, 0.0]);
-        // Neighbours of neighbours, out of order.
+        // Chain of neighbouring values, out of order.
         let close = [2e-10, 1e-3, -2e-10, 0.0];
         assert_eq!(listed(TouchAxis::Depth, &close), [2e-10, 1e-3]);
         let sums = [0.1 + 0.2, 0.3];
         assert_eq!(listed(TouchAxis::OffsetX, &sums), [0.1 + 0.2]);
-        // A turn is none for lengths.
+        // For lengths a full turn is not zero.
         assert_eq!(listed(TouchAxis::OffsetX, &[0.0, TAU]), [0.0, TAU]);
         assert_eq!(listed(TouchAxis::Yaw, &[0.0, 1e-6]), [0.0, 1e-6]);
     }

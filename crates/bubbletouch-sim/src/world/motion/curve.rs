@@ -1,38 +1,38 @@
-//! One number over time: a cubic between each two way-points.
+//! One number over time: a cubic between adjacent way-points.
 
 use super::slopes::{clamped_spline, monotone};
 use serde::{Deserialize, Serialize};
 
-/// What happens between way-points.
+/// Interpolation between way-points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Interpolation {
-    /// Straight: constant velocity, with a jump of it at each way-point.
+    /// Piecewise linear: constant velocity, with a jump of the velocity at each way-point.
     Linear,
-    /// The cubic spline with continuous acceleration and no velocity at both ends; it may swing beyond its way-points.
+    /// Cubic spline with continuous acceleration and zero velocity at both ends; it may overshoot its way-points.
     #[default]
     Cubic,
-    /// Cubics with continuous velocity that never leave the range of their two way-points; still at both ends and where they
-    /// turn back.
+    /// Cubics with continuous velocity that never leave the range of their two way-points. The velocity is zero at both ends and at
+    /// reversals.
     Monotone,
 }
 
-/// One number over time. The times of the way-points are kept by its owner: several curves share them.
+/// One number over time. The owner stores the times of the way-points, which several curves share.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Curve {
-    /// c of each piece: `x = c₀ + c₁ s + c₂ s² + c₃ s³`, s seconds after the piece's first way-point.
+    /// Coefficients c of each piece: `x = c₀ + c₁ s + c₂ s² + c₃ s³`, with s in seconds after the piece's first way-point.
     pieces: Vec<[f64; 4]>,
     /// The value at the last way-point.
     last: f64,
 }
 
-/// A value that is taken somewhere on a curve.
+/// Value at one time of a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Taken {
     pub value: f64,
-    /// Seconds, on the scale of the way-points.
+    /// Time, seconds, on the scale of the way-points.
     pub time: f64,
-    /// Index of the way-point before.
+    /// Index of the preceding way-point.
     pub piece: usize,
 }
 
@@ -41,13 +41,14 @@ pub(super) struct Taken {
 pub(super) struct Extremes {
     pub lowest: Taken,
     pub highest: Taken,
-    /// The velocity of largest size, with its sign.
+    /// Velocity of the largest magnitude, with its sign.
     pub fastest: Taken,
 }
 
 impl Curve {
-    /// Through `values` at `times`, at least one each, times ascending. `None` if the way-points are so far apart in value or
-    /// so close in time that a coefficient is not finite.
+    /// Creates the curve through `values` at `times`, at least one each, times ascending. Returns `None` if a coefficient is not finite, because
+    /// way-points
+    /// are too far apart in value or too close in time.
     pub fn through(times: &[f64], values: &[f64], interpolation: Interpolation) -> Option<Self> {
         let steps: Vec<f64> = times.windows(2).map(|t| t[1] - t[0]).collect();
         let rises = values.windows(2).map(|x| x[1] - x[0]);
@@ -73,7 +74,7 @@ impl Curve {
         })
     }
 
-    /// Where it is.
+    /// Returns the value at a moment.
     pub fn value(&self, at: Moment) -> f64 {
         match at {
             Moment::In { piece, elapsed } => value(&self.pieces[piece], elapsed),
@@ -82,7 +83,7 @@ impl Curve {
         }
     }
 
-    /// How fast it goes, per second; 0 outside the way-points.
+    /// Returns the velocity, per second; 0 outside the way-points.
     pub fn velocity(&self, at: Moment) -> f64 {
         match at {
             Moment::In { piece, elapsed } => velocity(&self.pieces[piece], elapsed),
@@ -90,8 +91,8 @@ impl Curve {
         }
     }
 
-    /// Its extremes in closed form: at way-points, where the velocity is zero, and, for the velocity, where the acceleration
-    /// is.
+    /// Returns the extremes in closed form: at way-points, at zeros of the velocity, and for the velocity at zeros of the
+    /// acceleration.
     pub fn extremes(&self, times: &[f64]) -> Extremes {
         let end = Taken {
             value: self.last,
@@ -148,19 +149,19 @@ impl Extremes {
     }
 }
 
-/// A time among way-points.
+/// Time relative to way-points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Moment {
-    /// Before the first.
+    /// Before the first way-point.
     Before,
-    /// Between two, seconds after the first of them.
+    /// Between two way-points, seconds after the first of them.
     In { piece: usize, elapsed: f64 },
-    /// At or after the last.
+    /// At or after the last way-point.
     After,
 }
 
 impl Moment {
-    /// Of a time in seconds; a time that is no number is before all.
+    /// Locates a time in seconds among the way-points; NaN counts as before the first.
     pub fn of(time: f64, times: &[f64]) -> Self {
         let passed = times.partition_point(|&way_point| way_point <= time);
         match passed {
@@ -182,7 +183,7 @@ fn velocity(c: &[f64; 4], s: f64) -> f64 {
     c[1] + s * (2.0 * c[2] + s * 3.0 * c[3])
 }
 
-/// Real roots of `a s² + b s + c`, without cancellation; what is no number where there is none.
+/// Returns the real roots of `a s² + b s + c`, without cancellation; NaN for missing roots.
 fn quadratic_roots(a: f64, b: f64, c: f64) -> [f64; 2] {
     let q = -0.5 * (b + (b * b - 4.0 * a * c).sqrt().copysign(b));
     [q / a, c / q]
@@ -204,7 +205,7 @@ mod tests {
         Curve::through(&TIMES, &VALUES, interpolation).expect("tame numbers")
     }
 
-    /// Value, velocity and acceleration on both sides of each inner way-point.
+    /// Returns value, velocity and acceleration on both sides of each inner way-point.
     fn sides(curve: &Curve, piece: usize) -> [[f64; 3]; 2] {
         let h = TIMES[piece + 1] - TIMES[piece];
         [(piece, h), (piece + 1, 0.0)].map(|(piece, s)| {

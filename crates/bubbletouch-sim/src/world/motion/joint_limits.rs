@@ -1,4 +1,4 @@
-//! Whether joints stay within what they can do, at all times.
+//! Check that joints stay within their limits at all times.
 
 use super::curve::{Curve, Extremes, Taken};
 use super::way_points::WayPoints;
@@ -6,15 +6,15 @@ use crate::error::{Error, Result};
 use crate::world::Robot;
 use crate::world::robot::{Dimension, Limits};
 
-/// How far a limit may be passed by, rad, m or those a second. Files write limits to six digits, so a quarter turn may be 3e-7
-/// beyond 1.570796; more slack would hide what can be seen in a message.
+/// Tolerance of limits, rad, m, or these per second. Files write limits with six digits, so a quarter turn may be 3e-7
+/// beyond 1.570796. Larger: visible violations would be accepted; smaller: rounded limits would be refused.
 const SLACK: f64 = 1e-6;
 
-/// Checks every joint of one coordinate that has limits. `curves` are those of the robot's positions. Returns a note for each joint
-/// that mimics another one and is taken beyond its own limits: it goes where its `<mimic>` says.
+/// Checks every joint of one coordinate that has limits; `curves` are the robot's positions. Returns a note for each joint
+/// that mimics another one and leaves its own limits: such a joint follows its `<mimic>`.
 ///
 /// # Errors
-/// The first joint that mimics none and leaves its limits, and the point where it is farthest beyond.
+/// If a joint that mimics none leaves its limits; the error contains the first such joint and its largest violation.
 pub(super) fn check_limits(
     robot: &Robot,
     curves: &[Curve],
@@ -47,7 +47,7 @@ pub(super) fn check_limits(
     Ok(notes)
 }
 
-/// Where a joint is farthest beyond the first limit that it passes, what it does there, and what is allowed.
+/// Returns the largest violation of the first limit that a joint violates, with its motion there and the allowed range.
 fn first_beyond(
     extremes: &Extremes,
     limits: &Limits,
@@ -80,7 +80,7 @@ fn first_beyond(
 }
 
 impl Extremes {
-    /// Those of a joint at `multiplier · x + offset`.
+    /// Returns the extremes of a joint at `multiplier · x + offset`.
     fn driven(self, multiplier: f64, offset: f64) -> Self {
         let moved = |taken: Taken| Taken {
             value: multiplier * taken.value + offset,
@@ -101,7 +101,7 @@ impl Extremes {
     }
 }
 
-/// The time, and between which way-points it is.
+/// Describes the time and the adjacent way-points.
 fn when(taken: &Taken, way_points: &WayPoints) -> String {
     let (times, origin) = (&way_points.times, &way_points.origin);
     let time = format!("{:.4} s", taken.time);

@@ -10,26 +10,26 @@ use crate::world::Robot;
 use ndarray::Array2;
 use std::io::Read;
 
-/// The positions of a robot through way-points in time; outside their range the ends hold.
+/// Positions of a robot over time, through way-points; constant before the first and after the last.
 ///
-/// Invariant: at no time does a joint that mimics none leave its limits of position and velocity by more than 1e-6 rad, m or those a
-/// second. A joint that mimics goes where its `<mimic>` says; beyond its own limits it has a [note](Self::notes).
+/// Invariant: a joint that mimics none never violates its limits of position and velocity by more than 1e-6 rad, m, or these per
+/// second. A joint that mimics another follows its `<mimic>`; if it leaves its own limits, there is a [note](Self::notes).
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointTrajectory {
     times: Vec<f64>,
-    /// One a position.
+    /// One curve per position.
     curves: Vec<Curve>,
     notes: Vec<String>,
 }
 
 impl JointTrajectory {
-    /// Through `positions` (a row a way-point, a column a position of the robot; rad and m) at `times` (seconds, strictly
+    /// Creates the trajectory through `positions` (row: way-point, column: position of the robot; rad and m) at `times` (seconds, strictly
     /// ascending).
     ///
-    /// The limits are checked along the whole curve, in closed form: between way-points, too.
+    /// Limits are checked along the whole curve in closed form, including between way-points.
     ///
     /// # Errors
-    /// The error names the joint, the time, the value and the limit; or the way-point that is not finite or not in time.
+    /// If a joint leaves its limits; the error contains joint, time, value and limit. Also if a way-point is not finite or out of order.
     pub fn new(
         robot: &Robot,
         times: Vec<f64>,
@@ -51,12 +51,13 @@ impl JointTrajectory {
         Self::through(robot, &way_points.checked()?, interpolation)
     }
 
-    /// From CSV: a column `time_s` and one for each of the robot's [coordinates](Robot::coordinates) that moves, in any order; a coordinate
-    /// without a column stays at its [rest position](Robot::rest_positions). Angles are in radians under
-    /// the coordinate's name (or with `_rad` behind it) and in degrees with `_deg`; lengths in metres (`_m`) and in millimetres with `_mm`.
+    /// Reads a trajectory from CSV: a column `time_s` and one column for each moving [coordinate](Robot::coordinates) of the robot, in any order.
+    /// A coordinate without a column stays at its [rest position](Robot::rest_positions). A column of angles has
+    /// the coordinate's name, optionally with `_rad`, for radians, or `_deg` for degrees. A column of lengths has `_m` for metres or `_mm` for
+    /// millimetres.
     ///
     /// # Errors
-    /// Errors begin with `place`, the file's name, and give the line.
+    /// If the table is invalid; the message begins with `place`, the file's name, and contains the line.
     pub fn read_csv(
         robot: &Robot,
         place: &str,
@@ -131,32 +132,32 @@ impl JointTrajectory {
         })
     }
 
-    /// Sentences on joints that mimic others beyond their own limits.
+    /// Returns notes on joints that mimic others beyond their own limits.
     pub fn notes(&self) -> &[String] {
         &self.notes
     }
 
-    /// Seconds, one a way-point.
+    /// Returns the times of the way-points, seconds.
     pub fn times(&self) -> &[f64] {
         &self.times
     }
 
-    /// The time of the last way-point, seconds.
+    /// Returns the time of the last way-point, seconds.
     pub fn end(&self) -> f64 {
         self.times[self.times.len() - 1]
     }
 
-    /// The robot's positions at a time in seconds, rad and m.
+    /// Returns the robot's positions at a time in seconds, rad and m.
     pub fn positions_at(&self, time: f64) -> Vec<f64> {
         let mut positions = vec![0.0; self.curves.len()];
         self.positions_into(time, &mut positions);
         positions
     }
 
-    /// The same into a slice, without allocation.
+    /// Writes the robot's positions at a time in seconds into a slice, without allocation; rad and m.
     ///
     /// # Panics
-    /// If the slice has not one place a position.
+    /// If the length of the slice differs from the number of positions.
     pub fn positions_into(&self, time: f64, positions: &mut [f64]) {
         assert_eq!(positions.len(), self.curves.len(), "one place a position");
         let at = Moment::of(time, &self.times);
@@ -165,7 +166,7 @@ impl JointTrajectory {
         }
     }
 
-    /// Their velocities, rad/s and m/s; zero outside the way-points. Where a linear one jumps, the velocity after.
+    /// Returns the velocities of the positions, rad/s and m/s; zero outside the way-points. At a jump, the velocity after the jump.
     pub fn velocities_at(&self, time: f64) -> Vec<f64> {
         let at = Moment::of(time, &self.times);
         self.curves.iter().map(|curve| curve.velocity(at)).collect()

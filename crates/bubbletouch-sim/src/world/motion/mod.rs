@@ -1,6 +1,6 @@
-//! Motion: way-points in time → where joints and bodies are at any time.
+//! Motion: way-points in time → poses and joint positions at any time.
 //!
-//! Between way-points each number is a cubic of time; outside their range of time the ends hold.
+//! Between way-points each number is a cubic polynomial of time; before the first and after the last the values are constant.
 //!
 //! | interpolation | between way-points | continuous |
 //! |---|---|---|
@@ -24,10 +24,10 @@ pub use pose_trajectory::PoseTrajectory;
 use super::VelocityPlan;
 use crate::geometry::Pose;
 
-/// How a body moves that nothing can stop: a robot's base, or an object.
+/// Imposed motion of a robot's base or of an object.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Motion {
-    /// It stays.
+    /// Constant pose.
     Fixed(Pose),
     /// Piecewise-constant velocities.
     Plan(VelocityPlan),
@@ -36,7 +36,7 @@ pub enum Motion {
 }
 
 impl Motion {
-    /// `world_from_body` at a time in seconds.
+    /// Returns `world_from_body` at a time in seconds.
     pub fn pose_at(&self, time: f64) -> Pose {
         match self {
             Self::Fixed(pose) => *pose,
@@ -45,7 +45,7 @@ impl Motion {
         }
     }
 
-    /// The time in seconds after which nothing moves; 0 for what stays.
+    /// Returns the time in seconds at which the motion ends; 0 for a fixed body.
     pub fn end(&self) -> f64 {
         match self {
             Self::Fixed(_) => 0.0,

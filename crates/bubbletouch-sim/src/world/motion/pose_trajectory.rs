@@ -1,4 +1,4 @@
-//! A free body's pose over time.
+//! Pose of a free body over time.
 
 use super::Interpolation;
 use super::curve::{Curve, Moment};
@@ -16,11 +16,11 @@ const POSITION: [&str; 3] = ["x", "y", "z"];
 const QUATERNION: [&str; 4] = ["qx", "qy", "qz", "qw"];
 const RPY: [&str; 3] = ["roll", "pitch", "yaw"];
 
-/// The pose of a body through way-points in time; outside their range the ends hold.
+/// Pose of a body over time, through way-points; constant before the first and after the last.
 ///
-/// The position's three numbers are interpolated as a [`JointTrajectory`](super::JointTrajectory)'s. Rotations go the shorter
-/// way between neighbours: by slerp if linear, else by Hermite curves of quaternions \[KKS\], whose angular velocity is
-/// continuous and zero at both ends (squad's is so only for even times). If monotone, a turn about one axis never leaves the range of its
+/// The position's three numbers are interpolated like the numbers of a [`JointTrajectory`](super::JointTrajectory). Rotations take the shorter
+/// path between neighbours: slerp if linear, else Hermite curves of quaternions \[KKS\], whose angular velocity is
+/// continuous and zero at both ends (for squad only with equidistant times). If monotone, a turn about one axis never leaves the range of its
 /// two way-points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoseTrajectory {
@@ -30,10 +30,10 @@ pub struct PoseTrajectory {
 }
 
 impl PoseTrajectory {
-    /// Through `poses` (`world_from_body`, one a time) at `times` (seconds, strictly ascending).
+    /// Creates the trajectory through `poses` (`world_from_body`, one per time) at `times` (seconds, strictly ascending).
     ///
     /// # Errors
-    /// The error names the way-point that is not finite, not in time, or whose quaternion has not length 1 (within 0.001).
+    /// If a way-point is not finite or out of order, or its quaternion has not length 1 (within 0.001); the error names the way-point.
     pub fn new(times: Vec<f64>, poses: &[Pose], interpolation: Interpolation) -> Result<Self> {
         let numbers = poses.iter().flat_map(|pose| {
             let [x, y, z] = pose.translation.to_array();
@@ -49,11 +49,11 @@ impl PoseTrajectory {
         Self::through(&way_points.checked()?, interpolation)
     }
 
-    /// From CSV: columns `time_s`; `x`, `y`, `z` in metres (`_m`) or with `_mm`; and either `qx`, `qy`, `qz`, `qw` or `roll`, `pitch`, `yaw` in
-    /// radians (`_rad`) or with `_deg`: turns about the fixed axes x, y, z in turn.
+    /// Reads a trajectory from CSV. Columns: `time_s`; `x`, `y`, `z` in metres (`_m`) or with `_mm`; and a rotation. The rotation is either
+    /// `qx`, `qy`, `qz`, `qw`, or `roll`, `pitch`, `yaw` in radians (`_rad`) or with `_deg`: turns about the fixed axes x, y, z in this order.
     ///
     /// # Errors
-    /// Errors begin with `place`, the file's name, and give the line.
+    /// If the table is invalid; the message begins with `place`, the file's name, and contains the line.
     pub fn read_csv(place: &str, source: impl Read, interpolation: Interpolation) -> Result<Self> {
         let mut table = Table::read(place, source)?;
         let mut columns = claim_all(&mut table, &POSITION, Dimension::Length.units())?;
@@ -76,7 +76,7 @@ impl PoseTrajectory {
         Self::through(&table.way_points(&columns, known)?, interpolation)
     }
 
-    /// From rows of x, y, z and qx, qy, qz, qw, or x, y, z and roll, pitch, yaw.
+    /// Creates the trajectory from rows of x, y, z and qx, qy, qz, qw, or x, y, z and roll, pitch, yaw.
     fn through(way_points: &WayPoints, interpolation: Interpolation) -> Result<Self> {
         let times = &way_points.times;
         let rotations = rotations(way_points)?;
@@ -97,7 +97,7 @@ impl PoseTrajectory {
         })
     }
 
-    /// `world_from_body` at a time in seconds.
+    /// Returns `world_from_body` at a time in seconds.
     pub fn pose_at(&self, time: f64) -> Pose {
         let at = Moment::of(time, &self.times);
         let [x, y, z] = &self.position;
@@ -105,13 +105,13 @@ impl PoseTrajectory {
         Pose::new(self.rotation.rotation(at), translation)
     }
 
-    /// The time of the last way-point, seconds.
+    /// Returns the time of the last way-point, seconds.
     pub fn end(&self) -> f64 {
         self.times[self.times.len() - 1]
     }
 }
 
-/// All of these columns or none of them.
+/// Claims all of these columns, or none of them.
 fn claim_all(table: &mut Table, names: &[&str], units: Units) -> Result<Vec<Column>> {
     let mut columns = Vec::new();
     let mut missing = None;
@@ -130,7 +130,7 @@ fn claim_all(table: &mut Table, names: &[&str], units: Units) -> Result<Vec<Colu
     }
 }
 
-/// The unit quaternion of each way-point.
+/// Returns the unit quaternion of each way-point.
 fn rotations(way_points: &WayPoints) -> Result<Vec<DQuat>> {
     let rows = way_points.values.rows().into_iter().enumerate();
     rows.map(|(index, row)| {

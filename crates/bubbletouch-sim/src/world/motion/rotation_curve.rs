@@ -1,15 +1,15 @@
-//! A rotation over time, through way-points.
+//! Rotation over time, through way-points.
 
 use super::curve::{Interpolation, Moment};
 use super::slopes::monotone_slope;
 use glam::{DQuat, DVec3};
 
-/// A rotation over time. Between two way-points, with s from 0 to 1,
+/// Rotation over time. Between two way-points, with s from 0 to 1,
 ///
 /// `R(s) = R₀ exp(ω₁ b₁(s)) exp(ω₂ b₂(s)) exp(ω₃ b₃(s))`, `b = (1 − (1−s)³, 3s² − 2s³, s³)`
 ///
 /// \[KKS\]: a cubic for rotations, whose angular velocity is 3 ω₁ / h at the start and 3 ω₃ / h at the end. With three equal ω
-/// it is slerp.
+/// the curve is slerp.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct RotationCurve {
     pieces: Vec<Piece>,
@@ -26,7 +26,7 @@ struct Piece {
 }
 
 impl RotationCurve {
-    /// Through unit quaternions at ascending times, at least one; the shorter way between neighbours. `None` if times are
+    /// Creates the curve through unit quaternions at ascending times, at least one, along the shorter path between neighbours. Returns `None` if times are
     /// so close that a velocity is not finite.
     pub fn through(times: &[f64], at: &[DQuat], interpolation: Interpolation) -> Option<Self> {
         let steps: Vec<f64> = times.windows(2).map(|t| t[1] - t[0]).collect();
@@ -65,7 +65,7 @@ impl RotationCurve {
         })
     }
 
-    /// The unit quaternion at a moment.
+    /// Returns the unit quaternion at a moment.
     pub fn rotation(&self, at: Moment) -> DQuat {
         match at {
             Moment::Before => self.pieces.first().map_or(self.last, |piece| piece.start),
@@ -87,8 +87,8 @@ impl RotationCurve {
     }
 }
 
-/// Angular velocity at each way-point in the body's frame, rad/s: zero at the ends; between, the parabola's through three
-/// way-points, so that a steady turn stays steady.
+/// Returns the angular velocity at each way-point in the body's frame, rad/s. The ends have zero velocity, the others that of the parabola through
+/// three way-points, so that a uniform rotation stays uniform.
 fn body_velocities(steps: &[f64], turns: &[DVec3]) -> Vec<DVec3> {
     let mut velocities = vec![DVec3::ZERO; steps.len() + 1];
     for i in 1..steps.len() {
@@ -99,10 +99,10 @@ fn body_velocities(steps: &[f64], turns: &[DVec3]) -> Vec<DVec3> {
     velocities
 }
 
-/// Angular velocity at each way-point in the body's frame, rad/s, with which a turn about one axis stays between its way-points: zero at
-/// the ends and where the turn goes back, else along the direction that halves the turns on both sides, as fast as
-/// [`monotone_slope`] of their components along it. With ω₁ = v h / 3 the end of the first control turn is then no farther from
-/// either way-point than these are from each other, and so for ω₃.
+/// Returns angular velocities at the way-points, in the body's frame, rad/s, for which a turn about one axis stays between its way-points.
+/// The velocity is zero at the ends and at reversals. Elsewhere its direction bisects the turns on both sides, and its magnitude is the
+/// [`monotone_slope`] of their components along this direction. With ω₁ = v h / 3 the end of the first control turn is then no farther from
+/// either way-point than these are from each other; likewise for ω₃.
 fn monotone_velocities(steps: &[f64], turns: &[DVec3]) -> Vec<DVec3> {
     let mut velocities = vec![DVec3::ZERO; steps.len() + 1];
     for i in 1..steps.len() {
@@ -115,7 +115,7 @@ fn monotone_velocities(steps: &[f64], turns: &[DVec3]) -> Vec<DVec3> {
     velocities
 }
 
-/// The shorter turn of a unit quaternion, radians along its axis.
+/// Returns the rotation vector of a unit quaternion, along the shorter turn, radians.
 fn rotation_vector(q: DQuat) -> DVec3 {
     let q = if q.w < 0.0 { -q } else { q };
     let sine = q.xyz().length();

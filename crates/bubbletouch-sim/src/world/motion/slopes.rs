@@ -1,10 +1,10 @@
-//! Velocities at way-points, which make cubics between them smooth.
+//! Velocities at way-points for smooth cubics between them.
 
-/// Velocities of the C² cubic spline with velocity zero at both ends. `steps` are the n − 1 durations and `secants` the mean
-/// velocities between n values; returns n.
+/// Returns the n velocities of the C² cubic spline with zero velocity at both ends. `steps` are the n − 1 durations and `secants` the mean
+/// velocities between n values.
 ///
-/// Between pieces the accelerations agree:
-/// `m₋/h₋ + 2 (1/h₋ + 1/h₊) m + m₊/h₊ = 3 (d₋/h₋ + d₊/h₊)`, with h the duration and d the secant before and after; a
+/// Adjacent pieces have equal accelerations at their way-point:
+/// `m₋/h₋ + 2 (1/h₋ + 1/h₊) m + m₊/h₊ = 3 (d₋/h₋ + d₊/h₊)`, with h the duration and d the secant before and after. This is a
 /// tridiagonal system with a dominant diagonal, solved by elimination.
 pub(super) fn clamped_spline(steps: &[f64], secants: &[f64]) -> Vec<f64> {
     let n = steps.len() + 1;
@@ -24,7 +24,7 @@ pub(super) fn clamped_spline(steps: &[f64], secants: &[f64]) -> Vec<f64> {
     slopes
 }
 
-/// Velocities with which no cubic leaves the range of its two values \[FC\]: zero at the ends, else [`monotone_slope`].
+/// Returns velocities for which no cubic leaves the range of its two values \[FC\]: zero at the ends, else [`monotone_slope`].
 pub(super) fn monotone(steps: &[f64], secants: &[f64]) -> Vec<f64> {
     let mut slopes = vec![0.0; steps.len() + 1];
     for i in 1..steps.len() {

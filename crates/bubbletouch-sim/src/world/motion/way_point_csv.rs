@@ -1,4 +1,4 @@
-//! Way-points as CSV: a header, then a row of numbers a way-point, with the unit in each column's name.
+//! Way-points as CSV: a header and one row of numbers per way-point; column names contain the units.
 
 use super::way_points::{Origin, WayPoints};
 use crate::error::{Error, Result};
@@ -7,28 +7,28 @@ use crate::text::spelling::nearest_names;
 use ndarray::Array2;
 use std::io::Read;
 
-/// The column of times.
+/// Name of the column of times.
 const TIME: &str = "time_s";
 
-/// A table whose columns are claimed one by one.
+/// Table whose columns are claimed one by one.
 pub(super) struct Table {
-    /// A row a way-point.
+    /// Numbers of the file, one row per way-point.
     numbers: NumberTable,
     claimed: Vec<bool>,
 }
 
-/// A column that was claimed, and what its numbers are multiplied by to be SI.
+/// Claimed column, and the factor that converts its numbers to SI units.
 #[derive(Clone, Copy)]
 pub(super) struct Column {
     index: usize,
     scale: f64,
 }
 
-/// What the name of a column may end in, and the size of that unit in SI; see [`Dimension::units`](crate::world::Dimension::units).
+/// Suffixes of column names, and the size of each unit in SI; see [`Dimension::units`](crate::world::Dimension::units).
 pub(super) type Units = &'static [(&'static str, f64)];
 
 impl Table {
-    /// Reads all; errors begin with `place`, the file's name, and give the line.
+    /// Reads the whole table; errors begin with `place`, the file's name, and contain the line.
     pub fn read(place: &str, source: impl Read) -> Result<Self> {
         let allowed = format!("a header with {TIME}, then way-points");
         let numbers = NumberTable::read(place, source, &allowed)?;
@@ -38,8 +38,8 @@ impl Table {
         })
     }
 
-    /// The column called `name`, or with one of the units behind it. `reserved` are names that are never a name and a unit. The
-    /// error is two such columns.
+    /// Claims the column `name`, optionally with the suffix of a unit. `reserved` lists names that are not split into name and unit. Returns
+    /// an error if two columns match.
     pub fn claim(
         &mut self,
         name: &str,
@@ -67,18 +67,18 @@ impl Table {
         Ok(found)
     }
 
-    /// Columns of the file, the one of times included.
+    /// Returns the number of columns of the file, including times.
     pub fn n_columns(&self) -> usize {
         self.claimed.len()
     }
 
-    /// An error in the header.
+    /// Creates an error in the header.
     pub fn refuse_header(&self, given: impl ToString, allowed: impl ToString) -> Error {
         self.numbers.refuse_header(given, allowed)
     }
 
-    /// Way-points of the claimed columns in this order. The error is a missing column of times, a column that nobody claimed
-    /// (`known` are the names there could be), or times that do not ascend.
+    /// Returns the way-points of the claimed columns in this order. Returns an error if the column of times is missing, a column was not claimed
+    /// (`known` are the possible names), or times do not ascend.
     pub fn way_points<'n>(
         mut self,
         columns: &[Column],

@@ -1,30 +1,30 @@
-//! Way-points as they were given: rows of numbers at ascending times, each with its place for errors.
+//! Way-points as given: rows of numbers at ascending times, with their origin for error messages.
 
 use crate::error::{Error, Result};
 use ndarray::Array2;
 
-/// Rows of numbers in time. Invariant after [`checked`](Self::checked): at least one row, all finite, times ascending.
+/// Rows of numbers over time. Invariant after [`checked`](Self::checked): at least one row, all finite, times ascending.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct WayPoints {
-    /// Seconds.
+    /// Times, seconds.
     pub times: Vec<f64>,
-    /// A row a way-point.
+    /// Values, one row per way-point.
     pub values: Array2<f64>,
-    /// Where they are from.
+    /// Origin of the way-points.
     pub origin: Origin,
 }
 
-/// Where way-points are from.
+/// Origin of way-points.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Origin {
-    /// An argument, called this.
+    /// Argument with this name.
     Argument(&'static str),
-    /// A file and the line of each way-point.
+    /// File, and the line of each way-point.
     File { place: String, lines: Vec<u64> },
 }
 
 impl Origin {
-    /// The file's or argument's name.
+    /// Returns the name of the file or argument.
     pub fn place(&self) -> &str {
         match self {
             Self::Argument(name) => name,
@@ -32,7 +32,7 @@ impl Origin {
         }
     }
 
-    /// The name of one way-point, by its index.
+    /// Returns the name of one way-point, by its index.
     pub fn way_point(&self, index: usize) -> String {
         match self {
             Self::Argument(_) => format!("way-point {}", index + 1),
@@ -42,7 +42,7 @@ impl Origin {
 }
 
 impl WayPoints {
-    /// The same, or an error that names the first bad way-point.
+    /// Returns the way-points, or an error that names the first invalid one.
     pub fn checked(self) -> Result<Self> {
         let n = self.times.len();
         if n == 0 {
@@ -75,7 +75,7 @@ impl WayPoints {
         Ok(self)
     }
 
-    /// The place of one way-point.
+    /// Returns the place of one way-point in its origin.
     pub fn at(&self, index: usize) -> String {
         format!("{}, {}", self.origin.place(), self.origin.way_point(index))
     }

@@ -1,9 +1,9 @@
-//! The basins of the support function: which directions of down roll to which minimum.
+//! Basins of the support function: regions of down directions that lead downhill to one minimum.
 //!
-//! 1. On a mesh of directions, each flows to its lowest neighbour: basins.
-//! 2. Basins with a low barrier between them are one: first the barrier along the mesh; then, with each minimum found exactly,
-//!    the barrier along a smooth path between two minima, which follows the valley of a lying can where the mesh hops across
-//!    it.
+//! 1. On a mesh of directions, each direction flows to its lowest neighbour, which defines basins.
+//! 2. Basins with a low barrier between them are merged, first by the barrier along the mesh. Then each minimum is refined, and the barrier
+//!  is measured along a smooth path between two minima. This path follows the valley of a lying can, which the mesh only
+//!  approximates.
 
 use super::descent::descend;
 use super::support::Support;
@@ -11,20 +11,20 @@ use glam::{DQuat, DVec3};
 
 /// Spacing of the heights taken along a path, radians: a quarter of the mesh's.
 const PATH_SPACING: f64 = 0.01;
-/// How often a path between two minima may be halved to follow a bent valley; 4 follows a quarter circle.
+/// Largest number of times that a path between two minima is halved to follow a bent valley; 4 follows a quarter circle.
 const VALLEY_HALVINGS: usize = 4;
-/// Minima closer than this are the same, radians: half the spacing of the mesh.
+/// Angle below which two minima are equal, radians: half the spacing of the mesh.
 const SAME_DIRECTION: f64 = 0.02;
 
-/// A minimum of the support function with what rolls into it.
+/// Minimum of the support function, and the fraction of directions that lead to it.
 pub(crate) struct Basin {
-    /// The direction of down at the minimum, a unit vector.
+    /// Direction of down at the minimum, unit vector.
     pub lowest: DVec3,
-    /// Its share of all directions, 0 to 1; right within about 0.01.
+    /// Fraction of all directions, 0 to 1; accurate to about 0.01.
     pub share: f64,
 }
 
-/// All basins that are parted by barriers of at least `barrier` (metres), in the order of the mesh.
+/// Returns all basins separated by barriers of at least `barrier` (metres), in the order of the mesh.
 pub(crate) fn basins(support: &Support, barrier: f64) -> Vec<Basin> {
     let label = downhill_labels(support);
     let passes = mesh_passes(support, &label);
@@ -38,16 +38,16 @@ pub(crate) fn basins(support: &Support, barrier: f64) -> Vec<Basin> {
     merging.basins(support, &label)
 }
 
-/// A way from one basin to another, by their labels, over a highest point.
+/// Lowest path from one basin to another, by their labels, with its highest point.
 struct Pass {
     labels: (usize, usize),
     height: f64,
 }
 
-/// For each direction of the mesh, the lowest one that it reaches by always going to its lowest neighbour: its label.
+/// Returns for each direction of the mesh its label: the direction reached by repeatedly moving to the lowest neighbour.
 fn downhill_labels(support: &Support) -> Vec<usize> {
     let heights = &support.heights;
-    // Equal heights flow to the smaller index, so that flats have an end.
+    // Between equal heights the smaller index counts as lower, so that flat regions have an end.
     let lower = |a: usize, b: usize| (heights[a], a) < (heights[b], b);
     let mut next: Vec<usize> = (0..heights.len()).collect();
     for (a, b) in edges(support) {
@@ -64,13 +64,13 @@ fn downhill_labels(support: &Support) -> Vec<usize> {
     label
 }
 
-/// Each side of each triangle; every edge of the mesh comes twice, once in either direction.
+/// Returns each side of each triangle; every edge of the mesh occurs twice, once in either direction.
 fn edges(support: &Support) -> impl Iterator<Item = (usize, usize)> + '_ {
     let sides = |&[a, b, c]: &[usize; 3]| [(a, b), (b, c), (c, a)];
     support.triangles.iter().flat_map(sides)
 }
 
-/// The lowest mesh edge between each two neighbouring labels.
+/// Returns the lowest mesh edge between each two neighbouring labels.
 fn mesh_passes(support: &Support, label: &[usize]) -> Vec<Pass> {
     let between = edges(support).filter(|&(a, b)| label[a] < label[b]);
     let pass = |(a, b): (usize, usize)| Pass {
@@ -80,7 +80,7 @@ fn mesh_passes(support: &Support, label: &[usize]) -> Vec<Pass> {
     lowest_of_each(between.map(pass).collect())
 }
 
-/// Of several passes between the same labels, the lowest.
+/// Keeps the lowest of several passes between two labels.
 fn lowest_of_each(mut passes: Vec<Pass>) -> Vec<Pass> {
     passes.sort_by(|a, b| {
         let by_height = a.height.total_cmp(&b.height);
@@ -90,16 +90,16 @@ fn lowest_of_each(mut passes: Vec<Pass>) -> Vec<Pass> {
     passes
 }
 
-/// Basins that become one as barriers are levelled.
+/// Basins during merging (union-find).
 struct Merging {
-    /// Label → another label of the same basin; a root is its own.
+    /// For each label another label of its basin; a root refers to itself.
     parent: Vec<usize>,
-    /// Root → its lowest direction and height.
+    /// For each root its lowest direction and height.
     minimum: Vec<(DVec3, f64)>,
 }
 
 impl Merging {
-    /// Every mesh direction a basin of its own.
+    /// Starts with one basin per mesh direction.
     fn new(support: &Support) -> Self {
         let pairs = support.directions.iter().zip(&support.heights);
         Self {
@@ -116,7 +116,7 @@ impl Merging {
         label
     }
 
-    /// Levels barriers, lowest pass first: two basins become one if the pass stands less than `barrier` above the higher of
+    /// Merges basins, lowest pass first: two basins become one if the pass is less than `barrier` above the higher of
     /// their minima.
     fn merge(&mut self, passes: &[Pass], barrier: f64) {
         let mut by_height: Vec<&Pass> = passes.iter().collect();
@@ -129,7 +129,7 @@ impl Merging {
         }
     }
 
-    /// Makes two roots one; the lower minimum stays.
+    /// Merges two roots; the lower minimum is kept.
     fn join(&mut self, a: usize, b: usize) {
         let (keep, drop) = if self.minimum[a].1 <= self.minimum[b].1 {
             (a, b)
@@ -139,13 +139,13 @@ impl Merging {
         self.parent[drop] = keep;
     }
 
-    /// The higher of two roots' minima.
+    /// Returns the higher of two roots' minima.
     fn floor(&self, a: usize, b: usize) -> f64 {
         self.minimum[a].1.max(self.minimum[b].1)
     }
 
-    /// Moves each minimum from its mesh direction to the true local minimum. One that ends in another basin's directions has
-    /// rolled there without a rise: the two are one.
+    /// Moves each minimum from its mesh direction to the true local minimum. If a minimum ends among another basin's directions,
+    /// it got there without a rise, and the two basins are merged.
     fn descend_minima(&mut self, support: &Support, label: &[usize]) {
         let mut roots: Vec<_> = label.iter().map(|&label| self.root(label)).collect();
         roots.sort_unstable();
@@ -161,7 +161,7 @@ impl Merging {
         }
     }
 
-    /// The passes between what is left of the basins: the mesh's, or that of a smooth path where it is lower.
+    /// Returns the passes between the remaining basins: along the mesh, or along a smooth path if this is lower.
     fn smooth_passes(
         &mut self,
         support: &Support,
@@ -190,7 +190,7 @@ impl Merging {
         left
     }
 
-    /// What is left, with each basin's share of the mesh.
+    /// Returns the remaining basins with their fractions of the mesh.
     fn basins(mut self, support: &Support, label: &[usize]) -> Vec<Basin> {
         let mut area = vec![0.0; label.len()];
         for corners in &support.triangles {
@@ -211,8 +211,8 @@ impl Merging {
     }
 }
 
-/// The highest point of a path between two minima: the great circle if it stays below `enough`; else it is led through
-/// the minimum that its middle rolls to, which bends it into the curved valley of a lying cone.
+/// Returns the highest point of a path between two minima. The path is the great circle if it stays below `enough`; otherwise it passes through
+/// the minimum below its middle, which bends the path into the curved valley of a lying cone.
 fn valley_pass(support: &Support, ends: (DVec3, DVec3), enough: f64, halvings: usize) -> f64 {
     let (from, to) = ends;
     let direct = highest_between(support, from, to);
@@ -229,7 +229,7 @@ fn valley_pass(support: &Support, ends: (DVec3, DVec3), enough: f64, halvings: u
     direct.min(passes[0].max(passes[1]))
 }
 
-/// The highest of the heights along the shorter great circle between two directions.
+/// Returns the largest height along the shorter great circle between two directions.
 fn highest_between(support: &Support, from: DVec3, to: DVec3) -> f64 {
     let turn = DQuat::from_rotation_arc(from, to);
     let steps = (from.angle_between(to) / PATH_SPACING).ceil().max(1.0);

@@ -1,15 +1,15 @@
-//! What a table and gravity need to know of an object, whatever it is made of.
+//! Geometry of an object for resting poses: bounds, convex hull and centre of mass.
 
 use super::mass;
 use crate::geometry::{Aabb, Pose};
 use crate::objects::{Model, Sphere};
 use glam::{DQuat, DVec3};
 
-/// Below this share of area^(3/2) a mesh holds no volume worth the name: a ball holds 0.094, a sheet of 100 × 100 × 0.1 mm 0.0004.
+/// Volume relative to area^(3/2) below which a mesh counts as hollow: a ball has 0.094, a sheet of 100 × 100 × 0.1 mm 0.0004.
 const HOLLOW: f64 = 1e-4;
 
 impl Model {
-    /// The box around it after a turn about its origin, metres.
+    /// Returns the bounding box after a rotation about the object's origin, metres.
     pub(crate) fn turned_bounds(&self, rotation: DQuat) -> Aabb {
         match self {
             Self::Spheres(union) => union.moved(&Pose::from_rotation(rotation)).bounds(),
@@ -17,7 +17,7 @@ impl Model {
         }
     }
 
-    /// Spheres, or points as spheres of no radius, whose convex hull is its own.
+    /// Returns spheres, or points as spheres of zero radius, whose convex hull equals the object's.
     pub(crate) fn extremes(&self) -> Vec<Sphere> {
         let point = |center| Sphere {
             center,
@@ -29,8 +29,8 @@ impl Model {
         }
     }
 
-    /// As a homogeneous solid, in its own frame, metres. The volume decides where a mesh has its mass; a mesh without one, such as a sheet, is
-    /// as heavy as its surface.
+    /// Returns the centre of mass of the homogeneous solid, in the object's frame, metres. A mesh without volume, such as a sheet, is treated as
+    /// a surface of constant density.
     pub fn center_of_mass(&self) -> DVec3 {
         let mesh = match self {
             Self::Spheres(union) => return mass::center_of_mass(union),

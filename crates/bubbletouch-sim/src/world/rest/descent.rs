@@ -1,23 +1,23 @@
-//! From a direction downhill to the nearest local minimum of the support function.
+//! Descent from a direction to the nearest local minimum of the support function.
 //!
-//! The function is a maximum of smooth pieces, one a sphere, with creases where two spheres touch the table. So each step
-//! minimises the maximum of the linearised pieces inside a trust region, exactly; at a face of three contacts this
+//! The function is the maximum of smooth pieces, one per sphere, with creases where two spheres touch the table. Each step
+//! exactly minimises the maximum of the linearised pieces inside a trust region. At a face of three contacts this
 //! converges like Newton's method.
 
 use super::support::Support;
 use crate::objects::Sphere;
 use glam::{DMat3, DVec3};
 
-/// The first trust region, radians: about the spacing of the mesh of directions.
+/// Initial radius of the trust region, radians: about the spacing of the mesh of directions.
 const FIRST_REACH: f64 = 0.04;
-/// The trust region below which a direction is final, radians.
+/// Radius of the trust region below which the descent ends, radians.
 const LAST_REACH: f64 = 1e-9;
-/// The predicted gain that is rounding, as a share of the farthest point's distance.
+/// Predicted gain that counts as rounding, relative to the farthest point's distance.
 const LEAST_GAIN: f64 = 1e-14;
-/// Steps at most; 20 to 60 are usual.
+/// Largest number of steps; 20 to 60 are usual.
 const MAX_STEPS: usize = 200;
 
-/// The local minimum that `start` rolls to; unit vectors. The height never rises on the way.
+/// Returns the local minimum reached from `start`; unit vectors. The height never increases during the descent.
 pub(crate) fn descend(support: &Support, start: DVec3) -> DVec3 {
     let mut down = start;
     let mut height = support.height(down);
@@ -27,12 +27,12 @@ pub(crate) fn descend(support: &Support, start: DVec3) -> DVec3 {
     let mut gathered = (down, 4.0 * reach);
     let mut spheres = support.candidates_near(gathered.0, gathered.1);
     for _ in 0..MAX_STEPS {
-        // The walls' corners are two reaches away.
+        // The corners of the walls are two radii away.
         if down.distance(gathered.0) + 2.0 * reach > gathered.1 {
             gathered = (down, 4.0 * reach);
             spheres = support.candidates_near(gathered.0, gathered.1);
         }
-        // Inside the walls no height changes by more than two reaches times the radius, so a sphere lower by twice that
+        // Inside the walls no height changes by more than two radii times the object's radius. A sphere lower by twice this amount therefore
         // stays below the highest.
         let lowest = height - 4.0 * reach * radius;
         let (step, predicted) = linear_step(&spheres, down, lowest, walls(radius, height, reach));
@@ -55,7 +55,7 @@ pub(crate) fn descend(support: &Support, start: DVec3) -> DVec3 {
     down
 }
 
-/// One linearised sphere: z ≥ `value` + `slope` · t in the tangent plane.
+/// Linearised sphere: z ≥ `value` + `slope` · t in the tangent plane.
 #[derive(Clone, Copy)]
 struct Piece {
     value: f64,
@@ -68,8 +68,8 @@ impl Piece {
     }
 }
 
-/// The tangent step that minimises the linearised height inside the walls, and that height; spheres below `lowest` do not
-/// count.
+/// Returns the tangent step that minimises the linearised height inside the walls, and this height. Spheres below `lowest` are
+/// ignored.
 fn linear_step(spheres: &[Sphere], down: DVec3, lowest: f64, walls: [Piece; 3]) -> (DVec3, f64) {
     let (u, v) = down.any_orthonormal_pair();
     let piece = |sphere: &Sphere| Piece {
@@ -82,8 +82,8 @@ fn linear_step(spheres: &[Sphere], down: DVec3, lowest: f64, walls: [Piece; 3]) 
     (t[0] * u + t[1] * v, z)
 }
 
-/// Three pieces, steeper than any sphere, that rise above `height` outside a triangle of inradius `reach` and stay below
-/// every possible answer well inside it.
+/// Returns three pieces, steeper than any sphere, that exceed `height` outside a triangle of inradius `reach` and stay below
+/// every possible minimum well inside it.
 fn walls(radius: f64, height: f64, reach: f64) -> [Piece; 3] {
     let steep = 4.0 * radius;
     [0.0, 1.0, 2.0].map(|third| {
@@ -95,10 +95,10 @@ fn walls(radius: f64, height: f64, reach: f64) -> [Piece; 3] {
     })
 }
 
-/// min over t of the maximum of `pieces` and `walls`: a linear program in three variables, by the dual simplex method.
+/// Returns min over t of the maximum of `pieces` and `walls`: a linear program in three variables, by the dual simplex method.
 ///
-/// Kept: three pieces whose slopes hold 0 as their mean with `weights` ≥ 0. Their common point is the minimum of their
-/// maximum; the piece that is highest there enters, and the one whose weight runs out first leaves.
+/// The basis has three pieces whose slopes have 0 as their mean with `weights` ≥ 0. Their common point is the minimum of their
+/// maximum. The piece that is highest there enters the basis, and the one whose weight reaches zero first leaves.
 fn lowest_maximum(pieces: &[Piece], walls: [Piece; 3]) -> ([f64; 2], f64) {
     let mut basis = walls;
     let mut weights = [1.0 / 3.0; 3];
@@ -140,7 +140,7 @@ fn lowest_maximum(pieces: &[Piece], walls: [Piece; 3]) -> ([f64; 2], f64) {
     answer
 }
 
-/// Where three pieces are equally high, and how high; `None` if their slopes lie on a line.
+/// Returns the point where three pieces are equally high, and their height; `None` if their slopes lie on a line.
 fn common_point(basis: &[Piece; 3]) -> Option<([f64; 2], f64)> {
     let row = |p: &Piece| DVec3::new(p.slope[0], p.slope[1], -1.0);
     let rows = DMat3::from_cols(row(&basis[0]), row(&basis[1]), row(&basis[2])).transpose();

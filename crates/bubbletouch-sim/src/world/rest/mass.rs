@@ -1,20 +1,20 @@
-//! The centre of mass of a union of spheres taken as a homogeneous solid.
+//! Centre of mass of a union of spheres as a homogeneous solid.
 
 use crate::objects::SphereUnion;
 use glam::DVec3;
 
-/// Cells along the longest side. More: the centre is closer, in cubed time; at 48 it is within about 0.2 % of the longest side
-/// and takes about 2 ms.
+/// Cells along the longest side. Larger: more accurate, with cubic run time; 48 cells give about 0.2 % of the longest side
+/// in about 2 ms.
 const CELLS: f64 = 48.0;
 
 const EMPTY: u8 = 0;
 const SOLID: u8 = 1;
 const OUTSIDE: u8 = 2;
 
-/// Centre of mass, metres, in the union's frame.
+/// Returns the centre of mass, metres, in the union's frame.
 ///
-/// The union is cut into cubes. What cannot be reached from outside without crossing a sphere counts as solid, so a shell of
-/// spheres around a mesh weighs like the mesh's inside, and a mug stays hollow.
+/// The union is divided into cubes. Cavities enclosed by spheres count as solid: a shell of spheres around a mesh
+/// has the mass of the mesh's interior, but a mug stays hollow.
 pub fn center_of_mass(spheres: &SphereUnion) -> DVec3 {
     let mut cells = Cells::around(spheres);
     cells.mark_spheres(spheres);
@@ -22,7 +22,7 @@ pub fn center_of_mass(spheres: &SphereUnion) -> DVec3 {
     cells.centroid()
 }
 
-/// Cubes over the union's box, with one layer of empty ones around.
+/// Cubes over the union's box, surrounded by one layer of empty ones.
 struct Cells {
     origin: DVec3,
     side: f64,
@@ -50,12 +50,12 @@ impl Cells {
         (z * self.size[1] + y) * self.size[0] + x
     }
 
-    /// Centre of cell `place` along one axis, in the union's frame.
+    /// Returns the centre of cell `place` along one axis, in the union's frame.
     fn center(&self, axis: usize, place: usize) -> f64 {
         self.origin[axis] + (place as f64 + 0.5) * self.side
     }
 
-    /// Marks the cells whose centres a sphere holds, and the cell that holds its centre, so that nothing is too thin to count.
+    /// Marks the cells whose centres are inside a sphere, and the cell at each sphere's centre, so that thin parts are not lost.
     fn mark_spheres(&mut self, spheres: &SphereUnion) {
         for sphere in spheres.spheres() {
             let place = |axis: usize, offset: f64| {
@@ -82,7 +82,7 @@ impl Cells {
         }
     }
 
-    /// Marks every empty cell that is joined by faces to the corner of the outer layer.
+    /// Marks every empty cell connected through faces to the corner of the outer layer.
     fn flood_outside(&mut self) {
         let mut stack = vec![[0usize; 3]];
         self.state[0] = OUTSIDE;
@@ -107,7 +107,7 @@ impl Cells {
         }
     }
 
-    /// The mean centre of all cells that are not outside.
+    /// Returns the mean centre of all cells that are not outside.
     fn centroid(&self) -> DVec3 {
         let mut sum = DVec3::ZERO;
         let mut count = 0.0;
@@ -148,14 +148,14 @@ mod tests {
     #[test]
     fn two_spheres_balance_by_their_volumes() {
         let center = center_of_mass(&union(&[([0.0; 3], 0.02), ([0.1, 0.0, 0.0], 0.04)]));
-        // Volumes 1 : 8.
+        // The volumes are 1 : 8.
         let exact = 0.1 * 8.0 / 9.0;
         assert!((center - DVec3::new(exact, 0.0, 0.0)).length() < 0.002 * 0.16);
     }
 
     #[test]
     fn a_closed_shell_weighs_like_its_inside() {
-        // A dense shell on the left half of a dumbbell whose right half is solid.
+        // Dumbbell whose left half is a dense shell and whose right half is solid.
         let mut spheres = vec![([0.1, 0.0, 0.0], 0.04)];
         let n = 2000;
         for i in 0..n {

@@ -5,8 +5,8 @@
 //! | `mass` | a union of spheres → its centre of mass |
 //! | `body` | an object → its bounds, corners and centre of mass |
 //! | `support` | an object → the height of its centre of mass for each direction of down |
-//! | `descent` | a direction → the local minimum of the height that the object rolls to |
-//! | `basins` | all directions → the minima, with the share of directions that roll to each |
+//! | `descent` | a direction → the local minimum of the height, reached downhill |
+//! | `basins` | all directions → the minima, with the fraction of directions that lead to each |
 //! | `rest_pose` | minima → poses with their probabilities ([`RestPose`]) |
 
 mod basins;

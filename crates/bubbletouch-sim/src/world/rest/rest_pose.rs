@@ -1,8 +1,8 @@
-//! The poses in which an object rests on a table, exactly from its spheres or corners.
+//! Resting poses of an object on a table, computed exactly from its spheres or corners.
 //!
-//! With d the direction of down in the object's frame, the centre of mass stands h(d) = max_j (c_j · d + r_j) above the table
-//! (c_j relative to it). An object that is tipped slowly rolls downhill on h over the sphere of directions: it rests in the
-//! local minima. The chance of a minimum is the share of directions that roll into it, as if the object were put
+//! Let d be the direction of down in the object's frame. The centre of mass is at the height h(d) = max_j (c_j · d + r_j) above the table,
+//! with c_j relative to it. An object that is tipped slowly moves downhill on h over the sphere of directions, and rests in the
+//! local minima. The probability of a minimum is the fraction of directions that lead to it, as if the object were put
 //! down in a random orientation (quasi-static toppling; Goldberg, Mirtich, Zhuang, Craig, Carlisle, Canny, *Part pose
 //! statistics*, 1999).
 
@@ -12,37 +12,38 @@ use crate::geometry::Pose;
 use crate::objects::Model;
 use glam::{DQuat, DVec3};
 
-/// The least barrier between two poses, as a share of the farthest point's distance. Smaller: the bumps of spheres on a round
-/// side become poses. Larger: poses that need a firm push to leave are lost (1 % keeps all that stand ± 8°).
+/// Smallest barrier between two poses, relative to the farthest point's distance. Smaller: bumps of spheres on a round
+/// side become poses; larger: stable poses are merged (1 % keeps all that withstand ± 8°).
 const BARRIER: f64 = 0.01;
-/// The least probability of a pose. Smaller: more poses that hardly occur.
+/// Smallest probability of a pose. Smaller: more poses that rarely occur.
 const LEAST_PROBABILITY: f64 = 0.02;
 
-/// A pose in which an object rests on the table.
+/// Pose in which an object rests on the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RestPose {
-    /// Rests on z = 0, z up, the box around it centred at x = y = 0.
+    /// The object rests on z = 0, z up, with its bounding box centred at x = y = 0.
     pub table_from_object: Pose,
-    /// z of the object's top, metres.
+    /// Height z of the object's top, metres.
     pub height: f64,
-    /// How likely among the object's poses, above 0; they sum to 1.
+    /// Probability among the object's poses, above 0; the probabilities sum to 1.
     pub probability: f64,
 }
 
-/// The pose with the object's own z up.
+/// Returns the pose with the object's own z up.
 pub fn as_modelled(object: &Model) -> RestPose {
     resting(object, DVec3::NEG_Z, 1.0)
 }
 
-/// The poses in which an object, as a homogeneous solid ([`Model::center_of_mass`]), rests on a table, likeliest first; at least one.
+/// Returns the resting poses of an object on a table, most likely first; at least one. The object is a homogeneous solid
+/// ([`Model::center_of_mass`]).
 ///
-/// A round object that rolls has one pose for all the directions it rolls through. Poses less likely than 2 % are left
-/// out. Takes 15 to 30 ms for 3,000 spheres, most where a long side rolls.
+/// A round object that rolls has one pose for all directions through which it rolls. Poses less likely than 2 % are
+/// omitted. The run time is 15 to 30 ms for 3,000 spheres, longest if a long side rolls.
 pub fn stable_poses(object: &Model) -> Vec<RestPose> {
     stable_poses_about(object, object.center_of_mass())
 }
 
-/// [`stable_poses`] with a given centre of mass, metres, in the object's frame.
+/// Returns the [`stable_poses`] for a given centre of mass, metres, in the object's frame.
 pub fn stable_poses_about(object: &Model, center_of_mass: DVec3) -> Vec<RestPose> {
     let support = Support::about(center_of_mass, &object.extremes());
     let mut poses: Vec<_> = basins(&support, BARRIER * support.radius())
@@ -59,7 +60,7 @@ pub fn stable_poses_about(object: &Model, center_of_mass: DVec3) -> Vec<RestPose
     poses
 }
 
-/// The pose with `down` (unit, object frame) pointing at the table, by the shortest turn from upright or upside-down.
+/// Returns the pose with `down` (unit, object frame) pointing at the table, by the smallest rotation from upright or upside-down.
 fn resting(object: &Model, down: DVec3, probability: f64) -> RestPose {
     let upside_down = DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0);
     let rotation = if down.z <= 0.0 {

@@ -1,24 +1,24 @@
-//! How high the centre of mass stands over a table, for every direction of down: h(d) = max_j (c_j · d + r_j).
+//! Height of the centre of mass above a table for every direction of down: h(d) = max_j (c_j · d + r_j).
 //!
-//! c_j, r_j: spheres relative to the centre of mass; d: a unit vector. Directions are triangles of a subdivided icosahedron. Each
-//! triangle keeps only the spheres that can be the highest somewhere inside it, so h costs a few dot products
+//! Here c_j, r_j are spheres relative to the centre of mass and d is a unit vector. Directions are the corners of a subdivided icosahedron. Each
+//! triangle stores only the spheres that can be highest somewhere inside it, so h takes a few dot products
 //! and is still exact.
 
 use crate::objects::Sphere;
 use glam::DVec3;
 
-/// Subdivisions of the mesh of directions: 10,242 directions, 2.1° apart. One less halves the time and blurs basins under 8°
-/// wide; one more takes four times as long.
+/// Subdivisions of the mesh of directions: 10,242 directions, 2.1° apart. One less halves the time and merges basins narrower than 8°;
+/// one more takes four times as long.
 const LEVELS: usize = 5;
 
-/// The support function of a union about a point, with a mesh of directions to search it by.
+/// Support function of a union about a point, with a mesh of directions for searches.
 pub(crate) struct Support {
     spheres: Vec<Sphere>,
     /// Unit directions.
     pub directions: Vec<DVec3>,
-    /// h at each direction, metres.
+    /// Height h at each direction, metres.
     pub heights: Vec<f64>,
-    /// Corners of the finest triangles; triangle t of a level holds 4t … 4t + 3 of the next.
+    /// Corners of the finest triangles; triangle t of a level contains 4t … 4t + 3 of the next.
     pub triangles: Vec<[usize; 3]>,
     /// Triangles of every level but the finest.
     coarse: Vec<Vec<[usize; 3]>>,
@@ -27,7 +27,7 @@ pub(crate) struct Support {
 }
 
 impl Support {
-    /// The support function of spheres (radii zero or more) about a point in their frame, metres.
+    /// Creates the support function of spheres (radii zero or more) about a point in their frame, metres.
     pub fn about(point: DVec3, spheres: &[Sphere]) -> Self {
         let relative = |s: &Sphere| Sphere {
             center: s.center - point,
@@ -48,18 +48,18 @@ impl Support {
         support
     }
 
-    /// The farthest point of the union, metres.
+    /// Returns the distance of the union's farthest point, metres.
     pub fn radius(&self) -> f64 {
         let reach = |s: &Sphere| s.center.length() + s.radius;
         self.spheres.iter().map(reach).fold(0.0, f64::max)
     }
 
-    /// h(d), metres; `down` is a unit vector.
+    /// Returns h(d), metres; `down` is a unit vector.
     pub fn height(&self, down: DVec3) -> f64 {
         self.highest(self.cell_of(down), down)
     }
 
-    /// Every sphere that can be highest within about `reach` (radians) of `down`.
+    /// Returns every sphere that can be highest within about `reach` (radians) of `down`.
     pub fn candidates_near(&self, down: DVec3, reach: f64) -> Vec<Sphere> {
         let (u, v) = down.any_orthonormal_pair();
         let ring = |reach: f64| {
@@ -82,7 +82,7 @@ impl Support {
         indices.iter().map(sphere).collect()
     }
 
-    /// The mesh direction next to `direction`: the nearest corner of a finest triangle around it.
+    /// Returns the mesh direction next to `direction`: the nearest corner of the finest triangle around it.
     pub fn nearest_direction(&self, direction: DVec3) -> usize {
         let cell = self.cell_of(direction);
         let corners = self.triangles[4 * cell..4 * cell + 4].iter().flatten();
@@ -91,7 +91,7 @@ impl Support {
         nearest.unwrap_or(0)
     }
 
-    /// The triangle of the last coarse level that holds a direction.
+    /// Returns the triangle of the last coarse level that contains a direction.
     fn cell_of(&self, direction: DVec3) -> usize {
         let depths = |triangle: &[usize; 3]| {
             let [a, b, c] = triangle.map(|v| self.directions[v]);
@@ -107,7 +107,7 @@ impl Support {
         let deepest = faces.max_by(|a, b| depth(a).total_cmp(&depth(b)));
         let mut cell = deepest.unwrap_or(0);
         for level in &self.coarse[1..] {
-            // Child 3 is the middle one; beyond its sides 0, 1, 2 lie the children at corners 1, 2, 0.
+            // Child 3 is the middle one; beyond its sides 0, 1, 2 are the children at corners 1, 2, 0.
             let (side, depth) = smallest(depths(&level[4 * cell + 3]));
             let child = if depth >= 0.0 { 3 } else { (side + 1) % 3 };
             cell = 4 * cell + child;
@@ -115,7 +115,7 @@ impl Support {
         cell
     }
 
-    /// The height of the highest candidate of a cell in a direction.
+    /// Returns the height of the highest candidate of a cell in a direction.
     fn highest(&self, cell: usize, direction: DVec3) -> f64 {
         let height = |&index: &u32| {
             let sphere = &self.spheres[index as usize];
@@ -156,10 +156,10 @@ impl Support {
     }
 }
 
-/// The candidates that one sphere, highest at a corner of a triangle of directions, does not beat all over the triangle.
+/// Returns the candidates that are not dominated, over a whole triangle of directions, by one sphere c* that is highest at a corner.
 ///
-/// Inside, d = v / |v| with v = Σ αᵢ vᵢ over the corners, αᵢ ≥ 0, Σ αᵢ = 1, and |v| from ϱ (the plane's distance) to 1. So
-/// (c − c*)·d + r − r* ≤ 0 all over if (c − c*)·vᵢ + max((r − r*) ϱ, r − r*) ≤ 0 at all three corners.
+/// Inside the triangle, d = v / |v| with v = Σ αᵢ vᵢ over the corners, αᵢ ≥ 0, Σ αᵢ = 1, and |v| from ϱ (the plane's distance) to 1. So
+/// (c − c*)·d + r − r* ≤ 0 everywhere if (c − c*)·vᵢ + max((r − r*) ϱ, r − r*) ≤ 0 at all three corners.
 fn not_dominated(spheres: &[Sphere], candidates: &[u32], corners: [DVec3; 3]) -> Vec<u32> {
     let values: Vec<_> = candidates
         .iter()
@@ -189,7 +189,7 @@ fn not_dominated(spheres: &[Sphere], candidates: &[u32], corners: [DVec3; 3]) ->
         .collect()
 }
 
-/// Unit directions and the triangles of each level, from 20 down to the finest.
+/// Returns unit directions and the triangles of each level, from 20 to the finest.
 fn subdivided_icosahedron() -> (Vec<DVec3>, Vec<Vec<[usize; 3]>>) {
     let golden = 0.5 * (1.0 + 5f64.sqrt());
     let mut directions = Vec::new();
@@ -205,7 +205,7 @@ fn subdivided_icosahedron() -> (Vec<DVec3>, Vec<Vec<[usize; 3]>>) {
     }
     let mut levels = vec![icosahedron_faces(&directions)];
     for level in 0..LEVELS {
-        // For each corner, the later corners that an edge joins it to, and that edge's middle.
+        // For each corner, the later corners joined to it by an edge, and the middle of this edge.
         let mut middles: Vec<Vec<(usize, usize)>> = vec![Vec::new(); directions.len()];
         let mut finer = Vec::with_capacity(4 * levels[level].len());
         for &[a, b, c] in &levels[level] {
@@ -225,9 +225,9 @@ fn subdivided_icosahedron() -> (Vec<DVec3>, Vec<Vec<[usize; 3]>>) {
     (directions, levels)
 }
 
-/// The 20 triples of mutually nearest corners, turning counterclockwise seen from outside.
+/// Returns the 20 triples of mutually nearest corners, counter-clockwise as seen from outside.
 fn icosahedron_faces(corners: &[DVec3]) -> Vec<[usize; 3]> {
-    // Neighbours are 63° apart, all others at least 117°.
+    // Neighbours are 63° apart, all other pairs at least 117°.
     let near = |a: usize, b: usize| corners[a].dot(corners[b]) > 0.0;
     let mut faces = Vec::new();
     for a in 0..12 {
