@@ -1,4 +1,4 @@
-//! SHA-256 of what things are made of, to name them by their content.
+//! SHA-256 hashes that identify data by their content.
 
 use crate::mesh::TriangleMesh;
 use sha2::{Digest, Sha256};
@@ -6,7 +6,7 @@ use std::fmt;
 use std::ops::Deref;
 use std::sync::OnceLock;
 
-/// A value that is too large for a key. Its `Debug` form is the SHA-256 of its bytes, computed when it is first asked for.
+/// A value too large for a key. The `Debug` form is the SHA-256 of the value's bytes, computed at first use.
 #[derive(Clone)]
 pub struct Hashed<T> {
     value: T,
@@ -15,7 +15,7 @@ pub struct Hashed<T> {
 }
 
 impl<T> Hashed<T> {
-    /// A value with the function that returns its bytes, which are equal for equal values only.
+    /// Wraps a value. `bytes` returns its bytes, which must be equal for equal values only.
     pub fn new(value: T, bytes: fn(&T) -> Vec<u8>) -> Self {
         let hash = OnceLock::new();
         Self { value, bytes, hash }
@@ -43,20 +43,20 @@ impl<T> fmt::Debug for Hashed<T> {
     }
 }
 
-/// The hash of bytes or a text, in 64 hexadecimal digits.
+/// Returns the hash of bytes or a text, in 64 hexadecimal digits.
 pub fn sha256(bytes: impl AsRef<[u8]>) -> String {
     let digits = Sha256::digest(bytes);
     digits.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// The first digits of the hash of what something says of itself. Fewer: two of them may be taken for each other.
+/// Returns the first `n_digits` digits of the hash of a description. If fewer, two descriptions may have equal hashes.
 pub fn short_hash(said: impl AsRef<[u8]>, n_digits: usize) -> String {
     let mut digits = sha256(said);
     digits.truncate(n_digits);
     digits
 }
 
-/// Whole numbers, bit by bit, after their count.
+/// Returns the bytes of whole numbers, preceded by their count.
 pub fn bytes_of_counts<'a>(numbers: impl ExactSizeIterator<Item = &'a usize>) -> Vec<u8> {
     let n = numbers.len();
     let numbers = std::iter::once(n).chain(numbers.copied());
@@ -65,12 +65,12 @@ pub fn bytes_of_counts<'a>(numbers: impl ExactSizeIterator<Item = &'a usize>) ->
         .collect()
 }
 
-/// Numbers, bit by bit.
+/// Returns the bytes of numbers.
 pub fn bytes_of_numbers(numbers: impl IntoIterator<Item = f64>) -> Vec<u8> {
     numbers.into_iter().flat_map(f64::to_le_bytes).collect()
 }
 
-/// Vertices (metres) and triangles.
+/// Returns the bytes of a mesh's vertices (metres) and triangles.
 pub fn bytes_of_mesh(mesh: &TriangleMesh) -> Vec<u8> {
     let vertices = mesh.vertices();
     let mut bytes = (vertices.len() as u64).to_le_bytes().to_vec();

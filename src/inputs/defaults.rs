@@ -1,11 +1,11 @@
-//! Values of keys that are left out, said beside the key: `#[serde(default = "number::<4>")]`.
+//! Default values of keys, declared at the key: `#[serde(default = "number::<4>")]`.
 
-/// A whole number of something that may be a fraction.
+/// Integer default of a fractional key.
 pub(crate) fn number<const N: u32>() -> f64 {
     f64::from(N)
 }
 
-/// A count.
+/// Default of a count.
 pub(crate) fn count<const N: usize>() -> usize {
     N
 }

@@ -1,12 +1,13 @@
-//! Bytes: what there are, what is asked for, and in words.
+//! Memory sizes: available, used and required bytes, and their display.
 
 use std::{fmt, fs};
 
-/// Bytes of a gibibyte.
+/// Number of bytes in a gibibyte.
 pub const GIB: f64 = (1u64 << 30) as f64;
 
-/// Bytes of memory that this process may use: the machine's, or its control group's if that is less; `None` where the system
-/// does not tell.
+/// Returns the memory available to this process, bytes: the machine's memory, or its control group's limit if that is less. Returns `None` if the system does
+/// not
+/// report it.
 pub fn machine_memory() -> Option<u64> {
     let of_machine = kilobytes("/proc/meminfo", "MemTotal")?;
     let group = fs::read_to_string("/sys/fs/cgroup/memory.max").ok();
@@ -14,12 +15,12 @@ pub fn machine_memory() -> Option<u64> {
     Some(of_group.map_or(of_machine, |bytes| bytes.min(of_machine)))
 }
 
-/// Most bytes that this process has held so far; `None` where the system does not tell.
+/// Returns the peak memory of this process, bytes; `None` if the system does not report it.
 pub fn peak_memory() -> Option<u64> {
     kilobytes("/proc/self/status", "VmHWM")
 }
 
-/// What is allowed in place of something that takes more bytes than the ceiling (`None`: there is none).
+/// Checks a memory requirement against a limit (`None` for no limit); the error describes what is allowed.
 pub(crate) fn check_memory(
     bytes: f64,
     ceiling: Option<u64>,
@@ -35,7 +36,7 @@ pub(crate) fn check_memory(
     }
 }
 
-/// A line `Key:  123 kB` of a file, in bytes.
+/// Reads a line `Key:  123 kB` of a file; returns the value in bytes.
 fn kilobytes(path: &str, key: &str) -> Option<u64> {
     let text = fs::read_to_string(path).ok()?;
     let line = text.lines().find_map(|line| line.strip_prefix(key))?;
@@ -43,7 +44,7 @@ fn kilobytes(path: &str, key: &str) -> Option<u64> {
     Some(number.trim().parse::<u64>().ok()? * 1024)
 }
 
-/// A number of bytes in words: 12 MiB, 1.5 GiB.
+/// A number of bytes, displayed with a unit: 12 MiB, 1.5 GiB.
 pub struct Bytes(pub f64);
 
 impl fmt::Display for Bytes {

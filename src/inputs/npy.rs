@@ -1,6 +1,7 @@
-//! NumPy's `.npy` files row by row, for arrays that memory cannot hold: a header, then the elements, the last index fastest.
+//! Row-by-row writing of NumPy's `.npy` files, for arrays larger than memory. A header is followed by the elements; the last index changes fastest.
 //!
-//! Arrays in memory are written by ndarray-npy ([`write_npy`]), which writes no header without its array; [`arrays`](crate::inputs::arrays) reads files of others.
+//! Arrays in memory are written by ndarray-npy ([`write_npy`]), which cannot write a header alone. [`arrays`](crate::inputs::arrays) reads files of other
+//! programs.
 
 use crate::error::Result;
 use crate::files::{WholeFile, write_whole};
@@ -9,10 +10,10 @@ use ndarray_npy::WriteNpyExt;
 use std::io::{self, Read, Write};
 use std::path::Path;
 
-/// What stands before the length of a header: version 1, which NumPy writes for all arrays of numbers and texts.
+/// First bytes of a file, before the length of the header. Version 1, which NumPy writes for all arrays of numbers and texts.
 const MAGIC: [u8; 8] = *b"\x93NUMPY\x01\x00";
 
-/// The text of a header: `{'descr': '<f4', 'fortran_order': False, 'shape': (500, 64), }`.
+/// Returns the text of a header: `{'descr': '<f4', 'fortran_order': False, 'shape': (500, 64), }`.
 fn dictionary(descr: &str, shape: &[usize]) -> String {
     let lengths: Vec<String> = shape.iter().map(usize::to_string).collect();
     let comma = if shape.len() == 1 { "," } else { "" };
@@ -20,7 +21,7 @@ fn dictionary(descr: &str, shape: &[usize]) -> String {
     format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': ({lengths}), }}")
 }
 
-/// The header of an array of elements such as `<f4`; a multiple of 64 bytes.
+/// Returns the header of an array with elements such as `<f4`; the length is a multiple of 64 bytes.
 pub(crate) fn npy_header(descr: &str, shape: &[usize]) -> Vec<u8> {
     let mut text = dictionary(descr, shape);
     let n_before = MAGIC.len() + 2;
@@ -44,7 +45,7 @@ pub(crate) fn read_npy_header(reader: &mut impl Read) -> io::Result<(String, usi
     Ok((String::from_utf8_lossy(&text).trim().to_owned(), n_bytes))
 }
 
-/// The error is a header whose text says something else than these elements and this shape; writers differ in commas and spaces.
+/// Returns an error if the header's element type or shape differs from the expectation; commas and spaces are ignored.
 pub(crate) fn check_npy_header(text: &str, descr: &str, shape: &[usize]) -> io::Result<()> {
     let plain = |text: &str| {
         let letters = text.chars().filter(|letter| !letter.is_whitespace());
@@ -58,14 +59,14 @@ pub(crate) fn check_npy_header(text: &str, descr: &str, shape: &[usize]) -> io::
     }
 }
 
-/// An array that is written element by element; it stands at its path when it is whole.
+/// Array written element by element; the file appears at its path when it is complete.
 pub(crate) struct NpyFile(WholeFile);
 
 impl NpyFile {
-    /// Starts an array of elements such as `<f4`.
+    /// Creates an array with elements such as `<f4`.
     ///
     /// # Errors
-    /// A file that cannot be written.
+    /// If the file cannot be written.
     pub fn create(path: &Path, descr: &str, shape: &[usize]) -> Result<Self> {
         let mut file = WholeFile::create(path)?;
         file.write(|file| file.write_all(&npy_header(descr, shape)))?;
@@ -75,7 +76,7 @@ impl NpyFile {
     /// Writes the next elements, of `N` bytes each.
     ///
     /// # Errors
-    /// A file that cannot be written.
+    /// If the file cannot be written.
     pub fn push<const N: usize>(
         &mut self,
         elements: impl IntoIterator<Item = [u8; N]>,
@@ -84,10 +85,10 @@ impl NpyFile {
         self.0.write(|file| file.write_all(&bytes))
     }
 
-    /// Puts it in place.
+    /// Moves the complete file to its path.
     ///
     /// # Errors
-    /// A file that cannot be written.
+    /// If the file cannot be written.
     pub fn commit(self) -> Result<()> {
         self.0.commit()
     }
@@ -96,15 +97,15 @@ impl NpyFile {
 /// Writes an array as a whole `.npy` file.
 ///
 /// # Errors
-/// A file that cannot be written.
+/// If the file cannot be written.
 pub fn write_npy(path: &Path, array: &impl WriteNpyExt) -> Result<()> {
     write_whole(path, |file| array.write_npy(file).map_err(io::Error::other))
 }
 
-/// Writes numbers of classes or rows as a whole `.npy` file of int64.
+/// Writes class or row numbers as a whole `.npy` file of int64.
 ///
 /// # Errors
-/// A file that cannot be written.
+/// If the file cannot be written.
 pub fn write_integers(path: &Path, numbers: impl IntoIterator<Item = usize>) -> Result<()> {
     let numbers = numbers.into_iter().map(|number| number as i64);
     write_npy(path, &Array1::from_iter(numbers))
@@ -113,7 +114,7 @@ pub fn write_integers(path: &Path, numbers: impl IntoIterator<Item = usize>) -> 
 /// Writes texts as a whole `.npy` file of NumPy's type U.
 ///
 /// # Errors
-/// A file that cannot be written.
+/// If the file cannot be written.
 pub fn write_texts(path: &Path, texts: &[String]) -> Result<()> {
     let lengths = texts.iter().map(|text| text.chars().count());
     let n = lengths.max().unwrap_or(0).max(1);

@@ -1,19 +1,19 @@
-//! Values in a table of TOML by the path of their key.
+//! Access to values of a TOML table by key path.
 
-/// What a table has at a path of keys.
+/// Returns the value at a path of keys; `None` if it does not exist.
 pub(crate) fn value_at<'t>(table: &'t toml::Table, path: &str) -> Option<&'t toml::Value> {
     let mut names = path.split('.');
     let first = table.get(names.next()?)?;
     names.try_fold(first, |value, name| value.get(name))
 }
 
-/// A number, whole or not.
+/// Returns a number, integer or float; `None` for another value.
 pub(crate) fn number(value: &toml::Value) -> Option<f64> {
     let integer = || value.as_integer().map(|integer| integer as f64);
     value.as_float().or_else(integer)
 }
 
-/// Whether a key is one of a name, or below it.
+/// Returns whether a key equals a name or lies below it.
 pub(crate) fn is_at(key: &str, name: &str) -> bool {
     let rest = key.strip_prefix(name);
     rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))

@@ -3,13 +3,13 @@
 /// Metres in a millimetre.
 pub(crate) const MM: f64 = 1e-3;
 
-/// Frames a touch, at most: more is a rate or a number in the wrong unit.
+/// Maximum number of frames per touch; a larger number indicates a rate or a wrong unit.
 pub(crate) const MOST_FRAMES: usize = 10_000;
 
-/// Millimetres as people write them: 2, not 2.0000000000000004.
+/// Converts metres to millimetres, rounded for display: 2, not 2.0000000000000004.
 pub fn millimetres(metres: f64) -> f64 {
     (metres * 1e9).round() / 1e6
 }
 
-/// Taxels along a side of an array, at most.
+/// Maximum number of taxels along a side of an array.
 pub(crate) const MOST_SIDE: usize = 4096;

@@ -1,60 +1,61 @@
-//! The axes of recorded frames: which is the touch, which the time, which the place on the skin.
+//! Axes of recorded frames: touch, time, and position on the skin.
 //!
-//! An order is a letter for each axis of the file: `n` touches, `t` frames of a touch, `y` rows, `x` columns, and `c`: the values of a taxel beside `y`
-//! and `x`, the taxels of a skin without rows and columns otherwise. Several axes `c` without `y` and `x` are taxels together.
+//! An order is a string with one letter per axis of the file. `n` counts touches, `t` frames of a touch, `y` rows, and `x` columns. Beside `y` and `x`, `c`
+//! counts the values of
+//! a taxel; otherwise `c` counts the taxels of a skin without rows and columns. Several axes `c` without `y` and `x` are combined to one axis of taxels.
 
 use crate::error::{Error, Result};
 use crate::inputs::units::{MOST_FRAMES, MOST_SIDE};
 use ndarray::{Array2, ArrayD};
 
-/// Longer side over shorter side of a grid from which on two other axes than rows and columns are as likely. Larger reads time for taxels
-/// unasked; smaller asks for the order of more arrays.
+/// Aspect ratio of a grid above which two axes may be other than rows and columns. If larger, time may be mistaken for taxels; if smaller, the order must be
+/// given for more arrays.
 const MAX_ASPECT: usize = 6;
-/// Values of a taxel that a short last axis may be: three forces.
+/// Maximum length of a last axis that counts the values of a taxel: three force components.
 const MAX_VALUES: usize = 3;
 
-/// The axes of frames as a study gives them.
+/// Axes of frames as given in a study.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FrameAxes<'a> {
-    /// A letter for each axis; `None`: the order that the number of axes stands for.
+    /// One letter per axis; `None` for the default order of the number of axes.
     pub order: Option<&'a str>,
-    /// Rows and columns of the axis `c`.
+    /// Numbers of rows and columns that the axis `c` contains.
     pub grid: Option<[usize; 2]>,
-    /// Values of a taxel.
+    /// Number of values per taxel.
     pub n_values: usize,
-    /// What sets the order, for errors: a key or an option.
+    /// Key or option that sets the order, for error messages.
     pub key: &'a str,
 }
 
-/// The lengths of frames, and how they lie in the file.
+/// Lengths of the axes of frames, and their order in the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameShape {
-    /// Touches.
+    /// Number of touches n.
     pub n_touches: usize,
-    /// F, frames of a touch.
+    /// Number of frames per touch, F.
     pub n_frames: usize,
-    /// Rows; 1 without a grid.
+    /// Number of rows; 1 without a grid.
     pub rows: usize,
-    /// Columns; all taxels without a grid.
+    /// Number of columns; without a grid, the number of taxels.
     pub columns: usize,
     /// Whether taxels have rows and columns.
     pub has_grid: bool,
-    /// Values of a taxel.
+    /// Number of values per taxel.
     n_values: usize,
-    /// The axes of the file in the order n, t, c, y, x.
+    /// Axes of the file in the order n, t, c, y, x.
     axes: Vec<usize>,
-    /// The letters of the axes of the file.
+    /// Letters of the axes of the file.
     order: String,
 }
 
 impl FrameShape {
-    /// Numbers of a frame.
+    /// Returns the number of values of a frame.
     pub fn n_frame_values(&self) -> usize {
         self.n_values * self.rows * self.columns
     }
 
-    /// Returns the order and the lengths of an array beside this one, of shape `shape`, that has `n_values` of each taxel instead of one: they are
-    /// the axis c before those of the place.
+    /// Returns the order and the lengths of a related array of shape `shape` with `n_values` values per taxel instead of one. The values are an axis c
+    /// before the axes of position.
     pub fn beside(&self, shape: &[usize], n_values: usize) -> (String, Vec<usize>) {
         let (mut order, mut shape) = (self.order.clone(), shape.to_owned());
         let has_rows = order.contains('y');
@@ -69,18 +70,18 @@ impl FrameShape {
         (order, shape)
     }
 
-    /// Returns one number of each taxel, row by row, shape (rows · columns), of an array with the axes that taxels have in a file of frames of
-    /// the shape `frames`, or of rows × columns, or of a list. The error is the shape that was expected.
+    /// Returns one number per taxel, row by row, shape (rows · columns). The input has the taxel axes of a file of frames of shape `frames`, or the shape
+    /// rows × columns, or is a list.
     ///
     /// # Errors
-    /// If the numbers of the file do not fill the frames; the error is their shape.
+    /// If the numbers do not fill a frame; the error is the expected shape.
     pub fn arrange_taxels(
         &self,
         numbers: ArrayD<f64>,
         frames: &[usize],
     ) -> std::result::Result<Vec<f64>, Vec<usize>> {
         let n_taxels = self.rows * self.columns;
-        // One axis c of the file counts values of a taxel.
+        // If the order contains y, one axis c of the file counts the values of a taxel.
         let of_values = match self.order.contains('y') {
             true => self
                 .order
@@ -109,10 +110,10 @@ impl FrameShape {
         }
     }
 
-    /// Returns frames as rows, shape (n · F, values · rows · columns), of the numbers of a file.
+    /// Converts the numbers of a file to one row per frame, shape (n · F, values · rows · columns).
     ///
     /// # Panics
-    /// If the numbers have other axes than the shape.
+    /// If the axes of the numbers differ from the shape.
     pub fn arrange(&self, numbers: ArrayD<f64>) -> Array2<f64> {
         let numbers = numbers.permuted_axes(self.axes.clone());
         let numbers = match numbers.is_standard_layout() {
@@ -128,7 +129,7 @@ impl FrameShape {
 /// Reads the axes of an array of frames.
 ///
 /// # Errors
-/// If the order does not fit the array, or none is given and the array can be read in two ways.
+/// If the order does not fit the array, or no order is given and two orders are possible.
 pub fn frame_shape(place: &str, shape: &[usize], axes: FrameAxes) -> Result<FrameShape> {
     let lengths = shape.iter().map(usize::to_string).collect::<Vec<_>>();
     let given = format!("an array of shape [{}]", lengths.join(", "));
@@ -239,7 +240,7 @@ pub fn frame_shape(place: &str, shape: &[usize], axes: FrameAxes) -> Result<Fram
     }
 }
 
-/// The letters of an order without what parts them.
+/// Returns the letters of an order without separators.
 fn checked_order(order: &str, key: &str) -> Result<String> {
     let parts = [' ', ',', '×', '-', '*'];
     let letters: String = order
@@ -265,7 +266,7 @@ fn checked_order(order: &str, key: &str) -> Result<String> {
     }
 }
 
-/// The order that is as likely as the usual one, if there is one.
+/// Returns another order that is as likely as the default; `None` if there is none.
 fn other_order(shape: &[usize]) -> Option<&'static str> {
     let is_strip = |a: usize, b: usize| a.max(b) > MAX_ASPECT * a.min(b);
     match *shape {
@@ -277,7 +278,7 @@ fn other_order(shape: &[usize]) -> Option<&'static str> {
     }
 }
 
-/// What an array is in an order.
+/// Describes the axes of an array in words, given their order.
 fn words(shape: &[usize], order: &str) -> String {
     let length = |letter: char| order.find(letter).map(|axis| shape[axis]);
     let of = |letter: char| length(letter).unwrap_or(1);

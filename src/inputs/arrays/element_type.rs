@@ -1,18 +1,18 @@
-//! Types of elements as NumPy's headers name them, and their numbers.
+//! Element types of NumPy files, and the decoding of elements.
 
 use crate::error::{Error, Result};
 use crate::inputs::arrays::file_array::{ElementKind, Elements};
 
 const ALLOWED: &str = "numbers (float16 to float64, int8 to int64, uint8 to uint64, bool) or texts";
 
-/// A type of element.
+/// Type of the elements.
 #[derive(Clone, Copy, Debug)]
 pub struct ElementType {
-    /// What the elements are.
+    /// Kind of the elements.
     pub kind: ElementKind,
-    /// Bytes of an element.
+    /// Size of an element, bytes.
     pub size: usize,
-    /// NumPy's letter.
+    /// NumPy's type letter.
     letter: char,
     is_big_endian: bool,
 }
@@ -21,7 +21,7 @@ impl ElementType {
     /// Reads the value of `descr`, such as `'<f8', 'fortran_order': …`.
     ///
     /// # Errors
-    /// If the elements are neither numbers nor texts; the error says what they are.
+    /// If the elements are neither numbers nor texts; the error contains their type.
     pub fn parse(place: &str, descr: &str) -> Result<Self> {
         let refuse = |given: &str| Err(Error::input(place, given, ALLOWED));
         let quoted = descr
@@ -62,7 +62,7 @@ impl ElementType {
         })
     }
 
-    /// Returns no elements of this type, with room for `n`.
+    /// Returns an empty list of elements with capacity for `n`.
     pub fn empty(&self, n: usize) -> Elements {
         match self.kind {
             ElementKind::Text => Elements::Texts(Vec::with_capacity(n)),
@@ -70,7 +70,7 @@ impl ElementType {
         }
     }
 
-    /// Decodes whole elements and appends them.
+    /// Decodes complete elements and appends them.
     pub fn decode(&self, bytes: &[u8], elements: &mut Elements) {
         /// Appends elements of `N` bytes, given in little-endian order.
         fn numbers<const N: usize>(
@@ -108,7 +108,7 @@ impl ElementType {
         }
     }
 
-    /// A text without the zeros that pad it.
+    /// Returns a text without its zero padding.
     fn text(&self, bytes: &[u8]) -> String {
         if self.letter != 'U' {
             let text = String::from_utf8_lossy(bytes);
@@ -126,7 +126,7 @@ impl ElementType {
     }
 }
 
-/// The number of an IEEE 754 binary16.
+/// Converts an IEEE 754 binary16 number.
 fn half(bits: u16) -> f64 {
     let sign = if bits >> 15 == 1 { -1.0 } else { 1.0 };
     let (exponent, fraction) = (i32::from(bits >> 10 & 31), f64::from(bits & 1023));

@@ -1,35 +1,35 @@
-//! An array as it stands in a file.
+//! Arrays as stored in files.
 
-/// What the elements of a file are.
+/// Kind of the elements of a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ElementKind {
-    /// Floating-point numbers with this spacing relative to their size.
+    /// Floating-point numbers with this relative spacing.
     Float(f64),
     /// Integers.
     Integer,
-    /// False and true.
+    /// Booleans.
     Truth,
     /// Texts.
     Text,
 }
 
-/// The elements of a file in row-major order.
+/// Elements of a file in row-major order.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Elements {
-    /// Numbers; false is 0, true is 1.
+    /// Numbers; false is 0, and true is 1.
     Numbers(Vec<f64>),
     /// Texts without their padding.
     Texts(Vec<String>),
 }
 
-/// An array as it stands in a file.
+/// Array as stored in a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileArray {
-    /// The name of the file, and of its member if it is an archive, for errors.
+    /// Name of the file, and of the member of an archive, for error messages.
     pub place: String,
     /// Lengths of the axes.
     pub shape: Vec<usize>,
-    /// What the elements are.
+    /// Kind of the elements.
     pub kind: ElementKind,
     /// The elements in row-major order.
     pub elements: Elements,

@@ -1,7 +1,8 @@
-//! Arrays in files: `.npy`, members of `.npz`, and `.csv`, with elements of every type that NumPy writes for numbers and texts.
+//! Arrays in files: `.npy`, members of `.npz`, and `.csv`. All element types of NumPy for numbers and texts are supported.
 //!
-//! A `.npz` archive is read by the name of the array that is looked for (`frames`, `labels` …), or its only member is taken. A `.csv` file is a
-//! table of rows and columns. Elements are converted to f64 (integers exactly up to 2⁵³), or kept as texts.
+//! In a `.npz` archive, the member with the requested name (`frames`, `labels` …) is read, or its only member. A `.csv` file is a table of rows and columns.
+//! Elements are
+//! converted to f64 (integers exactly up to 2⁵³), or kept as texts.
 
 use crate::inputs::arrays::file_array::{Elements, FileArray};
 pub(crate) mod axis_order;
@@ -23,7 +24,7 @@ use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::Path;
 
-/// How a file is read.
+/// Format of an array file.
 #[derive(Clone, Copy, PartialEq)]
 enum Format {
     Npy,
@@ -37,7 +38,7 @@ impl FileArray {
     /// Reads the array `name` of a file; the name selects a member of an archive.
     ///
     /// # Errors
-    /// If there is no such file, or it contains no such array, or an array of something else than numbers and texts.
+    /// If the file does not exist, contains no such array, or its elements are neither numbers nor texts.
     pub fn read(path: &Path, name: &str) -> Result<Self> {
         let file = open(path)?;
         match format_of(path)? {
@@ -51,10 +52,10 @@ impl FileArray {
         }
     }
 
-    /// Returns the lengths of the axes of the array `name` of a file, of which a `.npy` file is read no further than its header.
+    /// Returns the lengths of the axes of the array `name` of a file. Of a `.npy` file, only the header is read.
     ///
     /// # Errors
-    /// If there is no such file, or it contains no such array.
+    /// If the file does not exist, or contains no such array.
     pub fn shape_of(path: &Path, name: &str) -> Result<Vec<usize>> {
         let file = open(path)?;
         let shape =
@@ -66,7 +67,7 @@ impl FileArray {
         }
     }
 
-    /// Returns the numbers, with the lengths of their axes.
+    /// Returns the numbers as an array.
     ///
     /// # Errors
     /// If the elements are texts.
@@ -81,10 +82,10 @@ impl FileArray {
     }
 }
 
-/// Reads a matrix of any type of number or truth value.
+/// Reads a matrix of numbers or booleans of any type.
 ///
 /// # Errors
-/// If there is no such file, or it contains no matrix of numbers.
+/// If the file does not exist, or contains no matrix of numbers.
 pub fn read_matrix(path: &Path, name: &str) -> Result<Array2<f64>> {
     const ALLOWED: &str = "n × m of float64, float32, float16, int8 to int64, uint8 to uint64 or bool, in a .npy, .npz or .csv file";
     let array = FileArray::read(path, name)?;
@@ -101,7 +102,7 @@ pub fn read_matrix(path: &Path, name: &str) -> Result<Array2<f64>> {
     }
 }
 
-/// Whether a `.npz` archive contains the array `name` beside others; `false` for other files.
+/// Returns whether a `.npz` archive contains the array `name` and other arrays; `false` for other files.
 pub fn is_member(path: &Path, name: &str) -> bool {
     let is_archive = || matches!(format_of(path), Ok(Format::Npz));
     is_archive()
@@ -127,7 +128,7 @@ fn open(path: &Path) -> Result<File> {
     }
 }
 
-/// The format by how the file begins, and of texts by the ending of its name.
+/// Returns the format, determined by the first bytes of the file; for text files, by the extension.
 fn format_of(path: &Path) -> Result<Format> {
     let mut start = [0; 6];
     let mut file = open(path)?;
@@ -150,7 +151,7 @@ fn format_of(path: &Path) -> Result<Format> {
     }
 }
 
-/// Reads a member of an archive by `read`, which is given the place, the bytes and their number.
+/// Reads a member of an archive with `read`, which receives the place, the bytes and their number.
 fn with_member<T>(
     path: &Path,
     name: &str,

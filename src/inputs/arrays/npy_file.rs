@@ -1,4 +1,4 @@
-//! NumPy's `.npy` format, versions 1 to 3: a header with the type, the order and the lengths, then the elements.
+//! NumPy's `.npy` format, versions 1 to 3: a header with the element type, the order and the lengths, followed by the elements.
 
 use crate::error::{Error, Result};
 use crate::inputs::arrays::element_type::ElementType;
@@ -6,27 +6,27 @@ use crate::inputs::arrays::file_array::{Elements, FileArray};
 use ndarray::{ArrayD, IxDyn, ShapeBuilder};
 use std::io::Read;
 
-/// Bytes of a header, at most. A longer one is damaged; NumPy refuses more than 10,000 by itself.
+/// Maximum size of a header, bytes. A longer header is damaged; NumPy rejects headers of more than 10,000 bytes by default.
 const MAX_HEADER: usize = 1 << 20;
-/// Elements decoded at a time: small enough for the processor's cache.
+/// Number of elements decoded at once; they fit into the processor's cache.
 const BLOCK: usize = 1 << 13;
 
-/// A header.
+/// Header of a `.npy` file.
 pub struct Header {
-    /// What the elements are.
+    /// Type of the elements.
     pub elements: ElementType,
-    /// Whether the first index changes fastest.
+    /// Whether the first index changes fastest (Fortran order).
     is_fortran: bool,
     /// Lengths of the axes.
     pub shape: Vec<usize>,
-    /// Bytes before the elements.
+    /// Number of bytes before the elements.
     n_bytes: u64,
 }
 
 /// Reads a header.
 ///
 /// # Errors
-/// If it is damaged, or of elements that are neither numbers nor texts.
+/// If the header is damaged, or the elements are neither numbers nor texts.
 pub fn read_header(place: &str, reader: &mut (impl Read + ?Sized)) -> Result<Header> {
     let damaged = || {
         let allowed = "a .npy file as NumPy writes it";
@@ -70,10 +70,10 @@ pub fn read_header(place: &str, reader: &mut (impl Read + ?Sized)) -> Result<Hea
     })
 }
 
-/// Reads an array out of `length` bytes.
+/// Reads an array of `length` bytes.
 ///
 /// # Errors
-/// If the header is damaged, the elements are neither numbers nor texts, or there are not as many as the header says.
+/// If the header is damaged, the elements are neither numbers nor texts, or their number differs from the header.
 pub fn read(place: &str, reader: &mut dyn Read, length: u64) -> Result<FileArray> {
     let header = read_header(place, reader)?;
     let size = header.elements.size;
@@ -120,7 +120,7 @@ pub fn read(place: &str, reader: &mut dyn Read, length: u64) -> Result<FileArray
     })
 }
 
-/// Returns elements whose last index changes fastest, of those whose first index does.
+/// Converts elements from Fortran order (first index fastest) to C order (last index fastest).
 fn row_major<T: Clone>(shape: &[usize], elements: Vec<T>) -> Vec<T> {
     let array = ArrayD::from_shape_vec(IxDyn(shape).f(), elements);
     let array = array.expect("one element for each place");

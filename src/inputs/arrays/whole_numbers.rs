@@ -1,33 +1,33 @@
-//! Classes, groups and rows out of arrays: whole numbers, texts, or one column for each class.
+//! Classes, groups and row numbers in arrays: integers, texts, or one column per class.
 
 use crate::error::{Error, Result};
 use crate::inputs::arrays::file_array::{ElementKind, Elements, FileArray};
 use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 
-/// Integers beyond it are not told apart in f64.
+/// Largest integer that f64 represents uniquely, 2⁵³.
 const MAX_INTEGER: f64 = 9_007_199_254_740_992.0;
 
-/// A value that names a class or a group.
+/// Value that identifies a class or a group.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum KeyValue {
-    /// A whole number.
+    /// An integer.
     Integer(i64),
     /// A text.
     Text(String),
 }
 
-/// The class of every touch or row.
+/// Class of every touch or row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClassLabels {
-    /// The class of every touch, from 0.
+    /// Class of every touch, from 0.
     pub labels: Vec<usize>,
-    /// The value that stands for each class in the file: integers rising, texts in the order of their first touch.
+    /// Value of each class in the file: integers ascending, texts in order of first occurrence.
     pub classes: Vec<KeyValue>,
 }
 
 impl ClassLabels {
-    /// Numbers the classes of some values.
+    /// Numbers the classes of the given values.
     pub fn new(values: &[KeyValue]) -> Self {
         let classes = distinct(values);
         let number: HashMap<&KeyValue, usize> = classes.iter().zip(0..).collect();
@@ -38,7 +38,7 @@ impl ClassLabels {
     }
 }
 
-/// Integers once each, rising; texts once each, as they come.
+/// Returns the distinct values: integers ascending, texts in order of first occurrence.
 fn distinct(values: &[KeyValue]) -> Vec<KeyValue> {
     let all = values.iter().cloned();
     match values.first() {
@@ -50,10 +50,10 @@ fn distinct(values: &[KeyValue]) -> Vec<KeyValue> {
     }
 }
 
-/// Reads one value for each of `n` touches: whole numbers of any type, texts, n × 1 of them, or a column of 0 and 1 for each class.
+/// Reads one class value for each of `n` touches: integers of any type, texts, an n × 1 array of either, or a column of 0 and 1 for each class.
 ///
 /// # Errors
-/// If there is no such file, or it contains something else, or one position has no class.
+/// If the file does not exist or contains other data, or a position has no class.
 pub fn read_class_values(path: &Path, name: &str, n: usize) -> Result<Vec<KeyValue>> {
     let array = one_hot(with_rows(FileArray::read(path, name)?, path, n))?;
     values(
@@ -62,10 +62,10 @@ pub fn read_class_values(path: &Path, name: &str, n: usize) -> Result<Vec<KeyVal
     )
 }
 
-/// Reads the class of each of `n_rows` rows of features: as [`read_class_values`], integers from 0 on.
+/// Reads the class of each of `n_rows` rows of features, as [`read_class_values`] does. Integers must be at least 0.
 ///
 /// # Errors
-/// As [`read_class_values`]; no labels; an integer below 0, by its position.
+/// Returns the errors of [`read_class_values`]. Also if there are no labels, or an integer is below 0; the error names its position.
 pub fn read_class_labels(path: &Path, name: &str, n_rows: usize) -> Result<ClassLabels> {
     let values = read_class_values(path, name, n_rows)?;
     if values.is_empty() {
@@ -78,7 +78,7 @@ pub fn read_class_labels(path: &Path, name: &str, n_rows: usize) -> Result<Class
 /// Reads one group for each of `n` touches: integers of any type from 0 on, or texts.
 ///
 /// # Errors
-/// If there is no such file, or it contains something else; an integer below 0 or beyond 2⁵³, by its position.
+/// If the file does not exist or contains other data, or an integer is below 0 or beyond 2⁵³; the error names its position.
 pub fn read_group_values(path: &Path, name: &str, n: usize) -> Result<Vec<KeyValue>> {
     const ALLOWED: &str = "one dimension of int8 to int64, uint8 to uint64, bool or texts";
     let array = with_rows(FileArray::read(path, name)?, path, n);
@@ -94,15 +94,15 @@ pub fn read_group_values(path: &Path, name: &str, n: usize) -> Result<Vec<KeyVal
     Ok(values)
 }
 
-/// The same as numbers: integers as they are, texts numbered as they come.
+/// Reads one group number for each of `n` touches: integers unchanged, texts numbered in order of first occurrence.
 ///
 /// # Errors
-/// As [`read_group_values`].
+/// Returns the errors of [`read_group_values`].
 pub fn read_group_keys(path: &Path, name: &str, n: usize) -> Result<Vec<usize>> {
     Ok(group_keys(&read_group_values(path, name, n)?))
 }
 
-/// Numbers of groups: integers as they are, texts numbered as they come.
+/// Returns group numbers: integers unchanged, texts numbered in order of first occurrence.
 pub fn group_keys(values: &[KeyValue]) -> Vec<usize> {
     let mut numbers = HashMap::new();
     let keys = values.iter().map(|value| match value {
@@ -115,10 +115,11 @@ pub fn group_keys(values: &[KeyValue]) -> Vec<usize> {
     keys.collect()
 }
 
-/// Reads numbers of rows, or a mask: a bool for each row.
+/// Reads row numbers, or a mask with one bool per row.
 ///
 /// # Errors
-/// If there is no such file, or it contains something else; a row that is not there, by its position; a mask of another number of rows.
+/// If the file does not exist or contains other data, a row does not exist (the error names its position), or the length of the mask differs from the number
+/// of rows.
 pub fn read_rows(path: &Path, name: &str, n_rows: usize) -> Result<Vec<usize>> {
     const ALLOWED: &str =
         "one dimension of int8 to int64 or uint8 to uint64, or a bool for each row of features";
@@ -170,7 +171,7 @@ fn not_below_zero(path: &Path, values: &[KeyValue]) -> Result<()> {
     }
 }
 
-/// The array without the line of names that a table of texts has above its `n` rows.
+/// Returns the array without the line of names above its `n` rows, if it is a table of texts.
 fn with_rows(mut array: FileArray, path: &Path, n: usize) -> FileArray {
     let is_table = path.extension().is_some_and(|ending| {
         ["csv", "tsv", "txt"]
@@ -187,7 +188,7 @@ fn with_rows(mut array: FileArray, path: &Path, n: usize) -> FileArray {
     array
 }
 
-/// The numbers of the columns that are 1, of an array with a column for each class.
+/// Returns, for an array with one column per class, the number of the column that is 1 in each row.
 fn one_hot(mut array: FileArray) -> Result<FileArray> {
     let ([n, n_classes], Elements::Numbers(numbers)) = (&array.shape[..], &array.elements) else {
         return Ok(array);
@@ -214,7 +215,7 @@ fn one_hot(mut array: FileArray) -> Result<FileArray> {
     Ok(array)
 }
 
-/// The values of an array of one dimension, or of one column or row.
+/// Returns the values of an array of one dimension, one column, or one row.
 fn values(array: FileArray, allowed: &str) -> Result<Vec<KeyValue>> {
     if array.shape.iter().filter(|&&length| length != 1).count() > 1 || array.shape.is_empty() {
         let given = format!("an array of shape {:?}", array.shape);
