@@ -1,19 +1,19 @@
-//! Converter: bits b, of which readings are whole multiples of the step q = 1 / (2ᵇ − 1) of the full scale.
+//! Converter: its number of bits b; readings are integer multiples of the step q = 1 / (2ᵇ − 1) of the full scale.
 //!
-//! q is the greatest common divisor of all differences of readings, by Euclid's algorithm with the tolerance that single precision leaves.
+//! q is the greatest common divisor of all differences of readings, computed by Euclid's algorithm with a tolerance for single precision.
 
 use super::{Estimate, RecordedSkin};
 
-/// Readings that are looked at, about. More take longer and tell no other step.
+/// Approximate maximum number of evaluated readings. If it is larger, the estimate takes longer without a better result.
 const N_READINGS: usize = 200_000;
-/// Difference of readings, of the full scale, that single precision may make.
+/// Largest difference of equal readings due to single precision, as a fraction of the full scale.
 const ROUNDING: f64 = 4e-7;
-/// Steps of rounding that a step of a converter is larger than. With smaller ones everything is a multiple.
+/// Minimum step of a converter, in units of [`ROUNDING`]. All readings are multiples of smaller steps within rounding.
 const LEAST: f64 = 20.0;
-/// Different readings from which on their absence of a step is no chance.
+/// Minimum number of different readings that shows the absence of a step.
 const FEWEST: usize = 16;
 
-/// The step of a converter of so many bits, of the full scale; 0 of none.
+/// Returns the step of a converter with this number of bits, as a fraction of the full scale; 0 for 0 bits.
 pub fn step_of(bits: f64) -> f64 {
     match bits > 0.0 {
         true => 1.0 / (bits.exp2() - 1.0),
@@ -21,7 +21,7 @@ pub fn step_of(bits: f64) -> f64 {
     }
 }
 
-/// Bits; 0 where readings have no step. Readings from `saturation` on are left out: what clips may be no step of the converter.
+/// Estimates the number of bits; 0 if readings have no step. Readings from `saturation` on are left out, because the clipping level need not be a step.
 pub fn estimate(skin: &RecordedSkin, saturation: f64) -> Estimate {
     let mut readings: Vec<f64> = Vec::new();
     for frames in [&skin.touched, &skin.untouched] {
@@ -55,11 +55,11 @@ pub fn estimate(skin: &RecordedSkin, saturation: f64) -> Estimate {
     }
 }
 
-/// Of two numbers that are multiples of it but for rounding.
+/// Returns the greatest common divisor of two numbers within rounding.
 fn common_divisor(mut large: f64, mut small: f64) -> f64 {
     while small > LEAST * ROUNDING {
         let rest = large % small;
-        // A little less than a whole multiple is one as well.
+        // A remainder just below the divisor is a rounding error, too.
         let rest = rest.min(small - rest);
         large = small;
         small = if rest < 2.0 * ROUNDING { 0.0 } else { rest };
@@ -70,11 +70,11 @@ fn common_divisor(mut large: f64, mut small: f64) -> f64 {
     }
 }
 
-/// The step that fits all readings best, as multiples above the least.
+/// Returns the step that fits all readings best, as multiples above the lowest reading.
 fn refined(step: f64, readings: &[f64]) -> f64 {
     let mut step = step;
     let (mut products, mut squares) = (0.0, 0.0);
-    // From near to far, so that a step that is a little wrong miscounts none.
+    // Small differences first, so that an error of the step does not change the count of large ones.
     for reading in readings {
         let above = reading - readings[0];
         let count = (above / step).round();

@@ -1,10 +1,10 @@
-//! Crosstalk: what untouched taxels beside an edge of contact read of their neighbours.
+//! Crosstalk: estimated from the readings of untouched taxels beside an edge of contact.
 //!
-//! Taxels read A δ, A what a [leak](crate::signal::Crosstalk) κ does to deflections δ. One that nothing touches reads κ/4 Σⱼ δⱼ of its four
-//! neighbours, and no more; a touched one reads more by its own deflection. So over taxels that have a pressed neighbour on one side and a quiet one opposite, the
-//! shares xᵢ / Σⱼ δⱼ are densest at κ/4 and above that otherwise. δ = A⁻¹ x for the κ found before; begun at κ = 0, until it stays.
+//! Readings are x = A δ, where A applies a [leak](crate::signal::Crosstalk) κ to the deflections δ. An untouched taxel reads κ/4 Σⱼ δⱼ of its four
+//! neighbours; a touched taxel reads more because of its own deflection. The estimate uses taxels with a pressed neighbour on one side and a quiet one
+//! opposite. Their ratios xᵢ / Σⱼ δⱼ are densest at κ/4. Since δ = A⁻¹ x depends on κ, the estimate starts at κ = 0 and is iterated until it converges.
 //!
-//! It is what leaks before gains and noise. An elastic cover that rounds all edges is seen as a leak where it is one.
+//! The estimate refers to leakage before gains and noise. An elastic cover that rounds all edges is indistinguishable from a leak.
 
 use super::gain::Gains;
 use super::robust::{jackknife, mode};
@@ -13,24 +13,24 @@ use crate::signal::Crosstalk;
 use crate::world::Grid;
 use ndarray::{Array1, Array2};
 
-/// Frames that are looked at, at most, evenly from all. More take longer.
+/// Maximum number of evaluated frames, evenly spaced among all. If it is larger, the estimate takes longer.
 const N_FRAMES: usize = 1000;
-/// What the neighbours of a taxel read together, of the full scale, at least; and in standard deviations of the noise.
+/// Minimum sum of the readings of a taxel's neighbours: as a fraction of the full scale, and in standard deviations of the noise.
 const PRESSED: [f64; 2] = [0.15, 60.0];
-/// What a quiet taxel reads at most, likewise.
+/// Maximum reading of a quiet taxel: as a fraction of the full scale, and in standard deviations of the noise.
 const QUIET: [f64; 2] = [0.01, 3.0];
-/// What is not clipped, of the full scale.
+/// Largest reading that counts as not clipped, as a fraction of the full scale.
 const CLIPPED: f64 = 0.97;
-/// Taxels beside an edge, at least.
+/// Minimum number of taxels beside an edge.
 const FEWEST: usize = 200;
-/// Rounds in which κ is found again.
+/// Number of fixed-point iterations for κ.
 const N_ROUNDS: usize = 8;
-/// Steps of A⁻¹: what is left of an error is at most (2κ)²⁵.
+/// Number of iterations of A⁻¹; the remaining fraction of an error is at most (2κ)²⁵.
 const N_STEPS: usize = 25;
-/// The largest leak whose frames can be sharpened again.
+/// Largest leak for which the iteration of A⁻¹ converges fast enough.
 const LARGEST: f64 = 0.45;
 
-/// The fraction that leaks.
+/// Estimates the fraction κ that leaks.
 pub(super) fn estimate(
     skin: &RecordedSkin,
     touched: &Array2<f64>,
@@ -73,7 +73,7 @@ pub(super) fn estimate(
     found.unwrap_or_else(|| Estimate::unknown("there are too few frames"))
 }
 
-/// xᵢ / Σⱼ δⱼ of taxels beside an edge.
+/// Returns the ratios xᵢ / Σⱼ δⱼ of taxels beside an edge.
 fn shares_of(skin: &RecordedSkin, frame: &Array1<f64>, leak: f64, noise: f64) -> Vec<f64> {
     let pressed = PRESSED[0].max(PRESSED[1] * noise);
     let quiet = QUIET[0].max(QUIET[1] * noise);
@@ -83,7 +83,7 @@ fn shares_of(skin: &RecordedSkin, frame: &Array1<f64>, leak: f64, noise: f64) ->
         let Some(near) = skin.neighbours(taxel) else {
             continue;
         };
-        // What is not known is not below.
+        // The comparison is false for unknown readings (NaN).
         let is_usable = |&taxel: &usize| frame[taxel] < CLIPPED;
         let sum: f64 = near.iter().map(|&near| felt[near]).sum();
         let [left, right, above, below] = near.map(|near| frame[near]);
@@ -99,7 +99,7 @@ fn shares_of(skin: &RecordedSkin, frame: &Array1<f64>, leak: f64, noise: f64) ->
     shares
 }
 
-/// δ of A δ = x: δ ← δ + x − A δ.
+/// Solves A δ = x by the iteration δ ← δ + x − A δ.
 fn sharpened(skin: &RecordedSkin, frame: &[f64], leak: f64) -> Vec<f64> {
     let (ny, nx) = skin.shape;
     let grid = Grid { nx, ny, pitch: 1.0 };

@@ -2,10 +2,10 @@
 
 use crate::text::numbers::short_number;
 
-/// Half of a 95 % interval, of the number in it: wider ones leave a setting that may be wrong by more.
+/// Largest half width of a narrow 95 % interval, relative to the value. An estimate with a wider interval is too inaccurate for a setting.
 const NARROW: f64 = 0.1;
 
-/// What is as good as none of something, of the full scale or of one.
+/// Value below which an effect is negligible, relative to the full scale or to one.
 pub(super) const NONE: f64 = 0.01;
 
 /// Estimate of a parameter of the signal chain.
@@ -42,7 +42,7 @@ impl Estimate {
         Self::NotIdentifiable(why.into())
     }
 
-    /// The same where its interval is narrow; 0 where that reaches 0 and has no end above [`NONE`]. What frames tell so loosely is not told.
+    /// Returns the estimate if its interval is narrow, or 0 if the interval reaches 0 and ends below [`NONE`]. Other estimates are not identifiable.
     pub(super) fn resolved(self) -> Self {
         match self {
             Self::Found {
@@ -64,7 +64,7 @@ impl Estimate {
         }
     }
 
-    /// The same number of something whose value follows from that of this, which must rise with it.
+    /// Applies an increasing function to the value and its interval.
     pub(super) fn map(self, of: impl Fn(f64) -> f64) -> Self {
         match self {
             Self::Found {

@@ -1,39 +1,41 @@
-//! Faults: taxels whose standard deviation over touched frames is below a tenth of the usual one of the 5 × 5 taxels around.
+//! Faults: taxels whose standard deviation over touched frames is below a tenth of the typical value among the 5 × 5 taxels around them.
 //!
-//! One that stays at its zero is dead, one at another level stuck; of levels drawn evenly from all that a taxel can read, 1 % are taken for
-//! dead. Where nothing ever moved nobody can tell.
+//! A faulty taxel that stays at its zero is dead; one that stays at another level is stuck. Of stuck levels that are uniform over the full scale, 1 % are
+//! classified
+//! as dead. If no taxel around changed, the state is unknown.
 
 use super::robust::median;
 use super::{Estimate, RecordedSkin};
 use crate::statistics::interval::Interval;
 use ndarray::Axis;
 
-/// Share of its neighbours' standard deviation that a taxel moves at least. Larger takes taxels of low gain for faults; smaller misses those with noise.
+/// Minimum standard deviation of a sound taxel relative to its neighbours. If it is larger, taxels of low gain count as faulty; if it is smaller, noisy
+/// faulty taxels are missed.
 const MOVES: f64 = 0.1;
-/// Level up to which a taxel that stays is dead, of the full scale.
+/// Largest constant level of a dead taxel, as a fraction of the full scale.
 const DEAD: f64 = 0.01;
 
-/// A taxel that stays.
+/// Faulty taxel: its reading stays constant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fault {
-    /// Which.
+    /// Index of the taxel.
     pub taxel: usize,
-    /// Whether it stays at its zero.
+    /// Whether the reading stays at the zero.
     pub is_dead: bool,
 }
 
-/// What is known of the taxels of a skin.
+/// States of the taxels of a skin.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FoundFaults {
-    /// Those at fault.
+    /// Faulty taxels.
     pub faults: Vec<Fault>,
-    /// Whether each taxel reads what it feels, as far as is known.
+    /// Whether each taxel is sound; true if its state is unknown.
     pub is_sound: Vec<bool>,
-    /// Taxels of which it is known.
+    /// Number of taxels with a known state.
     n_known: usize,
 }
 
-/// Finds them.
+/// Finds the faulty taxels.
 pub fn find(skin: &RecordedSkin) -> FoundFaults {
     let (rows, columns) = skin.shape;
     let stds = match skin.touched.nrows() {
@@ -70,7 +72,7 @@ pub fn find(skin: &RecordedSkin) -> FoundFaults {
 }
 
 impl FoundFaults {
-    /// The share of taxels that have one kind of fault, with Wilson's interval of other skins of the make.
+    /// Estimates the fraction of taxels with one kind of fault. The Wilson interval refers to other skins of this type.
     pub fn share(&self, is_counted: impl Fn(&Fault) -> bool) -> Estimate {
         let n_taxels = self.is_sound.len();
         if 2 * self.n_known < n_taxels {

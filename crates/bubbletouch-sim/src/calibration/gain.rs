@@ -1,9 +1,12 @@
-//! Gain: what a taxel reads of what its four neighbours read.
+//! Gain: estimated from the readings of taxels relative to those of their four neighbours.
 //!
-//! dᵢ is the median over frames in which all five are well pressed of ln xᵢ − ¼ Σⱼ ln xⱼ. The pressure under a contact does the same to every taxel
-//! on average, so what differs from taxel to taxel is ln gᵢ − ¼ Σⱼ ln gⱼ: the variance of ln g is that of d over ‖L S‖², the squared norm of this
-//! operator L after the smoothing S (5/4 without). Medians of even and of odd frames err independently, so their covariance over taxels is the variance of
-//! d without what touches and noise add. Gains are log-normal: std² = exp(Var ln g) − 1.
+//! dᵢ is the median of ln xᵢ − ¼ Σⱼ ln xⱼ over frames in which all five taxels are well pressed. The pressure under a contact has an equal effect on every
+//! taxel
+//! on average, so the differences between taxels are ln gᵢ − ¼ Σⱼ ln gⱼ. The variance of ln g is the variance of d divided by ‖L S‖², the squared norm of
+//! this
+//! operator L after the smoothing S (5/4 without smoothing). Medians of even and of odd frames have independent errors, so their covariance over taxels is
+//! the
+//! variance of d without the effects of contacts and noise. Gains are log-normal: std² = exp(Var ln g) − 1.
 
 use super::robust::{jackknife, mean, median};
 use super::{Estimate, RecordedSkin};
@@ -11,28 +14,28 @@ use crate::signal::Smoothing;
 use crate::world::Grid;
 use ndarray::{Array1, Array2};
 
-/// What a taxel that is well pressed reads, of the full scale: less is noise and edges, more is clipped.
+/// Range of the readings of a well-pressed taxel, relative to the full scale. Lower readings are affected by noise and edges, higher ones by clipping.
 const PRESSED: [f64; 2] = [0.05, 0.97];
-/// The same in standard deviations of the noise, at least.
+/// Minimum reading of a well-pressed taxel, in standard deviations of the noise.
 const ABOVE_NOISE: f64 = 10.0;
-/// Frames of either half in which a taxel and its neighbours are well pressed, at least.
+/// Minimum number of frames in each half (even and odd) in which a taxel and its neighbours are well pressed.
 const MIN_FRAMES: usize = 3;
-/// Taxels of which gains are known, at least: their spread errs by a tenth with 50.
+/// Minimum number of taxels with known gains; with 50 the error of their spread is a tenth.
 const MIN_TAXELS: usize = 50;
-/// Sweeps of Gauss and Seidel. Fewer leave gains that differ over the array.
+/// Number of Gauss–Seidel sweeps. If it is smaller, errors that vary slowly over the array remain.
 const N_SWEEPS: usize = 200;
 
 /// Gains of the taxels of a skin.
 #[derive(Clone, Debug)]
 pub struct Gains {
-    /// Standard deviation of gains of mean 1.
+    /// Standard deviation of the gains, relative to their mean 1.
     pub spread: Estimate,
-    /// One for each taxel; 1 where nothing is known.
+    /// Gain of each taxel; 1 if it is unknown.
     pub of_taxels: Array1<f64>,
 }
 
 impl Gains {
-    /// From touched frames without their zeros; of noise of a standard deviation, smoothed by a width in pitches.
+    /// Estimates the gains from touched frames without their zeros. `noise` is a standard deviation, smoothed by a width in pitches.
     pub(super) fn of(
         skin: &RecordedSkin,
         touched: &Array2<f64>,
@@ -66,7 +69,7 @@ impl Gains {
     }
 }
 
-/// d of even and of odd frames.
+/// Returns d of even and of odd frames for each taxel.
 fn halves(
     skin: &RecordedSkin,
     touched: &Array2<f64>,
@@ -87,14 +90,14 @@ fn halves(
     is_known.then(|| halves.map(|mut half| median(&mut half)))
 }
 
-/// Of two numbers a taxel, without those that are furthest out.
+/// Returns the covariance of pairs of numbers, without outliers.
 fn covariance(pairs: &[[f64; 2]]) -> f64 {
     let means = [0, 1].map(|half| mean(pairs.iter().map(|pair| pair[half])));
     let products = pairs.iter().map(|[a, b]| (a - means[0]) * (b - means[1]));
     mean(products)
 }
 
-/// ‖L S‖² in the middle of the array.
+/// Returns ‖L S‖² in the middle of the array.
 fn operator_norm((rows, columns): (usize, usize), width: f64) -> f64 {
     let grid = Grid {
         nx: columns,
@@ -113,7 +116,7 @@ fn operator_norm((rows, columns): (usize, usize), width: f64) -> f64 {
     response.iter().map(|r| r * r).sum()
 }
 
-/// Gains whose d is the one found: ln gᵢ = dᵢ + ¼ Σⱼ ln gⱼ, of mean 1.
+/// Solves ln gᵢ = dᵢ + ¼ Σⱼ ln gⱼ for gains of mean 1.
 fn gains(skin: &RecordedSkin, halves: &[Option<[f64; 2]>]) -> Array1<f64> {
     let both = |halves: &[f64; 2]| 0.5 * (halves[0] + halves[1]);
     let middle = mean(halves.iter().flatten().map(both));

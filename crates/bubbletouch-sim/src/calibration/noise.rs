@@ -1,20 +1,20 @@
-//! Noise: σ of what a taxel reads untouched, by differences from frame to frame, which a slow drift leaves alone.
+//! Noise: σ of the readings of untouched taxels, from differences between frames, which a slow drift does not affect.
 //!
-//! σ² = Var(x(t + 1) − x(t)) / 2 − q²/12, the last for the rounding of a converter of step q (Sheppard's correction); where most readings are
-//! clipped, the mean over taxels of what censored readings say (Tobin 1958). What comes out of a smoothing has only a share of the noise that
-//! goes in.
+//! σ² = Var(x(t + 1) − x(t)) / 2 − q²/12, where the last term is the rounding of a converter of step q (Sheppard's correction). If most readings are
+//! clipped, σ is the mean over taxels of the estimate from censored readings (Tobin 1958). Smoothing reduces the variance of the noise by a
+//! known factor.
 
 use super::robust::{jackknife, mean, variance};
 use super::smoothing::Smoothed;
 use super::untouched::{Untouched, Zero};
 use super::{Estimate, RecordedSkin};
 
-/// Noise below this many steps of the converter is lost in them: Sheppard's correction is no longer right.
+/// Noise below this many steps of the converter is not identifiable, because Sheppard's correction is invalid.
 const SEEN: f64 = 0.5;
-/// The same where readings are clipped: rounding moves the share that is.
+/// Limit in steps of the converter if readings are clipped, because rounding changes the fraction of clipped readings.
 const SEEN_CLIPPED: f64 = 2.0;
 
-/// σ of what is read, smoothed if it is, of the full scale.
+/// Estimates σ of the readings after any smoothing, as a fraction of the full scale.
 pub(super) fn of_readings(untouched: Option<&Untouched>) -> Estimate {
     let Some(untouched) = untouched else {
         return Estimate::unknown("there are too few untouched frames");
@@ -42,7 +42,7 @@ pub(super) fn of_readings(untouched: Option<&Untouched>) -> Estimate {
     }
 }
 
-/// σ before the smoothing of a width in pitches.
+/// Converts σ of the readings to σ before a smoothing whose width is in pitches.
 pub(super) fn before_smoothing(read: Estimate, skin: &RecordedSkin, width: f64) -> Estimate {
     let share = Smoothed::new(skin.shape, width).variance.sqrt();
     read.map(|std| std / share)

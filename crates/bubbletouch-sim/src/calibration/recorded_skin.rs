@@ -4,22 +4,22 @@ use super::robust::mean;
 use crate::error::{Error, Result};
 use ndarray::{Array1, Array2, ArrayView1};
 
-/// Frames of a grid of taxels, as shares of the full scale: 0 untouched, 1 at the full scale.
+/// Frames of a grid of taxels, as fractions of the full scale: 0 is untouched, 1 is the full scale.
 #[derive(Clone, Debug)]
 pub struct RecordedSkin {
     /// Rows and columns of the grid.
     pub shape: (usize, usize),
-    /// n × n_taxels, in the order of time.
+    /// Touched frames, shape (n_frames, n_taxels), in the order of time.
     pub touched: Array2<f64>,
-    /// When each was read, 0 at the beginning of the session and 1 at its end.
+    /// Time of each touched frame, from 0 at the beginning of the session to 1 at its end.
     pub touched_times: Array1<f64>,
-    /// Frames of the skin while nothing touches it, likewise; none if there are none.
+    /// Untouched frames, shape (n_frames, n_taxels), in the order of time; may be empty.
     pub untouched: Array2<f64>,
-    /// When each of those was read.
+    /// Time of each untouched frame, 0 to 1.
     pub untouched_times: Array1<f64>,
-    /// Newtons that press the skin as a whole in each touched frame.
+    /// Total normal force on the skin in each touched frame, newtons.
     pub forces: Option<Array1<f64>>,
-    /// Metres of deflection at the full scale.
+    /// Deflection at the full scale, metres.
     pub stroke: Option<f64>,
 }
 
@@ -61,7 +61,7 @@ impl RecordedSkin {
         self.shape.0 * self.shape.1
     }
 
-    /// Left, right, above and below, for a taxel that has all four.
+    /// Returns the neighbours left, right, above and below of a taxel; `None` if one of them is missing.
     pub(super) fn neighbours(&self, taxel: usize) -> Option<[usize; 4]> {
         let (rows, columns) = self.shape;
         let (y, x) = (taxel / columns, taxel % columns);
@@ -71,7 +71,7 @@ impl RecordedSkin {
 }
 
 impl RecordedSkin {
-    /// A frame in which what is not known is the mean of what is known of its neighbours, or 0.
+    /// Returns a frame in which unknown values are replaced by the mean of the known values of their neighbours, or by 0.
     pub(super) fn filled(&self, frame: ArrayView1<f64>) -> Vec<f64> {
         let filled = frame.iter().enumerate().map(|(taxel, &reading)| {
             if !reading.is_nan() {

@@ -1,15 +1,15 @@
-//! The `[signal]` table of what was found, as studies read it.
+//! The `[signal]` table of a calibration, in the format of a study.
 
 use super::smoothing::narrow;
 use super::{Calibration, Estimate};
 use crate::text::numbers::short_number;
 
-/// What is found below this is none: half of the last digit that is written.
+/// Values below this limit are written as zero: half of the last written digit.
 const NONE: f64 = 5e-5;
 
 impl Calibration {
-    /// TOML, on a skin whose taxels are so many millimetres apart: each key with its interval; as comments what is not identifiable, and why. An
-    /// estimate with a wide interval is not identifiable.
+    /// Returns TOML for a skin with this pitch (millimetres): each key with its interval. Parameters that are not identifiable, or whose interval is wide,
+    /// are comments with the reason.
     pub fn signal_table(&self, pitch_mm: f64) -> String {
         let smoothing = narrow(self.smoothing.clone());
         let smoothing = smoothing.map(|pitches| pitches * pitch_mm);
@@ -37,7 +37,7 @@ impl Calibration {
         format!("[signal]\nsteps = [{}]\n{keys}", steps.join(", "))
     }
 
-    /// The line of `[skin]` for the stiffness.
+    /// Returns the line of `[skin]` with the stiffness.
     pub fn stiffness_line(&self) -> String {
         line("stiffness_n_per_m", &self.stiffness)
     }

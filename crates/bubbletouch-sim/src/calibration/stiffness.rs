@@ -1,21 +1,22 @@
-//! Stiffness: force over the sum of deflections, as a median over frames. Springs of one stiffness k carry F = k Σ δᵢ; neither gains of mean 1 nor crosstalk
-//! changes the sum much. A taxel of which nothing is known is taken to feel the mean of its neighbours. Where readings are clipped at the zero, noise on
-//! untouched taxels does not cancel: only what is well above it counts.
+//! Stiffness: the median over frames of the force divided by the sum of deflections. Springs of one stiffness k carry F = k Σ δᵢ; gains of mean 1 and
+//! crosstalk
+//! hardly change the sum. A taxel without a known reading gets the mean of its neighbours. If readings are clipped at zero, the noise of
+//! untouched taxels does not cancel, so only readings well above the noise are counted.
 
 use super::robust::{jackknife, median};
 use super::{Estimate, RecordedSkin};
 use ndarray::Array2;
 
-/// Readings from which on a taxel may be at its stroke, which carries more than its spring does; of the full scale.
+/// Reading from which on a taxel may be at its stroke, where the force exceeds that of its spring; as a fraction of the full scale.
 const CLIPPED: f64 = 0.97;
-/// Frames, at least.
+/// Minimum number of frames.
 const FEWEST: usize = 40;
-/// Standard deviations of the noise that are well above a zero that clips.
+/// Number of noise standard deviations from which on a reading counts, if readings are clipped at zero.
 const ABOVE_NOISE: f64 = 4.0;
-/// Noise, of the full scale, up to which little is lost so.
+/// Noise standard deviation, relative to full scale, up to which few readings are lost by this threshold.
 const LITTLE: f64 = 0.03;
 
-/// N/m; of readings of a noise, clipped if that is given.
+/// Estimates the stiffness, N/m. `clipped_noise` is the standard deviation of the noise if readings are clipped at zero, otherwise `None`.
 pub(super) fn estimate(
     skin: &RecordedSkin,
     touched: &Array2<f64>,
@@ -41,7 +42,7 @@ pub(super) fn estimate(
         (*force, stroke * filled.filter(counts).sum::<f64>())
     });
     let sums: Vec<(f64, f64)> = sums.filter(|(force, _)| *force > 0.0).collect();
-    // Noise adds least to the sums of the hardest presses.
+    // Noise has the smallest effect on the sums of the hardest presses.
     let usual = median(&mut sums.iter().map(|(force, _)| *force).collect::<Vec<_>>());
     let hard: Vec<&(f64, f64)> = sums.iter().filter(|(force, _)| *force >= usual).collect();
     if hard.len() < FEWEST {

@@ -17,8 +17,8 @@ pub(super) fn saturation(skin: &RecordedSkin, faults: &FoundFaults) -> f64 {
     plateau(frames).map_or(1.0, |level| level.min(1.0))
 }
 
-/// Touched frames less what each taxel reads untouched, which is known from the runs of untouched frames before and after. NaN where it is not, and of
-/// taxels at fault. What the converter clipped at the zero stays there. Saturated readings become 1, which all estimates leave out.
+/// Returns touched frames without their zeros, which are interpolated between runs of untouched frames. Unknown readings and those of faulty taxels are
+/// NaN. Readings that the converter clipped at zero stay at zero. Saturated readings become 1, and all estimates leave them out.
 pub(super) fn touched(
     skin: &RecordedSkin,
     faults: &FoundFaults,
@@ -32,7 +32,7 @@ pub(super) fn touched(
                 _ if !faults.is_sound[taxel] => f64::NAN,
                 _ if *reading >= saturation => 1.0,
                 Some(untouched) if !(untouched.is_clipped && *reading == 0.0) => {
-                    // Where nothing drifts, a zero that is never read is at the least reading.
+                    // Without drift, the zero of a taxel whose zero is unknown is at the lowest reading.
                     let zero = untouched.zero(taxel, time);
                     let zero = zero.unwrap_or(if drift > 0.0 { f64::NAN } else { 0.0 });
                     *reading - zero

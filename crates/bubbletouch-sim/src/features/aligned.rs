@@ -1,20 +1,20 @@
-//! The image itself, moved so that its centroid is in the middle and turned so that its principal axes are those of the array: a quarter of
+//! The image, shifted so that its centroid is in the middle and rotated so that its principal axes are those of the array, sampled at a quarter of
 //! its taxels.
 //!
-//! With the central moments μ_pq = Σ δ (x − x̄)ᵖ (y − ȳ)^q, the longer principal axis is at the angle φ = ½ atan2(2 μ₁₁, μ₂₀ − μ₀₂). It has no
-//! sign of its own: it points to where Σ δ a³ > 0, a along it, and the other axis is a quarter turn from it. Values are read at every second
-//! taxel of the turned grid, interpolated bilinearly, 0 beyond the array.
+//! With the central moments μ_pq = Σ δ (x − x̄)ᵖ (y − ȳ)^q, the longer principal axis is at the angle φ = ½ atan2(2 μ₁₁, μ₂₀ − μ₀₂). Its direction
+//! is chosen so that Σ δ a³ > 0, a along it; the other axis is a quarter turn from it. Values are sampled at every second
+//! taxel of the rotated grid, interpolated bilinearly, and are 0 beyond the array.
 //!
-//! Invariant to shifts by whole taxels, as long as the contact stays on the array, and to quarter turns; to others as far as taxels sample what
-//! is turned. An image whose two principal moments are equal (a disc, a square) has no axes: what is close to one turns with any noise,
-//! and so does one whose third moment is near 0. [`polar_harmonics`](super::ImageFeature::PolarHarmonics) need no axes.
+//! The feature is invariant to shifts by whole taxels, as long as the contact stays on the array, and to quarter turns; for other motions the sampling
+//! limits the invariance. An image with two equal principal moments (a disc, a square) has no axes. If its moments are nearly equal, or its
+//! third moment is near 0, noise determines the rotation. [`polar_harmonics`](super::ImageFeature::PolarHarmonics) need no axes.
 //!
 //! Source: Hu (1962), *Visual pattern recognition by moment invariants*, IRE Transactions on Information Theory 8, 179, section III.
 
 use super::feature::{Feature, FeatureAbout, Workspace};
 use super::image::{Image, Touched};
 
-/// Taxels between what is read.
+/// Distance between samples, in taxels.
 const STEP: usize = 2;
 
 pub(super) const ABOUT: FeatureAbout = FeatureAbout {
@@ -45,7 +45,7 @@ impl Feature for Aligned {
     }
 }
 
-/// Sine and cosine of the longer principal axis, pointing to where the third moment along it is positive.
+/// Returns the sine and cosine of the longer principal axis; it points to where the third moment along it is positive.
 fn axis(image: &Image) -> (f64, f64) {
     let (x, y) = image.centroid;
     let from_centroid = || {

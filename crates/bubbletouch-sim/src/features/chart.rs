@@ -1,28 +1,30 @@
-//! Images of layouts that have no rows and columns.
+//! Images of layouts without rows and columns.
 
 use glam::DVec2;
 use ndarray::{Array2, ArrayView2};
 
-/// Taxels farther than this from a pixel do not show in it, in pitches. No place between taxels of a hexagonal lattice with one an area of a
-/// square pitch is farther than 0.62 from one, of rings on a sphere than 0.8: less, and there are holes; more, and images are blurred.
+/// Distance, in pitches, up to which a taxel contributes to a pixel. No place between taxels is farther than 0.62 from one on a hexagonal lattice with one
+/// taxel
+/// per square pitch, or than 0.8 on rings on a sphere. If it is smaller, images have holes; if it is larger, they are blurred.
 const NEAR: f64 = 1.0;
-/// A pixel without a taxel as near as this lies beside the patch and is 0, in pitches.
+/// Distance, in pitches, within which a pixel of the patch has a taxel. Other pixels lie beside the patch and are 0.
 const ON_PATCH: f64 = 0.8;
 
-/// A chart of a patch: the places of its taxels on a plane, and an image of them. The value of a pixel is the mean of the taxels near it, with
-/// weights that fall linearly to 0 a pitch away: the image of a square grid is the grid.
+/// Chart of a patch: the positions of its taxels on a plane, and an image of them. A pixel is the weighted mean of the taxels near it, with
+/// weights that decrease linearly to 0 at a distance of one pitch. The image of a square grid equals the grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chart {
     shape: (usize, usize),
-    /// Pixel by pixel, which taxels and their weights, of sum 1.
+    /// Indices and weights of the taxels of each pixel, pixel after pixel; the weights of a pixel have sum 1.
     terms: Vec<(u32, f64)>,
-    /// Where the terms of each pixel end.
+    /// End index of the terms of each pixel.
     ends: Vec<usize>,
 }
 
 impl Chart {
-    /// Of taxels at places on the plane (metres), about so far from each other, as an image (rows, columns) of square pixels of a size about the origin,
-    /// metres.
+    /// Creates a chart from the positions of taxels on the plane (metres) and their approximate pitch. The image has `shape` (rows, columns) square pixels,
+    /// centred
+    /// on the origin; their size is in metres.
     pub fn new(
         places: &[DVec2],
         pitch: f64,
@@ -52,10 +54,10 @@ impl Chart {
         Self { shape, terms, ends }
     }
 
-    /// Images (n × pixels, row by row) of frames (n × taxels).
+    /// Returns images of frames (n × taxels), shape (n, pixels), pixels row by row.
     ///
     /// # Panics
-    /// If frames have fewer taxels.
+    /// If the frames have fewer taxels than the chart.
     pub fn images(&self, frames: ArrayView2<f64>) -> Array2<f64> {
         let mut images = Array2::zeros((frames.nrows(), self.ends.len()));
         for (mut image, frame) in images.outer_iter_mut().zip(frames.outer_iter()) {
@@ -69,7 +71,7 @@ impl Chart {
         images
     }
 
-    /// Rows and columns.
+    /// Returns the numbers of rows and columns.
     pub fn shape(&self) -> (usize, usize) {
         self.shape
     }

@@ -1,4 +1,4 @@
-//! Descriptors: how much of the image is how deep, how its pressure spreads, and how that falls off from its centroid. 126 numbers.
+//! Descriptors: areas by depth, spread of the pressure, and its decrease with the distance from the centroid. 126 numbers.
 //!
 //! | numbers | of |
 //! |---|---|
@@ -9,9 +9,9 @@
 //! | 3 × 9 | [moments](super::moments) of δ, of the touched taxels, and of those above half of the largest |
 //! | 24 | Σ δ / (area) in rings about the centroid, r from k h / 24 to (k + 1) h / 24, h half the shorter side |
 //!
-//! The root of an area is a length, as the others are. Each number is a sum over touched taxels that does not ask where they are, or asks only
-//! for how far they are from their centroid: invariant exactly to shifts that keep the contact on the array and to quarter turns and
-//! mirror images (but for two of the moments, which change sign), to other turns as far as taxels sample what is turned.
+//! The root of an area is a length, like the other numbers. Each number is a sum over touched taxels that depends on their positions only
+//! through distances from the centroid. Descriptors are exactly invariant to shifts that keep the contact on the array, to quarter turns and to
+//! mirror images (except for two of the moments, which change sign); for other rotations the sampling limits the invariance.
 //!
 //! Sources: Hu (1962), IRE Transactions on Information Theory 8, 179 (moments); level sets and radial profiles are common in
 //! granulometry: Serra (1982), *Image Analysis and Mathematical Morphology*.
@@ -22,7 +22,7 @@ use super::moments::{N_MOMENTS, Weight, moments};
 use multiversion::multiversion;
 use std::f64::consts::PI;
 
-/// Levels of each kind, and rings: an image of 64 × 64 taxels pressed at half its stroke by ± 1 of full scale / 24 tells all of them apart.
+/// Number of levels of each kind, and of rings. In a 64 × 64 image pressed to half its stroke, steps of full scale / 24 are distinguishable.
 const N_LEVELS: usize = 24;
 const N_RINGS: usize = 24;
 const N_VALUES: usize = 3 + 3 * N_LEVELS + 3 * N_MOMENTS + N_RINGS;
@@ -70,12 +70,12 @@ impl Feature for Descriptors {
     }
 }
 
-/// Taxels by the highest level that they reach; the last level takes what is above it.
+/// Numbers of taxels by the highest level that they reach; the last level includes all higher values.
 #[derive(Default)]
 struct Counts {
     fixed: [u32; N_LEVELS],
     relative: [u32; N_LEVELS],
-    /// Counted from the other end: by the least ℓ with δ ≥ δ_max − ℓ.
+    /// Numbers of taxels by the lowest ℓ with δ ≥ δ_max − ℓ.
     behind: [u32; N_LEVELS],
     /// Σ δ².
     squares: f64,
@@ -95,7 +95,7 @@ fn count_levels(image: &Image, step: f64) -> Counts {
     counts
 }
 
-/// One more at a level, counted from 1; the last level takes what is above it.
+/// Increments the count of a level, counted from 1; the last level includes all higher values.
 #[inline(always)]
 fn count(counts: &mut [u32; N_LEVELS], level: i32) {
     if level > 0 {
@@ -103,7 +103,7 @@ fn count(counts: &mut [u32; N_LEVELS], level: i32) {
     }
 }
 
-/// Roots of how many are at each level or above.
+/// Writes the square roots of the numbers of taxels at each level or above.
 fn areas_above(counts: &[u32; N_LEVELS], out: &mut [f64]) {
     let mut above = 0;
     for (to, count) in out.iter_mut().zip(counts).rev() {
@@ -112,7 +112,7 @@ fn areas_above(counts: &[u32; N_LEVELS], out: &mut [f64]) {
     }
 }
 
-/// Mean pressure of rings; what of a ring is beyond the array counts as 0.
+/// Writes the mean pressures of rings; parts of a ring beyond the array count as 0.
 #[multiversion(targets("x86_64+avx2"))]
 fn write_profile(image: &Image, profile: &mut [f64]) {
     let width = 0.5 * image.nx.min(image.ny) as f64 / N_RINGS as f64;

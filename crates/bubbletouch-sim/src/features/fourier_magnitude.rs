@@ -1,8 +1,8 @@
-//! √|F(u, v)| at the low frequencies: 925 numbers of 64 × 64 taxels.
+//! √|F(u, v)| at low frequencies: 925 numbers for 64 × 64 taxels.
 //!
-//! A cyclic shift multiplies F(u, v) by a phase alone, so |F| does not change at all. Frequencies are u = 0 … ⌊nx/3⌋ and
-//! |v| ≤ ⌊ny/3⌋, two thirds of what the taxels resolve: beyond it, there is little but edges of single taxels and noise. Each is there once
-//! (of u = 0, v ≥ 0). The square root brings strong and weak frequencies closer, as it makes counts of equal variance.
+//! A cyclic shift multiplies F(u, v) by a phase only, so |F| is invariant. Frequencies are u = 0 … ⌊nx/3⌋ and
+//! |v| ≤ ⌊ny/3⌋, two thirds of the resolution; higher frequencies contain mainly edges of single taxels and noise. Each frequency occurs once
+//! (for u = 0, v ≥ 0). The square root brings strong and weak frequencies closer, as it stabilises the variance of counts.
 //!
 //! Source: Casasent and Psaltis (1976), *Position, rotation, and scale invariant optical correlation*, Applied Optics 15, 1795.
 
@@ -19,7 +19,7 @@ pub(super) const ABOUT: FeatureAbout = FeatureAbout {
     prepare: |shape, _| Box::new(FourierMagnitude(Spectrum::new(shape, shape.1 / 3), shape.0)),
 };
 
-/// The transform, and rows.
+/// The transform, and the number of rows.
 #[derive(Debug)]
 struct FourierMagnitude(Spectrum, usize);
 

@@ -1,15 +1,15 @@
-//! Harmonics over the angle of √|F| in rings about frequency 0: 216 numbers.
+//! Angular harmonics of √|F| in rings about frequency 0: 216 numbers.
 //!
-//! A shift leaves |F| as it is; to turn the image by φ turns |F| by φ; and the magnitude of a harmonic around a ring does not change when the
-//! ring is turned. So with ρⱼ = j / 72 cycles a taxel, j = 1 … 24 (up to a third), and θ over half a turn, since |F(−ω)| = |F(ω)|:
+//! A shift does not change |F|, and a rotation of the image by φ rotates |F| by φ. The magnitude of a harmonic around a ring does not change if the
+//! ring is rotated. With ρⱼ = j / 72 cycles per taxel, j = 1 … 24 (up to a third), and θ over half a turn, since |F(−ω)| = |F(ω)|:
 //!
 //! f(j, k) = |Σ_θ √|F(ρⱼ cos θ, ρⱼ sin θ)| exp(−2ikθ)| / 36, θ = 0, 5°, … 175°, k = 0 … 8.
 //!
-//! |F| between whole frequencies is interpolated bilinearly. Invariant to cyclic shifts and to quarter turns of a square image exactly,
-//! to other turns as far as taxels sample what is turned.
+//! |F| between integer frequencies is interpolated bilinearly. The feature is exactly invariant to cyclic shifts and to quarter turns of a square image;
+//! for other rotations the sampling by taxels limits the invariance.
 //!
-//! Differs from the transform that it is named after, which takes log ρ and is invariant to scale as well: a small and a large object of one
-//! shape are to be told apart.
+//! Differs from the Fourier–Mellin transform, which uses log ρ and is also invariant to scale, because small and large objects of one
+//! shape must be distinguished.
 //!
 //! Source: Sheng and Arsenault (1986), *Experiments on pattern recognition using invariant Fourier–Mellin descriptors*, JOSA A 3, 771.
 
@@ -19,12 +19,12 @@ use super::rings::{Rings, roots};
 use super::spectrum::Spectrum;
 use std::f64::consts::PI;
 
-/// Rings, of equal distance up to a third of a cycle a taxel.
+/// Number of rings, equally spaced up to a third of a cycle per taxel.
 const N_RINGS: usize = 24;
 const LAST_RING: f64 = 1.0 / 3.0;
-/// Directions over half a turn; even, so that a quarter turn is a whole number of them.
+/// Number of directions over half a turn; even, so that a quarter turn is a whole number of steps.
 const N_ANGLES: usize = 36;
-/// Harmonics 0, 2, … 16 of the whole turn. Edges of contacts are told by few; higher ones are mostly noise.
+/// Number of harmonics: 0, 2, … 16 of the whole turn. Few describe the edges of contacts; higher ones contain mostly noise.
 const N_HARMONICS: usize = 9;
 
 pub(super) const ABOUT: FeatureAbout = FeatureAbout {
@@ -37,11 +37,11 @@ pub(super) const ABOUT: FeatureAbout = FeatureAbout {
 struct FourierMellin {
     spectrum: Spectrum,
     rings: Rings,
-    /// Where the spectrum is read, ring after ring.
+    /// Interpolation points in the spectrum, ring after ring.
     reads: Vec<Read>,
 }
 
-/// Four values of the spectrum and their weights.
+/// Indices of four values of the spectrum, with their weights.
 type Read = [(u32, f64); 4];
 
 impl FourierMellin {
@@ -64,7 +64,7 @@ impl FourierMellin {
     }
 }
 
-/// The four whole frequencies about (u, v). |F| has the period of the array, and F(−u, −v) the magnitude of F(u, v).
+/// Returns the four integer frequencies around (u, v). |F| has the period of the array, and F(−u, −v) and F(u, v) have equal magnitudes.
 fn read((u, v): (f64, f64), spectrum: &Spectrum, (ny, nx): (usize, usize)) -> Read {
     let (left, below) = (u.floor(), v.floor());
     let (along, up) = (u - left, v - below);
@@ -96,7 +96,7 @@ impl Feature for FourierMellin {
     }
 }
 
-/// Weighted sums of four magnitudes.
+/// Writes weighted sums of four magnitudes.
 fn write_reads(reads: &[Read], magnitudes: &[f64], out: &mut [f64]) {
     for (to, read) in out.iter_mut().zip(reads) {
         let [a, b, c, d] = read.map(|(place, weight)| weight * magnitudes[place as usize]);

@@ -1,72 +1,73 @@
-//! A frame as an image: what all features of images start from.
+//! Frames as images, the input of all image features.
 
 use multiversion::multiversion;
 use ndarray::ArrayView2;
 
-/// What of a frame is no part of its image. Both are in the frame's unit.
+/// Parts of a frame that its image leaves out. Both limits are in the unit of the frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cut {
-    /// ℓ, zero or positive: a value δ below it counts as 0. So does one that is negative, as noise and estimates may be, or not a number.
+    /// Threshold ℓ, zero or positive: values δ below it count as 0. So do negative values, which noise and estimates can have, and NaN.
     pub level: f64,
-    /// d, positive: an image keeps what is so far behind its foremost point, max(0, δ − δ_max + d). A rigid object that goes in deeper adds the
-    /// same to all taxels that it touches, as far as their strokes go: pressed to d or deeper it has the same image, exactly.
+    /// Depth window d, positive: the image keeps the depth within d of the foremost point, max(0, δ − δ_max + d). If a rigid object moves deeper, δ
+    /// increases
+    /// equally on all touched taxels below their stroke. The images of all presses of depth d or more are therefore exactly equal.
     pub foremost: Option<f64>,
 }
 
-/// An ny × nx frame of pressures without what is cut off, with its sum, centroid and largest value.
+/// Pressure image of an ny × nx frame after the cut, with its sum, centroid and largest value.
 #[derive(Clone, Debug, Default)]
 pub struct Image {
-    /// ny · nx values, row after row, zero or positive.
+    /// Values, zero or positive, shape (ny, nx), row after row.
     pub values: Vec<f64>,
-    /// Columns.
+    /// Number of columns.
     pub nx: usize,
-    /// Rows.
+    /// Number of rows.
     pub ny: usize,
-    /// Those that are above zero, in reading order.
+    /// Taxels with values above zero, in reading order.
     pub touched: Touched,
-    /// Σ δ.
+    /// Sum Σ δ.
     pub sum: f64,
-    /// Σ δ (x, y) / Σ δ, in columns and rows; the middle of an image of nothing.
+    /// Centroid Σ δ (x, y) / Σ δ, in columns and rows; the middle of the image if nothing is touched.
     pub centroid: (f64, f64),
-    /// The largest δ.
+    /// Largest value δ.
     pub largest: f64,
 }
 
-/// Places and values of some taxels: three lists of one length, so that sums over them run many at a time.
+/// Positions and values of taxels, in three lists of equal length for vectorised sums.
 #[derive(Clone, Debug, Default)]
 pub struct Touched {
-    /// Columns.
+    /// Columns of the taxels.
     pub x: Vec<f64>,
-    /// Rows.
+    /// Rows of the taxels.
     pub y: Vec<f64>,
-    /// δ.
+    /// Values δ.
     pub value: Vec<f64>,
 }
 
 impl Image {
-    /// Reads a frame (ny · nx values) of so many columns.
+    /// Reads a frame (ny · nx values) with `nx` columns.
     ///
     /// # Panics
-    /// A frame that is not of whole rows.
+    /// If the frame does not consist of whole rows.
     pub fn read(&mut self, frame: &[f64], nx: usize, cut: Cut) {
         assert!(nx > 0 && frame.len().is_multiple_of(nx), "whole rows");
         (self.nx, self.ny) = (nx, frame.len() / nx);
         read(self, frame, cut);
     }
 
-    /// As rows and columns.
+    /// Returns the image as an array, shape (ny, nx).
     pub fn view(&self) -> ArrayView2<'_, f64> {
         let view = ArrayView2::from_shape((self.ny, self.nx), &self.values);
         view.expect("ny · nx values")
     }
 
-    /// The values at places (columns and rows) moved by an offset, as [`at`](Self::at) gives them, in place of `out`.
+    /// Replaces `out` by the values at positions (columns and rows) plus an offset, as [`at`](Self::at) returns them.
     pub fn write_at(&self, places: &[(f64, f64)], offset: (f64, f64), out: &mut Vec<f64>) {
         out.resize(places.len(), 0.0);
         write_at(self, places, offset, out);
     }
 
-    /// The value between taxels, by bilinear interpolation; 0 outside.
+    /// Returns the value at a position between taxels, by bilinear interpolation; 0 outside.
     #[inline(always)]
     pub fn at(&self, x: f64, y: f64) -> f64 {
         let (left, below) = (x.floor(), y.floor());
@@ -91,7 +92,7 @@ impl Image {
     }
 }
 
-/// Reads the frame that an image's shape is of.
+/// Reads a frame into an image whose shape is set.
 #[multiversion(targets("x86_64+avx2"))]
 fn read(image: &mut Image, frame: &[f64], cut: Cut) {
     let Touched { x, y, value } = &mut image.touched;
@@ -136,7 +137,7 @@ fn read(image: &mut Image, frame: &[f64], cut: Cut) {
     };
 }
 
-/// The largest value, at least 0; what is not a number does not count.
+/// Returns the largest value, at least 0; NaN is ignored.
 #[inline(always)]
 fn largest(values: &[f64]) -> f64 {
     let (lanes, last) = values.as_chunks::<8>();

@@ -1,4 +1,4 @@
-//! Joins of features of images.
+//! Joins of image features.
 
 use super::ImageFeature;
 use super::feature::{Feature, Workspace};
@@ -6,15 +6,15 @@ use super::image::Cut;
 use crate::error::{Error, Result};
 use std::fmt::{self, Debug};
 
-/// One feature of images, or several one after the other in the order of [`ImageFeature::ALL`].
+/// One or several image features, one after the other in the order of [`ImageFeature::ALL`].
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Join(u8);
 
 impl Join {
-    /// Of at least one feature, each once.
+    /// Joins at least one feature, each once.
     ///
     /// # Errors
-    /// None, or one twice.
+    /// If there is no feature, or one occurs twice.
     pub fn new(features: &[ImageFeature]) -> Result<Self> {
         let mut join = Self(0);
         for &feature in features {
@@ -30,19 +30,19 @@ impl Join {
         }
     }
 
-    /// The features, in their order.
+    /// Returns the features in their order.
     pub fn features(self) -> impl Iterator<Item = ImageFeature> {
         let all = ImageFeature::ALL.iter().copied();
         all.filter(move |&feature| self.0 & (1 << feature as u8) != 0)
     }
 
-    /// How many numbers it makes of an ny × nx image.
+    /// Returns the number of values for an ny × nx image.
     pub fn n_values(self, shape: (usize, usize)) -> usize {
         self.features().map(|f| (f.about().n_values)(shape)).sum()
     }
 }
 
-/// As a study spells it: `fourier_mellin+descriptors`.
+/// Writes the name in a study: `fourier_mellin+descriptors`.
 impl fmt::Display for Join {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let names: Vec<&str> = self.features().map(ImageFeature::name).collect();
@@ -57,23 +57,23 @@ impl Debug for Join {
 }
 
 impl ImageFeature {
-    /// The name in a study.
+    /// Returns the name in a study.
     pub fn name(self) -> &'static str {
         Self::NAMES[self as usize].0
     }
 }
 
-/// A join that is prepared for images of one size and full scale.
+/// Join of features, prepared for images of one size and full scale.
 #[derive(Debug)]
 pub struct ImageFeatures {
     nx: usize,
     cut: Cut,
-    /// Each with how many numbers it makes.
+    /// Features with their numbers of values.
     features: Vec<(Box<dyn Feature>, usize)>,
 }
 
 impl ImageFeatures {
-    /// For images of ny × nx values from 0 to `full_scale`, of which some is cut off.
+    /// Prepares the features for images of ny × nx values from 0 to `full_scale`, after a cut.
     pub fn new(join: Join, shape: (usize, usize), full_scale: f64, cut: Cut) -> Self {
         let features = join.features().map(|feature| {
             let about = feature.about();
@@ -86,10 +86,10 @@ impl ImageFeatures {
         }
     }
 
-    /// Writes the features of a frame (ny · nx values, row after row). Nothing is allocated once `workspace` has seen one of its size.
+    /// Writes the features of a frame (ny · nx values, row after row). Allocates no memory after the first call with frames of this size.
     ///
     /// # Panics
-    /// If `out` is not as long as [`Join::n_values`] says.
+    /// If the length of `out` is not [`Join::n_values`].
     pub fn write(&self, frame: &[f64], workspace: &mut Workspace, out: &mut [f64]) {
         let mut image = std::mem::take(&mut workspace.image);
         image.read(frame, self.nx, self.cut);

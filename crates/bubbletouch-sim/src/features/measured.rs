@@ -1,30 +1,30 @@
-//! Features of measurements: without what a constant pressure adds to them, at norm 1, or both.
+//! Measurement features: without the effect of a constant pressure, at norm 1, or both.
 //!
-//! **Centred.** A pressure that is the same on all taxels, x = a·1, measures as y = a·u with u = Φ1. Centring removes that
-//! part from each frame: `y − u (u·y) / (u·u)`, the measurements' component at right angles to u. So a touch reads the
-//! same whatever constant is added to all its taxels, and no more than the measurements and Φ need be known. Where every
-//! row of Φ sums to one (block averages, single taxels), u = 1 and this takes each frame's mean over its own measurements
-//! off it. Nothing is removed where u = 0 (scrambled Hadamard measurements without a block's mean), and nothing is left of
-//! a single measurement that feels u.
+//! **Centred.** An equal pressure on all taxels, x = a·1, has the measurements y = a·u with u = Φ1. Centring removes this
+//! component from each frame: `y − u (u·y) / (u·u)` is the component of the measurements orthogonal to u. The features of a touch therefore
+//! do not change if a constant is added to all taxels. Only the measurements and Φ are needed. If every
+//! row of Φ has sum one (block averages, single taxels), then u = 1, and centring subtracts the mean of each frame's
+//! measurements. Nothing is removed if u = 0 (scrambled Hadamard measurements without a block's mean). A
+//! single measurement with u ≠ 0 becomes zero.
 //!
-//! Differs from centring the frame before it is measured, y − mean(x) u, because the mean of the frame is not in its
-//! measurements; both have the same invariance.
+//! Differs from centring the frame before measuring it, y − mean(x) u, because the mean of the frame is not known from its
+//! measurements; both have equal invariance.
 //!
-//! **Unit norm.** All F·m values of a touch are divided by their Euclidean norm, so a touch reads the same on a stiffer
-//! skin; how much a touch grows from frame to frame is kept. A touch of zeros stays zero.
+//! **Unit norm.** All F·m values of a touch are divided by their Euclidean norm, so features do not depend on the stiffness of the
+//! skin. Ratios between the frames of a touch are preserved. A touch of zeros stays zero.
 
 use super::Features;
 use ndarray::{ArrayView1, ArrayViewMut1, ArrayViewMut2};
 
-/// What an element of u = Φ1 is rounded to in double precision where it is 0 (rows of Φ have norms of about 1, and at most
-/// 2²⁴ taxels); smaller ones count as 0.
+/// Rounding error in double precision of an element of u = Φ1 that is exactly 0 (rows of Φ have norms of about 1, and at most
+/// 2²⁴ taxels). Smaller elements count as 0.
 const ROUNDING: f64 = 1e-12;
 
 impl Features {
-    /// Makes features of measurements (n_touches × F·m) in place; `of_ones` is u = Φ1 (m). Those of images leave them as they are.
+    /// Converts measurements (n_touches × F·m) to features in place; `of_ones` is u = Φ1 (m). Image features leave the values unchanged.
     ///
     /// # Panics
-    /// When a row is not a whole number of frames.
+    /// If a row does not consist of whole frames.
     pub fn apply(self, mut rows: ArrayViewMut2<f64>, of_ones: ArrayView1<f64>) {
         let m = of_ones.len();
         assert!(m > 0 && rows.ncols().is_multiple_of(m), "whole frames");
@@ -52,7 +52,7 @@ impl Features {
     }
 }
 
-/// Divides by the norm, by way of the largest value, so that no square overflows or vanishes.
+/// Divides by the norm, after scaling by the largest value, so that squares neither overflow nor underflow.
 fn scale_to_one(mut row: ArrayViewMut1<f64>) {
     let largest = row.iter().fold(0.0_f64, |largest, v| largest.max(v.abs()));
     if largest == 0.0 || !largest.is_finite() {

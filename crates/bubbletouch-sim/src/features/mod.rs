@@ -1,13 +1,13 @@
-//! Features: what is made of a touch before a classifier scales and learns it.
+//! Features: quantities computed from a touch, which a classifier then scales and learns.
 //!
-//! The measurements of a touch are F frames of m, one after the other (F = 1 unless a touch is read at several depths). Everything here is
-//! done to one touch at a time and learns nothing of objects, so training and test touches need not be kept apart.
+//! The measurements of a touch are F frames of m values, one after the other (F = 1 unless a touch is read at several depths). Features are
+//! computed from one touch at a time without knowledge of objects, so training and test touches need not be separated.
 //!
-//! **Of measurements** ([`measured`]): raw, without what a constant pressure adds (centred), at norm 1, or both.
+//! **Measurement features** ([`measured`]): raw, without the effect of a constant pressure (centred), at norm 1, or both.
 //!
-//! **Of images** ([`ImageFeature`], and joins of several): numbers that stay as they are when the contact moves over the array or turns on it,
-//! which is most of what differs between two touches of one object that nothing holds in place. They need the frame; where it was
-//! compressed, its [linear estimate](crate::sensing::ImageEstimate) stands for it. Of a patch without rows and columns they see its [`Chart`].
+//! **Image features** ([`ImageFeature`], and joins of several): numbers that are invariant to shifts and rotations of the contact on the array,
+//! which cause most differences between touches of a free object. They need the frame; if it was
+//! compressed, its [linear estimate](crate::sensing::ImageEstimate) replaces it. A patch without rows and columns uses its [`Chart`].
 //!
 //! | feature | numbers (64 × 64) | shift | turn | mirror image | more pressure | deeper |
 //! |---|---|---|---|---|---|---|
@@ -19,9 +19,9 @@
 //! | [`Descriptors`](ImageFeature::Descriptors) | 126 | exact by taxels | exact by 90° | all but 3 | 51 of them | 24 of them |
 //! | [`Aligned`](ImageFeature::Aligned) | 1,024 | exact by taxels | exact by 90° | | | |
 //!
-//! Exact by taxels: by a whole number of taxels, while the contact stays on the array; exact by 90°: to rounding, on a square array. Other
-//! shifts and turns change what taxels sample of the object, and features as much as that. Four
-//! times the pressure makes magnitudes and harmonics, of which these are roots, four times as large.
+//! Exact by taxels: for shifts by a whole number of taxels while the contact stays on the array. Exact by 90°: up to rounding, on a square array. Other
+//! shifts and rotations change the features as much as the sampling by taxels changes the image. Four
+//! times the pressure doubles magnitudes and harmonics, because these are square roots.
 
 mod chart;
 mod feature;
@@ -43,7 +43,7 @@ pub use moments::{N_MOMENTS, Weight, moments};
 pub use selection::Features;
 pub use tilted::tilt_frame;
 
-// Everything that a study may say of a feature of images follows from its line here and from the file that it names.
+// The properties of an image feature follow from its line here and from the module that the line names.
 image_features! {
     FourierMagnitude fourier_magnitude "Roots of the magnitudes of the Fourier transform at low frequencies.";
     FourierMellin fourier_mellin "Harmonics over the angle of the Fourier magnitude in rings.";

@@ -1,13 +1,13 @@
-//! Moments of an image that do not change when it is shifted or turned.
+//! Moments of an image that are invariant to shifts and rotations.
 //!
-//! With μ_pq = Σ w (x − x̄)ᵖ (y − ȳ)^q / Σ w about the centroid of the weights w, and C_pq those of complex coordinates z = x + iy
-//! (C₁₁ = μ₂₀ + μ₀₂, C₂₀ = μ₂₀ − μ₀₂ + 2i μ₁₁, C₃₀ = Σ w z³ / Σ w, C₂₁ = Σ w z² z̄ / Σ w), to turn by φ multiplies C_pq by exp(i (p − q) φ).
-//! So these nine do not change, each as the length that its unit is a power of:
+//! Let μ_pq = Σ w (x − x̄)ᵖ (y − ȳ)^q / Σ w be moments about the centroid of the weights w, and C_pq those of complex coordinates z = x + iy
+//! (C₁₁ = μ₂₀ + μ₀₂, C₂₀ = μ₂₀ − μ₀₂ + 2i μ₁₁, C₃₀ = Σ w z³ / Σ w, C₂₁ = Σ w z² z̄ / Σ w). A rotation by φ multiplies C_pq by exp(i (p − q) φ).
+//! The following nine numbers are therefore invariant; roots convert each of them to a length:
 //!
 //! √C₁₁, the standard deviations along both principal axes √((C₁₁ ± |C₂₀|) / 2), √|C₂₀|, |C₃₀|^⅓, |C₂₁|^⅓, and
 //! the products Re(C₂₀ C̄₂₁²), Re(C₃₀ C̄₂₁³), Im(C₃₀ C̄₂₁³), signed roots of them.
 //!
-//! The last changes its sign in a mirror image. They are functions of Hu's seven.
+//! The last one changes its sign in a mirror image. All nine are functions of Hu's seven moments.
 //!
 //! Sources: Hu (1962), IRE Transactions on Information Theory 8, 179; Flusser (2000), *On the independence of rotation moment
 //! invariants*, Pattern Recognition 33, 1405 (the complex form).
@@ -16,24 +16,24 @@ use super::image::{Image, Touched};
 use multiversion::multiversion;
 use realfft::num_complex::Complex;
 
-/// How many there are.
+/// Number of moments per weight.
 pub const N_MOMENTS: usize = 9;
 
-/// What a touched taxel counts.
+/// Weight of a touched taxel in the moments.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Weight {
-    /// Its δ.
+    /// The pressure δ of the taxel.
     Pressure,
-    /// One.
+    /// One for every touched taxel.
     Touched,
-    /// One, of those above a level.
+    /// One for taxels above a level.
     Above(f64),
 }
 
-/// Weights that are summed side by side.
+/// Number of weights that are summed at a time.
 const LANES: usize = 4;
 
-/// The nine of an image by each of up to four weights, in columns and rows; zeros where nothing weighs.
+/// Returns the nine moments for each of up to four weights, in units of columns and rows; zeros if the sum of the weights is 0.
 pub fn moments<const N: usize>(image: &Image, weights: [Weight; N]) -> [[f64; N_MOMENTS]; N] {
     const { assert!(N <= LANES) };
     let mut lanes = [Weight::Touched; LANES];
@@ -45,12 +45,12 @@ pub fn moments<const N: usize>(image: &Image, weights: [Weight; N]) -> [[f64; N_
     })
 }
 
-/// Σ w and the sums that the C_pq are of.
+/// Σ w and the sums from which the C_pq are computed.
 #[derive(Default)]
 struct Sums {
     total: [f64; LANES],
     c11: [f64; LANES],
-    /// Real and imaginary parts.
+    /// Real and imaginary parts of the sum for C₂₀.
     c20: [[f64; LANES]; 2],
     c21: [[f64; LANES]; 2],
     c30: [[f64; LANES]; 2],
@@ -102,7 +102,7 @@ fn central_sums(Touched { x, y, value }: &Touched, weights: [Weight; LANES]) -> 
 }
 
 impl Sums {
-    /// The nine of a weight.
+    /// Returns the nine invariants of one weight.
     fn invariants(&self, lane: usize) -> [f64; N_MOMENTS] {
         let total = self.total[lane];
         let c11 = self.c11[lane] / total;

@@ -1,12 +1,12 @@
-//! Roots of harmonics over the angle of the image itself, in rings about the centroid of its pressure: 416 numbers.
+//! Square roots of angular harmonics of the image, in rings about the centroid of its pressure: 416 numbers.
 //!
 //! With the centroid (x̄, ȳ) = Σ δ (x, y) / Σ δ and rings of radius r = (j + ½) h / 26, j = 0 … 25, where h is half the shorter side:
 //!
 //! f(j, k)² = |Σ_θ δ(x̄ + r cos θ, ȳ + r sin θ) exp(−ikθ)| / 32, θ in 32 equal steps, k = 0 … 15.
 //!
-//! δ between taxels is interpolated bilinearly, and 0 beyond the array. The centroid goes with the contact and a turn of the image
-//! turns rings: invariant exactly to shifts by whole taxels as long as no ring that meets the contact leaves the array, and to
-//! quarter turns; to others as far as taxels sample what is turned. The root brings weak harmonics closer to strong ones.
+//! δ between taxels is interpolated bilinearly, and is 0 beyond the array. The centroid moves with the contact, and a rotation of the image
+//! rotates the rings. The feature is exactly invariant to shifts by whole taxels as long as no ring that meets the contact leaves the array, and to
+//! quarter turns; for other motions the sampling by taxels limits the invariance. The root brings weak harmonics closer to strong ones.
 //!
 //! Source: the angular part of Sheng and Arsenault (1986), JOSA A 3, 771, without the transform before it.
 
@@ -15,11 +15,11 @@ use super::image::Image;
 use super::rings::{Rings, roots};
 use std::f64::consts::TAU;
 
-/// Rings; on 64 × 64 taxels 1.2 pitches apart.
+/// Number of rings; on 64 × 64 taxels they are 1.2 pitches apart.
 const N_RINGS: usize = 26;
-/// A multiple of 4, so that a quarter turn is a whole number of steps.
+/// Number of angles per ring, a multiple of 4, so that a quarter turn is a whole number of steps.
 const N_ANGLES: usize = 32;
-/// All but the one that a step of 32 cannot tell from its mirror image.
+/// Number of harmonics: all but the one that 32 steps cannot distinguish from its mirror image.
 const N_HARMONICS: usize = 16;
 
 pub(super) const ABOUT: FeatureAbout = FeatureAbout {
@@ -31,7 +31,7 @@ pub(super) const ABOUT: FeatureAbout = FeatureAbout {
 #[derive(Debug)]
 struct PolarHarmonics {
     rings: Rings,
-    /// Of each value, ring after ring: where it is beside the centroid, in columns and rows.
+    /// Offsets from the centroid of each value, ring after ring, in columns and rows.
     places: Vec<(f64, f64)>,
 }
 

@@ -1,4 +1,4 @@
-//! Harmonics around rings: what an angle may be chosen freely of.
+//! Magnitudes of harmonics around rings, which do not depend on the reference angle.
 
 use multiversion::multiversion;
 use realfft::num_complex::Complex;
@@ -6,21 +6,21 @@ use realfft::{RealFftPlanner, RealToComplex};
 use std::fmt;
 use std::sync::Arc;
 
-/// The first harmonics of values at equal angles around each of some rings:
+/// First harmonics of values at equal angles around several rings:
 ///
 /// hₖ = |Σⱼ f(θⱼ) exp(−2πi j k / n)| / n, k = 0 … `n_harmonics` − 1.
 ///
-/// To turn a ring by j₀ steps multiplies harmonic k by exp(2πi j₀ k / n): hₖ does not change.
+/// A rotation of a ring by j₀ steps multiplies harmonic k by exp(2πi j₀ k / n), so hₖ does not change.
 pub(super) struct Rings {
     n_angles: usize,
     n_harmonics: usize,
     around: Arc<dyn RealToComplex<f64>>,
 }
 
-/// What harmonics are made in.
+/// Working memory for the harmonics.
 #[derive(Clone, Debug, Default)]
 pub struct RingWorkspace {
-    /// Values ring after ring, `n_angles` each; spoiled by the transform.
+    /// Values ring after ring, `n_angles` each; the transform overwrites them.
     pub(super) values: Vec<f64>,
     of_ring: Vec<Complex<f64>>,
     scratch: Vec<Complex<f64>>,
@@ -35,7 +35,7 @@ impl Rings {
         }
     }
 
-    /// Harmonics of `workspace.values`, ring after ring.
+    /// Writes the harmonics of `workspace.values`, ring after ring.
     pub(super) fn write(&self, workspace: &mut RingWorkspace, out: &mut [f64]) {
         let RingWorkspace {
             values,
@@ -58,7 +58,7 @@ impl Rings {
     }
 }
 
-/// Square roots, in place, many at a time.
+/// Replaces values by their square roots, vectorised.
 #[multiversion(targets("x86_64+avx2"))]
 pub(super) fn roots(values: &mut [f64]) {
     for value in values {

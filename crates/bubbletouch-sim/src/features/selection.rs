@@ -4,26 +4,26 @@ use super::{ImageFeature, Join, fourier_magnitude, fourier_mellin};
 use crate::error::Error;
 use serde::{Deserialize, Serialize};
 
-/// Features of a touch, as a study names them.
+/// Features of a touch, as listed in a study.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
 )]
 #[serde(try_from = "String", into = "String")]
 pub enum Features {
-    /// The measurements.
+    /// Measurements without a change.
     #[default]
     Raw,
-    /// Each frame without what a constant pressure adds to it.
+    /// Each frame without the effect of a constant pressure.
     Centred,
     /// Each touch scaled to norm 1.
     UnitNorm,
     /// Centred, then scaled to norm 1.
     CentredUnitNorm,
-    /// Of each frame as an image.
+    /// Image features of each frame.
     OfImage(Join),
 }
 
-/// Features of measurements: name in a study, and what people call it where that is something else.
+/// Measurement features: name in a study, and description if it differs.
 const OF_MEASUREMENTS: [(&str, Features); 4] = [
     ("raw", Features::Raw),
     ("centred", Features::Centred),
@@ -32,7 +32,7 @@ const OF_MEASUREMENTS: [(&str, Features); 4] = [
 ];
 
 impl Features {
-    /// What people call those whose name does not say it.
+    /// Descriptions of features whose name is not sufficient.
     pub const NAMES: &[(&str, &str)] = &[
         ("centred_unit_norm", "centred, unit norm"),
         ("fourier_magnitude", fourier_magnitude::ABOUT.words),
@@ -43,7 +43,7 @@ impl Features {
         ),
     ];
 
-    /// The features of images, of those that are.
+    /// Returns the image features; `None` for measurement features.
     pub fn of_image(self) -> Option<Join> {
         match self {
             Self::OfImage(join) => Some(join),
@@ -51,7 +51,7 @@ impl Features {
         }
     }
 
-    /// How many numbers it makes of a frame of m measurements of an ny × nx array.
+    /// Returns the number of values for a frame of m measurements of an ny × nx image.
     pub fn n_values(self, m: usize, shape: (usize, usize)) -> usize {
         self.of_image().map_or(m, |join| join.n_values(shape))
     }

@@ -1,6 +1,6 @@
-//! The magnitude of the two-dimensional Fourier transform of an image, at its low frequencies.
+//! Magnitude of the two-dimensional Fourier transform of an image, at low frequencies.
 //!
-//! F(u, v) = Σ δ(x, y) exp(−2πi (u x / nx + v y / ny)). The image is real, so F(−u, −v) is the conjugate of F(u, v): columns u ≥ 0 say all.
+//! F(u, v) = Σ δ(x, y) exp(−2πi (u x / nx + v y / ny)). The image is real, so F(−u, −v) is the conjugate of F(u, v), and columns u ≥ 0 suffice.
 
 use super::image::Image;
 use super::rings::roots;
@@ -10,7 +10,7 @@ use rustfft::{Fft, FftPlanner};
 use std::fmt;
 use std::sync::Arc;
 
-/// |F| at u = 0 … `n_columns` − 1 and all v.
+/// Transform that computes |F| at u = 0 … `n_columns` − 1 and all v.
 pub(super) struct Spectrum {
     nx: usize,
     ny: usize,
@@ -19,19 +19,19 @@ pub(super) struct Spectrum {
     along_y: Arc<dyn Fft<f64>>,
 }
 
-/// What transforms are made in.
+/// Working memory for the transforms.
 #[derive(Clone, Debug, Default)]
 pub struct FourierWorkspace {
     line: Vec<f64>,
     of_line: Vec<Complex<f64>>,
     columns: Vec<Complex<f64>>,
     scratch: Vec<Complex<f64>>,
-    /// |F|: of column u row v at u · ny + v.
+    /// Magnitudes |F|; the value of column u and row v is at index u · ny + v.
     pub(super) magnitudes: Vec<f64>,
 }
 
 impl Spectrum {
-    /// Of images of ny × nx, up to column `last`, of those that there are.
+    /// Prepares the transform of ny × nx images for columns 0 to `last`, limited to the existing ones.
     pub(super) fn new((ny, nx): (usize, usize), last: usize) -> Self {
         Self {
             nx,
@@ -42,12 +42,12 @@ impl Spectrum {
         }
     }
 
-    /// How many columns u there are, from 0 on.
+    /// Returns the number of columns u, counted from 0.
     pub(super) fn n_columns(&self) -> usize {
         self.n_columns
     }
 
-    /// Transforms: rows that are touched, then the columns.
+    /// Transforms the touched rows, then the columns.
     pub(super) fn transform(&self, image: &Image, workspace: &mut FourierWorkspace) {
         assert_eq!((image.nx, image.ny), (self.nx, self.ny));
         let FourierWorkspace {

@@ -1,19 +1,19 @@
-//! What a frame becomes when its object is tilted a little further.
+//! Prediction of a frame after a small additional tilt of the object.
 //!
-//! A rigid object goes as deep into the skin at (x, y) as its surface is in front of the untouched skin. To tilt it by small angles adds a plane
-//! to that, δ + a x + b y, but for terms of second order in the angle (1 − cos 5° = 0.004), and the patch goes on until the foremost point is as deep
-//! as it was:
+//! The deflection at (x, y) under a rigid object is the height of its surface below the untouched skin. A small tilt adds a plane
+//! to it, δ + a x + b y, except for second-order terms in the angle (1 − cos 5° = 0.004). The patch then moves until the foremost point has its
+//! previous depth:
 //!
-//! δ'(x, y) = max(0, δ + a x + b y − max(δ + a x + b y) + max δ), both maxima over what is touched.
+//! δ'(x, y) = max(0, δ + a x + b y − max(δ + a x + b y) + max δ), both maxima over the touched taxels.
 //!
-//! What was not touched stays untouched, since a frame does not say how far away it is: where the object would come within reach only
-//! by being tilted, the image ends at its old rim.
+//! Untouched taxels stay untouched, since a frame does not contain their distance to the object. If the tilt would bring
+//! them into contact, the image still ends at its old border.
 
-/// Writes the tilted frame of ny × nx values, row after row: `slope` is (a, b), by how much it rises from a column to the next and from a row to the
-/// next, in the frame's unit; what is below `level` is not touched.
+/// Writes the tilted frame of ny × nx values, row after row. `slope` is (a, b), the increase per column and per row in the unit of the frame.
+/// Values below `level` count as untouched.
 ///
 /// # Panics
-/// If `out` is not as long as the frame, or that not of whole rows.
+/// If `out` and the frame differ in length, or if the frame does not consist of whole rows.
 pub fn tilt_frame(frame: &[f64], nx: usize, slope: (f64, f64), level: f64, out: &mut [f64]) {
     assert!(nx > 0 && frame.len().is_multiple_of(nx), "whole rows");
     assert_eq!(frame.len(), out.len(), "values of a frame");

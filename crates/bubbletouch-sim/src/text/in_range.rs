@@ -1,11 +1,11 @@
-//! Numbers that are in their range, or the error that says which numbers are.
+//! Range checks of numbers; the error states the allowed range.
 
 use crate::error::{Error, Result};
 
-/// A finite number above zero, in a unit.
+/// Checks that a number is finite and positive; `unit` is used in the error.
 ///
 /// # Errors
-/// The value is infinite, NaN or not above zero.
+/// If the value is infinite, NaN or not positive.
 pub fn positive(place: &str, value: f64, unit: &str) -> Result<f64> {
     if value.is_finite() && value > 0.0 {
         return Ok(value);
@@ -17,10 +17,10 @@ pub fn positive(place: &str, value: f64, unit: &str) -> Result<f64> {
     ))
 }
 
-/// A finite number that is not below zero, in a unit; empty without one.
+/// Checks that a number is finite and not negative; `unit` is used in the error and may be empty.
 ///
 /// # Errors
-/// The value is infinite, NaN or below zero.
+/// If the value is infinite, NaN or negative.
 pub fn not_negative(place: &str, value: f64, unit: &str) -> Result<f64> {
     if value.is_finite() && value >= 0.0 {
         return Ok(value);
@@ -33,10 +33,10 @@ pub fn not_negative(place: &str, value: f64, unit: &str) -> Result<f64> {
     ))
 }
 
-/// A number from 0 to 1.
+/// Checks that a number is from 0 to 1.
 ///
 /// # Errors
-/// The value is outside 0 to 1, or NaN.
+/// If the value is outside 0 to 1, or NaN.
 pub fn fraction(place: &str, value: f64) -> Result<f64> {
     if (0.0..=1.0).contains(&value) {
         return Ok(value);

@@ -1,9 +1,9 @@
-//! Text: readers of numbers, names and TOML, and their errors.
+//! Text: reading of numbers, names and TOML, and their error messages.
 //!
 //! | module | input → output |
 //! |---|---|
 //! | [`toml_text`] | TOML → a value, or an error with file and line |
-//! | [`toml_lines`] | a place in TOML → its line |
+//! | [`toml_lines`] | a position in TOML → its line |
 //! | [`toml_numbers`] | TOML → an error if a number is out of the bounds of its unit |
 //! | [`numbers_csv`] | CSV → columns of numbers |
 //! | [`in_range`] | a number → the number, or an error with the allowed range |

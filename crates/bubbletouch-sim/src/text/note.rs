@@ -1,9 +1,9 @@
-//! Notes on standard error: what was read in another way than it is written, and what takes long.
+//! Notes on standard error, about inputs that are interpreted differently than written and about slow operations.
 
 use std::fmt::Display;
 use std::io::Write;
 
-/// Writes the line `note: …` on standard error. A closed standard error changes nothing.
+/// Writes the line `note: …` to standard error. A closed standard error is ignored.
 pub fn note(text: impl Display) {
     let _ = writeln!(std::io::stderr(), "note: {text}");
 }

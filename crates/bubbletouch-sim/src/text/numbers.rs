@@ -1,6 +1,6 @@
-//! Numbers as people write them.
+//! Formatting of numbers for people.
 
-/// A number as people write it: four significant digits, no trailing zeros.
+/// Formats a number with four significant digits and without trailing zeros.
 pub fn short_number(number: f64) -> String {
     if number == 0.0 {
         return "0".to_owned();
@@ -20,7 +20,7 @@ pub fn short_number(number: f64) -> String {
     }
 }
 
-/// Seconds in the unit that suits them, three significant digits: `20.3 µs`.
+/// Formats seconds in a suitable unit with three significant digits: `20.3 µs`.
 pub fn time_words(seconds: f64) -> String {
     if seconds == 0.0 {
         return "0 s".to_owned();

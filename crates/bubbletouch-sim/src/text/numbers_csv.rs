@@ -1,9 +1,9 @@
-//! Numbers in CSV files that people write: how they are read, and what is said of a row that cannot be.
+//! Reading of numbers from CSV files, and the errors of invalid rows.
 
 use crate::error::{Error, Result};
 use std::io::{self, Read};
 
-/// A reader of rows of any length, blanks around fields dropped, no row taken for a header.
+/// Returns a CSV reader for rows of any length, without a header; blanks around fields are removed.
 pub fn rows_of<R: Read>(source: R) -> csv::Reader<R> {
     csv::ReaderBuilder::new()
         .has_headers(false)
@@ -12,7 +12,7 @@ pub fn rows_of<R: Read>(source: R) -> csv::Reader<R> {
         .from_reader(source)
 }
 
-/// The error of a file that cannot be read or is no text; `allowed` says what its rows are.
+/// Returns the error of a file that cannot be read or is not text; `allowed` describes valid rows.
 pub fn unreadable(place: &str, error: csv::Error, allowed: impl ToString) -> Error {
     let text = error.to_string();
     match error.into_kind() {
@@ -23,15 +23,15 @@ pub fn unreadable(place: &str, error: csv::Error, allowed: impl ToString) -> Err
     }
 }
 
-/// The line that a row begins in, from 1.
+/// Returns the line at which a row begins, counted from 1.
 pub fn line_of(record: &csv::StringRecord) -> u64 {
     record.position().map_or(0, |position| position.line())
 }
 
-/// The error is another number of fields in a row at `place`.
+/// Checks the number of fields of a row at `place`.
 ///
 /// # Errors
-/// The record has another number of fields.
+/// If the record has another number of fields.
 pub fn check_width(place: &str, record: &csv::StringRecord, width: usize) -> Result<()> {
     if record.len() == width {
         return Ok(());
@@ -43,10 +43,10 @@ pub fn check_width(place: &str, record: &csv::StringRecord, width: usize) -> Res
     ))
 }
 
-/// The finite number that a field of a row at `place` is; `allowed` says what of.
+/// Parses a field of a row at `place` as a finite number; `allowed` describes valid values.
 ///
 /// # Errors
-/// The field is no finite number.
+/// If the field is not a finite number.
 pub fn finite(place: &str, column: &str, field: &str, allowed: &str) -> Result<f64> {
     match field.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
@@ -58,25 +58,25 @@ pub fn finite(place: &str, column: &str, field: &str, allowed: &str) -> Result<f
     }
 }
 
-/// A header of names, and rows that have a number under each.
+/// Table of numbers with named columns.
 #[derive(Debug, Default)]
 pub struct NumberTable {
-    /// The file's name, for errors.
+    /// Name of the file, for errors.
     pub place: String,
     header_line: u64,
-    /// The names of the columns.
+    /// Names of the columns.
     pub names: Vec<String>,
-    /// One a name.
+    /// Values of each column, in the order of `names`.
     pub columns: Vec<Vec<f64>>,
-    /// Where each row is in the file.
+    /// Line of each row in the file.
     pub lines: Vec<u64>,
 }
 
 impl NumberTable {
-    /// Reads all; errors begin with `place`, the file's name, and give line and column. `allowed`: what such a file has.
+    /// Reads a whole table. Errors begin with `place`, the name of the file, and state line and column; `allowed` describes a valid file.
     ///
     /// # Errors
-    /// The file is no table of finite numbers.
+    /// If the file is not a table of finite numbers.
     pub fn read(place: &str, source: impl Read, allowed: &str) -> Result<Self> {
         let not_text = |error| unreadable(place, error, allowed);
         let mut reader = rows_of(source);
@@ -105,13 +105,13 @@ impl NumberTable {
         Ok(table)
     }
 
-    /// An error in the header.
+    /// Returns an error about the header.
     pub fn refuse_header(&self, given: impl ToString, allowed: impl ToString) -> Error {
         let place = format!("{}, line {}", self.place, self.header_line);
         Error::input(place, given, allowed)
     }
 
-    /// Where a column is, by its name.
+    /// Returns the index of the column with this name.
     pub fn position(&self, name: &str) -> Option<usize> {
         self.names.iter().position(|known| known == name)
     }

@@ -1,17 +1,17 @@
-//! Names that were perhaps meant, numbers of things, and durations.
+//! Spelling suggestions, counted nouns and durations.
 
 use crate::error::{Error, Result};
 
-/// At most this many are offered: more is a list that nobody reads.
+/// Maximum number of suggestions; longer lists are hard to read.
 const OFFERED: usize = 8;
 
-/// A number of things, each called `one`: `1 thread`, `2 threads`.
+/// Formats a number with a noun, singular or plural: `1 thread`, `2 threads`.
 pub fn counted(number: usize, one: &str) -> String {
     let plural = if number == 1 { "" } else { "s" };
     format!("{number} {one}{plural}")
 }
 
-/// Seconds in words: no more digits than an estimate has.
+/// Formats seconds in words, with few digits, as for an estimate.
 pub fn duration(seconds: f64) -> String {
     match seconds {
         s if s < 1.0 => "under 1 s".to_owned(),
@@ -22,10 +22,10 @@ pub fn duration(seconds: f64) -> String {
     }
 }
 
-/// The place of a name among `names`; the error offers those it resembles.
+/// Returns the index of a name among `names`; the error suggests similar names.
 ///
 /// # Errors
-/// The name is not among those known; the error names the nearest.
+/// If the name is unknown; the error contains the most similar names.
 pub fn known<'a>(
     place: impl ToString,
     name: &str,
@@ -35,7 +35,7 @@ pub fn known<'a>(
     found.ok_or_else(|| Error::input(place, format!("`{name}`"), nearest_names(name, names)))
 }
 
-/// The error's last part for a name that is not among `names`: those it resembles, else the first few there are.
+/// Returns the end of the error for an unknown name: similar names, otherwise the first names of the list.
 pub fn nearest_names<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> String {
     let all: Vec<&str> = names.into_iter().collect();
     let mut near: Vec<(usize, &str)> = all
@@ -56,7 +56,7 @@ pub fn nearest_names<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -
     format!("perhaps {}", quoted(&near))
 }
 
-/// The known word that an unknown one is a slip of, if it is: at most two letters off and no more than a third of it.
+/// Returns the known word of which an unknown word is probably a misspelling: at most two edits, and no more than a third of its letters.
 pub fn slip_of<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     let near = |known: &&&str| {
         let far = distance(word, known);
@@ -65,7 +65,7 @@ pub fn slip_of<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     known.iter().find(near).copied()
 }
 
-/// Letters to insert, delete, replace or swap; capitals count as small ones.
+/// Returns the edit distance: letters inserted, deleted, replaced or swapped, ignoring case.
 fn distance(a: &str, b: &str) -> usize {
     strsim::damerau_levenshtein(&a.to_lowercase(), &b.to_lowercase())
 }

@@ -1,4 +1,4 @@
-//! Bounds of the numbers in a TOML file, whatever the key: all are finite, and none is far beyond what its unit measures on a robot.
+//! Bounds of the numbers in a TOML file, for any key: all are finite, and none is far beyond the range of its unit in robotics.
 //!
 //! The end of a key names its unit (`stroke_mm`). A number without a unit is bounded by `MAX_PLAIN`. The check runs when a file is read,
 //! before its keys are known; checks of single keys are narrower.
@@ -8,9 +8,9 @@ use crate::error::{Error, Result};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// Ends of keys, the largest magnitude that is allowed there, and its unit. Longer ends come first. The bounds are three or more powers of ten
-/// above the largest values in use. With larger ones squares overflow, or steps and cells become too many to count; smaller ones refuse valid
-/// machines.
+/// Suffixes of keys with the largest allowed magnitude and the unit; longer suffixes come first. The bounds are three or more powers of ten
+/// above the largest values in use. If they are larger, squares overflow, or steps and cells become too many; if they are smaller, valid
+/// machines are rejected.
 const BOUNDS: [(&str, f64, &str); 19] = [
     ("_n_s_per_m", 1e9, " N·s/m"),
     ("_mm_per_s", 1e7, " mm/s"),
@@ -33,10 +33,10 @@ const BOUNDS: [(&str, f64, &str); 19] = [
     ("_full_scale", 1e12, ""),
 ];
 
-/// The largest magnitude of a number without a unit: its square, and sums of millions of squares, stay finite in f64.
+/// Largest magnitude of a number without a unit; its square, and sums of millions of squares, are finite in f64.
 const MAX_PLAIN: f64 = 1e100;
 
-/// What may stand at a key: the largest magnitude, and its unit.
+/// Bound of the values of a key: the largest magnitude, and the unit.
 #[derive(Clone, Copy)]
 struct Bound(f64, &'static str);
 
@@ -46,14 +46,14 @@ struct Bound(f64, &'static str);
 /// If a number is not finite or beyond the bound of its unit. The error names `place` (the file), the line and the key.
 pub fn check_bounds(place: &str, text: &str) -> Result<()> {
     let Ok(table) = DeTable::parse(text) else {
-        // The reader of the file says what is wrong.
+        // The TOML reader reports the syntax error later.
         return Ok(());
     };
     let checked = Text { place, text };
     checked.table("", Bound(MAX_PLAIN, ""), table.get_ref())
 }
 
-/// A text, and what errors call it.
+/// A TOML text and its name in errors.
 struct Text<'a> {
     place: &'a str,
     text: &'a str,
@@ -64,7 +64,7 @@ impl Text<'_> {
         for (name, value) in table {
             let name = name.get_ref();
             let known = BOUNDS.iter().find(|(end, ..)| name.ends_with(end));
-            // Of `{ grid = [0, 50, 6] }` the key outside names the unit.
+            // In `{ grid = [0, 50, 6] }` the outer key has the unit.
             let bound = known.map_or(outer, |&(_, largest, unit)| Bound(largest, unit));
             let path = match path {
                 "" => name.to_string(),
@@ -87,7 +87,7 @@ impl Text<'_> {
             DeValue::Array(values) => {
                 let mut values = values.iter().enumerate();
                 values.try_for_each(|(number, value)| match value.get_ref().as_table() {
-                    // As the checks of single keys call it: by its name, or by its number from 1.
+                    // Formats the table as the checks of single keys do: by its name, or by its number from 1.
                     Some(table) => {
                         let name = table.get("name").and_then(|name| name.get_ref().as_str());
                         let path = match name {
@@ -109,7 +109,7 @@ impl Text<'_> {
                 }
                 _ => Ok(()),
             },
-            // Whole numbers without a unit are counts and seeds, which their own checks bound.
+            // Integers without a unit are counts and seeds, whose own checks have bounds.
             DeValue::Integer(number) if largest < MAX_PLAIN => {
                 let number = i64::from_str_radix(number.as_str(), number.radix());
                 match number {
@@ -132,7 +132,7 @@ fn shown(number: f64) -> String {
     }
 }
 
-/// The same error with the line of its key, where it names a key of this text without one: `file:12, key skin.stroke_mm`.
+/// Adds the line of the key to an error that contains a key of this text without a line: `file:12, key skin.stroke_mm`.
 pub fn with_line(place: &str, text: &str, error: Error) -> Error {
     let Error::Input {
         place: named,
@@ -157,8 +157,8 @@ pub fn with_line(place: &str, text: &str, error: Error) -> Error {
     Error::input(format!("{place}:{line}{rest}"), given, allowed)
 }
 
-/// The line of a key, or of the innermost table on its path that is there; `None` if not even the first is. A part of a path is a name, a name
-/// with a number from 1 (`parts[2]`), or the name that a table of an array has (`objects.ball`).
+/// Returns the line of a key, or of the innermost existing table on its path; `None` if not even the first part exists. A part of a path is a name, a name
+/// with a number from 1 (`parts[2]`), or the name of a table in an array (`objects.ball`).
 fn line_of_key(text: &str, path: &str) -> Option<usize> {
     let table = DeTable::parse(text).ok()?;
     let mut inside = table.get_ref();

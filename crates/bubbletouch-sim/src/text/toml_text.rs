@@ -1,4 +1,4 @@
-//! TOML that a person wrote: read into what it says, or refused with the place.
+//! Reading and writing of TOML files, with errors that state the place.
 
 use super::toml_lines::line_of;
 use super::toml_numbers::check_bounds;
@@ -8,47 +8,47 @@ use serde::de::DeserializeOwned;
 use toml_parser::Source;
 use toml_parser::lexer::TokenKind;
 
-/// Brackets open at once, at most. The reader knows a limit of its own (80), but forgets it where text is broken, and calls itself for
-/// each bracket: thousands of them are the end of a thread's stack.
+/// Maximum nesting of brackets. The TOML reader has its own limit (80), but ignores it in invalid text and recurses for
+/// each bracket; thousands of them would overflow a thread's stack.
 const MAX_OPEN: usize = 200;
 
-/// What a text says; the error names `place` (the file), line and column.
+/// Parses a text; the error contains `place` (the file), line and column.
 ///
 /// # Errors
-/// The text is no TOML, or has an unknown, missing or mistyped key, or a number out of bounds.
+/// If the text is not valid TOML, has an unknown, missing or mistyped key, or has a number out of bounds.
 pub fn read<T: DeserializeOwned>(place: &str, text: &str) -> Result<T> {
     check_brackets(place, text)?;
     check_numbers(place, text)?;
     toml::from_str(text).map_err(|error| Error::toml(place, text, &error))
 }
 
-/// Refuses whole numbers that a type may take and no table has, so that it could not be written, and numbers [out of bounds](check_bounds).
+/// Rejects integers that a TOML table cannot store, and numbers [out of bounds](check_bounds).
 ///
 /// # Errors
-/// The text is no TOML, or a number in it is out of bounds.
+/// If the text is not valid TOML, or a number in it is out of bounds.
 pub fn check_numbers(place: &str, text: &str) -> Result<()> {
     let read = text.parse::<toml::Table>();
     read.map_err(|error| Error::toml(place, text, &error))?;
     check_bounds(place, text)
 }
 
-/// A study with every default spelt out.
+/// Writes a study with all default values as TOML.
 pub fn write(study: &impl Serialize) -> String {
     toml::to_string(study).expect("every field of a study has a TOML form")
 }
 
-/// The table that a text is, if it is one.
+/// Parses a text as a TOML table; `None` if it is not valid TOML.
 pub fn table(text: &str) -> Option<toml::Table> {
     check_brackets("", text).ok()?;
     text.parse().ok()
 }
 
-/// Refuses text that is no TOML and would need a deep stack to say so.
+/// Rejects invalid TOML text whose parsing would need a deep stack.
 ///
 /// # Errors
-/// More brackets are open at once than the reader may nest.
+/// If more brackets are open at once than [`MAX_OPEN`].
 pub fn check_brackets(place: &str, text: &str) -> Result<()> {
-    // Square, and curly: in broken text either may be closed by the other, or not.
+    // Square and curly brackets are counted separately; in invalid text one kind may close the other.
     let mut open = [0_usize; 2];
     for token in Source::new(text).lex() {
         match token.kind() {
