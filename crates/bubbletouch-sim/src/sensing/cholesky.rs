@@ -1,17 +1,17 @@
-//! Symmetric positive definite systems, by Cholesky's factorisation in blocks.
+//! Symmetric positive definite systems, by blocked Cholesky factorisation.
 
 use ndarray::linalg::general_mat_mul;
 use ndarray::{Array2, ArrayView2, ArrayViewMut2, s};
 
-/// Columns factorised together: large enough that matrix products do the work, small enough to stay in the cache.
+/// Columns factorised together: large enough that matrix products do most of the work, small enough for the cache.
 const BLOCK: usize = 64;
 
-/// L of A = L Lᵀ, lower triangular.
+/// Lower triangular factor L of A = L Lᵀ.
 #[derive(Clone, Debug)]
 pub(super) struct Cholesky(Array2<f64>);
 
 impl Cholesky {
-    /// Factorises A (symmetric; only its lower triangle is read). `None` when A is not positive definite.
+    /// Factorises A (symmetric; only its lower triangle is used). Returns `None` if A is not positive definite.
     pub(super) fn new(mut a: Array2<f64>) -> Option<Self> {
         let n = a.nrows();
         for start in (0..n).step_by(BLOCK) {
@@ -29,7 +29,7 @@ impl Cholesky {
             );
             factorise(panel.slice_mut(s![..width, ..]))?;
             let (top, mut below) = panel.split_at(ndarray::Axis(0), width);
-            // Rows of the panel are independent: each solves Lx = its entries.
+            // Rows of the panel are independent: each solves Lx = b for its entries b.
             for mut row in below.outer_iter_mut() {
                 for i in 0..width {
                     let sum = row.slice(s![..i]).dot(&top.slice(s![i, ..i]));
@@ -43,7 +43,7 @@ impl Cholesky {
         Some(Self(a))
     }
 
-    /// X of A X = B, column by column of B (n × any number).
+    /// Solves A X = B for all columns of B (n × any number).
     pub(super) fn solve(&self, b: ArrayView2<f64>) -> Array2<f64> {
         let mut x = b.as_standard_layout().into_owned();
         let n = self.0.nrows();
@@ -87,7 +87,7 @@ impl Cholesky {
     }
 }
 
-/// One diagonal block, in place.
+/// Factorises one diagonal block in place.
 fn factorise(mut a: ArrayViewMut2<f64>) -> Option<()> {
     for i in 0..a.nrows() {
         for j in 0..=i {

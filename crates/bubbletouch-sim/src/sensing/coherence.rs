@@ -1,13 +1,13 @@
-//! How well an ensemble keeps apart what a dictionary can say.
+//! Coherence and restricted isometry: measures of how well measurements distinguish the atoms of a dictionary.
 //!
-//! Both statistics are of A = ΦΨ with all columns divided by their root mean square norm, so that ensembles of different
-//! scale compare.
+//! Both statistics refer to A = ΦΨ, with all columns divided by their root mean square norm, so that ensembles of different
+//! scale are comparable.
 //!
 //! - **Mutual coherence** μ = max |aᵢ·aⱼ| / ‖aᵢ‖‖aⱼ‖, i ≠ j: OMP and ℓ1 recover every frame of fewer than (1 + 1/μ)/2 atoms
-//!   (Tropp 2004). No A has less than Welch's bound √((k − m)/(m(k − 1))).
+//!   (Tropp 2004). The lower limit for any A is Welch's bound √((k − m)/(m(k − 1))).
 //! - **Restricted isometry**: δₛ is the smallest δ with (1 − δ)‖α‖² ≤ ‖Aα‖² ≤ (1 + δ)‖α‖² for every α of s atoms (Candès and
-//!   Tao 2005). Its exact value is NP-hard to compute (Tillmann and Pfetsch 2014). Here s atoms are drawn at random many
-//!   times, so the largest deviation found is a **lower bound** on δₛ, and the distribution says what typical supports meet.
+//!   Tao 2005). Computing its exact value is NP-hard (Tillmann and Pfetsch 2014). Here s atoms are drawn at random many
+//!   times. The largest deviation found is a **lower bound** on δₛ, and the distribution describes typical supports.
 
 use super::SensedDictionary;
 use super::symmetric_eigen::symmetric_eigen;
@@ -18,32 +18,32 @@ use ndarray::Array2;
 /// Mutual coherence of a sensed dictionary.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coherence {
-    /// μ, over atoms that can be sensed; 0 when there are fewer than two.
+    /// Mutual coherence μ of the atoms with nonzero columns; 0 if there are fewer than two.
     pub mutual: f64,
-    /// Welch's bound for as many atoms as can be sensed and m measurements; 0 when there are at most m.
+    /// Welch's bound for the atoms with nonzero columns and m measurements; 0 if there are at most m such atoms.
     pub welch_bound: f64,
-    /// Atoms that the projection cannot see: their column is zero.
+    /// Number of atoms with a zero column, which the projection cannot measure.
     pub n_invisible: usize,
 }
 
-/// Extreme squared singular values of one random choice of s columns, scaled so that their mean over all columns is 1.
+/// Extreme squared singular values of one random choice of s columns, scaled so that the mean over all columns is 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extremes {
-    /// σ²_min, 0 or more.
+    /// Smallest squared singular value σ²_min, 0 or more.
     pub low: f64,
-    /// σ²_max.
+    /// Largest squared singular value σ²_max.
     pub high: f64,
 }
 
 impl Extremes {
-    /// max(1 − σ²_min, σ²_max − 1): the isometry constant of this choice alone.
+    /// Returns max(1 − σ²_min, σ²_max − 1), the isometry constant of this choice of columns.
     pub fn deviation(&self) -> f64 {
         (1.0 - self.low).max(self.high - 1.0)
     }
 }
 
 impl SensedDictionary<'_> {
-    /// Mutual coherence and its bound.
+    /// Returns the mutual coherence and its lower bound.
     pub fn coherence(&self) -> Coherence {
         let (gram, norms) = (self.gram(), self.norms());
         let largest = norms.iter().copied().fold(0.0, f64::max);
@@ -64,10 +64,10 @@ impl SensedDictionary<'_> {
         }
     }
 
-    /// Extremes of `n_subsets` random choices of `sparsity` atoms, each from its own stream of `seed`.
+    /// Returns the extremes of `n_subsets` random choices of `sparsity` atoms, each from its own stream of `seed`.
     ///
     /// # Errors
-    /// A sparsity of 0 or above the number of atoms; a dictionary that the projection cannot see at all.
+    /// If the sparsity is 0 or above the number of atoms, or if all columns of the sensed dictionary are zero.
     pub fn isometry(
         &self,
         sparsity: usize,

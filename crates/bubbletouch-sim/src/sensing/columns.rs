@@ -1,11 +1,11 @@
-//! Φ by columns: what each taxel adds to which measurements, so that measuring costs what is touched and not the skin.
+//! Column storage of Φ: the cost of measuring is proportional to the number of touched taxels.
 
 use super::projection::Projection;
 
-/// A [`Projection`] that measures frames of which only the touched taxels are known.
+/// Column-wise storage of a [`Projection`], which measures frames given only their touched taxels.
 ///
-/// It holds 4 bytes a taxel and 16 an entry of Φ that is not zero: m · 32 of them for scrambled blocks, m√n for very sparse
-/// rows, n for averages; of dense ensembles all m · n.
+/// The memory is 4 bytes per taxel and 16 per nonzero entry of Φ. The numbers of entries are m · 32 for scrambled blocks, m√n for very sparse
+/// rows, n for averages, and m · n for dense ensembles.
 ///
 /// ```
 /// use bubbletouch_sim::random::Seed;
@@ -21,12 +21,12 @@ use super::projection::Projection;
 #[derive(Clone, Debug)]
 pub struct Columns {
     n_measurements: usize,
-    /// n_taxels + 1: where the entries of each taxel begin, and where the last end.
+    /// Index of the first entry of each taxel, followed by the total number of entries: n_taxels + 1 values.
     starts: Vec<u32>,
     entries: Vec<Entry>,
 }
 
-/// A number of Φ that is not zero.
+/// Nonzero entry of Φ.
 #[derive(Clone, Copy, Debug, Default)]
 struct Entry {
     measurement: u32,
@@ -34,10 +34,10 @@ struct Entry {
 }
 
 impl Projection {
-    /// The same map by columns.
+    /// Returns the projection stored by columns.
     ///
     /// # Panics
-    /// If Φ has 2³² entries that are not zero, or more.
+    /// If Φ has 2³² or more nonzero entries.
     pub fn columns(&self) -> Columns {
         let mut counts = vec![0_u64; self.n_taxels()];
         self.each_entry(|_, taxel, _| counts[taxel] += 1);
@@ -68,37 +68,37 @@ impl Projection {
 }
 
 impl Columns {
-    /// How many taxels a whole frame has.
+    /// Returns the number of taxels of a whole frame.
     pub fn n_taxels(&self) -> usize {
         self.starts.len() - 1
     }
 
-    /// How many measurements there are.
+    /// Returns the number of measurements.
     pub fn n_measurements(&self) -> usize {
         self.n_measurements
     }
 
-    /// How many numbers of Φ are not zero.
+    /// Returns the number of nonzero entries of Φ.
     pub fn n_entries(&self) -> usize {
         self.entries.len()
     }
 
-    /// How many taxels any measurement reads.
+    /// Returns the number of taxels that at least one measurement uses.
     pub fn n_read(&self) -> usize {
         let columns = self.starts.windows(2);
         columns.filter(|ends| ends[0] < ends[1]).count()
     }
 
-    /// Bytes that it holds.
+    /// Returns the size in memory, bytes.
     pub fn n_bytes(&self) -> usize {
         size_of_val(&self.starts[..]) + size_of_val(&self.entries[..])
     }
 
-    /// Measures a frame that is zero but for `touched` (taxel, value) into `measurements` (m), whatever was there; to rounding what
-    /// [`Projection::measure`] says of the whole frame. Nothing is allocated.
+    /// Measures a frame that is zero except for `touched` (taxel, value), and overwrites `measurements` (m). The result equals
+    /// [`Projection::measure`] of the whole frame up to rounding. The function allocates no memory.
     ///
     /// # Panics
-    /// If there is no such taxel, or `measurements` is not m long.
+    /// If a taxel does not exist, or `measurements` does not have length m.
     pub fn measure_touched(
         &self,
         touched: impl IntoIterator<Item = (usize, f64)>,

@@ -3,7 +3,7 @@
 use ndarray::Array2;
 use std::f64::consts::PI;
 
-/// The orthonormal DCT-II of length n: row k is √(2/n) cos(π (i + ½) k / n), row 0 is 1/√n.
+/// Returns the orthonormal DCT-II matrix of length n: row k is √(2/n) cos(π (i + ½) k / n), row 0 is 1/√n.
 pub(super) fn cosines(n: usize) -> Array2<f64> {
     Array2::from_shape_fn((n, n), |(k, i)| {
         let scale = if k == 0 { 1.0 } else { 2.0 };
@@ -12,7 +12,7 @@ pub(super) fn cosines(n: usize) -> Array2<f64> {
     })
 }
 
-/// W_y X W_xᵀ of one ny × nx array.
+/// Returns W_y X W_xᵀ for one ny × nx array.
 pub(super) fn analyse(
     x: ndarray::ArrayView2<f64>,
     wy: &Array2<f64>,
@@ -21,7 +21,7 @@ pub(super) fn analyse(
     wy.dot(&x).dot(&wx.t())
 }
 
-/// W_yᵀ A W_x: the inverse of [`analyse`], since both are orthonormal.
+/// Returns W_yᵀ A W_x, the inverse of [`analyse`], since both matrices are orthonormal.
 pub(super) fn synthesise(
     a: ndarray::ArrayView2<f64>,
     wy: &Array2<f64>,

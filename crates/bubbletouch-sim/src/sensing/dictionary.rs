@@ -1,4 +1,4 @@
-//! Dictionaries: bases in which frames are sparse, or nearly so.
+//! Dictionaries: bases in which frames are sparse or approximately sparse.
 
 use super::cosine::{self, cosines};
 use super::pca::Pca;
@@ -8,24 +8,24 @@ use crate::random::Seed;
 use ndarray::{Array1, Array2, ArrayView2, ArrayViewMut1, ArrayViewMut2, Axis, s};
 use serde::{Deserialize, Serialize};
 
-/// Components that a PCA dictionary keeps when none are asked for.
+/// Default number of components of a PCA dictionary.
 const PCA_ATOMS: usize = 256;
 
-/// Which basis a dictionary takes its atoms from.
+/// Basis of the atoms of a dictionary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Basis {
-    /// Products of cosines (DCT-II), any array.
+    /// Products of cosines (DCT-II), for any array size.
     Dct,
-    /// The Haar wavelet pyramid; sides are powers of two.
+    /// Haar wavelet pyramid; the sides must be powers of two.
     Haar,
-    /// The pyramid of Daubechies' wavelet with two vanishing moments, periodic; sides are powers of two.
+    /// Pyramid of Daubechies' wavelet with two vanishing moments, periodic; the sides must be powers of two.
     Daubechies4,
-    /// Principal components of training frames, about their mean.
+    /// Principal components of training frames about their mean.
     Pca,
 }
 
-/// k orthonormal atoms ψⱼ of n taxels, and the point they start from: a frame is x = x₀ + Σⱼ αⱼ ψⱼ, nearly.
+/// Dictionary of k orthonormal atoms ψⱼ of n taxels with an origin x₀: a frame is approximately x = x₀ + Σⱼ αⱼ ψⱼ.
 ///
 /// ```
 /// use bubbletouch_sim::sensing::{Basis, Dictionary};
@@ -43,36 +43,36 @@ pub struct Dictionary {
     basis: Basis,
     grid: (usize, usize),
     form: Form,
-    /// x₀: the mean training frame of PCA, zero of the others.
+    /// Origin x₀: the mean training frame for PCA, otherwise zero.
     origin: Array1<f64>,
     energy: Option<Energy>,
 }
 
-/// What training frames say of a dictionary.
+/// Statistics of training frames in a dictionary.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Energy {
-    /// Mean over training frames of αⱼ², k.
+    /// Mean over training frames of αⱼ², shape (k,).
     pub of_atoms: Array1<f64>,
-    /// Mean square a taxel of what no atom shows.
+    /// Mean square per taxel of the part of the frames outside the span of the atoms.
     pub rest: f64,
 }
 
-/// How coefficients are found.
+/// Method that computes coefficients.
 #[derive(Clone, Debug)]
 enum Form {
-    /// Products with cosines along y and x, then the chosen coefficients.
+    /// Cosine transforms along y and x, and the indices of the chosen coefficients.
     Cosine([Array2<f64>; 2], Vec<usize>),
-    /// A pyramid, then the chosen coefficients.
+    /// Wavelet pyramid, and the indices of the chosen coefficients.
     Wavelet(Wavelet, Vec<usize>),
-    /// k × n.
+    /// Stored atoms, shape (k, n).
     Stored(Array2<f64>),
 }
 
 impl Dictionary {
-    /// All n atoms of a fixed basis of an ny × nx array, about zero.
+    /// Returns all n atoms of a fixed basis of an ny × nx array, with origin zero.
     ///
     /// # Errors
-    /// PCA, which needs training frames; a wavelet of an array whose sides are not powers of two; no taxels.
+    /// If the basis is PCA, which needs training frames; if a wavelet basis has sides that are not powers of two; if there are no taxels.
     pub fn complete(basis: Basis, grid: (usize, usize)) -> Result<Self> {
         let n = grid.0 * grid.1;
         if n == 0 {
@@ -106,11 +106,11 @@ impl Dictionary {
         })
     }
 
-    /// The atoms that carry most of the training frames (n_frames × n): at most `n_atoms`, in the basis' order; of PCA the
-    /// first components. All when `None` (of PCA at most 256).
+    /// Returns the atoms with the largest energy in the training frames (n_frames × n): at most `n_atoms`, in the order of the basis; for PCA the
+    /// first components. `None` selects all atoms (for PCA at most 256).
     ///
     /// # Errors
-    /// As [`complete`](Self::complete); no frames; frames of another length; a value that is not finite; no atoms asked for.
+    /// If [`complete`](Self::complete) fails, if there are no frames, if frames have another length, if a value is not finite, or if `n_atoms` is 0.
     pub fn learned(
         basis: Basis,
         grid: (usize, usize),
@@ -159,17 +159,17 @@ impl Dictionary {
         }
     }
 
-    /// Where its atoms come from.
+    /// Returns the basis of the atoms.
     pub fn basis(&self) -> Basis {
         self.basis
     }
 
-    /// n.
+    /// Returns the number of taxels n.
     pub fn n_taxels(&self) -> usize {
         self.origin.len()
     }
 
-    /// k ≤ n.
+    /// Returns the number of atoms k ≤ n.
     pub fn n_atoms(&self) -> usize {
         match &self.form {
             Form::Cosine(_, chosen) | Form::Wavelet(_, chosen) => chosen.len(),
@@ -177,20 +177,20 @@ impl Dictionary {
         }
     }
 
-    /// x₀, n.
+    /// Returns the origin x₀, shape (n,).
     pub fn origin(&self) -> &Array1<f64> {
         &self.origin
     }
 
-    /// What training frames say of the atoms; `None` for a dictionary that has seen none.
+    /// Returns the energy of the training frames in the atoms; `None` for a dictionary without training frames.
     pub fn energy(&self) -> Option<&Energy> {
         self.energy.as_ref()
     }
 
-    /// αⱼ = ψⱼ·(x − x₀) of each frame (n_frames × n): n_frames × k.
+    /// Returns coefficients αⱼ = ψⱼ·(x − x₀) of frames (n_frames × n), shape (n_frames, k).
     ///
     /// # Panics
-    /// When a frame does not have n values.
+    /// If a frame does not have n values.
     pub fn analyse(&self, frames: ArrayView2<f64>) -> Array2<f64> {
         assert_eq!(frames.ncols(), self.n_taxels(), "taxels in a frame");
         if let Form::Stored(atoms) = &self.form {
@@ -215,10 +215,10 @@ impl Dictionary {
         coefficients
     }
 
-    /// x₀ + Σⱼ αⱼ ψⱼ of each row of coefficients (n_frames × k): n_frames × n.
+    /// Returns frames x₀ + Σⱼ αⱼ ψⱼ for rows of coefficients (n_frames × k), shape (n_frames, n).
     ///
     /// # Panics
-    /// When a row does not have k values.
+    /// If a row does not have k values.
     pub fn synthesise(&self, coefficients: ArrayView2<f64>) -> Array2<f64> {
         let mut frames = self.combine(coefficients);
         if self.basis == Basis::Pca {
@@ -227,7 +227,7 @@ impl Dictionary {
         frames
     }
 
-    /// Σⱼ αⱼ ψⱼ, without x₀.
+    /// Returns Σⱼ αⱼ ψⱼ, without x₀.
     pub(super) fn combine(&self, coefficients: ArrayView2<f64>) -> Array2<f64> {
         assert_eq!(coefficients.ncols(), self.n_atoms(), "atoms in a row");
         if let Form::Stored(atoms) = &self.form {
@@ -256,7 +256,7 @@ impl Dictionary {
         frames
     }
 
-    /// Atoms `range` as frames, one a row.
+    /// Returns the atoms `range` as frames, one per row.
     pub(super) fn atoms(&self, range: std::ops::Range<usize>) -> Array2<f64> {
         if let Form::Stored(atoms) = &self.form {
             return atoms.slice(s![range, ..]).to_owned();

@@ -1,21 +1,22 @@
-//! Images of what a skin reads, from compressed measurements of it.
+//! Estimates of images of a skin from compressed measurements.
 //!
-//! Frames that training touches read say what images are like: their mean x₀, k principal components ψⱼ with mean squares λⱼ, and a rest of
-//! mean square τ a taxel. The [linear estimate](super::Lmmse) of least mean square error is α̂ = Λ Aᵀ (A Λ Aᵀ + τ ΦΦᵀ)⁻¹ (y − Φx₀), A = ΦΨ.
+//! Frames of training touches give statistics of images: their mean x₀, k principal components ψⱼ with mean squares λⱼ, and a remainder of
+//! mean square τ per taxel. The [linear estimate](super::Lmmse) of least mean square error is α̂ = Λ Aᵀ (A Λ Aᵀ + τ ΦΦᵀ)⁻¹ (y − Φx₀), A = ΦΨ.
 //!
-//! Those frames hold the signal's noise, so λⱼ does as well: readings of the untouched skin have a mean square νⱼ along ψⱼ. What is wanted is
-//! the image without it, and the estimate of that shrinks each coefficient (Wiener): x̂ = x₀ + Σ max(0, 1 − νⱼ / λⱼ) α̂ⱼ ψⱼ.
+//! Training frames contain the noise of the signal, and so does λⱼ: readings of the untouched skin have a mean square νⱼ along ψⱼ. The estimate of
+//! the image without noise reduces each coefficient (Wiener): x̂ = x₀ + Σ max(0, 1 − νⱼ / λⱼ) α̂ⱼ ψⱼ.
 //!
-//! Pressure is never negative, which the linear estimate does not know: it rings about a contact. So, from x̂ on, what is negative is set to 0,
-//! and the nearest image that measures as y is taken, in turn:
+//! Pressure is never negative, but the linear estimate has negative oscillations around a contact. Starting from x̂, two steps alternate: negative values
+//! are set to 0, and the nearest image with the measurements y is computed:
 //!
 //! x ← x₊ + Φ⁺ (y − Φx₊), Φ⁺ = Φᵀ (ΦΦᵀ)⁻¹.
 //!
-//! These are projections onto two convex sets that the image is in: none takes x further from it. Youla and Webb (1982), *Image restoration by
-//! the method of convex projections*, IEEE Transactions on Medical Imaging 1, 81. With noise they would fit that as well, and are left
-//! out; so they are where rows of Φ depend on each other.
+//! These are projections onto two convex sets that contain the image, so no step increases the distance of x to it. Youla and Webb (1982), *Image
+//! restoration by
+//! the method of convex projections*, IEEE Transactions on Medical Imaging 1, 81. The steps would also fit noise in the measurements, so they are omitted
+//! if there is noise. They are also omitted if rows of Φ are linearly dependent.
 //!
-//! A whole frame is its own estimate.
+//! The estimate of a complete frame is the frame itself.
 
 use super::cholesky::Cholesky;
 use super::image_prior::ImagePrior;
@@ -23,21 +24,22 @@ use super::{Lmmse, Projection, SensedDictionary};
 use crate::error::Result;
 use ndarray::{Array2, ArrayView2};
 
-/// Images from measurements, ready for any number of frames.
+/// Estimator of images from measurements, prepared for any number of frames.
 #[derive(Clone, Debug)]
 pub struct ImageEstimate {
-    /// `None`: measurements are the frame.
+    /// Linear estimate and projection; `None` if measurements are complete frames.
     lmmse: Option<(Lmmse, Projection)>,
-    /// The transpose of Φ⁺, m × n, where images are made to be nowhere negative.
+    /// Transpose of Φ⁺, shape (m, n); `None` if the steps to nonnegative images are omitted.
     nearest: Option<Array2<f64>>,
     noise_std: f64,
 }
 
-/// Steps to an image that is nowhere negative. Fewer leave more of the ringing; each takes as long as the linear estimate and measuring its image again.
+/// Number of steps to a nonnegative image. With fewer steps, larger oscillations remain; each step costs one linear estimate and one measurement of the
+/// image.
 pub const N_STEPS: usize = 20;
 
 impl ImageEstimate {
-    /// Of whole frames; their noise is that of the untouched readings.
+    /// Creates the estimator of complete frames; the noise is computed from untouched readings.
     pub fn of_frames(untouched: ArrayView2<f64>) -> Self {
         Self {
             lmmse: None,
@@ -49,7 +51,7 @@ impl ImageEstimate {
     /// Prepares the estimate for a projection.
     ///
     /// # Errors
-    /// Training readings, or a projection, that are zero.
+    /// If all training readings, or all entries of the projection, are zero.
     pub fn new(projection: &Projection, prior: &ImagePrior) -> Result<Self> {
         let sensed = SensedDictionary::new(projection, &prior.dictionary)?;
         let lmmse = Lmmse::shrunk(&sensed, 0.0, Some(&prior.shrinkage))?;
@@ -65,15 +67,15 @@ impl ImageEstimate {
         })
     }
 
-    /// Standard deviation of an image's noise on a taxel, from the untouched readings; the images' unit.
+    /// Returns the noise standard deviation of an image per taxel, from the untouched readings, in the unit of the images.
     pub fn noise_std(&self) -> f64 {
         self.noise_std
     }
 
-    /// Images of rows of measurements (n_frames × m): n_frames × n.
+    /// Estimates images from measurements (n_frames × m), shape (n_frames, n).
     ///
     /// # Panics
-    /// When a row does not have m values.
+    /// If a row does not have m values.
     pub fn images(&self, measurements: ArrayView2<f64>) -> Array2<f64> {
         let Some((lmmse, projection)) = &self.lmmse else {
             return measurements.to_owned();

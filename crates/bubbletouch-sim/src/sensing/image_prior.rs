@@ -1,7 +1,7 @@
-//! What images are like, learned of frames that training touches read.
+//! Statistics of images, learned from frames of training touches.
 //!
-//! What few frames say fits them better than those to come: their images would be closer to the truth than the images of test touches, and a classifier
-//! that learns from the ones errs on the others. So they are added to by copies that are moved over the array and mirrored.
+//! Statistics of few frames overfit: images of training touches would be more accurate than images of test touches, and a classifier
+//! trained on them would err on the others. Shifted and mirrored copies of the frames reduce this effect.
 
 use super::{Basis, Dictionary};
 use crate::error::Result;
@@ -9,37 +9,39 @@ use crate::random::Seed;
 use ndarray::{Array1, Array2, ArrayView2, Axis, s};
 use rand::Rng;
 
-/// Principal components, at most: what is beyond is the rest. More take longer to find and add what measurements, usually fewer, do not say.
+/// Maximum number of principal components; others belong to the remainder. More components take longer to compute and rarely help, because there are usually
+/// fewer
+/// measurements.
 pub const N_COMPONENTS: usize = 512;
 
-/// Readings that the estimate is prepared from, one a row of n taxels, all through the same signal.
+/// Readings for the estimate, one row of n taxels each, all through one signal chain.
 #[derive(Clone, Copy, Debug)]
 pub struct Readings<'a> {
-    /// Of training touches.
+    /// Readings of training touches.
     pub training: ArrayView2<'a, f64>,
-    /// Of the untouched skin.
+    /// Readings of the untouched skin.
     pub untouched: ArrayView2<'a, f64>,
 }
 
-/// What readings say of images, whatever they are measured by.
+/// Statistics of images, independent of the projection.
 #[derive(Clone, Debug)]
 pub struct ImagePrior {
-    /// ψⱼ and λⱼ.
+    /// Principal components ψⱼ with mean squares λⱼ.
     pub(super) dictionary: Dictionary,
-    /// max(0, 1 − νⱼ / λⱼ).
+    /// Wiener factors max(0, 1 − νⱼ / λⱼ).
     pub(super) shrinkage: Array1<f64>,
     pub(super) untouched: Array2<f64>,
 }
 
-/// Share of an array's sides by which copies of training frames are moved, at most. More moves contacts off the array, less leaves places that only
-/// these frames have.
+/// Largest shift of copies of training frames, relative to the sides of the array. If it is larger, contacts leave the array; if it is smaller, some places
+/// are covered by few frames.
 const MOVED: f64 = 0.25;
 
 impl ImagePrior {
-    /// Of an ny × nx array, from about `n_frames` frames: training readings, and where there are too few, copies of them.
+    /// Learns the statistics of an ny × nx array from about `n_frames` frames: training readings and, if these are too few, shifted copies.
     ///
     /// # Errors
-    /// No training readings, or of another length; readings that are not finite.
+    /// If there are no training readings, if they have another length, or if readings are not finite.
     pub fn learned(
         grid: (usize, usize),
         readings: Readings,
@@ -66,8 +68,8 @@ impl ImagePrior {
     }
 }
 
-/// Frames, then as many copies of each as there is room for below `n_frames`: moved by up to a quarter of the array, and mirrored or not. An image at
-/// another place is as likely, and what is learned of few frames fits them better than those to come, whose images then differ from theirs.
+/// Returns the frames, followed by equally many copies of each, up to `n_frames` in total. Copies are shifted by up to a quarter of the array and may be
+/// mirrored. Shifted images are equally likely, and more frames reduce overfitting.
 fn with_copies(
     frames: ArrayView2<f64>,
     (ny, nx): (usize, usize),
@@ -85,7 +87,7 @@ fn with_copies(
             (rng.gen_range(-most..=most), rng.r#gen::<bool>())
         };
         let (along_y, along_x) = (place(ny), place(nx));
-        // Where the value at a place comes from, if it is on the array.
+        // Source index of the value at a position, if it is on the array.
         let from = |at: usize, (by, is_mirrored): (isize, bool), n: usize| {
             let from = at.checked_add_signed(-by).filter(|&from| from < n)?;
             Some(if is_mirrored { n - 1 - from } else { from })

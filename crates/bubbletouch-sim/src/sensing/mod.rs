@@ -16,31 +16,31 @@
 //! | [`PrincipalComponents`](Ensemble::PrincipalComponents) | a principal component of training frames | 1 | m × n numbers |
 //! | [`Identity`](Ensemble::Identity) | one taxel, all n in order | 1 | nothing |
 //!
-//! **Scale.** No entry depends on m. So √(n/m)·Φ preserves norms on average (Johnson and Lindenstrauss) for the random
-//! ensembles, and a study that scales its features need not care.
+//! **Scale.** No entry depends on m. For the random ensembles √(n/m)·Φ therefore preserves norms on average (Johnson and Lindenstrauss);
+//! a study that scales its features is not affected.
 //!
 //! **Nesting.** For one seed, the first m measurements of a larger projection are bit by bit the measurements of the
-//! smaller one ([`Ensemble::is_prefix_nested`]): a sweep over ratios projects once, at its largest m, and takes leading columns.
-//! Plain averages over blocks cannot nest so: one block is the whole array, two blocks are halves, and the mean of the
-//! array is neither half. Block averages nest in their own way instead: see [`Ensemble::BlockAverage`].
+//! smaller one ([`Ensemble::is_prefix_nested`]). A sweep over ratios projects once, at its largest m, and takes leading columns.
+//! Plain block averages cannot be nested in this way: one block is the whole array, two blocks are its halves, and the mean of the
+//! array is the mean of neither half. For the nesting of block averages see [`Ensemble::BlockAverage`].
 //!
-//! **Repeatability.** A row of measurements has the same bits in whatever batch it is measured.
+//! **Repeatability.** A row of measurements has equal bits in any batch.
 //!
 //! # Back to frames
 //!
-//! A [`Dictionary`] Ψ of orthonormal atoms says what frames are made of: x = x₀ + Ψα. Seen through Φ it is A = ΦΨ, a
-//! [`SensedDictionary`], and a [`Reconstructor`] finds α from y − Φx₀ = Aα + Φ·noise.
+//! A [`Dictionary`] Ψ of orthonormal atoms represents frames as x = x₀ + Ψα. After projection it is A = ΦΨ, a
+//! [`SensedDictionary`], and a [`Reconstructor`] computes α from y − Φx₀ = Aα + Φ·noise.
 //!
-//! | solver | α | a frame costs |
+//! | solver | α | cost of a frame |
 //! |---|---|---|
 //! | [`Omp`] | s atoms, greedily, until the residual is noise | mk + ks² |
 //! | [`Lasso`] (FISTA) | argmin ½‖y − Aα‖² + λ‖α‖₁ | steps × 2 min(k², 2mk) |
 //! | [`Lmmse`] | E Aᵀ(A E Aᵀ + (τ + σ²)ΦΦᵀ)⁻¹ y, E and τ from training frames | min(mn, k(m + n)) |
 //!
-//! **Where noise enters.** On the taxels, before Φ: y = Φ(x + noise). So a measurement carries noise of σ times its row's norm
-//! however few measurements there are, and full sampling is the noisy frame itself.
+//! **Noise.** Noise is added on the taxels, before Φ: y = Φ(x + noise). A measurement therefore has the noise σ times the norm of its row
+//! for any number of measurements, and full sampling gives the noisy frame itself.
 //!
-//! How well a pair of Φ and Ψ can do is bounded by its [`Coherence`] and restricted isometry
+//! The possible accuracy for a pair of Φ and Ψ is bounded by its [`Coherence`] and restricted isometry
 //! ([`SensedDictionary::isometry`]).
 //!
 //! # Stages
@@ -50,7 +50,7 @@
 //! | `ensembles` | a name and a seed → the map Φ ([`Ensemble`], [`Operator`]) |
 //! | `projection`, `columns` | frames → measurements ([`Projection`]) |
 //! | `dictionary`, `wavelet`, `pca`, `cosine` | training frames → atoms Ψ ([`Dictionary`]) |
-//! | `sensed`, `coherence` | Φ and Ψ → A = ΦΨ, and how well it can do |
+//! | `sensed`, `coherence` | Φ and Ψ → A = ΦΨ, and its coherence |
 //! | `reconstruction` | measurements → frames ([`Reconstructor`]) |
 //! | `image_prior`, `image_estimate` | measurements → linear estimates of images ([`ImageEstimate`]) |
 //! | `cholesky`, `symmetric_eigen` | matrices → factors |

@@ -1,8 +1,8 @@
 //! Principal components of frames, by a randomised range finder.
 //!
 //! Halko, Martinsson and Tropp (2011), *Finding structure with randomness*, algorithm 4.4 (subspace iteration), then the
-//! Rayleigh–Ritz step: the frames restricted to the subspace found are diagonalised exactly. With as many directions as the
-//! frames' rank the result is that of the full eigendecomposition.
+//! Rayleigh–Ritz step: the frames restricted to the computed subspace are diagonalised exactly. If the number of directions is at least the
+//! rank of the frames, the result equals the full eigendecomposition.
 
 use super::symmetric_eigen::symmetric_eigen;
 use crate::random::Seed;
@@ -11,30 +11,30 @@ use ndarray::{Array1, Array2, ArrayView2, ArrayViewMut1, Axis, s};
 use ndarray_rand::RandomExt;
 use rand_distr::StandardNormal;
 
-/// Directions beyond those that are kept: fewer lose the last components, more only cost time.
+/// Number of extra directions. If it is smaller, the last components are inaccurate; if it is larger, only the time increases.
 const OVERSAMPLING: usize = 16;
-/// Products with the covariance; each squares the gap between what is kept and what is not.
+/// Number of products with the covariance; each one squares the ratio of kept to discarded variances.
 const ITERATIONS: usize = 3;
-/// Directions whose variance is below this part of the largest are rounding.
+/// Smallest variance of a direction relative to the largest; smaller ones are rounding errors.
 const LEAST_VARIANCE: f64 = 1e-12;
-/// A row of which less than this is left by those before it depends on them.
+/// Smallest remainder of a row after orthogonalisation; rows below it depend on earlier rows.
 const DEPENDENT: f64 = 1e-10;
 
-/// The mean frame and the directions in which frames differ most.
+/// Mean frame and principal components.
 #[derive(Clone, Debug)]
 pub(super) struct Pca {
-    /// Mean frame, n.
+    /// Mean frame, shape (n,).
     pub mean: Array1<f64>,
-    /// k × n, orthonormal rows, the largest variance first; the largest entry of each is positive.
+    /// Orthonormal components, shape (k, n), the largest variance first; the largest entry of each is positive.
     pub components: Array2<f64>,
-    /// Mean square of the frames along each component (divisor: the number of frames).
+    /// Mean square of the frames along each component (divisor: number of frames).
     pub variance: Array1<f64>,
-    /// Mean square of the frames about their mean, all directions together.
+    /// Mean square of the frames about their mean, summed over all directions.
     pub total_variance: f64,
 }
 
 impl Pca {
-    /// At most k components of frames (n_frames × n); fewer when the frames span fewer.
+    /// Computes at most k components of frames (n_frames × n); fewer if the rank of the frames is lower.
     pub(super) fn new(frames: ArrayView2<f64>, k: usize, seed: &Seed) -> Self {
         let (n_frames, n) = frames.dim();
         let mean = frames
@@ -69,7 +69,7 @@ impl Pca {
     }
 }
 
-/// Turns a direction so that its largest entry is positive: a component has no sign of its own.
+/// Flips a direction so that its largest entry is positive, because the sign of a component is arbitrary.
 fn point_up(mut row: ArrayViewMut1<f64>) {
     let largest = row
         .iter()
@@ -79,7 +79,7 @@ fn point_up(mut row: ArrayViewMut1<f64>) {
     }
 }
 
-/// Gram–Schmidt, twice over for accuracy; rows that depend on those before them are left out.
+/// Orthonormalises rows by Gram–Schmidt, applied twice for accuracy; rows that depend on earlier rows are left out.
 ///
 /// Rows are made orthogonal to all earlier blocks by matrix products, then to each other within their block.
 fn orthonormal_rows(mut rows: Array2<f64>) -> Array2<f64> {

@@ -1,4 +1,4 @@
-//! One prepared projection of any ensemble.
+//! Prepared projection of any ensemble.
 
 use super::Ensemble;
 use super::ensembles::ScrambledHadamard;
@@ -8,7 +8,7 @@ use crate::random::Seed;
 use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis, s};
 use std::sync::Arc;
 
-/// A map y = Φx from frames of n taxels to m measurements, drawn once and applied to any number of frames.
+/// Linear map y = Φx from frames of n taxels to m measurements, drawn once and applied to any number of frames.
 ///
 /// ```
 /// use bubbletouch_sim::random::Seed;
@@ -32,10 +32,10 @@ pub struct Projection {
 impl Projection {
     /// Draws the projection of an ny × nx array to m measurements from its own streams of `seed`.
     ///
-    /// [`Ensemble::Identity`] has n measurements whatever m.
+    /// [`Ensemble::Identity`] has n measurements for any m.
     ///
     /// # Errors
-    /// An array without taxels; m = 0 or m > n; an ensemble that is learned.
+    /// If the array has no taxels, if m = 0 or m > n, or if the ensemble is learned.
     pub fn new(ensemble: Ensemble, grid: (usize, usize), m: usize, seed: &Seed) -> Result<Self> {
         let n = check_size(grid, m)?;
         let Source::Drawn(draw) = ensemble.about().source else {
@@ -50,13 +50,13 @@ impl Projection {
         })
     }
 
-    /// The same of any ensemble, beside frames that training touches read (n_frames × n): learned from them, where it is learned.
+    /// Prepares the projection of any ensemble; learned ensembles use frames of training touches (n_frames × n).
     ///
     /// # Errors
-    /// An array without taxels; m = 0 or m > n; fewer than m directions in which frames differ.
+    /// If the array has no taxels, if m = 0 or m > n, or if the frames differ in fewer than m directions.
     ///
     /// # Panics
-    /// When a frame does not have n values.
+    /// If a frame does not have n values.
     pub fn learned(
         ensemble: Ensemble,
         grid: (usize, usize),
@@ -76,13 +76,13 @@ impl Projection {
         })
     }
 
-    /// The scrambled block Hadamard ensemble in blocks of `block` taxels, where \[SBHE\] and [`Projection::new`] have 32.
+    /// Prepares the scrambled block Hadamard ensemble with blocks of `block` taxels; \[SBHE\] and [`Projection::new`] use 32.
     ///
-    /// m measurements read at most m · `block` taxels. Where that is far below n, as on a body of millions, most taxels are never
-    /// read: a block of some n / m taxels or more lets every taxel be heard, and still costs few entries a taxel.
+    /// m measurements use at most m · `block` taxels. If this is far below n, as on a body with millions of taxels, most taxels are never
+    /// used. A block of about n / m taxels or more uses every taxel, with few entries per taxel.
     ///
     /// # Errors
-    /// As [`Projection::new`]; a block that is not a power of two.
+    /// If [`Projection::new`] would fail, or if `block` is not a power of two.
     pub fn sbhe(grid: (usize, usize), m: usize, block: usize, seed: &Seed) -> Result<Self> {
         let n = check_size(grid, m)?;
         if !block.is_power_of_two() {
@@ -97,35 +97,35 @@ impl Projection {
         })
     }
 
-    /// The ensemble it was drawn from.
+    /// Returns the ensemble of the projection.
     pub fn ensemble(&self) -> Ensemble {
         self.ensemble
     }
 
-    /// n, the length of a frame.
+    /// Returns n, the length of a frame.
     pub fn n_taxels(&self) -> usize {
         self.n_taxels
     }
 
-    /// m, the length of a row of measurements.
+    /// Returns m, the length of a row of measurements.
     pub fn n_measurements(&self) -> usize {
         self.n_measurements
     }
 
-    /// Measures frames (n_frames × n, one a row): n_frames × m.
+    /// Measures frames (n_frames × n, one per row), shape (n_frames, m).
     ///
     /// # Panics
-    /// When a frame does not have n values.
+    /// If a frame does not have n values.
     pub fn measure(&self, frames: ArrayView2<f64>) -> Array2<f64> {
         let mut measurements = Array2::zeros((frames.nrows(), self.n_measurements));
         self.measure_into(frames, measurements.view_mut());
         measurements
     }
 
-    /// Measures frames (n_frames × n) into `measurements` (n_frames × m), whatever was there.
+    /// Measures frames (n_frames × n) and overwrites `measurements` (n_frames × m).
     ///
     /// # Panics
-    /// When a shape does not match.
+    /// If the shapes do not match.
     pub fn measure_into(&self, frames: ArrayView2<f64>, measurements: ArrayViewMut2<f64>) {
         assert_eq!(frames.ncols(), self.n_taxels, "taxels in a frame");
         let expected = (frames.nrows(), self.n_measurements);
@@ -133,17 +133,17 @@ impl Projection {
         self.operator.measure(frames, measurements);
     }
 
-    /// Calls `visit` with measurement, taxel and value of each entry of Φ that may not be zero; the same order every time.
+    /// Calls `visit` with measurement, taxel and value of each entry of Φ that can be nonzero, always in one order.
     pub(super) fn each_entry(&self, mut visit: impl FnMut(usize, usize, f64)) {
         self.operator.each_entry(&mut visit);
     }
 
-    /// Root mean square norm of a row of Φ: how much louder noise on a taxel is in a measurement.
+    /// Returns the root mean square norm of the rows of Φ, the gain from the noise of taxels to the noise of measurements.
     pub fn row_norm(&self) -> f64 {
         self.operator.row_norm()
     }
 
-    /// ΦΦᵀ, m × m: the covariance of measurements of independent noise of variance 1 on every taxel.
+    /// Returns ΦΦᵀ (m × m), the covariance of measurements of independent noise of variance 1 on every taxel.
     pub fn row_gram(&self) -> Array2<f64> {
         let of_matrix = |matrix: &Array2<f64>| matrix.dot(&matrix.t());
         self.operator.known_gram().unwrap_or_else(|| {
@@ -152,9 +152,9 @@ impl Projection {
         })
     }
 
-    /// Φ itself, m × n: what [`measure`](Self::measure) applies.
+    /// Returns the matrix Φ (m × n) that [`measure`](Self::measure) applies.
     pub fn matrix(&self) -> Array2<f64> {
-        // Unit frames are measured so many at a time, to bound their memory.
+        // Number of unit frames measured at a time, which bounds the memory.
         const BLOCK: usize = 256;
         if let Some(matrix) = self.operator.stored() {
             return matrix.clone();
@@ -170,7 +170,7 @@ impl Projection {
     }
 }
 
-/// The taxels of a grid that has any, and from which m measurements can be made.
+/// Returns the number of taxels, or an error if the grid is empty or m is out of range.
 fn check_size(grid: (usize, usize), m: usize) -> Result<usize> {
     let n = grid.0 * grid.1;
     if n == 0 || m == 0 || m > n {

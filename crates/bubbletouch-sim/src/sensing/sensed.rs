@@ -1,23 +1,23 @@
-//! A dictionary seen through a projection: the matrix A = ΦΨ that every reconstruction solves with.
+//! Sensed dictionary: the matrix A = ΦΨ that every reconstruction uses.
 
 use super::{Dictionary, Projection};
 use crate::error::{Error, Result};
 use ndarray::{Array1, Array2, ArrayView2, Axis, s};
 use std::sync::OnceLock;
 
-/// Atoms synthesised and measured at a time, to bound memory.
+/// Number of atoms synthesised and measured at a time, which bounds the memory.
 const BLOCK: usize = 256;
 
-/// A = ΦΨ, m × k, kept as its columns, and what is computed from it once.
+/// Matrix A = ΦΨ, shape (m, k), stored by columns, with derived quantities.
 #[derive(Clone, Debug)]
 pub struct SensedDictionary<'a> {
     projection: &'a Projection,
     dictionary: &'a Dictionary,
-    /// Φψⱼ, one a row: k × m.
+    /// Measured atoms Φψⱼ, one per row, shape (k, m).
     atoms: Array2<f64>,
-    /// Φx₀, m.
+    /// Measured origin Φx₀, shape (m,).
     origin: Array1<f64>,
-    /// AᵀA, k × k, when first asked for.
+    /// Gram matrix AᵀA, shape (k, k), computed on first use.
     gram: OnceLock<Array2<f64>>,
 }
 
@@ -25,7 +25,7 @@ impl<'a> SensedDictionary<'a> {
     /// Measures every atom.
     ///
     /// # Errors
-    /// A projection and a dictionary of different arrays; a dictionary without atoms.
+    /// If projection and dictionary belong to different arrays, or if the dictionary has no atoms.
     pub fn new(projection: &'a Projection, dictionary: &'a Dictionary) -> Result<Self> {
         let (n, k) = (dictionary.n_taxels(), dictionary.n_atoms());
         if projection.n_taxels() != n || k == 0 {
@@ -51,35 +51,35 @@ impl<'a> SensedDictionary<'a> {
         })
     }
 
-    /// What measures.
+    /// Returns the projection Φ.
     pub fn projection(&self) -> &'a Projection {
         self.projection
     }
 
-    /// What frames are made of.
+    /// Returns the dictionary Ψ.
     pub fn dictionary(&self) -> &'a Dictionary {
         self.dictionary
     }
 
-    /// Aᵀ: Φψⱼ, one a row, k × m.
+    /// Returns Aᵀ: measured atoms Φψⱼ, one per row, shape (k, m).
     pub fn atoms(&self) -> ArrayView2<'_, f64> {
         self.atoms.view()
     }
 
-    /// AᵀA, k × k: computed when first asked for, then kept.
+    /// Returns AᵀA, shape (k, k), computed on first use and then stored.
     pub fn gram(&self) -> &Array2<f64> {
         self.gram.get_or_init(|| self.atoms.dot(&self.atoms.t()))
     }
 
-    /// ‖aⱼ‖ of each column, k.
+    /// Returns the norms ‖aⱼ‖ of the columns, shape (k,).
     pub fn norms(&self) -> Array1<f64> {
         self.atoms.map_axis(Axis(1), |atom| atom.dot(&atom).sqrt())
     }
 
-    /// y − Φx₀ of each row of measurements (n_frames × m).
+    /// Returns y − Φx₀ for each row of measurements (n_frames × m).
     ///
     /// # Panics
-    /// When a row does not have m values.
+    /// If a row does not have m values.
     pub(super) fn centred(&self, measurements: ArrayView2<f64>) -> Array2<f64> {
         &measurements - &self.origin
     }

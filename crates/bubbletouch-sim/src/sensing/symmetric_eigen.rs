@@ -5,10 +5,10 @@
 
 use ndarray::{Array1, Array2, ArrayView2};
 
-/// QL steps on one eigenvalue before giving up; EISPACK allows 30, and 3 are usual.
+/// Maximum number of QL steps per eigenvalue; EISPACK allows 30, and 3 are typical.
 const MAX_STEPS: usize = 60;
 
-/// Eigenvalues, ascending, and eigenvectors, one a row in the same order, orthonormal.
+/// Returns the eigenvalues, ascending, and the orthonormal eigenvectors, one per row in this order.
 pub(super) fn symmetric_eigen(a: ArrayView2<f64>) -> (Array1<f64>, Array2<f64>) {
     let mut vectors = a.as_standard_layout().into_owned();
     let (mut diagonal, mut beside) = tridiagonalise(&mut vectors);
@@ -20,17 +20,17 @@ pub(super) fn symmetric_eigen(a: ArrayView2<f64>) -> (Array1<f64>, Array2<f64>) 
     (values, vectors.select(ndarray::Axis(0), &order))
 }
 
-/// Turns A = Qᵀ T Q into (diagonal of T, its neighbours: entry i is T[i, i + 1], the last is 0), and leaves Q in `a`.
+/// Reduces A = Qᵀ T Q to tridiagonal form. Returns the diagonal of T and its off-diagonal (entry i is T[i, i + 1], the last is 0); leaves Q in `a`.
 fn tridiagonalise(a: &mut Array2<f64>) -> (Vec<f64>, Vec<f64>) {
     let n = a.nrows();
-    // Reflections H = 1 − v vᵀ·2/vᵀv, one a step, that clear row `step` right of its neighbour.
+    // Reflections H = 1 − v vᵀ·2/vᵀv, one per step, which clear row `step` to the right of its off-diagonal.
     let mut reflections: Vec<(Array1<f64>, f64)> = Vec::new();
     for step in 0..n.saturating_sub(2) {
         let mut v: Array1<f64> = a.row(step).to_owned();
         v.slice_mut(ndarray::s![..=step]).fill(0.0);
         let norm = v.dot(&v).sqrt();
         let head = v[step + 1];
-        // The sign that adds rather than cancels.
+        // The sign that avoids cancellation.
         v[step + 1] += if head >= 0.0 { norm } else { -norm };
         let square = v.dot(&v);
         let factor = if square > 0.0 { 2.0 / square } else { 0.0 };
@@ -66,7 +66,7 @@ fn tridiagonalise(a: &mut Array2<f64>) -> (Vec<f64>, Vec<f64>) {
     (diagonal, beside)
 }
 
-/// QL with implicit Wilkinson shifts; rotates the rows of `vectors` along.
+/// Applies QL with implicit Wilkinson shifts, and rotates the rows of `vectors`.
 fn diagonalise(d: &mut [f64], e: &mut [f64], vectors: &mut Array2<f64>) {
     let n = d.len();
     for l in 0..n {
@@ -81,7 +81,7 @@ fn diagonalise(d: &mut [f64], e: &mut [f64], vectors: &mut Array2<f64>) {
     }
 }
 
-/// One step on the unreduced block l ..= m.
+/// Performs one QL step on the unreduced block l ..= m.
 fn ql_step(l: usize, m: usize, d: &mut [f64], e: &mut [f64], vectors: &mut Array2<f64>) {
     let g = (d[l + 1] - d[l]) / (2.0 * e[l]);
     let mut g = d[m] - d[l] + e[l] / (g + g.hypot(1.0).copysign(g));

@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use ndarray::{Array1, ArrayViewMut1, ArrayViewMut2, Axis, s};
 
-/// The low-pass filter of an orthonormal wavelet; its high-pass is gₖ = (−1)ᵏ h₍L₋₁₋ₖ₎.
+/// Low-pass filter of an orthonormal wavelet; its high-pass filter is gₖ = (−1)ᵏ h₍L₋₁₋ₖ₎.
 #[derive(Clone, Debug)]
 pub(super) struct Wavelet {
     low: Vec<f64>,
@@ -11,13 +11,13 @@ pub(super) struct Wavelet {
 }
 
 impl Wavelet {
-    /// Haar: averages and differences of neighbours.
+    /// Returns the Haar wavelet: averages and differences of neighbours.
     pub(super) fn haar() -> Self {
         let h = std::f64::consts::FRAC_1_SQRT_2;
         Self::from_low(vec![h, h])
     }
 
-    /// Daubechies' wavelet with two vanishing moments (1988), periodic at the edges.
+    /// Returns Daubechies' wavelet with two vanishing moments (1988), periodic at the edges.
     pub(super) fn daubechies4() -> Self {
         let (root, scale) = (3f64.sqrt(), 1.0 / (4.0 * 2f64.sqrt()));
         let taps = [1.0 + root, 3.0 + root, 3.0 - root, 1.0 - root];
@@ -33,7 +33,7 @@ impl Wavelet {
         }
     }
 
-    /// Checks that an ny × nx array can be halved down to one number.
+    /// Checks that both sides of an ny × nx array are powers of two.
     pub(super) fn check((ny, nx): (usize, usize)) -> Result<()> {
         if ny.is_power_of_two() && nx.is_power_of_two() {
             return Ok(());
@@ -45,7 +45,7 @@ impl Wavelet {
         ))
     }
 
-    /// The pyramid of averages and details, in place: each level halves every side that is longer than one.
+    /// Computes the pyramid of averages and details in place; each level halves every side longer than one.
     pub(super) fn analyse(&self, mut frame: ArrayViewMut2<f64>) {
         for (ny, nx) in levels(frame.dim()) {
             let mut corner = frame.slice_mut(s![..ny, ..nx]);
@@ -60,7 +60,7 @@ impl Wavelet {
         }
     }
 
-    /// The inverse of [`analyse`](Self::analyse).
+    /// Computes the inverse of [`analyse`](Self::analyse).
     pub(super) fn synthesise(&self, mut frame: ArrayViewMut2<f64>) {
         for (ny, nx) in levels(frame.dim()).into_iter().rev() {
             let mut corner = frame.slice_mut(s![..ny, ..nx]);
@@ -75,7 +75,7 @@ impl Wavelet {
         }
     }
 
-    /// A lane of even length becomes its averages, then its details.
+    /// Replaces a lane of even length by its averages, followed by its details.
     fn split(&self, mut lane: ArrayViewMut1<f64>) {
         let n = lane.len();
         let mut parts = Array1::zeros(n);
@@ -101,7 +101,7 @@ impl Wavelet {
     }
 }
 
-/// The sides of the corner that each level splits, finest first.
+/// Returns the sides of the corner that each level splits, finest level first.
 fn levels((mut ny, mut nx): (usize, usize)) -> Vec<(usize, usize)> {
     let mut levels = Vec::new();
     while ny > 1 || nx > 1 {

@@ -6,12 +6,12 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::ops::Range;
 
-/// A rectangle of taxels.
+/// Rectangle of taxels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Block {
-    /// Along patch y.
+    /// Row range, along patch y.
     pub rows: Range<usize>,
-    /// Along patch x.
+    /// Column range, along patch x.
     pub columns: Range<usize>,
 }
 
@@ -20,7 +20,7 @@ impl Block {
         self.rows.len() * self.columns.len()
     }
 
-    /// Two halves along the longer side (rows when equal), the first not the smaller.
+    /// Returns two halves along the longer side (along rows if the sides are equal); the first half is not smaller.
     fn halves(self) -> [Self; 2] {
         let half = |range: &Range<usize>| range.start + range.len().div_ceil(2);
         if self.rows.len() >= self.columns.len() {
@@ -41,7 +41,7 @@ impl Block {
     }
 }
 
-/// Splits an ny × nx array into m blocks, in reading order of their first taxels.
+/// Divides an ny × nx array into m blocks, ordered by their first taxels in reading order.
 fn blocks(grid: (usize, usize), m: usize) -> Vec<Block> {
     let equal = equal_squares(grid, m).or_else(|| equal_halves(grid, m));
     let mut blocks = equal.unwrap_or_else(|| rows_of_blocks(grid, m));
@@ -49,7 +49,7 @@ fn blocks(grid: (usize, usize), m: usize) -> Vec<Block> {
     blocks
 }
 
-/// The equal squares that tile the array with m blocks, if there are any.
+/// Returns m equal squares that tile the array; `None` if this is impossible.
 fn equal_squares((ny, nx): (usize, usize), m: usize) -> Option<Vec<Block>> {
     let side = (ny * nx / m).isqrt();
     let tiles = side * side * m == ny * nx && ny % side == 0 && nx % side == 0;
@@ -65,7 +65,7 @@ fn equal_squares((ny, nx): (usize, usize), m: usize) -> Option<Vec<Block>> {
     })
 }
 
-/// Blocks by halving, if they are equally large.
+/// Returns blocks by repeated halving; `None` if they differ in size.
 fn equal_halves(grid: (usize, usize), m: usize) -> Option<Vec<Block>> {
     let blocks = split_blocks(grid, m);
     let area = blocks[0].area();
@@ -73,7 +73,7 @@ fn equal_halves(grid: (usize, usize), m: usize) -> Option<Vec<Block>> {
     is_equal.then_some(blocks)
 }
 
-/// As many rows of blocks as make these nearly square, and in each about as many as in the others.
+/// Divides the array into rows of nearly square blocks, with about equally many blocks in each row.
 fn rows_of_blocks((ny, nx): (usize, usize), m: usize) -> Vec<Block> {
     let square = (m as f64 * ny as f64 / nx as f64).sqrt().round() as usize;
     let n_rows = square.clamp(m.div_ceil(nx), ny.min(m));
@@ -89,7 +89,7 @@ fn rows_of_blocks((ny, nx): (usize, usize), m: usize) -> Vec<Block> {
     rows.collect()
 }
 
-/// Halves the largest block (the oldest of equals) until there are m.
+/// Halves the largest block (the oldest among equals) until there are m.
 fn split_blocks((ny, nx): (usize, usize), m: usize) -> Vec<Block> {
     let whole = Block {
         rows: 0..ny,
@@ -114,7 +114,7 @@ fn split_blocks((ny, nx): (usize, usize), m: usize) -> Vec<Block> {
     blocks
 }
 
-/// ‖φᵢ‖² of each row of Φ; rows are orthogonal.
+/// Returns ‖φᵢ‖² of each row of Φ; the rows are orthogonal.
 fn row_squares(blocks: &[Block]) -> Array1<f64> {
     blocks
         .iter()
@@ -122,7 +122,7 @@ fn row_squares(blocks: &[Block]) -> Array1<f64> {
         .collect()
 }
 
-/// Measurement, taxel and value of each entry that is not zero.
+/// Calls `visit` with measurement, taxel and value of each nonzero entry.
 fn each_entry(blocks: &[Block], visit: &mut dyn FnMut(usize, usize, f64)) {
     let nx = width(blocks);
     for (measurement, block) in blocks.iter().enumerate() {
@@ -134,12 +134,12 @@ fn each_entry(blocks: &[Block], visit: &mut dyn FnMut(usize, usize, f64)) {
     }
 }
 
-/// nx of the array that they cover.
+/// Returns the number of columns nx of the array.
 fn width(blocks: &[Block]) -> usize {
     blocks.iter().map(|b| b.columns.end).max().unwrap_or(1)
 }
 
-/// The mean of each block of each frame.
+/// Writes the mean of each block of each frame.
 fn measure(blocks: &[Block], frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64>) {
     let nx = width(blocks);
     for (frame, mut row) in frames.outer_iter().zip(out.outer_iter_mut()) {
@@ -165,7 +165,7 @@ pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
     })
 };
 
-/// The blocks of measurements.
+/// Blocks of the measurements.
 #[derive(Debug)]
 struct Blocks(Vec<Block>);
 

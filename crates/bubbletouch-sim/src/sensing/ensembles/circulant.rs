@@ -1,7 +1,8 @@
-//! Some rows of a random circulant matrix: cyclic shifts of one row of signs, ±1/√n (Romberg 2009).
+//! Rows of a random circulant matrix: cyclic shifts of one row of signs, ±1/√n (Romberg 2009).
 //!
-//! y = Φx with Φᵣᵢ = g₍ᵢ₋ₛᵣ₎ mod n, g of n independent signs, s a random order of the shifts 0 … n − 1: n signs and m shifts are stored
-//! where a dense ensemble stores m × n numbers, which is what a shift register wired to the taxels can make.
+//! y = Φx with Φᵣᵢ = g₍ᵢ₋ₛᵣ₎ mod n, where g has n independent signs and s is a random order of the shifts 0 … n − 1. The ensemble stores n signs and m
+//! shifts,
+//! while a dense ensemble stores m × n numbers. A shift register wired to the taxels can implement it.
 
 use super::ensemble::{EnsembleAbout, Operator};
 use super::subsample::permutation;
@@ -17,9 +18,9 @@ pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
 
 #[derive(Debug)]
 struct Circulant {
-    /// g twice, so that every shift of it is a slice.
+    /// Signs g, stored twice, so that every cyclic shift is a slice.
     signs: Vec<f64>,
-    /// s.
+    /// Shifts s.
     shifts: Vec<usize>,
 }
 
@@ -38,7 +39,7 @@ impl Circulant {
         }
     }
 
-    /// A row of Φ.
+    /// Returns a row of Φ.
     fn row(&self, measurement: usize) -> ArrayView1<'_, f64> {
         let n = self.signs.len() / 2;
         let start = n - self.shifts[measurement];
@@ -49,7 +50,7 @@ impl Circulant {
 impl Operator for Circulant {
     fn measure(&self, frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64>) {
         for (frame, mut out) in frames.outer_iter().zip(out.outer_iter_mut()) {
-            // One layout, whatever that of the batch: a dot product of strided numbers sums in another order.
+            // A copy with contiguous layout, because dot products of strided numbers are summed in another order.
             let frame = frame.to_vec();
             let frame = ArrayView1::from(&frame);
             for (measurement, y) in out.iter_mut().enumerate() {

@@ -1,4 +1,4 @@
-//! A stored matrix Φ.
+//! Ensembles with a stored matrix Φ.
 
 use super::ensemble::{Draw, EnsembleAbout, Operator};
 use crate::random::Seed;
@@ -6,7 +6,7 @@ use ndarray::linalg::general_mat_mul;
 use ndarray::{Array1, Array2, ArrayView2, ArrayViewMut2, s};
 use rand_chacha::ChaCha8Rng;
 
-/// A stored matrix Φ, m × n.
+/// Stored matrix Φ, shape (m, n).
 #[derive(Debug)]
 pub(crate) struct Dense(pub(crate) Array2<f64>);
 
@@ -30,17 +30,17 @@ impl Operator for Dense {
     }
 }
 
-/// One of a stored matrix, by what draws it from n, m and a stream.
+/// Describes an ensemble with a stored matrix; `draw` creates it.
 pub(crate) const fn about(words: &'static str, draw: Draw) -> EnsembleAbout {
     EnsembleAbout {
-        // As it is drawn, and as it is kept.
+        // Memory during drawing and afterwards.
         bytes: |m, n| 16.0 * n * m,
         ..EnsembleAbout::new(words, draw)
     }
 }
 
-/// Rows of n numbers of variance 1, divided by √n. Row r comes from the stream's child r alone, so a larger m keeps the
-/// smaller's rows.
+/// Returns rows of n numbers of variance 1, divided by √n. Row r depends only on child r of the stream, so a larger m keeps
+/// the rows of a smaller one.
 pub(crate) fn by_rows(
     m: usize,
     n: usize,
@@ -56,14 +56,14 @@ pub(crate) fn by_rows(
     matrix * scale
 }
 
-/// Taxels that the matrix product sums one after the other before it adds the sum to those of the taxels before (matrixmultiply's
-/// `D_KC`): what is left out within such a block changes no bit of the result.
+/// Number of taxels that the matrix product sums in one block (`D_KC` of matrixmultiply). Leaving out zeros
+/// within a block does not change the bits of the result.
 const SUMMED_TOGETHER: usize = 256;
-/// Share of the taxels above which nothing is left out: to copy what is touched would take longer than what is saved.
+/// Fraction of touched taxels above which all taxels are used, because copying the touched ones would take longer than it saves.
 const MOSTLY_TOUCHED: f64 = 0.8;
 
-/// Y = X Φᵀ by the blocked matrix product, which sums each entry over the taxels in one fixed order whatever the
-/// number of frames or measurements (a law-test holds it to that). Taxels that read zero in all frames are left out, which
+/// Computes Y = X Φᵀ by the blocked matrix product. Each entry is summed over the taxels in one fixed order for any
+/// number of frames or measurements (tested as a law). Taxels that are zero in all frames are left out, which
 /// changes no bit.
 fn measure(matrix: &Array2<f64>, frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64>) {
     let touched = touched(frames);
@@ -77,7 +77,7 @@ fn measure(matrix: &Array2<f64>, frames: ArrayView2<f64>, mut out: ArrayViewMut2
     }
 }
 
-/// The taxels that read something in any frame, in order.
+/// Returns the taxels that are nonzero in at least one frame, in order.
 fn touched(frames: ArrayView2<f64>) -> Vec<usize> {
     let mut any = vec![false; frames.ncols()];
     for frame in frames.outer_iter() {
@@ -87,12 +87,12 @@ fn touched(frames: ArrayView2<f64>) -> Vec<usize> {
     (0..any.len()).filter(|&taxel| any[taxel]).collect()
 }
 
-/// Some columns of a matrix, in order, next to each other.
+/// Copies columns of a matrix, in order, to adjacent columns.
 fn columns(matrix: ArrayView2<f64>, picked: &[usize]) -> Array2<f64> {
     let mut columns = Array2::zeros((matrix.nrows(), picked.len()));
     for (row, mut to) in matrix.outer_iter().zip(columns.outer_iter_mut()) {
         let mut start = 0;
-        // Neighbours are copied together.
+        // Adjacent columns are copied together.
         for run in picked.chunk_by(|a, b| a + 1 == *b) {
             let end = start + run.len();
             let from = row.slice(s![run[0]..run[0] + run.len()]);

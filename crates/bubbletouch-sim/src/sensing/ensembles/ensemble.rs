@@ -1,4 +1,4 @@
-//! What an ensemble says of itself, and what a drawn map does.
+//! Descriptions of ensembles, and the operations of their maps.
 
 use crate::error::Result;
 use crate::random::Seed;
@@ -6,40 +6,40 @@ use crate::sensing::Ensemble;
 use ndarray::{Array2, ArrayView2, ArrayViewMut2};
 use std::fmt::Debug;
 
-/// Draws the map of an ny × nx array to m measurements, 1 ≤ m ≤ n, from its own stream.
+/// Draws the map from an ny × nx array to m measurements, 1 ≤ m ≤ n, with its own stream.
 pub type Draw = fn((usize, usize), usize, &Seed) -> Box<dyn Operator>;
 
-/// Learns it from frames (n_frames × n), of which there are some.
+/// Learns the map from frames (n_frames × n), at least one.
 pub type Learn = fn(ArrayView2<f64>, usize, &Seed) -> Result<Box<dyn Operator>>;
 
-/// Where a map comes from.
+/// Origin of a map.
 #[derive(Clone, Copy, Debug)]
 pub enum Source {
-    /// It is drawn, or known.
+    /// The map is drawn at random or fixed.
     Drawn(Draw),
-    /// It is learned from frames that training touches read.
+    /// The map is learned from frames of training touches.
     Learned(Learn),
 }
 
-/// An ensemble of measurements.
+/// Description of an ensemble of measurements.
 #[derive(Debug)]
 pub struct EnsembleAbout {
-    /// What people call it.
+    /// Name in texts.
     pub words: &'static str,
-    /// Whether the first m measurements of a larger projection are those of the projection of size m.
+    /// Whether the first m measurements of a larger projection are the measurements of the projection of size m.
     pub is_prefix_nested: bool,
-    /// Whether it measures the whole frame, whatever m.
+    /// Whether the ensemble measures the whole frame for any m.
     pub is_whole_frame: bool,
-    /// Whether it needs rows and columns: a layout without any has none of it.
+    /// Whether the ensemble needs rows and columns; other layouts do not support it.
     pub needs_rows: bool,
-    /// Bytes that a map from n taxels to m measurements takes, by m and n.
+    /// Returns the memory of a map from n taxels to m measurements, bytes; the arguments are m and n.
     pub bytes: fn(f64, f64) -> f64,
-    /// Where a map comes from.
+    /// Origin of the map.
     pub source: Source,
 }
 
 impl EnsembleAbout {
-    /// One of nested rows and few numbers that reads each taxel once at most.
+    /// Describes an ensemble with nested rows and little memory that works on any layout.
     pub(crate) const fn new(words: &'static str, draw: Draw) -> Self {
         Self {
             words,
@@ -52,40 +52,40 @@ impl EnsembleAbout {
     }
 }
 
-/// A drawn map y = Φx.
+/// Linear map y = Φx.
 pub trait Operator: Debug + Send + Sync {
-    /// Measures frames (n_frames × n) into `out` (n_frames × m), whatever was there. A row has the same bits in whatever batch.
+    /// Measures frames (n_frames × n) and overwrites `out` (n_frames × m). A row has equal bits in any batch.
     fn measure(&self, frames: ArrayView2<f64>, out: ArrayViewMut2<f64>);
 
-    /// Calls `visit` with measurement, taxel and value of each entry of Φ that may not be zero; the same order every time.
+    /// Calls `visit` with measurement, taxel and value of each entry of Φ that can be nonzero, always in one order.
     fn each_entry(&self, visit: &mut dyn FnMut(usize, usize, f64));
 
-    /// Root mean square norm of a row of Φ.
+    /// Returns the root mean square norm of the rows of Φ.
     fn row_norm(&self) -> f64;
 
-    /// Φ, if it is stored.
+    /// Returns Φ if it is stored.
     fn stored(&self) -> Option<&Array2<f64>> {
         None
     }
 
-    /// ΦΦᵀ, if it is known without Φ.
+    /// Returns ΦΦᵀ if it is known without Φ.
     fn known_gram(&self) -> Option<Array2<f64>> {
         None
     }
 }
 
 impl Ensemble {
-    /// Whether the first m measurements of a larger projection are those of the projection of size m.
+    /// Returns whether the first m measurements of a larger projection are the measurements of the projection of size m.
     pub fn is_prefix_nested(self) -> bool {
         self.about().is_prefix_nested
     }
 
-    /// Whether its map is learned from frames of training touches.
+    /// Returns whether the map is learned from frames of training touches.
     pub fn is_learned(self) -> bool {
         matches!(self.about().source, Source::Learned(_))
     }
 
-    /// The number of measurements of an array of n taxels where m are asked for: n, of a whole frame.
+    /// Returns the number of measurements for n taxels and a requested m: n for whole-frame ensembles, otherwise m.
     pub fn n_measurements(self, m: usize, n: usize) -> usize {
         match self.about().is_whole_frame {
             true => n,
@@ -94,12 +94,12 @@ impl Ensemble {
     }
 }
 
-/// Says of each ensemble which file tells of it.
+/// Declares the ensembles and the module of each.
 macro_rules! ensembles {
     ($($name:ident $file:ident $doc:literal;)*) => {
         $(mod $file;)*
 
-        /// How measurements are made from a frame.
+        /// Ensemble of measurements of a frame.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
         #[serde(rename_all = "snake_case")]
         pub enum Ensemble {
@@ -107,13 +107,13 @@ macro_rules! ensembles {
         }
 
         impl Ensemble {
-            /// All of them.
+            /// All ensembles.
             pub const ALL: &[Self] = &[$(Self::$name),*];
 
-            /// The name in a study, and what people call it.
+            /// Names in a study and names in texts.
             pub const NAMES: &[(&str, &str)] = &[$((stringify!($file), $file::ABOUT.words)),*];
 
-            /// What it says of itself.
+            /// Returns the description of the ensemble.
             pub const fn about(self) -> &'static EnsembleAbout {
                 match self {
                     $(Self::$name => &$file::ABOUT,)*

@@ -1,8 +1,9 @@
 //! The lowest Fourier coefficients of a frame, as real numbers.
 //!
-//! Rows are cos and sin of 2π (u x / nx + v y / ny), by rising (u/nx)² + (v/ny)², of norm 1: frequency 0 first, then a cosine and a sine of each
-//! pair ± (u, v). They are orthonormal; all n of them are a rotation. What a smooth contact is made of lies in the first, but what varies from
-//! touch to touch is how it is placed, which is in the phase of all of them.
+//! Rows are cos and sin of 2π (u x / nx + v y / ny) with norm 1, ordered by increasing (u/nx)² + (v/ny)²: frequency 0 first, then a cosine and a sine of
+//! each
+//! pair ± (u, v). They are orthonormal; all n of them form a rotation. Low frequencies contain most of a smooth contact. Its placement, which varies from
+//! touch to touch, is in the phases of all frequencies.
 
 use super::dense::{Dense, about};
 use super::ensemble::EnsembleAbout;
@@ -16,7 +17,7 @@ pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
     })
 };
 
-/// One of each pair of frequencies ± (u, v), with its cosine, and its sine unless that is 0 on every taxel; lowest first.
+/// Returns one of each pair of frequencies ± (u, v), lowest first: its cosine, and its sine unless this is 0 on every taxel.
 fn waves((ny, nx): (usize, usize)) -> Vec<(usize, usize, bool)> {
     let mut waves = Vec::with_capacity(ny * nx);
     for v in 0..ny {
@@ -32,7 +33,7 @@ fn waves((ny, nx): (usize, usize)) -> Vec<(usize, usize, bool)> {
     }
     let square = |k: usize, n: usize| (k.min(n - k) as f64 / n as f64).powi(2);
     let frequency = |&(u, v, _): &(usize, usize, bool)| square(u, nx) + square(v, ny);
-    // Stable: of one frequency in the order above.
+    // The sort is stable: equal frequencies keep their order.
     waves.sort_by(|a, b| frequency(a).total_cmp(&frequency(b)));
     waves
 }
@@ -42,7 +43,7 @@ fn rows((ny, nx): (usize, usize), m: usize) -> Array2<f64> {
     let mut rows = Array2::zeros((m, ny * nx));
     for (mut row, &(u, v, is_sine)) in rows.outer_iter_mut().zip(&waves) {
         for (taxel, value) in row.iter_mut().enumerate() {
-            // Whole turns are left out before they cost digits.
+            // Whole turns are removed to keep precision.
             let turns = (u * (taxel % nx) % nx) as f64 / nx as f64
                 + (v * (taxel / nx) % ny) as f64 / ny as f64;
             let (sine, cosine) = (TAU * turns).sin_cos();

@@ -1,4 +1,4 @@
-//! The frame itself, whatever m.
+//! The frame itself, for any m.
 
 use super::ensemble::EnsembleAbout;
 use super::subsample::Taxels;

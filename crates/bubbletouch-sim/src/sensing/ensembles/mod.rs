@@ -1,10 +1,10 @@
-//! Ensembles of measurements: one file and one line below for each.
+//! Ensembles of measurements, one module and one line below for each.
 
 mod dense;
 #[macro_use]
 mod ensemble;
 
-// Everything that a study may say of an ensemble follows from its line here and from the file that it names.
+// The properties of an ensemble follow from its line here and from the module that the line names.
 ensembles! {
     Gaussian gaussian "Independent Gaussian entries.";
     Bernoulli bernoulli "Independent entries ±1/√n, either sign as likely.";

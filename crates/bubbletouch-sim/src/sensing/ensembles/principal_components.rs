@@ -1,8 +1,8 @@
-//! The first principal components of frames that training touches read.
+//! First principal components of frames of training touches.
 //!
-//! Row r of Φ is the direction of unit length, at right angles to those before it, in which the frames differ most about their mean: of
-//! all m × n matrices the one whose measurements say most of such frames, in the mean square. Test touches are never looked at. What a skin
-//! that measures so needs is a matrix of m × n numbers, and training touches that it reads in full.
+//! Row r of Φ is the unit direction, orthogonal to earlier rows, with the largest variance of the frames about their mean. Among
+//! all m × n matrices, Φ preserves the most variance of these frames. Test touches are not used. A skin with this ensemble
+//! needs a matrix of m × n numbers, and training touches that it reads in full.
 
 use super::dense::Dense;
 use super::ensemble::{EnsembleAbout, Operator, Source};
@@ -13,12 +13,12 @@ use ndarray::ArrayView2;
 
 pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
     words: "principal components",
-    // How many are found together changes their last digits.
+    // The last digits of a component depend on the number of components computed together.
     is_prefix_nested: false,
     is_whole_frame: false,
     needs_rows: false,
     bytes: |m, n| 16.0 * n * m,
-    // About what it takes to find them, spread over the frames that are measured.
+    // Approximate cost of the computation, divided by the number of measured frames.
     source: Source::Learned(learn),
 };
 

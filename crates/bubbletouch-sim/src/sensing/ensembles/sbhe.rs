@@ -1,31 +1,31 @@
 //! The scrambled block Hadamard ensemble \[SBHE\], by fast transforms.
 //!
 //! Φ = Q W P: P permutes the taxels, W is block diagonal with Walsh–Hadamard matrices H/√B, Hᵢⱼ = (−1)^popcount(i & j), and
-//! Q keeps m coefficients in random order. Where B does not divide n, zeros fill up the last block before the permutation, so
-//! they are scattered too; without them the rows of Φ are orthonormal.
+//! Q selects m coefficients in random order. If B does not divide n, zeros are added to complete the last block before the permutation, so
+//! they are also scattered. Without them the rows of Φ are orthonormal.
 
 use super::ensemble::{EnsembleAbout, Operator};
 use super::subsample::permutation;
 use crate::random::Seed;
 use ndarray::{ArrayView2, ArrayViewMut2};
 
-/// B, a power of two: 32 as in \[SBHE\]. Larger blocks mix more taxels into each measurement, slower; at 1 the ensemble is
-/// a subsample. Arrays of fewer taxels take the next power of two above their number.
+/// Block size B, a power of two: 32 as in \[SBHE\]. Larger blocks mix more taxels into each measurement and are slower; with 1 the ensemble is
+/// a subsample. For arrays of fewer taxels, B is the next power of two above their number.
 pub(crate) const BLOCK: usize = 32;
-/// Frames transformed side by side, one in each lane of a vector register.
+/// Number of frames transformed at a time, one per lane of a vector register.
 const LANES: usize = 8;
 
 /// One value of each of several frames.
 type Lanes = [f64; LANES];
 
-/// P and Q, with Q sorted so that each block that is needed is transformed once.
+/// Permutation P and selection Q, with Q sorted so that each required block is transformed once.
 #[derive(Clone, Debug)]
 pub(crate) struct ScrambledHadamard {
     n_taxels: usize,
     block: usize,
-    /// The taxel at each place before W; n and above are zeros.
+    /// Taxel at each position before W; indices n and above are zeros.
     taxels: Vec<usize>,
-    /// (coefficient after W, measurement that takes it), ascending.
+    /// Pairs of coefficient after W and measurement that uses it, ascending.
     picks: Vec<(usize, usize)>,
 }
 
@@ -41,7 +41,7 @@ pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
 };
 
 impl ScrambledHadamard {
-    /// In blocks of `block` taxels, a power of two.
+    /// Draws the ensemble with blocks of `block` taxels, a power of two.
     pub(crate) fn new(m: usize, n: usize, block: usize, stream: &Seed) -> Self {
         let block = block.min(n.next_power_of_two());
         let n_padded = n.next_multiple_of(block);
@@ -60,7 +60,7 @@ impl ScrambledHadamard {
         a.0 / self.block == b.0 / self.block
     }
 
-    /// One block's taxels of each frame; lanes without a frame stay zero.
+    /// Copies the taxels of one block from each frame; lanes without a frame stay zero.
     fn gather(&self, frames: &[f64], taxels: &[usize], values: &mut [Lanes]) {
         for (lane, frame) in frames.chunks_exact(self.n_taxels).enumerate() {
             for (value, &taxel) in values.iter_mut().zip(taxels) {
@@ -93,7 +93,7 @@ impl Operator for ScrambledHadamard {
         }
     }
 
-    /// Measurement, taxel and value of each entry.
+    /// Calls `visit` with measurement, taxel and value of each entry.
     fn each_entry(&self, visit: &mut dyn FnMut(usize, usize, f64)) {
         let scale = 1.0 / (self.block as f64).sqrt();
         for &(coefficient, measurement) in &self.picks {
@@ -110,7 +110,7 @@ impl Operator for ScrambledHadamard {
         }
     }
 
-    /// Below 1 where zeros were scattered among the taxels.
+    /// Returns a value below 1 if zeros were added to the taxels.
     fn row_norm(&self) -> f64 {
         let in_block = |coefficient: usize| {
             let first = coefficient / self.block * self.block;
@@ -125,7 +125,7 @@ impl Operator for ScrambledHadamard {
     }
 }
 
-/// The Walsh–Hadamard transform in natural order, unscaled, in place, of 2^k values a lane.
+/// Applies the unscaled Walsh–Hadamard transform in natural order, in place, to 2^k values per lane.
 fn transform(values: &mut [Lanes]) {
     let mut half = 1;
     while half < values.len() {

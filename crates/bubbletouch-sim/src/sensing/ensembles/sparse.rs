@@ -1,7 +1,7 @@
-//! Very sparse random projection: few taxels a measurement, stored as their indices.
+//! Very sparse random projection: few taxels per measurement, stored as indices.
 //!
-//! Achlioptas (2003) showed that entries +√s, 0, −√s with probabilities 1/2s, 1 − 1/s, 1/2s preserve distances for s = 3, and
-//! Li, Hastie and Church (2006, *Very sparse random projections*) for s up to √n where the data's tails are not heavy. A
+//! Achlioptas (2003) showed that entries +√s, 0, −√s with probabilities 1/2s, 1 − 1/s, 1/2s preserve distances for s = 3. Li,
+//! Hastie and Church (2006, *Very sparse random projections*) showed this for s up to √n if the data are not heavy-tailed. A
 //! measurement then adds and subtracts √n taxels on average instead of n.
 
 use super::ensemble::{EnsembleAbout, Operator};
@@ -9,22 +9,22 @@ use crate::random::Seed;
 use ndarray::{ArrayView2, ArrayViewMut2};
 use rand::Rng;
 
-/// Frames measured side by side, one in each lane of a vector register.
+/// Number of frames measured at a time, one per lane of a vector register.
 const LANES: usize = 8;
-/// Taxels from which on a row is drawn from entry to entry. Entry by entry a body of millions takes a minute; below, what was
-/// drawn so once stays so.
+/// Number of taxels from which on only nonzero entries are drawn. Drawing every entry takes a minute on a body with millions of taxels; smaller arrays
+/// keep this method for compatibility with earlier results.
 const BY_GAPS_FROM: usize = 1 << 17;
 
-/// Φ with entries ±√(s/n) at a density of 1/s, s = √n.
+/// Matrix Φ with entries ±√(s/n) at a density of 1/s, s = √n.
 #[derive(Clone, Debug)]
 pub(crate) struct VerySparse {
     n_taxels: usize,
-    /// √(s/n), which makes the mean square of an entry 1/n.
+    /// Magnitude √(s/n) of an entry, which makes the mean square of an entry 1/n.
     scale: f64,
     rows: Vec<Row>,
 }
 
-/// The taxels that one measurement adds, and those that it subtracts, ascending.
+/// Taxels that one measurement adds, and taxels that it subtracts, ascending.
 #[derive(Clone, Debug, Default)]
 struct Row {
     plus: Vec<usize>,
@@ -32,7 +32,7 @@ struct Row {
 }
 
 pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
-    // m rows of √n entries each.
+    // m rows with √n entries each.
     bytes: |m, n| 16.0 * n.sqrt() * m,
     ..EnsembleAbout::new("sparse", |(ny, nx), m, seed| {
         Box::new(VerySparse::new(m, ny * nx, &seed.named("sparse")))
@@ -40,7 +40,7 @@ pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
 };
 
 impl VerySparse {
-    /// Row r comes from the stream's child r alone, so a larger m keeps the smaller's rows.
+    /// Draws m rows. Row r depends only on child r of the stream, so a larger m keeps the rows of a smaller one.
     pub(crate) fn new(m: usize, n: usize, stream: &Seed) -> Self {
         let s = (n as f64).sqrt();
         let rows = (0..m as u64).map(|row| Row::draw(n, 1.0 / s, &stream.numbered(row)));
@@ -62,7 +62,7 @@ impl Operator for VerySparse {
         self.scale * (n_entries as f64 / self.rows.len() as f64).sqrt()
     }
 
-    /// Measurement, taxel and value of each entry that is not zero.
+    /// Calls `visit` with measurement, taxel and value of each nonzero entry.
     fn each_entry(&self, visit: &mut dyn FnMut(usize, usize, f64)) {
         for (measurement, row) in self.rows.iter().enumerate() {
             let plus = row.plus.iter().map(|&taxel| (taxel, self.scale));
@@ -99,7 +99,7 @@ impl Row {
         }
     }
 
-    /// Asks of every taxel whether it is added, subtracted or neither.
+    /// Draws for every taxel whether it is added, subtracted or neither.
     fn draw_each(n: usize, density: f64, stream: &Seed) -> Self {
         let mut rng = stream.rng();
         let mut row = Self::default();
@@ -114,8 +114,8 @@ impl Row {
         row
     }
 
-    /// The same law at the cost of the entries that are not zero: the number of zeros before the next one is geometric, at
-    /// least g of them with probability (1 − density)^g.
+    /// Draws only the nonzero entries, with the distribution of `draw_each`: the number of zeros before the next one is geometric, at
+    /// least g with probability (1 − density)^g.
     fn draw_by_gaps(n: usize, density: f64, stream: &Seed) -> Self {
         let mut rng = stream.rng();
         let log_zero = (-density).ln_1p();
@@ -136,7 +136,7 @@ impl Row {
         }
     }
 
-    /// The row's signed sum of each lane.
+    /// Returns the signed sum of the row in each lane.
     fn sums(&self, values: &[[f64; LANES]]) -> [f64; LANES] {
         let mut sums = [0.0; LANES];
         for &taxel in &self.plus {

@@ -1,36 +1,36 @@
 //! The ℓ1 solver: min ½‖y − Aα‖² + λ‖α‖₁ by accelerated proximal gradient steps, many frames at a time.
 //!
-//! FISTA (Beck and Teboulle 2009): a gradient step of length 1/L from a point that runs ahead along the last change, then
-//! soft thresholding by λ/L, where L is the largest eigenvalue of AᵀA. The momentum restarts where it points uphill
-//! (O'Donoghue and Candès 2015). A frame is done when the gap between the objective and that of the dual point
-//! θ = s·(y − Aα), s = min(1, λ/‖Aᵀ(y − Aα)‖∞), is small: no solution is better than the dual's value (Kim et al. 2007).
+//! FISTA (Beck and Teboulle 2009): a gradient step of length 1/L from a point extrapolated along the last change, then
+//! soft thresholding by λ/L, where L is the largest eigenvalue of AᵀA. The momentum restarts if it points uphill
+//! (O'Donoghue and Candès 2015). A frame is solved if the gap between the objective and the dual value at
+//! θ = s·(y − Aα), s = min(1, λ/‖Aᵀ(y − Aα)‖∞), is small, because the dual value is a lower bound of the objective (Kim et al. 2007).
 
 use crate::error::{Error, Result};
 use crate::sensing::{SensedDictionary, Solved};
 use ndarray::linalg::general_mat_mul;
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, ArrayViewMut1, Axis, Zip};
 
-/// Steps between two checks of the gap, which costs about a quarter of a step.
+/// Number of steps between two checks of the gap; a check costs about a quarter of a step.
 const CHECK_EVERY: usize = 5;
-/// Power iterations for L, and the margin for what they miss: after so many the estimate is low by far less (Kuczyński and
+/// Number of power iterations for L, and the safety margin; after this number the error of the estimate is far smaller (Kuczyński and
 /// Woźniakowski 1992).
 const POWER_STEPS: usize = 60;
 const MARGIN: f64 = 1.02;
 
-/// The ℓ1 problem and when it is solved.
+/// The ℓ1 problem and its stopping rule.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lasso {
-    /// λ, positive, in the measurements' unit times an atom's norm.
+    /// Penalty λ, positive, in the unit of the measurements times the norm of an atom.
     pub lambda: f64,
-    /// A frame is solved when its duality gap is at most this part of ½‖y‖²; positive.
+    /// Largest duality gap of a solved frame, as a fraction of ½‖y‖²; positive.
     pub tolerance: f64,
-    /// Steps a frame, at most; at least 1.
+    /// Maximum number of steps per frame; at least 1.
     pub most_steps: usize,
 }
 
 impl Lasso {
-    /// λ = σ a √(2 ln k), a the root mean square norm of A's k columns: where noise of standard deviation σ on each measurement
-    /// alone would, almost surely, raise no coefficient (the universal threshold of Donoho and Johnstone 1994, as in Chen,
+    /// Returns λ = σ a √(2 ln k), a the root mean square norm of the k columns of A. Noise of standard deviation σ on each measurement
+    /// alone then almost surely gives no nonzero coefficient (the universal threshold of Donoho and Johnstone 1994, as in Chen,
     /// Donoho and Saunders 1998).
     pub fn universal_lambda(sensed: &SensedDictionary, noise_std: f64) -> f64 {
         let atoms = sensed.atoms();
@@ -39,15 +39,15 @@ impl Lasso {
         noise_std * (square * 2.0 * k.ln()).sqrt()
     }
 
-    /// Coefficients of each row of measurements (n_frames × m).
+    /// Computes the coefficients of each row of measurements (n_frames × m).
     ///
-    /// A frame is capped when its gap is above the tolerance after `most_steps`.
+    /// A frame is marked as capped if its gap is above the tolerance after `most_steps`.
     ///
     /// # Errors
-    /// λ or tolerance that is not a positive number; no steps allowed.
+    /// If λ or the tolerance is not a positive number, or if `most_steps` is 0.
     ///
     /// # Panics
-    /// When a row does not have m values.
+    /// If a row does not have m values.
     pub fn solve(
         &self,
         sensed: &SensedDictionary,
@@ -56,7 +56,7 @@ impl Lasso {
         self.solve_with(&Curvature::of(sensed), sensed, measurements)
     }
 
-    /// The same with a [`Curvature`] that is kept from frame to frame.
+    /// Solves like [`solve`](Self::solve), with a [`Curvature`] that was computed before.
     pub(crate) fn solve_with(
         &self,
         curvature: &Curvature,
@@ -93,14 +93,14 @@ impl Lasso {
     }
 }
 
-/// L, an upper bound on the largest eigenvalue of AᵀA.
+/// Upper bound L of the largest eigenvalue of AᵀA.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Curvature(f64);
 
 impl Curvature {
     pub(crate) fn of(sensed: &SensedDictionary) -> Self {
         let atoms = sensed.atoms();
-        // Any start that is orthogonal to no eigenvector in practice; fixed, so that results repeat.
+        // A fixed start, so that results are repeatable; in practice it is not orthogonal to any eigenvector.
         let mut x = Array1::from_shape_fn(atoms.nrows(), |j| 1.0 + 0.5 * (j as f64 * 1.7).sin());
         let mut value = 0.0;
         for _ in 0..POWER_STEPS {
@@ -108,27 +108,27 @@ impl Curvature {
             x = atoms.dot(&x.dot(&atoms));
             value = x.dot(&x).sqrt();
         }
-        // No eigenvalue is above the sum of all, ‖A‖²_F.
+        // No eigenvalue exceeds the sum of all, ‖A‖²_F.
         let sum = atoms.iter().map(|a| a * a).sum::<f64>();
         Self((MARGIN * value).min(sum).max(f64::MIN_POSITIVE))
     }
 }
 
-/// Frames that are not solved yet, one a row of each matrix.
+/// Frames that are not solved yet, one per row of each matrix.
 struct Open<'a> {
     sensed: &'a SensedDictionary<'a>,
-    /// L.
+    /// Upper bound L.
     curvature: f64,
-    /// Which frames.
+    /// Indices of the frames.
     frames: Vec<usize>,
-    /// ‖y‖² of each.
+    /// Squared norm ‖y‖² of each frame.
     square: Vec<f64>,
-    /// t of each: how far the momentum has grown.
+    /// Momentum parameter t of each frame.
     momentum: Vec<f64>,
-    /// Aᵀy.
+    /// Aᵀy, one row per frame.
     b: Array2<f64>,
     alpha: Array2<f64>,
-    /// The point that runs ahead.
+    /// Extrapolated points.
     ahead: Array2<f64>,
 }
 
@@ -148,7 +148,7 @@ impl<'a> Open<'a> {
         }
     }
 
-    /// AᵀAα − Aᵀy, by whichever of AᵀA and A is the smaller.
+    /// Returns AᵀAα − Aᵀy, with the smaller of AᵀA and A.
     fn gradient(&self, alpha: &Array2<f64>) -> Array2<f64> {
         let atoms = self.sensed.atoms();
         let mut gradient = self.b.clone();
@@ -177,7 +177,7 @@ impl<'a> Open<'a> {
         }
     }
 
-    /// Hands over the frames whose gap is small enough (all of them at the last step) and goes on with the others.
+    /// Stores the frames whose gap is small enough (all of them at the last step) and keeps the others.
     fn retire(&mut self, rule: &Lasso, is_last: bool, solved: &mut Solved) {
         let gradient = self.gradient(&self.alpha);
         let mut kept = Vec::new();
@@ -205,7 +205,7 @@ impl<'a> Open<'a> {
     }
 }
 
-/// One proximal step from `ahead`, and where the next one starts.
+/// Performs one proximal step from `ahead`, and computes the next extrapolated point.
 fn step_row(
     alpha: ArrayViewMut1<f64>,
     mut ahead: ArrayViewMut1<f64>,
@@ -217,7 +217,7 @@ fn step_row(
     let threshold = lambda * length;
     let mut alpha = alpha;
     let mut uphill = 0.0;
-    // `ahead` becomes the new α, `alpha` the change; both are then put in their places.
+    // `ahead` becomes the new α and `alpha` the change; both are then swapped.
     Zip::from(&mut alpha)
         .and(&mut ahead)
         .and(&gradient)
@@ -241,7 +241,7 @@ fn step_row(
     });
 }
 
-/// Objective at α minus the dual's value; b = Aᵀy, gradient = AᵀAα − b, square = ‖y‖².
+/// Returns the objective at α minus the dual value; b = Aᵀy, gradient = AᵀAα − b, square = ‖y‖².
 fn duality_gap(
     alpha: ArrayView1<f64>,
     b: ArrayView1<f64>,

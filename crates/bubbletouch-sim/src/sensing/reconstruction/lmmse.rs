@@ -1,51 +1,51 @@
-//! The linear estimate of least mean square error: one or two matrix products a frame.
+//! Linear estimate of least mean square error (LMMSE): one or two matrix products per frame.
 //!
-//! Frames are modelled as x = x₀ + Σⱼ αⱼ ψⱼ + r, with uncorrelated αⱼ of the mean square eⱼ that training frames have
-//! ([`Energy`](crate::sensing::Energy)), and a rest r of mean square τ a taxel. Every taxel carries noise of standard deviation σ **before** it is
-//! projected, so y − Φx₀ = Aα + Φ(r + noise) and, with E = diag(eⱼ),
+//! Frames are modelled as x = x₀ + Σⱼ αⱼ ψⱼ + r, with uncorrelated αⱼ of the mean square eⱼ in training frames
+//! ([`Energy`](crate::sensing::Energy)), and a remainder r of mean square τ per taxel. Every taxel has noise of standard deviation σ **before** the
+//! projection, so y − Φx₀ = Aα + Φ(r + noise) and, with E = diag(eⱼ),
 //!
 //! α̂ = E Aᵀ (A E Aᵀ + (τ + σ²) Φ Φᵀ)⁻¹ (y − Φx₀).
 //!
-//! With PCA atoms this is the estimate from the training covariance; with a fixed basis, a Wiener filter in it.
+//! With PCA atoms this is the estimate from the training covariance; with a fixed basis it is a Wiener filter in this basis.
 
 use crate::error::{Error, Result};
 use crate::sensing::SensedDictionary;
 use crate::sensing::cholesky::Cholesky;
 use ndarray::{Array1, Array2, ArrayView2};
 
-/// Part of the measurements' mean variance that is always taken for noise: without noise A E Aᵀ may have no inverse.
+/// Smallest noise variance relative to the mean variance of the measurements; without noise A E Aᵀ may be singular.
 const LEAST_NOISE: f64 = 1e-12;
 
-/// The estimate's matrix, ready for any number of frames.
+/// Matrix of the estimate, prepared for any number of frames.
 #[derive(Clone, Debug)]
 pub struct Lmmse {
     form: Form,
-    /// x₀ − (what Φx₀ maps to), n: so that the estimate of y is this plus a linear map of y.
+    /// Constant part x₀ − M Φx₀, shape (n,), where M is the linear map; the estimate of y is this plus M y.
     constant: Array1<f64>,
 }
 
-/// Whichever takes fewer operations a frame.
+/// Form of the linear map with fewer operations per frame.
 #[derive(Clone, Debug)]
 enum Form {
-    /// m × n: measurements to frames.
+    /// Matrix from measurements to frames, shape (m, n).
     Direct(Array2<f64>),
-    /// m × k and k × n: measurements to coefficients to frames.
+    /// Matrices from measurements to coefficients (m × k) and from coefficients to frames (k × n).
     Through(Array2<f64>, Array2<f64>),
 }
 
 impl Lmmse {
-    /// Prepares the estimate for noise of standard deviation σ on each taxel (zero or positive, the frames' unit).
+    /// Prepares the estimate for noise of standard deviation σ on each taxel (zero or positive, in the unit of the frames).
     ///
     /// # Errors
-    /// A dictionary that has seen no training frames; σ negative or not finite; training frames, or a projection, that are zero.
+    /// If the dictionary has no training frames, if σ is negative or not finite, or if the training frames or the projection are zero.
     pub fn new(sensed: &SensedDictionary, noise_std: f64) -> Result<Self> {
         Self::shrunk(sensed, noise_std, None)
     }
 
-    /// The same with each coefficient (k) multiplied by a number from 0 to 1.
+    /// Prepares the estimate with each coefficient (k) multiplied by a factor from 0 to 1.
     ///
     /// # Errors
-    /// Those of [`new`](Self::new).
+    /// If [`new`](Self::new) would fail.
     pub(crate) fn shrunk(
         sensed: &SensedDictionary,
         noise_std: f64,
@@ -63,7 +63,7 @@ impl Lmmse {
                 "zero or a positive number",
             ));
         }
-        // (E Aᵀ) with one atom a row: k × m.
+        // E Aᵀ with one atom per row, shape (k, m).
         let weighted = &sensed.atoms() * &energy.of_atoms.view().insert_axis(ndarray::Axis(1));
         let mut covariance = weighted.t().dot(&sensed.atoms());
         let of_noise = sensed.projection().row_gram();
@@ -78,7 +78,7 @@ impl Lmmse {
                 "training frames and rows of Φ that are not zero",
             )
         })?;
-        // m × k: a row of measurements times this is a row of coefficients.
+        // Shape (m, k): a row of measurements times this matrix is a row of coefficients.
         let mut to_coefficients = factor.solve(weighted.t());
         if let Some(shrinkage) = shrinkage {
             to_coefficients *= shrinkage;
@@ -105,17 +105,17 @@ impl Lmmse {
         lmmse
     }
 
-    /// Frames of rows of measurements (n_frames × m): n_frames × n.
+    /// Estimates frames from rows of measurements (n_frames × m), shape (n_frames, n).
     ///
     /// # Panics
-    /// When a row does not have m values.
+    /// If a row does not have m values.
     pub fn estimate(&self, measurements: ArrayView2<f64>) -> Array2<f64> {
         let mut frames = self.linear(measurements);
         frames += &self.constant;
         frames
     }
 
-    /// Its linear part: what measurements add to the estimate of measurements of zero.
+    /// Returns the linear part of the estimate, without the estimate of zero measurements.
     pub(crate) fn linear(&self, measurements: ArrayView2<f64>) -> Array2<f64> {
         match &self.form {
             Form::Direct(matrix) => measurements.dot(matrix),

@@ -5,8 +5,8 @@
 //! | `omp` | orthogonal matching pursuit ([`Omp`]) |
 //! | `lasso` | the ℓ1 problem by FISTA ([`Lasso`]) |
 //! | `lmmse` | the linear estimate of least mean square error ([`Lmmse`]) |
-//! | `solved` | what each of them returns ([`Solved`]) |
-//! | `reconstructor` | any of them, prepared for a projection and a dictionary ([`Reconstructor`]) |
+//! | `solved` | the result of a solver ([`Solved`]) |
+//! | `reconstructor` | a solver, prepared for a projection and a dictionary ([`Reconstructor`]) |
 
 mod lasso;
 mod lmmse;

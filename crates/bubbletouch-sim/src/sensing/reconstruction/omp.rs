@@ -1,30 +1,30 @@
-//! Orthogonal matching pursuit, many frames with one Gram matrix.
+//! Orthogonal matching pursuit of many frames with one Gram matrix.
 //!
-//! Pati, Rezaiifar and Krishnaprasad (1993): choose the atom most correlated with the residual, project onto all chosen ones,
+//! Pati, Rezaiifar and Krishnaprasad (1993): choose the atom with the largest correlation with the residual, project onto all chosen atoms,
 //! repeat. Rubinstein, Zibulevsky and Elad (2008, *Batch-OMP*): with G = AᵀA and b = Aᵀy the residual itself is never
-//! formed; a Cholesky factor of G on the chosen atoms grows by a row a step, and the residual's norm falls by the square of
+//! computed. A Cholesky factor of G on the chosen atoms gains one row per step, and the squared norm of the residual decreases by the square of
 //! the newest entry of L⁻¹b.
 
 use crate::error::{Error, Result};
 use crate::sensing::{SensedDictionary, Solved};
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, ArrayViewMut1, Zip};
 
-/// An atom whose part outside the chosen ones is below this (squared) depends on them.
+/// Smallest squared norm of an atom's part outside the span of the chosen atoms; below it the atom is linearly dependent.
 const DEPENDENT: f64 = 1e-10;
-/// A correlation below this part of ‖y‖ is rounding.
+/// Smallest correlation relative to ‖y‖; smaller ones are rounding errors.
 const ROUNDING: f64 = 1e-13;
 
-/// When matching pursuit stops.
+/// Stopping rule of orthogonal matching pursuit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Omp {
-    /// Atoms a frame, at most; at least 1.
+    /// Maximum number of atoms per frame; at least 1.
     pub most_atoms: usize,
-    /// It stops when the residual's norm ‖y − Aα‖ is at most this; zero or positive, in the measurements' unit.
+    /// Norm of the residual ‖y − Aα‖ at which the pursuit stops; zero or positive, in the unit of the measurements.
     pub residual: f64,
 }
 
 impl Omp {
-    /// Stops where the residual is what noise of standard deviation σ on each measurement leaves: σ√m.
+    /// Stops at the residual that noise of standard deviation σ on each measurement causes: σ√m.
     pub fn for_noise(most_atoms: usize, noise_std: f64, n_measurements: usize) -> Self {
         Self {
             most_atoms,
@@ -32,15 +32,15 @@ impl Omp {
         }
     }
 
-    /// Coefficients of each row of measurements (n_frames × m).
+    /// Computes the coefficients of each row of measurements (n_frames × m).
     ///
-    /// A frame is capped when it has `most_atoms` and a residual above the limit.
+    /// A frame is marked as capped if it has `most_atoms` atoms and a residual above the limit.
     ///
     /// # Errors
-    /// No atoms allowed; a residual that is negative or not finite.
+    /// If `most_atoms` is 0, or if the residual is negative or not finite.
     ///
     /// # Panics
-    /// When a row does not have m values.
+    /// If a row does not have m values.
     pub fn solve(
         &self,
         sensed: &SensedDictionary,
@@ -81,16 +81,16 @@ fn inverse_norms(sensed: &SensedDictionary) -> Array1<f64> {
     norms.mapv(|norm| if norm > least { 1.0 / norm } else { 0.0 })
 }
 
-/// One frame's pursuit, in units of atoms of norm 1.
+/// Pursuit of one frame, in units of atoms of norm 1.
 struct Pursuit<'a> {
     gram: &'a Array2<f64>,
-    /// 1 / ‖aⱼ‖; 0 for atoms that cannot be sensed, so that their correlation is always 0.
+    /// Scale 1 / ‖aⱼ‖; 0 for atoms with zero columns, so that their correlation is always 0.
     scale: &'a Array1<f64>,
-    /// aⱼ·y / ‖aⱼ‖.
+    /// Correlations aⱼ·y / ‖aⱼ‖.
     b: Array1<f64>,
-    /// aⱼ·(residual) / ‖aⱼ‖.
+    /// Correlations with the residual, aⱼ·(residual) / ‖aⱼ‖.
     correlation: Array1<f64>,
-    /// ‖residual‖².
+    /// Squared norm ‖residual‖².
     left: f64,
     rounding: f64,
     chosen: Vec<usize>,
@@ -99,7 +99,7 @@ struct Pursuit<'a> {
     factor: Vec<f64>,
     /// L⁻¹ b of the chosen atoms.
     forward: Vec<f64>,
-    /// α of the chosen atoms (of norm 1).
+    /// Coefficients α of the chosen atoms, scaled to norm 1.
     solution: Vec<f64>,
 }
 
@@ -121,7 +121,7 @@ impl<'a> Pursuit<'a> {
         }
     }
 
-    /// Whether it stopped at the cap with a residual above the limit.
+    /// Runs the pursuit. Returns whether it stopped at the maximum number of atoms with a residual above the limit.
     fn run(&mut self, rule: &Omp) -> bool {
         let enough = rule.residual * rule.residual;
         while self.left > enough {
@@ -140,7 +140,7 @@ impl<'a> Pursuit<'a> {
         false
     }
 
-    /// The atom most correlated with the residual (the first of equals); none when all that is left is rounding.
+    /// Returns the atom with the largest correlation with the residual (the first among equals); `None` if only rounding errors remain.
     fn best_atom(&self) -> Option<usize> {
         let mut best = (self.rounding, None);
         for (atom, value) in self.correlation.iter().enumerate() {
@@ -151,7 +151,7 @@ impl<'a> Pursuit<'a> {
         best.1
     }
 
-    /// Adds a row to L and an entry to L⁻¹b; false when the atom depends on the chosen ones.
+    /// Adds a row to L and an entry to L⁻¹b. Returns false if the atom depends linearly on the chosen ones.
     fn add(&mut self, atom: usize) -> bool {
         let start = self.factor.len();
         let mut square = 1.0;
@@ -179,7 +179,7 @@ impl<'a> Pursuit<'a> {
         true
     }
 
-    /// Back substitution: Lᵀα = L⁻¹b.
+    /// Solves Lᵀα = L⁻¹b by back substitution.
     fn solve_chosen(&mut self) {
         self.solution.clone_from(&self.forward);
         for i in (0..self.solution.len()).rev() {

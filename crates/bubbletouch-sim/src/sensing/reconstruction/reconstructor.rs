@@ -1,4 +1,4 @@
-//! Measurements → frames, by any solver.
+//! Reconstruction of frames from measurements, with any solver.
 
 use super::lasso::Curvature;
 use crate::error::Result;
@@ -6,7 +6,7 @@ use crate::sensing::{Lasso, Lmmse, Omp, SensedDictionary};
 use ndarray::{Array2, ArrayView2};
 use serde::{Deserialize, Serialize};
 
-/// How coefficients are found from measurements.
+/// Solver for the coefficients of measurements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Solver {
@@ -18,31 +18,31 @@ pub enum Solver {
     Lmmse,
 }
 
-/// What bounds the solvers' work.
+/// Limits of the solvers' work.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Effort {
-    /// Atoms that matching pursuit may choose a frame.
+    /// Maximum number of atoms per frame in matching pursuit.
     pub most_atoms: usize,
-    /// λ of the ℓ1 problem as a multiple of [`Lasso::universal_lambda`]; positive.
+    /// Factor from [`Lasso::universal_lambda`] to λ of the ℓ1 problem; positive.
     pub lambda_scale: f64,
     /// Relative duality gap at which an ℓ1 problem is solved; positive.
     pub tolerance: f64,
-    /// Steps that the ℓ1 solver may take a frame.
+    /// Maximum number of steps of the ℓ1 solver per frame.
     pub most_steps: usize,
 }
 
-/// Frames from measurements, and how it went.
+/// Reconstructed frames, with convergence information.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reconstruction {
-    /// n_frames × n.
+    /// Frames, shape (n_frames, n).
     pub frames: Array2<f64>,
-    /// Coefficients that are not zero, of each frame; all k for the linear estimate.
+    /// Number of nonzero coefficients of each frame; k for the linear estimate.
     pub n_atoms: Vec<usize>,
-    /// Of each frame: whether its solver stopped at its cap before it was done.
+    /// Whether the solver stopped at its limit before convergence, for each frame.
     pub capped: Vec<bool>,
 }
 
-/// A solver prepared for one projection, dictionary and noise level; it serves any number of frames.
+/// Solver prepared for one projection, dictionary and noise level; it can reconstruct any number of frames.
 ///
 /// ```
 /// use bubbletouch_sim::random::Seed;
@@ -80,19 +80,19 @@ enum Prepared {
     Lmmse(Box<Lmmse>),
 }
 
-/// Noise that the ℓ1 problem always allows for, as a part of the training frames' root mean square: with a λ of zero it would
-/// never converge.
+/// Minimum noise of the ℓ1 problem, relative to the root mean square of the training frames; with λ = 0 the solver would
+/// not converge.
 const LEAST_NOISE: f64 = 1e-3;
 
 impl<'a> Reconstructor<'a> {
-    /// Prepares a solver for noise of standard deviation σ (the frames' unit, zero or positive) on each taxel.
+    /// Prepares a solver for noise of standard deviation σ (in the unit of the frames, zero or positive) on each taxel.
     ///
-    /// All solvers take what no atom shows for noise too: √(σ² + τ) a taxel, τ from training frames
-    /// ([`Energy::rest`](crate::sensing::Energy)). Matching pursuit and the ℓ1 problem take a measurement's noise to be that times the root
-    /// mean square norm of a row of Φ; the linear estimate uses ΦΦᵀ itself.
+    /// All solvers also count the part outside the span of the atoms as noise: √(σ² + τ) per taxel, τ from training frames
+    /// ([`Energy::rest`](crate::sensing::Energy)). Matching pursuit and the ℓ1 problem multiply it by the root
+    /// mean square norm of a row of Φ to obtain the noise of a measurement; the linear estimate uses ΦΦᵀ itself.
     ///
     /// # Errors
-    /// What [`Lmmse::new`] refuses; limits of `effort` that are out of range are refused when frames are reconstructed.
+    /// If [`Lmmse::new`] fails. Limits of `effort` are checked by [`reconstruct`](Self::reconstruct).
     pub fn new(
         solver: Solver,
         sensed: &'a SensedDictionary<'a>,
@@ -124,13 +124,13 @@ impl<'a> Reconstructor<'a> {
         Ok(Self { sensed, prepared })
     }
 
-    /// Frames of rows of measurements (n_frames × m).
+    /// Reconstructs frames from rows of measurements (n_frames × m).
     ///
     /// # Errors
-    /// Limits that are out of range: see [`Omp::solve`] and [`Lasso::solve`].
+    /// If limits are out of range; see [`Omp::solve`] and [`Lasso::solve`].
     ///
     /// # Panics
-    /// When a row does not have m values.
+    /// If a row does not have m values.
     pub fn reconstruct(&self, measurements: ArrayView2<f64>) -> Result<Reconstruction> {
         let solved = match &self.prepared {
             Prepared::Omp(omp) => omp.solve(self.sensed, measurements)?,
@@ -164,7 +164,7 @@ impl Default for Effort {
     fn default() -> Self {
         Self {
             most_atoms: 128,
-            // The universal threshold shrinks too much: on noisy touches the error is least at a third of it.
+            // The universal threshold is too large: on noisy touches the error is lowest at a third of it.
             lambda_scale: 0.3,
             tolerance: 1e-3,
             most_steps: 500,
@@ -172,7 +172,7 @@ impl Default for Effort {
     }
 }
 
-/// Root mean square of a taxel over training frames about x₀; 1 for a dictionary that has seen none.
+/// Returns the root mean square of a taxel over training frames about x₀; 1 for a dictionary without training frames.
 fn frame_scale(sensed: &SensedDictionary) -> f64 {
     let dictionary = sensed.dictionary();
     dictionary.energy().map_or(1.0, |energy| {

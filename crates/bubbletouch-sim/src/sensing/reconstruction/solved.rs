@@ -1,13 +1,13 @@
-//! Coefficients that a solver found.
+//! Coefficients computed by a solver.
 
 use ndarray::Array2;
 
 /// Coefficients of frames, and whether a solver stopped at a limit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solved {
-    /// n_frames × k.
+    /// Coefficients, shape (n_frames, k).
     pub coefficients: Array2<f64>,
-    /// Of each frame: whether it stopped at its cap of atoms or steps before it was done.
+    /// Whether the solver stopped at its limit of atoms or steps before convergence, for each frame.
     pub capped: Vec<bool>,
 }
 
