@@ -1,42 +1,42 @@
-//! What a taxel's tip does sideways: a shear spring, and how well it grips.
+//! Lateral properties of a taxel's tip: shear spring and friction.
 
 use super::{Patch, PerTaxel};
 use crate::error::Result;
 use crate::text::in_range::{not_negative, positive};
 
-/// A taxel's shear spring and its friction; an option beside a [`Patch`], whose taxels slide along their axes without it.
+/// Shear spring and friction of a taxel, optional for a [`Patch`]; without them taxels move along their axes only.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shear {
-    /// k_t, N/m, positive: how stiff the tip is across its axis.
+    /// k_t, N/m, positive: stiffness of the tip perpendicular to its axis.
     pub stiffness: f64,
-    /// μ, zero or positive: what the tip can carry across its axis, as a share of what presses it in.
+    /// μ, zero or positive: coefficient of friction between the tip and objects.
     pub friction: f64,
 }
 
 impl Shear {
-    /// How far the tip of a taxel that `force` newtons press in can be displaced before it slips, metres: μ f / k_t.
+    /// Returns the largest displacement of the tip before it slips, metres: μ f / k_t for a normal force of `force` newtons.
     pub fn reach(&self, force: f64) -> f64 {
         self.friction * force / self.stiffness
     }
 
-    /// Whether it can be.
+    /// Checks the properties.
     ///
     /// # Errors
-    /// The first property that is out of its range, by its name.
+    /// If a property is out of its range; the error names the first one.
     pub fn check(&self) -> Result<()> {
         positive("shear stiffness", self.stiffness, "N/m")?;
         not_negative("friction coefficient", self.friction, "").map(drop)
     }
 }
 
-/// The shear springs of a patch.
+/// Shear springs of a patch.
 pub type Shears = PerTaxel<Shear>;
 
 impl Shears {
-    /// Whether they fit a patch.
+    /// Checks that the shear springs fit a patch.
     ///
     /// # Errors
-    /// The error names a property out of its range and its taxel (from 1), or the numbers of shear springs and taxels if they differ.
+    /// If a property is out of its range (the error names its taxel, from 1), or the numbers of shear springs and taxels differ.
     pub fn check_on(&self, patch: &Patch) -> Result<()> {
         self.check(patch.name(), patch.n_taxels(), Shear::check)
     }

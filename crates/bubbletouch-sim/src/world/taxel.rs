@@ -1,4 +1,4 @@
-//! A taxel, and a rectangular grid of them.
+//! Taxel, and rectangular grid of taxels.
 
 use crate::error::{Error, Result};
 use crate::text::in_range::{not_negative, positive};
@@ -13,20 +13,21 @@ pub struct Taxel {
     pub stiffness: f64,
     /// c, N·s/m, zero or positive.
     pub damping: f64,
-    /// s, metres, positive: how far it can be pushed in before it is saturated.
+    /// s, metres, positive: deflection at which the taxel is saturated.
     pub stroke: f64,
 }
 
 impl Taxel {
-    /// Height of the substrate above the rest centre, along the axis, metres: −s − ρ. The contact law (`contact::law`) ignores what is behind.
+    /// Returns the height of the substrate above the rest centre, along the axis, metres: −s − ρ. The contact law (`contact::law`) ignores objects behind
+    /// it.
     pub fn substrate(&self) -> f64 {
         -self.stroke - self.radius
     }
 
-    /// Whether it can be.
+    /// Checks the properties.
     ///
     /// # Errors
-    /// The first property that is out of its range, by its name.
+    /// If a property is out of its range; the error names the first one.
     pub fn check(&self) -> Result<()> {
         positive("taxel radius", self.radius, "m")?;
         positive("taxel stiffness", self.stiffness, "N/m")?;
@@ -35,35 +36,35 @@ impl Taxel {
     }
 }
 
-/// A rectangular grid of rest positions, centred on the patch's origin.
+/// Rectangular grid of rest positions, centred on the patch's origin.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Grid {
-    /// Columns, along patch x.
+    /// Number of columns, along patch x.
     pub nx: usize,
-    /// Rows, along patch y.
+    /// Number of rows, along patch y.
     pub ny: usize,
-    /// Metres between neighbours, positive.
+    /// Distance between neighbours, metres, positive.
     #[serde(rename = "pitch_m")]
     pub pitch: f64,
 }
 
 impl Grid {
-    /// How many taxels.
+    /// Returns the number of taxels.
     pub fn n_taxels(&self) -> usize {
         self.nx * self.ny
     }
 
-    /// x of a column, metres: `(column − (nx − 1)/2) · pitch`.
+    /// Returns x of a column, metres: `(column − (nx − 1)/2) · pitch`.
     pub fn x(&self, column: usize) -> f64 {
         (column as f64 - 0.5 * (self.nx as f64 - 1.0)) * self.pitch
     }
 
-    /// y of a row, metres: `(row − (ny − 1)/2) · pitch`.
+    /// Returns y of a row, metres: `(row − (ny − 1)/2) · pitch`.
     pub fn y(&self, row: usize) -> f64 {
         (row as f64 - 0.5 * (self.ny as f64 - 1.0)) * self.pitch
     }
 
-    /// Rest centres and axes, row (patch y, ascending) by row.
+    /// Returns rest centres and axes, row by row (patch y, ascending).
     pub(super) fn taxels(&self) -> impl Iterator<Item = (DVec3, DVec3)> {
         let rows = (0..self.ny).map(|row| self.y(row));
         rows.flat_map(move |y| {
@@ -71,10 +72,10 @@ impl Grid {
         })
     }
 
-    /// Whether it can be.
+    /// Checks the properties.
     ///
     /// # Errors
-    /// The first property that is out of its range, by its name.
+    /// If a property is out of its range; the error names the first one.
     pub fn check(&self) -> Result<()> {
         if self.nx == 0 || self.ny == 0 {
             return Err(Error::input(

@@ -1,75 +1,75 @@
-//! A tree of boxes over the taxels of a patch, so that a sphere looks only at those that it can reach.
+//! Tree of boxes over the taxels of a patch, with which a sphere finds the taxels within its reach.
 //!
 //! With h = (c − p)·n and b the distance beside the axis, a sphere (c, R) pushes a taxel (rest centre p, axis n, radius ρ, stroke s) only if
-//! b < S = ρ + R and if the sphere is not wholly behind the substrate, `h + √(S² − b²) ≥ −s − ρ` (title page of [`contact`](crate::contact)).
-//! So c is less than S away from the taxel's stretch, from p back to p − (s + ρ) n. The boxes are around stretches.
+//! b < S = ρ + R. Also, the sphere must not be wholly behind the substrate: `h + √(S² − b²) ≥ −s − ρ` (see [`contact`](crate::contact)).
+//! So the distance of c from the taxel's segment, from p back to p − (s + ρ) n, is less than S. The boxes bound these segments.
 
 use super::{Layout, Taxel, Taxels};
 use crate::geometry::Aabb;
 use glam::DVec3;
 
-/// Taxels in a leaf, at most: what a vector instruction or two look at together. More: taxels are looked at in vain; fewer: more boxes are.
+/// Largest number of taxels in a leaf, evaluated with one or two vector instructions. Larger: needless taxels; smaller: needless boxes.
 pub(crate) const LEAF: usize = 8;
-/// A stroke that nothing ends, metres.
+/// Stroke without a limit, metres.
 const ENDLESS: f64 = 1e6;
-/// What rounding may add to a reach, far above 1e-16 and far below what is felt.
+/// Factor that covers rounding of a reach: far above 1e-16 and far below any measurable difference.
 const ROUNDING: f64 = 1.0 + 1e-9;
 
-/// The taxels of a patch, neighbours together.
+/// Taxels of a patch, grouped by neighbourhood.
 #[derive(Clone, Debug)]
 pub struct TaxelTree {
-    /// Each before all that are below it.
+    /// Nodes, each before all nodes below it.
     nodes: Vec<Node>,
     leaves: Vec<Leaf>,
     /// The largest s + ρ, metres.
     depth: f64,
 }
 
-/// A taxel with what its contact needs.
+/// Taxel with the quantities that its contact needs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PlacedTaxel {
-    /// Its number in the layout.
+    /// Number of the taxel in the layout.
     pub number: u32,
-    /// p, metres.
+    /// Rest centre p, metres.
     pub center: DVec3,
-    /// Unit vectors across the axis; X and Y for a taxel along Z, so that a flat patch is computed as a grid is.
+    /// Unit vectors perpendicular to the axis; X and Y for a taxel along Z, so that a flat patch is computed like a grid.
     pub across: [DVec3; 2],
-    /// n, unit.
+    /// Axis n, unit.
     pub axis: DVec3,
-    /// ρ, metres.
+    /// Radius ρ, metres.
     pub radius: f64,
     /// Height of the substrate along the axis, metres: [`Taxel::substrate`].
     pub behind: f64,
 }
 
-/// Taxels that are neighbours, coordinate by coordinate; those behind the last are like the last, but that everything is behind them.
+/// Neighbouring taxels, coordinate by coordinate. Unused places repeat the last taxel, with everything behind its substrate.
 #[derive(Clone, Debug)]
 pub(crate) struct Leaf {
     pub numbers: [u32; LEAF],
-    /// p: x, y, z, metres.
+    /// Rest centres p: x, y, z, metres.
     pub centers: [[f64; LEAF]; 3],
-    /// Two unit vectors across each axis.
+    /// Two unit vectors perpendicular to each axis.
     pub across: [[[f64; LEAF]; 3]; 2],
-    /// n, unit.
+    /// Axes n, unit.
     pub axes: [[f64; LEAF]; 3],
-    /// ρ, metres.
+    /// Radii ρ, metres.
     pub radii: [f64; LEAF],
-    /// −s − ρ, metres.
+    /// Heights of the substrates, −s − ρ, metres.
     pub behind: [f64; LEAF],
 }
 
-/// The number of no taxel.
+/// Number that marks an unused place.
 const NONE: u32 = u32::MAX;
 
-/// A box around the stretches of some taxels.
+/// Box around the segments of some taxels.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Node {
     pub bounds: Aabb,
     /// The largest ρ, metres.
     pub radius: f64,
-    /// The leaf that it is, if it is one.
+    /// Index of the leaf, if the node is one.
     leaf: Option<u32>,
-    /// The first node that is not below this one.
+    /// Index of the first node that is not below this one.
     next: u32,
 }
 
@@ -89,7 +89,7 @@ impl TaxelTree {
         tree
     }
 
-    /// Taxels at the same places as they travel along a direction (unit): their axes are the direction, and their strokes do not end.
+    /// Creates the tree for travel along a direction (unit): all axes equal the direction, and strokes are unlimited.
     pub fn travelling(layout: &Layout, taxels: &Taxels, direction: DVec3) -> Self {
         let endless = |taxel: &Taxel| Taxel {
             stroke: ENDLESS,
@@ -106,29 +106,29 @@ impl TaxelTree {
         )
     }
 
-    /// The box around the stretches of all taxels, metres; `None` if there are none.
+    /// Returns the box around the segments of all taxels, metres; `None` if there are none.
     pub fn bounds(&self) -> Option<&Aabb> {
         self.nodes.first().map(|root| &root.bounds)
     }
 
-    /// The largest ρ, metres.
+    /// Returns the largest ρ, metres.
     pub fn largest_radius(&self) -> f64 {
         self.nodes.first().map_or(0.0, |root| root.radius)
     }
 
-    /// The largest s + ρ, metres.
+    /// Returns the largest s + ρ, metres.
     pub fn depth(&self) -> f64 {
         self.depth
     }
 
-    /// Whether a ball can push a taxel, or comes near to it; metres, in the patch frame.
+    /// Returns whether a ball may push a taxel; metres, in the patch frame. May also be true for a ball that only comes near.
     #[inline]
     pub fn is_near(&self, center: DVec3, radius: f64) -> bool {
         let root = self.nodes.first();
         root.is_some_and(|root| root.is_near(center, radius))
     }
 
-    /// Calls `visit` with each taxel that a ball can push, and with some others; metres, in the patch frame.
+    /// Calls `visit` with each taxel that a ball can push, and possibly with others nearby; metres, in the patch frame.
     #[inline]
     pub(crate) fn each_near(
         &self,
@@ -142,7 +142,7 @@ impl TaxelTree {
         );
     }
 
-    /// Calls `visit` with each leaf that is below nodes that `may_count` alone.
+    /// Calls `visit` with each leaf whose parent nodes all satisfy `may_count`.
     #[inline(always)]
     pub(crate) fn each_leaf(
         &self,
@@ -162,7 +162,7 @@ impl TaxelTree {
         }
     }
 
-    /// Makes the nodes of some taxels, halved across the longest side of what is around their centres into full leaves; which is the first.
+    /// Creates the nodes of some taxels, split across the longest side of the box around their centres into full leaves; returns the first node.
     fn split(&mut self, of: (&Layout, &Taxels), numbers: &mut [u32]) -> usize {
         let (layout, taxels) = of;
         let index = self.nodes.len();
@@ -182,7 +182,7 @@ impl TaxelTree {
         let low = all().fold(DVec3::INFINITY, DVec3::min);
         let side = (all().fold(DVec3::NEG_INFINITY, DVec3::max) - low).max_position();
         let half = (numbers.len() / 2).next_multiple_of(LEAF);
-        // Ties by number: the tree depends on nothing but the taxels.
+        // Ties are broken by number, so that the tree depends on the taxels only.
         numbers.select_nth_unstable_by(half, |&a, &b| {
             let order = center(a)[side].total_cmp(&center(b)[side]);
             order.then(a.cmp(&b))
@@ -220,13 +220,13 @@ impl Leaf {
         }
     }
 
-    /// Of one of its taxels.
+    /// Returns a vector of one taxel.
     #[inline(always)]
     pub fn vector(&self, of: &[[f64; LEAF]; 3], k: usize) -> DVec3 {
         DVec3::new(of[0][k], of[1][k], of[2][k])
     }
 
-    /// One by one.
+    /// Returns the taxels one by one.
     fn taxels(&self) -> impl Iterator<Item = PlacedTaxel> {
         let numbers = self.numbers.iter().enumerate();
         let numbers = numbers.take_while(|(_, number)| **number != NONE);
@@ -242,14 +242,14 @@ impl Leaf {
 }
 
 impl Node {
-    /// How far the foremost place of its taxels is along a direction, at most, metres.
+    /// Returns an upper bound of the taxels' coordinates along a direction, metres.
     #[inline(always)]
     pub fn front(&self, direction: DVec3) -> f64 {
         let (least, largest) = (self.bounds.min * direction, self.bounds.max * direction);
         least.max(largest).element_sum()
     }
 
-    /// Before what is below it is known.
+    /// Node before its contents are known.
     const EMPTY: Self = Self {
         bounds: Aabb {
             min: DVec3::ZERO,
@@ -270,13 +270,13 @@ impl Node {
         }
     }
 
-    /// Whether a ball can push one of its taxels.
+    /// Returns whether a ball can push one of the node's taxels.
     #[inline(always)]
     pub fn is_near(&self, center: DVec3, radius: f64) -> bool {
         self.room(center, radius) >= 0.0
     }
 
-    /// (R + ρ)² less the square of how far a ball's middle is from its stretches, m²; not less than what there is for any of its taxels.
+    /// Returns (R + ρ)² minus the squared distance between a ball's centre and the node's box, m²: an upper bound for each of the node's taxels.
     #[inline(always)]
     pub fn room(&self, center: DVec3, radius: f64) -> f64 {
         let reach = (self.radius + radius) * ROUNDING;
@@ -285,7 +285,7 @@ impl Node {
 }
 
 impl PlacedTaxel {
-    /// A taxel of a layout by its number.
+    /// Returns a taxel of a layout by its number.
     pub fn of(layout: &Layout, taxels: &Taxels, number: usize) -> Self {
         let frame = layout.frame(number);
         let taxel = taxels.at(number);
@@ -299,7 +299,7 @@ impl PlacedTaxel {
         }
     }
 
-    /// The box around the stretch from its rest centre back to where its substrate is.
+    /// Returns the box around the segment from the rest centre back to the substrate.
     fn stretch(&self) -> Aabb {
         let end = self.center + self.behind * self.axis;
         Aabb {
@@ -325,7 +325,7 @@ mod tests {
         };
         let n = 3000;
         let centers: Vec<DVec3> = (0..n).map(|_| 0.05 * direction()).collect();
-        // Half of the axes point outwards, as on a ball, and half anywhere.
+        // Half of the axes point outwards, as on a ball; the others are random.
         let axis = |k: usize| {
             if k.is_multiple_of(2) {
                 20.0 * centers[k]

@@ -1,4 +1,4 @@
-//! From a [`Placement`] to the list of an object's touches.
+//! Generation of an object's touches from a [`Placement`].
 
 use super::placement::{Placement, Spread, Touch, TouchAxis};
 use super::rest::RestPose;
@@ -8,10 +8,10 @@ use rand::Rng;
 use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_2;
 
-/// The most touches of one object; far above any study, it turns a slip in a list into an error before memory runs out.
+/// Largest number of touches of one object: far above any study; stops a mistyped list before memory runs out.
 pub const MAX_TOUCHES: usize = 10_000_000;
 
-/// The touches of one object, by the rules of [`Placement`], made one at a time: a list of millions needs no memory.
+/// Touches of one object, by the rules of [`Placement`], created one at a time: even millions of touches need no memory.
 #[derive(Clone, Debug)]
 pub struct TouchSource<'a> {
     spreads: [(TouchAxis, &'a Spread); 6],
@@ -20,23 +20,24 @@ pub struct TouchSource<'a> {
     order: Order,
 }
 
-/// Which touch has which number.
+/// Mapping from numbers to touches.
 #[derive(Clone, Debug)]
 enum Order {
-    /// So many, each drawn by its own number.
+    /// `n` touches, each drawn by its own number.
     Drawn(usize),
-    /// All combinations in order, so many.
+    /// All `n` combinations, in order.
     Product(usize),
-    /// These combinations.
+    /// Chosen combinations.
     Chosen(Vec<usize>),
 }
 
 impl<'a> TouchSource<'a> {
-    /// Checks a placement for an object with these resting poses; `seed` names the object's own streams.
+    /// Checks a placement for an object with these resting poses; `seed` is the object's seed.
     ///
     /// # Errors
-    /// No resting pose, or probabilities that are none; a spread that is empty, repeats a value or leaves its range; a
-    /// uniform spread without `per_object`; zero touches, more than ten million, or more than there are combinations.
+    /// - If there is no resting pose, or the probabilities are invalid.
+    /// - If a spread is empty, repeats a value or leaves its range, or is uniform without `per_object`.
+    /// - If the number of touches is zero, above ten million, or above the number of combinations.
     pub fn new(placement: &'a Placement, rests: &'a [RestPose], seed: &Seed) -> Result<Self> {
         check_rests(rests)?;
         let spreads = placement.spreads();
@@ -51,7 +52,7 @@ impl<'a> TouchSource<'a> {
         })
     }
 
-    /// How many touches.
+    /// Returns the number of touches.
     pub fn n_touches(&self) -> usize {
         match &self.order {
             Order::Drawn(n) | Order::Product(n) => *n,
@@ -59,10 +60,10 @@ impl<'a> TouchSource<'a> {
         }
     }
 
-    /// The touch of a number below [`n_touches`](Self::n_touches).
+    /// Returns the touch with a number below [`n_touches`](Self::n_touches).
     ///
     /// # Panics
-    /// Of a chosen combination: at that number or above.
+    /// If combinations are chosen and the number is not below [`n_touches`](Self::n_touches).
     pub fn touch(&self, number: usize) -> Touch {
         match &self.order {
             Order::Drawn(_) => {
@@ -75,10 +76,10 @@ impl<'a> TouchSource<'a> {
     }
 }
 
-/// All touches of one object.
+/// Returns all touches of one object.
 ///
 /// # Errors
-/// Those of [`TouchSource::new`].
+/// If [`TouchSource::new`] fails.
 pub fn touches(placement: &Placement, rests: &[RestPose], seed: &Seed) -> Result<Vec<Touch>> {
     let source = TouchSource::new(placement, rests, seed)?;
     Ok((0..source.n_touches()).map(|n| source.touch(n)).collect())
@@ -115,7 +116,7 @@ fn order(
     }
 }
 
-/// The listed values of each axis; none of a uniform one.
+/// Returns the listed values of each axis; empty for a uniform axis.
 fn values<'a>(spreads: &[(TouchAxis, &'a Spread); 6]) -> [&'a [f64]; 6] {
     spreads.map(|(_, spread)| match spread {
         Spread::Values(values) => values.as_slice(),
@@ -123,7 +124,7 @@ fn values<'a>(spreads: &[(TouchAxis, &'a Spread); 6]) -> [&'a [f64]; 6] {
     })
 }
 
-/// The touch at one place of the product; the last axis runs fastest.
+/// Returns the touch of one combination; the last axis varies fastest.
 fn combined(values: &[&[f64]; 6], mut combination: usize) -> Touch {
     let mut indices = [0; 7];
     for (axis, values) in values.iter().enumerate().rev() {
@@ -135,8 +136,8 @@ fn combined(values: &[&[f64]; 6], mut combination: usize) -> Touch {
     touch_at(coordinates, indices.map(Some))
 }
 
-/// `count` different numbers below n in random order: the start of a shuffle that remembers only the places it has moved,
-/// so that a smaller count is a prefix of a larger.
+/// Returns `count` different numbers below n in random order: the start of a shuffle that stores only the moved places,
+/// so that the result for a smaller count is a prefix of the result for a larger one.
 fn without_replacement(n: usize, count: usize, seed: &Seed) -> Vec<usize> {
     let mut rng = seed.named("combinations").rng();
     let mut moved = HashMap::new();
@@ -149,7 +150,7 @@ fn without_replacement(n: usize, count: usize, seed: &Seed) -> Vec<usize> {
         .collect()
 }
 
-/// One touch from its own streams, one for each axis: changing one spread leaves the other axes' draws as they were.
+/// Draws one touch from its own streams, one per axis, so that changing one spread does not change the other axes' values.
 fn drawn(spreads: &[(TouchAxis, &Spread); 6], rests: &[RestPose], touch: &Seed) -> Touch {
     let draw = |axis: TouchAxis| touch.named(axis.name()).rng();
     let mut indices = [None; 7];
@@ -169,7 +170,7 @@ fn drawn(spreads: &[(TouchAxis, &Spread); 6], rests: &[RestPose], touch: &Seed) 
     touch_at(coordinates, indices)
 }
 
-/// The resting pose whose share of [0, 1) holds `position`.
+/// Returns the resting pose whose part of [0, 1) contains `position`.
 fn drawn_rest(rests: &[RestPose], position: f64) -> usize {
     let total: f64 = rests.iter().map(|rest| rest.probability).sum();
     let mut left = position * total;
@@ -182,7 +183,7 @@ fn drawn_rest(rests: &[RestPose], position: f64) -> usize {
     rests.len() - 1
 }
 
-/// Coordinates in the order of [`TouchAxis`] after the resting pose.
+/// Creates a touch from coordinates in the order of [`TouchAxis`] after the resting pose.
 fn touch_at(coordinates: [f64; 6], indices: [Option<usize>; 7]) -> Touch {
     let [offset_x, offset_y, yaw, tilt_x, tilt_y, depth] = coordinates;
     Touch {
@@ -238,7 +239,7 @@ fn check_spread(axis: TouchAxis, spread: &Spread) -> Result<()> {
     }
 }
 
-/// Which values an axis may take, and how to say it.
+/// Returns the allowed values of an axis, as a test and as text.
 fn range_of(axis: TouchAxis) -> (fn(f64) -> bool, &'static str) {
     match axis {
         TouchAxis::Depth => (

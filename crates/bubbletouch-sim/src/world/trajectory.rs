@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use glam::{DQuat, DVec3};
 
-/// A stretch of time with constant velocity.
+/// Period of constant velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Phase {
     /// Seconds, zero or positive.
@@ -15,10 +15,10 @@ pub struct Phase {
     pub angular: DVec3,
 }
 
-/// Where a body is at any time: a start pose, then one phase after another, then rest.
+/// Pose of a body over time: a start pose, then one phase after another, then rest.
 ///
 /// Rotations are integrated exactly, `R(t) = exp(ω t) R(0)`.
-/// Differs from \[BT\]: the original adds ω × R a step, so its matrices grow, and switches phases one step early.
+/// Differs from \[BT\]: the original adds ω × R at each step, so its matrices grow, and switches phases one step early.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VelocityPlan {
     start: Pose,
@@ -26,10 +26,10 @@ pub struct VelocityPlan {
 }
 
 impl VelocityPlan {
-    /// From a pose, one phase after the other.
+    /// Creates a plan that starts from a pose.
     ///
     /// # Errors
-    /// The first phase (from 1) with a negative duration or a value that is not finite.
+    /// If a phase has a negative duration or a value that is not finite; the error contains the first such phase (from 1).
     pub fn new(start: Pose, phases: Vec<Phase>) -> Result<Self> {
         for (index, phase) in phases.iter().enumerate() {
             let place = format!("velocity plan, phase {}", index + 1);
@@ -51,12 +51,12 @@ impl VelocityPlan {
         Ok(Self { start, phases })
     }
 
-    /// Seconds until the last phase ends.
+    /// Returns the time at which the last phase ends, seconds.
     pub fn duration(&self) -> f64 {
         self.phases.iter().map(|p| p.duration).sum()
     }
 
-    /// `world_from_body` at a time in seconds (before 0: the start; after the last phase: where it ended).
+    /// Returns `world_from_body` at a time in seconds: the start pose before 0, the final pose after the last phase.
     pub fn pose_at(&self, time: f64) -> Pose {
         let mut pose = self.start;
         let mut left = time.max(0.0);

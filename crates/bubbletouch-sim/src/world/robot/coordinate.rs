@@ -1,18 +1,18 @@
-//! The coordinates of joints: what a position vector holds, and by which names.
+//! Coordinates of joints: dimensions, order and names of a robot's positions.
 
 use std::f64::consts::PI;
 
-/// What a coordinate measures.
+/// Physical dimension of a coordinate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dimension {
-    /// Radians.
+    /// Angle, radians.
     Angle,
-    /// Metres.
+    /// Length, metres.
     Length,
 }
 
 impl Dimension {
-    /// Its SI unit.
+    /// Returns the SI unit.
     pub fn unit(self) -> &'static str {
         match self {
             Self::Angle => "rad",
@@ -20,7 +20,7 @@ impl Dimension {
         }
     }
 
-    /// What a name with its unit ends in, and the size of that unit in SI; first a bare name.
+    /// Returns suffixes of column names and the sizes of their units in SI; the first suffix is empty.
     pub fn units(self) -> &'static [(&'static str, f64)] {
         match self {
             Self::Angle => &[("", 1.0), ("_rad", 1.0), ("_deg", PI / 180.0)],
@@ -32,11 +32,11 @@ impl Dimension {
 /// One number of a robot's positions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coordinate {
-    /// The joint's name; for joints of several coordinates with `.x`, `.y`, `.z`, `.theta`, `.roll`, `.pitch` or `.yaw` after
-    /// it.
+    /// Name of the joint. For joints of several coordinates `.x`, `.y`, `.z`, `.theta`, `.roll`, `.pitch` or `.yaw` is
+    /// appended.
     pub name: String,
     /// Index of the joint.
     pub joint: usize,
-    /// What it measures.
+    /// Physical dimension.
     pub dimension: Dimension,
 }

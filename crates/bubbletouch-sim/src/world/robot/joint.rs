@@ -1,48 +1,48 @@
-//! Joints: how a link moves on another.
+//! Joints: motions of links relative to each other.
 
 use super::Dimension;
 use crate::geometry::{Pose, rotation_from_rpy};
 use glam::{DQuat, DVec3};
 
-/// A joint between two links of a [`Robot`](super::Robot).
+/// Joint between two links of a [`Robot`](super::Robot).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
-    /// Unique among the robot's joints.
+    /// Name, unique among the robot's joints.
     pub name: String,
-    /// How it moves.
+    /// Kind of motion.
     pub kind: JointKind,
-    /// Index of the link that carries it.
+    /// Index of the parent link.
     pub parent: usize,
-    /// Index of the link that it moves.
+    /// Index of the child link, which the joint moves.
     pub child: usize,
-    /// `parent_from_joint`: where the child link is at zero coordinates.
+    /// `parent_from_joint`: pose of the child link at zero coordinates.
     pub origin: Pose,
-    /// Unit vector in the joint's frame; it means nothing to fixed and floating joints.
+    /// Axis, unit vector in the joint's frame; unused by fixed and floating joints.
     pub axis: DVec3,
-    /// Range of its position and velocity; `None` for joints of no coordinate or several, and joints without a `<limit>`.
+    /// Limits of position and velocity; `None` for joints with no coordinate or several, and joints without a `<limit>`.
     pub limits: Option<Limits>,
-    /// The joint that it follows, if it does.
+    /// Joint that this one follows, if any.
     pub mimic: Option<Mimic>,
 }
 
-/// The six kinds of URDF \[URDF\].
+/// The six kinds of joints in URDF \[URDF\].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointKind {
-    /// A hinge with ends.
+    /// Hinge with limits.
     Revolute,
-    /// A hinge without ends.
+    /// Hinge without limits.
     Continuous,
-    /// A slide.
+    /// Slide.
     Prismatic,
     /// No motion.
     Fixed,
     /// Six coordinates.
     Floating,
-    /// Three coordinates in the plane across the axis.
+    /// Three coordinates in the plane perpendicular to the axis.
     Planar,
 }
 
-/// Limits of a hinge or slide: radians or metres, and seconds. A limit that the file lacks, or that contradicts itself, is infinite.
+/// Limits of a hinge or slide: radians or metres, and seconds. Missing or contradictory limits are infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
     /// Lowest position, rad or m; −∞ if there is none, as on a continuous joint.
@@ -51,23 +51,23 @@ pub struct Limits {
     pub upper: f64,
     /// Highest speed, rad/s or m/s, zero or positive; +∞ if there is none.
     pub velocity: f64,
-    /// Highest torque or force, N·m or N, zero or positive; +∞ if there is none. Nothing here uses it.
+    /// Highest torque or force, N·m or N, zero or positive; +∞ if there is none. Unused by this library.
     pub effort: f64,
 }
 
-/// `position = multiplier · position of the other + offset`
+/// Relation of a joint to another one: `position = multiplier · position of the other + offset`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mimic {
-    /// Index of the joint that is followed; it may itself follow one.
+    /// Index of the other joint, which may itself follow one.
     pub joint: usize,
-    /// No unit, rad/m or m/rad.
+    /// Dimensionless, rad/m or m/rad.
     pub multiplier: f64,
-    /// rad or m.
+    /// Offset, rad or m.
     pub offset: f64,
 }
 
 impl JointKind {
-    /// URDF's word and the kind of each.
+    /// Names of the kinds in URDF.
     pub(super) const ALL: [(&'static str, Self); 6] = [
         ("revolute", Self::Revolute),
         ("continuous", Self::Continuous),
@@ -77,7 +77,7 @@ impl JointKind {
         ("planar", Self::Planar),
     ];
 
-    /// What is appended to the joint's name for each of its coordinates, and what the coordinate measures.
+    /// Returns the suffix and the dimension of each coordinate; the suffix is appended to the joint's name.
     pub fn coordinates(self) -> &'static [(&'static str, Dimension)] {
         use Dimension::{Angle, Length};
         match self {
@@ -96,14 +96,14 @@ impl JointKind {
         }
     }
 
-    /// A hinge or a slide: what can mimic and be mimicked.
+    /// Returns whether the joint is a hinge or a slide; only these can mimic and be mimicked.
     pub fn has_one_coordinate(self) -> bool {
         self.coordinates().len() == 1
     }
 }
 
 impl Joint {
-    /// `parent_from_child` at these coordinates, as many as the kind has.
+    /// Returns `parent_from_child` at these coordinates, as many as the kind has.
     pub(super) fn pose(&self, coordinates: &[f64]) -> Pose {
         let motion = match (self.kind, coordinates) {
             (JointKind::Revolute | JointKind::Continuous, &[angle]) => {
@@ -125,11 +125,11 @@ impl Joint {
     }
 }
 
-/// The x and y directions of the plane across a unit axis, right-handed about it: those of the joint's frame for an axis
-/// along +z, as other tools have it; for any other, those turned the shortest way from +z (axes with z ≥ 0) or from −z with y
-/// reversed (the others). URDF leaves them open.
+/// Returns the x and y directions of the plane perpendicular to a unit axis, right-handed about it. URDF leaves these directions open.
+/// For an axis along +z they are those of the joint's frame, as in other tools. For other axes with z ≥ 0 they are rotated from +z by the
+/// smallest rotation; for z < 0 they are rotated from −z, with y reversed.
 fn plane_across(axis: DVec3) -> (DVec3, DVec3) {
-    // [Duff et al., Building an orthonormal basis, revisited, 2017]: no angle at which it loses digits.
+    // [Duff et al., Building an orthonormal basis, revisited, 2017]: accurate for all axes.
     let sign = if axis.z >= 0.0 { 1.0 } else { -1.0 };
     let a = -1.0 / (sign + axis.z);
     let b = axis.x * axis.y * a;

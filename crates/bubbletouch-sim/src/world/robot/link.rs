@@ -1,4 +1,4 @@
-//! Links: rigid bodies, with the shapes that skin can be draped on.
+//! Links: rigid bodies, with the shapes that skin can cover.
 
 use super::xml::Element;
 use crate::error::{Error, Result};
@@ -6,19 +6,19 @@ use crate::geometry::Pose;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// A rigid body of a [`Robot`](super::Robot).
+/// Rigid body of a [`Robot`](super::Robot).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Link {
-    /// Unique among the robot's links.
+    /// Name, unique among the robot's links.
     pub name: String,
-    /// Its visual and collision shapes, in the order of the file, without those that could not be read.
+    /// Visual and collision shapes, in the order of the file, without unreadable ones.
     pub shapes: Vec<LinkShape>,
 }
 
-/// A shape on a link.
+/// Shape on a link.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinkShape {
-    /// What it is for.
+    /// Purpose of the shape.
     pub role: ShapeRole,
     /// Its form and size.
     pub geometry: LinkGeometry,
@@ -26,60 +26,60 @@ pub struct LinkShape {
     pub origin: Pose,
 }
 
-/// What a shape on a link is for.
+/// Purpose of a shape on a link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ShapeRole {
-    /// What is seen.
+    /// Drawn in visualisations.
     Visual,
-    /// What touches.
+    /// Used for collisions.
     Collision,
 }
 
-/// The form of a shape, centred on its own origin; axes along z; lengths in metres, zero or positive. A shape with a length of zero
-/// has no volume, and no skin can lie on it.
+/// Geometry of a shape, centred on its own origin; axes along z; lengths in metres, zero or positive. A shape with a length of zero
+/// has no volume, and no skin can cover it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LinkGeometry {
-    /// A box.
+    /// Box.
     Box {
         /// Edge lengths.
         size: DVec3,
     },
-    /// A cylinder with flat ends.
+    /// Cylinder with flat ends.
     Cylinder {
-        /// Of the cylinder.
+        /// Radius.
         radius: f64,
-        /// From end to end.
+        /// Distance between the ends.
         length: f64,
     },
-    /// A cylinder with half balls on its ends (URDF 1.2).
+    /// Cylinder with hemispheres on its ends (URDF 1.2).
     Capsule {
-        /// Of the cylinder and of the half balls.
+        /// Radius of the cylinder and of the hemispheres.
         radius: f64,
-        /// Of the cylinder, without the half balls.
+        /// Length of the cylinder, without the hemispheres.
         length: f64,
     },
-    /// A ball.
+    /// Sphere.
     Sphere {
-        /// Of the ball.
+        /// Radius.
         radius: f64,
     },
-    /// Triangles in a file of their own.
+    /// Triangle mesh in a separate file.
     Mesh {
-        /// As it is written: a path beside the URDF's, `file://…` or `package://…`. It is opened only for skin that is draped over the link.
+        /// Name as written: a path relative to the URDF file, `file://…` or `package://…`. The file is opened only for skin that is draped over the link.
         file: String,
-        /// Metres per unit of the mesh file along each axis; not zero, negative where it is mirrored.
+        /// Metres per unit of the mesh file along each axis; not zero, negative for mirrored axes.
         scale: DVec3,
     },
 }
 
 impl LinkGeometry {
-    /// Whether the form encloses a volume; a mesh is taken to.
+    /// Returns whether the shape encloses a volume; assumed true for a mesh.
     pub fn has_volume(&self) -> bool {
         match self {
             Self::Box { size } => size.min_element() > 0.0,
             Self::Cylinder { radius, length } => *radius > 0.0 && *length > 0.0,
-            // A capsule of length zero is a ball.
+            // A capsule of length zero is a sphere.
             Self::Capsule { radius, .. } | Self::Sphere { radius } => *radius > 0.0,
             Self::Mesh { .. } => true,
         }
@@ -87,7 +87,7 @@ impl LinkGeometry {
 }
 
 impl Link {
-    /// Collision shapes that have a volume: what touches, and what skin can lie on.
+    /// Returns the collision shapes with a volume, which skin can cover.
     pub(crate) fn solids(&self) -> impl Iterator<Item = &LinkShape> {
         let is_solid =
             |shape: &&LinkShape| shape.role == ShapeRole::Collision && shape.geometry.has_volume();
@@ -106,7 +106,7 @@ pub(super) fn read_link(element: &Element) -> Result<Link> {
         .map(|it| (it, ShapeRole::Collision));
     let mut written: Vec<_> = visual.chain(collision).collect();
     written.sort_by_key(|(shape, _)| shape.node.range().start);
-    // A shape does not decide where links are: one that cannot be read is left out.
+    // Shapes do not determine poses of links, so unreadable ones are omitted.
     let shapes = written.iter().filter_map(|(shape, role)| {
         let read = read_shape(shape, *role).map(Some);
         shape.or_note(read, None, "this shape is left out")

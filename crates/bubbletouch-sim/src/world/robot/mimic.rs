@@ -1,21 +1,21 @@
-//! Which position drives each joint, through chains of joints that follow each other.
+//! Driving position of each joint, through chains of joints that follow each other.
 
 use super::xml::Element;
 use super::{Joint, Mimic};
 use crate::error::{Error, Result};
 
-/// Where a joint's coordinates come from: its own, or `multiplier · position + offset` of the one at the end of the chain that it follows.
+/// Source of a joint's coordinates: its own positions, or `multiplier · position + offset` of the joint at the end of the chain that it follows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Drive {
-    /// Index of the first position of the joint at the end of the chain; it means nothing if the multiplier is 0.
+    /// Index of the first position of the joint at the end of the chain; unused if the multiplier is 0.
     pub position: usize,
-    /// Of the whole chain; 1 of its end, 0 if the end is a fixed joint.
+    /// Multiplier of the whole chain; 1 for the end itself, 0 if the end is a fixed joint.
     pub multiplier: f64,
-    /// Of the whole chain; 0 of its end.
+    /// Offset of the whole chain; 0 for the end itself.
     pub offset: f64,
 }
 
-/// Returns the drive of each joint. A joint that mimics a fixed one stands at its offset.
+/// Returns the drive of each joint. A joint that mimics a fixed one stays at its offset.
 ///
 /// # Errors
 /// If a chain ends in itself or its numbers are too large. The error names the line of a joint of the chain.

@@ -1,6 +1,6 @@
-//! Robots: links and joints, read from URDF \[URDF\] or one floating link → where every link is.
+//! Robots: links and joints, read from URDF \[URDF\] or one floating link → poses of all links.
 //!
-//! A robot is a tree of rigid links. Joint j joins its parent link to its child link:
+//! A robot is a tree of rigid links. Joint j connects its parent link to its child link:
 //!
 //! `parent_from_child = origin_j · motion_j(q_j)`, with q_j the joint's coordinates:
 //!
@@ -12,11 +12,11 @@
 //! | planar | x, y, m; theta, rad | shift in the plane across the axis, then turn about it |
 //! | floating | x, y, z, m; roll, pitch, yaw, rad | shift, then turn: `Rz(yaw) Ry(pitch) Rx(roll)` |
 //!
-//! What decides where links are must be right: links, joints, their origins. A joint whose axis or type cannot be read is fixed; limits,
-//! shapes and `<mimic>` that cannot be read are left out. Each is a [note](Robot::notes).
+//! Links, joints and their origins determine poses and must be valid. A joint whose axis or type cannot be read is fixed. Limits,
+//! shapes and `<mimic>` that cannot be read are omitted. Each such case is a [note](Robot::notes).
 //!
 //! The **positions** of a robot are the coordinates of its joints in the order of its file, without fixed joints and without
-//! those that mimic another.
+//! joints that mimic another.
 
 mod coordinate;
 mod joint;

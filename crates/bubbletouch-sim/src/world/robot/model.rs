@@ -1,4 +1,4 @@
-//! A robot as links and joints, and where its links are.
+//! Robot as links and joints, with its forward kinematics.
 
 use super::mimic::Drive;
 use super::tree::Tree;
@@ -8,7 +8,7 @@ use crate::geometry::Pose;
 use crate::text::spelling::known;
 use std::collections::HashSet;
 
-/// A rigid multi-link body. Invariant: its joints make one tree of its links.
+/// Rigid multi-link body. Invariant: the joints connect all links to one tree.
 ///
 /// ```
 /// use bubbletouch_sim::geometry::Pose;
@@ -36,14 +36,14 @@ pub struct Robot {
     links: Vec<Link>,
     joints: Vec<Joint>,
     tree: Tree,
-    /// One a joint.
+    /// One drive per joint.
     drives: Vec<Drive>,
     coordinates: Vec<Coordinate>,
     pub(super) notes: Vec<String>,
 }
 
 impl Robot {
-    /// A robot of one link without joints: its base is moved, and nothing else.
+    /// Creates a robot of one link without joints; only its base moves.
     pub fn floating(name: &str) -> Self {
         let link = Link {
             name: name.to_owned(),
@@ -63,7 +63,7 @@ impl Robot {
         }
     }
 
-    /// From parts that were checked. The error is two coordinates of one name.
+    /// Creates a robot from checked parts. Returns an error if two coordinates have one name.
     pub(super) fn assembled(
         (name, place): (String, &str),
         links: Vec<Link>,
@@ -100,42 +100,42 @@ impl Robot {
         })
     }
 
-    /// Its name.
+    /// Returns the name of the robot.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Sentences on what the file has and the robot has not, each with the file's name and the line; empty if nothing was left out.
+    /// Returns notes on omitted or changed parts of the file, each with the file's name and the line; empty if there are none.
     pub fn notes(&self) -> &[String] {
         &self.notes
     }
 
-    /// In the order of the file.
+    /// Returns the links, in the order of the file.
     pub fn links(&self) -> &[Link] {
         &self.links
     }
 
-    /// In the order of the file.
+    /// Returns the joints, in the order of the file.
     pub fn joints(&self) -> &[Joint] {
         &self.joints
     }
 
-    /// Index of the link that no joint moves: the base.
+    /// Returns the index of the base, the link that no joint moves.
     pub fn base(&self) -> usize {
         self.tree.root
     }
 
-    /// What each of its positions is, in their order.
+    /// Returns the coordinate of each position, in order.
     pub fn coordinates(&self) -> &[Coordinate] {
         &self.coordinates
     }
 
-    /// How many positions it has.
+    /// Returns the number of positions.
     pub fn n_positions(&self) -> usize {
         self.coordinates.len()
     }
 
-    /// Positions at which the robot stands if nothing moves it: 0, or the nearest limit of a joint whose range excludes 0; rad and m.
+    /// Returns the default positions: 0, or the limit nearest to 0 if the joint's range excludes 0; rad and m.
     pub fn rest_positions(&self) -> Vec<f64> {
         let rest = |coordinate: &Coordinate| {
             let limits = self.joints[coordinate.joint].limits;
@@ -144,41 +144,41 @@ impl Robot {
         self.coordinates.iter().map(rest).collect()
     }
 
-    /// Index of a link by its name.
+    /// Returns the index of a link by its name.
     ///
     /// # Errors
-    /// The error offers names that resemble it.
+    /// If there is no such link; the error suggests similar names.
     pub fn link(&self, name: &str) -> Result<usize> {
         let names = self.links.iter().map(|link| link.name.as_str());
         known(format!("link of robot `{}`", self.name), name, names)
     }
 
-    /// Index of a joint by its name.
+    /// Returns the index of a joint by its name.
     ///
     /// # Errors
-    /// The error offers names that resemble it.
+    /// If there is no such joint; the error suggests similar names.
     pub fn joint(&self, name: &str) -> Result<usize> {
         let names = self.joints.iter().map(|joint| joint.name.as_str());
         known(format!("joint of robot `{}`", self.name), name, names)
     }
 
-    /// `world_from_link` of every link, in their order; `world_from_base` is where the base is. See
+    /// Returns `world_from_link` of every link, in order; `world_from_base` is the pose of the base. See
     /// [`forward_into`](Self::forward_into).
     ///
     /// # Errors
-    /// Those of [`forward_into`](Self::forward_into).
+    /// If [`forward_into`](Self::forward_into) fails.
     pub fn forward(&self, world_from_base: &Pose, positions: &[f64]) -> Result<Vec<Pose>> {
         let mut world_from_link = vec![Pose::IDENTITY; self.links.len()];
         self.forward_into(world_from_base, positions, &mut world_from_link)?;
         Ok(world_from_link)
     }
 
-    /// The same into a slice of one pose a link, without allocation.
+    /// Writes `world_from_link` of every link into a slice of one pose per link, without allocation.
     ///
     /// Limits are not checked here: see [`JointTrajectory`](crate::world::JointTrajectory).
     ///
     /// # Errors
-    /// A slice of another length than the robot has positions or links, or a position that is not finite.
+    /// If the number of positions or poses differs from the robot's, or a position is not finite.
     pub fn forward_into(
         &self,
         world_from_base: &Pose,
@@ -205,8 +205,8 @@ impl Robot {
         Ok(())
     }
 
-    /// Which position moves a joint of one coordinate, and how: `(position, multiplier, offset)`; `None` for the others and for joints
-    /// that no position moves, because they mimic a fixed joint. A joint that mimics none has multiplier 1 and offset 0.
+    /// Returns the position that moves a joint of one coordinate, as `(position, multiplier, offset)`. Returns `None` for other joints and for joints
+    /// that mimic a fixed joint, which no position moves. A joint that mimics none has multiplier 1 and offset 0.
     pub fn drive_of(&self, joint: usize) -> Option<(usize, f64, f64)> {
         let drive = self.drives[joint];
         let is_one = self.joints[joint].kind.has_one_coordinate() && drive.multiplier != 0.0;

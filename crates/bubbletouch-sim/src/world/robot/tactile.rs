@@ -1,4 +1,4 @@
-//! Tactile sensors of a URDF file: `<sensor>` with `<tactile>`, which is not read. Each is named in a note.
+//! Tactile sensors of a URDF file: `<sensor>` with `<tactile>`. They are not read; each is reported in a note.
 
 use super::xml::Element;
 use roxmltree::Node;
@@ -33,7 +33,7 @@ pub(super) fn note_tactile_sensors(robot: Element) {
     }
 }
 
-/// Returns the link that `<parent link="…"/>` of a sensor names.
+/// Returns the link named by `<parent link="…"/>` of a sensor.
 fn parent_link<'a>(sensor: Node<'a, 'a>) -> Option<&'a str> {
     let mut children = sensor.children();
     let parent = children.find(|node| node.tag_name().name() == "parent")?;

@@ -1,12 +1,12 @@
 //! The text of a URDF file: its bytes → text → XML that a strict reader accepts, with the same lines.
 //!
-//! Many public files are not well-formed XML, and the readers of other tools accept them: comments or spaces before `<?xml`, `--` inside
-//! a comment, prefixes of namespaces that are not declared, NUL bytes at the end.
+//! Many public files are not well-formed XML, although other tools accept them. Examples are comments or spaces before `<?xml`, `--` inside
+//! a comment, undeclared namespace prefixes, and NUL bytes at the end.
 
 use super::xml::Lines;
 use roxmltree::{Document, Error, ParsingOptions};
 
-/// Namespace prefixes without a declaration in one file, at most; more is no robot.
+/// Largest number of undeclared namespace prefixes in one file; robot files have far fewer.
 const MAX_PREFIXES: usize = 100;
 
 /// Decodes the bytes of a file: UTF-8, UTF-16 with a byte order mark, otherwise Latin-1 with a note.
@@ -33,8 +33,8 @@ pub(super) fn decoded(place: &str, bytes: &[u8]) -> (String, Option<String>) {
     }
 }
 
-/// Returns the text with blanks in place of comments and of an XML declaration that is not at its beginning, and with a declaration
-/// of each namespace prefix that lacks one. Lines keep their numbers.
+/// Returns the text with spaces in place of comments and of an XML declaration that is not at the beginning, and with a declaration
+/// of each undeclared namespace prefix. Line numbers are unchanged.
 pub(super) fn repaired(place: &str, text: &str, lines: &Lines) -> String {
     let text = text.trim_start_matches('\u{feff}').trim_end_matches('\0');
     let mut repaired = without(text, "<!--", "-->");
@@ -65,7 +65,7 @@ pub(super) fn repaired(place: &str, text: &str, lines: &Lines) -> String {
     repaired
 }
 
-/// Parses XML; document type declarations are passed over.
+/// Parses XML; document type declarations are ignored.
 pub(super) fn parsed(text: &str) -> Result<Document<'_>, Error> {
     let options = ParsingOptions {
         allow_dtd: true,
@@ -74,7 +74,7 @@ pub(super) fn parsed(text: &str) -> Result<Document<'_>, Error> {
     Document::parse_with_options(text, options)
 }
 
-/// Whether a `<?xml` is a declaration (and not another instruction, such as `<?xml-model`) that does not begin the text.
+/// Returns a test whether a `<?xml` is a declaration (not another instruction, such as `<?xml-model`) after the beginning of the text.
 fn is_late_declaration(text: &str) -> impl Fn((usize, &str)) -> bool + '_ {
     move |(start, found)| {
         let after = text[start + found.len()..].chars().next();
@@ -82,7 +82,7 @@ fn is_late_declaration(text: &str) -> impl Fn((usize, &str)) -> bool + '_ {
     }
 }
 
-/// Returns the text with blanks in place of everything from `open` to the next `close`.
+/// Returns the text with spaces in place of everything from `open` to the next `close`.
 fn without(text: &str, open: &str, close: &str) -> String {
     let mut kept = String::with_capacity(text.len());
     let mut rest = text;
@@ -102,7 +102,7 @@ fn without(text: &str, open: &str, close: &str) -> String {
     kept + rest
 }
 
-/// Returns the place after the name of the first element.
+/// Returns the position after the name of the first element.
 fn root_name_end(text: &str) -> Option<usize> {
     let is_name = |start: usize| {
         let after = text[start + 1..].chars().next();

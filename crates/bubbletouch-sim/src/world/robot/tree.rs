@@ -1,20 +1,20 @@
-//! Links and joints as a tree: one root, every other link moved by exactly one joint.
+//! Tree of links and joints: one root, and exactly one joint that moves each other link.
 
 use super::xml::Element;
 use super::{Joint, Link};
 use crate::error::{Error, Result};
 
-/// The order in which poses are known.
+/// Root of a robot's tree, and an order of its joints from the root outwards.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Tree {
     /// Index of the link that no joint moves.
     pub root: usize,
-    /// Indices of all joints, each after the one that moves its parent link.
+    /// Indices of all joints, each after the joint that moves its parent link.
     pub outward: Vec<usize>,
 }
 
 impl Tree {
-    /// Checks that the joints make one tree of the links. `robot` and `elements` (one a joint) say where an error is.
+    /// Checks that the joints connect the links to one tree. `robot` and `elements` (one per joint) locate errors.
     pub fn of(
         links: &[Link],
         joints: &[Joint],
@@ -43,14 +43,14 @@ impl Tree {
             is_reached[joints[joint].child] = true;
         }
         match is_reached.iter().position(|reached| !reached) {
-            // It is moved by something that is not reached either, and so on: it goes round.
+            // No link in this chain can be reached from the root, so the chain is a cycle.
             Some(link) => Err(circle(link, links, joints, &moved_by, elements)),
             None => Ok(Self { root, outward }),
         }
     }
 }
 
-/// The joint that moves each link, if one does; the error is a second one.
+/// Returns the joint that moves each link, if any; an error if there is a second one.
 fn moved_by(links: &[Link], joints: &[Joint], elements: &[Element]) -> Result<Vec<Option<usize>>> {
     let mut moved_by: Vec<Option<usize>> = vec![None; links.len()];
     for (index, joint) in joints.iter().enumerate() {
@@ -68,7 +68,7 @@ fn moved_by(links: &[Link], joints: &[Joint], elements: &[Element]) -> Result<Ve
     Ok(moved_by)
 }
 
-/// Joints reached from the root, parents first; among the children of a link, the order of the file.
+/// Returns the joints reached from the root, parents first; children of one link in the order of the file.
 fn outward(root: usize, n_links: usize, joints: &[Joint]) -> Vec<usize> {
     let mut carried: Vec<Vec<usize>> = vec![Vec::new(); n_links];
     for (index, joint) in joints.iter().enumerate() {
@@ -83,7 +83,7 @@ fn outward(root: usize, n_links: usize, joints: &[Joint]) -> Vec<usize> {
     order
 }
 
-/// The error for links that are moved in a circle, from one that leads into it.
+/// Returns the error for a cycle of links, starting from a link that leads into the cycle.
 fn circle(
     start: usize,
     links: &[Link],
@@ -92,7 +92,7 @@ fn circle(
     elements: &[Element],
 ) -> Error {
     let inward = |link: usize| moved_by[link].map_or(link, |joint| joints[joint].parent);
-    // As many steps as there are links end inside the circle.
+    // After as many steps as there are links, the search is inside the cycle.
     let inside = (0..links.len()).fold(start, |link, _| inward(link));
     let mut round = vec![inside];
     while inward(round[round.len() - 1]) != inside {

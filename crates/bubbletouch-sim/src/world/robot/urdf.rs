@@ -1,7 +1,7 @@
-//! URDF \[URDF\]: the text of a robot → its links and joints, each error with its line.
+//! URDF \[URDF\]: the text of a robot → its links and joints; each error contains its line.
 //!
-//! Read is what moves links and what skin can lie on; inertia, colours, transmissions and other tools' elements are passed
-//! over. What does not decide where links are may be wrong: it is left out with a note.
+//! The reader uses the elements that move links and the shapes that skin can cover. Inertia, colours, transmissions and elements of other tools are
+//! ignored. Faults that do not affect poses of links are omitted with a note.
 
 use super::link::read_link;
 use super::mimic::{Drive, drives};
@@ -16,10 +16,10 @@ use glam::DVec3;
 use roxmltree::Node;
 use std::collections::HashMap;
 
-/// Part of the address of the namespace of xacro's elements, in all its versions.
+/// Part of the namespace address of xacro elements, in all versions.
 const XACRO: &str = "xacro";
 
-/// What becomes of a part that cannot be read.
+/// Consequence of an unreadable limit, as text of a note.
 const UNLIMITED: &str = "it does not limit the joint";
 const FIXED: &str = "the joint is fixed";
 const ALONE: &str = "the joint mimics none";
@@ -33,7 +33,7 @@ pub(super) fn read_urdf(place: &str, text: &str) -> Result<Robot> {
         node: document.root_element(),
         lines: &lines,
     };
-    // What xacro would have made may be what is missing.
+    // Missing parts may be those that xacro would have created.
     let not_expanded = not_expanded(root);
     let (name, links, joints, tree, drives) =
         read_parts(root).map_err(|error| match &not_expanded {
@@ -72,7 +72,7 @@ fn read_parts(root: Element) -> Result<Parts> {
     Ok((name.to_owned(), links, joints, tree, drives))
 }
 
-/// Adds the link `world` if a joint has it as its parent and the file has no such link: some tools know it without.
+/// Adds the link `world` if a joint has it as its parent but the file does not contain it; some tools define it implicitly.
 fn add_world<'a>(root: Element<'a>, links: &mut Vec<Link>, link_of: &mut HashMap<&'a str, usize>) {
     const WORLD: &str = "world";
     let mut parents = root
@@ -94,7 +94,7 @@ fn add_world<'a>(root: Element<'a>, links: &mut Vec<Link>, link_of: &mut HashMap
     });
 }
 
-/// The joints with their elements, in the order of the file.
+/// Returns the joints with their elements, in the order of the file.
 fn read_joints<'a>(
     root: Element<'a>,
     links: &[Link],
@@ -128,7 +128,7 @@ fn read_joint(
         "safety_controller",
     ])?;
     let (kind, axis) = match element.or_note(read_kind(&element, name), JointKind::Fixed, FIXED) {
-        // The axis of these means nothing, whatever is written.
+        // These joints have no axis, whatever is written.
         kind @ (JointKind::Fixed | JointKind::Floating) => (kind, DVec3::X),
         kind => {
             let read = read_axis(element, name).map(|axis| (kind, axis));
@@ -170,14 +170,14 @@ fn drop_mimics_of_several(joints: &mut [Joint], elements: &[Element]) {
     }
 }
 
-/// The links that a joint can join.
+/// Links that a joint can connect.
 struct Ends<'a> {
     links: &'a [Link],
     link_of: &'a HashMap<&'a str, usize>,
 }
 
 impl Ends<'_> {
-    /// Index of the link that `<parent>` or `<child>` names.
+    /// Returns the index of the link named by `<parent>` or `<child>`.
     fn read(&self, joint: Element, name: &str, tag: &'static str) -> Result<usize> {
         let end = joint.needed_child(tag)?;
         let wanted = end.text("link")?;
@@ -202,14 +202,14 @@ fn read_kind(element: &Element, joint: &str) -> Result<JointKind> {
     })
 }
 
-/// The unit axis; along x where none is written.
+/// Returns the unit axis; x if none is written.
 fn read_axis(element: Element, joint: &str) -> Result<DVec3> {
     let Some(axis) = element.child("axis")? else {
         return Ok(DVec3::X);
     };
     axis.check_attributes(&["xyz"])?;
     let xyz = DVec3::from(axis.numbers("xyz")?.unwrap_or([1.0, 0.0, 0.0]));
-    // Divided first, so that the square of no length is too large or too small.
+    // Scaled first, so that no square overflows or underflows.
     let largest = xyz.abs().max_element();
     (xyz / largest).try_normalize().ok_or_else(|| {
         let given = format!("joint `{joint}` with an axis of length zero");
@@ -217,7 +217,7 @@ fn read_axis(element: Element, joint: &str) -> Result<DVec3> {
     })
 }
 
-/// Reads the limits of a joint of one coordinate. A limit that is missing or wrong does not limit it.
+/// Reads the limits of a joint of one coordinate. Missing or invalid limits are infinite.
 fn read_limits(element: Element, joint: &str, kind: JointKind) -> Option<Limits> {
     if !kind.has_one_coordinate() {
         return None;
@@ -307,7 +307,7 @@ fn read_mimic(
     }))
 }
 
-/// The names by their index: the order of a map is another in each run.
+/// Returns the names ordered by their index, because the order of a hash map varies between runs.
 fn in_order<'n>(index_of: &HashMap<&'n str, usize>) -> Vec<&'n str> {
     let mut names: Vec<(usize, &str)> = index_of
         .iter()
@@ -317,7 +317,7 @@ fn in_order<'n>(index_of: &HashMap<&'n str, usize>) -> Vec<&'n str> {
     names.into_iter().map(|(_, name)| name).collect()
 }
 
-/// Name → index; the error shows the second of two.
+/// Maps names to indices; the error shows the second of two equal names.
 fn index_of_each<'n>(
     what: &str,
     names: impl Iterator<Item = &'n str>,
@@ -336,7 +336,7 @@ fn index_of_each<'n>(
     Ok(index_of)
 }
 
-/// Returns the first element of xacro, or with an expression of xacro in an attribute: what they stand for is not there.
+/// Returns the first element of xacro, or with an xacro expression in an attribute; the elements that it generates are missing.
 fn not_expanded(root: Element) -> Option<Element> {
     let is_xacro = |node: &Node| {
         let space = node.tag_name().namespace();
@@ -360,13 +360,13 @@ fn xacro_error(element: Element) -> Error {
     )
 }
 
-/// What the XML reader says, with its line.
+/// Returns the XML reader's message as an error, with its line.
 fn unreadable(place: &str, text: &str, error: &roxmltree::Error) -> Error {
     if text.trim().is_empty() {
         return Error::input(place, "an empty file", "URDF: a <robot>");
     }
     let said = error.to_string();
-    // The reader appends its own place; ours stands in front.
+    // The reader appends its own position; ours precedes the message.
     let given = said
         .rsplit_once(" at ")
         .map_or(said.as_str(), |(given, _)| given);

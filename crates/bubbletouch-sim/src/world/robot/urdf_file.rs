@@ -7,19 +7,19 @@ use crate::error::{Error, Result};
 use std::path::Path;
 
 impl Robot {
-    /// Reads a robot from the text of a URDF file. What decides where links are must be right; the rest may be missing or wrong, and is
-    /// then left out with a [note](Self::notes).
+    /// Reads a robot from the text of a URDF file. Faults that do not affect the poses of links are omitted with a
+    /// [note](Self::notes).
     ///
     /// # Errors
-    /// Errors begin with `place`, the file's name, and give the line.
+    /// If a part that determines poses of links is invalid. The message begins with `place`, the file's name, and contains the line.
     pub fn from_urdf(place: &str, text: &str) -> Result<Self> {
         read_urdf(place, text)
     }
 
-    /// Reads a robot from a URDF file in UTF-8, UTF-16 with a byte order mark, or Latin-1. Mesh files that it names are not opened.
+    /// Reads a robot from a URDF file in UTF-8, UTF-16 with a byte order mark, or Latin-1. Mesh files are not opened.
     ///
     /// # Errors
-    /// A file that cannot be read; those of [`from_urdf`](Self::from_urdf).
+    /// If the file cannot be read, or [`from_urdf`](Self::from_urdf) fails.
     pub fn read_urdf(path: &Path) -> Result<Self> {
         let place = path.display().to_string();
         let bytes = crate::files::read(path)
@@ -27,10 +27,10 @@ impl Robot {
         Self::from_urdf_bytes(&place, &bytes)
     }
 
-    /// The same from the bytes of a file.
+    /// Reads a robot from the bytes of a URDF file; `place` is the file's name in messages.
     ///
     /// # Errors
-    /// Those of [`from_urdf`](Self::from_urdf).
+    /// If [`from_urdf`](Self::from_urdf) fails.
     pub fn from_urdf_bytes(place: &str, bytes: &[u8]) -> Result<Self> {
         let (text, note) = decoded(place, bytes);
         let mut robot = read_urdf(place, &text)?;

@@ -1,4 +1,4 @@
-//! XML elements that know where they stand: what is read from them, or the sentence that says why not.
+//! XML elements with their lines: typed access to their parts, and error messages.
 
 use crate::error::{Error, Result};
 use crate::geometry::{Pose, rotation_from_rpy, written_rotation};
@@ -8,7 +8,7 @@ use roxmltree::Node;
 use std::cell::RefCell;
 use std::str::FromStr;
 
-/// Where the lines of a file begin, and the notes on what was read.
+/// Starts of the lines of a file, and notes collected while it is read.
 pub(super) struct Lines<'a> {
     place: &'a str,
     starts: Vec<usize>,
@@ -16,7 +16,7 @@ pub(super) struct Lines<'a> {
 }
 
 impl<'a> Lines<'a> {
-    /// `place` is the file's name.
+    /// Creates the table of lines; `place` is the file's name.
     pub fn new(place: &'a str, text: &str) -> Self {
         let ends = text.match_indices('\n').map(|(end, _)| end + 1);
         Self {
@@ -41,7 +41,7 @@ impl<'a> Lines<'a> {
     }
 }
 
-/// An element of a file.
+/// Element of a file.
 #[derive(Clone, Copy)]
 pub(super) struct Element<'a> {
     pub node: Node<'a, 'a>,
@@ -49,18 +49,18 @@ pub(super) struct Element<'a> {
 }
 
 impl<'a> Element<'a> {
-    /// From 1.
+    /// Returns the line of the element, from 1.
     pub fn line(&self) -> usize {
         self.lines.line(self.node.range().start)
     }
 
-    /// An error at this element's line.
+    /// Returns an error at this element's line.
     pub fn refuse(&self, given: impl ToString, allowed: impl ToString) -> Error {
         let place = format!("{}, line {}", self.lines.place, self.line());
         Error::input(place, given, allowed)
     }
 
-    /// Returns the value of a part that the robot can do without. If the part is wrong, the error becomes a note that ends with
+    /// Returns the value of an optional part. If the part is invalid, the error becomes a note that ends with
     /// `consequence`, and `instead` is returned.
     pub fn or_note<T>(&self, part: Result<T>, instead: T, consequence: &str) -> T {
         part.unwrap_or_else(|error| {
@@ -69,14 +69,14 @@ impl<'a> Element<'a> {
         })
     }
 
-    /// The elements below of this tag.
+    /// Returns the child elements with this tag.
     pub fn children(self, tag: &'a str) -> impl Iterator<Item = Self> {
         let is_it = move |node: &Node| is_own(node) && node.tag_name().name() == tag;
         let children = self.node.children().filter(is_it);
         children.map(move |node| Self { node, ..self })
     }
 
-    /// The only element below of this tag, if there is one.
+    /// Returns the only child element with this tag, if there is one.
     pub fn child(self, tag: &'a str) -> Result<Option<Self>> {
         let mut all = self.children(tag);
         let first = all.next();
@@ -86,13 +86,13 @@ impl<'a> Element<'a> {
         }
     }
 
-    /// The only element below of this tag.
+    /// Returns the only child element with this tag, or an error if it is missing.
     pub fn needed_child(self, tag: &'a str) -> Result<Self> {
         self.child(tag)?
             .ok_or_else(|| self.refuse(format!("{} without <{tag}>", self.called()), "exactly one"))
     }
 
-    /// An attribute that must be there.
+    /// Returns a required attribute.
     pub fn text(&self, attribute: &str) -> Result<&'a str> {
         self.node.attribute(attribute).ok_or_else(|| {
             let given = format!("{} without `{attribute}`", self.called());
@@ -100,7 +100,7 @@ impl<'a> Element<'a> {
         })
     }
 
-    /// The attribute `name`, not empty.
+    /// Returns the attribute `name`, not empty.
     pub fn name(&self) -> Result<&'a str> {
         let name = self.text("name")?;
         if name.trim().is_empty() {
@@ -109,7 +109,7 @@ impl<'a> Element<'a> {
         Ok(name)
     }
 
-    /// The N finite numbers of an attribute, if it is there.
+    /// Returns the N finite numbers of an attribute, if it exists.
     pub fn numbers<const N: usize>(&self, attribute: &str) -> Result<Option<[f64; N]>> {
         let Some(text) = self.node.attribute(attribute) else {
             return Ok(None);
@@ -129,19 +129,19 @@ impl<'a> Element<'a> {
         }
     }
 
-    /// The N finite numbers of an attribute that must be there.
+    /// Returns the N finite numbers of a required attribute.
     pub fn needed_numbers<const N: usize>(&self, attribute: &str) -> Result<[f64; N]> {
         self.text(attribute)?;
         Ok(self.numbers(attribute)?.expect("the attribute is there"))
     }
 
-    /// One finite number of an attribute, if it is there.
+    /// Returns one finite number of an attribute, if it exists.
     pub fn number(&self, attribute: &str) -> Result<Option<f64>> {
         Ok(self.numbers::<1>(attribute)?.map(|[number]| number))
     }
 
-    /// The pose of the `<origin>` below; none is no motion. `rpy` turns about the fixed axes x, y, z in turn; `quat_xyzw`
-    /// (URDF 1.1) is read instead of it.
+    /// Returns the pose of the child `<origin>`; the identity if there is none. `rpy` rotates about the fixed axes x, y, z in this order; `quat_xyzw`
+    /// (URDF 1.1) replaces it.
     pub fn origin(self) -> Result<Pose> {
         let Some(origin) = self.child("origin")? else {
             return Ok(Pose::IDENTITY);
@@ -164,7 +164,7 @@ impl<'a> Element<'a> {
         Ok(Pose::new(rotation, DVec3::from(xyz)))
     }
 
-    /// Refuses elements below that are slips of known ones. Strange ones are left alone: every simulator adds its own.
+    /// Returns an error for child elements that are misspelt known ones. Unknown elements are ignored: every simulator adds its own.
     pub fn check_tags(&self, known: &[&str]) -> Result<()> {
         for node in self.node.children().filter(is_own) {
             let tag = node.tag_name().name();
@@ -178,7 +178,7 @@ impl<'a> Element<'a> {
         Ok(())
     }
 
-    /// Refuses attributes that are slips of known ones.
+    /// Returns an error for attributes that are misspelt known ones.
     pub fn check_attributes(&self, known: &[&str]) -> Result<()> {
         for attribute in self.node.attributes() {
             let name = attribute.name();
@@ -192,7 +192,7 @@ impl<'a> Element<'a> {
         Ok(())
     }
 
-    /// The tag, with the name if it has one.
+    /// Returns the tag, and the name if there is one.
     pub fn called(&self) -> String {
         let tag = self.node.tag_name().name();
         match self.node.attribute("name") {
@@ -202,7 +202,7 @@ impl<'a> Element<'a> {
     }
 }
 
-/// Whether a node is an element of URDF: those of another namespace than the root's are other tools'.
+/// Returns whether a node is an element of URDF; elements in another namespace than the root's belong to other tools.
 fn is_own(node: &Node) -> bool {
     let root = node.document().root_element();
     node.is_element() && node.tag_name().namespace() == root.tag_name().namespace()
@@ -213,7 +213,7 @@ fn finite(word: &str) -> Option<f64> {
     number.is_finite().then_some(number)
 }
 
-/// The first letters of a text that may be long.
+/// Returns the beginning of a long text.
 fn shortened(text: &str) -> String {
     const LETTERS: usize = 60;
     let mut short: String = text.chars().take(LETTERS).collect();
