@@ -14,7 +14,7 @@ struct Sought {
     /// Default name, used if no name is given and a table has such a column. Otherwise, the first column of the role is used.
     usual: &'static str,
     has_role: fn(Role) -> bool,
-    /// Names that are valid for all kinds of study, each with the columns that it stands for.
+    /// Names that are valid for all kinds of study. Each name is listed with the columns that it selects.
     shared: &'static [(&'static str, &'static [&'static str])],
 }
 
@@ -40,7 +40,7 @@ const COST: Sought = Sought {
     ],
 };
 
-/// Query of an advice. A field that is `None` is chosen automatically.
+/// Query for advice. A field that is `None` is chosen automatically.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Asked {
     /// File name of the table.
@@ -481,7 +481,7 @@ fn given_rows(table: &Table, rows: Vec<usize>, text: &str) -> Result<Vec<usize>>
     }
 }
 
-/// Parses a number, optionally with its unit (`0.5 mm`, `5 %`), or a word. Returns `None` if the unit differs from that of the column.
+/// Parses a number, optionally with its unit (`0.5 mm`, `5 %`), or a word. Returns `None` if the unit differs from the column's unit.
 fn given_value(text: &str, unit: &str) -> Option<Value> {
     if let Ok(number) = text.parse() {
         return Some(Value::Number(number));
@@ -598,7 +598,7 @@ mod tests {
         assert_eq!(found, [some("middle"), some("certain"), some("best")]);
         let found = advised(&accurate, Wish::Value(0.95)).unwrap();
         assert_eq!(found, [some("best"), None, None]);
-        // Less error is more accuracy.
+        // For an error, smaller values are better.
         let found = advised(&asked("error", "time"), Wish::Value(0.1)).unwrap();
         assert_eq!(found, [some("middle"), None, some("best")]);
     }

@@ -31,7 +31,7 @@ pub fn answers(offers: &Offers, wish: Wish, worst: bool) -> Result<Vec<Answer>> 
     if answers.iter().any(|answer| answer.advice.is_ok()) {
         return Ok(answers);
     }
-    // The error of the first condition stands for all.
+    // Only the error of the first condition is returned.
     let first = answers.into_iter().next();
     let Some((condition, Err(refused))) = first.map(|first| (first.condition, first.advice)) else {
         let given = "no choice whose value and cost are known";

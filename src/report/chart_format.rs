@@ -11,6 +11,6 @@ pub enum ChartFormat {
     Svg,
     /// PNG files with two pixels per unit of the SVG file.
     Png,
-    /// Both files for each chart.
+    /// An SVG file and a PNG file for each chart.
     Both,
 }

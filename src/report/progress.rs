@@ -259,7 +259,7 @@ fn report_regularly<W: Write>(state: &Weak<Mutex<State<W>>>) {
 }
 
 impl<W: Write> State<W> {
-    /// Writes and flushes a complete line, so that readers never see a part. A closed output must not end a run.
+    /// Writes and flushes a complete line, so that readers never receive a part. A closed output must not end a run.
     fn write(&mut self, line: &impl std::fmt::Display) {
         let written = self.writer.write_all(format!("{line}\n").as_bytes());
         let _ = written.and_then(|()| self.writer.flush());
@@ -353,7 +353,7 @@ mod tests {
         assert_eq!(written.text(), text, "no bar is drawn later");
     }
 
-    /// A writer, and a terminal of 100 columns, that keeps what was written.
+    /// Test writer and terminal of 100 columns that stores all output.
     #[derive(Clone, Debug, Default)]
     struct Written(Arc<Mutex<Vec<u8>>>);
 

@@ -49,8 +49,8 @@ impl SceneFiles {
     /// Starts the files in an existing folder.
     ///
     /// # Errors
-    /// If the folder contains such a file that no simulation wrote, a name is not valid in a recording (such as one with a slash), or a file cannot be
-    /// written.
+    /// If the folder contains one of these files and no simulation wrote it, a file cannot be written, or a name is not valid in a recording (for example, it
+    /// has a slash).
     pub fn create(folder: &Path, plan: &ScenePlan) -> Result<Self> {
         let claimed = DataFolder::claim(folder, "simulate", [RECORDING, WRENCHES, SCENE])?;
         let header = RecordingHeader {

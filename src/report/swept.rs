@@ -43,7 +43,7 @@ pub struct Swept<'a> {
     pub free: Vec<Setting<'a>>,
     /// Dependent settings: they vary only because other settings vary.
     pub following: Vec<Setting<'a>>,
-    /// Independent settings of which each row changes at most one from the first row's value. Empty if there are fewer than two.
+    /// Independent settings, if each row changes at most one of them from its value in the first row. Empty otherwise, or if there are fewer than two.
     pub one_at_a_time: Vec<Setting<'a>>,
     /// Constant settings.
     pub fixed: Vec<Setting<'a>>,
@@ -229,7 +229,7 @@ pub fn without<'a>(settings: &[Setting<'a>], one: &Setting) -> Vec<Setting<'a>> 
         .collect()
 }
 
-/// Returns all numeric settings, or else those of the signal, if each row changes at most one of them from the first row's value.
+/// Returns all numeric settings, or else the numeric settings of the signal, if each row changes at most one of them from its value in the first row.
 fn one_at_a_time<'a>(free: &[Setting<'a>], rows: &[usize]) -> Vec<Setting<'a>> {
     let is_signal = |setting: &Setting| {
         setting.column.role == Role::Condition || setting.column.name == "smoothing_mm"

@@ -1,7 +1,8 @@
 //! Manual control of a scene: a program sets poses and joint positions instead of the scene file.
 //!
-//! A new pose takes effect in the next step and stays. Everything else follows the scene file. A manual step equals a step of the
-//! [time loop](Simulation::next_frame) bit by bit, if length, time and poses are equal and the step is observed where the loop makes a frame.
+//! A new pose takes effect in the next step and stays. Everything else follows the scene file. A manual step and a step of the [time
+//! loop](Simulation::next_frame) are equal bit by bit under two conditions: length, time and poses are equal, and the manual step is observed where the loop
+//! makes a frame.
 
 use super::plan_object::Movement;
 use super::simulation::Simulation;

@@ -29,8 +29,8 @@ pub struct PatchReading {
     /// Forces along the axes, newtons, shape (n_taxels,), never negative; zero on a taxel that only relaxes. A taxel at its stroke that carries a
     /// free object includes the reaction of its stop. The reaction of a stop to an imposed object is indeterminate and not counted.
     pub force: Vec<f64>,
-    /// Forces of the objects on the taxels, newtons, patch frame, shape (n_taxels,). They include axial forces, transverse forces of inclined contacts, and
-    /// friction. Their sum is the force of `wrench`.
+    /// Forces of the objects on the taxels, newtons, patch frame, shape (n_taxels,). Each is the sum of the axial force, transverse forces of inclined
+    /// contacts, and friction. The sum over all taxels is the force of `wrench`.
     pub force3: Vec<DVec3>,
     /// Output of the signal chain, metres or newtons, shape (n_taxels,). `None` if the patch has no signal chain.
     pub signal: Option<Vec<f64>>,

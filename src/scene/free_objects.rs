@@ -70,7 +70,7 @@ impl FreeObjects {
         }
     }
 
-    /// Places an object, by its scene number. It comes to rest from this pose in the next step.
+    /// Places an object, by its scene number. In the next step, the object comes to rest from this pose.
     pub fn put(&mut self, object: usize, pose: Pose) {
         for free in self.all.iter_mut().filter(|free| free.object == object) {
             free.reading = at_start(pose);

@@ -12,9 +12,9 @@ use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::path::{Path, PathBuf};
 
-/// Distance from a facet's middle to the round shape, in pitches. Larger: taxels lie deeper; smaller: more triangles.
+/// Maximum distance from a facet's middle to the round shape, relative to the pitch. A larger value places taxels deeper; a smaller one needs more triangles.
 const SAGITTA: f64 = 0.02;
-/// Facets around a round shape, from and to. More than these take memory and move no taxel by a noticeable distance.
+/// Minimum and maximum number of facets around a round shape. More facets than the maximum need memory and move no taxel by a noticeable distance.
 const N_FACETS: [f64; 2] = [16.0, 720.0];
 
 /// Selection of a link and its shapes.

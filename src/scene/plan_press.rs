@@ -17,7 +17,7 @@ pub struct PlannedPress {
     pub direction: DVec3,
     /// Times of the target forces, seconds, strictly ascending; at least one.
     pub times: Vec<f64>,
-    /// Target spring forces Σ k δ at these times, N, not negative. They are interpolated linearly and constant outside these times.
+    /// Target spring forces Σ k δ at these times, N, not negative. The forces are interpolated linearly between the times and constant outside them.
     pub forces: Vec<f64>,
     /// Maximum speed along the direction, m/s, positive.
     pub speed: f64,

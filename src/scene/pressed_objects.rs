@@ -22,7 +22,7 @@ struct Pressed {
     now: HeldForce,
     /// Target force, N.
     wanted: f64,
-    /// Contacts with the pressed patch. They persist, however far the object travels.
+    /// Contacts with the pressed patch. A contact persists, however far the object travels.
     contacts: Vec<TaxelContact>,
 }
 

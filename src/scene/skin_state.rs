@@ -101,7 +101,7 @@ impl SkinState {
         }
     }
 
-    /// Keeps the given contacts in the following steps, even if the sphere's centre passes behind the substrate.
+    /// Marks parts of objects that push their taxels in the following steps, even from behind the substrate.
     pub fn hold<'a>(&mut self, contacts: impl IntoIterator<Item = &'a TaxelContact>) {
         self.workspace.hold(contacts);
     }

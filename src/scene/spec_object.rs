@@ -68,9 +68,9 @@ pub struct FreeSpec {
 
 /// Force control: `press = { patch = "palm", direction = [0.0, 0.0, -1.0], force_n = 2.0, speed_mm_per_s = 20.0, travel_mm = 10.0 }`
 ///
-/// The object starts at the pose of `at` and `motion` and moves along the direction until the patch reaches the force. It moves back if the force
-/// is too large. Speed and travel are limited. The object does not pass through the patch: pressed taxels stay at their stroke, even if the force
-/// is not reached. If the force is zero, the object returns to the pose of its motion.
+/// The object starts at the pose of `at` and `motion` and moves along the direction until the patch reaches the force. If the force is too large, the object
+/// moves back. Speed and travel are limited. The object does not pass through the patch: pressed taxels stay at their stroke, even if the force is not
+/// reached. If the force is zero, the object returns to the pose of its motion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PressSpec {

@@ -28,8 +28,8 @@ pub struct PatchSpec {
     pub at: PoseSpec,
     /// Arrangement of the taxels.
     pub layout: LayoutSpec,
-    /// Taxel radius ρ. Default: half the pitch. This key and the following ones are a number for all taxels, a list with one number for each taxel in the
-    /// order of the layout (for a grid, row by row), or a column of `taxels_csv`.
+    /// Taxel radius ρ. Default: half the pitch. This key and the following ones are a number for all taxels, a list with one number for each taxel, or a
+    /// column of `taxels_csv`. Lists are in the order of the layout (for a grid, row by row).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub taxel_radius_mm: Option<Numbers>,
     /// Stroke s; required.
@@ -41,7 +41,7 @@ pub struct PatchSpec {
     /// Damping c. Default: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damping_n_s_per_m: Option<Numbers>,
-    /// Friction coefficient μ. With friction, contacts stick and slip; without it, contact forces have no tangential part.
+    /// Friction coefficient μ. With friction, tangential springs hold the contacts until they slip. Without it, taxels only slide along their axes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction: Option<Numbers>,
     /// Tangential stiffness k_t, used with `friction`. Default: the axial stiffness.

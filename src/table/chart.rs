@@ -106,8 +106,8 @@ pub struct Rule {
 pub enum At {
     /// Constant position on the axis.
     Value(f64),
-    /// Position from a column, for each panel and each place along the other axis: a chance level that depends on the number of objects, or
-    /// a limit that depends on the mass.
+    /// Position from a column, for each panel and each place along the other axis. Examples: a chance level that depends on the number of objects, or a limit
+    /// that depends on the mass.
     Column(String),
 }
 

@@ -120,7 +120,7 @@ impl Column {
         }
     }
 
-    /// Returns whether some numbers have names. Such numbers are not interpolated with others.
+    /// Returns whether some numbers have names. A chart does not join the points of named numbers by lines.
     pub fn has_named_numbers(&self) -> bool {
         self.scale != Scale::Words && self.names.iter().any(|(code, _)| !code.is_empty())
     }

@@ -44,7 +44,7 @@ mod tests {
         let mut rng = Seed::new(3).named("front").rng();
         for n in [0, 1, 2, 5, 40, 300] {
             for steps in [2, 10, 1000] {
-                // Few steps: many equal points, some infinite, some no numbers.
+                // Few distinct steps give many equal points; some values are infinite or NaN.
                 let mut number = || match rng.gen_range(0..steps + 3) {
                     0 => f64::INFINITY,
                     1 if steps > 2 => f64::NAN,

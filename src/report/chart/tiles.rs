@@ -11,7 +11,7 @@ use crate::report::swept::Setting;
 use crate::report::text_width::text_width;
 use crate::table::{Data, Role, Scale, Value};
 
-/// Colours of outcomes, in the order of their first rows. They also differ in lightness.
+/// Colours of outcomes, in the order of their first rows. The colours also differ in lightness.
 const OUTCOMES: [Rgb; 8] = [
     LINES[5], LINES[4], LINES[1], LINES[7], INK, LINES[2], LINES[3], LINES[0],
 ];
@@ -77,7 +77,7 @@ pub(super) fn draw(view: &View, fill: &str, sign: Option<&str>) -> Result<Drawin
     Ok(drawing)
 }
 
-/// Draws the sign on its own background, so that no reference line crosses it: a crossed minus would look like a plus.
+/// Draws the sign on its own background, so that no reference line crosses it: a crossed minus is mistaken for a plus.
 fn draw_sign(drawing: &mut Drawing, place: Area, colour: Rgb, sign: &str) {
     let width = text_width(sign, f64::from(SIGN)) + 4.0;
     let (x, y) = place.at(0.5, 0.5);

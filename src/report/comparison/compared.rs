@@ -171,7 +171,8 @@ pub fn entries_words(found: &[ColumnDifferences], tables: &[TableEntries]) -> Ve
     said.flatten().collect()
 }
 
-/// Describes one table. `counts_rows`: its rows are counted by another sentence; `has_moved`: another sentence reports that means of the column differ.
+/// Describes one table. `counts_rows` states whether another sentence counts its rows. `has_moved` returns whether another sentence reports a difference of a
+/// column's means.
 fn table_words(
     table: &TableEntries,
     counts_rows: bool,

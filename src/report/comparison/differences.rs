@@ -25,7 +25,7 @@ pub enum Moved {
     Untested,
     /// Not significant: chance explains the difference.
     ByChance,
-    /// Both values are equal.
+    /// No difference: both values are equal.
     Same,
 }
 
@@ -125,7 +125,7 @@ struct Settings<'a> {
     table: &'a Table,
     /// Columns that distinguish the settings.
     columns: Vec<Setting<'a>>,
-    /// Rows of each setting, one for each trial, in the order of their first rows.
+    /// Groups of rows with equal settings, one row for each trial. The groups are in the order of their first rows.
     groups: Vec<Vec<usize>>,
     is_repeated: bool,
 }

@@ -1,9 +1,10 @@
 //! Agreement of the rankings of designs in two studies, for example of a simulated skin and a real one, whose settings are not all equal.
 //!
 //! A design is a combination of the choices and conditions for which both tables have common values. Rows with a value that only one table has are left out.
-//! The mean is taken over all other columns. Two values are equal if their numbers and units are exactly equal. "Does not apply" (a
-//! k-NN has no C) is a value, too. Compression ratios of two tables are equal if one nominal ratio r gives both numbers of measurements,
-//! m = n / r rounded, as on arrays that are not divisible by r.
+//! The mean is taken over all other columns.
+//!
+//! Two values are equal if their numbers and units are exactly equal. "Does not apply" (a k-NN has no C) is a value, too. Compression ratios of two tables are
+//! equal if one nominal ratio r gives both numbers of measurements. For n taxels, the number is m = n / r, rounded if n is not divisible by r.
 
 use crate::report::swept::Setting;
 use crate::statistics::p_status::CONFIDENCE;
@@ -248,23 +249,23 @@ mod tests {
     crate::row! {
     /// A design of a study.
     pub struct DesignRow {
-        /// An array's.
+        /// Number of taxels.
         taxels: usize => Choice: Linear;
-        /// Name of the design.
+        /// Name of the ensemble.
         ensemble: String => Choice;
-        /// About.
+        /// Compression ratio.
         ratio: f64 => Choice in ":1": Log;
-        /// At.
+        /// Number of measurements.
         measurements: usize => Choice "m": Log;
-        /// In.
+        /// Standard deviation of the noise.
         noise_std: f64 => Condition: Linear;
-        /// What is ranked.
+        /// Accuracy, the ranked value.
         accuracy: f64 => Value(More): Share;
     } }
 
     const FILE: File<DesignRow> = File::new("accuracy.csv", "Accuracy", "");
 
-    /// Block averages, Gaussian and subsampling at two ratios, twice each, on an array of so many taxels.
+    /// Returns a table of three ensembles (block averages, Gaussian, subsampling) at two ratios and the given noises, for an array of `n_taxels` taxels.
     fn table(n_taxels: usize, accuracies: [f64; 6], noises: &[f64]) -> Vec<Table> {
         let mut rows = Vec::new();
         for (design, accuracy) in accuracies.into_iter().enumerate() {
@@ -276,7 +277,7 @@ mod tests {
                     ratio: n_taxels as f64 / measurements as f64,
                     measurements,
                     noise_std: *noise_std,
-                    // The mean of both is what is ranked.
+                    // The mean over both noises is ranked.
                     accuracy: accuracy + 0.3 * (twice as f64 - 0.5),
                 });
             }
@@ -295,7 +296,7 @@ mod tests {
         let choice = |words: &str, pairs| (words.to_owned(), pairs, pairs);
         let (ensembles, ratios) = (choice("ensemble", 6), choice("ratio", 3));
         assert_eq!(found.choices, [ensembles, ratios]);
-        // Another order of two ensembles at one ratio: one pair of 14 that are no tie, and one of its ensembles.
+        // Two ensembles at one ratio are exchanged. This changes one of 14 pairs without a tie, and one of the pairs that differ in the ensemble.
         let mut other = REAL;
         other.swap(1, 3);
         let found = rank_agreement(&table(4096, other, &[0.1, 0.1]), &real).unwrap();

@@ -110,7 +110,7 @@ fn not_drawn(left_out: &[String]) -> String {
     )
 }
 
-/// Returns all tables as HTML. Charted tables come first, then small ones, until the page is full. Of the other tables, only the first rows are included.
+/// Returns all tables as HTML. Charted tables come first, then small ones, until the page is full. The remaining tables are cut to their first rows.
 fn tables_html(found: &Found) -> String {
     let is_charted = |table: &Table| found.charts.iter().any(|chart| chart.table == table.file);
     let mut order: Vec<&Table> = found.tables.iter().filter(|t| t.n_rows > 0).collect();

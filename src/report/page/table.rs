@@ -9,7 +9,7 @@ const N_FIRST_ROWS: usize = 100;
 /// A table as HTML.
 pub(crate) struct TableHtml {
     pub html: String,
-    /// Rows of the table that the HTML contains.
+    /// Number of table rows in the HTML.
     pub n_rows: usize,
 }
 

@@ -23,8 +23,9 @@ pub enum Original {
     Solid(Solid),
 }
 
-/// Draws three panels of `tile` × `tile` pixels: the original, the single spheres, and the spheres coloured by their signed distance from the original, with a
-/// colour bar in millimetres. Distances are positive outside the original; for an open surface, all distances are positive.
+/// Draws three panels of `tile` × `tile` pixels. The first shows the original, the second the single spheres. The third shows the spheres coloured by their
+/// signed distance from the original, with a colour bar in millimetres. Distances are positive outside the original; for an open surface, all distances are
+/// positive.
 ///
 /// Equal input gives equal bytes.
 ///
@@ -197,7 +198,7 @@ mod tests {
     use crate::mesh::TriangleMesh;
     use crate::objects::{Part, Shape, Sphere};
 
-    /// A square of side 2 at z = 0, seen from above.
+    /// Creates a square of side 2 at z = 0, seen from above.
     fn square() -> Surface {
         let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
         let corners = corners.map(|(x, y)| DVec3::new(x, y, 0.0));
@@ -210,7 +211,7 @@ mod tests {
         SphereUnion::new(vec![Sphere { center, radius }]).unwrap()
     }
 
-    /// Red minus blue, summed over the third panel above its colour bar.
+    /// Returns the sum of red minus blue over the third panel above its colour bar.
     fn redness(picture: &Picture) -> i64 {
         let tile = picture.height;
         let pixels = picture.rgb.chunks(3).enumerate();

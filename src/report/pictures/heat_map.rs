@@ -22,7 +22,7 @@ pub(crate) fn block_sentence(block: usize) -> String {
 /// Colour scale: the displayed values of the darkest and lightest colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColourScale {
-    /// What the values are of.
+    /// Quantity of the values.
     pub quantity: Quantity,
     /// Value of the darkest colour, in displayed units: 0, or the lowest value if it is negative.
     pub low: f64,

@@ -69,7 +69,7 @@ mod tests {
         contact_sheet(&[(name, &ball(radius))], 1, 200).unwrap()
     }
 
-    /// Paint is bluer than red; paper and type are grey.
+    /// Counts the painted pixels: the object's colour has more blue than red, background and text are grey.
     fn n_painted(picture: &Picture) -> usize {
         let painted = |pixel: &&[u8]| i16::from(pixel[2]) > i16::from(pixel[0]) + 12;
         picture.rgb.chunks(3).filter(painted).count()
@@ -77,7 +77,7 @@ mod tests {
 
     #[test]
     fn a_ball_is_drawn_as_a_disc_that_fills_its_tile_whatever_its_size() {
-        // The room is 200 − 2.8 × 20 pixels high.
+        // The height of the room is 200 − 2.8 × 20 pixels.
         let disc = 0.25 * std::f64::consts::PI * 144.0 * 144.0;
         for radius in [1e-3, 0.3] {
             let painted = n_painted(&picture("", radius)) as f64;

@@ -52,7 +52,7 @@ mod tests {
         }
     }
 
-    /// How many pixels each of three colours covers.
+    /// Counts the pixels that each of three colours covers.
     fn covered(cells: &Cells) -> [f64; 3] {
         let (width, height) = (80, 60);
         let mut picture = Picture {

@@ -71,7 +71,7 @@ impl RecordingFile {
         &self.time
     }
 
-    /// Returns a quantity of a patch in one frame, one number for each taxel: metres, or newtons (for vectors, the length). Only this row is read, so no
+    /// Returns a quantity of a patch in one frame, one number for each taxel: metres, or newtons (for vectors, the length). No other row is read and no
     /// checksum is compared.
     ///
     /// # Errors

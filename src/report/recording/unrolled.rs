@@ -2,7 +2,8 @@
 //!
 //! Flat skins are seen from above. Cylinders are unrolled. Parts of spheres are flattened about their middle with true distances from it (azimuthal
 //! equidistant projection). Cylinders and spheres are detected by p = c + R n for their places p and axes n (for a cylinder, without the axial parts). Any
-//! other skin is seen from the side to which its axes point, and also from behind if some taxels face away.
+//! other skin is seen along the mean of its axes or, if there is none, on its broad side. If some taxels face away, the picture also shows the view from
+//! behind.
 
 use crate::table::short_number;
 use glam::{DMat3, DVec2, DVec3};
@@ -80,7 +81,7 @@ fn cylinder(centers: &[DVec3], axes: &[DVec3]) -> Option<Unrolled> {
     let front = if front.length() > 0.1 {
         flat(&front).normalize()
     } else {
-        // A full cylinder is cut on the side that is opposite the viewer.
+        // The mean axis of a full cylinder is zero; the front is then a fixed direction, and the cut is at the back.
         flat(&view_from(along).row(0)).normalize()
     };
     let right = upright(front, along).row(0);
@@ -235,7 +236,7 @@ mod tests {
         let inwards: Vec<DVec3> = axes.iter().map(|&axis| -axis).collect();
         let unrolled = unroll(&centers, &inwards);
         assert!(unrolled.sentence.contains("the inside of a cylinder"));
-        // The eye is in the middle and looks along +z, y up: +x, where the angles grow, is to its left.
+        // The viewer is in the middle and faces +z with y up: +x, where the angles increase, is on the left.
         let expected: Vec<DVec2> = [-0.02, 0.0, 0.02]
             .into_iter()
             .flat_map(|y| angles.clone().map(move |a| DVec2::new(-0.04 * a, y)))
@@ -287,7 +288,7 @@ mod tests {
                 .sentence
                 .starts_with("left seen from +z, right the")
         );
-        // Seen from behind, right is left; no view covers another.
+        // In the view from behind, right is left. The two views do not overlap.
         let shift = |taxel: usize| unrolled.places[taxel].x + centers[taxel].x;
         let away = (0..200).find(|&taxel| axes[taxel].z < 0.0).unwrap();
         for (taxel, place) in unrolled.places.iter().enumerate() {
