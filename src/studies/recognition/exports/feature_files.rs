@@ -1,4 +1,4 @@
-//! What one cell of a study learns from, as files: so that any program can train on exactly those rows.
+//! Training data of one configuration as files, so that any program can train on exactly the same rows.
 //!
 //! | file | holds |
 //! |---|---|
@@ -45,16 +45,16 @@ pub const FEATURE_FILES: [&str; 7] = [
     "cell.toml",
 ];
 
-/// Labelled measurements and the rows that one trial trains on and tests.
+/// Labelled measurements, with the rows on which one trial trains and tests.
 #[derive(Clone, Debug)]
 pub struct FeatureSet {
-    /// n_touches × m, before scaling; the object of every touch, by its number.
+    /// Measurements before scaling, shape (n_touches, m), with the object number of every touch.
     pub data: Dataset,
-    /// The trial's rows.
+    /// Training and test rows of the trial.
     pub split: Split,
-    /// The group of every row, if no group is on both sides of the split.
+    /// Group of every row, if the split does not divide groups.
     pub groups: Option<Array1<usize>>,
-    /// The value in the file of labels that stands for each class.
+    /// Label of each class in the file.
     pub classes: Vec<KeyValue>,
 }
 
@@ -64,7 +64,7 @@ struct ObjectRow<'a> {
     object: &'a str,
 }
 
-/// `cell.toml`.
+/// Content of `cell.toml`.
 #[derive(Serialize)]
 struct Settings<'a> {
     question: &'a str,
@@ -77,10 +77,10 @@ struct Settings<'a> {
 }
 
 impl StudyPart {
-    /// Makes the measurements of one cell in one trial: the numbers that a run gives its classifier.
+    /// Computes the measurements of one configuration in one trial, exactly as a run passes them to its classifier.
     ///
     /// # Errors
-    /// A cell or a trial that the study does not have; what a signal step or a projection refuses.
+    /// If the study does not have the configuration or the trial, or a signal step or projection is invalid.
     pub fn features(
         &self,
         (cell, trial): (usize, usize),
@@ -91,7 +91,7 @@ impl StudyPart {
         let inputs = sweep.trial(plan, trial)?;
         let family = FamilyInputs::new(plan, sweep, std::slice::from_ref(cell));
         let split = inputs.split(&family)?;
-        // As the run does it: nested measurements are the leading ones of the largest m.
+        // As in a run, nested measurements are the first of the largest m.
         let n_projected = match group.ensemble.is_prefix_nested() {
             true => group.projected()[0],
             false => cell.measurements,
@@ -101,7 +101,7 @@ impl StudyPart {
         let labels = inputs.learned_labels(&family, &split)?;
         let (trained, trained_labels) =
             learned_rows(&measured, &family.rows, &split.train, &labels);
-        // All readings of all touches, then copies of those that train.
+        // All readings of all touches, followed by copies of the training touches.
         let touches: Vec<usize> = (0..labels.len()).collect();
         let read = measured.readings(&touches);
         let n_trained = measured.readings(&split.train).len();
@@ -128,7 +128,7 @@ impl StudyPart {
         })
     }
 
-    /// Makes the touches of a group, held in memory, and reads and measures them in a trial.
+    /// Simulates the touches of a group in memory, and reads and measures them in a trial.
     pub(crate) fn measured(
         &self,
         (group, n_measurements): (&Group, usize),
@@ -162,10 +162,10 @@ impl StudyPart {
         measure_group(&inputs, touches, tested, (trial, n_measurements))
     }
 
-    /// Writes the measurements of one cell in one trial into a folder that exists, claimed for [`FEATURE_FILES`].
+    /// Writes the measurements of one configuration in one trial into an existing folder that is claimed for [`FEATURE_FILES`].
     ///
     /// # Errors
-    /// As [`features`](Self::features); a file that cannot be written.
+    /// If [`features`](Self::features) fails or a file cannot be written.
     pub fn write_features(
         &self,
         (folder, claimed): (&Path, &DataFolder),
@@ -203,14 +203,13 @@ impl StudyPart {
     }
 }
 
-/// Reads a folder that [`StudyPart::write_features`] or another program wrote; only the four arrays are needed, each as `.npy`, `.npz` or `.csv`, or all
-/// in `features.npz`. Features may be of any type of number or bool; labels whole numbers, texts or n × classes of 0 and 1; rows of any type of
-/// integer, or a mask: a bool for each row of features.
+/// Reads a folder written by [`StudyPart::write_features`] or by another program. Only the four arrays are required, each as `.npy`, `.npz` or `.csv`, or all
+/// in `features.npz`. Features may be of any numeric type or bool. Labels are integers, texts, or n × classes of 0 and 1. Rows are integers of any type, or a
+/// mask with a bool for each row of features.
 ///
 /// # Errors
-/// A file that is missing, has another number of dimensions or another type of elements than the table above says; a NaN
-/// or infinite feature (named by row and column); labels that are not one a row, or below 0; training or test rows
-/// that are none, beyond the features, or named twice (in one list or in both).
+/// If a file is missing or has another number of dimensions or element type than the table above. If a feature is NaN or infinite (the error gives row and
+/// column). If there is not one non-negative label per row. If training or test rows are empty, beyond the features, or listed twice in one or both lists.
 pub fn read_features(folder: &Path) -> Result<FeatureSet> {
     let file = |name: &str| array_file(folder, name);
     let features = read_matrix(&file("features"), "features")?;
@@ -232,7 +231,7 @@ pub fn read_features(folder: &Path) -> Result<FeatureSet> {
     })
 }
 
-/// The file of an array in a folder: `.npy`, or else `.npz`, `.csv` or the archive `features.npz`.
+/// Returns the path of an array in a folder: `.npy`, or else `.npz`, `.csv` or the archive `features.npz`.
 fn array_file(folder: &Path, name: &str) -> PathBuf {
     let usual = folder.join(format!("{name}.npy"));
     let others = [
@@ -248,10 +247,10 @@ fn array_file(folder: &Path, name: &str) -> PathBuf {
 }
 
 impl FeatureSet {
-    /// The same with the group of every row out of a file: whole numbers from 0 on, of any type of integer, or texts.
+    /// Adds the group of every row from a file: non-negative integers of any type, or texts.
     ///
     /// # Errors
-    /// No such file, or one of another type; another number of groups than rows; a group with rows on both sides of the split.
+    /// If the file is missing or has another type, if there is not one group per row, or if a group has rows on both sides of the split.
     pub fn with_groups(self, path: &Path) -> Result<Self> {
         let n_rows = self.data.records.nrows();
         let groups = Array1::from(read_group_keys(path, "groups", n_rows)?);
@@ -281,10 +280,10 @@ impl FeatureSet {
         })
     }
 
-    /// The training rows, or the first `n` of them.
+    /// Returns the training rows, or the first `n` of them.
     ///
     /// # Errors
-    /// No rows, or more than the split trains on.
+    /// If `n` is zero or larger than the number of training rows.
     pub fn training(&self, n: Option<usize>) -> Result<Dataset> {
         let train = &self.split.train;
         let n = n.unwrap_or(train.len());
@@ -295,16 +294,16 @@ impl FeatureSet {
         Ok(rows(&self.data, &train[..n])?)
     }
 
-    /// The test rows.
+    /// Returns the test rows.
     ///
     /// # Errors
-    /// No rows.
+    /// If there are no test rows.
     pub fn test(&self) -> Result<Dataset> {
         Ok(rows(&self.data, &self.split.test)?)
     }
 }
 
-/// Refuses a row that is named twice: a tested row must not have been trained on, and none may count twice.
+/// Checks that no row is listed twice: a test row must not be a training row, and no row may count twice.
 fn check_split(folder: &Path, split: &Split, n_rows: usize) -> Result<()> {
     let mut named_in = vec![None; n_rows];
     for (file, rows) in [("train.npy", &split.train), ("test.npy", &split.test)] {
@@ -322,7 +321,7 @@ fn check_split(folder: &Path, split: &Split, n_rows: usize) -> Result<()> {
     Ok(())
 }
 
-/// A cell by its number, and its group.
+/// Returns a configuration, given by its number, and its group.
 pub(crate) fn find(sweep: &Sweep, number: usize) -> Result<(&Group, &Cell)> {
     let groups = sweep.groups.iter();
     let mut cells = groups.flat_map(|group| group.cells.iter().map(move |cell| (group, cell)));

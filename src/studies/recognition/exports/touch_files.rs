@@ -1,4 +1,4 @@
-//! A study's touches as files, for people who train elsewhere: NumPy arrays and CSV, streamed.
+//! Touches of a study as files for other programs: NumPy arrays and CSV, written as a stream.
 //!
 //! | file | holds |
 //! |---|---|
@@ -12,9 +12,9 @@
 //! | `recorded.toml` | `[recorded]` and `[skin]` of a study that learns from these files what the study of the touches learns; not of frames as a cell reads them |
 //! | `objects.csv` | one row an object: number, name, spheres (0 of a mesh), touches |
 //!
-//! Deflections are what the press gives: no noise, no smoothing, none of the sensor errors of `[signal]`. Frames as a cell reads them
-//! ([`ReadFrames`]) have all of these, in metres or, with the step `force`, in newtons; only `frames.npy` differs. With
-//! `skin.sensed = "shear"` a cell reads three forces: `frames.npy` then has 3 × ny × nx newtons a frame, and there is no `shear.npy`.
+//! Deflections are the direct result of the press: without noise, smoothing or any sensor error of `[signal]`. Frames as a configuration reads them
+//! ([`ReadFrames`]) include all of these, in metres or, with the step `force`, in newtons; only `frames.npy` differs. With `skin.sensed = "shear"` a
+//! configuration reads three forces: `frames.npy` then has 3 × ny × nx newtons per frame, and there is no `shear.npy`.
 
 use crate::engine::axis::Axis;
 use crate::engine::progress::Progress;
@@ -45,7 +45,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::path::Path;
 
-/// Frames simulated before they are written: all of them that are held in memory at once.
+/// Number of frames that are simulated and held in memory before they are written.
 const BLOCK: usize = 256;
 
 #[derive(Serialize)]
@@ -72,33 +72,33 @@ struct ObjectRow<'a> {
     n_touches: usize,
 }
 
-/// One touch as it goes into the files.
+/// One touch to be written.
 struct Reading<'a> {
     row: TouchRow<'a>,
-    /// Its F frames, one after the other.
+    /// The F frames of the touch, concatenated.
     frames: Vec<f32>,
-    /// Translation and quaternion.
+    /// Translation and quaternion of the object's pose.
     pose: [f64; 7],
-    /// Metres past first contact.
+    /// Depth past first contact, metres.
     depth: f64,
 }
 
-/// The deepest frame of every touch as a cell reads it in one trial: what its measurements are made of.
+/// Deepest frame of every touch as a configuration reads it in one trial, before it is measured.
 pub struct ReadFrames {
-    /// The cell's array, by its number in the plan.
+    /// Index of the configuration's array in the plan.
     pub array: usize,
-    /// n_touches · F rows of n_taxels; the deepest frame of a touch is the last of its F.
+    /// Values, shape (n_touches · F, n_taxels); the deepest frame of a touch is the last of its F frames.
     values: Array2<f64>,
     n_frames: usize,
-    /// Whether the values are newtons; else metres.
+    /// Whether the values are newtons; otherwise metres.
     pub is_force: bool,
 }
 
 impl ReadFrames {
-    /// Simulates and reads all touches; held in memory at once.
+    /// Simulates and reads all touches, which are all held in memory.
     ///
     /// # Errors
-    /// A cell or a trial that the study does not have; what a signal step refuses.
+    /// If the study does not have the configuration or the trial, or a signal step is invalid.
     pub fn of_cell(
         part: &StudyPart,
         (cell, trial): (usize, usize),
@@ -106,7 +106,7 @@ impl ReadFrames {
     ) -> Result<Self> {
         let (group, _) = find(&part.sweep, cell)?;
         part.sweep.trial(&part.plan, trial)?;
-        // What the identity measures are the frames themselves.
+        // Measurements with the identity matrix are the frames themselves.
         let identity = Group {
             ensemble: Ensemble::Identity,
             ..group.clone()
@@ -128,7 +128,7 @@ impl ReadFrames {
     }
 }
 
-/// Names of the files that touches may be written to, in the folder of an array.
+/// Names of all files of touches in the folder of an array.
 pub const TOUCH_FILES: [&str; 9] = [
     FRAMES,
     SHEAR,
@@ -143,8 +143,8 @@ pub const TOUCH_FILES: [&str; 9] = [
 const FRAMES: &str = "frames.npy";
 const SHEAR: &str = "shear.npy";
 
-/// Returns the quantities and units of the arrays of frames, channel by channel, as JSON, by the names of their files. `is_force` is known of frames
-/// as a cell reads them, which are one array.
+/// Returns the quantities and units of the arrays of frames as JSON, ordered by channel, by file name. `is_force` is given only for frames as a configuration
+/// reads them, which form a single array.
 pub fn touch_units(
     array: &TaxelArray,
     is_force: Option<bool>,
@@ -166,11 +166,11 @@ pub fn touch_units(
     }
 }
 
-/// The files of frames: one for each quantity, or one of what a cell reads.
+/// Files of frames: one for each quantity, or a single file of frames as a configuration reads them.
 struct FrameFiles {
     frames: NpyFile,
     shear: Option<NpyFile>,
-    /// Values of a frame that the array reads, and those of them that `frames` takes.
+    /// Number of values of a frame, and number of these that go into `frames`.
     n_values: usize,
     n_first: usize,
 }
@@ -198,7 +198,7 @@ impl FrameFiles {
         })
     }
 
-    /// Adds whole frames, each of all its channels.
+    /// Appends frames, each with all its channels.
     fn push(&mut self, frames: &[f32]) -> Result<()> {
         for frame in frames.chunks(self.n_values) {
             let (first, across) = frame.split_at(self.n_first);
@@ -217,11 +217,11 @@ impl FrameFiles {
     }
 }
 
-/// Simulates all touches of an array, F frames each, drawn a block at a time, and writes them into a folder that exists, with the deepest frames as
-/// they were `read` if these are given; returns how many.
+/// Simulates all touches of an array, F frames each, block by block, and writes them into an existing folder. If `read` is given, the deepest frames are
+/// written as they were read. Returns the number of touches.
 ///
 /// # Errors
-/// What [`TouchSource::new`] refuses; a file that cannot be written.
+/// If [`TouchSource::new`] fails or a file cannot be written.
 pub fn write_touches(
     folder: &Path,
     objects: &[Object],
@@ -303,10 +303,10 @@ pub fn write_touches(
     Ok(n_touches)
 }
 
-/// Simulates all human touches on an array, and writes their frames (n × F × ny × nx) and labels into a folder that exists; returns how many.
+/// Simulates all human touches on an array, and writes their frames (n × F × ny × nx) and labels into an existing folder. Returns the number of touches.
 ///
 /// # Errors
-/// What [`HumanTouches::draw`] refuses; a file that cannot be written.
+/// If [`HumanTouches::draw`] fails or a file cannot be written.
 pub fn write_human_touches(
     folder: &Path,
     human: &HumanTouchSpec,
@@ -348,7 +348,7 @@ pub fn write_human_touches(
     Ok(labels.len())
 }
 
-/// The letters of the axes of frames of some channels, and the lengths of those of a touch.
+/// Returns the letters of the axes of frames with some channels, and the lengths of the axes of one touch.
 fn frames_shape(array: &TaxelArray, n_frames: usize, n_channels: usize) -> (String, Vec<usize>) {
     let (ny, nx) = array.shape();
     let axes = [("t", n_frames), ("c", n_channels), ("y", ny), ("x", nx)];
@@ -357,7 +357,7 @@ fn frames_shape(array: &TaxelArray, n_frames: usize, n_channels: usize) -> (Stri
     (format!("n {}", letters.join(" ")), shape)
 }
 
-/// `[recorded]` of the frames of an array in the folder of the file.
+/// Returns the table `[recorded]` for the frames of an array, with paths relative to the folder.
 fn recorded(
     array: &TaxelArray,
     n_frames: usize,
@@ -408,7 +408,7 @@ fn write_recorded(
     write_bytes(&folder.join("recorded.toml"), text.as_bytes())
 }
 
-/// Where the taxels of a layout are that is no grid, and their axes.
+/// Writes the positions and axes of the taxels, if the layout is not a grid.
 fn write_taxels(folder: &Path, array: &TaxelArray) -> Result<()> {
     if array.layout() == ArrayLayout::Grid {
         return Ok(());
@@ -423,7 +423,7 @@ fn write_taxels(folder: &Path, array: &TaxelArray) -> Result<()> {
     file.commit()
 }
 
-/// Presses a touch, of which the number, the label and the name of its object are known.
+/// Presses one touch, given its number, its label and the name of its object.
 fn pressed<'a>(
     (press, rests): (&ArrayPress, &[RestPose]),
     (number, label, object): (usize, usize, &'a str),

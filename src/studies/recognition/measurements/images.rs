@@ -1,4 +1,4 @@
-//! Features of images: from measurements of a trial by way of an estimate of the frame.
+//! Image features: computed from an estimate of the frame, given the measurements of a trial.
 
 use crate::error::Result;
 use crate::random::Seed;
@@ -12,26 +12,26 @@ use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis, s};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Frames estimated together: one matrix product. Fixed, so that results do not depend on the number of threads.
+/// Number of frames that are estimated together as one matrix product. It is fixed, so that results do not depend on the number of threads.
 const BLOCK: usize = 64;
 
-/// Images of the frames of a group, from so many measurements as its cells have.
+/// Estimators of the images of a group's frames, one for each number of measurements.
 #[derive(Clone, Debug)]
 pub struct Images {
-    /// Rows and columns.
+    /// Numbers of rows and columns of an image.
     shape: (usize, usize),
-    /// Where taxels are no pixels.
+    /// Mapping from taxels to pixels, if these differ.
     chart: Option<Chart>,
     full_scale: f64,
-    /// By m.
+    /// Estimators with their number m of measurements.
     estimates: Vec<(usize, ImageEstimate)>,
 }
 
 impl Images {
-    /// For these projections of an array, its full scale (a reading's unit), and what they are learned from.
+    /// Fits estimators for projections of an array. `full_scale` is the reading of a taxel at its stroke.
     ///
     /// # Errors
-    /// What an estimate refuses.
+    /// If an estimator cannot be fitted.
     pub fn new(
         projections: &[Projection],
         (array, full_scale): (&TaxelArray, f64),
@@ -40,7 +40,7 @@ impl Images {
     ) -> Result<Self> {
         let is_whole = |projection: &Projection| projection.ensemble() == Ensemble::Identity;
         let (chart, n_training) = (array.chart(), readings.training.nrows());
-        // Copies are moved by rows and columns.
+        // Copies are shifted by rows and columns.
         let n_frames = match (&chart, n_training < LEARNED_FRAMES) {
             (Some(_), _) => n_training,
             (None, true) => WITH_COPIES,
@@ -68,16 +68,16 @@ impl Images {
         })
     }
 
-    /// Whether it makes images of so many measurements.
+    /// Returns whether images can be estimated from this number of measurements.
     pub fn is_of(&self, measurements: usize) -> bool {
         self.estimates.iter().any(|(m, _)| *m == measurements)
     }
 
-    /// Features of all frames of measurements: for each that is wanted n_touches × F·k, k numbers a frame, and below them as many of each copy, touch by
-    /// touch. An image is estimated once for all that is wanted of it, and cells that learn from the same share them.
+    /// Returns image features of all frames: for each requested kind n_touches × F·k, with k values per frame, followed by the rows of all copies in the same
+    /// order. Each image is estimated once for all kinds.
     ///
     /// # Panics
-    /// An m that it was not made for.
+    /// If there is no estimator for the number of measurements.
     pub fn features(
         &self,
         (values, n_frames): (ArrayView2<f64>, usize),
@@ -129,7 +129,7 @@ impl Images {
         all
     }
 
-    /// Of frames of measurements.
+    /// Estimates images from measured frames, shape (n, ny, nx) flattened to rows.
     fn images(&self, estimate: &ImageEstimate, measured: ArrayView2<f64>) -> Array2<f64> {
         let frames = estimate.images(measured);
         match &self.chart {
@@ -138,7 +138,7 @@ impl Images {
         }
     }
 
-    /// The images of a touch (F × n), tilted.
+    /// Returns the tilted images of a touch, shape (F, n).
     fn tilted(&self, images: ArrayView2<f64>, slope: (f64, f64), level: f64) -> Array2<f64> {
         let mut tilted = Array2::zeros(images.raw_dim());
         for (image, mut out) in images.outer_iter().zip(tilted.outer_iter_mut()) {
@@ -157,13 +157,13 @@ impl Images {
         ImageFeatures::new(wanted.join, self.shape, self.full_scale, cut)
     }
 
-    /// What is above it is a contact.
+    /// Returns the reading above which a taxel counts as in contact.
     fn level(&self, estimate: &ImageEstimate) -> f64 {
         noise_level(estimate.noise_std(), self.shape.0 * self.shape.1)
     }
 }
 
-/// Rows of all that is wanted, so many of each touch, in blocks of some touches: which, and their rows.
+/// Divides the rows of all requested features into blocks of touches; returns the index of each block and its rows.
 fn blocks(
     mut rows: Vec<ArrayViewMut2<f64>>,
     n_touches: usize,
@@ -180,7 +180,7 @@ fn blocks(
     blocks
 }
 
-/// Writes all features of the images of a touch (F × n) into a row of each.
+/// Writes all features of a touch's images (F × n) into one row of each feature array.
 fn write(
     features: &[ImageFeatures],
     images: ArrayView2<f64>,
@@ -198,9 +198,8 @@ fn write(
     }
 }
 
-/// The largest that noise of standard deviation σ is expected to be on n taxels, σ √(2 ln n): what is above it is a contact. Lower, and taxels
-/// that nothing touches count; higher, and the rim of a contact does not. (Donoho and Johnstone 1994, Biometrika 81, 425: the universal
-/// threshold.)
+/// Returns the expected maximum of noise of standard deviation σ on n taxels, σ √(2 ln n). Readings above it count as contact. With a lower threshold,
+/// untouched taxels would count; with a higher one, the rim of a contact would not. (Donoho and Johnstone 1994, Biometrika 81, 425: the universal threshold.)
 fn noise_level(noise_std: f64, n_taxels: usize) -> f64 {
     noise_std * (2.0 * (n_taxels as f64).ln()).sqrt()
 }

@@ -20,37 +20,37 @@ use crate::studies::recognition::rows::row_inputs::RowInputs;
 use crate::studies::recognition::sweep::learned_frames::learned_touches;
 use ndarray::{Array1, Array2, ArrayViewMut2, s};
 
-/// Measurements of all touches of a group of cells. Where each is read several times, the first readings of all touches come first, then the second ones
-/// of all: reading r of a touch has the number r · n_touches + touch.
+/// Measurements of all touches of a group of configurations. If touches are read several times, the first readings of all touches come first, then the second
+/// readings. Reading r of a touch has the number r · n_touches + touch.
 #[derive(Clone, Debug)]
 pub struct Measurements {
-    /// (n_readings · n_touches · F) × m: the frames of a touch follow each other, the deepest last.
+    /// Measurements, shape (n_readings · n_touches · F, m); the frames of a touch are adjacent, the deepest last.
     pub values: Array2<f64>,
-    /// How many touches there are.
+    /// Number of touches.
     pub n_touches: usize,
-    /// F, frames a touch.
+    /// Number F of frames per touch.
     pub n_frames: usize,
-    /// Φ1 (m): what a frame of ones measures.
+    /// Φ1, the measurements of a frame of ones, shape (m,).
     pub of_ones: Array1<f64>,
-    /// Features of images, n_touches × F·k each; below them those of tilted copies.
+    /// Image features, shape (n_touches, F·k) each, followed by the rows of tilted copies.
     pub of_images: Vec<(FeaturesOfImages, Array2<f64>)>,
-    /// What was copied.
+    /// Tilted copies of training touches.
     pub copies: Option<TiltedCopies>,
-    /// Processor-seconds, summed over threads.
+    /// Processor time, s, summed over threads.
     pub cpu_s: f64,
 }
 
-/// What measures a group in a trial, with all that is learned of training touches for it.
+/// Projection of a group in a trial, with the estimators fitted on training touches.
 #[derive(Clone, Debug)]
 pub struct SensedBy {
     /// The ensemble's matrix.
     pub projection: Projection,
-    /// Images of what is measured, where any cell's features are of images.
+    /// Image estimators, if a configuration uses image features.
     pub images: Option<Images>,
 }
 
 impl Measurements {
-    /// The numbers of all readings of some touches: the first of each, in their order, then the second of each.
+    /// Returns the numbers of all readings of the touches: the first reading of each touch in order, then the second of each.
     pub fn readings(&self, touches: &[usize]) -> Vec<usize> {
         let n_read = self.values.nrows() / (self.n_touches * self.n_frames);
         let readings = (0..n_read).map(|reading| reading * self.n_touches);
@@ -58,15 +58,14 @@ impl Measurements {
         numbers.collect()
     }
 
-    /// Returns the features of these touches (by number), n × F·m: of the leading m measurements of each frame, or what is made of these over
-    /// time.
+    /// Returns the features of these touches (by number), shape (n, F·m): the first m measurements of each frame, combined over time if the inputs require it.
     pub fn features(&self, inputs: &RowInputs, touches: &[usize]) -> Array2<f64> {
         let mut rows = Array2::zeros((touches.len(), inputs.n_features()));
         let Some(over_time) = inputs.over_time else {
             self.read_into(inputs, touches, rows.view_mut());
             return rows;
         };
-        // One touch at a time, since all frames of all touches may be many.
+        // Touches are processed one at a time, because all frames of all touches may exceed the memory.
         let m = inputs.n_frame_features();
         let mut frames = Array2::zeros((1, self.n_frames * m));
         for (row, touch) in rows.outer_iter_mut().zip(touches) {
@@ -77,8 +76,8 @@ impl Measurements {
         rows
     }
 
-    /// Returns the numbers of the tilted copies of these training touches, which follow those of all readings. The first copy of each touch comes
-    /// first, then the second of each.
+    /// Returns the numbers of the tilted copies of these training touches, which follow all readings. The first copy of each touch comes first, then the
+    /// second of each.
     pub fn copies(&self, inputs: &RowInputs, train: &[usize]) -> Vec<usize> {
         let Some(copies) = &self.copies else {
             return Vec::new();
@@ -88,7 +87,7 @@ impl Measurements {
         rows.map(|row| n_read + row).collect()
     }
 
-    /// Writes the features of all frames of some touches, one after the other: n × F·m.
+    /// Writes the features of all frames of the touches, concatenated per touch, shape (n, F·m).
     fn read_into(&self, inputs: &RowInputs, touches: &[usize], mut rows: ArrayViewMut2<f64>) {
         let m = inputs.measurements;
         if let Some(wanted) = inputs.of_images() {
@@ -114,11 +113,11 @@ impl Measurements {
 /// Touches with their frames.
 pub type MadeTouches<'a> = (&'a dyn TouchSet, &'a Frames);
 
-/// Reads and projects all frames of a group in one trial, to a number of measurements among those of the inputs. If test touches are made in another way than
-/// training touches, `tested` has as many of them in the same order; the trial's test touches are then read from there.
+/// Reads and projects all frames of a group in one trial, for each number of measurements in the inputs. If test touches are made differently, `tested`
+/// contains as many touches in the same order. The trial's test touches are then read from there.
 ///
 /// # Errors
-/// What a signal step or the projection refuses.
+/// If a signal step or the projection is invalid.
 pub fn measure_group(
     inputs: &MeasurementInputs,
     (touched, frames): MadeTouches,
@@ -187,7 +186,7 @@ pub fn measure_group(
     })
 }
 
-/// Copies of training touches, of n classes, for cells that learn from some: full scale is what a taxel reads at its stroke.
+/// Draws the tilted copies of training touches of n classes. `full_scale` is the reading of a taxel at its stroke.
 fn tilted_copies(
     inputs: &MeasurementInputs,
     train: (&[usize], usize),
@@ -203,7 +202,7 @@ fn tilted_copies(
     Some(TiltedCopies::of(copies, train, a_pixel, &seed))
 }
 
-/// Draws Φ in a trial, or learns it, and what makes images of measurements, from training touches.
+/// Draws Φ in a trial, or fits it to training touches, and fits the image estimators.
 fn sensed_by(
     inputs: &MeasurementInputs,
     (whole, touches): (Reading, &[TouchToRead]),
@@ -221,7 +220,7 @@ fn sensed_by(
             images: None,
         });
     }
-    // Of whole touches, so many that their frames are enough; the split has one of each object in turn.
+    // The number of whole touches that give enough frames; the split alternates between objects.
     let n_touches = learned_touches(whole.skins[0].frames.facts.n_frames);
     let learned = trial.split().train.iter().take(n_touches);
     let learned: Vec<TouchToRead> = learned.map(|&touch| touches[touch]).collect();
@@ -254,10 +253,10 @@ fn sensed_by(
     Ok(SensedBy { projection, images })
 }
 
-/// Readings of the untouched skin: noise along a component is known to √(2 / 256) = 9 %.
+/// Number of readings of the untouched skin. The noise along a component is then known to √(2 / 256) = 9 %.
 pub const UNTOUCHED: usize = 256;
 
-/// What the skin of training touches reads when nothing touches it (readings × n).
+/// Returns readings of the untouched skin of the training touches, shape (readings, n).
 fn untouched(whole: Reading, trial: usize, seed: u64) -> Array2<f64> {
     let seed = Seed::new(seed).named("untouched").numbered(trial as u64);
     let mut readings = Array2::zeros((UNTOUCHED, whole.projection.n_taxels()));
@@ -270,7 +269,7 @@ fn untouched(whole: Reading, trial: usize, seed: u64) -> Array2<f64> {
     readings
 }
 
-/// Returns the skin of training touches, then that of test touches if anything differs for them.
+/// Returns the skin of training touches, followed by the skin of test touches if it differs.
 fn skins<'a>(
     inputs: &MeasurementInputs,
     (learned, tested): (&'a Frames, &'a Frames),

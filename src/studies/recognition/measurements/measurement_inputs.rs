@@ -1,8 +1,8 @@
-//! What the measurements of a group of cells are made of, beside the frames of its touches.
+//! Inputs of the measurements of a group of configurations, in addition to the frames of its touches.
 //!
-//! [`measure_group`](crate::studies::recognition::measurements::measurement::measure_group) takes these inputs and no plan, so it cannot read a value of a study that is not among them. Groups
-//! whose inputs have the same [key](MeasurementInputs::key) share their measurements. The key is made of the derived `Debug` form of all fields: a field
-//! that is added is part of the key.
+//! [`measure_group`](crate::studies::recognition::measurements::measurement::measure_group) takes these inputs and no plan, so it cannot depend on any other
+//! value of a study. Groups whose inputs have equal [keys](MeasurementInputs::key) share their measurements. The key is the derived `Debug` form of all
+//! fields, so a new field becomes part of the key.
 
 use crate::inputs::content_hash::Hashed;
 use crate::inputs::sensor_errors::{Strengths, TestedOn, all_strengths};
@@ -19,30 +19,30 @@ use crate::studies::recognition::spec::signal::StepSpec;
 use crate::studies::recognition::sweep::configurations::Sweep;
 use bubbletouch_svm::split::Split;
 
-/// Inputs of the measurements of a group of cells.
+/// Inputs of the measurements of a group of configurations.
 #[derive(Clone, Debug)]
 pub struct MeasurementInputs<'a> {
-    /// The array that is pressed.
+    /// Array that is pressed.
     pub array: &'a TaxelArray,
-    /// Root of all randomness.
+    /// Seed of all random numbers.
     pub seed: u64,
-    /// Number of projections that each split is measured with; `None`: each trial has a projection of its own.
+    /// Number of projections combined with each split; `None` if each trial has its own projection.
     pub projections_per_split: Option<usize>,
-    /// Approach speed at the moment of reading, m/s.
+    /// Approach speed at the time of reading, m/s.
     pub speed: f64,
-    /// What happens to the signal.
+    /// Signal chain of the training touches.
     pub signal: SignalInputs,
-    /// The skin that test touches are made with.
+    /// Skin of the test touches.
     pub tested_on: TestedOn,
-    /// What test touches have instead of the inputs above, if the study has `[test]`.
+    /// Inputs in which test touches differ, if the study has `[test]`.
     pub test: Option<TestInputs<'a>>,
-    /// How measurements are made.
+    /// Ensemble of the measurement matrix.
     pub ensemble: Ensemble,
-    /// Numbers of measurements that projections are made for, each at most once, ascending.
+    /// Numbers of measurements to project to, distinct and ascending.
     pub projected: Vec<usize>,
     /// Number of readings of each touch.
     pub n_readings: usize,
-    /// Features of images that are made of the measurements.
+    /// Image features to compute from the measurements.
     pub of_images: Vec<FeaturesOfImages>,
     /// Tilted copies of training touches, if any.
     pub copies: Option<CopyInputs>,
@@ -51,48 +51,47 @@ pub struct MeasurementInputs<'a> {
 /// Inputs of the measurements of test touches that differ from those of training touches.
 #[derive(Clone, Debug)]
 pub struct TestInputs<'a> {
-    /// The array that is pressed; its frames have the shape of those that are learned.
+    /// Array that is pressed; its frames have the shape of the training touches' frames.
     pub array: &'a TaxelArray,
-    /// Approach speed at the moment of reading, m/s.
+    /// Approach speed at the time of reading, m/s.
     pub speed: f64,
-    /// What happens to the signal.
+    /// Signal chain of the test touches.
     pub signal: SignalInputs,
 }
 
-/// Inputs of the measurements that belong to one trial.
+/// Inputs of the measurements that depend on the trial.
 #[derive(Clone, Copy, Debug)]
 pub struct MeasuredTrial<'a> {
     /// Number of the trial.
     pub number: usize,
-    /// The trial's split, if the measurements depend on it: where something is learned from training touches, or test touches are made with
-    /// another skin.
+    /// Split of the trial, if the measurements depend on it: if something is fitted to training touches, or if test touches have another skin.
     pub split: Option<&'a Hashed<Split>>,
 }
 
-/// Inputs of the steps of a signal. A step without strength changes no reading and is none of them.
+/// Inputs of the signal chain. Steps without effect are omitted.
 #[derive(Clone, Debug)]
 pub struct SignalInputs {
     /// The steps, in their order.
     pub steps: Vec<StepSpec>,
     /// Unit of the noise; the full scale if there is no noise.
     pub noise_unit: NoiseUnit,
-    /// How strong each step is.
+    /// Strength of each step.
     pub condition: Condition,
 }
 
 /// Inputs of tilted copies.
 #[derive(Clone, Copy, Debug)]
 pub struct CopyInputs {
-    /// Copies of each touch, at least 1.
+    /// Number of copies of each touch, at least 1.
     pub n_copies: usize,
-    /// Training touches of each class that are copied, in drawing order; `None`: all.
+    /// Number of training touches of each class that are copied, in drawing order; `None`: all.
     pub n_touches: Option<usize>,
-    /// Most that a copy is tilted, radians.
+    /// Largest tilt of a copy, radians.
     pub tilt: f64,
 }
 
 impl MeasurementInputs<'_> {
-    /// Returns a text that is equal for equal inputs only.
+    /// Returns a text that identifies the inputs; different inputs give different texts.
     pub fn key(&self) -> String {
         format!("{self:?}")
     }
@@ -104,17 +103,17 @@ impl MeasurementInputs<'_> {
         MeasuredTrial { number, split }
     }
 
-    /// Whether anything is learned from training touches before they are measured.
+    /// Returns whether something is fitted to training touches before measuring.
     pub fn learns(&self) -> bool {
         self.ensemble.is_learned() || !self.of_images.is_empty()
     }
 
-    /// Whether test touches are read in another way than training touches.
+    /// Returns whether test touches are read differently from training touches.
     pub fn has_own_test(&self) -> bool {
         self.test.is_some() || self.tested_on != TestedOn::SameSkin
     }
 
-    /// Returns the numbers of measurements that images are made of, each once, ascending.
+    /// Returns the numbers of measurements from which images are estimated, distinct and ascending.
     pub fn counts_of_images(&self) -> Vec<usize> {
         counts(&self.of_images)
     }
@@ -124,7 +123,7 @@ impl MeasuredTrial<'_> {
     /// Returns the split.
     ///
     /// # Panics
-    /// If there is none, because nothing that is measured depends on it.
+    /// If the measurements do not depend on the split.
     pub fn split(&self) -> &Split {
         self.split.expect("measurements that depend on a split")
     }
@@ -138,7 +137,7 @@ fn counts(of_images: &[FeaturesOfImages]) -> Vec<usize> {
 }
 
 impl SignalInputs {
-    /// Returns the steps of a skin.
+    /// Returns the signal steps of a skin.
     pub fn steps(&self, skin: &Seed) -> Vec<SignalStep> {
         let condition = &self.condition;
         let step = |&step: &StepSpec| match step {
@@ -164,7 +163,7 @@ fn signal_inputs(plan: &Plan, condition: Condition) -> SignalInputs {
         StepSpec::Smoothing => condition.smoothing != 0.0,
         StepSpec::Error(error) => condition.strengths.present().any(|(own, ..)| own == *error),
     };
-    // A strength that the study does not have is none.
+    // A strength that the study does not have counts as zero.
     let with_zero = |strengths: Strengths, (_, strength): (_, &Strength)| {
         let value = strengths.of(strength.key).unwrap_or(0.0);
         strengths.with(strength.key, Some(value))
@@ -189,7 +188,7 @@ impl Group {
         signal_inputs(plan, self.condition)
     }
 
-    /// Returns the group with some of its cells alone.
+    /// Returns the group restricted to these configurations.
     pub fn with_cells(&self, cells: &[Cell]) -> Self {
         Self {
             array: self.array,
@@ -227,17 +226,17 @@ impl Group {
         }
     }
 
-    /// Whether anything is learned from training touches before they are measured.
+    /// Returns whether something is fitted to training touches before measuring.
     pub fn learns(&self) -> bool {
         self.ensemble.is_learned() || self.cells.iter().any(|cell| cell.of_images().is_some())
     }
 
-    /// Returns the numbers of measurements that images are made of, each once, ascending.
+    /// Returns the numbers of measurements from which images are estimated, distinct and ascending.
     pub fn counts_of_images(&self) -> Vec<usize> {
         counts(&self.features_of_images())
     }
 
-    /// Returns what copies the cells of the group learn from: as many as the one that learns from most.
+    /// Returns the inputs of the copies: as many as the configuration with the most copies needs.
     fn copies(&self, plan: &Plan) -> Option<CopyInputs> {
         let recognition = &plan.spec.recognition;
         let copied = self.cells.iter();

@@ -1,26 +1,26 @@
-//! Training touches once more, with their objects tilted: what an object looks like in tilts that were never learned.
+//! Tilted copies of training touches, which show objects in tilts that the training touches do not contain.
 
 use crate::random::Seed;
 use crate::studies::recognition::measurements::measurement_inputs::CopyInputs;
 use rand::Rng;
 use std::collections::HashMap;
 
-/// The touches that are copied and how each copy is tilted.
+/// Copied touches and the tilt of each copy.
 #[derive(Clone, Debug)]
 pub struct TiltedCopies {
-    /// The touches, by number.
+    /// Numbers of the copied touches.
     pub touches: Vec<usize>,
-    /// Copies of each.
+    /// Number of copies of each touch.
     pub n_copies: usize,
-    /// Of each touch and copy: by how much a reading rises from a taxel to the next along x and y.
+    /// Slopes of each copy of each touch: increase of a reading from a taxel to the next along x and y.
     pub slopes: Vec<(f64, f64)>,
-    /// The place of each touch in the list.
+    /// Position of each touch in `touches`.
     places: HashMap<usize, usize>,
 }
 
 impl TiltedCopies {
-    /// Copies training touches (in drawing order, one of each of n classes in turn). `steepest` is the largest rise from a taxel to the next; each touch
-    /// has a stream of its own.
+    /// Draws copies of training touches, given in drawing order, which alternates between n classes. `steepest` is the largest increase from a taxel to the
+    /// next. Each touch has its own random stream.
     pub fn of(
         CopyInputs {
             n_copies,
@@ -31,7 +31,7 @@ impl TiltedCopies {
         steepest: f64,
         seed: &Seed,
     ) -> Self {
-        // One of each object in turn: the first ones are what a cell with fewer learns from.
+        // The order alternates between objects, so that configurations with fewer touches use a prefix.
         let n_touches = n_touches.map_or(train.len(), |n| n * n_classes);
         let touches = train[..n_touches.min(train.len())].to_vec();
         let mut slopes = Vec::with_capacity(touches.len() * n_copies);
@@ -49,10 +49,10 @@ impl TiltedCopies {
         }
     }
 
-    /// Where in all copies the first `n_copies` of some touches are: the first copy of each, then the second of each.
+    /// Returns the rows of the first `n_copies` copies of the touches: the first copy of each touch, then the second of each.
     ///
     /// # Panics
-    /// A touch that was not copied, or more copies than there are.
+    /// If a touch was not copied, or if there are fewer copies.
     pub fn rows(&self, touches: &[usize], n_copies: usize) -> impl Iterator<Item = usize> {
         assert!(n_copies <= self.n_copies, "copies that there are");
         let all = (0..n_copies).flat_map(move |copy| touches.iter().map(move |t| (copy, t)));

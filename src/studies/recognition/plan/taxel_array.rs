@@ -271,7 +271,6 @@ impl TaxelArray {
     ///
     /// # Errors
     /// If [`Chain::new`] fails.
-    /// Those of [`Chain::new`].
     pub fn chains(
         &self,
         skin: &Seed,

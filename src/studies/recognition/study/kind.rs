@@ -1,4 +1,4 @@
-//! Studies that recognise objects, as a kind.
+//! The recognition study as a kind of study.
 
 use crate::engine::work_items::{PendingItems, Scale, WorkItem};
 use crate::error::Result;
@@ -18,9 +18,9 @@ use crate::studies::source::Source;
 use crate::studies::study::{About, Facts, Findings, Resumes, Study, TableFiles};
 use crate::table::{ChartSpec, Table};
 
-/// Where the intervals of accuracies stand.
+/// Columns with the intervals of accuracies.
 const ACCURACIES: &str = "accuracy.csv, summary.csv: accuracy_low, accuracy_high";
-/// How they are made where test rows are held out one by one, and where whole groups are.
+/// Methods of these intervals if test rows are held out one by one, and if whole groups are held out.
 const BY_ROWS: (&str, &str) = (
     ACCURACIES,
     "Wilson score interval of the counts of all trials, at the test rows of one trial",
@@ -34,7 +34,7 @@ const BY_GROUPS: (&str, &str) = (
     "score interval of the groups that are held out: Wilson's of the test rows divided by the design effect (Rao, Scott 1992), Student's t of groups - 1",
 );
 
-/// How other intervals and p-values are made, by table and columns. Everything is at 95 %.
+/// Methods of all other intervals and p-values, by table and columns; all intervals are at 95 %.
 const METHODS: [(&str, &str); 5] = [
     (
         "summary.csv: bootstrap_low, bootstrap_high",
@@ -96,7 +96,7 @@ impl Study for RecognitionStudy {
         self.scale.clone()
     }
 
-    /// Trial by trial all families, group by group; then the touches of each array.
+    /// Items are ordered by trial and family, followed by the touches of each array.
     fn work_items(&self) -> Vec<WorkItem> {
         let families = 0..self.families.len();
         let of_family = |family: usize| {
@@ -160,7 +160,7 @@ impl Study for RecognitionStudy {
         }
     }
 
-    /// A family by the settings of its first cell.
+    /// A family is described by the settings of its first configuration.
     fn item_words(&self, number: usize, item: &WorkItem) -> String {
         if number >= self.touches_item(0) {
             return item.name.clone();
@@ -233,7 +233,7 @@ impl RecognitionStudy {
     }
 }
 
-/// What the test touches have in common with those that are learned from.
+/// Returns a description of the split: how test touches relate to training touches.
 fn split_words(spec: &StudySpec) -> String {
     let held_out = match spec.recognition.keep_together {
         _ if let Some(recorded) = &spec.recorded => {
@@ -264,7 +264,7 @@ fn split_words(spec: &StudySpec) -> String {
     held_out.to_owned()
 }
 
-/// Every object; before them what the picture shows, if that is something else.
+/// Returns pictures of every object, preceded by the shown samples if they differ.
 fn gallery(Samples { shown, each }: &Samples) -> Vec<Snapshots> {
     let is_like = |each: &Snapshots| each.caption == shown.caption;
     let shown = Some(shown).filter(|_| !each.as_ref().is_some_and(is_like));

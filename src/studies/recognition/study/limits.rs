@@ -1,4 +1,4 @@
-//! How often limits of the model were reached.
+//! Counts of reached limits of the model.
 
 use crate::report::csv_tables::MISSED_TOUCHES;
 use crate::studies::recognition::rows::cell::Cell;
@@ -7,9 +7,9 @@ use crate::studies::recognition::study::recognition_study::RecognitionStudy;
 use crate::studies::recognition::study::rows::TouchRow;
 
 impl RecognitionStudy {
-    /// Of touches on all arrays, and of fits.
+    /// Returns the limits reached by touches on all arrays and by fits.
     pub(crate) fn limits(&self, fits: &[(Cell, TrialScore)], rows: &[TouchRow]) -> Vec<Limit> {
-        // The deepest frame is the same however many come before it.
+        // The deepest frame is the same for any number of frames per touch.
         let is_counted = |row: &&TouchRow| {
             let (_, _, n_frames) = self.on(row.on);
             row.is_made && n_frames == self.first_frames(row.on)

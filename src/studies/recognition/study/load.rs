@@ -1,4 +1,4 @@
-//! A recognition study from its text: objects that are built once and touches that are drawn once for all combinations that share them.
+//! Loads a recognition study. Objects are built once and touches are drawn once for all combinations that share them.
 
 use crate::engine::axes::AxisValues;
 use crate::error::{Error, Result};
@@ -23,13 +23,13 @@ use std::collections::hash_map::Entry;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Reads and checks a study: a plan for each combination of its own axes.
+/// Reads and checks a study; returns a plan for each combination of the values in `[axes]`.
 ///
 /// # Errors
-/// A key that is not known or out of its range.
+/// If a key is unknown or out of its range.
 pub fn read_plans(source: &Source) -> Result<Vec<(AxisValues, Plan)>> {
     let parse = || StudySpec::parse(&source.place, &source.text);
-    // --objects says where the files of the study are.
+    // With `--objects`, the files of the study are in another folder.
     let folder = source.objects.is_none().then(|| source.folder.clone());
     let mut spec = with_folder(folder.clone(), parse)?;
     if let Some(seed) = source.seed
@@ -43,14 +43,14 @@ pub fn read_plans(source: &Source) -> Result<Vec<(AxisValues, Plan)>> {
         Some(recorded) => source.replace_recorded(recorded),
         None => source.replace_objects(&mut spec.objects),
     }
-    // Values on axes may be paths, too.
+    // Values on axes may be paths.
     with_folder(folder, || Plan::variants(&source.place, spec))
 }
 
-/// Reads and checks a study, builds its objects and draws its touches, unless these take more memory than there is.
+/// Reads and checks a study, builds its objects and draws its touches, if they fit into memory.
 ///
 /// # Errors
-/// Those of [`read_plans`]; an object that cannot be read; touches that memory cannot hold.
+/// If [`read_plans`] fails, an object cannot be read, or the touches do not fit into memory.
 pub fn load_study(source: &Source) -> Result<RecognitionStudy> {
     let plans = read_plans(source)?;
     let (packings, place) = (source.packings.as_deref(), &source.place);
@@ -60,11 +60,11 @@ pub fn load_study(source: &Source) -> Result<RecognitionStudy> {
 }
 
 impl RecognitionStudy {
-    /// Builds the objects of [plans](Plan::variants) and draws their touches, unless these take more bytes than `ceiling` (`None`: no
-    /// limit). Objects that are packed are kept in `packings`.
+    /// Builds the objects of [plans](Plan::variants) and draws their touches, if these fit into `ceiling` bytes (`None`: no limit). Packed objects are cached
+    /// in `packings`.
     ///
     /// # Errors
-    /// An object that cannot be built; too many touches; those of [`of_variants`](Self::of_variants), after `place` (the file).
+    /// If an object cannot be built, there are too many touches, or [`of_variants`](Self::of_variants) fails; the error names `place` (the file).
     pub fn load(
         place: &str,
         plans: Vec<(AxisValues, Plan)>,
@@ -116,32 +116,31 @@ impl RecognitionStudy {
     }
 }
 
-/// Number of touches times trials from which on [`slow_splits`] returns a sentence: some seconds of splitting. Larger: a command is silent for
-/// longer; smaller: short waits are announced.
+/// Number of touches times trials from which [`slow_splits`] returns a message, equivalent to some seconds. If it is larger, commands are silent for longer;
+/// if smaller, short waits are announced.
 const MANY_SPLITS: f64 = 7e7;
 
-/// Returns a sentence if a command waits while it splits touches, before it begins.
+/// Returns a message if splitting the touches will take noticeable time.
 fn slow_splits(n_touches: f64, n_trials: usize) -> Option<String> {
     (n_touches * n_trials as f64 >= MANY_SPLITS)
         .then(|| format!("splitting {n_touches} touches in {n_trials} trials"))
 }
 
-/// Returns a text that is equal for plans with the same touches, beside the array and the files of their objects.
+/// Returns a text that is equal for plans with equal touches, apart from the array and the files of their objects.
 pub fn touch_content(plan: &Plan) -> String {
     TouchInputs::of(plan).key()
 }
 
-/// Bytes of a touch: where it is, its label, how it is read.
+/// Memory of a touch, bytes: its pose, its label and how it is read.
 const TOUCH_BYTES: f64 = 400.0;
 
-/// Bytes of a touch in the split of a trial.
+/// Memory of a touch in the split of a trial, bytes.
 const SPLIT_BYTES: f64 = 8.0;
 
-/// An error unless the touches of a study of so many classes, with a split a trial, are within `ceiling` bytes (`None`: no ceiling).
-/// To be asked before any is drawn.
+/// Checks before drawing that the touches of `n_classes` classes, with one split per trial, fit into `ceiling` bytes (`None`: no limit).
 ///
 /// # Errors
-/// They take more; the error names the key that says how many they are.
+/// If the touches need more memory; the error names the key that sets their number.
 fn check_touches(plan: &Plan, n_classes: usize, ceiling: Option<u64>) -> Result<()> {
     let (key, n_each) = match &plan.spec.human_touch {
         Some(human) => ("human_touch.per_kind", human.per_kind as f64),

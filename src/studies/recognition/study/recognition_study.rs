@@ -1,4 +1,4 @@
-//! A study that recognises objects: its work items, and the tables of what they found.
+//! A recognition study: its work items, and the tables of their results.
 
 use crate::engine::axes::AxisValues;
 use crate::engine::progress::Progress;
@@ -27,60 +27,60 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A combination of a study's own axes: their values, the plan, and the touches that are learned and those that are tested.
+/// A combination of the values in `[axes]`: the values, the plan, the training touches and the test touches.
 pub type StudyVariant = (AxisValues, Plan, [Arc<dyn TouchSet + Send>; 2]);
 
-/// A recognition study that is laid out.
+/// A recognition study with its list of work items.
 pub struct RecognitionStudy {
-    /// One for each combination of the study's own axes; one alone where it has none.
+    /// One part for each combination of the values in `[axes]`; a single part if there are no axes.
     parts: Vec<StudyPart>,
-    /// How large it is.
+    /// Size of the study.
     pub(crate) scale: Scale,
-    /// A few touches for the eye, once something showed them.
+    /// Sample touches for pictures, computed on first use.
     samples: Shared<Samples>,
-    /// All touches that are made, those of the same content once.
+    /// All sets of touches to simulate; sets with equal content are listed once.
     pub(crate) touch_sets: Vec<Touches>,
-    /// All groups, part by part.
+    /// Groups of all parts, ordered by part.
     pub(crate) groups: Vec<PlacedGroup>,
-    /// All families, group by group.
+    /// Families of all groups, ordered by group.
     pub(crate) families: Vec<Family>,
 }
 
-/// Touches of an array that are made, with so many frames each.
+/// Set of touches of an array, with a number of frames per touch.
 pub(crate) struct Touches {
-    /// The first group that reads them.
+    /// First group that reads the touches.
     pub group: usize,
-    /// Whether that group reads them as test touches only.
+    /// Whether that group reads them only as test touches.
     is_tested: bool,
-    /// Hash of all that they are made of, beside the files of objects.
+    /// Hash of all inputs of the touches except the files of objects.
     pub content: String,
 }
 
-/// A group of a part.
+/// A group of configurations within a part.
 pub(crate) struct PlacedGroup {
-    /// Its part.
+    /// Index of the part.
     pub part: usize,
-    /// Its place in the part's sweep.
+    /// Index of the group in the part's sweep.
     place: usize,
-    /// Its touches.
+    /// Index of its training touches.
     pub touches: usize,
-    /// Its test touches; the same number unless the study has `[test]`.
+    /// Index of its test touches; equal to `touches` unless the study has `[test]`.
     pub tested: usize,
-    /// The first group that reads and measures the same.
+    /// Index of the first group with equal measurements.
     pub measured_as: usize,
 }
 
-/// A [family](Group::families) of cells: its group, and which cells of that.
+/// A [family](Group::families) of configurations: its group and the range of its configurations.
 pub(crate) struct Family {
     pub group: usize,
     pub cells: Range<usize>,
 }
 
 impl RecognitionStudy {
-    /// Lays out a plan and its touches.
+    /// Creates a study from a plan and its touches.
     ///
     /// # Errors
-    /// Objects or touches that are too few, or are shown without being there.
+    /// If there are too few objects or touches, or a sample object does not exist.
     pub fn new(plan: Plan, touched: Box<dyn TouchSet + Send>) -> Result<Self> {
         if plan.tested.is_some() {
             let allowed = "RecognitionStudy::load, which draws test touches too";
@@ -95,10 +95,10 @@ impl RecognitionStudy {
         Self::of_variants(vec![(AxisValues::default(), plan, touched)])
     }
 
-    /// Lays out all combinations of a study's own axes, each with the touches that are learned and those that are tested.
+    /// Creates a study from all combinations of the values in `[axes]`, each with its training and test touches.
     ///
     /// # Errors
-    /// Those of [`new`](Self::new).
+    /// If [`new`](Self::new) fails.
     pub fn of_variants(variants: Vec<StudyVariant>) -> Result<Self> {
         let mut study = Self {
             parts: Vec::with_capacity(variants.len()),
@@ -124,7 +124,7 @@ impl RecognitionStudy {
         let cells: Vec<&Cell> = study.all_cells().collect();
         let report = &study.first().plan.spec.report;
         check_published(&report.published, &cells)?;
-        // The matrices tell the chance of a guess in each cell.
+        // Confusion matrices show the chance level of each configuration.
         let n_objects = |part: &StudyPart| part.touched.class_names().len();
         let n_first = n_objects(study.first());
         let differ = study.parts.iter().any(|part| n_objects(part) != n_first);
@@ -136,7 +136,7 @@ impl RecognitionStudy {
         Ok(study)
     }
 
-    /// Lists groups and families, and finds which groups have the same touches and measurements.
+    /// Lists groups and families, and finds groups with equal touches and measurements.
     fn place_groups(&mut self) {
         let mut known_touches: HashMap<String, usize> = HashMap::new();
         let mut known_groups: HashMap<String, usize> = HashMap::new();
@@ -184,17 +184,17 @@ impl RecognitionStudy {
         }
     }
 
-    /// The first combination of the study's own axes: all of a study without any.
+    /// Returns the first combination of the values in `[axes]`.
     pub fn first(&self) -> &StudyPart {
         &self.parts[0]
     }
 
-    /// All combinations.
+    /// Returns all combinations of the values in `[axes]`.
     pub fn parts(&self) -> &[StudyPart] {
         &self.parts
     }
 
-    /// The combination that a cell is of, by its number; the last for a cell that the study does not have.
+    /// Returns the part that contains a configuration, given by its number; the last part if no part contains it.
     pub fn part_of(&self, cell: usize) -> &StudyPart {
         let has_it = |part: &&StudyPart| part.sweep.cells().any(|known| known.cell == cell);
         self.parts
@@ -203,27 +203,27 @@ impl RecognitionStudy {
             .unwrap_or_else(|| self.first())
     }
 
-    /// All cells, in the order of their numbers.
+    /// Returns all configurations, in the order of their numbers.
     pub fn all_cells(&self) -> impl Iterator<Item = &Cell> {
         self.parts.iter().flat_map(|part| part.sweep.cells())
     }
 
-    /// How many.
+    /// Returns the number of configurations.
     pub fn n_cells(&self) -> usize {
         self.parts.iter().map(|part| part.sweep.n_cells()).sum()
     }
 
-    /// Arrays on which touches are made.
+    /// Returns the number of arrays on which touches are simulated.
     pub fn n_arrays(&self) -> usize {
         let made = (0..self.touch_sets.len()).map(|touches| self.made_on(touches));
         let arrays = made.map(|(part, array, _)| (part, array));
         arrays.collect::<HashSet<_>>().len()
     }
 
-    /// SHA-256 of what each object is made of, by its name and, where combinations of the study's own axes differ in it, by those.
+    /// Returns the SHA-256 of each object's content, by the object's name; if parts differ in an object, also by the values in `[axes]`.
     ///
     /// # Errors
-    /// A file of an object cannot be read.
+    /// If a file of an object cannot be read.
     pub fn content(&self) -> Result<BTreeMap<String, String>> {
         let mut all = BTreeMap::new();
         let plans = self.parts.iter().map(|part| &part.plan);
@@ -246,43 +246,43 @@ impl RecognitionStudy {
         Ok(all)
     }
 
-    /// Trials of each cell.
+    /// Returns the number of trials of each configuration.
     pub(crate) fn n_trials(&self) -> usize {
         self.first().plan.spec.trials
     }
 
-    /// A group with its part.
+    /// Returns a group and its part.
     pub(crate) fn group(&self, number: usize) -> (&StudyPart, &Group) {
         let PlacedGroup { part, place, .. } = self.groups[number];
         let part = &self.parts[part];
         (part, &part.sweep.groups[place])
     }
 
-    /// The cells of a family, with their part.
+    /// Returns the configurations of a family and their part.
     pub(crate) fn family(&self, family: usize) -> (&StudyPart, &[Cell]) {
         let Family { group, cells } = &self.families[family];
         let (part, group) = self.group(*group);
         (part, &group.cells[cells.clone()])
     }
 
-    /// The number of a family in a trial as a work item.
+    /// Returns the number of the work item of a family in a trial.
     pub(crate) fn family_item(&self, trial: usize, family: usize) -> usize {
         trial * self.families.len() + family
     }
 
-    /// The number of touches as a work item.
+    /// Returns the number of the work item of a set of touches.
     pub(crate) fn touches_item(&self, touches: usize) -> usize {
         self.family_item(self.n_trials(), 0) + touches
     }
 
-    /// The part and the array, by their numbers, that touches are made on, and their frames.
+    /// Returns the part and the array, by index, on which touches are simulated, and their number of frames.
     pub(crate) fn made_on(&self, touches: usize) -> (usize, usize, usize) {
         let group = self.touch_sets[touches].group;
         let (_, Group { array, frames, .. }) = self.group(group);
         (self.groups[group].part, *array, *frames)
     }
 
-    /// Returns what is touched, on what array, and the number of frames.
+    /// Returns a set of touches with its array and its number of frames.
     pub(crate) fn on(&self, touches: usize) -> (&dyn TouchSet, &TaxelArray, usize) {
         let Touches {
             group, is_tested, ..
@@ -295,12 +295,12 @@ impl RecognitionStudy {
         (touched, &plan.arrays[group.array], group.frames)
     }
 
-    /// Returns the number of frames that the first values of the axes of some touches have.
+    /// Returns the number of frames of a set of touches at the first values of the axes.
     pub(crate) fn first_frames(&self, touches: usize) -> usize {
         self.group(self.touch_sets[touches].group).0.plan.frames[0]
     }
 
-    /// What it took to make and to measure touches.
+    /// Returns the computing times of simulating and measuring touches.
     fn stages(&self, rows: &[TouchRow]) -> Vec<StageTime> {
         let mut stages = Vec::new();
         for on in 0..self.touch_sets.len() {
@@ -329,7 +329,7 @@ impl RecognitionStudy {
     }
 }
 
-/// Refuses test touches that are not one for one those of the study.
+/// Checks that test touches correspond one-to-one to the study's touches.
 fn check_counterparts(touched: &dyn TouchSet, tested: &dyn TouchSet) -> Result<()> {
     let (learned, shown) = (touched.classes(), tested.classes());
     if learned == shown {
@@ -350,22 +350,22 @@ fn check_counterparts(touched: &dyn TouchSet, tested: &dyn TouchSet) -> Result<(
     ))
 }
 
-/// Hexadecimal digits of the hash of touches. Fewer: two sets of touches may be taken for each other.
+/// Number of hexadecimal digits of the hash of touches. With fewer digits, two sets of touches may collide.
 const DIGITS: usize = 24;
 
 impl RecognitionStudy {
-    /// Runs all of it at once, keeps nothing, and ends at the first work item that fails.
+    /// Runs the whole study without a journal; the first failed work item ends the run.
     ///
     /// # Errors
-    /// What an item fails of.
+    /// If an item fails.
     pub fn run(&self, progress: &dyn Progress) -> Result<Tables> {
         self.outcome(run_whole(self, progress)?)
     }
 
-    /// The tables of all rows, typed.
+    /// Returns the tables as typed rows.
     ///
     /// # Errors
-    /// Those of [`Study::tables`](crate::studies::study::Study::tables).
+    /// If [`Study::tables`](crate::studies::study::Study::tables) fails.
     pub fn outcome(&self, (cells, touches): RecognitionRows) -> Result<Tables> {
         let mut tables = Tables::default();
         let scored = cells.into_iter().map(|row| {
@@ -393,7 +393,7 @@ impl RecognitionStudy {
         Ok(tables)
     }
 
-    /// A few touches for the eye, of the first combination of the study's own axes.
+    /// Returns sample touches of the first combination of the values in `[axes]`.
     pub(crate) fn samples(&self) -> Result<&Samples> {
         let first = self.first();
         let make = || first.touched.samples(&first.plan, &first.sweep.groups);
@@ -401,7 +401,7 @@ impl RecognitionStudy {
     }
 }
 
-/// A stage's name, with the number of frames a touch where it is not one.
+/// Returns the name of a stage, with the number of frames per touch if that is not one.
 pub(crate) fn in_frames(stage: &str, n_frames: usize) -> String {
     match n_frames {
         1 => stage.to_owned(),

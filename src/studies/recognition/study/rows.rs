@@ -1,35 +1,35 @@
-//! What work items of a recognition study find.
+//! Results of the work items of a recognition study.
 
 use crate::studies::recognition::training::trial::Evaluation;
 use serde::{Deserialize, Serialize};
 
-/// What work items found: cells in a trial, and touches that were made or measured.
+/// Results of work items: configurations in trials, and sets of touches that were simulated or measured.
 pub type RecognitionRows = (Vec<CellRow>, Vec<TouchRow>);
 
-/// A cell in a trial.
+/// Result of a configuration in a trial.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CellRow {
-    /// Its group and its place there, in the study as it is today.
+    /// Index of its group and its index within the group, in the current study.
     #[serde(skip)]
     pub at: (usize, usize),
-    /// What it scored.
+    /// Scores and times of the configuration.
     pub evaluation: Evaluation,
 }
 
-/// Touches of an array, read in so many frames each.
+/// Set of touches of an array, with a number of frames per touch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct TouchRow {
-    /// Which touches, by their place in the study as it is today.
+    /// Index of the set of touches in the current study.
     #[serde(skip)]
     pub on: usize,
-    /// Whether they were made; else measured.
+    /// Whether the touches were simulated; otherwise they were measured.
     pub is_made: bool,
-    /// How many.
+    /// Number of touches.
     pub n_touches: usize,
-    /// Those that met nothing, of those that were made.
+    /// Number of simulated touches that touched nothing.
     pub n_missed: usize,
-    /// Those with at least one taxel at its stroke, of those that were made.
+    /// Number of simulated touches with at least one taxel at its stroke.
     pub n_saturated: usize,
-    /// Processor-seconds.
+    /// Processor time, s.
     pub cpu_s: f64,
 }

@@ -1,4 +1,4 @@
-//! How much of a recognition study is held at once: frames, measurements, the rows and matrices of training.
+//! Memory of a recognition study: frames, measurements, and the rows and matrices of training.
 
 use crate::engine::work_items::scale::Scale;
 use crate::sensing::N_COMPONENTS;
@@ -13,13 +13,13 @@ use crate::studies::recognition::training::evaluation_inputs::solver_memory;
 use bubbletouch_sim::frame_coding::most_bytes;
 use bubbletouch_svm::{Multiclass, Solver};
 
-/// Bytes of a cell in a trial: its rows in all tables.
+/// Memory of a configuration in a trial, bytes: its rows in all tables.
 const CELL_BYTES: f64 = 4e3;
-/// Copies of training rows, bytes a number: as they are, scaled, sorted by class, and as support vectors.
+/// Memory of training rows, bytes per number: original, scaled, sorted by class, and as support vectors.
 const TRAINING_BYTES: f64 = 32.0;
-/// Copies of test rows, bytes a number: as they are, scaled, and as the kernel reads them.
+/// Memory of test rows, bytes per number: original, scaled, and in the format of the kernel.
 const TEST_BYTES: f64 = 20.0;
-/// Bytes of a score, and of its share in what is fused.
+/// Memory of a score and its contribution to fused decisions, bytes.
 const SCORE_BYTES: f64 = 16.0;
 
 /// Returns the size of a study.
@@ -49,7 +49,7 @@ pub fn recognition_scale(study: &RecognitionStudy) -> Scale {
             |family: &[Cell]| family_bytes(&part.plan, &family[0], n_test, (n_classes, n_read));
         largest(group.families().map(bytes))
     };
-    // Test touches of their own are held beside those that are learned.
+    // Separate test touches are in memory together with the training touches.
     let n_made = |(part, _): Placed| 1.0 + f64::from(u8::from(part.plan.tested.is_some()));
     let frames = groups().map(|g| n_made(g) * n_frames(g) * (most_bytes(n_values(g)) + 16) as f64);
     let frames = largest(frames);
@@ -63,12 +63,12 @@ pub fn recognition_scale(study: &RecognitionStudy) -> Scale {
         },
         n_configurations: study.n_cells(),
         bytes: frames + CELL_BYTES * (study.n_cells() * first.plan.spec.trials) as f64,
-        // A thread that waits for others begins another group.
+        // A thread that waits for others starts another group.
         item_bytes: 2.0 * largest(groups().map(measured)) + largest(groups().map(learned)),
     }
 }
 
-/// Frames that something is learned from before touches are measured, n values each, as they are read and about their mean; and what is learned.
+/// Returns the memory of the frames used for fitting (n values each, original and centred) and of the fitted estimators, bytes.
 fn learned_bytes(group: &Group, n: f64) -> f64 {
     let frames = (2 * WITH_COPIES + UNTOUCHED) as f64;
     let estimates: f64 = group.counts_of_images().iter().map(|&m| m as f64).sum();
@@ -78,8 +78,8 @@ fn learned_bytes(group: &Group, n: f64) -> f64 {
     }
 }
 
-/// Rows that a family learns from and is tested on, the scores of these, and the kernel values of its solver.
-/// `n_read`: readings of a touch of each class.
+/// Returns the memory of a family, bytes: its training and test rows, their scores, and the kernel values of its solver. `n_read` is the number of readings of
+/// one touch per class.
 fn family_bytes(
     plan: &Plan,
     cell: &Cell,
@@ -89,7 +89,7 @@ fn family_bytes(
     let learned = &plan.spec.recognition;
     let fuses = learned.fused_touches.values().iter().any(|&k| k > 1);
     let n_scores = match (cell.classifier.has_c(), learned.multiclass) {
-        // Some rows at a time, unless scores are fused.
+        // Without fusion, test rows are processed in blocks.
         (true, _) if !fuses => 0,
         (true, Multiclass::OneVsOne) => n_classes * (n_classes - 1) / 2,
         _ => n_classes,
@@ -102,10 +102,10 @@ fn family_bytes(
     let kernel_values = match (learned.solver, learned.multiclass) {
         _ if !is_kernel_svm => 0.0,
         (Solver::CoordinateDescent, _) => 0.0,
-        // At most as many as the solver is allowed.
+        // The solver stores at most as many values as its limit allows.
         _ => of_all.min(solver_memory(learned.solver_memory_gib) as f64),
     };
-    // Folds beside what was learned from all rows; of each object's test poses what every object is answered there.
+    // Inner folds exist beside the fit on all rows; the model of expected decisions has one table per object and test pose.
     let (n_copies, n_tables) = match learned.is_informed() {
         false => (1.0, 0),
         true => (2.0, rayon::current_num_threads() * n_classes),

@@ -1,4 +1,4 @@
-//! What the touches of a study depend on.
+//! Inputs of the touches of a study.
 
 use crate::inputs::objects_spec::ObjectsSpec;
 use crate::studies::recognition::plan::study_plan::Plan;
@@ -6,7 +6,7 @@ use crate::studies::recognition::spec::human::HumanTouchSpec;
 use crate::studies::recognition::spec::recorded::RecordedSpec;
 use crate::world::Placement;
 
-/// Everything of a plan that its touches are drawn from, beside the array and the files of its objects. Plans with equal inputs share their touches.
+/// Inputs from which a plan's touches are drawn, apart from the array and the files of its objects. Plans with equal inputs share their touches.
 #[derive(Debug)]
 pub(crate) struct TouchInputs<'a> {
     pub(crate) objects: &'a ObjectsSpec,
@@ -29,13 +29,13 @@ impl<'a> TouchInputs<'a> {
         }
     }
 
-    /// Returns a text that is equal for equal inputs only.
+    /// Returns a text that identifies the inputs; different inputs give different texts.
     pub fn key(&self) -> String {
         format!("{self:?}")
     }
 
-    /// Returns a text that is equal for equal touches only. The arrays' pitch and size decide which objects are refused or noted, and nothing of
-    /// a touch: an axis of arrays may be extended.
+    /// Returns a text that identifies the touches. Pitch and size of the arrays are excluded, because they only affect which objects are rejected or noted; an
+    /// axis of arrays may therefore be extended.
     pub fn content(&self) -> String {
         let objects = ObjectsSpec {
             pitch: None,

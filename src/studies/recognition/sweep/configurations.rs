@@ -1,4 +1,4 @@
-//! The cells of a study, grouped by what they can share.
+//! The configurations of a study, grouped by the computations that they share.
 //!
 //! ```text
 //! array × frames a touch ── touches simulated once
@@ -29,7 +29,7 @@ use bubbletouch_svm::split::Split;
 use ndarray::Array1;
 use std::sync::Arc;
 
-/// Loops within loops: the first changes slowest.
+/// Nested loops; the last variable changes fastest.
 macro_rules! nested {
     ($name:pat in $values:expr; $($rest:tt)*) => {
         for $name in $values {
@@ -43,43 +43,43 @@ macro_rules! nested {
 
 pub(crate) use nested;
 
-/// Everything that is decided before the first touch is simulated.
+/// Splits and configurations of a study, determined before the first touch is simulated.
 #[derive(Clone, Debug)]
 pub struct Sweep {
-    /// Groups, array by array.
+    /// Groups of configurations, ordered by array.
     pub groups: Vec<Group>,
-    /// One split a trial, of all touches.
+    /// Split of all touches in each trial.
     pub splits: Vec<Hashed<Split>>,
-    /// For each trial the first trial with the same split, itself if there is none before.
+    /// For each trial, the first trial with the same split; the trial's own number if there is no earlier one.
     pub first_equal: Vec<usize>,
-    /// The object of every touch, by its number.
+    /// Object number of every touch.
     pub labels: Hashed<Array1<usize>>,
-    /// The group of every touch, when the study keeps groups together.
+    /// Group number of every touch, if the split does not divide groups.
     pub group_keys: Option<Hashed<Array1<usize>>>,
-    /// Where every touch is made, when the study chooses by that.
+    /// Pose of every touch, if the study chooses touches by their poses.
     pub poses: Option<Hashed<Poses>>,
 }
 
-/// What is run of one combination of a study's own axes.
+/// One combination of the values in `[axes]`, ready to run.
 pub struct StudyPart {
-    /// What to run.
+    /// Plan of the combination.
     pub plan: Plan,
-    /// What is touched; the same for parts that touch the same.
+    /// Training touches; shared by parts with equal touches.
     pub touched: Arc<dyn TouchSet + Send>,
-    /// Test touches, with the numbers of the touches above; those themselves unless the study has `[test]`.
+    /// Test touches, numbered like the training touches; the training touches themselves unless the study has `[test]`.
     pub tested: Arc<dyn TouchSet + Send>,
-    /// Splits and cells.
+    /// Splits and configurations.
     pub sweep: Sweep,
 }
 
 impl Sweep {
-    /// Lays out splits and cells.
+    /// Draws the splits and lists the configurations.
     ///
     /// # Errors
-    /// The error says which objects or touches are too few, or shown without being there.
+    /// If there are too few objects or touches, or a sample object does not exist.
     pub fn new(plan: &Plan, touched: &dyn TouchSet) -> Result<Self> {
         let classes = touched.class_names();
-        // Asked before it runs: samples are drawn when it is over.
+        // Checked before the run, because samples are drawn at its end.
         named_samples(plan, &classes)?;
         let n_classes = classes.len();
         if n_classes < 2 {
@@ -135,7 +135,7 @@ impl Sweep {
         Ok(sweep)
     }
 
-    /// Its cells as those of a combination of the study's own axes, numbered from `first` on.
+    /// Assigns the configurations to a combination of the values in `[axes]` and numbers them from `first`.
     pub(crate) fn place(&mut self, first: usize, variant: &AxisValues) {
         for cell in self.groups.iter_mut().flat_map(|group| &mut group.cells) {
             cell.cell += first;
@@ -143,18 +143,17 @@ impl Sweep {
         }
     }
 
-    /// All cells, in their order.
+    /// Returns all configurations, in order.
     pub fn cells(&self) -> impl Iterator<Item = &Cell> {
         self.groups.iter().flat_map(|group| &group.cells)
     }
 
-    /// How many cells.
+    /// Returns the number of configurations.
     pub fn n_cells(&self) -> usize {
         self.groups.iter().map(|group| group.cells.len()).sum()
     }
 
-    /// A learned ensemble needs more frames of training touches than it makes measurements: so many directions in which they differ about
-    /// their mean.
+    /// Checks that a learned ensemble has more frames of training touches than measurements. The frames minus their mean must span that many directions.
     fn check_learned(&self, plan: &Plan, group: &Group) -> Result<()> {
         if !group.ensemble.is_learned() {
             return Ok(());
@@ -187,7 +186,7 @@ impl Sweep {
         self.check_learned(plan, &group)?;
         let (ny, nx) = array.shape();
         if !array.is_plain() {
-            // A step that its layout cannot have is known before anything runs.
+            // A step that the layout does not support is detected before the run.
             let skin = skin(&Seed::new(plan.spec.seed), array);
             array.chains(&skin, |skin| group.signal(plan).steps(skin))?;
         }
@@ -196,7 +195,7 @@ impl Sweep {
             true => learned.penalties(),
             false => vec![None],
         };
-        // Counted from the last group on: all cells would be counted once a group.
+        // Configurations are counted from the last group; counting all of them would take quadratic time.
         let last = self.groups.last().and_then(|group| group.cells.last());
         let first = last.map_or(0, |cell| cell.cell + 1);
         nested! {
@@ -242,7 +241,7 @@ impl Sweep {
                 variant: AxisValues::default(),
             })
         }
-        // Of many groups of few cells, room for more would be most of the memory.
+        // With many small groups, unused capacity would take most of the memory.
         group.cells.shrink_to_fit();
         self.groups.push(group);
         Ok(())

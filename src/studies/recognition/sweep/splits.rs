@@ -1,4 +1,4 @@
-//! Which touches train and which test, trial by trial, and whether they are enough for what is asked of them.
+//! Splits into training and test touches for each trial, and the check that each side has enough touches.
 
 use crate::engine::axis::Axis;
 use crate::error::{Error, Result};
@@ -13,10 +13,10 @@ use bubbletouch_svm::split::Split;
 use ndarray::Array1;
 use std::collections::{HashMap, HashSet};
 
-/// The split of all touches in a trial: the one that is given, or of those that are placed, by their poses, or by groups (`keys`), or of each alone.
+/// Draws the split of all touches in a trial. The split is given by the data, or drawn by poses, by groups (`keys`), or by single touches.
 ///
 /// # Errors
-/// A pose that is drawn where the split goes by values, or a class that is left without training or test rows.
+/// If the split requires listed values but a pose is drawn, or if a class has no training or test rows.
 pub fn draw_split(
     plan: &Plan,
     labels: &Array1<usize>,
@@ -30,7 +30,7 @@ pub fn draw_split(
     let n_folds = recognition.folds.unwrap_or(1);
     let seed = Seed::new(plan.spec.seed).named("split");
     if let Some(sides) = given_sides {
-        // All trials have the one split that is given; fewer training touches are drawn anew in each.
+        // A given split is the same in all trials; subsets of the training touches are drawn anew in each.
         let drawn = recognition.train_touches.as_ref().map_or(0, |_| trial);
         return Ok(given_hold_out(labels, sides, &seed.numbered(drawn as u64))?);
     }
@@ -55,7 +55,7 @@ pub fn draw_split(
     Ok(folds.swap_remove(trial % n_folds))
 }
 
-/// Returns for each split the place of the first one with the same training and test touches, whatever the order of the training touches.
+/// Returns, for each split, the index of the first split with the same training and test touches in any order.
 pub fn first_equal(splits: &[Split]) -> Vec<usize> {
     let mut known: HashMap<&[usize], Vec<usize>> = HashMap::new();
     let trained = |place: usize| splits[place].train.iter().collect::<HashSet<_>>();
@@ -74,8 +74,8 @@ pub fn first_equal(splits: &[Split]) -> Vec<usize> {
     first
 }
 
-/// The training-touches axis: what is asked for, or all that the smallest training split has for every object. Every object has test touches
-/// for at least one group in every trial, a training touch for each fold where C or γ is chosen, and one at every imbalance.
+/// Returns the values of the training-touches axis; by default the largest number that every object has in every training split. Checks that every object has
+/// enough touches in every trial: test touches for at least one group, training touches for each inner fold and for each imbalance.
 ///
 /// # Errors
 /// If a split has fewer training touches of an object than the study asks for.
@@ -117,7 +117,7 @@ pub fn train_touches(plan: &Plan, splits: &[Split], labels: &Array1<usize>) -> R
     Ok(train_touches)
 }
 
-/// The touches of the object that has fewest among any of some rows.
+/// Returns the number of touches of the object with the fewest touches in any of the sets.
 fn fewest_per_object<'a>(
     sets: impl Iterator<Item = &'a Vec<usize>>,
     labels: &Array1<usize>,

@@ -7,21 +7,21 @@ use crate::world::{Placement, RestPose, Touch, touches};
 use ndarray::Array1;
 use rayon::prelude::*;
 
-/// An object with its ways of lying on the table and its touches.
+/// An object with its rest poses and its touches.
 #[derive(Clone, Debug)]
 pub struct TouchedObject {
-    /// The object.
+    /// The touched object.
     pub object: Object,
-    /// Rest poses; a touch names one by its index.
+    /// Rest poses of the object; each touch contains the index of one.
     pub rests: Vec<RestPose>,
-    /// Its touches.
+    /// Touches of the object.
     pub touches: Vec<Touch>,
 }
 
 /// Draws the touches of every object.
 ///
 /// # Errors
-/// Those of [`touches`](crate::world::touches()).
+/// If [`touches`](crate::world::touches()) fails.
 pub fn draw_touches(
     objects: Vec<Object>,
     placement: &Placement,
@@ -39,14 +39,14 @@ pub fn draw_touches(
     touched.collect()
 }
 
-/// The label of every touch of some classes.
+/// Returns the label of every touch, given the name and the number of touches of each class.
 pub fn touch_labels(classes: &[(&str, usize)]) -> Array1<usize> {
     let classes = classes.iter().enumerate();
     let labels = classes.flat_map(|(label, (_, n))| std::iter::repeat_n(label, *n));
     labels.collect()
 }
 
-/// What an object's touches are drawn from.
+/// Returns the seed from which an object's touches are drawn.
 pub fn touch_stream(seed: &Seed, object: &Object) -> Seed {
     seed.named("touches").named(&object.name)
 }

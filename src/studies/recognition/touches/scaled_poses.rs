@@ -1,11 +1,11 @@
-//! Poses of touches on the axes of a placement that have more than one value.
+//! Poses of touches along the axes of a placement that have more than one value.
 
 use crate::learning::evaluation::next_touch::Poses;
 use crate::world::{Placement, Spread, Touch, TouchAxis};
 use ndarray::Array2;
 use std::f64::consts::TAU;
 
-/// The poses of touches, on the axes of a placement that have more than one value.
+/// Returns the poses of touches along the axes of a placement that have more than one value.
 pub fn scaled_poses(placement: &Placement, touches: &[&Touch]) -> Poses {
     let spreads = placement.spreads().into_iter();
     let ranges = spreads.map(|(axis, spread)| (axis, range(spread)));
@@ -18,7 +18,7 @@ pub fn scaled_poses(placement: &Placement, touches: &[&Touch]) -> Poses {
     }
 }
 
-/// The largest value of a spread less the smallest.
+/// Returns the difference between the largest and the smallest value of a spread.
 fn range(spread: &Spread) -> f64 {
     match spread {
         Spread::Uniform { low, high } => high - low,

@@ -1,8 +1,8 @@
-//! Inputs of the evaluation of a family of cells in a trial, beside the family's measurements.
+//! Inputs of the evaluation of a family of configurations in a trial, in addition to the measurements.
 //!
-//! [`Trial::evaluate`](crate::studies::recognition::training::trial::Trial::evaluate) takes these inputs and no plan, so it cannot read a value of a study that is not among them.
-//! A work item is named after the `Debug` form of these inputs and of the [inputs of its measurements](crate::studies::recognition::measurements::measurement_inputs): a field that is
-//! added is part of the name.
+//! [`Trial::evaluate`](crate::studies::recognition::training::trial::Trial::evaluate) takes these inputs and no plan, so it cannot depend on any other value
+//! of a study. The name of a work item is a hash of the `Debug` form of these inputs and of the [inputs of its
+//! measurements](crate::studies::recognition::measurements::measurement_inputs). A new field therefore changes the name.
 
 use crate::error::{Error, Result};
 use crate::inputs::content_hash::{Hashed, short_hash};
@@ -24,89 +24,89 @@ use bubbletouch_svm::kernel::Gamma;
 use bubbletouch_svm::split::Split;
 use ndarray::{Array1, Axis};
 
-/// Hexadecimal digits of a hash in a name. Fewer: two work items may be taken for each other.
+/// Number of hexadecimal digits of a hash in a name. With fewer digits, the names of two work items may collide.
 const DIGITS: usize = 24;
 
 /// Inputs that the families of a trial share.
 #[derive(Clone, Copy, Debug)]
 pub struct TrialInputs<'a> {
-    /// Root of all randomness.
+    /// Seed of all random numbers.
     pub seed: u64,
     /// Number of the trial.
     pub number: usize,
-    /// Numbers of the split and of the projection, if each split meets several projections.
+    /// Numbers of the split and the projection, if each split is combined with several projections.
     pub crossed: Option<(usize, usize)>,
     /// The split of all touches.
     pub split: &'a Hashed<Split>,
     /// Number of the first split with the same touches; `None` if this split is the first.
     pub distinct_split: Option<usize>,
-    /// Number of the block of poses that the trial tests, of a split by blocks.
+    /// Number of the block of poses that the trial tests; only for a split by blocks.
     pub tested_block: Option<usize>,
-    /// The object of every touch, by its number.
+    /// Object number of every touch.
     pub labels: &'a Hashed<Array1<usize>>,
-    /// The group of every touch, if the study keeps groups together.
+    /// Group number of every touch, if the split does not divide groups.
     pub group_keys: Option<&'a Hashed<Array1<usize>>>,
 }
 
 /// Inputs that the trials of a family share.
 #[derive(Clone, Debug)]
 pub struct FamilyInputs<'a> {
-    /// Rows of features.
+    /// Inputs of the feature rows.
     pub rows: RowInputs,
-    /// Training touches of each object, at most; `None`: all of the split.
+    /// Largest number of training touches per object; `None`: all training touches of the split.
     pub train_touches: Option<usize>,
     /// Fraction of training touches with another object's label.
     pub mislabelled_fraction: Option<f64>,
-    /// How many times as many training touches the most frequent object has as the rarest.
+    /// Ratio of the training touches of the most frequent to the least frequent object.
     pub class_imbalance: Option<f64>,
-    /// The classifier, and how its C and γ are chosen.
+    /// Classifier, with the rules by which its C and γ are chosen.
     pub training: TrainingInputs,
-    /// The cells, in their order; those with the same C follow each other.
+    /// Configurations, in order; configurations with equal C are adjacent.
     pub decisions: Vec<Decision>,
-    /// Where every touch is made, if any cell chooses touches by their poses.
+    /// Pose of every touch, if a configuration chooses touches by their poses.
     pub poses: Option<&'a Hashed<Poses>>,
 }
 
-/// Inputs of the training of a classifier. Parameters that the classifier does not use are the usual ones.
+/// Inputs of the training of a classifier. Parameters that the classifier does not use have their default values.
 #[derive(Clone, Debug)]
 pub struct TrainingInputs {
-    /// The classifier; C is that of each [`Decision`].
+    /// Classifier; its C is set by each [`Decision`].
     pub classifier: Classifier,
-    /// Candidates of C, if C is chosen.
+    /// Candidate values of C, if C is chosen.
     pub c_grid: Option<Vec<f64>>,
-    /// Candidates of γ, as multiples of 'scale', if γ is chosen.
+    /// Candidate values of γ as multiples of 'scale', if γ is chosen.
     pub gamma_grid: Option<Vec<f64>>,
-    /// Training touches of each object that take part in a choice, at most; `None`: all.
+    /// Largest number of training touches per object for a choice; `None`: all.
     pub choose_touches: Option<usize>,
-    /// Number of folds, if any are needed.
+    /// Number of inner folds, if folds are needed.
     pub n_folds: Option<usize>,
 }
 
-/// What the cells of a family differ in.
+/// Settings in which the configurations of a family differ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Decision {
-    /// C; `None`: chosen, or the classifier has none.
+    /// C; `None` if C is chosen or the classifier has none.
     pub c: Option<f64>,
-    /// Test touches that are decided on together.
+    /// Number of test touches that are fused into one decision.
     pub fused_touches: usize,
-    /// How the touches after the first of these are chosen.
+    /// Policy that chooses the touches after the first.
     pub next_touch: NextTouch,
 }
 
 impl TrialInputs<'_> {
-    /// Returns the name of the trial: equal for equal inputs only.
+    /// Returns the name of the trial; different inputs give different names.
     pub fn name(&self) -> String {
         let Self { number, .. } = self;
         format!("trial {number} {}", short_hash(format!("{self:?}"), DIGITS))
     }
 
-    /// Returns a named stream of random numbers of the trial.
+    /// Returns a named random stream of the trial.
     pub fn stream(&self, name: &str) -> Seed {
         let seed = Seed::new(self.seed).named(name);
         seed.numbered(self.number as u64)
     }
 
-    /// Returns the split of a family: with no more training touches of an object than it allows, and with its imbalance.
+    /// Returns the split of a family, reduced to its number of training touches per object and to its class imbalance.
     ///
     /// # Errors
     /// If an object is left without training touches.
@@ -122,10 +122,10 @@ impl TrialInputs<'_> {
         }
     }
 
-    /// Returns the label of every touch as a family learns it: some of the split's training touches may have another object's.
+    /// Returns the training labels of all touches; a fraction of the split's training touches has another object's label.
     ///
     /// # Errors
-    /// If the fraction is not from 0 to 1.
+    /// If the fraction is not between 0 and 1.
     pub fn learned_labels(&self, family: &FamilyInputs, split: &Split) -> Result<Array1<usize>> {
         let mut labels = (**self.labels).clone();
         if let Some(fraction) = family.mislabelled_fraction {
@@ -154,7 +154,7 @@ impl TrialInputs<'_> {
 }
 
 impl<'a> FamilyInputs<'a> {
-    /// Returns the inputs of a [family](Group::families) of cells, at least one.
+    /// Returns the inputs of a [family](Group::families) of at least one configuration.
     pub fn new(plan: &Plan, sweep: &'a Sweep, family: &[Cell]) -> Self {
         let recognition = &plan.spec.recognition;
         let decisions = family.iter().map(|cell| Decision {
@@ -178,14 +178,14 @@ impl<'a> FamilyInputs<'a> {
         }
     }
 
-    /// Returns the decisions by fit: those with the same C.
+    /// Returns the decisions grouped by equal C; each group shares one fit.
     pub fn fits(&self) -> impl Iterator<Item = &[Decision]> {
         self.decisions.chunk_by(|a, b| a.c == b.c)
     }
 }
 
 impl Decision {
-    /// Whether touches are chosen by the answers to training touches.
+    /// Returns whether the next touch is chosen using decisions on training touches.
     pub fn is_informed(&self) -> bool {
         self.next_touch == NextTouch::MostInformative
     }
@@ -240,8 +240,8 @@ impl TrainingInputs {
     }
 }
 
-/// Returns the name of a [family](Group::families) of touches with a name: equal for equal inputs only. Measurements of a family are those that it would
-/// have alone.
+/// Returns the name of a [family](Group::families); different inputs give different names. The measurements in the name are those that the family would have
+/// alone.
 pub fn family_name(
     plan: &Plan,
     (group, touches): (&Group, &str),
@@ -257,7 +257,7 @@ impl Sweep {
     /// Returns the inputs that the families of a trial share.
     ///
     /// # Errors
-    /// If the study does not have the trial.
+    /// If the study has fewer trials.
     pub fn trial(&self, plan: &Plan, number: usize) -> Result<TrialInputs<'_>> {
         let Some(split) = self.splits.get(number) else {
             let last = self.splits.len() - 1;
@@ -281,7 +281,7 @@ impl Sweep {
     }
 }
 
-/// Most bytes of kernel values that a solver holds.
+/// Returns the memory limit for the kernel values of a solver, bytes.
 pub fn solver_memory(gib: Option<f64>) -> usize {
     gib.map_or(DEFAULT_MEMORY_BYTES, |gib| (gib * GIB) as usize)
 }

@@ -1,4 +1,4 @@
-//! Training of a family of cells: the same rows and features, one fit for each C.
+//! Training of a family of configurations: the same rows and features, one fit for each C.
 
 use crate::error::Result;
 use crate::learning::classifiers::classifier::{Classifier, Cost};
@@ -14,37 +14,37 @@ use ndarray::{Array1, Axis};
 use std::collections::HashMap;
 use std::time::Instant;
 
-/// The training rows of a family in one trial, and what they are trained with.
+/// Training rows of a family in one trial, with the settings of the training.
 pub struct Training<'a> {
-    /// The classifier, and how its C and γ are chosen.
+    /// Classifier, with the rules by which its C and γ are chosen.
     pub inputs: &'a TrainingInputs,
-    /// Training rows in drawing order, one of each object in turn: first readings, then further ones, then tilted copies.
+    /// Training rows in drawing order, alternating between objects: first readings, further readings, tilted copies.
     pub data: Dataset,
-    /// How many of them are first readings: the others take no part in a choice of C or γ.
+    /// Number of rows that are first readings; only these are used to choose C and γ.
     pub n_first: usize,
-    /// The group of each row, when the study keeps groups together.
+    /// Group of each row, if the split does not divide groups.
     pub group_keys: Option<Array1<usize>>,
-    /// What the folds of a choice are drawn from.
+    /// Seed of the inner folds.
     pub seed: Seed,
 }
 
-/// A trained classifier and what it was trained with.
+/// Trained classifier and its parameters.
 pub struct Fitted {
-    /// The classifier, with its scaling.
+    /// The trained classifier with its scaling.
     pub classifier: TrainedClassifier,
-    /// C, of a classifier that has one.
+    /// C, if the classifier has one.
     pub c: Option<f64>,
-    /// γ, of a classifier that has one.
+    /// γ, if the classifier has one.
     pub gamma: Option<f64>,
-    /// Seconds to choose and to train.
+    /// Time to choose the parameters and to train, seconds.
     pub fit_s: f64,
 }
 
 impl Training<'_> {
-    /// One classifier for each C (`None`: chosen, or a classifier that has none), in their order.
+    /// Trains one classifier for each C, in order. `None` stands for a chosen C, or for a classifier without C.
     ///
     /// # Errors
-    /// What a fold or a training refuses.
+    /// If a fold cannot be drawn or the training fails.
     pub(crate) fn train_all(&self, penalties: &[Option<f64>]) -> Result<Vec<Fitted>> {
         let given: Option<Vec<f64>> = penalties.iter().copied().collect();
         match given {
@@ -57,7 +57,7 @@ impl Training<'_> {
         self.inputs.gamma_grid.is_some()
     }
 
-    /// For several C that are given: what they share is computed once, and its time told to each in equal parts.
+    /// Trains classifiers for several given values of C. Shared computations are done once, and their time is divided equally.
     fn train_path(&self, path: &[f64]) -> Result<Vec<Fitted>> {
         let start = Instant::now();
         let classifier = &self.inputs.classifier;
@@ -73,7 +73,7 @@ impl Training<'_> {
         Ok(fitted.collect())
     }
 
-    /// With this C, or one that is chosen, or none; and a γ that may be chosen.
+    /// Trains a classifier with a given or chosen C, or without C; γ is given or chosen.
     fn train(&self, c: Option<f64>) -> Result<Fitted> {
         let start = Instant::now();
         let classifier = &self.inputs.classifier;
@@ -99,8 +99,8 @@ impl Training<'_> {
         })
     }
 
-    /// Returns the best C, and the classifier with the best γ, of some candidates. Every γ is a multiple of that of the training rows, of which the rows that
-    /// take part in the choice may be few. One candidate is no choice: the result is the same as if it was given.
+    /// Returns the best C and the classifier with the best γ of the candidates. γ is a multiple of the default γ of all training rows, even if the choice uses
+    /// only some of the rows. A single candidate gives the same result as a given value.
     fn choose(&self, classifier: Classifier, candidates: &Candidates) -> Result<(f64, Classifier)> {
         let unit = self.gamma()?;
         let classifier = Classifier {
@@ -125,10 +125,10 @@ impl Training<'_> {
         Ok((chosen.best.c, classifier.with_choice(&chosen)))
     }
 
-    /// What classifiers trained as a fitted one answer to each touch (its first reading): of each fold those that have learned none of it.
+    /// Returns the decisions on each touch (its first reading) by classifiers that were trained like `like` without the touch's fold.
     ///
     /// # Errors
-    /// What a fold or a training refuses.
+    /// If a fold cannot be drawn or the training fails.
     pub(crate) fn held_out_answers(&self, like: &Fitted) -> Result<Vec<usize>> {
         let n_first = self.n_first;
         let usual = &self.inputs.classifier;
@@ -140,7 +140,7 @@ impl Training<'_> {
         let mut answers = vec![0; n_first];
         let first: Vec<usize> = (0..n_first).collect();
         for fold in self.folds(&first)? {
-            // Further readings and copies are of all touches in turn.
+            // Further readings and copies repeat the order of the first readings.
             let starts = (0..self.data.targets.len()).step_by(n_first);
             let learned = starts.flat_map(|start| fold.train.iter().map(move |row| start + row));
             let learned = rows(&self.data, &learned.collect::<Vec<_>>())?;
@@ -153,7 +153,7 @@ impl Training<'_> {
         Ok(answers)
     }
 
-    /// The γ of a classifier that has one, where it is not chosen.
+    /// Returns γ if the classifier has one and it is not chosen.
     fn gamma(&self) -> Result<Option<f64>> {
         let classifier = &self.inputs.classifier;
         let kernel = classifier.kind.about().kernel;
@@ -167,8 +167,8 @@ impl Training<'_> {
         Ok(Some(number(classifier.gamma).unwrap_or_else(scale)))
     }
 
-    /// Returns the training rows that take part in a choice: of each object at most so many, the first ones, all of them first readings. A fold that holds
-    /// out a touch would else learn another reading of the touch.
+    /// Returns the training rows for a choice: the first rows of each object up to the limit, first readings only. Otherwise a fold could train on another
+    /// reading of a held-out touch.
     fn choosing_rows(&self) -> Vec<usize> {
         let most = self.inputs.choose_touches.unwrap_or(usize::MAX);
         let mut n_chosen: HashMap<usize, usize> = HashMap::new();
@@ -180,7 +180,7 @@ impl Training<'_> {
         (0..self.n_first).filter(takes_part).collect()
     }
 
-    /// Splits some training rows once more, in positions within `rows`. What stays together in the study's split stays together here.
+    /// Returns inner folds as positions in `rows`. The folds do not divide the groups that the study's split does not divide.
     fn folds(&self, rows: &[usize]) -> Result<Vec<Split>> {
         let labels = self.data.targets.select(Axis(0), rows);
         let k = self.inputs.n_folds.expect("folds of a choice");

@@ -1,4 +1,4 @@
-//! Which test touches of an object are decided on together, where their poses are chosen: a robot in the known frame of an unknown object.
+//! Choice of the test touches that are fused into one decision, if poses are chosen: a robot touches an unknown object in a known frame.
 
 use crate::error::Result;
 use crate::learning::evaluation::next_touch::{
@@ -13,7 +13,7 @@ use bubbletouch_svm::split::Split;
 use ndarray::Array1;
 use rayon::prelude::*;
 
-/// How training touches are answered by classifiers trained as a fitted one that have not learned them.
+/// Fits a model of the decisions on training touches, using classifiers that were trained without these touches.
 pub(super) fn answer_model<'a>(
     (trial, family): (&TrialInputs, &FamilyInputs<'a>),
     training: &Training,
@@ -30,7 +30,7 @@ pub(super) fn answer_model<'a>(
     Ok(Some(AnswerModel::new(poses, &touches, trial.n_objects())))
 }
 
-/// Random groups of k touches (places among the test touches, class by class), or as many sequences with the same first touches whose others are
+/// Returns groups of k touches, as indices into the test touches, ordered by class. The groups are random, or have random first touches and further touches
 /// chosen among all test touches of the object.
 pub(super) fn choose_touches(
     (family, cell): (&FamilyInputs, &Decision),
@@ -52,7 +52,7 @@ pub(super) fn choose_touches(
         let touches: Vec<usize> = places.iter().map(|&place| touches[place]).collect();
         let answers: Vec<usize> = places.iter().map(|&place| answers[place]).collect();
         let poses = poses.select(&touches);
-        // All choices of an object look at the same poses.
+        // All sequences of an object choose among the same poses.
         let told: Vec<PoseAnswers> = match (next, model) {
             (NextTouch::MostInformative, Some(model)) => {
                 touches.iter().map(|&touch| model.at(touch)).collect()
@@ -76,21 +76,21 @@ pub(super) fn choose_touches(
     chosen.concat()
 }
 
-/// Test touches, answered by one fit.
+/// Test touches with the decisions of one fit.
 pub(super) struct AnsweredTouches<'a> {
     pub(super) fitted: &'a Fitted,
     pub(super) test: &'a Dataset,
-    /// Their numbers.
+    /// Numbers of the touches.
     pub(super) touches: &'a [usize],
-    /// The group of each of them.
+    /// Group of each touch.
     pub(super) groups: Option<&'a [usize]>,
     pub(super) decide: Decide<'a>,
     pub(super) answer_s: f64,
     pub(super) n_train: usize,
-    /// What touches are expected to be answered, where any cell goes by that, and the seconds to learn it.
+    /// Expected decisions on touches, if a configuration uses them, and the seconds to fit this model.
     pub(super) model: Option<AnswerModel<'a>>,
     pub(super) model_s: f64,
 }
 
-/// One label for each group of touches.
+/// Function that returns one label for each group of touches.
 pub(crate) type Decide<'a> = Box<dyn Fn(&[Vec<usize>]) -> Array1<usize> + 'a>;

@@ -1,4 +1,4 @@
-//! A family of cells in one trial: fit on training rows once for each C, answer to test touches once, decide for each k.
+//! Evaluation of a family of configurations in one trial: one fit for each C, one prediction of all test touches, one decision for each k.
 
 use crate::error::Result;
 use crate::learning::evaluation::fusion::{fuse_rows, fuse_scores};
@@ -22,33 +22,33 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::time::Instant;
 
-/// What a cell scored in a trial.
+/// Result of a configuration in a trial.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Evaluation {
     /// Row of the accuracy table.
     pub score: TrialScore,
     /// Row of the timing table.
     pub time: TrialTime,
-    /// Non-zero counts: (object, predicted, how many).
+    /// Non-zero counts: (object, predicted object, count).
     pub confusion: Vec<(usize, usize, usize)>,
-    /// Test rows group by group; none where rows are held out one by one.
+    /// Counts for each group of test rows; empty if no groups are held out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub groups: Vec<GroupCount>,
 }
 
-/// What the evaluations of a group share in a trial.
+/// Data that the evaluations of a group share in a trial.
 #[derive(Clone, Copy)]
 pub struct Trial<'a> {
     /// Labels, split and groups.
     pub inputs: TrialInputs<'a>,
-    /// Measurements of all touches, at least the cell's m a frame.
+    /// Measurements of all touches, with at least as many per frame as a configuration needs.
     pub measurements: &'a Measurements,
 }
 
-/// How a fit decides on test touches of its cells.
+/// Returns the function with which a fit decides on the test touches.
 fn decider<'a>(fitted: &'a Fitted, test: &Dataset, cells: &[Decision]) -> Result<Decide<'a>> {
     let (classifier, features) = (&fitted.classifier, test.records.view());
-    // Labels are all that is needed where touches are decided on one by one, and less work.
+    // Without fusion, labels suffice and are faster to compute.
     if cells.iter().all(|cell| cell.fused_touches == 1) {
         let labels = classifier.labels(features)?;
         let label = move |group: &Vec<usize>| labels[group[0]];
@@ -61,10 +61,10 @@ fn decider<'a>(fitted: &'a Fitted, test: &Dataset, cells: &[Decision]) -> Result
 }
 
 impl Trial<'_> {
-    /// Fits and tests the cells of a [family](crate::studies::recognition::plan::group::Group::families) on their leading measurements, in their order.
+    /// Fits and tests the configurations of a [family](crate::studies::recognition::plan::group::Group::families) on the first m measurements, in order.
     ///
     /// # Errors
-    /// If rows of the family cannot be made, or its classifier refuses them.
+    /// If rows of the family cannot be computed, or the training fails.
     pub fn evaluate(&self, family: &FamilyInputs) -> Result<Vec<Evaluation>> {
         let split = self.inputs.split(family)?;
         let training = self.training(family, &split)?;
@@ -103,7 +103,7 @@ impl Trial<'_> {
         Ok(evaluations)
     }
 
-    /// One label for each group of the cell's k test touches.
+    /// Returns one label for each group of k test touches.
     fn decide(
         &self,
         (family, cell): (&FamilyInputs, &Decision),
@@ -124,7 +124,7 @@ impl Trial<'_> {
         let counts = counts.filter(|(_, count)| **count > 0);
         let groups = answered.groups.map_or_else(Vec::new, |groups| {
             let decisions = rows.groups.iter().enumerate();
-            // A decision on touches of several groups is a row of each.
+            // A decision on touches of several groups counts as a row of each group.
             count_groups(decisions.flat_map(|(row, touches)| {
                 let of: BTreeSet<usize> = touches.iter().map(|&touch| groups[touch]).collect();
                 let is_correct = predicted[row] == truth[row];
@@ -189,7 +189,7 @@ impl Trial<'_> {
     }
 }
 
-/// Returns the rows that are learned: all readings of these training touches, then their tilted copies, and the labels of all.
+/// Returns the rows to train on: all readings of the training touches, then their tilted copies, with the labels of all rows.
 pub(crate) fn learned_rows(
     measurements: &Measurements,
     inputs: &RowInputs,
@@ -198,7 +198,7 @@ pub(crate) fn learned_rows(
 ) -> (Vec<usize>, Array1<usize>) {
     let mut rows = measurements.readings(train);
     rows.extend(measurements.copies(inputs, train));
-    // Readings and copies alike are of all touches in turn.
+    // Readings and copies repeat the order of the touches.
     let touches = train.iter().cycle().take(rows.len());
     let labels = touches.map(|&touch| labels[touch]).collect();
     (rows, labels)
