@@ -1,4 +1,4 @@
-//! Checks of single keys: each error names the file and the key, what was given and what is allowed.
+//! Checks of single keys. Each error contains the file, the key, the given value, and the allowed values.
 
 use crate::error::{Error, Result};
 use crate::inputs::memory::{check_memory, machine_memory};
@@ -8,7 +8,7 @@ use crate::world::MAX_TOUCHES;
 use serde::Serialize;
 use std::borrow::Cow;
 
-/// The smallest positive number of a key. Squares and reciprocals of smaller ones come close to what f64 can hold; none is measured in any unit.
+/// Smallest positive value of a key. Squares and reciprocals of smaller values approach the limits of f64; no quantity is measured in such small values.
 pub const MIN_POSITIVE: f64 = 1e-12;
 
 pub fn positive(value: f64) -> bool {
@@ -19,43 +19,43 @@ pub fn not_negative(value: f64) -> bool {
     value == 0.0 || positive(value)
 }
 
-/// Values of one axis, at most: more is a slip, and each would be compared with all others.
+/// Maximum number of values of one axis. A larger number indicates a mistake, and every value is compared with all others.
 pub const MOST_VALUES: usize = 10_000;
 
-/// What a key may count, at most: what is counted is in memory at once, or takes for ever.
+/// Maximum value of keys that count something. Larger counts exceed memory or take too long.
 const MOST_COUNTED: usize = 100_000_000;
 
-/// Readings of a training touch, at most: all are in memory at once, and of so many another adds nothing.
+/// Maximum number of readings of a training touch. All are in memory at once, and further readings do not improve training.
 const MOST_READINGS: usize = 100;
 
-/// Configurations of a study, at most: all are laid out before the first runs.
+/// Maximum number of configurations of a study; all are created before the first one runs.
 const MOST_CONFIGURATIONS: f64 = 1e6;
 
-/// What the numbers of a key may be.
+/// Allowed numbers of a key.
 #[derive(Clone, Copy)]
 pub enum Range {
-    /// Above zero.
+    /// Numbers above zero.
     Positive,
-    /// Zero or above.
+    /// Numbers of at least zero.
     NotNegative,
-    /// Any but infinite ones.
+    /// All finite numbers.
     Finite,
-    /// Of one, ends included.
+    /// Fractions from 0 to 1, including both ends.
     Fraction,
-    /// Of one, ends excluded.
+    /// Fractions between 0 and 1, excluding both ends.
     Part,
-    /// From one on.
+    /// Numbers of at least one.
     AtLeastOne,
-    /// Whole numbers from one to another.
+    /// Integers between two bounds, including both.
     Count(usize, usize),
-    /// Those that something allows, and which these are, in words.
+    /// Numbers that a predicate allows, with a description in words.
     Of(fn(f64) -> bool, &'static str),
-    /// Words, or numbers that something else checks.
+    /// Texts, or numbers that are checked elsewhere.
     Any,
 }
 
 impl Range {
-    /// Whether a number is allowed, and which are, in words.
+    /// Returns whether a number is allowed, and a description of the allowed numbers.
     fn allows(self, value: f64) -> (bool, Cow<'static, str>) {
         let (is_allowed, words) = match self {
             Self::Positive => (positive(value), "a positive number, at least 1e-12"),
@@ -79,33 +79,32 @@ impl Range {
     }
 }
 
-/// From 1 to what memory holds.
-/// Copies of a touch, at most: more than tell a classifier anything new.
+/// Maximum number of copies of a touch; further copies do not improve a classifier.
 const MOST_COPIES: usize = 1000;
-/// Far above it a tilt adds no plane.
+/// Tilt angles, degrees. Much larger tilts add no plane.
 const TILT: Range = Range::Of(|deg| deg > 0.0 && deg <= 45.0, "above 0, at most 45");
-/// A slide of a kilometre has far fewer steps than it passes taxels; the square of 1e160 mm is infinite.
+/// Slide distances, mm. A slide of 1 km has far fewer steps than it passes taxels; the square of 1e160 mm would be infinite.
 const SLIDE: Range = Range::Of(|mm| (0.0..=1e6).contains(&mm), "0 to 1000000");
 pub const COUNT: Range = Range::Count(1, MOST_COUNTED);
 
-/// How far spheres may be from a surface, mm. Below a nanometre rounding of coordinates is as large.
+/// Allowed distances of spheres from a surface, mm. Below a nanometre, rounding errors of coordinates are equally large.
 pub const SURFACE_ERROR: Range = Range::Of(|mm| mm >= 1e-6, "at least 1e-6 mm");
-/// Noise, as a share of the full scale: at the bound nothing of the signal is left, and squares of features still fit into f32.
+/// Noise as a fraction of full scale. At the upper bound, nothing of the signal remains, and squares of features still fit into f32.
 pub const NOISE: Range = Range::Of(
     |share| not_negative(share) && share <= 1000.0,
     "0, or 1e-12 to 1000",
 );
-/// C: at the bounds no margin, or no slack, is left.
+/// Penalty C. At the bounds, no margin or no slack remains.
 const PENALTY: Range = Range::Of(|c| positive(c) && c <= 1e12, "above 0, 1e-12 to 1e12");
-/// γ: at the upper bound a kernel of degree 20 over 10,000 features stays finite in f64.
+/// Kernel width γ. At the upper bound, a kernel of degree 20 over 10,000 features is finite in f64.
 const GAMMA: Range = Range::Of(|c| positive(c) && c <= 1e9, "above 0, 1e-12 to 1e9");
-/// c₀ of the polynomial kernel, which the degree raises to the power of 20 at most.
+/// Constant c₀ of the polynomial kernel, which is raised to powers of at most 20.
 const COEF0: Range = Range::Of(|c| (0.0..=1e6).contains(&c), "0 to 1e6");
 
-/// So many touches an object.
+/// Allowed numbers of touches per object.
 pub const TOUCHES: Range = Range::Count(1, MAX_TOUCHES);
 
-/// The keys of the tables that kinds of study share, and what their numbers may be. A list has values, and none twice.
+/// Keys of the tables common to several kinds of studies, with their allowed numbers. A list must contain values and no duplicates.
 const KEYS: [(&str, Range); 59] = [
     ("objects.surface_error_mm", SURFACE_ERROR),
     ("objects.close_holes_mm", Range::Positive),
@@ -171,9 +170,9 @@ const KEYS: [(&str, Range); 59] = [
     ("recognition.keep_together_deg", Range::Positive),
 ];
 
-/// Checks of one file's keys.
+/// Checks of the keys of one file.
 pub struct Check<'a> {
-    /// The study's file.
+    /// Name of the study file, for error messages.
     pub place: &'a str,
 }
 
@@ -182,7 +181,7 @@ impl Check<'_> {
         Error::input(format!("{}, key {key}", self.place), given, allowed)
     }
 
-    /// The keys of a table that kinds of study share; which of them it gives.
+    /// Checks the keys of a table common to several kinds of studies; returns the keys that the table contains.
     pub fn table(&self, name: &str, table: &impl Serialize) -> Result<toml::Table> {
         let key = |path: &'static str| path.strip_prefix(name)?.strip_prefix('.');
         let keys = KEYS
@@ -191,7 +190,8 @@ impl Check<'_> {
         self.keys(name, table, keys)
     }
 
-    /// Keys of a table, with points between those of tables in it: each number in its range, each list with values and none twice.
+    /// Checks the keys of a table; dots separate the names of nested tables. Each number must be in its range; each list must contain values and no
+    /// duplicates.
     pub fn keys<'k>(
         &self,
         name: &str,
@@ -210,7 +210,7 @@ impl Check<'_> {
             let numbers: Vec<f64> = values.iter().filter_map(number).collect();
             match words.is_empty() {
                 false => self.list(path, words).map(drop)?,
-                // Two that tables show alike would be taken for one.
+                // Two values with equal text in tables would be mistaken for each other.
                 true if path.ends_with("_mm") => {
                     let shown = numbers.iter().map(|&mm| millimetres(mm * MM));
                     self.list(path, shown.collect()).map(drop)?;
@@ -239,7 +239,7 @@ impl Check<'_> {
         Err(self.error(key, value, allowed))
     }
 
-    /// From 1 to so many.
+    /// Checks that a count is from 1 to `most`.
     pub fn count(&self, key: &str, count: usize, most: usize) -> Result<usize> {
         match count {
             0 => Err(self.error(key, 0, "at least 1")),
@@ -248,12 +248,12 @@ impl Check<'_> {
         }
     }
 
-    /// So many configurations, the product of all axes, can be laid out.
+    /// Checks that the number of configurations, the product of all axes, is within the limit.
     pub fn configurations(&self, n: f64) -> Result<()> {
         if n <= MOST_CONFIGURATIONS {
             return Ok(());
         }
-        // Beyond that, not every digit is known.
+        // Beyond this value, not all digits are exact.
         let given = if n < 1e15 {
             format!("{n:.0} configurations")
         } else {
@@ -265,13 +265,13 @@ impl Check<'_> {
         Err(Error::input(self.place, given, allowed))
     }
 
-    /// So many bytes are within the machine's memory; what takes them is said in words.
+    /// Checks that a number of bytes is within the machine's memory; `what` describes the data.
     pub fn memory(&self, key: &str, given: impl ToString, bytes: f64, what: &str) -> Result<()> {
         check_memory(bytes, machine_memory(), what)
             .map_err(|allowed| self.error(key, given, allowed))
     }
 
-    /// An axis has values, and none twice: a repeated value would only repeat cells.
+    /// Checks that an axis contains values and no duplicates; a duplicate would repeat configurations.
     pub fn list<T: Clone + PartialEq + std::fmt::Debug>(
         &self,
         key: &str,

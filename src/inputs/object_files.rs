@@ -1,4 +1,4 @@
-//! Objects from where a study finds them: built-in sets, TOML files, folders of meshes.
+//! Loading of objects: built-in sets, TOML files, and folders of meshes.
 
 use crate::error::{Error, Result};
 use crate::files::SetName;
@@ -22,26 +22,26 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-/// Points of a mesh at which the error of vertex spheres is measured. Larger: slower; smaller: the largest error may be missed.
+/// Number of points of a mesh at which the error of vertex spheres is measured. If larger, the measurement is slower; if smaller, the largest error may be
+/// missed.
 const N_ERROR_POINTS: usize = 2000;
 
-/// A mesh of a study.
+/// Mesh of a study.
 #[derive(Clone, Debug)]
 pub struct NamedMesh {
-    /// Its file's name without the ending.
+    /// Name of the mesh file without extension.
     pub name: String,
-    /// Its file, for errors.
+    /// Path of the mesh file, for error messages.
     pub place: String,
-    /// The mesh, metres.
+    /// The mesh, in metres.
     pub mesh: TriangleMesh,
 }
 
-/// Builds the objects of a study: sets first, in their order, then meshes by file name. Packed meshes are looked for and
-/// kept in the folder `packings`, if one is given.
+/// Builds the objects of a study: sets first, in their order, then meshes by file name. Packed meshes are read from and written to the folder `packings`, if
+/// given.
 ///
 /// # Errors
-/// The error names a set, name or file that is not there, an object that two sources share, a mesh that cannot be packed,
-/// or an empty selection.
+/// If a set, name or file does not exist, two sources contain one object, a mesh cannot be packed, or the selection is empty.
 pub fn load_objects(spec: &ObjectsSpec, packings: Option<&Path>) -> Result<Vec<Object>> {
     let tolerance = spec.surface_error();
     let mut objects = Vec::new();
@@ -57,10 +57,10 @@ pub fn load_objects(spec: &ObjectsSpec, packings: Option<&Path>) -> Result<Vec<O
     Ok(objects)
 }
 
-/// The objects of a TOML file ([its keys](crate::guide::own_objects)), in a set of the file's name.
+/// Reads the objects of a TOML file ([its keys](crate::guide::own_objects)) as a set with the name of the file.
 ///
 /// # Errors
-/// A file that cannot be read; those of [`Catalogue::parse`].
+/// If the file cannot be read, or [`Catalogue::parse`] returns an error.
 pub fn load_catalogue(path: &Path) -> Result<Catalogue> {
     let place = path.display().to_string();
     let text = crate::files::read_to_string(path).map_err(|e| {
@@ -70,10 +70,10 @@ pub fn load_catalogue(path: &Path) -> Result<Catalogue> {
     Catalogue::parse(&place, &place, &text)
 }
 
-/// SHA-256 of what each object of a study is made from, by its name: of a mesh its file, of a solid its parts.
+/// Returns the SHA-256 of the source of each object of a study, by object name: the file of a mesh, the parts of a solid.
 ///
 /// # Errors
-/// As of [`load_objects`].
+/// Returns the errors of [`load_objects`].
 pub fn objects_content(spec: &ObjectsSpec) -> Result<BTreeMap<String, String>> {
     let mut content = BTreeMap::new();
     for set in &spec.sets {
@@ -89,19 +89,19 @@ pub fn objects_content(spec: &ObjectsSpec) -> Result<BTreeMap<String, String>> {
     Ok(content)
 }
 
-/// SHA-256 of a file.
+/// Returns the SHA-256 of a file.
 ///
 /// # Errors
-/// It cannot be read.
+/// If the file cannot be read.
 pub fn file_content(path: &Path) -> Result<String> {
     let bytes = crate::files::read(path).map_err(|e| Error::io(path, "read", e))?;
     Ok(sha256(bytes))
 }
 
-/// What a PLY, OBJ or STL file holds, in metres; without a unit its numbers are metres, and must be such as `sizes` allow.
+/// Reads a PLY, OBJ or STL file; the result is in metres. Without a unit, the numbers are metres, and the size must be within `sizes`.
 ///
 /// # Errors
-/// A file that cannot be read, of no known ending, or without such a mesh.
+/// If the file cannot be read, has an unknown extension, or contains no such mesh.
 pub fn read_mesh_file(
     path: &Path,
     unit: Option<LengthUnit>,
@@ -124,10 +124,10 @@ pub fn read_mesh_file(
     Ok(mesh)
 }
 
-/// The spheres of a CSV file with columns x, y, z, r; without a unit its numbers are metres, and must be such as `sizes` allow.
+/// Reads the spheres of a CSV file with columns x, y, z, r. Without a unit, the numbers are metres, and the size must be within `sizes`.
 ///
 /// # Errors
-/// A file that cannot be read or holds no such spheres.
+/// If the file cannot be read or contains no such spheres.
 pub fn load_spheres(
     path: &Path,
     unit: Option<LengthUnit>,
@@ -155,33 +155,34 @@ fn open(path: &Path, allowed: &str) -> Result<BufReader<File>> {
     Ok(BufReader::new(file))
 }
 
-/// An error if a mesh is a folder, or a pipe or a device, from which nothing may ever come.
+/// Returns an error if a mesh path is a folder, a pipe or a device; reading a pipe or device might never end.
 fn check_regular(path: &Path) -> Result<()> {
     let given = match std::fs::metadata(path) {
         Ok(meta) if meta.is_dir() => "a folder",
         Ok(meta) if !meta.is_file() => "a pipe, a socket or a device",
-        // Opening it says what is wrong with others.
+        // Other errors are reported when the file is opened.
         _ => return Ok(()),
     };
     let allowed = "a .ply, .obj or .stl file";
     Err(Error::input(path.display(), given, allowed))
 }
 
-/// A mesh file as an object, as a study's objects say; its name is the file's without the ending. Packings are looked for and kept in the folder
-/// `packings`, if one is given. Vertex spheres that are far from the mesh are reported on standard error.
+/// Builds an object from a mesh file as specified in `spec`; its name is the file name without extension. Packings are read from and written to the folder
+/// `packings`, if
+/// given. Vertex spheres that are far from the mesh are reported on standard error.
 ///
 /// # Errors
-/// A file that cannot be read, or is of another size than can be felt; a mesh that cannot be what it is to become.
+/// If the file cannot be read, the size is outside the allowed range, or the mesh cannot be converted to the requested model.
 pub fn load_mesh(path: &Path, spec: &ObjectsSpec, packings: Option<&Path>) -> Result<Object> {
     let built = build_mesh(path, spec, packings)?;
     note_vertex_spheres(std::slice::from_ref(&built), spec);
     Ok(built.object)
 }
 
-/// An object that was made from a mesh.
+/// Object built from a mesh.
 struct BuiltMesh {
     object: Object,
-    /// How far vertex spheres are from the mesh, metres; `None` of other models, and of files without faces.
+    /// Largest distance of vertex spheres from the mesh, metres; `None` for other models, and for files without faces.
     vertex_error: Option<f64>,
 }
 
@@ -211,8 +212,9 @@ fn build_mesh(path: &Path, spec: &ObjectsSpec, packings: Option<&Path>) -> Resul
     })
 }
 
-/// The largest distance found between the surfaces of a mesh and of spheres around its vertices, metres; `None` if the file has no
-/// faces, or faces that are not convex.
+/// Returns the largest measured distance between the surface of a mesh and of spheres around its vertices, metres. Returns `None` if the file has no faces,
+/// or faces that are
+/// not convex.
 fn vertex_sphere_error(file: MeshFile, spheres: &SphereUnion) -> Option<f64> {
     let (mesh, _) = file.into_mesh("").ok()?.turned_outwards();
     let is_closed = Welded::new(&mesh).n_unbalanced() == 0;
@@ -221,7 +223,7 @@ fn vertex_sphere_error(file: MeshFile, spheres: &SphereUnion) -> Option<f64> {
     Some(error.protrusion.max.max(error.gap.max))
 }
 
-/// Reports on standard error, in one line, how far vertex spheres are from their meshes, if that is more than half a pitch.
+/// Reports on standard error, in one line, the distance of vertex spheres from their meshes if it exceeds half a pitch.
 fn note_vertex_spheres(built: &[BuiltMesh], spec: &ObjectsSpec) {
     let Some(pitch) = spec.pitch else { return };
     let errors = built
@@ -243,8 +245,9 @@ fn note_vertex_spheres(built: &[BuiltMesh], spec: &ObjectsSpec) {
     ));
 }
 
-/// Reads the triangles of a mesh file with its closed parts turned outwards, and which way they face. Holes up to `close_holes`
-/// metres wide are closed first. Both changes are reported on standard error.
+/// Reads the triangles of a mesh file, and turns its closed parts outwards. Returns the mesh and its orientation. Holes of up to `close_holes` metres are
+/// closed first.
+/// Both changes are reported on standard error.
 ///
 /// # Errors
 /// If [`read_mesh_file`] fails, a face is not convex, or the width is negative.
@@ -258,7 +261,7 @@ pub fn read_mesh(
     outward_mesh(read_mesh_file(path, unit, sizes)?, &place, close_holes)
 }
 
-/// The triangles of a file, as [`read_mesh`] returns them.
+/// Converts a file to triangles, as [`read_mesh`] does.
 fn outward_mesh(
     file: MeshFile,
     place: &str,
@@ -282,10 +285,10 @@ fn outward_mesh(
     Ok((mesh, orientation))
 }
 
-/// The meshes of a study as triangles, by file name.
+/// Reads the meshes of a study as triangles, ordered by file name.
 ///
 /// # Errors
-/// A mesh that cannot be read.
+/// If a mesh cannot be read.
 pub fn load_named_meshes(folder: &Path, spec: &ObjectsSpec) -> Result<Vec<NamedMesh>> {
     let paths = mesh_paths(folder, spec)?;
     let meshes = paths.par_iter().map(|path| {
@@ -302,7 +305,7 @@ pub fn load_named_meshes(folder: &Path, spec: &ObjectsSpec) -> Result<Vec<NamedM
     Ok(meshes)
 }
 
-/// The wanted objects of a set, built-in or of a TOML file, as solids.
+/// Returns the selected objects of a set, built-in or from a TOML file, as solids.
 pub(crate) fn set_entries(set: &SetName, names: Option<&[String]>) -> Result<Vec<Entry>> {
     let mut entries: Vec<Entry> = match set {
         SetName::File(path) => load_catalogue(path)?.entries().to_vec(),
@@ -335,7 +338,7 @@ fn stem(path: &Path) -> String {
     stem.to_string_lossy().into_owned()
 }
 
-/// The files of a folder that are meshes and wanted, by name.
+/// Returns the selected mesh files of a folder, ordered by name.
 fn mesh_paths(folder: &Path, spec: &ObjectsSpec) -> Result<Vec<PathBuf>> {
     let listing = std::fs::read_dir(folder).map_err(|e| {
         let given = format!("cannot be read ({e})");

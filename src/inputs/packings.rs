@@ -1,7 +1,8 @@
-//! Meshes as spheres within a tolerance, kept in a folder beside the results: one CSV file each, named by what it was made from.
+//! Packed meshes (spheres within a tolerance), stored in a folder beside the results. Each is a CSV file, named after the hash of its inputs.
 //!
-//! The last line of a file, 80 bytes, is its seal: `# bubbletouch <method>, crc32 <of all bytes before the line>`. One that is cut, changed or
-//! of another version is packed again, and so said in one line on standard error.
+//! The last line of a file, 80 bytes, is its seal: `# bubbletouch <method>, crc32 <of all bytes before the line>`. If a file is truncated, changed or of
+//! another version, the mesh
+//! is packed again; this is reported in one line on standard error.
 
 use crate::error::{Error, Result};
 use crate::files::write_bytes;
@@ -14,26 +15,26 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-/// Changes whenever [`pack_mesh`] gives other spheres for the same mesh.
+/// Version of the packing method; changes whenever [`pack_mesh`] returns other spheres for a mesh.
 const METHOD: &str = "packing 4";
 
-/// Bytes of a seal, its end of line included.
+/// Length of a seal including its end of line, bytes.
 const SEAL: usize = 80;
 
-/// Spheres that stand for a mesh, and where they are from.
+/// Spheres of a packed mesh, and their origin.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Packed {
     /// The spheres.
     pub spheres: SphereUnion,
-    /// Whether they were in the folder already.
+    /// Whether the spheres were read from the folder.
     pub was_kept: bool,
 }
 
-/// Packs a closed mesh within `tolerance` (metres), or finds what was packed before in `folder` (made if it is missing;
-/// nothing is kept without one).
+/// Packs a closed mesh within `tolerance` (metres), or reads the stored packing from `folder`. The folder is created if it is missing; without a folder,
+/// nothing is stored.
 ///
 /// # Errors
-/// What the mesh lacks, after `place`; a folder that cannot be written.
+/// If the mesh cannot be packed, or the folder cannot be written; the error begins with `place`.
 pub fn pack_within(
     place: &str,
     surface: &Surface,
@@ -65,7 +66,7 @@ pub fn pack_within(
     })
 }
 
-/// Where the packing of a mesh within a tolerance (metres) is kept.
+/// Returns the path of the stored packing of a mesh within a tolerance (metres).
 pub fn packing_path(folder: &Path, mesh: &TriangleMesh, tolerance: f64) -> PathBuf {
     let made_from = [
         format!("{METHOD}{:?}", Body::Solid).into_bytes(),
@@ -75,11 +76,11 @@ pub fn packing_path(folder: &Path, mesh: &TriangleMesh, tolerance: f64) -> PathB
     folder.join(format!("{}.csv", sha256(made_from.concat())))
 }
 
-/// The spheres of a whole file.
+/// Reads the spheres of a complete file; `None` if there is none.
 fn kept(path: &Path) -> Result<Option<SphereUnion>> {
     match fs::metadata(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
-        // Opening a pipe would wait for who writes to it.
+        // Opening a pipe would block until another process writes to it.
         Ok(meta) if !meta.is_file() => {
             let allowed = "a folder of packings alone";
             return Err(Error::input(path.display(), "not a file", allowed));

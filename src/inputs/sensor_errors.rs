@@ -1,4 +1,4 @@
-//! Sensor errors as a study has them: their strengths, and which skin tests.
+//! Sensor errors of a study: their strengths, and the sensor used for testing.
 
 use crate::random::Seed;
 use crate::signal::{MAX_STRENGTHS, NoiseUnit, SENSOR_ERRORS, SensorError, SignalStep, Strength};
@@ -6,18 +6,18 @@ use crate::table::{Column, Role, Scale};
 use serde::{Deserialize, Serialize};
 use std::sync::LazyLock;
 
-/// The skin that tells whether a classifier has learned.
+/// Sensor whose touches test a classifier.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TestedOn {
-    /// The skin that trained it: what is peculiar to the skin may be learned.
+    /// The sensor used for training: its individual errors may be learned.
     #[default]
     SameSkin,
-    /// Another of the same make, each trial a new one: gains, drift and faults are drawn anew.
+    /// Another sensor of equal make, new in each trial: gains, drift and faults are drawn anew.
     AnotherSkin,
 }
 
-/// Strengths of all sensor errors together.
+/// Total number of strengths of all sensor errors.
 const N_STRENGTHS: usize = {
     let (mut n, mut place) = (0, 0);
     while place < SENSOR_ERRORS.len() {
@@ -27,7 +27,7 @@ const N_STRENGTHS: usize = {
     n
 };
 
-/// Every strength of every sensor error, in the order in which tables show them: the material first, the electronics last.
+/// Returns every strength of every sensor error, in the order of table columns: material first, electronics last.
 pub fn all_strengths() -> impl Iterator<Item = (SensorError, &'static Strength)> {
     let errors = SENSOR_ERRORS.iter();
     errors.flat_map(|error| {
@@ -36,7 +36,7 @@ pub fn all_strengths() -> impl Iterator<Item = (SensorError, &'static Strength)>
     })
 }
 
-/// Their columns, in that order.
+/// Returns the table columns of all strengths, in the order of [`all_strengths`].
 pub fn strength_columns() -> &'static [Column] {
     static COLUMNS: LazyLock<Vec<Column>> = LazyLock::new(|| {
         let column = |(_, strength): (SensorError, &'static Strength)| {
@@ -53,18 +53,18 @@ pub fn strength_columns() -> &'static [Column] {
     &COLUMNS
 }
 
-/// A value for each strength, in the unit of its key; `None` for those that a study does not have.
+/// Values of all strengths, in the units of their keys; `None` for strengths that a study does not set.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Strengths([Option<f64>; N_STRENGTHS]);
 
 impl Strengths {
-    /// The strength of a key; `None` if the study does not have it.
+    /// Returns the strength of a key; `None` if the study does not set it.
     pub fn of(&self, key: &str) -> Option<f64> {
         let mut all = all_strengths().zip(self.0);
         all.find_map(|((_, strength), value)| value.filter(|_| strength.key == key))
     }
 
-    /// These with another value for the strength of a key.
+    /// Returns a copy with another value for the strength of a key.
     pub fn with(mut self, key: &str, value: Option<f64>) -> Self {
         let place = all_strengths().position(|(_, strength)| strength.key == key);
         if let Some(place) = place {
@@ -73,18 +73,18 @@ impl Strengths {
         self
     }
 
-    /// Those that the study has.
+    /// Iterates over the strengths that the study sets.
     pub fn given(&self) -> impl Iterator<Item = (SensorError, &'static Strength, f64)> {
         let all = all_strengths().zip(self.0);
         all.filter_map(|((error, strength), value)| Some((error, strength, value?)))
     }
 
-    /// Those that are not zero.
+    /// Iterates over the strengths that are not zero.
     pub fn present(&self) -> impl Iterator<Item = (SensorError, &'static Strength, f64)> {
         self.given().filter(|(_, _, value)| *value != 0.0)
     }
 
-    /// The step of an error at these strengths.
+    /// Returns the signal step of an error with these strengths.
     pub(crate) fn step(&self, error: SensorError, skin: &Seed) -> SignalStep {
         let mut strengths = [0.0; MAX_STRENGTHS];
         for (to, strength) in strengths.iter_mut().zip(error.about().strengths) {
@@ -94,7 +94,7 @@ impl Strengths {
     }
 }
 
-/// What noise is measured in.
+/// Keys of the noise strength, and their units.
 pub(crate) const NOISES: [(&str, NoiseUnit); 3] = [
     ("noise_std_full_scale", NoiseUnit::FullScale),
     ("noise_std_mm", NoiseUnit::Mm),
