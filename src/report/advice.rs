@@ -69,7 +69,7 @@ pub enum Wish {
 /// Candidate: a row of the table with its value and its cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Offer {
-    /// Row index.
+    /// Index of the candidate's row in the table.
     pub row: usize,
     /// Value, in the unit of the value column.
     pub value: f64,

@@ -19,7 +19,7 @@ use std::{fmt, thread};
 /// Interval between two reports on a stage, even without progress. A longer interval delays the reports; a shorter one writes more lines.
 const INTERVAL: Duration = Duration::from_millis(200);
 
-/// Layout of a bar.
+/// Template of a progress bar.
 const BAR: &str = "{prefix:>14} [{bar:32}] {pos}/{len}, {rate}, {left}";
 
 /// Returns the progress listener for standard error: bars, or plain lines if it is not a terminal.
@@ -175,7 +175,7 @@ fn write_left(state: &ProgressState, text: &mut dyn fmt::Write) {
 enum Form {
     /// One line at the end of each stage.
     Lines,
-    /// One line per event.
+    /// One JSON line for each event.
     Json,
 }
 

@@ -30,7 +30,7 @@ const GIVEN_UP_FIRST: [&str; 16] = [
 /// A column and its values.
 #[derive(Clone, Copy)]
 pub struct Setting<'a> {
-    /// The column.
+    /// Description of the column.
     pub column: &'a Column,
     /// The values of the column, one for each row.
     pub data: &'a Data,
@@ -45,7 +45,7 @@ pub struct Swept<'a> {
     pub following: Vec<Setting<'a>>,
     /// Independent settings, if each row changes at most one of them from its value in the first row. Empty otherwise, or if there are fewer than two.
     pub one_at_a_time: Vec<Setting<'a>>,
-    /// Constant settings.
+    /// Settings with a single value in all rows.
     pub fixed: Vec<Setting<'a>>,
 }
 

@@ -23,7 +23,7 @@ pub enum Ink {
     Plain,
     /// The 256 colours of xterm.
     Colours256,
-    /// 24-bit colours.
+    /// 24-bit colours (true colour).
     TrueColour,
 }
 
@@ -75,7 +75,7 @@ impl Ink {
 /// A column of a table as text.
 struct TextColumn {
     head: String,
-    /// Text of each line.
+    /// Text of each line in this column.
     said: Vec<String>,
     is_number: bool,
 }

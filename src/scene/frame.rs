@@ -66,19 +66,19 @@ pub struct FrictionReading {
 pub struct ObjectReading {
     /// Pose `world_from_object`. For an escaped object, its last pose.
     pub pose: Pose,
-    /// Cause of the pose.
+    /// How the pose is determined: imposed, pressed, free or escaped.
     pub held: Held,
     /// For a free object that has not escaped: its equilibrium and the residual of the forces.
     pub balance: Option<Equilibrium>,
 }
 
-/// Cause of an object's pose.
+/// How the pose of an object is determined.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Held {
-    /// Imposed motion.
+    /// The pose follows an imposed motion.
     #[default]
     Imposed,
-    /// Imposed motion plus a travel that controls the force on a patch.
+    /// The pose follows an imposed motion, plus a travel that controls the force on a patch.
     Pressed {
         /// Distance from the pose of the imposed motion, metres.
         travel: f64,
@@ -87,7 +87,7 @@ pub enum Held {
         /// Target value of the force, newtons.
         wanted: f64,
     },
-    /// Equilibrium of a free object.
+    /// The object is free and in equilibrium.
     AtRest,
     /// No equilibrium: the solver reached its iteration limit before all free objects were at rest.
     Unsettled,

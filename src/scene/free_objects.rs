@@ -28,7 +28,7 @@ pub(super) struct FreeObjects {
     workspace: Workspace,
 }
 
-/// One free object.
+/// One free object with its mass properties and state.
 #[derive(Clone, Debug)]
 struct Free {
     object: usize,

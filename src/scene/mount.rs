@@ -19,14 +19,14 @@ pub enum Mount {
         robot: usize,
         /// Index of the link in the robot.
         link: usize,
-        /// Pose on the link.
+        /// Pose of the mounted body on the link, `link_from_mounted`.
         link_from_mounted: Pose,
     },
     /// An object of the scene.
     Object {
         /// Index of the object in the scene.
         object: usize,
-        /// Pose on the object.
+        /// Pose of the mounted body on the object, `object_from_mounted`.
         object_from_mounted: Pose,
     },
 }

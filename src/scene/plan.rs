@@ -25,11 +25,11 @@ const MOST_STEPS: f64 = 1e9;
 /// Executable scene: robots, skin, objects and the times of the frames.
 #[derive(Clone, Debug)]
 pub struct ScenePlan {
-    /// File name, for errors.
+    /// File name of the scene, for error messages.
     pub place: String,
     /// Specification with its duration and absolute paths.
     pub spec: SceneSpec,
-    /// Frames per second.
+    /// Number of frames per second of scene time.
     pub output_rate: f64,
     /// Number of frames, at least one. Frame k is at k / output_rate seconds.
     pub n_frames: usize,
@@ -37,13 +37,13 @@ pub struct ScenePlan {
     pub n_frames_uncut: usize,
     /// Number of equal steps between two frames, if steps are needed.
     pub n_substeps: usize,
-    /// Gravity, m/s², world frame.
+    /// Gravitational acceleration, m/s², world frame.
     pub gravity: DVec3,
-    /// Robots.
+    /// Robots of the scene, in the order of the file.
     pub robots: Vec<PlannedRobot>,
-    /// Patches of skin.
+    /// Patches of skin, in the order of the file.
     pub patches: Vec<PlannedPatch>,
-    /// Objects.
+    /// Objects of the scene, in the order of the file.
     pub objects: Vec<PlannedObject>,
     /// Contact model of each object.
     pub models: Vec<Model>,

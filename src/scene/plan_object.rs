@@ -20,9 +20,9 @@ use glam::DVec3;
 /// Object of a scene that can run.
 #[derive(Clone, Debug)]
 pub struct PlannedObject {
-    /// Name in the scene.
+    /// Name of the object in the scene.
     pub name: String,
-    /// Origin of the object's pose.
+    /// How the object's pose is determined.
     pub movement: Movement,
     /// Force control, if the motion is imposed and a force is given.
     pub press: Option<PlannedPress>,
@@ -41,7 +41,7 @@ impl ObjectSpec {
     }
 }
 
-/// Origin of an object's pose.
+/// How an object's pose is determined.
 #[derive(Clone, Debug)]
 pub enum Movement {
     /// Imposed motion, independent of contacts.

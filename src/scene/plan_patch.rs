@@ -18,7 +18,7 @@ use std::path::Path;
 /// Patch of a scene that can run, with its mount.
 #[derive(Clone, Debug)]
 pub struct PlannedPatch {
-    /// The patch.
+    /// Taxels and layout of the patch.
     pub skin: Patch,
     /// Body that carries the patch.
     pub mount: Mount,

@@ -12,13 +12,13 @@ use std::path::{Path, PathBuf};
 /// Robot of a scene that can run.
 #[derive(Clone, Debug)]
 pub struct PlannedRobot {
-    /// Name in the scene.
+    /// Name of the robot in the scene.
     pub name: String,
-    /// Links and joints.
+    /// Links and joints of the robot.
     pub robot: Robot,
     /// Folder of the URDF file. Mesh files of the links are relative to this folder.
     pub folder: Option<PathBuf>,
-    /// Motion of the base.
+    /// Motion of the robot's base.
     pub base: Motion,
     /// Motion of the joints. `None` if they stay at their [rest positions](Robot::rest_positions).
     pub joints: Option<JointTrajectory>,

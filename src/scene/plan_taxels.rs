@@ -97,7 +97,7 @@ impl Reader<'_> {
 }
 
 impl Lookup<'_> {
-    /// Returns a required property.
+    /// Returns a required property; an absent property is an error.
     fn needed(
         &self,
         name: &'static str,

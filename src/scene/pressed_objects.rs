@@ -15,12 +15,12 @@ pub(super) struct PressedObjects {
     workspace: Workspace,
 }
 
-/// One pressed object.
+/// One pressed object with its travel, force and contacts.
 #[derive(Clone, Debug)]
 struct Pressed {
     object: usize,
     now: HeldForce,
-    /// Target force, N.
+    /// Target of the force on the patch, N.
     wanted: f64,
     /// Contacts with the pressed patch. A contact persists, however far the object travels.
     contacts: Vec<TaxelContact>,

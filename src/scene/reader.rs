@@ -15,7 +15,7 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-/// Metres in a millimetre.
+/// Number of metres in a millimetre.
 pub(super) const MM: f64 = 1e-3;
 
 /// Reader of a scene file.

@@ -12,7 +12,7 @@ pub(super) struct RobotState {
     are_set: bool,
     /// Manually set pose of the base, `world_from_base`.
     pub base: Option<Pose>,
-    /// Pose of each link.
+    /// Pose of each link, `world_from_link`.
     pub world_from_link: Vec<Pose>,
 }
 

@@ -22,7 +22,7 @@ pub enum Stepping {
     Always,
 }
 
-/// Simulation of a scene.
+/// Simulation of a scene, which computes frames one after the other.
 #[derive(Clone, Debug)]
 pub struct Simulation<'p> {
     pub(super) plan: &'p ScenePlan,

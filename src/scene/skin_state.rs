@@ -266,7 +266,7 @@ fn on_objects(
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Detail {
     Deflections,
-    /// Deflections and contacts.
+    /// Deflections, and the contacts between objects and taxels.
     Contacts,
 }
 

@@ -26,7 +26,7 @@ pub struct SceneSpec {
     /// Duration of the scene. Default: until the last imposed motion ends.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub duration_s: Option<f64>,
-    /// Gravity, world frame.
+    /// Gravitational acceleration, world frame, m/s².
     #[serde(default = "earth")]
     pub gravity_m_per_s2: [f64; 3],
     /// Seed of all random numbers, such as the start of a draped layout.
@@ -65,7 +65,7 @@ pub struct PlaneSpec {
 pub struct RobotSpec {
     /// Name, unique in the scene.
     pub name: String,
-    /// URDF file.
+    /// Path of the robot's URDF file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub urdf: Option<FilePath>,
     /// Robot of one link without joints, in place of `urdf`.

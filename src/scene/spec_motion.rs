@@ -9,10 +9,10 @@ use std::collections::BTreeMap;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PoseSpec {
-    /// Position of the origin.
+    /// Position of the origin, mm.
     #[serde(default)]
     pub position_mm: [f64; 3],
-    /// Rotations about the fixed axes x, y, z, applied in this order.
+    /// Rotations about the fixed axes x, y, z, applied in this order, degrees.
     #[serde(default, alias = "rpy_deg")]
     pub rotation_deg: [f64; 3],
 }
@@ -39,12 +39,12 @@ pub struct MotionSpec {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PhaseSpec {
-    /// Duration.
+    /// Duration of the phase, seconds.
     pub duration_s: f64,
-    /// Velocity of the origin, world frame.
+    /// Velocity of the origin, world frame, mm/s.
     #[serde(default)]
     pub linear_mm_per_s: [f64; 3],
-    /// Angular velocity about the origin, world frame.
+    /// Angular velocity about the origin, world frame, degrees per second.
     #[serde(default)]
     pub angular_deg_per_s: [f64; 3],
 }
@@ -53,12 +53,12 @@ pub struct PhaseSpec {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WayPointSpec {
-    /// Time of the way-point.
+    /// Time of the way-point, seconds.
     pub time_s: f64,
-    /// Position of the origin, world frame.
+    /// Position of the origin, world frame, mm.
     #[serde(default)]
     pub position_mm: [f64; 3],
-    /// Rotations about the fixed axes x, y, z, applied in this order.
+    /// Rotations about the fixed axes x, y, z, applied in this order, degrees.
     #[serde(default, alias = "rpy_deg")]
     pub rotation_deg: [f64; 3],
 }
@@ -73,7 +73,7 @@ pub struct JointsSpec {
     /// Interpolation between way-points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub interpolation: Option<Interpolation>,
-    /// Times of the way-points.
+    /// Times of the way-points, seconds.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub time_s: Vec<f64>,
     /// Positions of each moved joint, one number for each time. A key is the joint's name with its unit: `elbow_deg`, `elbow_rad`,

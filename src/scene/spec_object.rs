@@ -31,7 +31,7 @@ pub struct ObjectSpec {
     /// Length unit of a mesh or of spheres. Default: metres; the size must then be between 0.1 mm and 10 m.
     #[serde(default, alias = "mesh_unit", skip_serializing_if = "Option::is_none")]
     pub unit: Option<LengthUnit>,
-    /// Maximum distance of the spheres from the surface of a solid or packed mesh. Default: 0.25; for a packed mesh, a tenth of the finest pitch.
+    /// Maximum distance of the spheres from the surface of a solid or packed mesh, mm. Default: 0.25; for a packed mesh, a tenth of the finest pitch.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub surface_error_mm: Option<f64>,
     /// Robot that carries the object, in place of `motion`.
@@ -58,10 +58,10 @@ pub struct ObjectSpec {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FreeSpec {
-    /// Mass.
+    /// Mass of the object, kg; required.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mass_kg: Option<f64>,
-    /// Centre of mass in the object frame. Default: that of a homogeneous solid.
+    /// Centre of mass in the object frame, mm. Default: the centre of mass of a homogeneous solid.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub center_of_mass_mm: Option<[f64; 3]>,
 }
@@ -80,11 +80,11 @@ pub struct PressSpec {
     pub direction: [f64; 3],
     /// Target of the spring force Σ k δ of the patch, from all objects: one number, or one for each time in `time_s`.
     pub force_n: Numbers,
-    /// Times of the forces. Forces are interpolated linearly and constant outside these times.
+    /// Times of the forces, seconds. Forces are interpolated linearly and constant outside these times.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub time_s: Vec<f64>,
-    /// Maximum speed along the direction.
+    /// Maximum speed along the direction, mm/s.
     pub speed_mm_per_s: f64,
-    /// Maximum travel from the pose of the motion.
+    /// Maximum travel from the pose of the motion, mm.
     pub travel_mm: f64,
 }

@@ -26,25 +26,25 @@ pub struct PatchSpec {
     /// Pose of the patch on the link, on the object, or in the world.
     #[serde(default)]
     pub at: PoseSpec,
-    /// Arrangement of the taxels.
+    /// Layout of the taxels on the patch.
     pub layout: LayoutSpec,
-    /// Taxel radius ρ. Default: half the pitch. This key and the following ones are a number for all taxels, a list with one number for each taxel, or a
+    /// Taxel radius ρ, mm. Default: half the pitch. This key and the following ones are a number for all taxels, a list with one number for each taxel, or a
     /// column of `taxels_csv`. Lists are in the order of the layout (for a grid, row by row).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub taxel_radius_mm: Option<Numbers>,
-    /// Stroke s; required.
+    /// Stroke s of the taxels, mm; required.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stroke_mm: Option<Numbers>,
-    /// Stiffness k. Default: 100.
+    /// Stiffness k of the taxels, N/m. Default: 100.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stiffness_n_per_m: Option<Numbers>,
-    /// Damping c. Default: none.
+    /// Damping c of the taxels, N·s/m. Default: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damping_n_s_per_m: Option<Numbers>,
     /// Friction coefficient μ. With friction, tangential springs hold the contacts until they slip. Without it, taxels only slide along their axes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction: Option<Numbers>,
-    /// Tangential stiffness k_t, used with `friction`. Default: the axial stiffness.
+    /// Tangential stiffness k_t of the taxels, N/m, used with `friction`. Default: the axial stiffness.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shear_stiffness_n_per_m: Option<Numbers>,
     /// CSV file with one row for each taxel. Its columns have the names of the keys above; only columns that differ between taxels are needed.
@@ -69,58 +69,58 @@ pub enum SignalStepSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum LayoutSpec {
-    /// Rectangle with square cells.
+    /// Rectangular grid with square cells.
     Grid {
         /// Number of columns, along patch x.
         nx: usize,
         /// Number of rows, along patch y.
         ny: usize,
-        /// Distance of neighbours.
+        /// Distance between neighbouring taxels, mm.
         pitch_mm: f64,
     },
-    /// Rectangle with staggered rows.
+    /// Rectangular layout with staggered rows (hexagonal lattice).
     Hexagonal {
         /// Number of taxels in a row, along patch x.
         nx: usize,
         /// Number of rows, along patch y.
         ny: usize,
-        /// Distance of all six neighbours; the distance of rows is 0.866 times the pitch.
+        /// Distance between a taxel and its six neighbours, mm; the distance of rows is 0.866 times the pitch.
         pitch_mm: f64,
     },
     /// Disc with a hexagonal lattice.
     Disc {
-        /// Radius of the disc.
+        /// Radius of the disc, mm.
         radius_mm: f64,
-        /// Distance of all six neighbours.
+        /// Distance between a taxel and its six neighbours, mm.
         pitch_mm: f64,
     },
-    /// Annulus.
+    /// Annulus between two radii.
     Annulus {
-        /// Inner radius.
+        /// Inner radius of the annulus, mm.
         inner_mm: f64,
-        /// Outer radius.
+        /// Outer radius of the annulus, mm.
         outer_mm: f64,
-        /// Distance of neighbours.
+        /// Distance between neighbouring taxels, mm.
         pitch_mm: f64,
     },
     /// Cylindrical surface, as on a forearm or finger.
     Cylinder {
-        /// Radius of the cylinder.
+        /// Radius of the cylinder, mm.
         radius_mm: f64,
-        /// Length along the axis.
+        /// Length along the cylinder's axis, mm.
         length_mm: f64,
-        /// Angle around the axis.
+        /// Angle around the cylinder's axis, degrees.
         arc_deg: f64,
-        /// Distance of neighbours.
+        /// Distance between neighbouring taxels, mm.
         pitch_mm: f64,
     },
     /// Spherical cap, as on a fingertip.
     SphereCap {
-        /// Radius of the sphere.
+        /// Radius of the sphere, mm.
         radius_mm: f64,
-        /// Angle from the pole to the rim.
+        /// Angle from the pole to the rim of the cap, degrees.
         half_angle_deg: f64,
-        /// Distance of neighbours.
+        /// Distance between neighbouring taxels, mm.
         pitch_mm: f64,
     },
     /// Outer surface of a triangle mesh, or of a link of the patch's robot.
@@ -131,7 +131,7 @@ pub enum LayoutSpec {
         /// Length unit of the mesh file. Default: metres; the size must then be between 0.1 mm and 10 m.
         #[serde(default, alias = "mesh_unit", skip_serializing_if = "Option::is_none")]
         unit: Option<LengthUnit>,
-        /// Distance of neighbours.
+        /// Distance between neighbouring taxels, mm.
         pitch_mm: f64,
         /// Part of the surface that carries taxels. Default: the whole outer surface.
         #[serde(default, skip_serializing_if = "Option::is_none")]

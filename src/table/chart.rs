@@ -5,7 +5,7 @@ use super::{Column, Table, Value};
 /// Specification of a chart. One renderer draws it as SVG and PNG, and the page contains the SVG.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ChartSpec {
-    /// File name without extension.
+    /// File name of the chart, without extension.
     pub name: String,
     /// Title of the chart.
     pub title: String,
@@ -25,7 +25,7 @@ pub struct ChartSpec {
     pub lines: Vec<String>,
     /// Column whose values have one panel each.
     pub panels: Option<String>,
-    /// Form of the marks.
+    /// Form of the marks: lines, points or tiles.
     pub mark: Mark,
     /// Reference lines across the chart: chance level, a limit, a published value.
     pub rules: Vec<Rule>,
@@ -67,19 +67,19 @@ impl Rule {
 /// Filter: rows with a given value in a column.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shown {
-    /// Column name.
+    /// Name of the column that is filtered.
     pub column: String,
     /// Value in the column; an empty word selects absent values.
     pub value: Value,
 }
 
-/// Form of the marks.
+/// Form of a chart's marks.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Mark {
     /// Points joined by lines along x; only points if x contains words.
     #[default]
     Line,
-    /// Only points.
+    /// Points without lines.
     Points,
     /// One tile for each pair of x and y.
     Tiles {
@@ -95,9 +95,9 @@ pub enum Mark {
 pub struct Rule {
     /// Axis that contains the line's value.
     pub along: Along,
-    /// Position of the line.
+    /// Position of the line on its axis.
     pub at: At,
-    /// Label of the line.
+    /// Label of the line in the legend.
     pub words: String,
 }
 

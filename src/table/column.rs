@@ -60,9 +60,9 @@ pub struct Column {
     /// Unit of the numbers: `mm`; empty if there is none. Unit `%`: fractions of one, shown times 100. Unit `:1`: ratios. Times (`s`, `ms`, `us`) on a
     /// logarithmic scale are shown in the unit that suits each value.
     pub unit: Words,
-    /// Scale along an axis.
+    /// Scale of the values along an axis.
     pub scale: Scale,
-    /// Role of the column.
+    /// Role of the column in reports and advice.
     pub role: Role,
     /// Names of the columns with the lower and upper bound, for a value with an interval.
     pub interval: Option<[Words; 2]>,

@@ -29,7 +29,7 @@ impl<R: Columns> File<R> {
         }
     }
 
-    /// Returns the file name.
+    /// Returns the name of the CSV file.
     pub const fn name(&self) -> &'static str {
         self.name
     }

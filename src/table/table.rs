@@ -10,7 +10,7 @@ use std::path::Path;
 /// Table of results of a study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    /// File name: `accuracy.csv`.
+    /// Name of the CSV file: `accuracy.csv`.
     pub file: &'static str,
     /// Title for a heading: `Accuracy of every trial`.
     pub title: &'static str,
@@ -24,7 +24,7 @@ pub struct Table {
     pub columns: Vec<Column>,
     /// Values of each column, in the order of `columns`.
     pub data: Vec<Data>,
-    /// Number of rows.
+    /// Number of rows of the table.
     pub n_rows: usize,
     /// Content of the CSV file. Empty for a table without a file.
     pub csv: Vec<u8>,
@@ -33,7 +33,7 @@ pub struct Table {
 /// Values of a column, one for each row.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Data {
-    /// Numbers; NaN if absent.
+    /// Column of numbers; NaN if absent.
     Numbers(Vec<f64>),
     /// Words, stored as codes. An absent word is the empty word.
     Words {
@@ -112,7 +112,7 @@ impl Data {
 }
 
 impl Table {
-    /// Sets the note.
+    /// Sets the note, an explanation for the reader.
     pub fn noted(mut self, note: impl Into<String>) -> Self {
         self.note = note.into();
         self
@@ -261,7 +261,7 @@ pub(crate) fn csv_place(path: &Path, line: Option<u64>) -> String {
 /// Builder of a column's values.
 struct Maker {
     data: Data,
-    /// Code of each word.
+    /// Code of each known word, its index into `levels`.
     known: HashMap<String, u32>,
 }
 

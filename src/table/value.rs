@@ -6,8 +6,8 @@ use serde::Serialize;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Value {
-    /// A number.
+    /// A number, in the unit of its column.
     Number(f64),
-    /// Word as in the file.
+    /// A word or code, as in the file.
     Word(String),
 }

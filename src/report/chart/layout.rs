@@ -24,7 +24,7 @@ const MOST_LINES: usize = 3;
 /// Line height of a panel's title, pixels.
 const TITLE_LINE: f64 = 16.0;
 
-/// Positions of the panels.
+/// Pixel positions of the panels of a chart, with their titles and labels.
 pub(super) struct Layout {
     columns: usize,
     /// Width and height of a panel, pixels.

@@ -6,7 +6,7 @@ use crate::report::text_width::{text_width, wrap};
 
 /// Left margin of a chart, pixels.
 pub(super) const LEFT: f64 = 66.0;
-/// Right margin, pixels.
+/// Right margin of a chart, pixels.
 pub(super) const RIGHT: f64 = 18.0;
 /// Radius of a marker, pixels.
 pub(super) const MARKER_RADIUS: f64 = 4.2;
@@ -52,7 +52,7 @@ impl Heading {
         }
     }
 
-    /// Returns the height, pixels.
+    /// Returns the height of the heading, pixels.
     pub(super) fn height(&self) -> f64 {
         let rows = self.title.len() + self.legend.len();
         26.0 + 21.0 * rows as f64 + 17.0 * self.settings.len() as f64
@@ -109,7 +109,7 @@ impl LegendEntry {
         }
     }
 
-    /// Returns the width, pixels.
+    /// Returns the width of the entry with the gap behind it, pixels.
     fn width(&self) -> f64 {
         self.mark_width() + text_width(&self.text, f64::from(SMALL)) + GAP
     }

@@ -31,7 +31,7 @@ pub(super) struct Scale {
 pub(super) struct Tick {
     /// Fraction of the axis length.
     pub at: f64,
-    /// Text of the label.
+    /// Text of the tick's label.
     pub label: String,
     /// Whether the label has priority over others if there is no room for all.
     pub is_round: bool,

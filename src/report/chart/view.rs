@@ -37,11 +37,11 @@ pub(super) struct View<'a> {
 /// Place of a row in its panel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Place {
-    /// Row of the table.
+    /// Index of the row in the table.
     pub row: usize,
-    /// Index of the panel.
+    /// Index of the row's panel.
     pub panel: usize,
-    /// Index of the line.
+    /// Index of the row's line.
     pub line: usize,
     /// Fraction of the panel's width, from the left.
     pub x: f64,

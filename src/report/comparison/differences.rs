@@ -15,7 +15,7 @@ use crate::table::{Better, Column, Role, Table};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeSet, HashMap, HashSet};
 
-/// Significance of a difference.
+/// Significance of a difference between two runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Moved {
@@ -59,7 +59,7 @@ pub struct Difference {
     difference_low: Option<f64> => Note "95 % interval, lower end": Linear;
     /// Upper end of the 95 % confidence interval of the difference; absent if trials are not paired.
     difference_high: Option<f64> => Note "95 % interval, upper end": Linear;
-    /// Significance of the difference.
+    /// Significance of the difference between both folders.
     moved: Moved => Outcome "difference" named MOVED;
     /// Two-sided p-value of the hypothesis of no difference; absent if there are too few trials.
     p_value: Option<f64> => Note "p-value": Linear;
@@ -73,7 +73,7 @@ pub struct Difference {
 
 /// Differences in one column of a table that both folders have.
 pub struct ColumnDifferences {
-    /// The compared column.
+    /// Description of the compared column.
     pub column: Column,
     /// Settings that have a number in both folders.
     pub rows: Vec<Difference>,

@@ -34,7 +34,7 @@ pub struct TableEntries {
 
 /// A column in which rows differ.
 pub struct ColumnEntries {
-    /// The column.
+    /// Description of the compared column.
     pub column: Column,
     /// Rows of both versions that have the same entry.
     pub n_same: usize,
@@ -47,7 +47,7 @@ pub struct ColumnEntries {
 }
 
 impl ColumnEntries {
-    /// Rows whose entries differ.
+    /// Returns the number of rows whose entries differ.
     pub fn n_changed(&self) -> usize {
         self.changes.iter().map(|(.., n)| n).sum()
     }

@@ -13,7 +13,7 @@ use crate::table::{Column, Role, Table, Value, short_number};
 use bubbletouch_sim::statistics::interval::Interval;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-/// The ranked column.
+/// Name of the column by which designs are ranked.
 const RANKED: &str = "accuracy";
 /// Minimum number of designs for a comparison of rankings.
 const FEWEST: usize = 5;

@@ -8,7 +8,7 @@ use crate::report::chart_format::ChartFormat;
 pub struct StudyAbout {
     /// Name of the study.
     pub name: String,
-    /// Question of the study.
+    /// Question of the study, one sentence.
     pub question: String,
     /// Result that was expected before the run; may be empty.
     pub expected: String,

@@ -6,7 +6,7 @@ use crate::table::{Better, Column, Data, Role, Table};
 /// Number of rows that are included of a table that does not fit into the page.
 const N_FIRST_ROWS: usize = 100;
 
-/// A table as HTML.
+/// A table as HTML, and the number of rows that it contains.
 pub(crate) struct TableHtml {
     pub html: String,
     /// Number of table rows in the HTML.

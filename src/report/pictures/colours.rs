@@ -2,7 +2,7 @@
 
 use kuva::plot::ColorMap;
 
-/// Colour: red, green, blue.
+/// Colour: red, green and blue, 0 to 255.
 pub type Rgb = [u8; 3];
 
 /// Colour of text and axes.
@@ -11,7 +11,7 @@ pub const INK: Rgb = [0x1f, 0x23, 0x28];
 pub const MUTED: Rgb = [0x5c, 0x63, 0x6b];
 /// Colour of grid lines.
 pub const GRID: Rgb = [0xe4, 0xe6, 0xe9];
-/// Background colour.
+/// Background colour of charts and drawings.
 pub const PAPER: Rgb = [0xff, 0xff, 0xff];
 
 /// Line colours: palette of Okabe and Ito (2008) without yellow, which is too pale on white. The last colour is purple, because a study can compare eight

@@ -20,16 +20,16 @@ const FINE: u32 = 4;
 /// Position in a drawing, pixels from the top left corner: `(x, y)`.
 pub type Point = (f64, f64);
 
-/// An axis-aligned area.
+/// Axis-aligned rectangle of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Area {
-    /// Left edge, pixels.
+    /// Left edge of the rectangle, pixels.
     pub x: f64,
-    /// Top edge, pixels.
+    /// Top edge of the rectangle, pixels.
     pub y: f64,
-    /// Width, pixels.
+    /// Width of the rectangle, pixels.
     pub width: f64,
-    /// Height, pixels.
+    /// Height of the rectangle, pixels.
     pub height: f64,
 }
 
@@ -58,12 +58,12 @@ impl Area {
     }
 }
 
-/// Style of a text.
+/// Style of a text: size, colour, alignment and rotation.
 #[derive(Clone, Copy, Debug)]
 pub struct TextStyle {
     /// Font size, pixels.
     pub size: u32,
-    /// Colour.
+    /// Colour of the text.
     pub colour: Rgb,
     /// Part of the text that lies at the given position.
     pub align: Align,
@@ -82,28 +82,28 @@ impl TextStyle {
         }
     }
 
-    /// Sets the alignment.
+    /// Sets the alignment of the text.
     pub const fn align(self, align: Align) -> Self {
         Self { align, ..self }
     }
 
-    /// Sets the colour.
+    /// Sets the colour of the text.
     pub const fn colour(self, colour: Rgb) -> Self {
         Self { colour, ..self }
     }
 
-    /// Sets the rotation, degrees.
+    /// Sets the clockwise rotation of the text, degrees.
     pub const fn angle(self, angle: f64) -> Self {
         Self { angle, ..self }
     }
 }
 
-/// Style of a line.
+/// Style of a line: colour, width and dashes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stroke {
-    /// Colour.
+    /// Colour of the line.
     pub colour: Rgb,
-    /// Width, pixels.
+    /// Width of the line, pixels.
     pub width: f64,
     /// Lengths of dashes and gaps, pixels. `None` for a solid line.
     pub dash: Option<(u32, u32)>,
@@ -126,9 +126,9 @@ pub const N_MARKERS: usize = 8;
 /// Vector drawing on a white background.
 #[derive(Clone)]
 pub struct Drawing {
-    /// Width, pixels.
+    /// Width of the drawing, pixels.
     pub width: f64,
-    /// Height, pixels.
+    /// Height of the drawing, pixels.
     pub height: f64,
     elements: Vec<Primitive>,
 }

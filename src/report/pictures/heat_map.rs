@@ -22,7 +22,7 @@ pub(crate) fn block_sentence(block: usize) -> String {
 /// Colour scale: the displayed values of the darkest and lightest colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColourScale {
-    /// Quantity of the values.
+    /// Physical quantity of the values, which sets their unit.
     pub quantity: Quantity,
     /// Value of the darkest colour, in displayed units: 0, or the lowest value if it is negative.
     pub low: f64,

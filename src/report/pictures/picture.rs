@@ -8,9 +8,9 @@ pub(crate) const BACKGROUND: u8 = 250;
 /// Opaque raster picture, rows from the top, 3 bytes for each pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
-    /// Width, pixels.
+    /// Width of the picture, pixels.
     pub width: usize,
-    /// Height, pixels.
+    /// Height of the picture, pixels.
     pub height: usize,
     /// Red, green, blue; length 3 × width × height.
     pub rgb: Vec<u8>,

@@ -23,9 +23,9 @@ const MOST_COLUMNS: usize = 4;
 pub struct Snapshots {
     /// Names and frames (ny × nx, row = y ascending), metres or newtons.
     pub frames: Vec<(String, Array2<f64>)>,
-    /// Distance of taxels, millimetres.
+    /// Distance between neighbouring taxels, millimetres.
     pub pitch_mm: f64,
-    /// Quantity of the frames.
+    /// Physical quantity of the frames, which sets their unit.
     pub quantity: Quantity,
     /// Caption: the objects, the touches and the noise.
     pub caption: String,

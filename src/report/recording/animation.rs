@@ -37,7 +37,7 @@ impl Default for Playback {
 pub struct ShownFrame {
     /// Frame index in the recording.
     pub frame: usize,
-    /// Duration, milliseconds.
+    /// Time for which the frame is shown, milliseconds.
     pub milliseconds: u64,
 }
 

@@ -21,7 +21,7 @@ const LARGEST_DISC: f64 = 24.0;
 
 /// Cells of a skin, pixels from the top left corner of the drawing.
 pub(crate) struct Cells {
-    /// Area of all cells.
+    /// Area that contains all cells, pixels.
     pub area: Area,
     /// Centres of the cells: for a grid row by row, otherwise one for each taxel.
     pub places: Vec<DVec2>,
@@ -31,7 +31,7 @@ pub(crate) struct Cells {
     pub distance: fn(f64, f64) -> f64,
     /// Number of grid taxels along each side of a cell.
     pub block: usize,
-    /// Description of the picture.
+    /// Sentence that describes the view for the reader.
     pub sentence: String,
     pub pixels_per_metre: f64,
 }

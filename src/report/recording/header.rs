@@ -18,7 +18,7 @@ pub enum ForceKind {
     Vector,
 }
 
-/// Patch of a recording.
+/// Patch of a recording: name, taxels, and form of the recorded data.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RecordedPatch {
     /// Name, unique among patches and objects.
@@ -88,7 +88,7 @@ impl RecordedPatch {
 /// Header of a recording: patches, objects and metadata.
 #[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub struct RecordingHeader {
-    /// Recorded patches.
+    /// Patches whose readings are recorded.
     pub patches: Vec<RecordedPatch>,
     /// Names of the objects with recorded poses.
     pub objects: Vec<String>,
@@ -109,7 +109,7 @@ pub(super) enum Element {
 pub(super) struct Member {
     pub name: String,
     pub element: Element,
-    /// Shape of one row.
+    /// Shape of one row, without the frame dimension.
     pub row: Vec<usize>,
 }
 

@@ -19,7 +19,7 @@ const WIDEST_CAP: f64 = 1.9;
 pub(super) struct Unrolled {
     /// Position of each taxel, metres to the right and up.
     pub places: Vec<DVec2>,
-    /// Description of the projection.
+    /// Sentence that describes the projection for the reader.
     pub sentence: String,
 }
 
