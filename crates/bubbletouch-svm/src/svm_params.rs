@@ -48,21 +48,20 @@ pub struct SvmParams {
     pub kernel: Kernel,
     /// Combination of binary classifiers.
     pub multiclass: Multiclass,
-    /// C > 0: what a unit of margin violation costs. Larger fits the training rows more closely and trains longer.
-    /// A binary problem may take up to 10 million iterations, or 100 a row.
+    /// Penalty C > 0 per unit of margin violation. If larger, the training rows are fitted more closely, and training takes longer. A binary problem
+    /// takes up to 10 million iterations, or 100 per row.
     pub c: f64,
-    /// How far the optimality (KKT) conditions may be violated when the solver stops, in units of the decision value;
-    /// above 0. LIBSVM's default is 1e-3.
+    /// Stopping tolerance, above 0: the largest violation of the optimality (KKT) conditions, in units of the decision value. LIBSVM's default is 1e-3.
     pub tolerance: f64,
     /// Solver of the binary problems.
     pub solver: Solver,
-    /// Most bytes of kernel values held at once. Where they do not fit, rows are computed when asked
-    /// for and the latest kept: slower, the same solution.
+    /// Maximum size of the kernel values held at once, bytes. If the kernel values do not fit, rows are computed on demand and the latest are cached; training
+    /// is slower, with equal solutions.
     pub memory_bytes: usize,
 }
 
 impl Default for SvmParams {
-    /// Linear, one-vs-one, C = 1, tolerance 1e-3, our own solver within 2 GiB.
+    /// Linear kernel, one-vs-one, C = 1, tolerance 1e-3, SMO within 2 GiB.
     fn default() -> Self {
         Self {
             kernel: Kernel::Linear,
@@ -75,7 +74,7 @@ impl Default for SvmParams {
     }
 }
 
-/// Rows, their classes, the kernel, and where it is taken about.
+/// Rows, their classes, the kernel, and the centre of the rows.
 type Sorting<'a> = (
     &'a Dataset,
     &'a [usize],
@@ -84,23 +83,23 @@ type Sorting<'a> = (
 );
 
 impl SvmParams {
-    /// Trains on labelled measurements.
+    /// Trains on labelled rows. The result is deterministic.
     ///
-    /// Deterministic. Binary problems come in ascending order of classes: for one-vs-one (0, 1), (0, 2), …, (1, 2), …
+    /// The binary problems are in ascending order of classes: for one-vs-one (0, 1), (0, 2), …, (1, 2), …
     ///
     /// # Errors
-    /// C, tolerance or a kernel parameter out of range; empty data, a NaN or infinite feature (named by row and
-    /// column), another number of labels than rows, a single class; what the [`Solver`] does not do.
+    /// If C, the tolerance or a kernel parameter is out of range, or the [`Solver`] does not support the parameters. If the data are empty, a feature is NaN or
+    /// infinite (the error names row and column), the number of labels differs from the number of rows, or there is a single class.
     pub fn train(&self, data: &Dataset) -> Result<SvmModel> {
         let mut models = self.train_path(data, &[self.c])?;
         Ok(models.swap_remove(0))
     }
 
-    /// Trains for several C (in place of `self.c`) from the same kernel values, each solution starting from that of the
-    /// next smaller C; the models come in the order asked.
+    /// Trains one model for each C in `path` (instead of `self.c`) with shared kernel values; returns the models in the order of `path`. Each solution starts
+    /// from the solution of the next smaller C.
     ///
     /// # Errors
-    /// As [`train`](Self::train).
+    /// Returns the errors of [`train`](Self::train).
     pub fn train_path(&self, data: &Dataset, path: &[f64]) -> Result<Vec<SvmModel>> {
         self.check(path)?;
         let statistics = RowStatistics::new(data.records.view())?;
@@ -144,8 +143,8 @@ impl SvmParams {
         self.solve_sorted(sorted, goal)
     }
 
-    /// Returns whether kernel values need f64: for few rows, where f64 costs nothing; for a tolerance near the rounding of f32; or where coefficients
-    /// multiply this rounding. `farthest` is the square of the largest distance of a row from the centre.
+    /// Returns whether kernel values need f64: for few rows, where f64 costs little time; for a tolerance near the rounding error of f32; or if large
+    /// coefficients multiply this error. `farthest` is the square of the largest distance of a row from the centre.
     pub(crate) fn needs_double(
         &self,
         n_rows: usize,
@@ -172,7 +171,7 @@ impl SvmParams {
             _ => sorted.one_vs_rest(goal),
         };
         let mut trained = trained.into_iter();
-        // The last model may have the rows.
+        // The last model takes ownership of the rows.
         let last = trained.next_back();
         let mut models: Vec<SvmModel> = trained
             .map(|trained| SvmModel::new(Cow::Borrowed(&sorted), self.multiclass, trained))
@@ -183,7 +182,7 @@ impl SvmParams {
         models
     }
 
-    /// Refuses what no data set could be trained with.
+    /// Checks the parameters; returns an error if they are invalid for every data set.
     pub(crate) fn check(&self, path: &[f64]) -> Result<()> {
         if path.is_empty() {
             return Err(Error::input("C", "none", "at least one is needed"));

@@ -1,9 +1,10 @@
-//! Many binary problems from one set of rows: what they share is computed once.
+//! Training of many binary problems on one set of rows; shared quantities are computed once.
 //!
-//! One-vs-one needs every block of kernel values between two classes exactly once, and every block within a class for all
-//! its pairs: rows are sorted by class, blocks within classes are kept, and of a pair's the solver reads what it asks
-//! for. So n rows of k classes take about n²/k values in memory, not n².
-//! One-vs-rest shares the whole matrix. All C of a path are solved while a problem's Gram matrix is at hand, each from the last.
+//! One-vs-one needs each block of kernel values between two classes exactly once, and each block within a class for all its pairs. The rows are sorted by
+//! class, and the blocks
+//! within classes are stored. Of the block of a pair, the solver reads only the rows that it needs. n rows of k classes take about n²/k values in memory, not
+//! n².
+//! One-vs-rest shares the whole matrix. All C of a path are solved while a problem's Gram matrix is in memory; each C starts from the previous solution.
 
 use std::ops::Range;
 
@@ -24,26 +25,26 @@ use crate::screening::near_margin::NearMargin;
 use crate::smo::Smo;
 use crate::smo::SolverScalar;
 
-/// Features from which on one-vs-one linear SVMs are solved on the rows near their margins.
+/// Minimum number of features for screening: one-vs-one linear SVMs are then solved on the rows near their margins.
 const SCREENING_FROM_FEATURES: usize = 128;
-/// Rows a class, on average, below which there is little to leave out.
+/// Minimum mean number of rows per class for screening; with fewer rows, little can be omitted.
 const SCREENING_FROM_ROWS: usize = 64;
 
-/// Solved problems.
+/// Solved problems of all classes for one C.
 pub(crate) struct Trained<T> {
     pub problems: Vec<BinaryProblem>,
-    /// The normals of their hyperplanes about the centre (n_problems × m), where these were needed to solve them.
+    /// Normals of the hyperplanes about the centre (n_problems × m), if the solver computed them.
     pub normals: Option<Array2<T>>,
 }
 
-/// What to solve for.
+/// Goal of training: penalties, tolerance and memory limit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Goal<'a> {
-    /// The penalties, in the order in which each starts from the last.
+    /// Penalties C, in the order of solution; each starts from the previous solution.
     pub path: &'a [f64],
     /// The largest violation of the optimality conditions.
     pub tolerance: f64,
-    /// Most bytes of kernel values held at once.
+    /// Maximum size of the kernel values held at once, bytes.
     pub memory: usize,
 }
 
@@ -62,13 +63,13 @@ impl<T: SolverScalar> Sorted<T> {
         without_normals(problems)
     }
 
-    /// Whether the blocks within groups of classes, those between two groups and the largest pair fit.
+    /// Returns whether the blocks within groups of classes, the blocks between two groups and the largest pair fit in memory.
     fn fits(&self, memory: usize) -> bool {
         let largest = self.ranges().iter().map(Range::len).max().unwrap_or(0);
         Group::bytes(self, &groups(self.ranges())) + Dense::<T>::bytes(2 * largest) <= memory
     }
 
-    /// Whether products take so long that hyperplanes should say which are needed.
+    /// Returns whether screening is worthwhile: computing all products of rows would take longer.
     fn is_worth_screening(&self, memory: usize) -> bool {
         let most = || NearMargin::most_bytes(self);
         self.kernel() == KernelFunction::Linear
@@ -91,7 +92,7 @@ impl<T: SolverScalar> Sorted<T> {
                 for (&(a, b), (solution, normal)) in pairs.iter().zip(solutions) {
                     let sides = (self.classes()[a], Some(self.classes()[b]));
                     problems[at].push(self.problem(&self.pair_rows(a, b), sides, solution));
-                    // The pairs of the classes before, then those of the first with the others.
+                    // The number of pairs of the preceding classes, plus the pairs of the first class with preceding others.
                     let number = a * (2 * n_classes - a - 1) / 2 + (b - a - 1);
                     let to = normals[at].row_mut(number).into_slice();
                     to.expect("normals are stored one by one")
@@ -167,10 +168,10 @@ impl<T: SolverScalar> Sorted<T> {
         );
     }
 
-    /// Solves each class against all others: for each C of the path, one problem a class.
+    /// Solves each class against all others: for each C of the path, one problem per class.
     pub fn one_vs_rest(&self, goal: Goal) -> Vec<Trained<T>> {
         let mut problems = vec![Vec::new(); goal.path.len()];
-        // Twice: as the product leaves it, and as the solver reads it.
+        // Two copies are in memory: the matrix product, and the padded matrix of the solver.
         if 2 * Dense::<T>::bytes(self.points().len()) <= goal.memory {
             let all = self.points().all();
             let mut gram = Dense::default();
@@ -194,7 +195,7 @@ impl<T: SolverScalar> Sorted<T> {
             let mut labels = vec![-1.0; rows.len()];
             labels[range.clone()].fill(1.0);
             self.solve(gram, (&labels, &rows), (class, None), goal, problems);
-            // Back into the order of the training rows, which all these problems share.
+            // Restores the order of the training rows, which is common to all these problems.
             for problem in problems.iter_mut().filter_map(|path| path.last_mut()) {
                 let mut coefficients = vec![0.0; rows.len()];
                 for (&row, &beta) in problem.rows.iter().zip(&problem.solution.coefficients) {
@@ -206,7 +207,7 @@ impl<T: SolverScalar> Sorted<T> {
         }
     }
 
-    /// One problem on these sorted rows, along the path.
+    /// Solves one problem on the given sorted rows, along the path.
     fn solve<G: Gram<T>>(
         &self,
         gram: &mut G,
@@ -222,7 +223,7 @@ impl<T: SolverScalar> Sorted<T> {
         }
     }
 
-    /// A problem on these sorted rows, from its solution about the centre.
+    /// Creates a problem on the given sorted rows from its solution about the centre.
     fn problem(
         &self,
         rows: &[usize],

@@ -2,18 +2,18 @@
 
 use crate::linalg::scalar::Scalar;
 
-/// Values looked at side by side.
+/// Number of values processed in parallel.
 const LANES: usize = 8;
 
 /// Norm and projection of a centred row x − c.
 pub(crate) struct CenteredRow {
-    /// `|x − c|²`.
+    /// Squared norm `|x − c|²`.
     pub norm: f64,
-    /// `(x − c)·c`. Far from the origin, `x·c − c·c` would be two large numbers less each other.
+    /// Projection `(x − c)·c`. Far from the origin, the equivalent `x·c − c·c` would cancel most digits.
     pub along_centre: f64,
 }
 
-/// Writes a row minus the centre. On slices: the compiler does not always use vector instructions for views of ndarray.
+/// Writes a row minus the centre. The function works on slices, because the compiler does not always vectorise ndarray views.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn center_row<T: Scalar>(to: &mut [T], row: &[f64], centre: &[f64]) -> CenteredRow {
     let (to, last_to) = to.as_chunks_mut::<LANES>();
@@ -21,7 +21,7 @@ pub(crate) fn center_row<T: Scalar>(to: &mut [T], row: &[f64], centre: &[f64]) -
     let (centre, last_centre) = centre.as_chunks::<LANES>();
     let n = to.len();
     let (row, centre) = (&row[..n], &centre[..n]);
-    // Each lane keeps its own; they meet at the end.
+    // Each lane has its own sum; the lanes are added at the end.
     let (mut squares, mut products) = ([0.0; LANES], [0.0; LANES]);
     for at in 0..n {
         for lane in 0..LANES {

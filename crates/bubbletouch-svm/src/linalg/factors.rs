@@ -1,19 +1,20 @@
-//! Factors `L D Lᵀ` of a symmetric matrix, kept as rows of `D Lᵀ`: what they are made from, solved by, and changed with.
+//! Factors `L D Lᵀ` of a symmetric matrix, stored as rows of `D Lᵀ`: factorisation, solution of linear systems, and rank-one updates.
 //!
-//! Rows are stored in pieces, 0 up to and on the diagonal, with 1 over D beside them, which is 0 for a row that takes no part.
+//! Rows are stored in pieces; entries up to and including the diagonal are 0. The inverse of D is stored separately, with 0 for unused rows.
 
-/// Values handled side by side: four registers, so that no addition waits for the one before.
+/// Number of values processed in parallel: four registers, so that no addition waits for the previous one.
 pub(crate) const LANES: usize = 32;
-/// Values of a side that are found one from the other.
+/// Number of values of a right-hand side computed one after another.
 const BLOCK: usize = 8;
-/// What is left of a row's own value when those before are taken from it, as a multiple of the ridge: of one that depends on them
-/// about the ridge is left, more where they nearly depend on each other.
+/// Threshold of linear independence, as a multiple of the ridge. After elimination, the diagonal of a dependent row is about the ridge; of a nearly dependent
+/// row, slightly
+/// more.
 const INDEPENDENT_FROM: f64 = 10.0;
 
 /// A piece of a row.
 pub(crate) type Piece = [f64; LANES];
 
-/// Makes a symmetric matrix with a ridge, given on and right of its diagonal, into `D Lᵀ` and 1 over D, row by row.
+/// Factorises a symmetric matrix plus a ridge, given by its upper triangle, into `D Lᵀ` and 1/D, row by row.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn eliminate(rows: &mut [Piece], width: usize, inverse: &mut [f64], ridge: f64) {
     let n = inverse.len();
@@ -45,7 +46,7 @@ pub(crate) fn eliminate(rows: &mut [Piece], width: usize, inverse: &mut [f64], r
     }
 }
 
-/// Solves `L v = side` in place, for each of some sides: a piece after another, what those before take from it first.
+/// Solves `L v = side` in place for each right-hand side, piece by piece; the contributions of previous pieces are subtracted first.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn substitute<const N: usize>(
     rows: &[Piece],
@@ -71,7 +72,7 @@ pub(crate) fn substitute<const N: usize>(
     }
 }
 
-/// Takes the product of a piece of a row and a factor from each side.
+/// Subtracts the product of a piece of a row and a factor from each right-hand side.
 #[inline(always)]
 fn take_product<const N: usize>(own: &mut [Piece; N], factors: &[f64; N], row: &Piece) {
     for side in 0..N {
@@ -81,7 +82,7 @@ fn take_product<const N: usize>(own: &mut [Piece; N], factors: &[f64; N], row: &
     }
 }
 
-/// Solves `D Lᵀ x = side` in place: a few places after another from the last, what those after take from them first.
+/// Solves `D Lᵀ x = side` in place, block by block from the end; the contributions of later blocks are subtracted first.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn substitute_back(rows: &[Piece], width: usize, inverse: &[f64], side: &mut [f64]) {
     let n_blocks = inverse.len().div_ceil(BLOCK);
@@ -113,8 +114,7 @@ pub(crate) fn substitute_back(rows: &[Piece], width: usize, inverse: &[f64], sid
     }
 }
 
-/// Adds `weight · own ownᵀ` to the matrix whose factors are these rows, of which the first has the place `first`; `own` is used
-/// up.
+/// Adds `weight · own ownᵀ` to the factorised matrix; the first of the given rows has the position `first`. `own` is overwritten.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn add_product(
     rows: &mut [Piece],
@@ -155,7 +155,7 @@ mod tests {
     const WIDTH: usize = 3;
     const RIDGE: f64 = 1e-3;
 
-    /// A symmetric matrix without pattern whose diagonal prevails, with the ridge.
+    /// Returns an irregular symmetric matrix with a dominant diagonal, including the ridge.
     fn matrix() -> Vec<[f64; N]> {
         let value = |i: usize, j: usize| (((i.min(j) * N + i.max(j)) as f64).sin() * 1e4).fract();
         let entry = |i: usize, j: usize| if i == j { 40.0 + RIDGE } else { value(i, j) };
@@ -182,7 +182,7 @@ mod tests {
         side
     }
 
-    /// What is solved for, times the matrix, is the side.
+    /// Asserts that the product of matrix and solution equals the right-hand side.
     fn assert_solves((rows, inverse): &(Vec<Piece>, Vec<f64>), matrix: &[[f64; N]]) {
         let both = |(a, b): (Piece, Piece)| [a, b];
         let mut sides: Vec<[Piece; 2]> = side(0).into_iter().zip(side(1)).map(both).collect();
@@ -208,7 +208,7 @@ mod tests {
     fn a_product_that_is_added_is_in_the_factors() {
         let (mut rows, mut inverse) = factors();
         let mut changed = matrix();
-        // Of the places from 40 on.
+        // Only the positions from 40 on are non-zero.
         let mut own = side(2);
         own.as_flattened_mut()[..40].fill(0.0);
         for (i, row) in changed.iter_mut().enumerate() {

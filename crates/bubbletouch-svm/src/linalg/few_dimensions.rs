@@ -1,14 +1,14 @@
-//! The few dimensions that some of many rows span.
+//! Low-dimensional subspace spanned by some of many rows.
 
 use ndarray::{Array1, Array2, ArrayView2};
 
 use crate::linalg::scalar::Scalar;
 
-/// A row of which no more than this share is new to the directions before gives none of its own.
+/// Minimum relative norm of a row orthogonal to the previous directions; below it, the row adds no direction.
 const NEW_SHARE: f64 = 1e-2;
 
-/// Orthogonal unit vectors (at most n_dimensions × m) that span as many of these rows (n × m), spread evenly over them, by
-/// Gram and Schmidt's method.
+/// Returns orthonormal vectors (at most n_dimensions × m) that span as many of the given rows (n × m). The rows are selected at even intervals; the method is
+/// Gram-Schmidt.
 pub(crate) fn spanned<T: Scalar>(rows: ArrayView2<T>, n_dimensions: usize) -> Array2<T> {
     let mut directions = Array2::zeros((0, rows.ncols()));
     let n_rows = n_dimensions.min(rows.nrows());

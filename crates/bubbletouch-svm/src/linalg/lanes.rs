@@ -1,6 +1,6 @@
 //! Lanes of vector instructions, and rows padded to whole lanes.
 
-/// Values that are computed together: two vector registers of eight f32, or four of four f64.
+/// Number of values computed in parallel: two vector registers of eight f32, or four of four f64.
 pub(crate) const LANES: usize = 16;
 
 /// Returns n rounded up to whole lanes.

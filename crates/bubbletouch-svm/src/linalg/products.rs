@@ -5,14 +5,14 @@ use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis, s};
 
 use crate::linalg::scalar::Scalar;
 
-/// Rows whose products with each other and with all before are one matrix product: of n rows half of n / 256 are computed twice.
+/// Number of rows whose products with each other and with all previous rows form one matrix product. Of n rows, half of n / 256 are computed twice.
 const ROWS_AT_ONCE: usize = 128;
-/// So few rows are multiplied where the others lie; of more, a matrix product's copy pays.
+/// Maximum number of rows multiplied without copying; for more rows, the packing of a matrix product is faster.
 pub(crate) const FEW_ROWS: usize = 4;
-/// Rows and columns mirrored at once: a cache line of f32.
+/// Number of rows and columns mirrored at once: a cache line of f32.
 const TILE: usize = 16;
 
-/// `x_i · z_j` of rows x (n_left × m) with rows z (n × m): into n_left × n.
+/// Writes `x_i · z_j` of rows x (n_left × m) and rows z (n × m): shape n_left × n.
 pub(crate) fn multiply<T: Scalar>(
     left: ArrayView2<T>,
     right: ArrayView2<T>,
@@ -21,13 +21,12 @@ pub(crate) fn multiply<T: Scalar>(
     if left.nrows() <= FEW_ROWS && in_place(left, right, &mut to) {
         return;
     }
-    // Transposed, so that a row's products with many of these are written side by side.
+    // Transposed, so that a row's products with many other rows are written contiguously.
     let (one, zero) = (T::one(), T::zero());
     general_mat_mul(one, &right, &left.t(), zero, &mut to.reversed_axes());
 }
 
-/// The same of a few rows with many, where they lie: a matrix product would copy the many first. `false`, and nothing written, where that
-/// cannot be.
+/// Writes the products of a few rows with many rows without the copy of a matrix product. Returns `false`, and writes nothing, if this is not possible.
 fn in_place<T: Scalar>(
     left: ArrayView2<T>,
     right: ArrayView2<T>,
@@ -45,18 +44,18 @@ fn in_place<T: Scalar>(
     is_done
 }
 
-/// Rows, if each of them lies in one piece.
+/// Returns the rows as slices, if each is contiguous.
 fn slices<T>(rows: ArrayView2<'_, T>) -> Option<Vec<&[T]>> {
     let row = |row: usize| rows.index_axis_move(Axis(0), row).to_slice();
     (0..rows.nrows()).map(row).collect()
 }
 
-/// `z_i · z_j` of all rows (n × m): n × n, symmetric.
+/// Returns `z_i · z_j` of all rows (n × m): n × n, symmetric.
 pub(crate) fn own_products<T: Scalar>(rows: ArrayView2<T>) -> Array2<T> {
     with_each_other(rows, multiply)
 }
 
-/// What `pairwise` makes of rows with others, as [`multiply`] does and the same in either order, of all rows (n × m): n × n, half of it copied.
+/// Applies a symmetric `pairwise` function, such as [`multiply`], to all pairs of rows (n × m); half of the n × n result is copied.
 pub(crate) fn with_each_other<T: Scalar>(
     rows: ArrayView2<T>,
     pairwise: impl Fn(ArrayView2<T>, ArrayView2<T>, ArrayViewMut2<T>),
@@ -72,7 +71,7 @@ pub(crate) fn with_each_other<T: Scalar>(
     products
 }
 
-/// Copies what is below the diagonal to above it, in tiles that stay in the cache.
+/// Copies the lower triangle to the upper triangle, in tiles that fit into the cache.
 pub(crate) fn mirror<T: Copy>(square: &mut ArrayViewMut2<T>) {
     let n = square.nrows();
     for top in (0..n).step_by(TILE) {
@@ -103,10 +102,10 @@ mod tests {
             (3, 33, 4),
         ] {
             let (left, right) = (rows::<T>(n_left, m), rows::<T>(n, m));
-            // Sums of m products below 1, each addition rounded.
+            // Sums of m products below 1, with rounding of each addition.
             let tolerance = tolerance * (m as f64 / 100.0).max(1.0);
             let expected = left.dot(&right.t());
-            // Into a part of something larger.
+            // The target is a part of a larger array.
             let mut to = Array2::zeros((n_left, n + 3));
             multiply(left.view(), right.view(), to.slice_mut(s![.., 2..n + 2]));
             for ((i, j), expected) in expected.indexed_iter() {

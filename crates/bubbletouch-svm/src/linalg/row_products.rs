@@ -1,30 +1,31 @@
 //! Products and weighted sums of a few rows among many.
 //!
-//! A matrix product first copies its rows into panels. For a few dozen rows of many features that takes as long as the
-//! multiplications, so where the processor allows it rows are multiplied [where they lie](crate::linalg::row_tiles).
+//! A matrix product first copies its rows into panels. For a few dozen rows with many features, the copy takes as long as the multiplications. If the
+//! processor supports it,
+//! rows are therefore multiplied [without copying](crate::linalg::row_tiles).
 
 use ndarray::Array2;
 
 use crate::linalg::scalar::Scalar;
 
-/// Rows of a matrix, one after the other.
+/// Contiguous rows of a matrix.
 #[derive(Clone, Copy)]
 pub(crate) struct Rows<'a, T> {
-    /// All values.
+    /// All values, row by row.
     pub values: &'a [T],
-    /// How many a row has.
+    /// Number of values per row.
     pub n_features: usize,
 }
 
 impl<'a, T: Scalar> Rows<'a, T> {
-    /// Adds rows, by number, each times a weight; in f64, since large weights may all but cancel.
+    /// Adds weighted rows, given by number. Sums are in f64, because large weights may nearly cancel.
     pub fn add_weighted(self, sums: &mut [f64], rows: impl Iterator<Item = (usize, f64)>) {
         let rows = rows.filter(|(_, weight)| *weight != 0.0);
         let mut weighing: Vec<(&[T], f64)> =
             Vec::with_capacity(rows.size_hint().1.unwrap_or(0) + 4);
         weighing.extend(rows.map(|(row, weight)| (self.row(row), weight)));
         let mut rows = weighing;
-        // Rows that weigh nothing fill up the last four.
+        // The last group of four is filled with rows of weight 0.
         let n_fours = rows.len().div_ceil(4);
         if let Some(&(first, _)) = rows.first() {
             rows.resize(4 * n_fours, (first, 0.0));
@@ -34,14 +35,14 @@ impl<'a, T: Scalar> Rows<'a, T> {
         }
     }
 
-    /// One of them.
+    /// Returns a row.
     #[inline(always)]
     pub fn row(self, row: usize) -> &'a [T] {
         &self.values[row * self.n_features..][..self.n_features]
     }
 }
 
-/// Products of rows with others, all equally long: rows.len() × others.len(), row by row.
+/// Writes the products of rows with other rows of equal length: rows.len() × others.len(), row by row.
 pub(crate) fn multiply<T: Scalar>(rows: &[&[T]], others: &[&[T]], to: &mut [T]) {
     if to.is_empty() || T::products_in_place(rows, others, to) {
         return;
@@ -57,7 +58,7 @@ pub(crate) fn multiply<T: Scalar>(rows: &[&[T]], others: &[&[T]], to: &mut [T]) 
         .for_each(|(to, &from)| *to = from);
 }
 
-/// Four rows at once: the sums are read and written a quarter as often.
+/// Adds four rows in one pass, so that the sums are read and written a quarter as often.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn add_four<T: Scalar>(sums: &mut [f64], rows: &[(&[T], f64); 4]) {
     let n = sums.len();
@@ -72,7 +73,7 @@ fn add_four<T: Scalar>(sums: &mut [f64], rows: &[(&[T], f64); 4]) {
 mod tests {
     use super::*;
 
-    /// n rows of m values with no pattern.
+    /// Returns n irregular rows of m values.
     fn values(n: usize, m: usize) -> Vec<f64> {
         (0..n * m).map(|i| (i as f64 * 1.7 + 0.3).sin()).collect()
     }

@@ -1,10 +1,10 @@
-//! Products of a few f32 rows with a few others where they lie, each row read once for all of a tile's products.
+//! Products of a few f32 rows with a few others without copying; each row is read once for all products of a tile.
 //!
-//! Written with the processor's vector instructions: the compiler makes them of plain loops over a tile's sums, too, but not
-//! in every build, and a build where it does not is ten times slower.
+//! The code uses the processor's vector instructions. The compiler can generate them from plain loops, but not in every build. A build without them is ten
+//! times slower.
 
-/// Products of some rows with others, all equally long, row by row into `products`; `false`, and nothing written, where the
-/// processor has not got the instructions.
+/// Writes the products of rows with other rows of equal length into `products`, row by row. Returns `false`, and writes nothing, if the processor lacks the
+/// instructions.
 #[cfg(target_arch = "x86_64")]
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn products_in_place(rows: &[&[f32]], others: &[&[f32]], products: &mut [f32]) -> bool {
@@ -71,7 +71,7 @@ fn by_tiles<'r, const N: usize, const M: usize>(
     }
 }
 
-/// Writes a tile's products if they are those of the first features, else adds them.
+/// Writes a tile's products for the first features, and adds them for later features.
 #[cfg(target_arch = "x86_64")]
 fn put(to: &mut [f32], products: &[f32], is_first: bool) {
     for (to, product) in to.iter_mut().zip(products) {
@@ -90,9 +90,9 @@ mod avx512 {
 
     use crate::linalg::vector_registers::{load, store};
 
-    /// Values in a vector register.
+    /// Number of values in a vector register.
     const LANES: usize = 16;
-    /// Rows multiplied with as many others at once: their sums meet in one register.
+    /// Number of rows multiplied with N others at once; the sums of a row fit into one register.
     const N: usize = 4;
 
     #[target_feature(enable = "avx512f")]
@@ -103,7 +103,7 @@ mod avx512 {
         }
     }
 
-    /// The products of one row with a few others: the same bits as in a [`tile`].
+    /// Returns the products of one row with a few others, bitwise equal to those of a [`tile`].
     #[target_feature(enable = "avx512f")]
     fn row([left]: [&[f32]; 1], right: [&[f32]; N]) -> [f32; N] {
         let n = left.len();
@@ -132,9 +132,9 @@ mod avx512 {
         products
     }
 
-    /// All products of a few rows with a few others. Each lane keeps its own sums; they meet at the end.
+    /// Returns all products of a few rows with a few others. Each lane has its own sum; the lanes are added at the end.
     ///
-    /// A name for the sums of each row: an array of arrays is kept in memory.
+    /// The sums of each row have separate variables, because the compiler stores an array of arrays in memory.
     #[target_feature(enable = "avx512f")]
     fn tile(left: [&[f32]; N], right: [&[f32]; N]) -> [[f32; N]; N] {
         let n = left[0].len();
@@ -189,7 +189,7 @@ mod avx512 {
         ]
     }
 
-    /// The sums of four neighbouring lanes, of four registers side by side: a₀ b₀ c₀ d₀ a₁ b₁ ….
+    /// Returns the sums of four neighbouring lanes of four registers, interleaved: a₀ b₀ c₀ d₀ a₁ b₁ ….
     #[inline]
     #[target_feature(enable = "avx512f")]
     fn add_lanes([a, b, c, d]: [__m512; N]) -> __m512 {
@@ -219,11 +219,11 @@ mod avx2 {
         _mm256_setzero_ps,
     };
 
-    /// Values in a vector register.
+    /// Number of values in a vector register.
     const LANES: usize = 8;
-    /// Rows multiplied with [`M`] others at once: their sums and what is read of the rows fill 16 vector registers.
+    /// Number of rows multiplied with [`M`] others at once; the sums and the values read fill 16 vector registers.
     const N: usize = 4;
-    /// See [`N`].
+    /// Number of other rows per tile; see [`N`].
     const M: usize = 3;
 
     #[target_feature(enable = "avx2,fma")]
@@ -238,9 +238,9 @@ mod avx2 {
         }
     }
 
-    /// All products of a few rows with a few others. Each lane keeps its own sums; they meet at the end.
+    /// Returns all products of a few rows with a few others. Each lane has its own sum; the lanes are added at the end.
     ///
-    /// Loops, not closures: a function of the standard library that calls a closure has not got its vector instructions.
+    /// The code uses loops instead of closures, because closures called by the standard library are compiled without vector instructions.
     #[target_feature(enable = "avx2,fma")]
     fn tile<const N: usize>(left: [&[f32]; N], right: [&[f32]; M]) -> [[f32; M]; N] {
         let n = left[0].len();
@@ -285,7 +285,7 @@ mod avx2 {
         _mm256_setr_ps(a, b, c, d, e, f, g, h)
     }
 
-    /// The sum of all lanes, halves onto halves.
+    /// Returns the sum of all lanes by repeated halving.
     #[inline]
     #[target_feature(enable = "avx2,fma")]
     fn sum(lanes: __m256) -> f32 {

@@ -1,19 +1,20 @@
-//! The two precisions that kernel values are stored in.
+//! Floating-point types of kernel values: f32 and f64.
 
 use ndarray::NdFloat;
 
 use crate::linalg::row_tiles;
 
-/// f32 or f64: what a Gram matrix holds.
+/// Floating-point type of the values of a Gram matrix: f32 or f64.
 pub(crate) trait Scalar: NdFloat + Default {
-    /// The nearest value.
+    /// Converts to the nearest value.
     fn of(value: f64) -> Self;
-    /// The same value.
+    /// Converts to f64 without rounding.
     fn wide(self) -> f64;
-    /// `exp(−γ · distance)` in place of each squared distance.
+    /// Replaces each squared distance by `exp(−γ · distance)`.
     fn exponentials(distances: &mut [Self], gamma: f64);
-    /// Products of some rows with others, all equally long, where they lie: row by row into `products`; `false`, and nothing
-    /// written, where there is no fast way.
+    /// Writes the products of rows with other rows of equal length into `products`, row by row, without copying. Returns `false`, and writes nothing, if
+    /// there is no fast
+    /// implementation.
     fn products_in_place(_: &[&[Self]], _: &[&[Self]], _: &mut [Self]) -> bool {
         false
     }
@@ -53,19 +54,20 @@ impl Scalar for f32 {
     }
 }
 
-/// `exp(−γ d)` by range reduction and the Cephes polynomial of `expf` (Moshier 1989): within 2 units in the last place,
-/// 0 below the smallest normal number. Written without branches, so that it runs many lanes at a time.
+/// Computes `exp(−γ d)` by range reduction and the Cephes polynomial of `expf` (Moshier 1989). The error is at most 2 units in the last place; results below
+/// the
+/// smallest normal number are 0. The code has no branches, so that it is vectorised.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn exponentials_f32(distances: &mut [f32], gamma: f32) {
-    /// 1.5 · 2²³: adding it rounds to an integer, which then stands in the low bits.
+    /// 1.5 · 2²³: adding it rounds to an integer, which is then contained in the low bits.
     const ROUND: f32 = 12_582_912.0;
-    /// Below it the result is under the smallest normal number.
+    /// Smallest exponent; below it, the result is less than the smallest normal number.
     const LOWEST: f32 = -87.336_54;
     for value in distances {
         let x = (-gamma * *value).max(LOWEST);
         let shifted = x * std::f32::consts::LOG2_E + ROUND;
         let n = shifted - ROUND;
-        // ln 2 in two parts, the first of which n multiplies exactly.
+        // ln 2 is split into two parts; n times the first part is exact.
         let r = x - n * 0.693_359_4 - n * -2.121_944_4e-4;
         let mut sum = 1.987_569_1e-4;
         for coefficient in [

@@ -1,9 +1,9 @@
-//! Rows written as columns, several rows at once.
+//! Transposition of several rows at once.
 
-/// Rows transposed at once: a cache line of f32.
+/// Number of rows transposed at once: a cache line of f32.
 const TILE: usize = 16;
 
-/// Writes equally long rows as columns side by side: value `j` of row `i` to `j · stride + i`.
+/// Writes rows of equal length as columns: value `j` of row `i` is written to `j · stride + i`.
 pub(crate) fn write_columns<T: Copy>(rows: &[&[T]], to: &mut [T], stride: usize) {
     let (tiles, last) = rows.as_chunks::<TILE>();
     for (number, tile) in tiles.iter().enumerate() {

@@ -1,10 +1,10 @@
-//! Values into vector registers of 16 and out of them, without pointers.
+//! Conversion between arrays and vector registers of 16 values, without pointers.
 
 use std::arch::x86_64::{
     __m128, __m512, _mm_cvtss_f32, _mm_shuffle_ps, _mm512_extractf32x4_ps, _mm512_setr_ps,
 };
 
-/// Reads a register: the compiler makes one instruction of it.
+/// Loads a register; the compiler generates one instruction.
 #[inline]
 #[target_feature(enable = "avx512f")]
 pub(crate) fn load(values: &[f32; 16]) -> __m512 {
@@ -12,7 +12,7 @@ pub(crate) fn load(values: &[f32; 16]) -> __m512 {
     _mm512_setr_ps(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p)
 }
 
-/// What a register holds.
+/// Returns the values of a register.
 #[inline]
 #[target_feature(enable = "avx512f")]
 pub(crate) fn store(register: __m512) -> [f32; 16] {

@@ -1,4 +1,4 @@
-//! What the support vectors of one class weigh in its binary problems.
+//! Coefficients of the support vectors of one class in its binary problems.
 
 use std::ops::Range;
 
@@ -8,19 +8,19 @@ use crate::binary_problem::BinaryProblem;
 use crate::gram::sorted::Sorted;
 use crate::linalg::scalar::Scalar;
 
-/// The coefficients of one class's support vectors in the problems that the class takes part in.
+/// Coefficients of one class's support vectors in the problems of the class.
 #[derive(Clone, Debug)]
 pub(crate) struct ClassWeights<T> {
-    /// Which support vectors.
+    /// Range of the class's support vectors.
     pub vectors: Range<usize>,
-    /// The problems, ascending: for one-vs-one those with the other classes in order.
+    /// Numbers of the class's problems, ascending; for one-vs-one, the problems with the other classes in order.
     pub problems: Vec<usize>,
-    /// problems.len() × vectors.len().
+    /// Coefficients, problems.len() × vectors.len().
     pub coefficients: Array2<T>,
 }
 
 impl<V: Scalar> ClassWeights<V> {
-    /// None yet of a class in these problems, which are named by their positive and negative class.
+    /// Creates zero coefficients of a class in the given problems (positive and negative class).
     pub fn zeros(
         class: usize,
         vectors: Range<usize>,
@@ -38,7 +38,7 @@ impl<V: Scalar> ClassWeights<V> {
         }
     }
 
-    /// Of all rows of a class.
+    /// Creates the coefficients of all rows of a class.
     pub fn new<T: Scalar>(
         sorted: &Sorted<T>,
         class: usize,
@@ -60,7 +60,7 @@ impl<V: Scalar> ClassWeights<V> {
         weights
     }
 
-    /// Sets the coefficients of a problem that the class takes part in.
+    /// Sets the coefficients of a problem; ignored if the class does not take part in the problem.
     pub fn set(&mut self, problem: usize, coefficients: &[f64]) {
         if let Ok(place) = self.problems.binary_search(&problem) {
             let own = self.coefficients.row_mut(place);
@@ -70,7 +70,7 @@ impl<V: Scalar> ClassWeights<V> {
         }
     }
 
-    /// Only of the rows that support some problem, appended to those of the classes before.
+    /// Keeps only rows with a non-zero coefficient in some problem, and appends their numbers to `support`.
     pub fn of_support(self, support: &mut Vec<usize>) -> Self {
         let is_support = |at: &usize| {
             self.coefficients
@@ -91,7 +91,7 @@ impl<V: Scalar> ClassWeights<V> {
     }
 }
 
-/// `Σ y a K(x_i, x)` from kernel values (rows × vectors) and what the vectors of each class weigh: n_problems × rows.
+/// Returns `Σ y a K(x_i, x)`, n_problems × rows, given the kernel values (rows × vectors) and the coefficients of each class.
 pub(crate) fn weighted_sums<T: Scalar>(
     weights: &[ClassWeights<T>],
     kernel_values: ArrayView2<T>,

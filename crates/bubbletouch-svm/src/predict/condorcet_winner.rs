@@ -1,14 +1,14 @@
-//! Condorcet winner: the class that wins all its pairs, found without the pairs of the other classes.
+//! Condorcet winner: the class that wins all its pairs, found without evaluating all pairs of the other classes.
 //!
-//! One-vs-one elects the class with most votes. Of n classes, one that wins all its n − 1 pairs is elected whatever the pairs
-//! between others say: each other class has lost one. A knock-out finds it, if there is one, by n − 1 pairs, and it must then
-//! win only those that it has not met: at most 2 (n − 1) pairs of n (n − 1) / 2. On touches of 43 objects, 99 rows of 100
-//! have such a class.
+//! One-vs-one elects the class with the most votes. If one of n classes wins all its n − 1 pairs, it is elected, because every other class has lost a pair. A
+//! knock-out finds
+//! the only candidate with n − 1 pairs. The candidate must then win the pairs not yet evaluated, so at most 2 (n − 1) of n (n − 1) / 2 pairs are evaluated.
+//! On touches of 43
+//! objects, 99 rows of 100 have a Condorcet winner.
 //!
-//! A pair counts only if its value is farther from ρ than rounding can move it, so that the same value summed in any other
-//! order has the same sign.
+//! A pair counts only if the distance of its value from ρ exceeds the rounding error. Its sign then does not depend on the order of summation.
 //!
-//! Of few rows, kernel values are computed as pairs ask for them: what supports only pairs that do not meet is never read.
+//! For few rows, kernel values are computed on demand. Support vectors of pairs that are not evaluated are not read.
 
 use multiversion::multiversion;
 use ndarray::{Array1, ArrayView1, ArrayView2};
@@ -18,29 +18,29 @@ use crate::kernel::KernelFunction;
 use crate::linalg::scalar::Scalar;
 use crate::predict::class_weights::ClassWeights;
 
-/// Sums side by side, so that no addition waits for the one before; of products that lie side by side, too, of a vector register.
+/// Number of parallel partial sums, so that no addition waits for the previous one. `WIDE` is the number for contiguous products: one vector register.
 const LANES: usize = 4;
 const WIDE: usize = 16;
 
-/// The decision functions of all pairs of classes by their support vectors alone: of the vectors of two classes, most
-/// support no boundary between these two.
+/// Decision functions of all pairs of classes, each with its own support vectors only. Of the support vectors of two classes, most have zero coefficients in
+/// their pair.
 #[derive(Clone, Debug)]
 pub(crate) struct Pairs<T> {
     n_classes: usize,
-    /// Pair by pair, which vectors and their coefficients.
+    /// Support vectors and coefficients, pair by pair.
     terms: Vec<(u32, T)>,
-    /// Where the terms of each pair end, and its ρ; pairs in order (0, 1), (0, 2), …, (1, 2), ….
+    /// End of the terms of each pair, and its ρ; the pairs are in the order (0, 1), (0, 2), …, (1, 2), ….
     ends: Vec<(usize, f64)>,
 }
 
 impl<T: Scalar> Pairs<T> {
-    /// Those of one-vs-one, from what the classes weigh in all pairs and the pairs' ρ.
+    /// Creates the one-vs-one decision functions from the coefficients of the classes in all pairs and the pairs' ρ.
     pub fn new(weights: &[ClassWeights<T>], rho: &Array1<f64>) -> Self {
         let mut terms = Vec::new();
         let mut ends = Vec::with_capacity(rho.len());
         for (first, left) in weights.iter().enumerate() {
             for (second, right) in weights.iter().enumerate().skip(first + 1) {
-                // A class's problems are those with the others in order, itself left out.
+                // A class's problems are ordered by the other class; the class itself is skipped.
                 for (class, problem) in [(left, second - 1), (right, first)] {
                     let coefficients = class.coefficients.row(problem);
                     let all = class.vectors.clone().zip(coefficients);
@@ -57,8 +57,8 @@ impl<T: Scalar> Pairs<T> {
         }
     }
 
-    /// The class that certainly wins all its pairs, per row of kernel values (n × n_vectors); `None` where no class does,
-    /// or rounding might decide a pair.
+    /// Returns the Condorcet winner of each row of kernel values (n × n_vectors). Returns `None` if no class wins all its pairs, or if rounding could change
+    /// the result of a pair.
     pub fn condorcet_winners(&self, kernel_values: ArrayView2<T>) -> Vec<Option<usize>> {
         let rows = kernel_values.rows().into_iter();
         let rows = rows.map(|row| row.to_slice().expect("they lie row by row"));
@@ -71,7 +71,7 @@ impl<T: Scalar> Pairs<T> {
         .collect()
     }
 
-    /// The same per row (n × m), of a few, by those kernel values with the vectors that it takes.
+    /// Returns the Condorcet winner of each of a few rows (n × m); only the required kernel values are computed.
     pub fn condorcet_winners_by_few(
         &self,
         rows: &CenteredRows<T>,
@@ -88,7 +88,7 @@ impl<T: Scalar> Pairs<T> {
         .collect()
     }
 
-    /// The terms of a pair, and ρ.
+    /// Returns the terms of a pair, and its ρ.
     #[inline(always)]
     fn of(&self, pair: usize) -> (&[(u32, T)], f64) {
         let start = if pair == 0 { 0 } else { self.ends[pair - 1].0 };
@@ -96,8 +96,7 @@ impl<T: Scalar> Pairs<T> {
         (&self.terms[start..end], rho)
     }
 }
-/// The class that certainly wins all its pairs, per row (n × m), by the hyperplanes' normals (n_pairs × m) and ρ of all
-/// pairs of some classes.
+/// Returns the Condorcet winner of each row (n × m), given the hyperplanes' normals (n_pairs × m) and ρ of all pairs of the classes.
 pub(crate) fn condorcet_winners_by_hyperplanes<'a, T: Scalar>(
     n_classes: usize,
     (normals, rho): (ArrayView2<'a, T>, ArrayView1<'a, f64>),
@@ -115,21 +114,21 @@ pub(crate) fn condorcet_winners_by_hyperplanes<'a, T: Scalar>(
     (0..rows.len()).map(of_row).collect()
 }
 
-/// What decides pairs of classes about one row.
+/// Decision function of each pair of classes for one row.
 trait Decides<T> {
     fn n_classes(&self) -> usize;
 
-    /// `Σ w k` of a pair, `Σ |w k|`, how many terms they have, and ρ.
+    /// Returns `Σ w k` of a pair, `Σ |w k|`, the number of terms, and ρ.
     fn value(&mut self, pair: usize) -> (T, T, usize, f64);
 }
 
-/// Kernel values of a row, per vector.
+/// Kernel values of one row with all support vectors.
 trait KernelValues<T> {
-    /// All values; those of these terms are right.
+    /// Returns a slice of all kernel values; only the values of `terms` must be valid.
     fn with(&mut self, terms: &[(u32, T)]) -> &[T];
 }
 
-/// All that there are.
+/// All kernel values are known.
 impl<T> KernelValues<T> for &[T] {
     #[inline(always)]
     fn with(&mut self, _: &[(u32, T)]) -> &[T] {
@@ -137,7 +136,7 @@ impl<T> KernelValues<T> for &[T] {
     }
 }
 
-/// Pairs by kernel values.
+/// Decision functions evaluated with kernel values.
 struct ByKernel<'a, T, K> {
     pairs: &'a Pairs<T>,
     kernel_values: K,
@@ -157,16 +156,16 @@ impl<T: Scalar, K: KernelValues<T>> Decides<T> for ByKernel<'_, T, K> {
     }
 }
 
-/// Kernel values that are computed when the first pair asks for them.
+/// Kernel values computed when a pair first requires them.
 struct Asked<'a, T> {
     kernel: &'a KernelFunction,
     vectors: &'a CenteredRows<T>,
     /// The row and its squared norm.
     row: (&'a [T], T),
-    /// Per vector.
+    /// Kernel value of each support vector.
     kernel_values: Vec<T>,
     is_known: Vec<bool>,
-    /// Those that are computed together: numbers, rows, squared norms and values.
+    /// Support vectors computed together: numbers, rows, squared norms and kernel values.
     asked: Vec<u32>,
     others: Vec<&'a [T]>,
     norms: Vec<T>,
@@ -190,7 +189,7 @@ impl<'a, T: Scalar> Asked<'a, T> {
 }
 
 impl<T: Scalar> KernelValues<T> for Asked<'_, T> {
-    /// Computes those of the terms that are not known.
+    /// Computes the unknown kernel values of the terms.
     fn with(&mut self, terms: &[(u32, T)]) -> &[T] {
         self.asked.clear();
         self.others.clear();
@@ -217,7 +216,7 @@ impl<T: Scalar> KernelValues<T> for Asked<'_, T> {
     }
 }
 
-/// Normals of hyperplanes.
+/// Decision functions evaluated with the hyperplanes' normals.
 struct Hyperplanes<'a, T> {
     n_classes: usize,
     normals: &'a [T],
@@ -247,7 +246,7 @@ fn condorcet_winner<T: Scalar, P: Decides<T>>(pairs: &mut P) -> Option<usize> {
             champion = other;
         }
     }
-    // It has met all classes after it.
+    // The pairs with all later classes are already won.
     for other in 0..champion {
         if wins(pairs, (other, champion))? {
             return None;
@@ -256,14 +255,15 @@ fn condorcet_winner<T: Scalar, P: Decides<T>>(pairs: &mut P) -> Option<usize> {
     Some(champion)
 }
 
-/// Whether the first of two classes wins, which comes before the second; `None` if rounding might decide.
+/// Returns whether class `first` wins against class `second`, with first < second; `None` if rounding could change the result.
 #[inline(always)]
 fn wins<T: Scalar>(pairs: &mut impl Decides<T>, (first, second): (usize, usize)) -> Option<bool> {
     let pair = first * (2 * pairs.n_classes() - first - 1) / 2 + second - first - 1;
     let (sum, size, n_terms, rho) = pairs.value(pair);
     let value = sum.wide() - rho;
-    // n products added one by one err by at most n u Σ|products|, u half an epsilon; this way and another by twice
-    // that. The 8 are for adding up lanes and classes.
+    // The error of adding n products one by one is at most n u Σ|products|, where u is half of epsilon. Two orders of summation differ by at most twice this
+    // value. The 8
+    // accounts for adding lanes and classes.
     let error = (n_terms + 8) as f64 * T::epsilon().wide() * size.wide();
     if value > error {
         Some(true)
@@ -274,7 +274,7 @@ fn wins<T: Scalar>(pairs: &mut impl Decides<T>, (first, second): (usize, usize))
     }
 }
 
-/// `Σ w x` and `Σ |w x|` of a normal w and a row x.
+/// Returns `Σ w x` and `Σ |w x|` of a normal w and a row x.
 #[inline(always)]
 fn product_and_size<T: Scalar>(normal: &[T], row: &[T]) -> (T, T) {
     let (mut sums, mut sizes) = ([T::zero(); WIDE], [T::zero(); WIDE]);
@@ -300,7 +300,7 @@ fn product_and_size<T: Scalar>(normal: &[T], row: &[T]) -> (T, T) {
     (sum, size)
 }
 
-/// `Σ w k` and `Σ |w k|` of coefficients w and their kernel values k.
+/// Returns `Σ w k` and `Σ |w k|` of coefficients w and their kernel values k.
 #[inline(always)]
 fn sum_and_size<T: Scalar>(terms: &[(u32, T)], kernel_values: &[T]) -> (T, T) {
     let (mut sum, mut size) = ([T::zero(); LANES], [T::zero(); LANES]);
@@ -333,7 +333,7 @@ mod tests {
     const N_CLASSES: usize = 6;
     const N_VECTORS: usize = 5;
 
-    /// Coefficients with no pattern, two in three of them zero.
+    /// Returns irregular coefficients, of which two in three are zero.
     fn weights() -> Vec<ClassWeights<f64>> {
         let pairs = Multiclass::OneVsOne.problems(N_CLASSES);
         let of_class = |class: usize| {
@@ -354,7 +354,7 @@ mod tests {
         (0..N_CLASSES).map(of_class).collect()
     }
 
-    /// Decision values of a row, class by class.
+    /// Returns the decision values of a row, summed class by class.
     fn values(weights: &[ClassWeights<f64>], rho: &Array1<f64>, row: &[f64]) -> Array1<f64> {
         let mut values = -rho.clone();
         for class in weights {
@@ -403,7 +403,7 @@ mod tests {
         let vectors = Array2::from_shape_fn((n_vectors, n_features), |(i, j)| {
             ((i * 37 + j) as f64 * 1.7).sin()
         });
-        // Each near one of them.
+        // Each row is near a support vector.
         let asking = Array2::from_shape_fn((300, n_features), |(i, j)| {
             vectors[[i % n_vectors, j]] + 0.3 * ((i * 11 + j) as f64 * 0.9).sin()
         });
@@ -435,7 +435,7 @@ mod tests {
         let tied = values(&weights, &Array1::zeros(15), &row);
         let rows = Array2::ones((1, N_CLASSES * N_VECTORS));
         for (offset, is_open) in [(0.0, true), (1e-15, true), (-1e-15, true), (1e-9, false)] {
-            // The first class wins each pair by the offset.
+            // The offset makes the first class win each pair.
             let winners = Pairs::new(&weights, &(&tied - offset)).condorcet_winners(rows.view());
             assert_eq!(winners, [if is_open { None } else { Some(0) }], "{offset}");
         }

@@ -1,4 +1,4 @@
-//! The decision functions of all binary problems, by matrix products.
+//! Decision functions of all binary problems, by matrix products.
 
 use std::borrow::Cow;
 
@@ -15,42 +15,44 @@ use crate::multiclass::Multiclass;
 use crate::predict::class_weights::{ClassWeights, weighted_sums};
 use crate::predict::voting::VoteCounter;
 
-/// Rows whose decision values are computed at once. Fewer, and a product spends its time on bringing the support vectors into order; more,
-/// and their kernel values (10 MB with 5,000 support vectors) take much memory.
+/// Number of rows per block of decision values. If smaller, the packing of the support vectors dominates; if larger, the kernel values (10 MB with 5,000
+/// support vectors) take
+/// much memory.
 const BLOCK_ROWS: usize = 512;
 
-/// `Σ y a K(x_i, x) − ρ` for all problems.
+/// Decision functions `Σ y a K(x_i, x) − ρ` of all problems.
 #[derive(Clone, Debug)]
 pub(crate) struct DecisionFunctions<T> {
-    /// Subtracted from support vectors and from rows that are asked for.
+    /// Centre subtracted from support vectors and from rows to predict.
     centre: Array1<f64>,
-    /// ρ per problem; for a linear kernel, that about the centre.
+    /// Offset ρ per problem; for a linear kernel, about the centre.
     rho: Array1<f64>,
     sums: Sums<T>,
 }
 
-/// `Σ y a K(x_i, x)`.
+/// The sums `Σ y a K(x_i, x)` of all problems.
 #[derive(Clone, Debug)]
 enum Sums<T> {
-    /// The hyperplanes' normals, n_problems × m.
+    /// Normals of the hyperplanes, n_problems × m.
     Hyperplanes(Array2<T>),
-    /// Kernel values, weighted.
+    /// Weighted sums of kernel values.
     Support(Support<T>),
 }
 
-/// Support vectors, class by class.
+/// Support vectors, sorted by class.
 #[derive(Clone, Debug)]
 struct Support<T> {
     kernel: KernelFunction,
     vectors: CenteredRows<T>,
     weights: Vec<ClassWeights<T>>,
-    /// For one-vs-one.
+    /// Decision functions of single pairs, for one-vs-one.
     pairs: Option<Pairs<T>>,
 }
 
 impl<T: Scalar> DecisionFunctions<T> {
-    /// Those of the problems that these rows were trained for. Rows that are given away become the support vectors where they
-    /// lie; the normals of linear problems' hyperplanes are summed unless they are known.
+    /// Creates the decision functions of problems trained on the given rows. Owned rows are reduced to the support vectors in place. The normals of linear
+    /// problems are computed
+    /// unless given.
     pub fn new(
         rows: Cow<Sorted<T>>,
         problems: &[BinaryProblem],
@@ -98,7 +100,7 @@ impl<T: Scalar> DecisionFunctions<T> {
         Self { centre, rho, sums }
     }
 
-    /// Decision values of rows (n × m): n × n_problems.
+    /// Returns the decision values of rows (n × m): n × n_problems.
     pub fn values(&self, features: ArrayView2<f64>) -> Array2<f64> {
         let mut values = Array2::zeros((features.nrows(), self.rho.len()));
         let mut room = self.room(features.nrows());
@@ -111,7 +113,7 @@ impl<T: Scalar> DecisionFunctions<T> {
         values
     }
 
-    /// The position of the class that each row's decision values speak for.
+    /// Returns the position of the class with the most votes for each row.
     pub fn winners(&self, features: ArrayView2<f64>, between: (usize, Multiclass)) -> Vec<usize> {
         let elect = |sums: Array2<T>| VoteCounter::elect(&sums, self.rho.view(), between, |_| true);
         let mut room = self.room(features.nrows());
@@ -144,7 +146,7 @@ impl<T: Scalar> DecisionFunctions<T> {
                     ))
                 })
             }
-            // All pairs of many rows are one matrix product, faster than a tenth of them one by one.
+            // For many rows, the matrix product of all pairs is faster than evaluating a tenth of the pairs one by one.
             Sums::Hyperplanes(normals)
                 if between.1 == Multiclass::OneVsOne && points.len() <= FEW_ROWS =>
             {
@@ -168,7 +170,7 @@ impl<T: Scalar> DecisionFunctions<T> {
             .map(|rows| CenteredRows::new(rows, self.centre.view()))
     }
 
-    /// Room for a block's kernel values: written over and over, so that its memory is asked for once.
+    /// Allocates memory for the kernel values of a block; it is reused by all blocks.
     fn room(&self, n_rows: usize) -> Array2<T> {
         let n_vectors = match &self.sums {
             Sums::Hyperplanes(_) => 0,
@@ -177,7 +179,7 @@ impl<T: Scalar> DecisionFunctions<T> {
         Array2::zeros((BLOCK_ROWS.min(n_rows), n_vectors))
     }
 
-    /// `Σ y a K(x_i, x)` of some rows: n_problems × rows, so that all rows of a problem lie side by side.
+    /// Returns `Σ y a K(x_i, x)` of some rows, n_problems × rows, so that the values of a problem are contiguous.
     fn sums_of(&self, points: &CenteredRows<T>, room: &mut Array2<T>) -> Array2<T> {
         match &self.sums {
             Sums::Hyperplanes(normals) => {
@@ -197,7 +199,7 @@ impl<T: Scalar> DecisionFunctions<T> {
     }
 }
 
-/// The winners of rows, where some are open: those are elected, by number.
+/// Returns the winners of all rows; the winners of undecided rows are elected by `elect`, given their numbers.
 fn elect_open(
     mut winners: Vec<Option<usize>>,
     elect: impl FnOnce(&[usize]) -> Vec<usize>,
@@ -213,7 +215,7 @@ fn elect_open(
 }
 
 impl<T: Scalar> Support<T> {
-    /// `K(x, x_i)`: rows × vectors.
+    /// Returns `K(x, x_i)`: rows × vectors.
     fn kernel_values<'a>(
         &self,
         points: &CenteredRows<T>,

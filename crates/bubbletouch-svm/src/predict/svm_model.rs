@@ -1,9 +1,10 @@
 //! A trained SVM: decision values and labels, by matrix products.
 //!
-//! A block of rows meets all support vectors of a class in one matrix product, and their coefficients for all binary
-//! problems in a second one; a linear SVM is one product with its hyperplanes. Both run in the precision that the model was
-//! trained in. Labels of one-vs-one SVMs with a kernel need the second product only where no class wins all its pairs
-//! (`condorcet_winner`).
+//! For a block of rows, one matrix product computes the kernel values with all support vectors of a class. A second product applies their coefficients in all
+//! binary problems.
+//! A linear SVM needs one product with its hyperplanes. The products have the precision of training. Labels of one-vs-one SVMs with a kernel need the second
+//! product only
+//! for rows without a class that wins all its pairs (`condorcet_winner`).
 
 use std::borrow::Cow;
 
@@ -30,7 +31,7 @@ pub struct SvmModel {
     decision: Decision,
 }
 
-/// The decision function of all problems at once, in the precision of training.
+/// Decision functions of all problems, in the precision of training.
 #[derive(Clone, Debug)]
 pub(crate) enum Decision {
     Single(DecisionFunctions<f32>),
@@ -50,7 +51,7 @@ impl From<DecisionFunctions<f64>> for Decision {
 }
 
 impl SvmModel {
-    /// Of the rows that it was trained on.
+    /// Creates a model from its training rows and solved problems.
     pub(crate) fn new<T: Scalar>(
         sorted: Cow<Sorted<T>>,
         multiclass: Multiclass,
@@ -67,26 +68,26 @@ impl SvmModel {
         }
     }
 
-    /// The classes of the training rows, ascending: what can be predicted.
+    /// Returns the classes of the training rows, ascending. Predictions are among them.
     pub fn classes(&self) -> &[usize] {
         self.voting.classes()
     }
 
-    /// The binary problems and their solutions, in the order of the decision values' columns.
+    /// Returns the binary problems and their solutions, in the order of the decision values' columns.
     pub fn problems(&self) -> &[BinaryProblem] {
         &self.problems
     }
 
-    /// How many binary problems stopped at the solver's iteration cap, short of its tolerance.
+    /// Returns the number of binary problems that stopped at the solver's iteration cap before reaching the tolerance.
     pub fn n_capped(&self) -> usize {
         let is_capped = |problem: &&BinaryProblem| problem.solution.is_capped;
         self.problems.iter().filter(is_capped).count()
     }
 
-    /// Decision values (n_rows × n_problems): above 0 speaks for a problem's positive class.
+    /// Returns the decision values (n_rows × n_problems); positive values favour a problem's positive class.
     ///
     /// # Errors
-    /// Another number of columns than in training, or a NaN or infinite feature.
+    /// If the number of columns differs from training, or a feature is NaN or infinite.
     pub fn decision_values(&self, features: ArrayView2<f64>) -> Result<Array2<f64>> {
         check_width(&features, self.n_features)?;
         Ok(match &self.decision {
@@ -95,10 +96,10 @@ impl SvmModel {
         })
     }
 
-    /// The predicted label of each row.
+    /// Returns the predicted label of each row.
     ///
     /// # Errors
-    /// Another number of columns than in training, or a NaN or infinite feature.
+    /// If the number of columns differs from training, or a feature is NaN or infinite.
     pub fn labels(&self, features: ArrayView2<f64>) -> Result<Array1<usize>> {
         check_width(&features, self.n_features)?;
         let between = (self.classes().len(), self.voting.multiclass());
@@ -112,8 +113,7 @@ impl SvmModel {
             .collect())
     }
 
-    /// The label that each row of decision values (n_rows × n_problems) speaks for. The rows may be sums over several
-    /// touches of one object.
+    /// Returns the label of each row of decision values (n_rows × n_problems). A row may be the sum over several touches of one object.
     pub fn labels_of_values(&self, values: ArrayView2<f64>) -> Array1<usize> {
         self.voting.labels(values)
     }
@@ -125,8 +125,9 @@ impl<F: Precision, D: Data<Elem = F>> PredictInplace<ArrayBase<D, Ix2>, Array1<u
     /// Writes the predicted labels into `targets`.
     ///
     /// # Panics
-    /// If `features` has another number of columns than in training or a value that is not finite, or `targets`
-    /// another length: linfa's trait has no way to return an error. [`SvmModel::labels`] has.
+    /// If the number of columns differs from training, a feature is not finite, or `targets` has a wrong length, because linfa's trait cannot return an
+    /// error. Use
+    /// [`SvmModel::labels`] for errors.
     fn predict_inplace(&self, features: &ArrayBase<D, Ix2>, targets: &mut Array1<usize>) {
         match self.labels(F::double_features(features).view()) {
             Ok(labels) => targets.assign(&labels),

@@ -1,12 +1,13 @@
-//! From the decision values of binary problems to one class.
+//! Combination of the decision values of binary problems to one class.
 
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2};
 
 use crate::linalg::scalar::Scalar;
 use crate::multiclass::Multiclass;
 
-/// Which class the decision values speak for: for one-vs-one those of all pairs (0, 1), (0, 2), …, (1, 2), … of the
-/// classes' positions, the first positive; for one-vs-rest one a class.
+/// Rule that converts decision values to a class. One-vs-one has one value per pair of class positions (0, 1), (0, 2), …, (1, 2), …, where the first class is
+/// positive.
+/// One-vs-rest has one value per class.
 #[derive(Clone, Debug)]
 pub(crate) struct Voting {
     classes: Vec<usize>,
@@ -14,7 +15,7 @@ pub(crate) struct Voting {
 }
 
 impl Voting {
-    /// Between these classes, ascending.
+    /// Creates the rule for the given classes, ascending.
     pub fn new(classes: &[usize], multiclass: Multiclass) -> Self {
         Self {
             classes: classes.to_vec(),
@@ -22,17 +23,17 @@ impl Voting {
         }
     }
 
-    /// The classes, ascending.
+    /// Returns the classes, ascending.
     pub fn classes(&self) -> &[usize] {
         &self.classes
     }
 
-    /// How binary problems make one of many classes.
+    /// Returns the combination of binary problems.
     pub fn multiclass(&self) -> Multiclass {
         self.multiclass
     }
 
-    /// The label that each row of decision values (n_rows × n_problems) speaks for.
+    /// Returns the label of each row of decision values (n_rows × n_problems).
     pub fn labels(&self, values: ArrayView2<f64>) -> Array1<usize> {
         let values = values.as_standard_layout();
         let mut votes = Vec::new();
@@ -43,7 +44,7 @@ impl Voting {
             .collect()
     }
 
-    /// The label that a row of decision values speaks for; `votes` is scratch.
+    /// Returns the label of a row of decision values; `votes` is scratch memory.
     fn label(&self, values: &[f64], votes: &mut Vec<u32>) -> usize {
         let winner = match self.multiclass {
             Multiclass::OneVsRest => first_maximum(values),
@@ -63,7 +64,7 @@ impl Voting {
 pub(crate) enum VoteCounter {
     /// One-vs-one: votes, n_classes × n_rows.
     Counts(Array2<u16>),
-    /// One-vs-rest: of the problems so far the largest value, and whose it is; one a row.
+    /// One-vs-rest: the largest value of the problems so far and its class, one per row.
     Best(Vec<f64>, Vec<usize>),
 }
 
@@ -76,8 +77,9 @@ impl VoteCounter {
         }
     }
 
-    /// Takes the values of one problem, less ρ: those above 0 are for the positive class, of which, and of the negative one,
-    /// these are the positions. Problems come in the order of [`Multiclass::problems`].
+    /// Adds the values of one problem, minus ρ; positive values are votes for the positive class. The problem is given by the positions of its positive and
+    /// negative class.
+    /// Problems must be added in the order of [`Multiclass::problems`].
     pub fn take<T: Scalar>(
         &mut self,
         (positive, negative): (usize, Option<usize>),
@@ -108,8 +110,9 @@ impl VoteCounter {
         }
     }
 
-    /// The position of the class that each row's votes are for, by the sums of problems (n_problems × n_rows) and their ρ. Problems
-    /// between these classes whose classes do not all take part have no vote.
+    /// Returns the position of the elected class of each row, given the sums of the problems (n_problems × n_rows) and their ρ. Problems with a class that
+    /// does not take part have
+    /// no vote.
     pub fn elect<T: Scalar>(
         sums: &Array2<T>,
         rho: ArrayView1<f64>,
@@ -127,7 +130,7 @@ impl VoteCounter {
         counter.winners()
     }
 
-    /// The position of the class that each row's votes are for; of equals the first.
+    /// Returns the position of the elected class of each row; the first, if several are equal.
     pub fn winners(&self) -> Vec<usize> {
         match self {
             Self::Best(_, winners) => winners.clone(),
@@ -140,8 +143,9 @@ impl VoteCounter {
     }
 }
 
-/// Votes per class, as LIBSVM counts them: a value above 0 is for the positive class, any other for the negative. The
-/// problems are all pairs of classes in order, so those of a class with all later ones lie side by side.
+/// Counts the votes per class as LIBSVM does: a positive value is a vote for the positive class, any other value for the negative class. The problems are all
+/// pairs of classes in
+/// order, so the problems of a class with all later classes are contiguous.
 fn count(values: &[f64], votes: &mut [u32]) {
     let mut rest = values;
     for class in 0..votes.len() {
@@ -156,7 +160,7 @@ fn count(values: &[f64], votes: &mut [u32]) {
     }
 }
 
-/// The position of the largest value; the first of equals.
+/// Returns the position of the largest value; the first, if several are equal.
 pub fn first_maximum<V: PartialOrd>(values: &[V]) -> usize {
     let mut best = 0;
     for (i, value) in values.iter().enumerate() {
@@ -175,7 +179,7 @@ mod tests {
     #[test]
     fn ties_go_to_the_lowest_class() {
         let voting = Voting::new(&[2, 5, 9], Multiclass::OneVsOne);
-        // A cycle: one vote each.
+        // A cycle: one vote for each class.
         let values = array![[1.0, -1.0, 1.0], [-1.0, -1.0, 1.0], [0.0, 0.0, 0.0]];
         assert_eq!(voting.labels(values.view()), array![2, 5, 9]);
         let voting = Voting::new(&[2, 5, 9], Multiclass::OneVsRest);
