@@ -49,8 +49,8 @@ impl SceneFiles {
     /// Starts the files in an existing folder.
     ///
     /// # Errors
-    /// If the folder contains one of these files and no simulation wrote it, a file cannot be written, or a name is not valid in a recording (for example, it
-    /// has a slash).
+    /// If the folder contains one of these files and no simulation wrote it. Also if a file cannot be written, or a name with a slash or another invalid
+    /// character cannot be recorded.
     pub fn create(folder: &Path, plan: &ScenePlan) -> Result<Self> {
         let claimed = DataFolder::claim(folder, "simulate", [RECORDING, WRENCHES, SCENE])?;
         let header = RecordingHeader {

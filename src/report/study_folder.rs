@@ -10,12 +10,10 @@ use crate::report::terminal::{paragraph, table_text};
 use crate::table::{ChartSpec, Role, Table};
 use rayon::prelude::*;
 
-/// Maximum number of charts in the page, and of drawn charts unless all are requested. With more charts, the page is too large for a phone, and drawing takes
-/// minutes.
+/// Maximum number of charts in the page, and of drawn charts unless all are requested. More charts make the page too large for a phone and take minutes.
 pub const MOST_CHARTS: usize = 24;
 
-/// Returns the files of charts, pictures and the page. `beyond` computes additional content while the charts are drawn. Charts without any drawable row are
-/// left out.
+/// Returns the files of charts, pictures and the page. `beyond` computes additional content while charts are drawn. Charts without drawable rows are left out.
 ///
 /// # Errors
 /// If a chart or picture cannot be drawn.

@@ -229,7 +229,7 @@ pub fn without<'a>(settings: &[Setting<'a>], one: &Setting) -> Vec<Setting<'a>> 
         .collect()
 }
 
-/// Returns all numeric settings, or else the numeric settings of the signal, if each row changes at most one of them from its value in the first row.
+/// Returns all numeric settings if each row changes at most one of them from its value in the first row. Otherwise, tries the settings of the signal.
 fn one_at_a_time<'a>(free: &[Setting<'a>], rows: &[usize]) -> Vec<Setting<'a>> {
     let is_signal = |setting: &Setting| {
         setting.column.role == Role::Condition || setting.column.name == "smoothing_mm"

@@ -1,7 +1,7 @@
 //! Manual control of a scene: a program sets poses and joint positions instead of the scene file.
 //!
-//! A new pose takes effect in the next step and stays. Everything else follows the scene file. A manual step and a step of the [time
-//! loop](Simulation::next_frame) are equal bit by bit under two conditions: length, time and poses are equal, and the manual step is observed where the loop
+//! A new pose takes effect in the next step and stays. Everything else follows the scene file. A manual step equals a step of the [time
+//! loop](Simulation::next_frame) bit by bit if length, time and poses are equal. For this, the manual step must be observed where the loop makes a frame.
 //! makes a frame.
 
 use super::plan_object::Movement;
@@ -65,7 +65,7 @@ impl Simulation<'_> {
     /// Sets a robot's joint positions from the next step on: one number for each [coordinate](crate::world::Robot::coordinates), rad or m.
     ///
     /// # Errors
-    /// If the scene has no robot of this name, the number of positions is wrong, or a position is not finite or outside the limits of its joint.
+    /// If the scene has no robot of this name, or the number of positions is wrong. Also if a position is not finite or exceeds the limits of its joint.
     pub fn set_joint_positions(&mut self, robot: &str, positions: &[f64]) -> Result<()> {
         let number = self.robot(robot)?;
         let row = Array2::from_shape_vec((1, positions.len()), positions.to_vec());

@@ -40,6 +40,7 @@ struct Free {
 }
 
 impl FreeObjects {
+    /// Creates the free objects of a scene at their initial poses.
     pub fn of(plan: &ScenePlan) -> Self {
         let objects = plan.objects.iter().enumerate();
         let is_free =
@@ -78,8 +79,8 @@ impl FreeObjects {
         }
     }
 
-    /// Computes the equilibrium of all objects that have not escaped, `dt` seconds after the last one (infinite at the start). Returns whether all are at
-    /// rest.
+    /// Computes the equilibrium of all objects that have not escaped, and returns whether all are at rest. `dt`: time since the last call; infinite at the
+    /// start.
     pub fn settle(
         &mut self,
         plan: &ScenePlan,

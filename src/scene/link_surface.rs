@@ -1,4 +1,4 @@
-//! The surface of a robot's link, which skin can be draped over: the shapes of the link as one triangle mesh in the link's frame, metres.
+//! Surface of a robot's link, which skin can be draped over. The shapes of the link form one triangle mesh in the link's frame, metres.
 //!
 //! Boxes are exact. Round shapes are cut into facets with their corners on the shape; taxels then lie at most [`SAGITTA`] pitches inside.
 

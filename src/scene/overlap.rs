@@ -25,7 +25,7 @@ struct Start<'a> {
 /// The tolerated overlap is the sum of both objects' surface errors.
 ///
 /// # Errors
-/// If a free object overlaps another object by more than the tolerance; the error names both objects and the overlap of their deepest spheres.
+/// If a free object overlaps another object by more than the tolerance. The error names both objects and the overlap of their deepest spheres.
 pub(super) fn check_starts(
     check: &Check,
     objects: &[PlannedObject],

@@ -60,6 +60,7 @@ pub enum Movement {
 }
 
 impl Reader<'_> {
+    /// Checks an object and returns it with its contact model. `finest_mm` is the finest pitch of all patches, `default` the default model of a mesh.
     pub fn object(
         &self,
         spec: &ObjectSpec,

@@ -58,6 +58,7 @@ impl LayoutSpec {
 }
 
 impl Reader<'_> {
+    /// Checks a patch and returns its taxels, mount, friction and signal chain.
     pub fn patch(
         &self,
         spec: &mut PatchSpec,

@@ -46,6 +46,7 @@ impl PlannedPress {
 }
 
 impl Reader<'_> {
+    /// Checks the force control of an object.
     pub fn press(
         &self,
         key: &str,

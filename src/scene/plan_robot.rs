@@ -33,6 +33,7 @@ impl PlannedRobot {
 }
 
 impl Reader<'_> {
+    /// Checks a robot and reads its URDF file.
     pub fn robot(&self, spec: &RobotSpec) -> Result<PlannedRobot> {
         let key = &format!("robots.{}", spec.name);
         let robot = match (&spec.urdf, spec.floating) {

@@ -27,6 +27,7 @@ struct Pressed {
 }
 
 impl PressedObjects {
+    /// Creates the pressed objects of a scene with zero travel.
     pub fn of(plan: &ScenePlan) -> Self {
         let objects = plan.objects.iter().enumerate();
         let pressed = objects.filter(|(_, planned)| planned.press.is_some());
@@ -43,8 +44,7 @@ impl PressedObjects {
         }
     }
 
-    /// Moves each pressed object, in the order of the scene, starting from the pose of its motion. `dt` is the time since the last call, seconds; it is
-    /// infinite at the start.
+    /// Moves each pressed object, in the order of the scene, from the pose of its motion. `dt`: time since the last call, seconds; infinite at the start.
     pub fn push(
         &mut self,
         plan: &ScenePlan,

@@ -72,6 +72,7 @@ impl Reader<'_> {
         Ok(unit * DVec3::from_array(numbers))
     }
 
+    /// Converts a pose to SI units.
     pub fn pose(&self, key: &str, pose: &PoseSpec) -> Result<Pose> {
         let position = self.vector(&format!("{key}.position_mm"), pose.position_mm, MM)?;
         let degree = 1f64.to_radians();
@@ -79,6 +80,7 @@ impl Reader<'_> {
         Ok(Pose::new(rotation_from_rpy(rpy), position))
     }
 
+    /// Converts a plane to a half-space in SI units with a unit normal.
     pub fn plane(&self, plane: &PlaneSpec) -> Result<HalfSpace> {
         let key = format!("planes.{}", plane.name);
         let point = self.vector(&format!("{key}.point_mm"), plane.point_mm, MM)?;

@@ -17,6 +17,7 @@ pub(super) struct RobotState {
 }
 
 impl RobotState {
+    /// Creates the state of a robot with its joints at their rest positions.
     pub fn of(robot: &PlannedRobot) -> Self {
         Self {
             positions: robot.robot.rest_positions(),

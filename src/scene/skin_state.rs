@@ -28,8 +28,7 @@ pub(super) const OUT_OF_REACH: Pose = Pose {
 };
 
 impl PlacedObjects {
-    /// Returns the poses of the objects in the patch frame, `patch_from_object`. An object that carries the patch is out of reach, because the patch does
-    /// not touch it.
+    /// Returns the poses of the objects in the patch frame, `patch_from_object`. An object that carries the patch does not touch it and is out of reach.
     pub fn seen_by<'a>(
         &'a self,
         patch: &PlannedPatch,
@@ -174,8 +173,8 @@ impl SkinState {
         }
     }
 
-    /// Makes a step of `dt` seconds with the objects at their final poses. An infinite `dt` gives the steady state. `tips` are the tangential springs of
-    /// free objects.
+    /// Makes a step of `dt` seconds with the objects at their final poses; an infinite `dt` gives the steady state. `tips`: tangential springs of free
+    /// objects.
     pub fn feel(
         &mut self,
         patch: &PlannedPatch,

@@ -101,6 +101,7 @@ impl Layout {
         self.above + self.size.1 + self.labels.depth
     }
 
+    /// Returns the area of a panel, pixels.
     pub fn frame(&self, panel: usize) -> Area {
         let (row, column) = (panel / self.columns, panel % self.columns);
         let panels = self.panels();

@@ -13,6 +13,7 @@ const MANY: usize = 400;
 /// Line height in the list of a front, pixels.
 const LINE: f64 = 17.0;
 
+/// Draws a chart of lines or points.
 pub(super) fn draw(view: &View) -> Drawing {
     let (columns, width, height) = match view.titles.len() {
         1 => (1, 660.0, 340.0),

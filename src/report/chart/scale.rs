@@ -78,7 +78,7 @@ impl Scale {
         scale.with_ticks(&ticks, |&tick| column.tick(tick))
     }
 
-    /// Creates a scale with one place for each value of a column: words in the given order (from the top along y), or the numbers of tiles.
+    /// Creates a scale with one place for each value of a column. Words have the given order (from the top along y); numbers of tiles are ascending.
     pub fn of_levels(column: &Column, (values, words): (&[f64], &[String]), along: Along) -> Self {
         let is_words = column.scale == Spacing::Words;
         let levels = match is_words {
@@ -213,8 +213,7 @@ fn log_ticks(low: f64, high: f64) -> Vec<f64> {
     enough.unwrap_or_else(|| even_ticks(10f64.powf(low), 10f64.powf(high)))
 }
 
-/// Selects the ticks whose labels have room. Each label takes `half` of the axis to either side. The ends come first, then round ticks, then the others in
-/// order.
+/// Selects the ticks whose labels have room, `half` of the axis to either side. The order of priority is: the ends, round ticks, other ticks.
 pub(super) fn thin(ticks: &[Tick], half: impl Fn(&Tick) -> f64) -> Vec<bool> {
     let last = ticks.len().saturating_sub(1);
     let rank = |place: usize| match (place == 0 || place == last, ticks[place].is_round) {

@@ -27,6 +27,7 @@ struct Look<'a> {
     ends: (f64, f64),
 }
 
+/// Draws a chart of tiles. `fill` and `sign` are column names.
 pub(super) fn draw(view: &View, fill: &str, sign: Option<&str>) -> Result<Drawing> {
     let look = Look::of(
         view,

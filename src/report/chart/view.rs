@@ -65,6 +65,7 @@ pub(super) struct Groups {
 }
 
 impl<'a> View<'a> {
+    /// Applies a chart specification to its table.
     pub fn of(spec: &'a ChartSpec, tables: &'a [Table]) -> Result<Self> {
         let table = tables.iter().find(|table| table.file == spec.table);
         let table = table.ok_or_else(|| {

@@ -9,8 +9,7 @@ use crate::table::{Role, Value};
 /// Maximum number of listed rows of a front.
 const MAX_ROWS: usize = 200;
 
-/// Returns a table for each cost: in each condition, the choices that are better than all with equal or lower cost. Empty if no table has choices with values
-/// and costs.
+/// Returns a table for each cost: in each condition, the choices that are better than all of equal or lower cost. Empty if no table has choices with costs.
 pub(crate) fn choices_html(found: &Found) -> String {
     let Ok(offers) = Offers::of(found.tables, &Asked::default()) else {
         return String::new();

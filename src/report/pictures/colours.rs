@@ -14,8 +14,7 @@ pub const GRID: Rgb = [0xe4, 0xe6, 0xe9];
 /// Background colour of charts and drawings.
 pub const PAPER: Rgb = [0xff, 0xff, 0xff];
 
-/// Line colours: palette of Okabe and Ito (2008) without yellow, which is too pale on white. The last colour is purple, because a study can compare eight
-/// classifiers.
+/// Line colours: palette of Okabe and Ito (2008) without yellow, which is too pale on white, and purple, because a study can compare eight classifiers.
 pub const LINES: [Rgb; 8] = [
     [0x00, 0x72, 0xb2],
     [0xd5, 0x5e, 0x00],

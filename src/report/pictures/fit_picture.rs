@@ -125,7 +125,7 @@ impl Original {
     }
 }
 
-/// Finds a hit by sphere tracing: each step is as long as the distance to the surface, so that no step passes the surface (Hart 1996).
+/// Finds a hit by sphere tracing (Hart 1996): each step equals the distance to the surface, so that no step passes the surface.
 fn march(solid: &Solid, start: DVec3, direction: DVec3, length: f64) -> Option<(DVec3, DVec3)> {
     const MAX_STEPS: usize = 400;
     let near = 1e-6 * length;

@@ -42,8 +42,7 @@ impl Picture {
         let (width, height) = (info.width as usize, info.height as usize);
         let n_samples = info.color_type.samples();
         let mut rgb = vec![0; 3 * width * height];
-        // Slices and plain loops: this crate is compiled without optimisation, where iterators over 5 million pixels would take most of the time of a small
-        // study.
+        // Slices and plain loops: this crate is compiled without optimisation. Iterators over 5 million pixels would take most of the time of a small study.
         let (from, to) = (&elements[..], &mut rgb[..]);
         let (mut source, mut target) = (0, 0);
         while target < to.len() {
@@ -109,6 +108,7 @@ impl Picture {
     }
 }
 
+/// Converts an error of the PNG or drawing crate.
 pub(crate) fn unfit(said: impl std::fmt::Display) -> Error {
     Error::input("picture", said, "a size that fits into a PNG file")
 }

@@ -37,6 +37,7 @@ pub(crate) struct Cells {
 }
 
 impl Cells {
+    /// Creates the cells of a patch: squares for a grid, discs for another layout.
     pub fn of(patch: &RecordedPatch) -> Self {
         match &patch.grid {
             Some(grid) => {

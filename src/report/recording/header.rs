@@ -122,6 +122,7 @@ impl Member {
         }
     }
 
+    /// Returns the NumPy type: `<f4` or `<f8`.
     pub fn descr(&self) -> String {
         format!("<f{}", self.element as usize)
     }
@@ -131,6 +132,7 @@ impl Member {
         self.row.iter().product()
     }
 
+    /// Returns the size of one row, bytes.
     pub fn row_bytes(&self) -> usize {
         self.n_numbers() * self.element as usize
     }

@@ -142,8 +142,8 @@ impl RecordingFile {
     }
 }
 
-/// Returns a member after its header, and its number of rows. The number of rows follows from the size in the zip directory and must agree with the header, so
-/// no memory is allocated for a false header. An error describes a missing or invalid member.
+/// Returns a member after its header, and its number of rows. This number follows from the size in the zip directory and must agree with the header. No memory
+/// is allocated for a false header. An error describes a missing or invalid member.
 fn open_rows<'a>(
     archive: &'a mut ZipArchive<BufReader<File>>,
     member: &Member,

@@ -30,9 +30,9 @@ pub struct SkinPicture {
 impl SkinPicture {
     /// Prepares the pictures of a patch with one colour scale.
     ///
-    /// A grid is drawn as a heat map with axes in millimetres. Each taxel of another layout is drawn as a disc. A flat patch is seen from above; a cylinder is
-    /// unrolled; a part of a sphere is flattened about its middle. Any other patch is seen from the side to which its axes point, and from behind. The picture
-    /// states the view and has a scale bar.
+    /// A grid is drawn as a heat map with axes in millimetres. Each taxel of another layout is drawn as a disc. A flat patch is seen from above, a cylinder is
+    /// unrolled, and a part of a sphere is flattened about its middle. Any other patch is seen from the side to which its axes point, and from behind. The
+    /// picture states the view and has a scale bar.
     ///
     /// # Errors
     /// If the picture cannot be rendered.
