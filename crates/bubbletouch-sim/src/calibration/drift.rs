@@ -13,7 +13,8 @@ use std::f64::consts::FRAC_PI_2;
 /// Minimum fraction of the session between the first and the last untouched frames. Less determines the drift at its end poorly.
 const SPAN: f64 = 0.25;
 
-/// Estimates σ at the end of the session, as a fraction of the full scale. `noise` is a standard deviation; `width` is that of the smoothing in pitches.
+/// Estimates σ at the end of the session, as a fraction of the full scale. `noise` is a standard deviation; `width` is the width of the smoothing in
+/// pitches.
 pub(super) fn estimate(
     skin: &RecordedSkin,
     untouched: Option<&Untouched>,

@@ -1,4 +1,4 @@
-//! Gain: estimated from the readings of taxels relative to those of their four neighbours.
+//! Gain: estimated from the readings of taxels relative to the readings of their four neighbours.
 //!
 //! dᵢ is the median of ln xᵢ − ¼ Σⱼ ln xⱼ over frames in which all five taxels are well pressed. The pressure under a contact has an equal effect on every
 //! taxel

@@ -3,7 +3,7 @@
 use multiversion::multiversion;
 use ndarray::ArrayView2;
 
-/// Parts of a frame that its image leaves out. Both limits are in the unit of the frame.
+/// Parts of a frame that its image leaves out. The limits `level` and `foremost` are in the unit of the frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cut {
     /// Threshold ℓ, zero or positive: values δ below it count as 0. So do negative values, which noise and estimates can have, and NaN.

@@ -6,7 +6,7 @@
 //! **Measurement features** ([`measured`]): raw, without the effect of a constant pressure (centred), at norm 1, or both.
 //!
 //! **Image features** ([`ImageFeature`], and joins of several): numbers that are invariant to shifts and rotations of the contact on the array,
-//! which cause most differences between touches of a free object. They need the frame; if it was
+//! which cause most differences between touches of a free object. Image features need the frame; if it was
 //! compressed, its [linear estimate](crate::sensing::ImageEstimate) replaces it. A patch without rows and columns uses its [`Chart`].
 //!
 //! | feature | numbers (64 × 64) | shift | turn | mirror image | more pressure | deeper |

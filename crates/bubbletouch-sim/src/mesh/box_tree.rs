@@ -1,40 +1,40 @@
-//! A bounding volume hierarchy of anything that has a box, so that a search looks at few of them.
+//! Bounding volume hierarchy of boxes.
 
 use super::box_tree_build::{DEEPEST, Node, build};
 use crate::geometry::Aabb;
 use std::ops::Range;
 
-/// A tree of boxes in one flat array; the same boxes always give the same tree.
+/// Tree of boxes in one flat array. Equal boxes give equal trees.
 #[derive(Clone, Debug)]
 pub struct BoxTree {
-    /// The root first; the two children of a node lie side by side.
+    /// Nodes, the root first; the two children of a node are adjacent.
     nodes: Vec<Node>,
-    /// Numbers of the boxes, leaf by leaf.
+    /// Indices of the boxes, leaf by leaf.
     order: Vec<u32>,
 }
 
-/// Nodes that a search may have to come back to: at most one a level.
+/// Maximum number of nodes on the stack of a search: one per level.
 const STACK: usize = DEEPEST + 1;
 
 impl BoxTree {
-    /// The tree of these boxes, metres; `None` of none.
+    /// Builds the tree of boxes, metres; `None` if there are none.
     pub fn new(boxes: Vec<Aabb>) -> Option<Self> {
         let root = Aabb::around(boxes.iter().copied())?;
         let (nodes, order) = build(boxes, root);
         Some(Self { nodes, order })
     }
 
-    /// The box around all.
+    /// Returns the bounding box of all boxes.
     pub fn bounds(&self) -> Aabb {
         self.nodes[0].bounds
     }
 
-    /// The boxes' numbers in the tree's order, in which neighbours lie together.
+    /// Returns the indices of the boxes in the order of the tree, where neighbours are adjacent.
     pub fn order(&self) -> &[u32] {
         &self.order
     }
 
-    /// How many nodes; node 0 is the root, children come after their parents.
+    /// Returns the number of nodes; node 0 is the root, and children come after their parents.
     pub(super) fn n_nodes(&self) -> usize {
         self.nodes.len()
     }
@@ -43,20 +43,20 @@ impl BoxTree {
         &self.nodes[node].bounds
     }
 
-    /// The two children of a node; `None` of a leaf.
+    /// Returns the two children of a node; `None` for a leaf.
     pub(super) fn children(&self, node: usize) -> Option<[usize; 2]> {
         let node = &self.nodes[node];
         (node.n_boxes == 0).then_some([node.first as usize, node.first as usize + 1])
     }
 
-    /// Where in the tree's order the boxes of a leaf lie; of another node none do.
+    /// Returns the positions of a leaf's boxes in the order of the tree; empty for an inner node.
     pub(super) fn leaf(&self, node: usize) -> Range<usize> {
         self.nodes[node].places()
     }
 
-    /// Branch and bound: visits every leaf whose boxes up to the root all have `bound` below the limit, the lower of two
-    /// children first. `visit` gets the leaf's places in the tree's [order](Self::order) and the limit, and returns the limit
-    /// from there on.
+    /// Visits leaves by branch and bound: all leaves whose nodes up to the root have `bound` below the limit, the child with the lower bound
+    /// first. `visit` receives the leaf's positions in the tree's [order](Self::order) and the limit, and returns the new
+    /// limit.
     pub fn search(
         &self,
         limit: f64,
@@ -66,8 +66,8 @@ impl BoxTree {
         self.search_unless(limit, bound, |_, _| false, visit);
     }
 
-    /// [`search`](Self::search) that also passes by the nodes that `rules_out`, asked with their number and the limit when
-    /// their turn comes.
+    /// Visits leaves like [`search`](Self::search), but skips nodes for which `rules_out` returns true. It receives the node and
+    /// the current limit.
     pub(super) fn search_unless(
         &self,
         mut limit: f64,

@@ -1,36 +1,36 @@
-//! How the tree of boxes is made: cut where a search is expected to cost least (surface area heuristic).
+//! Construction of a tree of boxes by the surface area heuristic, which minimises the expected cost of a search.
 
 use crate::geometry::Aabb;
 use glam::DVec3;
 use std::ops::Range;
 
-/// A box of the tree.
+/// Node of the tree.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Node {
     pub bounds: Aabb,
-    /// Of a leaf the place of its first box, otherwise its first child.
+    /// Position of the first box of a leaf, otherwise the first child.
     pub first: u32,
-    /// In a leaf; zero for a node with children.
+    /// Number of boxes in a leaf; zero for a node with children.
     pub n_boxes: u32,
 }
 
 impl Node {
-    /// Where in the tree's order a leaf's boxes lie.
+    /// Returns the positions of a leaf's boxes in the order of the tree.
     pub fn places(&self) -> Range<usize> {
         self.first as usize..(self.first + self.n_boxes) as usize
     }
 }
 
-/// Boxes in a leaf, at most. Larger: more of them are looked at; smaller: more nodes.
+/// Maximum number of boxes in a leaf. If it is larger, more boxes are tested; if it is smaller, there are more nodes.
 const LEAF: usize = 4;
-/// Places where a node may be cut. More: a better tree, made more slowly.
+/// Number of candidate cuts per axis. If it is larger, the tree is better and takes longer to build.
 const BINS: usize = 16;
-/// From this depth on nodes are cut in half, whatever it costs.
+/// Depth from which on nodes are cut at the median, at any cost.
 const BALANCED_FROM: usize = 24;
-/// No tree is deeper: 32 levels halve 2³² boxes.
+/// Maximum depth of a tree: 32 levels halve 2³² boxes.
 pub(super) const DEEPEST: usize = BALANCED_FROM + 32;
 
-/// The nodes of the tree of some boxes, and their numbers leaf by leaf; `root`: around them all.
+/// Returns the nodes of the tree, and the indices of the boxes leaf by leaf. `root` is the box around all boxes.
 pub(super) fn build(boxes: Vec<Aabb>, root: Aabb) -> (Vec<Node>, Vec<u32>) {
     let n_boxes = boxes.len() as u32;
     let mut builder = Builder {
@@ -53,12 +53,12 @@ struct Builder {
     centers: Vec<DVec3>,
     order: Vec<u32>,
     nodes: Vec<Node>,
-    /// Scratch of a cut.
+    /// Workspace for a cut.
     right: Vec<u32>,
 }
 
 impl Builder {
-    /// Makes the tree below a node that holds `order[range]`.
+    /// Builds the subtree of a node that contains `order[range]`.
     fn split(&mut self, node: usize, range: Range<usize>, depth: usize) {
         if range.len() <= LEAF {
             return;
@@ -85,8 +85,8 @@ impl Builder {
         Aabb::around(boxes).expect("no part of the tree is empty")
     }
 
-    /// Reorders a range; returns where its second part starts, and the boxes around both: the cut with the least expected
-    /// cost (surface area heuristic, cuts at equal distances), or the median where that is no cut or the tree is deep.
+    /// Reorders a range, and returns the start of its second part and the bounding boxes of both. The cut has the lowest expected
+    /// cost (surface area heuristic, cuts at equal distances); the median is used if there is no such cut or the tree is deep.
     fn partition(&mut self, range: Range<usize>, depth: usize) -> (usize, [Aabb; 2]) {
         let centers = &self.centers;
         let order = &mut self.order[range.clone()];
@@ -119,17 +119,17 @@ impl Builder {
     }
 }
 
-/// A plane across one axis between two bins of centres.
+/// Plane across one axis between two bins of centres.
 struct Cut {
     axis: usize,
     low: f64,
     bins_a_metre: f64,
-    /// The first bin of the second part.
+    /// First bin of the second part.
     first_right: usize,
 }
 
 impl Cut {
-    /// The best along any axis, and the boxes around its two sides; `None` if all centres are at one place.
+    /// Returns the best cut along any axis with the bounding boxes of its sides; `None` if all centres coincide.
     fn cheapest(
         boxes: &[Aabb],
         centers: &[DVec3],
@@ -147,7 +147,7 @@ impl Cut {
         for &t in order {
             let (bounds, center) = (&boxes[t as usize], centers[t as usize]);
             for (cut, bins) in cuts.iter().zip(&mut bins) {
-                // An axis without extent has no bins a metre; all its centres are in the first.
+                // An axis without extent has 0 bins per metre, so all centres are in the first bin.
                 bins[cut.bin(center)].take(bounds);
             }
         }
@@ -179,10 +179,10 @@ impl Cut {
     }
 }
 
-/// The boxes whose centres lie between two cuts.
+/// Boxes with centres between two cuts.
 #[derive(Clone, Copy)]
 struct Bin {
-    /// Around them; of none, inside out.
+    /// Bounding box; inverted if the bin is empty.
     bounds: Aabb,
     n_boxes: usize,
 }
@@ -208,7 +208,7 @@ impl Bin {
         self.n_boxes += other.n_boxes;
     }
 
-    /// Area · triangles; `None` of none.
+    /// Returns area · number of boxes; `None` if the bin is empty.
     fn cost(&self) -> Option<f64> {
         let s = self.bounds.size();
         let area = s.x * s.y + s.y * s.z + s.z * s.x;
@@ -216,7 +216,7 @@ impl Bin {
     }
 }
 
-/// The least cost over both sides together, and its first bin on the right; `None` if one bin has all boxes.
+/// Returns the lowest total cost of both sides and the first bin on the right; `None` if one bin contains all boxes.
 fn cheapest_plane(bins: &[Bin; BINS]) -> Option<(f64, usize)> {
     let mut right_costs = [None; BINS];
     let mut right = Bin::EMPTY;

@@ -1,4 +1,4 @@
-//! A tree of boxes over triangles: what is nearest to a point, what a line meets.
+//! Tree of bounding boxes over triangles, for nearest points and line intersections.
 
 use super::slab::{Slab, slabs};
 use super::{BoxTree, Feature, Triangle, TriangleMesh};
@@ -6,48 +6,48 @@ use crate::geometry::Aabb;
 use glam::DVec3;
 use std::ops::Range;
 
-/// Triangles in a tree of boxes; the same triangles always give the same tree.
+/// Triangles in a tree of bounding boxes. Equal triangles give equal trees.
 #[derive(Clone, Debug)]
 pub struct Bvh {
     tree: BoxTree,
-    /// In the tree's order.
+    /// Triangles in the order of the tree.
     triangles: Vec<Triangle>,
-    /// Their planes.
+    /// Planes of the triangles.
     planes: Vec<Plane>,
-    /// Around the triangles of each node.
+    /// Slab of each node.
     slabs: Vec<Slab>,
 }
 
-/// The nearest point of a mesh.
+/// Nearest point of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Closest {
-    /// Metres, not negative.
+    /// Distance, metres, not negative.
     pub distance: f64,
-    /// Metres.
+    /// Nearest point, metres.
     pub point: DVec3,
-    /// The triangle's number in the mesh.
+    /// Index of the triangle in the mesh.
     pub triangle: usize,
-    /// What part of that triangle.
+    /// Part of the triangle that contains the point.
     pub feature: Feature,
 }
 
-/// Where a line meets a triangle.
+/// Intersection of a line and a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// How far along the line, in lengths of its direction.
+    /// Position along the line, in lengths of its direction vector.
     pub along: f64,
-    /// The triangle's number in the mesh.
+    /// Index of the triangle in the mesh.
     pub triangle: usize,
 }
 
 impl Bvh {
-    /// The tree of a mesh's triangles.
+    /// Builds the tree of a mesh's triangles.
     pub fn new(mesh: &TriangleMesh) -> Self {
         let triangles = (0..mesh.n_triangles()).map(|t| mesh.triangle(t));
         Self::of(triangles.collect()).expect("a mesh has triangles")
     }
 
-    /// The tree of some triangles, numbered as they come; `None` of none.
+    /// Builds the tree of triangles, whose indices are their positions in the vector; `None` if there are none.
     pub fn of(triangles: Vec<Triangle>) -> Option<Self> {
         let tree = BoxTree::new(triangles.iter().map(Triangle::bounds).collect())?;
         let in_order = tree.order().iter().map(|&t| triangles[t as usize]);
@@ -60,22 +60,22 @@ impl Bvh {
         })
     }
 
-    /// The tree itself.
+    /// Returns the tree of boxes.
     pub(super) fn tree(&self) -> &BoxTree {
         &self.tree
     }
 
-    /// The box around all triangles.
+    /// Returns the bounding box of all triangles.
     pub fn bounds(&self) -> Aabb {
         self.tree.bounds()
     }
 
-    /// The triangles of a leaf; of another node none.
+    /// Returns the triangles of a leaf; none for an inner node.
     pub(super) fn leaf(&self, node: usize) -> &[Triangle] {
         &self.triangles[self.tree.leaf(node)]
     }
 
-    /// The nearest point of the mesh that is closer than `within` metres (infinity: the nearest of all).
+    /// Returns the nearest point of the mesh that is closer than `within` metres (infinity: no limit).
     pub fn closest(&self, point: DVec3, within: f64) -> Option<Closest> {
         let mut found = None;
         let mut visit = |place: usize, limit| {
@@ -104,7 +104,7 @@ impl Bvh {
         found
     }
 
-    /// Each triangle whose box meets this one, in the order of the tree: its number in the mesh and its corners.
+    /// Visits each triangle whose bounding box intersects `region`, in the order of the tree, with its index in the mesh.
     pub fn each_in_box(&self, region: &Aabb, mut visit: impl FnMut(usize, &Triangle)) {
         let apart = |a: &Aabb, b: &Aabb| a.min.cmpgt(b.max).any() || b.min.cmpgt(a.max).any();
         let bound = |bounds: &Aabb| f64::from(u8::from(apart(bounds, region)));
@@ -116,7 +116,7 @@ impl Bvh {
         });
     }
 
-    /// The first triangle that the line `origin + along · direction` meets for `along` in a range.
+    /// Returns the first triangle that the line `origin + along · direction` crosses for `along` in a range.
     pub fn first_hit(&self, origin: DVec3, direction: DVec3, range: Range<f64>) -> Option<Hit> {
         let mut found = None;
         self.search(
@@ -136,8 +136,8 @@ impl Bvh {
         found
     }
 
-    /// Every triangle that the whole line meets, in the order of the tree. A line through an edge may meet both sides or,
-    /// by rounding, none.
+    /// Visits every triangle that the infinite line crosses, in the order of the tree. A line through an edge may cross both triangles or,
+    /// due to rounding, none.
     pub fn each_hit(&self, origin: DVec3, direction: DVec3, mut visit: impl FnMut(Hit)) {
         self.search(
             f64::INFINITY,
@@ -154,9 +154,9 @@ impl Bvh {
         );
     }
 
-    /// Branch and bound: visits the triangles of every leaf whose boxes all have `bound` below the limit, the lower of two
-    /// children first. `visit` gets a triangle's number in the mesh, its corners and the limit, and returns the limit
-    /// from there on.
+    /// Visits triangles by branch and bound: in all leaves whose nodes up to the root have `bound` below the limit, the child with the lower bound
+    /// first. `visit` receives a triangle's index in the mesh, its corners and the limit, and returns the new
+    /// limit.
     pub fn search(
         &self,
         limit: f64,
@@ -168,17 +168,17 @@ impl Bvh {
         });
     }
 
-    /// The number in the mesh of the triangle at a place in the tree's order, in which neighbours lie together.
+    /// Returns the index in the mesh of the triangle at a position in the order of the tree, where neighbours are adjacent.
     pub fn number(&self, place: usize) -> usize {
         self.tree.order()[place] as usize
     }
 
-    /// The triangles in the tree's order.
+    /// Returns the triangles in the order of the tree.
     pub fn triangles(&self) -> &[Triangle] {
         &self.triangles
     }
 
-    /// [`search`](Self::search) with places in the tree's order instead of numbers.
+    /// Visits triangles like [`search`](Self::search), with positions in the order of the tree instead of indices in the mesh.
     pub fn search_places(
         &self,
         limit: f64,
@@ -195,19 +195,19 @@ impl Bvh {
     }
 }
 
-/// The plane of a triangle: no point of the triangle is nearer than it. Where a whole mesh is about equally far, as from the
-/// middle of a ball, boxes rule out little, and planes nearly all.
+/// Plane of a triangle, a lower bound of the distance. If all parts of a mesh are about equally far from a point, such as the
+/// middle of a ball, boxes exclude few triangles and planes nearly all.
 #[derive(Clone, Debug)]
 struct Plane {
-    /// Of length one; zero where a triangle is too thin to have one.
+    /// Unit normal; zero if the triangle is too thin.
     normal: DVec3,
-    /// Along it.
+    /// Position along the normal.
     offset: f64,
 }
 
 impl Plane {
     fn of(triangle: &Triangle) -> Self {
-        /// Triangles that are thinner, as a share of their length, have planes that rounding turns too far.
+        /// Smallest height of a triangle relative to its length; the planes of thinner ones are rotated too much by rounding.
         const THINNEST: f64 = 1e-4;
         let is_thin = 2.0 * triangle.area() <= THINNEST * triangle.longest_edge_squared();
         let normal = match triangle.normal() {
@@ -220,7 +220,7 @@ impl Plane {
         }
     }
 
-    /// Whether it is certainly farther from a point than the square root of `limit`.
+    /// Returns whether the plane is certainly farther from a point than the square root of `limit`.
     fn is_beyond(&self, point: DVec3, limit: f64) -> bool {
         let height = self.normal.dot(point) - self.offset;
         height * height > limit * (1.0 + 1e-6)

@@ -1,22 +1,22 @@
-//! The winding number of a mesh without borders, exactly: the triangles that a ray crosses, counted by direction.
+//! Exact winding number of a mesh without borders, by counting the triangles that a ray crosses.
 //!
-//! A ray from x to infinity leaves the front of a triangle (+1) or enters it (−1). If every edge is passed as often in one
-//! direction as in the other, the sum is the winding number of x, whatever the ray: no approximation, as long as the ray
-//! keeps clear of edges. Rays that do not are given up for another direction.
+//! A ray from x to infinity leaves through the front of a triangle (+1) or enters through it (−1). If every edge has equally many triangles in both
+//! directions, the sum is the winding number of x for any ray. The result is exact if the ray
+//! does not pass close to an edge. Otherwise another direction is used.
 
 use super::winding::solid_angle;
 use super::{Bvh, Triangle};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// Rays nearer to an edge of a triangle than this (in barycentric coordinates) are given up. Larger: more rays are;
-/// smaller: rounding counts both triangles beside the edge, or none.
+/// Smallest distance of a ray from an edge of a triangle, in barycentric coordinates. If it is larger, more rays are rejected;
+/// if it is smaller, rounding may count both triangles at the edge, or none.
 const NEAR_EDGE: f64 = 1e-7;
 
-/// Directions that are tried; about one in a million fails.
+/// Maximum number of directions; about one in a million fails.
 const MAX_RAYS: usize = 32;
 
-/// How often the triangles go around a point.
+/// Returns the winding number of the triangles around a point.
 pub(super) fn winding(bvh: &Bvh, point: DVec3) -> i32 {
     let rays = (0..MAX_RAYS).find_map(|number| along_ray(bvh, point, direction(number)));
     rays.unwrap_or_else(|| {
@@ -25,7 +25,7 @@ pub(super) fn winding(bvh: &Bvh, point: DVec3) -> i32 {
     })
 }
 
-/// Spread over the sphere by the golden ratio, along no direction that meshes are modelled along.
+/// Returns a direction; directions are spread over the sphere by the golden ratio and avoid the axes of typical meshes.
 fn direction(number: usize) -> DVec3 {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let turns = 0.137 + GOLDEN * number as f64;
@@ -35,7 +35,7 @@ fn direction(number: usize) -> DVec3 {
     DVec3::new(across * cos, across * sin, z)
 }
 
-/// `None` if the ray comes too near to an edge.
+/// Returns the winding number by one ray; `None` if the ray passes too close to an edge.
 fn along_ray(bvh: &Bvh, point: DVec3, direction: DVec3) -> Option<i32> {
     let (mut sum, mut is_clear) = (0, true);
     bvh.search(
@@ -55,8 +55,8 @@ fn along_ray(bvh: &Bvh, point: DVec3, direction: DVec3) -> Option<i32> {
     is_clear.then_some(sum)
 }
 
-/// 1 through the front of a triangle, −1 through its back, 0 past it; `None` near its edges. A triangle too thin to have a
-/// normal is crossed by no ray that keeps clear of its neighbours' edges.
+/// Returns 1 if the ray crosses the front of a triangle, −1 for its back, 0 if it misses; `None` near its edges. A triangle too thin to have a
+/// normal is missed by every ray that avoids the edges of its neighbours.
 fn crossing(triangle: &Triangle, origin: DVec3, direction: DVec3) -> Option<i32> {
     let [a, b, c] = triangle.0;
     let (ab, ac, from_a) = (b - a, c - a, origin - a);

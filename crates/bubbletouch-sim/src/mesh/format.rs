@@ -1,4 +1,4 @@
-//! Which kind of mesh file, and in which unit.
+//! Format and unit of a mesh file.
 
 use super::{MeshFile, read_obj, read_ply, read_stl};
 use crate::error::{Error, Result};
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use std::io::BufRead;
 use std::path::Path;
 
-/// The kinds of mesh files that can be read.
+/// Mesh file formats that can be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MeshFormat {
     /// Polygon file format, ascii or binary.
@@ -17,7 +17,7 @@ pub enum MeshFormat {
     Stl,
 }
 
-/// The unit of a mesh file's numbers. No format that is read here says it.
+/// Length unit of the numbers in a mesh file; the supported formats do not contain it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum LengthUnit {
     /// m
@@ -36,10 +36,10 @@ pub enum LengthUnit {
 }
 
 impl MeshFormat {
-    /// By the ending of a file's name, in any case.
+    /// Returns the format of a file by its extension, ignoring case.
     ///
     /// # Errors
-    /// An ending that no format has.
+    /// If no format has this extension.
     pub fn of(path: &Path) -> Result<Self> {
         let ending = path.extension().unwrap_or_default().to_string_lossy();
         match ending.to_ascii_lowercase().as_str() {
@@ -54,10 +54,10 @@ impl MeshFormat {
         }
     }
 
-    /// What a file of this format and unit holds, in metres.
+    /// Reads a file of this format and unit, converted to metres.
     ///
     /// # Errors
-    /// Errors begin with `place`, its name.
+    /// If the file is invalid; errors begin with `place`, the name of the file.
     pub fn read(self, place: &str, unit: LengthUnit, source: impl BufRead) -> Result<MeshFile> {
         let file = match self {
             Self::Ply => read_ply(place, source),
@@ -72,7 +72,7 @@ impl MeshFormat {
 }
 
 impl LengthUnit {
-    /// The units by the names that people type.
+    /// Unit names as users type them.
     pub const NAMES: [(&'static str, Self); 4] = [
         ("m", Self::Metre),
         ("cm", Self::Centimetre),
@@ -80,13 +80,13 @@ impl LengthUnit {
         ("in", Self::Inch),
     ];
 
-    /// As people type it.
+    /// Returns the name as users type it.
     pub fn name(self) -> &'static str {
         let named = Self::NAMES.iter().find(|(_, unit)| *unit == self);
         named.expect("every unit has a name").0
     }
 
-    /// One of it in metres.
+    /// Returns the length of one unit, metres.
     pub fn metres(self) -> f64 {
         match self {
             Self::Metre => 1.0,

@@ -1,4 +1,4 @@
-//! Holes of a mesh: found, measured, and closed on request.
+//! Holes of a mesh: detection, measures, and closing on request.
 
 use super::welded::Joined;
 use super::{TriangleMesh, Welded};
@@ -7,19 +7,19 @@ use glam::DVec3;
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// A connected part of the border of a mesh: edges with one face.
+/// Connected part of the border of a mesh: edges with one face.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hole {
-    /// Its edges as their faces pass them, from corner to corner.
+    /// Edges in the direction of their faces, from corner to corner.
     pub border: Vec<[u32; 2]>,
     /// Length of the border, metres.
     pub length: f64,
-    /// The largest distance between two corners of the border, metres.
+    /// Largest distance between two corners of the border, metres.
     pub width: f64,
 }
 
 impl Hole {
-    /// All holes of a mesh, the longest first.
+    /// Returns all holes of a mesh, the longest first.
     pub fn all(mesh: &TriangleMesh, welded: &Welded) -> Vec<Self> {
         let single = welded.edges().filter(|sides| sides.len() == 1);
         let borders: Vec<[u32; 2]> = single
@@ -51,7 +51,7 @@ impl Hole {
         }
     }
 
-    /// Whether its border enters every corner as often as it leaves it, so that a cone closes it.
+    /// Returns whether the border enters every corner as often as it leaves it, so that a cone closes the hole.
     fn is_circuit(&self) -> bool {
         let mut balance: BTreeMap<u32, i32> = BTreeMap::new();
         for &[from, to] in &self.border {
@@ -62,10 +62,10 @@ impl Hole {
     }
 }
 
-/// The largest distance between two points.
+/// Returns the largest distance between two points.
 fn width(mut points: Vec<DVec3>) -> f64 {
     let middle = points.iter().sum::<DVec3>() / points.len().max(1) as f64;
-    // Far ones first: two that lie nearer to the middle than half the width cannot be wider.
+    // Far points first: two points closer to the middle than half the width cannot be farther apart.
     points.sort_by(|a, b| {
         let [a, b] = [a, b].map(|point| point.distance_squared(middle));
         b.total_cmp(&a)
@@ -82,20 +82,20 @@ fn width(mut points: Vec<DVec3>) -> f64 {
     widest
 }
 
-/// What was closed.
+/// Result of closing holes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClosedHoles {
-    /// The mesh with a cone over each of them: a triangle for each edge of the border, to the middle of its corners.
+    /// Mesh with a cone over each closed hole: one triangle per border edge, to the mean of the border's corners.
     pub mesh: TriangleMesh,
-    /// The width of each, metres, the widest first.
+    /// Width of each closed hole, metres, the widest first.
     pub widths: Vec<f64>,
 }
 
 impl TriangleMesh {
-    /// Closes all holes at most this wide (metres, not negative); wider ones stay.
+    /// Closes all holes whose width is at most `widest` (metres, not negative).
     ///
     /// # Errors
-    /// The width is negative or not a number.
+    /// If the width is negative or NaN.
     pub fn with_holes_closed(&self, widest: f64) -> Result<ClosedHoles> {
         if widest.is_nan() || widest < 0.0 {
             let given = format!("{} mm", 1e3 * widest);
@@ -121,7 +121,7 @@ impl TriangleMesh {
 }
 
 impl fmt::Display for ClosedHoles {
-    /// `closed 2 holes, at most 0.93 mm wide`.
+    /// Writes `closed 2 holes, at most 0.93 mm wide`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.widths[..] {
             [] => write!(f, "closed no hole"),

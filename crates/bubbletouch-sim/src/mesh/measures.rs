@@ -1,17 +1,17 @@
-//! Area, volume and centres of a mesh.
+//! Area, volume and centroids of a mesh.
 
 use super::TriangleMesh;
 use glam::DVec3;
 
 impl TriangleMesh {
-    /// Sum of the triangles' areas, m².
+    /// Returns the sum of the triangles' areas, m².
     pub fn area(&self) -> f64 {
         (0..self.n_triangles())
             .map(|t| self.triangle(t).area())
             .sum()
     }
 
-    /// The centre of the surface, metres: each triangle's middle, weighted by its area.
+    /// Returns the centroid of the surface, metres: the mean of the triangles' centroids, weighted by area.
     pub fn surface_centroid(&self) -> DVec3 {
         let mut area = 0.0;
         let mut moment = DVec3::ZERO;
@@ -28,10 +28,10 @@ impl TriangleMesh {
         }
     }
 
-    /// The volume inside, m³ (negative if the triangles face inwards), and its centre, metres.
+    /// Returns the enclosed volume, m³ (negative if the triangles face inwards), and its centroid, metres.
     ///
-    /// Sums of tetrahedra from the centre of the surface: exact for a closed mesh; a hole counts as if it were closed by a
-    /// cone to that centre.
+    /// Computed by tetrahedra from the centroid of the surface: exact for a closed mesh; a hole counts as closed by a
+    /// cone to this centroid.
     pub fn volume_and_centroid(&self) -> (f64, DVec3) {
         let apex = self.surface_centroid();
         let (mut volume, mut moment) = (0.0, DVec3::ZERO);

@@ -1,13 +1,13 @@
-//! What a mesh file says, before anybody asks for a surface.
+//! Contents of a mesh file, before conversion to a triangle mesh.
 
 use super::TriangleMesh;
 use super::triangle_mesh::check_vertices;
 use crate::error::{Error, Result};
 use glam::DVec3;
 
-/// Corners and polygons as written. A file without polygons is a point cloud, and enough for spheres around vertices.
+/// Vertices and polygons of a file. A file without polygons is a point cloud, which suffices for spheres around vertices.
 ///
-/// Invariant: at least one vertex, all finite; three or more corners a polygon, each index below the number of vertices.
+/// Invariant: at least one vertex, all finite; three or more corners per polygon, each index below the number of vertices.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshFile {
     vertices: Vec<DVec3>,
@@ -15,10 +15,10 @@ pub struct MeshFile {
 }
 
 impl MeshFile {
-    /// Checks the invariant; vertices are metres.
+    /// Checks the invariant. Vertices are in metres.
     ///
     /// # Errors
-    /// Where it does not hold; errors begin with `place` and count from 1.
+    /// If the invariant does not hold; errors begin with `place` and count from 1.
     pub fn new(place: &str, vertices: Vec<DVec3>, polygons: Vec<Vec<u32>>) -> Result<Self> {
         check_vertices(place, &vertices)?;
         if let Some(index) = polygons.iter().position(|corners| corners.len() < 3) {
@@ -40,26 +40,26 @@ impl MeshFile {
         Ok(Self { vertices, polygons })
     }
 
-    /// Every coordinate times a factor.
+    /// Returns the file with every coordinate multiplied by a factor.
     pub(super) fn scaled(self, place: &str, factor: f64) -> Result<Self> {
         let vertices = self.vertices.into_iter().map(|v| v * factor).collect();
         Self::new(place, vertices, self.polygons)
     }
 
-    /// Corners, metres.
+    /// Returns the vertices, metres.
     pub fn vertices(&self) -> &[DVec3] {
         &self.vertices
     }
 
-    /// Vertex indices of each polygon.
+    /// Returns the vertex indices of each polygon.
     pub fn polygons(&self) -> &[Vec<u32>] {
         &self.polygons
     }
 
-    /// The surface; polygons of more than three corners are cut into a fan around their first: 0 1 2, 0 2 3, 0 3 4, …
+    /// Converts the file to a triangle mesh; polygons of more than three corners become fans around their first corner: 0 1 2, 0 2 3, 0 3 4, …
     ///
     /// # Errors
-    /// An error if there are no polygons, or if a fan would fold over itself: its polygon is not convex, or bent.
+    /// If there are no polygons, or if a fan would overlap itself because its polygon is not convex or not planar.
     pub fn into_mesh(self, place: &str) -> Result<TriangleMesh> {
         if let Some(index) = self.polygons.iter().position(|p| self.folds(p)) {
             return Err(Error::input(
@@ -78,7 +78,7 @@ impl MeshFile {
         TriangleMesh::new(place, self.vertices, triangles)
     }
 
-    /// Whether a triangle of the fan lies upside down in its polygon, judged by the area vector of the whole.
+    /// Returns whether a triangle of the fan is reversed relative to the area vector of the polygon.
     fn folds(&self, polygon: &[u32]) -> bool {
         if polygon.len() == 3 {
             return false;
@@ -88,7 +88,7 @@ impl MeshFile {
         let parts = polygon[1..].windows(2);
         let areas = parts.map(|pair| (corner(pair[0]) - first).cross(corner(pair[1]) - first));
         let whole: DVec3 = areas.clone().sum();
-        // A corner on the line between its neighbours, give or take rounding, is no fold.
+        // A corner on the line between its neighbours, within rounding, is not reversed.
         let rounding = 1e-9 * whole.length_squared();
         areas.into_iter().any(|area| area.dot(whole) < -rounding)
     }

@@ -1,31 +1,31 @@
-//! Meshes: a file of triangles → distances, inside and outside, and what is wrong with it.
+//! Meshes: a file of triangles → distances, inside and outside, and a report of its faults.
 //!
 //! | from | by | gives |
 //! |---|---|---|
 //! | a PLY, OBJ or STL file | [`MeshFormat::read`] | a [`MeshFile`]: corners and polygons as written, in metres |
 //! | a [`MeshFile`] | [`MeshFile::into_mesh`] | a [`TriangleMesh`] |
 //! | a [`TriangleMesh`] | [`TriangleMesh::turned_outwards`] | the mesh with closed parts outwards, and an [`Orientation`] |
-//! | a [`TriangleMesh`] | [`MeshReport::new`] | what is wrong with it: holes, flipped or degenerate faces |
+//! | a [`TriangleMesh`] | [`MeshReport::new`] | its faults: holes, flipped or degenerate faces |
 //! | a [`TriangleMesh`] | [`Surface::new`] | nearest points, signed distances, winding numbers |
 //!
-//! For a point x outside the mesh the signed distance is positive, inside it is negative:
+//! The signed distance of a point x is positive outside the mesh and negative inside:
 //!
 //! ```text
 //! d(x) = ± min_y |x − y|,   y on a triangle
 //! ```
 //!
-//! On a closed mesh the sign is that of `(x − y)·n`, n the angle-weighted pseudonormal of the face, edge or vertex that y
-//! lies on \[BA\]: exact if the mesh does not cut through itself.
+//! On a closed mesh the sign is that of `(x − y)·n`, where n is the angle-weighted pseudonormal of the face, edge or vertex that contains y
+//! \[BA\]. The sign is exact if the mesh does not intersect itself.
 //!
 //! # The solid of a mesh
 //!
-//! x is in the solid of a mesh if its winding number exceeds one half. Where every edge is passed as often in one direction as
-//! in the other, that number is whole, and found exactly by counting what a ray crosses (`crossings`): of closed parts that
-//! overlap the solid is their union, a part that faces inwards is a cavity in what holds it, and faces that lie on each
-//! other back to back are none. On a mesh with holes it is the generalised winding number \[GWN\], summed over a
-//! tree of dipoles \[FWN\], right within about 0.1.
+//! A point x is in the solid of a mesh if its winding number exceeds one half. If every edge has equally many faces in both
+//! directions, this number is an integer, and counting the crossings of a ray gives it exactly (`crossings`). The solid of closed parts that
+//! overlap is then their union. A part that faces inwards is a cavity in the part around it. Faces that coincide
+//! back to back cancel. On a mesh with holes the generalised winding number \[GWN\] is used, summed over a
+//! tree of dipoles \[FWN\], with an error of about 0.1.
 //!
-//! Readers repair nothing. [`TriangleMesh::with_holes_closed`] closes holes, [`TriangleMesh::turned_outwards`] turns triangles.
+//! Readers do not repair meshes. [`TriangleMesh::with_holes_closed`] closes holes, [`TriangleMesh::turned_outwards`] turns triangles.
 
 mod box_tree;
 mod box_tree_build;

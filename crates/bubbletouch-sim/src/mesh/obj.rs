@@ -6,16 +6,16 @@ use crate::error::{Error, Result};
 use glam::DVec3;
 use std::io::BufRead;
 
-/// Stands for a vertex that no face has used yet.
+/// Marks a vertex that no face has used yet.
 const UNUSED: u32 = u32::MAX;
 
 /// Reads the mesh in an OBJ file; all objects and groups of the file form one mesh.
 ///
-/// Only vertices that a face uses are kept, in the order of their first use.
+/// Only vertices of faces are kept, in the order of their first use.
 ///
 /// # Errors
-/// If the file has no faces, a face has fewer than three corners, a coordinate is not a finite number, or an index names no
-/// vertex. The error begins with `place` and the line.
+/// If the file has no faces, a face has fewer than three corners, a coordinate is not a finite number, or a vertex index does not
+/// exist. The error begins with `place` and the line.
 pub fn read_obj(place: &str, source: impl BufRead) -> Result<MeshFile> {
     let mut vertices: Vec<DVec3> = Vec::new();
     // Each face with its line; indices count from 1. A face may precede its vertices.
@@ -70,8 +70,8 @@ pub fn read_obj(place: &str, source: impl BufRead) -> Result<MeshFile> {
     MeshFile::new(place, used, polygons)
 }
 
-/// The vertex index of a corner `v`, `v/vt`, `v//vn` or `v/vt/vn`, from 1. Negative indices count back from the last of
-/// `n_vertices` read so far.
+/// Returns the vertex index of a corner `v`, `v/vt`, `v//vn` or `v/vt/vn`, counted from 1. Negative indices count back from the last of
+/// the `n_vertices` vertices read so far.
 fn index(word: &str, n_vertices: usize) -> Result<usize> {
     let vertex = word.split('/').next().unwrap_or_default();
     let index = match vertex.parse::<i64>() {

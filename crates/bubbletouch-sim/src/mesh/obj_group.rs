@@ -6,11 +6,11 @@ use crate::text::spelling::nearest_names;
 use std::collections::BTreeMap;
 use std::io::BufRead;
 
-/// Returns the numbers of the triangles of a group (`g`) or object (`o`) in an OBJ file: those that [`read_obj`](super::read_obj) and
-/// [`into_mesh`](super::MeshFile::into_mesh) make of its faces. A face belongs to the last groups and the last object named before it.
+/// Returns the indices of the triangles of a group (`g`) or object (`o`) in an OBJ file, in the mesh that [`read_obj`](super::read_obj) and
+/// [`into_mesh`](super::MeshFile::into_mesh) create. A face belongs to the most recent groups and the most recent object before it.
 ///
 /// # Errors
-/// If the file cannot be read, or has no face in a group or object of this name.
+/// If the file cannot be read, or has no face in a group or object with this name.
 pub fn obj_group(place: &str, source: impl BufRead, name: &str) -> Result<Vec<usize>> {
     let mut names: BTreeMap<String, Vec<usize>> = BTreeMap::new();
     let (mut groups, mut object): (Vec<String>, Option<String>) = (Vec::new(), None);

@@ -1,8 +1,9 @@
 //! Turns the closed parts of a mesh outwards, and decides whether the faces of open ones face outwards.
 //!
-//! Let w be the winding number of the space around a closed part, and s = ±1 the sign of the part's signed volume. A part with
-//! w + s < 0 has its outside where the mesh encloses nothing, so its triangles are turned. An inwards part inside an outwards
-//! one (w = 1, s = −1) is a cavity and stays. If a part is turned, the parts inside it turn with it: a mirrored housing keeps
+//! Let w be the winding number of the space around a closed part, and s = ±1 the sign of the part's signed volume. If
+//! w + s < 0, the outside of the part is not enclosed by the mesh, so the triangles of the part are turned. A part that faces inwards inside a part that
+//! faces outwards
+//! (w = 1, s = −1) is a cavity and is kept. If a part is turned, the parts inside it are turned, too: a mirrored housing keeps
 //! its cavity.
 
 use super::crossings::winding;
@@ -13,38 +14,39 @@ use crate::geometry::Aabb;
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// Triangles from which rays are sent to decide which side of an open part is outside. Larger: slower; smaller: parts with
-/// narrow openings are judged by few rays.
+/// Maximum number of triangles from which rays are sent to find the outside of an open part. If it is larger, the test is slower; if it is smaller, parts
+/// with
+/// narrow openings are tested by few rays.
 const MAX_RAYS: usize = 2000;
 
-/// Points of a part that are looked for inside another part; the majority decides. Odd.
+/// Number of points of a part that are tested against another part; the majority decides, so the number is odd.
 const N_POINTS: usize = 9;
 
-/// Parts whose volume is a smaller share of their area to the power 3/2 enclose nothing: both sides of a sheet.
+/// Smallest volume of a part relative to its area to the power 3/2. Parts below it enclose nothing: they are both sides of a sheet.
 const MIN_VOLUME: f64 = 1e-9;
 
-/// If faces of an open part disagree, the part is unsettled from this share of inwards area on. Smaller: scans with a few
-/// flipped triangles are refused; larger: skin on the part points both ways.
+/// Fraction of area facing inwards from which on an open part is unsettled. If it is smaller, scans with a few
+/// flipped triangles are rejected; if it is larger, a skin on the part may point both ways.
 const MAX_DISAGREEING: f64 = 0.05;
 
-/// Which way the triangles of a mesh face, after [`TriangleMesh::turned_outwards`].
+/// Orientation of the triangles of a mesh, after [`TriangleMesh::turned_outwards`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Orientation {
-    /// Outwards as given. Flat sheets and open parts without an outside count as outwards, if their faces agree.
+    /// The triangles faced outwards as given. Flat sheets and open parts without an outside count as outwards if their faces are consistent.
     Outwards,
-    /// Outwards, because triangles of closed parts were turned.
+    /// The triangles face outwards after triangles of closed parts were turned.
     Turned {
         /// Number of triangles that were turned.
         n_triangles: usize,
         /// Number of triangles of the mesh.
         n_all: usize,
     },
-    /// Inwards, or faces disagree, and the mesh is not closed there; nothing of it was turned.
+    /// An open part faces inwards, or its faces are inconsistent; nothing was turned.
     Unsettled(&'static str),
 }
 
 impl Orientation {
-    /// Returns an error if the outside is not known.
+    /// Returns an error if the outside is unknown.
     ///
     /// # Errors
     /// If the mesh is [`Unsettled`](Self::Unsettled); the error begins with `place`.
@@ -58,14 +60,14 @@ impl Orientation {
         }
     }
 
-    /// Whether triangles were turned.
+    /// Returns whether triangles were turned.
     pub fn is_turned(&self) -> bool {
         matches!(self, Self::Turned { .. })
     }
 }
 
 impl fmt::Display for Orientation {
-    /// `12 of 12 triangles faced inwards and were turned outwards`.
+    /// Writes `12 of 12 triangles faced inwards and were turned outwards`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Outwards => write!(f, "faces outwards"),
@@ -79,8 +81,8 @@ impl fmt::Display for Orientation {
 }
 
 impl TriangleMesh {
-    /// Turns the triangles of closed parts so that the mesh faces outwards: neighbours agree, and no place has a negative
-    /// winding number. Cavities stay cavities. Open parts stay as they are; rays from their faces decide whether they face
+    /// Turns the triangles of closed parts so that the mesh faces outwards: neighbours are consistent, and no point has a negative
+    /// winding number. Cavities stay cavities. Open parts are not changed; rays from their faces decide whether they face
     /// outwards.
     pub fn turned_outwards(self) -> (Self, Orientation) {
         let welded = Welded::new(&self);
@@ -88,7 +90,7 @@ impl TriangleMesh {
         parts.make_neighbours_agree();
         parts.turn_closed_parts();
         if let Some(given) = parts.unsettled() {
-            // What is turned beside an unsettled part is of no use to anybody who needs an outside.
+            // A partly turned mesh with an unsettled part is useless, so the original is returned.
             return (self, Orientation::Unsettled(given));
         }
         let n_triangles = parts.is_turned.iter().filter(|&&turned| turned).count();
@@ -102,17 +104,17 @@ impl TriangleMesh {
     }
 }
 
-/// The parts of a mesh: triangles that are connected by edges.
+/// Parts of a mesh: triangles that are connected by edges.
 struct Parts<'a> {
     mesh: &'a TriangleMesh,
     welded: &'a Welded,
-    /// For each part its triangles, ascending.
+    /// Triangles of each part, ascending.
     triangles: Vec<Vec<u32>>,
-    /// For each triangle its part.
+    /// Part of each triangle.
     part_of: Vec<u32>,
-    /// For each triangle whether it is to be turned.
+    /// Whether each triangle must be turned.
     is_turned: Vec<bool>,
-    /// For each part whether every edge is passed as often in one direction as in the other.
+    /// Whether each part is closed: every edge has equally many triangles in both directions.
     is_closed: Vec<bool>,
 }
 
@@ -148,14 +150,14 @@ impl<'a> Parts<'a> {
         parts
     }
 
-    /// The direction in which a side's triangle passes the edge, after turning.
+    /// Returns the direction of a side's triangle along the edge, after turning.
     fn is_forward(&self, side: &Side) -> bool {
         side.is_forward != self.is_turned[side.triangle as usize]
     }
 
-    /// For each part whether its edges are balanced.
+    /// Returns for each part whether its edges are balanced.
     fn closed(&self) -> Vec<bool> {
-        // Triangles without an edge of their own (a corner twice) are parts that enclose nothing.
+        // Triangles with a repeated corner have no edges of their own; they are parts that enclose nothing.
         let mut is_closed = vec![true; self.triangles.len()];
         for sides in self.welded.edges() {
             let sign = |side: &Side| if self.is_forward(side) { 1 } else { -1 };
@@ -166,8 +168,8 @@ impl<'a> Parts<'a> {
         is_closed
     }
 
-    /// In each part that is not closed, turns triangles until neighbours across edges of two triangles agree, as few as
-    /// possible. Parts that are not closed by that stay as they were.
+    /// Turns as few triangles as possible in each open part, so that neighbours across edges of two triangles are consistent.
+    /// Parts that do not become closed stay unchanged.
     fn make_neighbours_agree(&mut self) {
         if self.is_closed.iter().all(|&closed| closed) {
             return;
@@ -218,7 +220,7 @@ impl<'a> Parts<'a> {
         }
     }
 
-    /// The corners of a triangle after turning.
+    /// Returns the corners of a triangle after turning.
     fn triangle(&self, triangle: u32) -> Triangle {
         let [a, b, c] = self.mesh.triangle(triangle as usize).0;
         match self.is_turned[triangle as usize] {
@@ -227,7 +229,7 @@ impl<'a> Parts<'a> {
         }
     }
 
-    /// The signed volume of a closed part, m³; 0 if it encloses nothing.
+    /// Returns the signed volume of a closed part, m³; 0 if it encloses nothing.
     fn volume(&self, part: usize) -> f64 {
         let triangles = self.triangles[part].iter().map(|&t| self.triangle(t));
         let apex = self.triangle(self.triangles[part][0]).0[0];
@@ -241,7 +243,7 @@ impl<'a> Parts<'a> {
         if is_solid { volume } else { 0.0 }
     }
 
-    /// Turns closed parts outwards where their outside is not enclosed by other parts.
+    /// Turns closed parts outwards if other parts do not enclose their outside.
     fn turn_closed_parts(&mut self) {
         let closed = (0..self.triangles.len()).filter(|&part| self.is_closed[part]);
         let volumes = closed.map(|part| (part, self.volume(part)));
@@ -249,7 +251,7 @@ impl<'a> Parts<'a> {
         if solids.iter().all(|(_, volume)| *volume > 0.0) {
             return;
         }
-        // A part is larger than what it encloses.
+        // A part is larger than the parts that it encloses.
         solids.sort_by(|(_, a), (_, b)| b.abs().total_cmp(&a.abs()));
         let mut placed: Vec<Enclosure> = Vec::new();
         for (part, volume) in solids {
@@ -285,7 +287,7 @@ impl<'a> Parts<'a> {
         }
     }
 
-    /// What is wrong with an open part, if rays from its faces tell that it faces inwards, or faces disagree.
+    /// Returns the fault of an open part whose faces are inconsistent, or face inwards according to rays from its faces.
     fn unsettled(&self) -> Option<&'static str> {
         if self.is_closed.iter().all(|&closed| closed) {
             return None;
@@ -327,10 +329,10 @@ impl<'a> Parts<'a> {
     }
 }
 
-/// A closed part that may hold others.
+/// Closed part that may contain other parts.
 struct Enclosure {
     bounds: Aabb,
-    /// As they were before the part was turned.
+    /// Triangles before the part was turned.
     triangles: Vec<Triangle>,
     bvh: Option<Bvh>,
     is_turned: bool,
@@ -341,7 +343,7 @@ impl Enclosure {
         self.bounds.min.cmple(bounds.min).all() && self.bounds.max.cmpge(bounds.max).all()
     }
 
-    /// The winding number, before turning, of most of some points of another part; 0 outside.
+    /// Returns the winding number, before turning, of the majority of several points of another part; 0 outside.
     fn winding_around(&mut self, triangles: &[Triangle]) -> i32 {
         let bvh = self
             .bvh

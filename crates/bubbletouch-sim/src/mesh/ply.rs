@@ -1,6 +1,6 @@
-//! Meshes from PLY files, ascii or binary of either byte order.
+//! Meshes from PLY files, ASCII or binary with either byte order.
 //!
-//! Needs an element `vertex` with scalar properties x, y, z (metres); reads the element `face` if its list is called
+//! The file needs an element `vertex` with scalar properties x, y, z (metres). The element `face` is read if its list has the name
 //! `vertex_indices` or `vertex_index`. Other elements and properties are skipped.
 
 use super::MeshFile;
@@ -13,11 +13,11 @@ use ply_rs_bw::ply::{
 };
 use std::io::{BufRead, ErrorKind};
 
-/// A mesh from a PLY file's content; errors begin with `place`, the file's name.
+/// Reads the mesh in a PLY file; errors begin with `place`, the name of the file.
 ///
 /// # Errors
-/// An error for anything that is not a whole PLY file: another format, a cut-off file, no vertices, a coordinate that is
-/// not a finite number, an index of no vertex.
+/// If the file is not a complete PLY file: another format, a truncated file, no vertices, a coordinate that is
+/// not finite, or an invalid vertex index.
 pub fn read_ply(place: &str, mut source: impl BufRead) -> Result<MeshFile> {
     check_magic(place, &mut source)?;
     let mut reader = Reader::new(source);
@@ -50,7 +50,7 @@ pub fn read_ply(place: &str, mut source: impl BufRead) -> Result<MeshFile> {
     MeshFile::new(place, vertices, polygons(place, &faces)?)
 }
 
-/// Indices are read as signed numbers; the ones that name no vertex are refused here or when the surface is made.
+/// Converts indices, which are read as signed numbers. Invalid ones are rejected here or when the surface is created.
 fn polygons(place: &str, faces: &[Face]) -> Result<Vec<Vec<u32>>> {
     let index = |face: usize, corner: i64| {
         u32::try_from(corner).map_err(|_| {
@@ -89,11 +89,11 @@ fn check_magic(place: &str, source: &mut impl BufRead) -> Result<()> {
     Err(Error::input(place, given, "a file that begins with `ply`"))
 }
 
-/// What the reader cannot use, before it reads (and perhaps allocates) anything.
+/// Rejects unsupported elements before the reader reads data or allocates memory.
 fn check_header<'a>(place: &str, elements: impl Iterator<Item = &'a ElementDef>) -> Result<()> {
     let mut has_vertices = false;
     for element in elements {
-        // Nothing limits how many elements without content a file can claim to hold.
+        // The number of elements without content is otherwise not limited by the size of the file.
         if element.properties.is_empty() && element.count > 0 {
             return Err(Error::input(
                 place,
@@ -152,7 +152,7 @@ fn check_face(place: &str, element: &ElementDef) -> Result<()> {
 }
 
 fn malformed(place: &str, error: &ParseError) -> Error {
-    // The crate's messages quote input over several lines; the first says what is wrong.
+    // The crate's messages contain the input over several lines; the first line contains the reason.
     let text = error.to_string();
     let first = text.lines().next().unwrap_or_default().trim();
     match error.kind() {
@@ -222,7 +222,7 @@ impl PropertyAccess for Face {
     }
 }
 
-/// An element that is read past.
+/// Element that is skipped.
 struct Skipped;
 
 impl PropertyAccess for Skipped {

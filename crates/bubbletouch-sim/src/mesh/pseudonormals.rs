@@ -1,19 +1,19 @@
-//! Normals of faces, edges and corners that tell inside from outside \[BA\].
+//! Pseudonormals of faces, edges and corners, which distinguish inside from outside \[BA\].
 
 use super::welded::Welded;
 use super::{Feature, TriangleMesh};
 use glam::DVec3;
 
-/// For every feature of a mesh the sum of the normals of the faces around it, weighted by their angle there.
+/// For each feature of a mesh, the sum of the normals of the faces around it, weighted by their angle there.
 ///
-/// A triangle too thin to have a normal counts nothing.
+/// A triangle too thin to have a normal has no weight.
 #[derive(Clone, Debug)]
 pub(super) struct Pseudonormals {
-    /// n_triangles, unit or zero.
+    /// Pseudonormals of the faces, shape (n_triangles,), unit or zero.
     faces: Vec<DVec3>,
-    /// n_triangles × 3.
+    /// Pseudonormals of the edges, shape (n_triangles, 3).
     edges: Vec<[DVec3; 3]>,
-    /// n_triangles × 3.
+    /// Pseudonormals of the corners, shape (n_triangles, 3).
     corners: Vec<[DVec3; 3]>,
 }
 
@@ -49,7 +49,7 @@ impl Pseudonormals {
         }
     }
 
-    /// Points outwards; any length.
+    /// Returns the pseudonormal of a feature; it points outwards and has any length.
     pub fn at(&self, triangle: usize, feature: Feature) -> DVec3 {
         match feature {
             Feature::Face => self.faces[triangle],

@@ -1,4 +1,4 @@
-//! What is wrong with a mesh, and what it measures. It is looked at, never repaired.
+//! Report of the faults and measures of a mesh. The mesh is not repaired.
 
 use super::welded::{Joined, has_equal};
 use super::{Hole, Side, TriangleMesh, Welded};
@@ -6,41 +6,41 @@ use crate::geometry::Aabb;
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// Counts and measures of a mesh whose corners at exactly the same place are one.
+/// Counts and measures of a mesh after welding corners with identical coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshReport {
-    /// Different places of corners that a triangle has.
+    /// Number of distinct corners of triangles.
     pub n_vertices: usize,
-    /// Triangles.
+    /// Number of triangles.
     pub n_triangles: usize,
-    /// Edges, each once.
+    /// Number of edges, each counted once.
     pub n_edges: usize,
-    /// Parts that share no corner.
+    /// Number of parts that share no corner.
     pub n_components: usize,
-    /// Triangles with a corner twice.
+    /// Number of triangles with a repeated corner.
     pub n_collapsed: usize,
-    /// Other triangles whose corners lie in a line, so that they have no normal.
+    /// Number of other triangles with collinear corners, which have no normal.
     pub n_slivers: usize,
-    /// Triangles with the same three corners as an earlier one, either way round.
+    /// Number of triangles with the three corners of an earlier triangle, in either direction.
     pub n_duplicates: usize,
-    /// Edges of three or more triangles.
+    /// Number of edges with three or more triangles.
     pub n_crowded_edges: usize,
-    /// Corners at which several fans of triangles touch only there.
+    /// Number of corners at which several fans of triangles touch only there.
     pub n_pinched_vertices: usize,
-    /// Edges of two triangles that disagree about the outside.
+    /// Number of edges with two inconsistently oriented triangles.
     pub n_flipped_edges: usize,
-    /// For each hole the length of its border, metres, longest first: loops of edges with one triangle.
+    /// Length of the border of each hole, metres, longest first. A hole is a loop of edges with one triangle.
     pub holes: Vec<f64>,
     /// Sum of the triangles' areas, m².
     pub area: f64,
-    /// What the triangles enclose, m³; negative if they face inwards. Of a mesh with holes only about right.
+    /// Enclosed volume, m³; negative if the triangles face inwards; approximate for a mesh with holes.
     pub volume: f64,
-    /// Around all triangles, metres.
+    /// Bounding box of all triangles, metres.
     pub bounds: Aabb,
 }
 
 impl MeshReport {
-    /// Looks at a mesh.
+    /// Computes the report of a mesh.
     pub fn new(mesh: &TriangleMesh) -> Self {
         let welded = Welded::new(mesh);
         let collapsed = |corners: &&[u32; 3]| has_equal(**corners);
@@ -73,13 +73,13 @@ impl MeshReport {
         }
     }
 
-    /// Whether the mesh has no border: every edge has two triangles or more.
+    /// Returns whether the mesh has no border: every edge has two triangles or more.
     pub fn is_watertight(&self) -> bool {
         self.holes.is_empty() && self.n_edges > 0
     }
 
-    /// Whether it also encloses a volume without doubt: every edge has exactly two triangles that agree about the outside,
-    /// and the outside is outside.
+    /// Returns whether the mesh is watertight and also encloses a definite volume: every edge has exactly two consistently oriented triangles,
+    /// and the volume is positive.
     pub fn is_solid(&self) -> bool {
         self.is_watertight()
             && self.n_crowded_edges == 0
@@ -87,7 +87,7 @@ impl MeshReport {
             && self.volume > 0.0
     }
 
-    /// What is wrong, a phrase each; empty if nothing is.
+    /// Returns the faults, one phrase each; empty if there are none.
     pub fn faults(&self) -> Vec<String> {
         let count = |n: usize, one: &str, many: &str| {
             (n > 0).then(|| format!("{n} {}", if n == 1 { one } else { many }))
@@ -187,9 +187,9 @@ fn n_duplicates(welded: &Welded) -> usize {
     n - sorted.len()
 }
 
-/// Corners whose triangles fall into several fans when they may be joined only across edges.
+/// Returns the number of corners whose triangles form several fans if triangles are joined only across edges.
 fn n_pinched(welded: &Welded) -> usize {
-    // One thing for each corner of each triangle: 3 · triangle + corner.
+    // One element per corner of each triangle: 3 · triangle + corner.
     let mut joined = Joined::of(3 * welded.corners.len());
     let at = |side: &Side, vertex: u32| {
         let corners = welded.corners[side.triangle as usize];

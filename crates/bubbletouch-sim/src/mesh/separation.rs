@@ -1,14 +1,14 @@
-//! Whether two triangles are certainly apart.
+//! Separation test of two triangles.
 
 use super::Triangle;
 use glam::DVec3;
 
-/// Gaps narrower than this share of the triangles' size may be rounding.
+/// Gaps smaller than this fraction of the triangles' size may be rounding errors.
 const ROUNDING: f64 = 1e-12;
 
 impl Triangle {
-    /// Whether a plane certainly lies between this triangle and another: by their normals and the 9 products of their edges
-    /// (separating axes). Not said of triangles that touch, or lie in one plane.
+    /// Returns whether a plane certainly separates two triangles, by their normals and the 9 products of their edges
+    /// (separating axes). Returns false for triangles that touch or lie in one plane.
     pub fn is_apart(&self, other: &Self) -> bool {
         let origin = self.0[0];
         let [a, b] = [self, other].map(|triangle| triangle.0.map(|corner| corner - origin));
@@ -32,7 +32,7 @@ fn edges([a, b, c]: &[DVec3; 3]) -> [DVec3; 3] {
     [b - a, c - b, a - c]
 }
 
-/// The lowest and the highest corner along an axis.
+/// Returns the lowest and the highest position of the corners along an axis.
 fn range(corners: &[DVec3; 3], axis: DVec3) -> (f64, f64) {
     let [a, b, c] = corners.map(|corner| corner.dot(axis));
     (a.min(b).min(c), a.max(b).max(c))

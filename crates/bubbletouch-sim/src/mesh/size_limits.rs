@@ -1,33 +1,33 @@
-//! Sizes that tell that a file's numbers are in another unit than they were read in.
+//! Plausible sizes of objects, to detect files in another unit.
 
 use super::LengthUnit;
 use crate::error::{Error, Result};
 use glam::DVec3;
 
-/// How long the longest side of an object's box may be if nobody says which unit its file is in, metres.
+/// Limits of the longest side of an object's bounding box if the unit of its file is not given, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SizeLimits {
-    /// At least.
+    /// Lower limit.
     pub smallest: f64,
-    /// At most.
+    /// Upper limit.
     pub largest: f64,
 }
 
-/// Sides of an array: of an object that is longer, a touch meets less than a hundredth of a face.
+/// Maximum length of an object in sides of an array; a touch on a longer object covers less than a hundredth of a face.
 const MAX_SIDES: f64 = 10.0;
-/// Objects of this length are looked at by small arrays, too: furniture, a person's arm; metres.
+/// Length that is always allowed, because small arrays also touch furniture or a person's arm; metres.
 const ALWAYS_ALLOWED: f64 = 1.0;
 
 impl SizeLimits {
-    /// Where no array is known: 0.1 mm, which falls between the taxels of every tactile sensor, to 10 m, ten sides of an array of a
+    /// Limits without a known array: 0.1 mm, which is below the pitch of every tactile sensor, to 10 m, ten sides of an array of one
     /// square metre.
     pub const ANY: Self = Self {
         smallest: 1e-4,
         largest: 10.0,
     };
 
-    /// What arrays of these (longest side, radius of a taxel) can feel: what is smaller than the smallest taxel's radius gives no
-    /// shape, and what is longer than ten sides of the largest array, and than a metre, is a plane.
+    /// Returns the limits for arrays given by (longest side, taxel radius). An object smaller than the smallest taxel radius has no detectable
+    /// shape. An object longer than ten sides of the largest array, and than one metre, is a plane.
     pub fn of_arrays(arrays: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let none = Self {
             smallest: f64::INFINITY,
@@ -41,10 +41,10 @@ impl SizeLimits {
             })
     }
 
-    /// Whether a box of this size (metres), whose file was read in metres because nobody gave a unit, is of a size that can be.
+    /// Checks the size of a bounding box (metres) whose file was read in metres because no unit was given.
     ///
     /// # Errors
-    /// It is not; the error begins with `place` and names the likely unit.
+    /// If the size is outside the limits; the error begins with `place` and suggests the likely unit.
     pub fn check(&self, place: &str, size: DVec3) -> Result<()> {
         let length = size.max_element();
         if (self.smallest..=self.largest).contains(&length) {
@@ -73,7 +73,7 @@ impl SizeLimits {
     }
 }
 
-/// With three digits: `17 m`, `17 mm`.
+/// Formats a length with three digits: `17 m`, `17 mm`.
 fn in_words(metres: f64) -> String {
     let (value, unit) = if metres >= 1.0 {
         (metres, "m")

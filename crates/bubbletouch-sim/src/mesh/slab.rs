@@ -1,25 +1,25 @@
-//! The space between two parallel planes that holds all triangles below a node of a tree.
+//! Slabs: pairs of parallel planes that enclose all triangles below a node of a tree.
 //!
-//! Where a surface bends little it is much thinner than the box around it, above all across the axes. Where a whole mesh is
-//! about equally far, as from the middle of a ball, boxes rule out little, and slabs nearly all.
+//! If a surface is nearly flat, a slab is much thinner than a box, especially for surfaces oblique to the axes. If all parts of a mesh are
+//! about equally far from a point, such as the middle of a ball, boxes exclude few triangles and slabs nearly all.
 
 use super::{BoxTree, Triangle};
 use glam::DVec3;
 use std::ops::Range;
 
-/// Points x with `normal · x` in a range.
+/// Set of points x with `normal · x` in a range.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Slab {
-    /// The mean normal, of length one; zero where the triangles have none.
+    /// Mean unit normal; zero if the triangles have no normal.
     normal: DVec3,
     low: f64,
     high: f64,
 }
 
-/// The slab of each node of a tree; `triangles` in the tree's order.
+/// Returns the slab of each node of a tree; `triangles` are in the order of the tree.
 pub(super) fn slabs(tree: &BoxTree, triangles: &[Triangle]) -> Vec<Slab> {
     let mut places: Vec<Range<usize>> = vec![0..0; tree.n_nodes()];
-    // Children come after their parents, and their places lie side by side.
+    // Children come after their parents, and their triangles are adjacent.
     for node in (0..tree.n_nodes()).rev() {
         places[node] = match tree.children(node) {
             Some([left, right]) => places[left].start..places[right].end,
@@ -41,7 +41,7 @@ impl Slab {
         Self { normal, low, high }
     }
 
-    /// Whether it is certainly farther from a point than the square root of `limit`.
+    /// Returns whether the slab is certainly farther from a point than the square root of `limit`.
     pub fn is_beyond(&self, point: DVec3, limit: f64) -> bool {
         let height = self.normal.dot(point);
         let away = (self.low - height).max(height - self.high).max(0.0);

@@ -1,4 +1,4 @@
-//! Meshes from STL files, ascii or binary. Corners at exactly the same place become one vertex; normals are ignored.
+//! Meshes from STL files, ASCII or binary. Corners with identical coordinates become one vertex; normals are ignored.
 
 use super::MeshFile;
 use super::text_lines::{BYTE_ORDER_MARK, coordinates, each_line};
@@ -10,19 +10,19 @@ use std::io::BufRead;
 
 /// Bytes before the triangles of a binary file: a header of 80 bytes and the number of triangles.
 const HEADER: usize = 84;
-/// Bytes of a triangle in a binary file: normal, three corners, two bytes of attributes.
+/// Bytes per triangle in a binary file: normal, three corners, two bytes of attributes.
 const TRIANGLE: usize = 50;
 
-/// Reads the mesh in an STL file; all solids of an ascii file form one mesh.
+/// Reads the mesh in an STL file; all solids of an ASCII file form one mesh.
 ///
 /// # Errors
-/// If the file is cut off, or is neither kind of STL. The error begins with `place`.
+/// If the file is truncated, or is neither kind of STL. The error begins with `place`.
 pub fn read_stl(place: &str, mut source: impl BufRead) -> Result<MeshFile> {
     let mut content = Vec::new();
     source
         .read_to_end(&mut content)
         .map_err(|e| Error::io(place, "read", e))?;
-    // The length decides: some programs begin a binary header with the first word of an ascii file.
+    // The length decides, because some programs begin a binary header with the first word of an ASCII file.
     if is_binary(&content) {
         return merged(place, &binary_corners(&content));
     }
@@ -43,7 +43,7 @@ pub fn read_stl(place: &str, mut source: impl BufRead) -> Result<MeshFile> {
     ))
 }
 
-/// Whether the content is exactly as long as its number of triangles requires.
+/// Returns whether the content has exactly the length that its number of triangles requires.
 fn is_binary(content: &[u8]) -> bool {
     let Some(&[a, b, c, d]) = content.get(80..HEADER) else {
         return false;
@@ -52,7 +52,7 @@ fn is_binary(content: &[u8]) -> bool {
     content.len() - HEADER == n_triangles.saturating_mul(TRIANGLE)
 }
 
-/// Three corners for each triangle of a binary file.
+/// Returns three corners per triangle of a binary file.
 fn binary_corners(content: &[u8]) -> Vec<DVec3> {
     let triangles = content[HEADER..].chunks_exact(TRIANGLE);
     let corners = triangles.flat_map(|triangle| triangle[12..48].chunks_exact(12));
@@ -69,10 +69,10 @@ fn binary_corners(content: &[u8]) -> Vec<DVec3> {
         .collect()
 }
 
-/// Three corners for each facet of all solids of an ascii file. Keywords may be in upper case.
+/// Returns three corners per facet of all solids of an ASCII file. Keywords may be in upper case.
 fn ascii_corners(place: &str, content: &[u8]) -> Result<Vec<DVec3>> {
     let mut corners = Vec::new();
-    // Whether a solid and a facet are open, and the corners of the facet so far.
+    // Whether a solid and a facet are open, and the number of corners of the current facet.
     let (mut in_solid, mut in_facet, mut n_corners) = (false, false, 0);
     each_line(place, content, |number, line| {
         let mut words = line.split_whitespace();
@@ -123,7 +123,7 @@ fn ascii_corners(place: &str, content: &[u8]) -> Result<Vec<DVec3>> {
     Ok(corners)
 }
 
-/// The mesh of triangles whose corners follow one another; equal places are one vertex, in the order of first occurrence.
+/// Returns the mesh of triangles with consecutive corners; corners with identical coordinates become one vertex, in the order of first occurrence.
 fn merged(place: &str, corners: &[DVec3]) -> Result<MeshFile> {
     let (mut numbers, mut vertices) = (HashMap::new(), Vec::new());
     let number = |&corner: &DVec3| {

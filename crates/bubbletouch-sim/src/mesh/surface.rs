@@ -1,4 +1,4 @@
-//! A mesh that answers where its nearest point is, and on which side of it a point lies.
+//! Mesh with queries for the nearest point and for inside and outside.
 
 use super::crossings::winding;
 use super::pseudonormals::Pseudonormals;
@@ -8,7 +8,7 @@ use super::{Bvh, Closest, Triangle, TriangleMesh};
 use crate::geometry::Aabb;
 use glam::DVec3;
 
-/// A mesh with everything that its queries need.
+/// Mesh, with the data structures for its queries.
 #[derive(Clone, Debug)]
 pub struct Surface {
     mesh: TriangleMesh,
@@ -19,12 +19,12 @@ pub struct Surface {
     is_balanced: bool,
 }
 
-/// Below this cosine between a pseudonormal and the way to the point its sign is not trusted: thin triangles count nothing
-/// in it. The winding number decides there.
+/// Smallest cosine between a pseudonormal and the direction to the point for which its sign is used, because thin triangles have no weight
+/// in it. Below it the winding number decides.
 const FLAT: f64 = 0.05;
 
 impl Surface {
-    /// Prepares a mesh; a few microseconds a triangle.
+    /// Prepares a mesh; takes a few microseconds per triangle.
     pub fn new(mesh: TriangleMesh) -> Self {
         let bvh = Bvh::new(&mesh);
         let welded = Welded::new(&mesh);
@@ -38,43 +38,43 @@ impl Surface {
         }
     }
 
-    /// The mesh.
+    /// Returns the mesh.
     pub fn mesh(&self) -> &TriangleMesh {
         &self.mesh
     }
 
-    /// Its tree of boxes.
+    /// Returns the tree of bounding boxes.
     pub fn bvh(&self) -> &Bvh {
         &self.bvh
     }
 
-    /// The box around it, metres.
+    /// Returns the bounding box, metres.
     pub fn bounds(&self) -> Aabb {
         self.bvh.bounds()
     }
 
-    /// Whether every edge has exactly two faces that agree about the outside.
+    /// Returns whether every edge has exactly two consistently oriented faces.
     pub fn is_closed(&self) -> bool {
         self.is_closed
     }
 
-    /// The nearest point that is closer than `within` metres (infinity: the nearest of all).
+    /// Returns the nearest point that is closer than `within` metres (infinity: no limit).
     pub fn closest(&self, point: DVec3, within: f64) -> Option<Closest> {
         self.bvh.closest(point, within)
     }
 
-    /// The normal of what a nearest point lies on, outwards, of any length; zero on faces too thin to have one.
+    /// Returns the outward normal at a nearest point, of any length; zero on faces too thin to have one.
     pub fn pseudonormal(&self, closest: &Closest) -> DVec3 {
         self.normals.at(closest.triangle, closest.feature)
     }
 
-    /// How often the surface goes around a point: 1 inside a closed mesh, 0 outside; within about 0.1.
+    /// Returns the winding number of the surface around a point: 1 inside a closed mesh, 0 outside; the error is about 0.1.
     pub fn winding_number(&self, point: DVec3) -> f64 {
         self.winding.winding_number(&self.bvh, point)
     }
 
-    /// Whether a point is in the [solid](crate::mesh#the-solid-of-a-mesh) of the mesh: its winding number exceeds one half. Exact
-    /// if every edge is passed as often in one direction as in the other.
+    /// Returns whether a point is in the [solid](crate::mesh#the-solid-of-a-mesh) of the mesh: its winding number exceeds one half. The result is exact
+    /// if every edge has equally many faces in both directions.
     pub fn contains(&self, point: DVec3) -> bool {
         match self.is_balanced {
             true => winding(&self.bvh, point) > 0,
@@ -82,7 +82,7 @@ impl Surface {
         }
     }
 
-    /// Whether a face of the mesh may meet this triangle: not said if all are certainly [apart](Triangle::is_apart) from it.
+    /// Returns whether a face of the mesh may intersect this triangle; false if all are certainly [apart](Triangle::is_apart) from it.
     pub fn may_cross(&self, triangle: &Triangle) -> bool {
         let bounds = triangle.bounds();
         let mut is_crossed = false;
@@ -98,13 +98,12 @@ impl Surface {
         is_crossed
     }
 
-    /// Metres to the nearest point, negative inside: by pseudonormals on a closed mesh, otherwise by winding number.
+    /// Returns the distance to the nearest point, metres, negative inside: by pseudonormals on a closed mesh, otherwise by winding number.
     ///
-    /// On a closed mesh that cuts through itself the sign is that of the nearest sheet; [`contains`](Self::contains) knows
-    /// better there.
+    /// On a closed mesh that intersects itself the sign refers to the nearest surface; use [`contains`](Self::contains) there.
     pub fn signed_distance(&self, point: DVec3) -> f64 {
         let Some(closest) = self.closest(point, f64::INFINITY) else {
-            // Squared distances overflow beyond 1e154 m: that is outside.
+            // Squared distances overflow beyond 1e154 m; such points are outside.
             return f64::INFINITY;
         };
         if self.is_outside(point, &closest) {
@@ -114,7 +113,7 @@ impl Surface {
         }
     }
 
-    /// The side of a point whose nearest point is known.
+    /// Returns whether a point with a known nearest point is outside.
     pub fn is_outside(&self, point: DVec3, closest: &Closest) -> bool {
         if self.is_closed {
             let normal = self.pseudonormal(closest);

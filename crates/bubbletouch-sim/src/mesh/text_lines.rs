@@ -1,4 +1,4 @@
-//! Lines of text formats: numbered, without byte order mark, whatever their encoding and their line ends are.
+//! Lines of text formats: numbered, without byte order mark, for any encoding and line ends.
 
 use crate::error::{Error, Result};
 use std::io::BufRead;
@@ -6,10 +6,10 @@ use std::io::BufRead;
 /// The UTF-8 byte order mark.
 pub(super) const BYTE_ORDER_MARK: [u8; 3] = [0xEF, 0xBB, 0xBF];
 
-/// Calls `visit` with the number (from 1) and the text of each line that has text.
+/// Calls `visit` with the number (from 1) and the text of each non-empty line.
 ///
-/// A backslash at the end of a line continues it on the next one. Bytes that are no UTF-8 (names and comments in other
-/// encodings) are replaced by U+FFFD. Line ends are LF, CR LF or CR.
+/// A backslash at the end of a line continues it on the next one. Invalid UTF-8 (names and comments in other
+/// encodings) is replaced by U+FFFD. Line ends are LF, CR LF or CR.
 ///
 /// # Errors
 /// If `source` cannot be read, or `visit` returns an error.
@@ -26,7 +26,7 @@ pub(super) fn each_line(
     let (mut number, mut first, mut line) = (0, 1, String::new());
     let mut is_after_return = false;
     for end in text.split_inclusive(|&byte| byte == b'\n' || byte == b'\r') {
-        // The LF of a CR LF ends a line that has ended.
+        // The LF of a CR LF ends a line that has already ended.
         if end == b"\n" && is_after_return {
             is_after_return = false;
             continue;

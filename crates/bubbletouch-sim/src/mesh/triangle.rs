@@ -1,30 +1,30 @@
-//! One triangle: its nearest point, its box, its middle, its area.
+//! One triangle: its nearest point, bounding box, centroid and area.
 
 use crate::geometry::Aabb;
 use glam::DVec3;
 
-/// Three corners, metres.
+/// Triangle with three corners, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Triangle(pub [DVec3; 3]);
 
-/// What part of a triangle a point lies on.
+/// Part of a triangle that contains a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Feature {
-    /// Its inside.
+    /// The interior.
     Face,
-    /// The edge from this corner (0, 1 or 2) to the next.
+    /// The edge from corner k (0, 1 or 2) to the next corner.
     Edge(u8),
-    /// This corner (0, 1 or 2).
+    /// The corner k (0, 1 or 2).
     Vertex(u8),
 }
 
-/// A triangle whose height is less than this share of its longest edge is taken for its three edges: its plane could not
-/// be known to better than a share of 1e-16 / 1e-8 of its length. Larger: edges stand in for faces that are still felt;
-/// smaller: distances to such planes are noise.
+/// Smallest height of a triangle relative to its longest edge. A thinner triangle is replaced by its three edges, because the direction of its plane has a
+/// relative error of 1e-16 / 1e-8. If it is larger, faces that taxels can touch are replaced by edges; if it is smaller,
+/// distances to such planes are rounding errors.
 const SLIVER: f64 = 1e-8;
 
 impl Triangle {
-    /// The box around it.
+    /// Returns the bounding box.
     pub fn bounds(&self) -> Aabb {
         let [a, b, c] = self.0;
         Aabb {
@@ -33,38 +33,38 @@ impl Triangle {
         }
     }
 
-    /// The mean of the corners.
+    /// Returns the mean of the corners.
     pub fn middle(&self) -> DVec3 {
         let [a, b, c] = self.0;
         (a + b + c) / 3.0
     }
 
-    /// Twice the area, along the outward normal of a counter-clockwise triangle; m².
+    /// Returns twice the area along the normal, m²; the normal points outwards if the corners are counter-clockwise seen from outside.
     pub fn double_area(&self) -> DVec3 {
         let [a, b, c] = self.0;
         (b - a).cross(c - a)
     }
 
-    /// Area, m².
+    /// Returns the area, m².
     pub fn area(&self) -> f64 {
         0.5 * self.double_area().length()
     }
 
-    /// The unit normal; `None` for a triangle too thin to have one.
+    /// Returns the unit normal; `None` if the triangle is too thin.
     pub fn normal(&self) -> Option<DVec3> {
         let n = self.double_area();
         let longest2 = self.longest_edge_squared();
         (n.length_squared() > (SLIVER * longest2).powi(2)).then(|| n.normalize())
     }
 
-    /// The square of the longest edge.
+    /// Returns the squared length of the longest edge.
     pub fn longest_edge_squared(&self) -> f64 {
         let [a, b, c] = self.0;
         let ab = a.distance_squared(b);
         ab.max(b.distance_squared(c)).max(c.distance_squared(a))
     }
 
-    /// Cut across the middle of the longest edge.
+    /// Returns the two halves of the triangle, cut at the middle of the longest edge.
     pub fn bisected(&self) -> [Self; 2] {
         let [a, b, c] = self.0;
         let (ab, bc, ca) = (
@@ -83,7 +83,7 @@ impl Triangle {
         [Self([from, middle, apex]), Self([middle, to, apex])]
     }
 
-    /// The nearest point to `point`, and what it lies on.
+    /// Returns the nearest point to `point`, and the part of the triangle that contains it.
     pub fn closest(&self, point: DVec3) -> (DVec3, Feature) {
         let [a, b, c] = self.0;
         let n = self.double_area();
@@ -91,7 +91,7 @@ impl Triangle {
         let is_sliver = n2 <= (SLIVER * self.longest_edge_squared()).powi(2);
         let mut nearest = (a, Feature::Face);
         let mut best = f64::INFINITY;
-        // The nearest point lies on an edge that has the point on its outer side, or inside if there is none.
+        // The nearest point lies on an edge that has the point on its outer side, or in the interior if no edge has.
         for (k, (from, to)) in [(a, b), (b, c), (c, a)].into_iter().enumerate() {
             let inner_side = n.cross(to - from).dot(point - from);
             if inner_side <= 0.0 || is_sliver {
@@ -109,8 +109,8 @@ impl Triangle {
         (point - n * ((point - a).dot(n) / n2), Feature::Face)
     }
 
-    /// How far along the line `origin + along · direction` it meets the triangle; `None` if it does not, or lies in its
-    /// plane. \[MT\]
+    /// Returns the position `along` at which the line `origin + along · direction` crosses the triangle; `None` if it does not, or is parallel to
+    /// the plane of the triangle. \[MT\]
     pub fn crossed_at(&self, origin: DVec3, direction: DVec3) -> Option<f64> {
         let [a, b, c] = self.0;
         let (ab, ac, from_a) = (b - a, c - a, origin - a);
@@ -125,7 +125,7 @@ impl Triangle {
     }
 }
 
-/// The nearest point of the edge with number `k`.
+/// Returns the nearest point of the edge with index `k`.
 fn closest_on_edge(from: DVec3, to: DVec3, k: u8, point: DVec3) -> (DVec3, Feature) {
     let along = to - from;
     let t = (point - from).dot(along);

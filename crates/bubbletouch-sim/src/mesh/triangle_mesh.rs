@@ -1,11 +1,11 @@
-//! A triangle mesh, as scanners and modellers write it.
+//! Triangle meshes, as scanners and modelling programs produce them.
 
 use super::Triangle;
 use crate::error::{Error, Result};
 use crate::geometry::{Aabb, Pose};
 use glam::DVec3;
 
-/// Triangles over shared corners, in the object's frame. Nothing is said about holes or orientation.
+/// Triangles with shared corners, in the frame of the object. The mesh may have holes and any orientation.
 ///
 /// Invariant: at least one triangle; every vertex finite; every index below the number of vertices.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,10 +15,10 @@ pub struct TriangleMesh {
 }
 
 impl TriangleMesh {
-    /// Checks the invariant; vertices are metres.
+    /// Checks the invariant. Vertices are in metres.
     ///
     /// # Errors
-    /// Where it does not hold; errors begin with `place` and count from 1.
+    /// If the invariant does not hold; errors begin with `place` and count from 1.
     pub fn new(place: &str, vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Result<Self> {
         check_vertices(place, &vertices)?;
         if triangles.is_empty() {
@@ -39,33 +39,33 @@ impl TriangleMesh {
         })
     }
 
-    /// Corners, metres.
+    /// Returns the vertices, metres.
     pub fn vertices(&self) -> &[DVec3] {
         &self.vertices
     }
 
-    /// Three vertex indices a triangle; counter-clockwise seen from outside, if the file keeps to that.
+    /// Returns three vertex indices per triangle, counter-clockwise seen from outside if the file follows this convention.
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
 
-    /// How many triangles.
+    /// Returns the number of triangles.
     pub fn n_triangles(&self) -> usize {
         self.triangles.len()
     }
 
-    /// The corners of a triangle.
+    /// Returns a triangle by its index.
     pub fn triangle(&self, triangle: usize) -> Triangle {
         Triangle(self.triangles[triangle].map(|corner| self.vertices[corner as usize]))
     }
 
-    /// The box around all triangles (vertices of no triangle do not count), metres.
+    /// Returns the bounding box of all triangles, metres; vertices without a triangle are ignored.
     pub fn bounds(&self) -> Aabb {
         let boxes = (0..self.n_triangles()).map(|t| self.triangle(t).bounds());
         Aabb::around(boxes).expect("a mesh has at least one triangle")
     }
 
-    /// The mesh with some triangles turned: their second and third corners are exchanged.
+    /// Returns the mesh with the marked triangles turned: their second and third corners are exchanged.
     pub(super) fn with_turned(mut self, is_turned: &[bool]) -> Self {
         for (triangle, _) in self
             .triangles
@@ -78,7 +78,7 @@ impl TriangleMesh {
         self
     }
 
-    /// The same mesh after a rigid motion.
+    /// Returns the mesh after a rigid motion.
     pub fn moved(&self, pose: &Pose) -> Self {
         let vertices = self.vertices.iter().map(|&v| pose.transform_point(v));
         Self {
@@ -88,7 +88,7 @@ impl TriangleMesh {
     }
 }
 
-/// At least one vertex, all finite.
+/// Checks that there is at least one vertex and that all are finite.
 pub(super) fn check_vertices(place: &str, vertices: &[DVec3]) -> Result<()> {
     if vertices.is_empty() {
         return Err(Error::input(place, "no vertices", "at least one vertex"));

@@ -1,33 +1,33 @@
-//! Which triangles share which edges, whatever the file's indices say: vertices at exactly the same place are one.
+//! Shared edges of triangles, found by welding: vertices with identical coordinates are one, independent of the file's indices.
 
 use super::TriangleMesh;
 use crate::geometry::place_bits;
 use std::collections::HashMap;
 
-/// Triangles over welded corners, and all sides of all triangles sorted by edge.
+/// Triangles over welded corners, with all sides of all triangles sorted by edge.
 #[derive(Clone, Debug)]
 pub struct Welded {
-    /// For each triangle its corners; a corner is named by the first vertex at its place.
+    /// Corners of each triangle; the index of a corner is that of the first vertex with its coordinates.
     pub corners: Vec<[u32; 3]>,
-    /// Sides of the triangles with three different corners, sorted by edge; the sides of one edge lie together.
+    /// Sides of the triangles with three different corners, sorted by edge.
     pub sides: Vec<Side>,
 }
 
-/// One side of one triangle.
+/// Side of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Side {
-    /// Its corners, the smaller first.
+    /// Corners of the side, the smaller index first.
     pub edge: [u32; 2],
-    /// The triangle's number.
+    /// Index of the triangle.
     pub triangle: u32,
-    /// From this corner of the triangle (0, 1 or 2) to the next.
+    /// First corner of the side in the triangle (0, 1 or 2); the side ends at the next corner.
     pub side: u8,
-    /// Whether the triangle goes from the smaller corner to the larger.
+    /// Whether the triangle passes the side from the smaller index to the larger.
     pub is_forward: bool,
 }
 
 impl Welded {
-    /// Welds a mesh's corners and sorts its sides.
+    /// Welds the corners of a mesh and sorts its sides.
     pub fn new(mesh: &TriangleMesh) -> Self {
         let places = places(mesh);
         let corners: Vec<[u32; 3]> = mesh
@@ -54,20 +54,20 @@ impl Welded {
         Self { corners, sides }
     }
 
-    /// The sides of one edge after another.
+    /// Returns the sides of each edge, one edge after another.
     pub fn edges(&self) -> impl Iterator<Item = &[Side]> {
         self.sides.chunk_by(|a, b| a.edge == b.edge)
     }
 
-    /// Edges that are passed more often in one direction than in the other: at holes, and between faces that disagree about
-    /// the outside.
+    /// Returns the number of edges with unequally many triangles in both directions: at holes, and between inconsistently oriented
+    /// faces.
     pub fn n_unbalanced(&self) -> usize {
         let sign = |side: &Side| if side.is_forward { 1 } else { -1 };
         let is_unbalanced = |sides: &&[Side]| sides.iter().map(sign).sum::<i32>() != 0;
         self.edges().filter(is_unbalanced).count()
     }
 
-    /// Whether every edge has exactly two sides, in opposite directions: closed, orientable and oriented.
+    /// Returns whether every edge has exactly two sides in opposite directions, so that the mesh is closed and consistently oriented.
     pub fn is_closed(&self) -> bool {
         let closed =
             |sides: &[Side]| sides.len() == 2 && sides[0].is_forward != sides[1].is_forward;
@@ -75,12 +75,12 @@ impl Welded {
     }
 }
 
-/// Whether a triangle has a corner twice.
+/// Returns whether a triangle has a repeated corner.
 pub(super) fn has_equal([a, b, c]: [u32; 3]) -> bool {
     a == b || b == c || c == a
 }
 
-/// Sets of things that are joined two at a time.
+/// Disjoint sets (union-find).
 pub(super) struct Joined(Vec<u32>);
 
 impl Joined {
@@ -103,7 +103,7 @@ impl Joined {
     }
 }
 
-/// For each vertex the first one at its place.
+/// Returns, for each vertex, the first vertex with its coordinates.
 fn places(mesh: &TriangleMesh) -> Vec<u32> {
     let mut first = HashMap::new();
     let vertices = mesh.vertices().iter().enumerate();

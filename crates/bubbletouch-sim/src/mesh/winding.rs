@@ -1,18 +1,18 @@
-//! The generalised winding number: how often a surface, closed or not, goes around a point.
+//! Generalised winding number of an open or closed surface around a point.
 //!
-//! It is the sum of the solid angles of all triangles over 4π \[GWN\]: 1 inside a closed mesh, 0 outside, and
-//! something between near a hole. A far part of the mesh counts as one dipole, its area vector A at its centre c
+//! The winding number is the sum of the solid angles of all triangles divided by 4π \[GWN\]: 1 inside a closed mesh, 0 outside, and
+//! intermediate near a hole. A distant part of the mesh is approximated by one dipole, its area vector A at its centre c
 //! \[FWN\]: `A·(c − x) / (4π |c − x|³)`.
 
 use super::{Bvh, Triangle};
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// A part is far from a point that is this many of its radii away. Larger: slower; smaller: the number is wrong by more
-/// than a tenth on real meshes.
+/// Distance in radii of a part from which on the dipole is used. If it is larger, queries are slower; if it is smaller, the error exceeds
+/// a tenth on real meshes.
 const FAR: f64 = 2.5;
 
-/// One dipole a node of a [`Bvh`].
+/// Tree with one dipole per node of a [`Bvh`].
 #[derive(Clone, Debug)]
 pub(super) struct WindingTree {
     dipoles: Vec<Dipole>,
@@ -20,11 +20,11 @@ pub(super) struct WindingTree {
 
 #[derive(Clone, Copy, Debug)]
 struct Dipole {
-    /// Mean of the triangles' middles, weighted by their areas.
+    /// Mean of the triangles' centroids, weighted by their areas.
     center: DVec3,
-    /// Σ area · normal.
+    /// Area vector Σ area · normal.
     area: DVec3,
-    /// Square of the distance from which on the dipole stands for its triangles.
+    /// Squared distance from which on the dipole replaces the triangles.
     far2: f64,
 }
 
@@ -61,7 +61,7 @@ impl WindingTree {
         }
     }
 
-    /// The winding number of a point.
+    /// Returns the winding number at a point.
     pub fn winding_number(&self, bvh: &Bvh, point: DVec3) -> f64 {
         self.solid_angle(bvh, 0, point) / (4.0 * PI)
     }
@@ -86,9 +86,9 @@ impl WindingTree {
 #[derive(Clone, Copy, Debug, Default)]
 struct Moments {
     area: f64,
-    /// Σ area · middle.
+    /// Sum Σ area · centroid.
     first: DVec3,
-    /// Σ area · normal.
+    /// Sum Σ area · normal.
     vector: DVec3,
 }
 
@@ -113,7 +113,7 @@ impl Moments {
     }
 }
 
-/// The solid angle under which a triangle is seen, positive from behind its front \[VS\].
+/// Returns the solid angle of a triangle seen from a point, positive from behind its front \[VS\].
 pub(super) fn solid_angle(triangle: &Triangle, point: DVec3) -> f64 {
     let [a, b, c] = triangle.0.map(|corner| corner - point);
     let (la, lb, lc) = (a.length(), b.length(), c.length());

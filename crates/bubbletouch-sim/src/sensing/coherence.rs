@@ -1,6 +1,6 @@
 //! Coherence and restricted isometry: measures of how well measurements distinguish the atoms of a dictionary.
 //!
-//! Both statistics refer to A = ΦΨ, with all columns divided by their root mean square norm, so that ensembles of different
+//! Coherence and isometry refer to A = ΦΨ, with all columns divided by their root mean square norm, so that ensembles of different
 //! scale are comparable.
 //!
 //! - **Mutual coherence** μ = max |aᵢ·aⱼ| / ‖aᵢ‖‖aⱼ‖, i ≠ j: OMP and ℓ1 recover every frame of fewer than (1 + 1/μ)/2 atoms

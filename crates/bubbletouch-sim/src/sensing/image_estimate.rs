@@ -14,7 +14,7 @@
 //! These are projections onto two convex sets that contain the image, so no step increases the distance of x to it. Youla and Webb (1982), *Image
 //! restoration by
 //! the method of convex projections*, IEEE Transactions on Medical Imaging 1, 81. The steps would also fit noise in the measurements, so they are omitted
-//! if there is noise. They are also omitted if rows of Φ are linearly dependent.
+//! if there is noise. The steps are also omitted if rows of Φ are linearly dependent.
 //!
 //! The estimate of a complete frame is the frame itself.
 

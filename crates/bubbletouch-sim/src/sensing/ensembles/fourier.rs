@@ -2,7 +2,7 @@
 //!
 //! Rows are cos and sin of 2π (u x / nx + v y / ny) with norm 1, ordered by increasing (u/nx)² + (v/ny)²: frequency 0 first, then a cosine and a sine of
 //! each
-//! pair ± (u, v). They are orthonormal; all n of them form a rotation. Low frequencies contain most of a smooth contact. Its placement, which varies from
+//! pair ± (u, v). The rows are orthonormal; all n of them form a rotation. Low frequencies contain most of a smooth contact. Its placement, which varies from
 //! touch to touch, is in the phases of all frequencies.
 
 use super::dense::{Dense, about};
