@@ -1,4 +1,4 @@
-//! What a study of recognition found, in sentences made from its tables.
+//! Findings of a recognition study as sentences, derived from its tables.
 
 use crate::report::advice::{Offer, Offers, Wish};
 use crate::report::csv_tables::{LIMITS_FILE, MISSED_TOUCHES};
@@ -10,10 +10,10 @@ use crate::studies::recognition::charts::robustness::robustness_words;
 use crate::studies::recognition::charts::tables::CELLS;
 use crate::table::{Table, Value, short_number};
 
-/// Values that a sentence lists, and conditions that have sentences, at most.
+/// Largest number of values listed in a sentence, and of conditions with a sentence.
 const MOST_LISTED: usize = 8;
 
-/// What is best in each condition and within its interval the least to measure, what each setting does by itself, and what was left out.
+/// Returns the answers: the best configuration in each condition, the cheapest one within its interval, the effect of each setting, and remarks on omissions.
 pub fn answers(tables: &[Table]) -> Vec<String> {
     let Some(cells) = filled(tables, CELLS) else {
         return vec!["No cell has been computed.".to_owned()];
@@ -26,7 +26,7 @@ pub fn answers(tables: &[Table]) -> Vec<String> {
     sentences
 }
 
-/// What a run prints at its end: all cells, the answers, and what is beside what was published and confused most often.
+/// Returns the text at the end of a run: configurations, answers, comparison with published accuracies, and the most frequent confusions.
 pub fn words(tables: &[Table], width: usize) -> String {
     let shown = [
         CELLS,
@@ -40,14 +40,14 @@ pub fn words(tables: &[Table], width: usize) -> String {
     let mut answers = answers(tables);
     answers.retain(|answer| Some(answer) != missed.as_ref());
     let words = words_of(&shown.collect::<Vec<_>>(), &answers, width);
-    // The last lines are those that are read.
+    // The last lines of a terminal are the ones that are read.
     words
         + &missed.map_or_else(String::new, |missed| {
             format!("\n{}", paragraph(&missed, width))
         })
 }
 
-/// How many touches met nothing; `None` if all met something.
+/// Returns a note on the number of touches that touched nothing; `None` if all touched something.
 fn missed(tables: &[Table]) -> Option<String> {
     let limits = filled(tables, LIMITS_FILE)?;
     let row = (0..limits.n_rows).find(|&row| limits.word("what", row) == MISSED_TOUCHES)?;
@@ -57,7 +57,7 @@ fn missed(tables: &[Table]) -> Option<String> {
     (count > 0.0).then(|| format!("{count} of {of} {MISSED_TOUCHES} ({share} %): {meaning}."))
 }
 
-/// The best of each condition, of the first ones if these are very many.
+/// Returns the best configuration of each condition; of the first conditions if there are many.
 fn bests(cells: &Table) -> Option<Vec<String>> {
     let (accuracy, _) = cells.column("accuracy")?;
     let (measurements, _) = cells.column("measurements_per_decision")?;
@@ -77,7 +77,7 @@ fn bests(cells: &Table) -> Option<Vec<String>> {
     Some(sentences)
 }
 
-/// Of a condition the best, and the least to measure within its interval.
+/// Returns the best configuration of a condition, and the one with the fewest measurements within its interval.
 fn best(offers: &Offers, choices: &[Offer]) -> Option<Vec<String>> {
     let best = *offers.front(choices).last()?;
     let accuracy = |offer: &Offer| offers.table.bounded(offers.value, offer.row);
@@ -108,7 +108,7 @@ fn best(offers: &Offers, choices: &[Offer]) -> Option<Vec<String>> {
     Some(sentences)
 }
 
-/// Mean accuracy at each value of each setting, over those combinations of the others that have all of its values.
+/// Returns the mean accuracy at each value of each setting, over the combinations of other settings that have all of these values.
 fn effects(cells: &Table) -> Option<Vec<String>> {
     let rows: Vec<usize> = (0..cells.n_rows).collect();
     let swept = Swept::of(cells, &rows);
@@ -141,7 +141,7 @@ fn effects(cells: &Table) -> Option<Vec<String>> {
     Some(swept.free.iter().filter_map(effect).collect())
 }
 
-/// What was left out, what stopped at a limit, and how many trials a p-value needs where there are too few.
+/// Returns remarks: omitted touches, fits that stopped at a limit, and the number of trials needed for a p-value if there are too few.
 fn remarks(tables: &[Table]) -> Vec<String> {
     let numbers = |file: &str, column: &str| -> &[f64] {
         let numbers = filled(tables, file).and_then(|table| table.numbers(column));

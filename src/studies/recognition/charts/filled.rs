@@ -1,8 +1,8 @@
-//! Tables that have rows.
+//! Access to tables that have rows.
 
 use crate::table::Table;
 
-/// A table that has rows, by its file.
+/// Returns the table of a file if it has rows.
 pub(crate) fn filled<'a>(tables: &'a [Table], file: &str) -> Option<&'a Table> {
     let mut tables = tables.iter();
     tables.find(|table| table.file == file && table.n_rows > 0)

@@ -4,9 +4,9 @@
 //! the first value from there, towards larger or smaller values, at which the accuracy is chance + (a₀ − chance) / 2. Between two values the accuracy
 //! is interpolated linearly over the scale of the condition.
 //!
-//! The interval comes from simulation: each mean accuracy a of n independent test rows is drawn from Beta(a n + ½, (1 − a) n + ½), and the place is
-//! found again; the middle 95 % of the places are the interval. n is the number of rows whose Wilson interval is as wide as the one in
-//! `summary.csv`, so that folds and held-out groups count as they do there.
+//! The interval comes from simulation: each mean accuracy a of n independent test rows is drawn from Beta(a n + ½, (1 − a) n + ½), and the value is computed
+//! again. The interval contains the middle 95 % of the results. n is the number of rows whose Wilson interval is as wide as the interval in `summary.csv`, so
+//! that folds and held-out groups count as in that table.
 
 use crate::error::Result;
 use crate::random::Seed;
@@ -27,35 +27,35 @@ pub(super) const ROBUSTNESS: File<Robustness> = File::new(
 .summary();
 
 row! {
-/// A design along a condition: a row of `robustness.csv`.
+/// Robustness of a design to a condition: a row of `robustness.csv`.
 pub struct Robustness {
     /// Number of the design's most accurate configuration along the condition: a row of `summary.csv`.
     cell: usize => Subject: Linear;
-    /// The design: settings that vary among the designs along the condition.
+    /// Design: the settings that differ between the designs.
     design: String => Subject;
-    /// The column of the condition.
+    /// Column of the condition.
     condition: String => Subject;
-    /// Whether the accuracy is followed to larger or to smaller values.
+    /// Direction from the highest accuracy: to larger or to smaller values.
     direction: Direction => Subject "towards";
-    /// The value at which the accuracy is highest.
+    /// Value of the condition with the highest accuracy.
     clean_at: f64 => Note "most accurate at": Linear;
     /// The highest mean accuracy.
     clean_accuracy: f64 => Note "accuracy there": Share;
-    /// One in the number of objects.
+    /// Chance level: one divided by the number of objects.
     chance: f64 => Note: Share;
     /// `chance + (clean_accuracy − chance) / 2`.
     half_accuracy: f64 => Note "half-way to chance": Share;
-    /// Whether the accuracy falls to that.
+    /// Whether the accuracy falls to `half_accuracy`.
     status: HalfStatus => Outcome "half-way is";
-    /// The value at which the accuracy falls to that; empty if it does not.
+    /// Value at which the accuracy falls to `half_accuracy`; empty if it does not.
     half_accuracy_at: Option<f64> => Value(Neither) "half-way at": Linear between [half_accuracy_at_low, half_accuracy_at_high];
-    /// Lower end of its 95 % interval; empty if that is beyond the last value.
+    /// Lower end of the 95 % interval of `half_accuracy_at`; empty if it lies beyond the last value.
     half_accuracy_at_low: Option<f64> => Note "95 % interval of the place, lower end": Linear;
-    /// Upper end of the same interval; empty if that is beyond the last value.
+    /// Upper end of the 95 % interval of `half_accuracy_at`; empty if it lies beyond the last value.
     half_accuracy_at_high: Option<f64> => Note "95 % interval of the place, upper end": Linear;
-    /// The last value.
+    /// Last value of the condition in this direction.
     end: f64 => Note "last value": Linear;
-    /// The mean accuracy there.
+    /// Mean accuracy at the last value.
     accuracy_at_end: f64 => Note "accuracy at the last value": Share;
 } }
 
@@ -69,7 +69,7 @@ pub enum Direction {
     Smaller,
 }
 
-/// Whether a value at which half of the accuracy is lost was found, and why not.
+/// Whether the accuracy falls half-way to chance, or why not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum HalfStatus {
@@ -81,31 +81,31 @@ pub enum HalfStatus {
     AllAtChance,
 }
 
-/// Draws of all accuracies for an interval. With more the ends of intervals depend less on the draws and reports of many configurations take longer:
-/// with 1,000 the standard error of an end is about a tenth of the interval's half width.
+/// Number of random draws for an interval. With more draws, intervals vary less and reports of many configurations take longer. With 1,000, the standard error
+/// of an end is about a tenth of the interval's half width.
 const N_DRAWS: usize = 1000;
 
-/// Smallest number of values of a condition. With two, the straight line between them would decide everything.
+/// Smallest number of values of a condition. With two values, the result would only reflect the straight line between them.
 const MIN_VALUES: usize = 3;
 
-/// Length of the range from zero to the smallest positive value of a logarithmic axis, decades. Larger: most of the axis is that range; smaller: zero
-/// and that value are hardly apart.
+/// Length of the range from zero to the smallest positive value of a logarithmic axis, decades. If it is larger, this range takes most of the axis; if
+/// smaller, zero and that value hardly differ.
 const ZERO_DECADES: f64 = 0.5;
 
-/// Ratio of the largest to the smallest positive value from which on an axis is logarithmic, as in charts.
+/// Ratio of the largest to the smallest positive value from which an axis is logarithmic, as in charts.
 const LOG_RATIO: f64 = 16.0;
 
 /// Mean accuracies along a condition, values ascending.
 struct Curve {
     values: Vec<f64>,
     accuracy: Vec<f64>,
-    /// Independent test rows of each.
+    /// Number of independent test rows of each mean accuracy.
     n_test: Vec<f64>,
     chance: f64,
 }
 
 impl Curve {
-    /// Returns the index of the highest accuracy, of equals the first.
+    /// Returns the index of the highest accuracy, in a tie the first.
     fn best(&self) -> usize {
         let accuracy = &self.accuracy;
         let backwards = (0..accuracy.len()).rev();
@@ -126,7 +126,7 @@ impl Curve {
         }
     }
 
-    /// Returns the smallest positive value, and whether the axis is logarithmic from there on.
+    /// Returns the smallest positive value, and whether the axis is logarithmic above it.
     fn scale(&self) -> (f64, bool) {
         let positive = self.values.iter().copied().filter(|&value| value > 0.0);
         let start = positive.fold(f64::INFINITY, f64::min);
@@ -134,7 +134,7 @@ impl Curve {
         (start, self.values[0] >= 0.0 && last / start >= LOG_RATIO)
     }
 
-    /// Returns the place of a value along the axis.
+    /// Returns the position of a value along the axis.
     fn place(&self, value: f64) -> f64 {
         match self.scale() {
             (_, false) => value,
@@ -143,7 +143,7 @@ impl Curve {
         }
     }
 
-    /// Returns the value at a place; the inverse of [`place`](Self::place).
+    /// Returns the value at a position; the inverse of [`place`](Self::place).
     fn value(&self, place: f64) -> f64 {
         match self.scale() {
             (_, false) => place,
@@ -194,7 +194,7 @@ impl Curve {
     }
 }
 
-/// Returns the number of rows whose 95 % Wilson interval around `accuracy` is so wide, at least 1.
+/// Returns the number of rows, at least 1, whose 95 % Wilson interval around `accuracy` has this width.
 fn rows_of_interval(accuracy: f64, width: f64) -> f64 {
     // With a = z² / n and q = p (1 − p): width² (1 + a)² = 4 a q + a².
     const Z: f64 = 1.959_963_984_540_054;
@@ -210,7 +210,7 @@ fn rows_of_interval(accuracy: f64, width: f64) -> f64 {
 /// Returns the table of robustness, or `None` if no numeric condition has enough values. `summary` has a row for each configuration.
 ///
 /// # Errors
-/// A row that has no form in a file.
+/// If a row cannot be written to a file.
 pub(super) fn robustness(summary: &Table, confusion: &Table) -> Result<Option<Table>> {
     let all: Vec<usize> = (0..summary.n_rows).collect();
     let mut curves = Vec::new();
@@ -218,7 +218,7 @@ pub(super) fn robustness(summary: &Table, confusion: &Table) -> Result<Option<Ta
         let Some((column, Data::Numbers(values))) = summary.column(condition) else {
             continue;
         };
-        // Named numbers, such as 0 bits for no converter, have no place between others.
+        // Named numbers, such as 0 bits for no converter, have no position between other values.
         let is_named = |value: f64| column.word(&short_number(value)) != short_number(value);
         let others = [Role::Choice, Role::Condition].map(|role| summary.of_role(role));
         let mut others = others.concat();
@@ -253,7 +253,7 @@ pub(super) fn robustness(summary: &Table, confusion: &Table) -> Result<Option<Ta
     }
 }
 
-/// Returns a row for each side of the highest accuracy that has values; `along`: rows of the summary, by ascending values of the condition.
+/// Returns one row for each side of the highest accuracy that has values. `along` lists rows of the summary by ascending values of the condition.
 fn both_sides(
     summary: &Table,
     n_objects: &ObjectCounts,
@@ -319,7 +319,7 @@ fn both_sides(
     sides.into_iter().flatten().collect()
 }
 
-/// Numbers of objects that configurations tell apart, from their confusion matrices.
+/// Numbers of objects of configurations, derived from their confusion matrices.
 pub(super) struct ObjectCounts {
     of_cells: HashMap<u64, usize>,
     of_all: usize,
@@ -336,18 +336,18 @@ impl ObjectCounts {
         Self { of_cells, of_all }
     }
 
-    /// Returns the number of a configuration, at least 1. If a study keeps the matrices of some configurations only, all have the same objects.
+    /// Returns the number of objects of a configuration, at least 1. If a study stores only some confusion matrices, all configurations have the same objects.
     fn of(&self, cell: f64) -> usize {
         self.own(cell).unwrap_or(self.of_all).max(1)
     }
 
-    /// Returns the number of a configuration, or `None` if its matrix was not kept.
+    /// Returns the number of objects of a configuration, or `None` if its confusion matrix is not stored.
     pub(super) fn own(&self, cell: f64) -> Option<usize> {
         self.of_cells.get(&cell.to_bits()).copied()
     }
 }
 
-/// Returns a sentence for each condition: the place where the design that goes furthest has lost half of its accuracy.
+/// Returns a sentence for each condition: the value at which the most robust design has lost half of its accuracy above chance.
 pub(super) fn robustness_words(tables: &[Table]) -> Vec<String> {
     let of = |file: &str| tables.iter().find(|table| table.file == file);
     match (of("summary.csv"), of(ROBUSTNESS.name())) {
@@ -471,12 +471,12 @@ mod tests {
             (1.0, 0.0, 0.9),
             (1.0, 0.3, 0.6),
             (1.0, 0.6, 0.3),
-            // Never half-way.
+            // The accuracy stays above half-way.
             (10.0, 0.0, 0.9),
             (10.0, 0.1, 0.95),
             (10.0, 0.3, 0.8),
             (10.0, 0.6, 0.7),
-            // Guesses.
+            // The accuracy is at chance.
             (100.0, 0.0, 0.1),
             (100.0, 0.1, 0.1),
             (100.0, 0.3, 0.08),
@@ -516,7 +516,7 @@ mod tests {
         assert!(said.len() == 1 && said[0].starts_with(start), "{said:?}");
         let end = "with C = 1; 2 of 3 configurations keep more than half up to the last value.";
         assert!(said[0].ends_with(end), "{said:?}");
-        // Two values are joined by any straight line.
+        // Two values do not determine a curve.
         assert_eq!(tables_of(&planted[..2]).1, None);
     }
 
@@ -533,7 +533,7 @@ mod tests {
         let [at, ..] = linear.half(Direction::Smaller, &Seed::new(1));
         assert!((at.unwrap() - 1.5).abs() < 1e-9);
         assert_eq!(linear.half(Direction::Larger, &Seed::new(1)), [None; 3]);
-        // With few test rows the lower end may be known where the place is not.
+        // With few test rows the lower end may exist although the value itself does not.
         let unsure = curve(&[0.0, 1.0, 2.0], &[0.9, 0.8, 0.55], 12.0, 0.1);
         let [at, low, high] = unsure.half(Direction::Larger, &Seed::new(1));
         assert!(at.is_none() && low.unwrap() < 2.0 && high.is_none());

@@ -1,4 +1,4 @@
-//! What the page of a study of recognition has beside that of any study: sample touches, settings, and how often limits were reached.
+//! Page sections of a recognition study that other kinds lack: sample touches, settings, and counts of reached limits.
 
 use crate::error::Result;
 use crate::report::csv_tables::LIMITS_FILE;
@@ -10,10 +10,10 @@ use crate::studies::recognition::charts::filled::filled;
 use crate::studies::recognition::charts::tables::CELLS;
 use crate::table::{Table, short_number};
 
-/// Sample touches, settings, limits.
+/// Returns the sections of sample touches, settings and limits.
 ///
 /// # Errors
-/// A sample touch that nobody can draw.
+/// If a sample touch cannot be drawn.
 pub fn sections(
     settings: &[(String, String)],
     gallery: &[Snapshots],
@@ -27,7 +27,7 @@ pub fn sections(
     ])
 }
 
-/// What a study says of itself, then every setting with its values.
+/// Returns the study's description, followed by every setting with its values.
 fn settings_html(settings: &[(String, String)], tables: &[Table]) -> String {
     let settings = settings.iter();
     let mut html: String = settings
@@ -49,7 +49,7 @@ fn settings_html(settings: &[(String, String)], tables: &[Table]) -> String {
     format!("<dl>{html}</dl>")
 }
 
-/// Limits of the model and of the solver that were reached.
+/// Returns the reached limits of the model and of the solver.
 fn limits_html(tables: &[Table]) -> String {
     let Some(table) = filled(tables, LIMITS_FILE) else {
         return String::new();

@@ -1,7 +1,8 @@
-//! What is charted of a study of recognition.
+//! Charts of a recognition study.
 //!
-//! Every setting that varies has a place, so no chart mixes cells that differ in something it does not show: x takes the number of most
-//! values, lines and panels the others of most values, of equals words before numbers; each combination of the rest gets a chart of its own.
+//! Every setting that varies has a role in a chart, so no chart mixes configurations that differ in a setting it does not show. The x axis shows the numeric
+//! setting with most values. Lines and panels show the other settings with most values, in a tie texts before numbers. Each combination of the remaining
+//! settings has its own chart.
 
 use crate::report::study_folder::MOST_CHARTS;
 use crate::report::swept::{Setting, Swept, without};
@@ -12,10 +13,11 @@ use crate::studies::recognition::charts::tables::{
 use crate::table::{Along, At, ChartSpec, Mark, Role, Rule, Shown, Table, Value};
 use std::cmp::Reverse;
 
-/// Classifiers from which on a study is about choosing one.
+/// Number of classifiers from which a study counts as a comparison of classifiers.
 const MANY_CLASSIFIERS: usize = 3;
 
-/// Accuracy by what varies; against time if classifiers are compared or a study asks; and what the best cell takes for what.
+/// Returns the charts: accuracy by the settings that vary, accuracy against time if classifiers are compared or the study requests it, and the confusions of
+/// the best configuration.
 pub fn charts(tables: &[Table], pareto: Option<bool>) -> Vec<ChartSpec> {
     let Some(cells) = filled(tables, CELLS) else {
         return Vec::new();
@@ -41,13 +43,13 @@ pub fn charts(tables: &[Table], pareto: Option<bool>) -> Vec<ChartSpec> {
         others.extend(time_charts(cells, &chart));
     }
     others.extend(confusion.and_then(|table| confusion_chart(cells, table)));
-    // Charts of accuracies stand together; those that are drawn leave room for the others.
+    // Charts of accuracies are adjacent, and leave room for the other charts.
     let place = charts.len().min(MOST_CHARTS - others.len());
     charts.splice(place..place, others);
     charts
 }
 
-/// Returns the line at the share that guessing recognises: that of each cell where cells differ in their number of objects.
+/// Returns a line at chance level; if configurations differ in their number of objects, at the level of each configuration.
 fn chance(cells: &Table, confusion: Option<&Table>) -> Option<Rule> {
     if cells.numbers(CHANCE).is_some() {
         return Some(Rule {
@@ -65,14 +67,13 @@ fn chance(cells: &Table, confusion: Option<&Table>) -> Option<Rule> {
     Some(Rule::at(Along::Y, 1.0 / n_objects as f64, words))
 }
 
-/// The charts of accuracy that show every cell. Settings of the signal that leave their first values one at a time get charts of their own,
-/// along x.
+/// Returns the charts of accuracy that together show every configuration. Settings of the signal that change one at a time have their own charts, along x.
 fn accuracy_charts(cells: &Table, chart: &ChartSpec) -> Vec<ChartSpec> {
     let all: Vec<usize> = (0..cells.n_rows).collect();
     let signal = Swept::of(cells, &all).one_at_a_time;
     if signal.is_empty() {
         let mut charts = charts_along(cells, chart, None, &all);
-        // A setting of some classifiers alone also runs along an axis of its own, over the rows that have it.
+        // A setting that only some classifiers have also gets its own chart, over the rows that have it.
         for setting in &Swept::of(cells, &all).free {
             let has_it = |row: &usize| setting.data.value(*row).is_some();
             let rows: Vec<usize> = all.iter().copied().filter(has_it).collect();
@@ -104,8 +105,8 @@ fn accuracy_charts(cells: &Table, chart: &ChartSpec) -> Vec<ChartSpec> {
     signal.iter().flat_map(charts_of).collect()
 }
 
-/// The charts of some rows along a given setting, or along the main one. Where lines and panels are in use and no setting is left over, the
-/// chart comes a second time with the two exchanged, so that both effects can be read off lines that lie in one panel.
+/// Returns the charts of rows along a given setting, or along the main one. If lines and panels are in use and no setting remains, a second chart exchanges
+/// the two. Both effects can then be read from lines within one panel.
 fn charts_along(
     cells: &Table,
     chart: &ChartSpec,
@@ -149,7 +150,7 @@ fn name_of(setting: &Setting) -> String {
     setting.column.name.to_string()
 }
 
-/// `Accuracy by compression, for each pitch and array size (noise 10 %)`.
+/// Returns the title of a chart: `Accuracy by compression, for each pitch and array size (noise 10 %)`.
 fn title(cells: &Table, x: &str, (used, fixed): (&[Setting], &[Setting]), row: usize) -> String {
     let along = cells.column(x).map_or(x, |(column, _)| &column.words);
     let mut title = format!("Accuracy by {along}");
@@ -168,7 +169,7 @@ fn title(cells: &Table, x: &str, (used, fixed): (&[Setting], &[Setting]), row: u
     title
 }
 
-/// A column in names of files.
+/// Returns the name of a column for use in file names.
 fn word(column: &str) -> &str {
     match column {
         "pitch_mm" | "size_mm" | "smoothing_mm" => column.trim_end_matches("_mm"),
@@ -177,7 +178,7 @@ fn word(column: &str) -> &str {
     }
 }
 
-/// `_noise_10_ensemble_sbhe`: letters, digits, points and underscores only.
+/// Returns a suffix of a file name: `_noise_10_ensemble_sbhe`, with letters, digits, points and underscores only.
 fn name_ending(fixed: &[Setting], row: usize) -> String {
     let plain = |letter: char| match letter {
         '.' | '-' => letter,
@@ -195,8 +196,8 @@ fn name_ending(fixed: &[Setting], row: usize) -> String {
     parts.collect()
 }
 
-/// Accuracy against the time to train and to decide: one panel for each value of the first condition, one colour for each classifier or, with
-/// one classifier, for each value of the first other choice that varies.
+/// Returns charts of accuracy against the times to train and to decide. There is one panel for each value of the first condition, and one colour for each
+/// classifier. With one classifier, colours show the values of the first other choice that varies.
 fn time_charts(cells: &Table, chart: &ChartSpec) -> [ChartSpec; 2] {
     let all: Vec<usize> = (0..cells.n_rows).collect();
     let free = Swept::of(cells, &all).free;
@@ -225,7 +226,7 @@ fn time_charts(cells: &Table, chart: &ChartSpec) -> [ChartSpec; 2] {
     })
 }
 
-/// What the best cell takes for what.
+/// Returns the chart of the confusions of the best configuration.
 fn confusion_chart(cells: &Table, confusion: &Table) -> Option<ChartSpec> {
     let accuracy = cells.numbers("accuracy")?;
     let best = (0..accuracy.len()).reduce(|a, b| if accuracy[b] > accuracy[a] { b } else { a })?;

@@ -1,4 +1,4 @@
-//! The tables of a study of recognition, and one of all that is known of each cell.
+//! Tables of a recognition study, and a combined table of all results of each configuration.
 
 use crate::error::Result;
 use crate::learning::classifiers::ClassifierKind;
@@ -17,7 +17,7 @@ use crate::table::{Better, Column, Columns, Data, File, Role, Scale, Table};
 use serde::Serialize;
 use std::path::Path;
 
-/// The table of all that is known of each cell; it has no file.
+/// Combined table of all results of each configuration; it is not written to a file.
 pub const CELLS: &str = "cells.csv";
 
 const ACCURACY: File<(Cell, TrialScore)> = File::new(
@@ -31,7 +31,7 @@ const SUMMARY: File<(Cell, CellScore)> = File::new(
     "Means over trials.",
 )
 .summary();
-/// What the intervals of `summary.csv` are over where no groups are held out: without folds, and with folds.
+/// Sample of the intervals in `summary.csv` if no groups are held out: without folds, and with folds.
 pub(crate) const OVER_TRIAL: &str =
     "Intervals are 95 % Wilson intervals at the test decisions of one trial.";
 pub(crate) const OVER_FOLDS: &str =
@@ -81,10 +81,10 @@ pub const TABLE_NAMES: [&str; 12] = [
     ROBUSTNESS.name(),
 ];
 
-/// Every table of a run, in the order of their files; then [`CELLS`].
+/// Returns every table of a run, in the order of their files, followed by [`CELLS`].
 ///
 /// # Errors
-/// A row that has no form in a file.
+/// If a row cannot be written to a file.
 pub fn tables_of(tables: &Tables) -> Result<Vec<Table>> {
     let first = tables.accuracy.first();
     let axes = first.map_or_else(Vec::new, |(cell, _)| cell.variant.values.to_vec());
@@ -92,10 +92,10 @@ pub fn tables_of(tables: &Tables) -> Result<Vec<Table>> {
     From::Rows(tables).all(axes.collect(), tables.has_folds)
 }
 
-/// The same of the files of a folder.
+/// Reads every table of a folder, in the order of their files, followed by [`CELLS`].
 ///
 /// # Errors
-/// A table that cannot be read, by its file, line and column.
+/// If a table cannot be read; the error names its file, line and column.
 pub fn read_tables(folder: &Path) -> Result<Vec<Table>> {
     let study = folder.join("study.toml");
     let text = crate::files::read_to_string(&study).unwrap_or_default();
@@ -108,14 +108,14 @@ pub fn read_tables(folder: &Path) -> Result<Vec<Table>> {
     From::Folder(folder).all(axes, has_folds)
 }
 
-/// Where rows come from.
+/// Source of the rows.
 enum From<'a> {
     Rows(&'a Tables),
     Folder(&'a Path),
 }
 
 impl From<'_> {
-    /// Those of cells have the columns of the axes that the study names itself.
+    /// Returns all tables. Tables of configurations have the columns of the axes in `[axes]`.
     fn all(&self, axes: Vec<Column>, has_folds: bool) -> Result<Vec<Table>> {
         let mut tables = vec![
             self.table(&ACCURACY, |tables| &tables.accuracy, &axes)?,
@@ -175,7 +175,7 @@ impl From<'_> {
     }
 }
 
-/// What only the rows tell: the unit of noise, and what C is where it is absent.
+/// Sets the unit of the noise and the meaning of an absent C, which depend on the rows.
 fn say(table: &mut Table) {
     let unit = match (table.n_rows > 0).then(|| table.word("noise_unit", 0)) {
         Some("mm") => "mm",
@@ -186,7 +186,7 @@ fn say(table: &mut Table) {
         let kind = toml::Value::from(table.word("classifier", row)).try_into();
         kind.is_ok_and(ClassifierKind::has_c)
     };
-    // A classifier that has one chooses it.
+    // C is chosen if the classifier has a C and the column is empty.
     let is_chosen = |row| !table.number("c", row).is_nan() || has_c(row);
     let is_chosen = (0..table.n_rows).all(is_chosen);
     for column in &mut table.columns {
@@ -200,7 +200,7 @@ fn say(table: &mut Table) {
     }
 }
 
-/// What intervals of accuracies are where whole groups are held out; none where single rows are.
+/// Returns the note on intervals over held-out groups; `None` if single rows are held out.
 pub(crate) fn note_of_groups(table: &Table) -> Option<String> {
     let n_groups = table.numbers("n_groups")?;
     let least = n_groups.iter().copied().fold(f64::INFINITY, f64::min);
@@ -213,7 +213,7 @@ pub(crate) fn note_of_groups(table: &Table) -> Option<String> {
     ))
 }
 
-/// How often the bootstrap's intervals truly hold the mean where that is not 95 times in a hundred.
+/// Returns the note on the actual coverage of the bootstrap intervals, if it differs from 95 %.
 fn note_of_few_trials(table: &Table) -> Option<String> {
     let low = table.numbers("bootstrap_low")?;
     let n_trials = table.numbers("n_trials")?.iter().zip(low);
@@ -226,10 +226,10 @@ fn note_of_few_trials(table: &Table) -> Option<String> {
     ))
 }
 
-/// The share that guessing recognises, a column of [`CELLS`] where cells differ in it.
+/// Column of [`CELLS`] with the chance level, if configurations differ in it.
 pub(crate) const CHANCE: &str = "chance";
 
-/// Returns 1 / the number of objects that each cell tells apart, if cells differ in it and each has its confusion matrix.
+/// Returns 1 / the number of objects of each configuration, if configurations differ in it and all confusion matrices are stored.
 fn chance_of_cells(summary: &Table, confusion: &Table) -> Option<(Column, Data)> {
     let n_objects = ObjectCounts::new(confusion);
     let chance = (0..summary.n_rows).map(|row| {
@@ -242,7 +242,7 @@ fn chance_of_cells(summary: &Table, confusion: &Table) -> Option<(Column, Data)>
     chance.varies(0..summary.n_rows).then_some((column, chance))
 }
 
-/// Each cell with its distance to the best of its condition and with what it costs.
+/// Returns each configuration with its difference to the best of its condition and with its costs.
 fn cells_of(tables: &[Table]) -> Option<Table> {
     let of = |file: &str| tables.iter().find(|table| table.file == file);
     let summary = of(SUMMARY.name())?;

@@ -1,4 +1,4 @@
-//! An array that is brought to one object, pressed against it and drawn along it.
+//! Press of an array on one object, and its slide along the object.
 
 use crate::contact::{Approach, Contact, FrictionState, Workspace, press_to_depth};
 use crate::geometry::Pose;
@@ -8,11 +8,11 @@ use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use crate::world::Shears;
 use glam::{DVec2, DVec3};
 
-/// What a thread touches in.
+/// Scratch memory of a thread for touches.
 #[derive(Debug, Default)]
 pub struct ArrayWorkspace {
     press: Workspace,
-    /// Of the array that it touches with.
+    /// State of the friction of the array in use.
     friction: Option<FrictionState>,
 }
 
@@ -23,7 +23,7 @@ pub struct ArrayPress<'a> {
 }
 
 impl TaxelArray {
-    /// Brings it to one object.
+    /// Prepares the array for touches of one object.
     pub fn press<'a>(&'a self, object: &Model) -> ArrayPress<'a> {
         ArrayPress {
             array: self,
@@ -33,8 +33,8 @@ impl TaxelArray {
 }
 
 impl ArrayPress<'_> {
-    /// Touches to a depth (metres) past first contact, and then along as the array slides, or a leading part of this way; `None` where the way misses the
-    /// object.
+    /// Presses to a depth (metres) past first contact and then slides as the array does, or performs the first part of this path. Returns `None` if the path
+    /// misses the object.
     pub fn touch(
         &self,
         pose: Pose,
@@ -56,7 +56,7 @@ impl ArrayPress<'_> {
         approach.press_and_slide(&self.object, &[pose], motion, friction.as_mut(), press)
     }
 
-    /// Where the object is at the end of a touch from a pose: in the patch frame.
+    /// Returns the object's pose at the end of a touch that starts at `pose`, in the patch frame.
     pub fn end(&self, mut pose: Pose, contact: Option<Contact>) -> Pose {
         if let Some(contact) = contact {
             pose.translation -= self.array.slide().extend(contact.travel);
@@ -64,8 +64,8 @@ impl ArrayPress<'_> {
         pose
     }
 
-    /// What the array reads of the last touch, channel by channel: [`n_values`](TaxelArray::n_values), metres of deflection, then newtons of
-    /// shear.
+    /// Returns the readings of the last touch, ordered by channel: [`n_values`](TaxelArray::n_values) values, deflections in metres, then shear forces in
+    /// newtons.
     pub fn values<'w>(&self, workspace: &'w ArrayWorkspace) -> impl Iterator<Item = f64> + 'w {
         let forces = workspace.friction.as_ref();
         let forces = forces.map_or(&[][..], FrictionState::force3);

@@ -1,4 +1,4 @@
-//! Sample touches for the eye: human touches as film strips.
+//! Sample pictures of human touches as film strips.
 
 use crate::contact::Workspace;
 use crate::error::{Error, Result};
@@ -13,20 +13,20 @@ use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use ndarray::Array2;
 use rayon::prelude::*;
 
-/// Frames of a strip: a row of the picture.
+/// Number of frames of a strip, which is one row of the picture.
 const N_FRAMES: usize = 4;
 
-/// Touches of which the firmest is shown: the flat hand rather than a fingertip.
+/// Number of touches from which the one with the largest force is shown; with one, a fingertip might represent a flat hand.
 const N_LOOKED_AT: usize = 10;
 
-/// Of the kinds that the study names for its picture (else of all), the firmest of the first touches, at four instants evenly between
-/// those when its first and its last taxel are touched; on the study's finest array, without noise.
+/// Returns samples of the kinds that the study lists for its picture, by default of all kinds. Each sample is the strongest of the first touches of its kind.
+/// It is shown at four times, evenly spaced between its first and its last contact, on the study's finest array and without noise.
 ///
 /// # Errors
-/// If the study has no cells, names an unknown kind of touch, or has a skin that cannot be made.
+/// If the study has no configurations, lists an unknown kind of touch, or has an invalid skin.
 pub fn human_samples(plan: &Plan, touches: &HumanTouches) -> Result<Samples> {
     let n_taxels = |array: &&TaxelArray| array.n_taxels();
-    // The first of several.
+    // In a tie, the first array.
     let array = plan.arrays.iter().rev().max_by_key(n_taxels);
     let no_cells = || Error::input("study", "no cells", "at least one value an axis");
     let array = array.ok_or_else(no_cells)?;

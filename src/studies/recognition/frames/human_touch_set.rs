@@ -1,4 +1,4 @@
-//! Human touches as the touches of a study.
+//! Human touches as the set of touches of a study.
 
 use crate::contact::Workspace;
 use crate::engine::progress::Progress;

@@ -1,4 +1,4 @@
-//! Human touches of a study: drawn once, recorded on each array.
+//! Human touches of a study, drawn once and recorded on each array.
 
 use crate::contact::{Workspace, press_with_contacts};
 use crate::error::{Error, Result};
@@ -10,29 +10,29 @@ use ndarray::ArrayViewMut2;
 use rand::Rng;
 use rayon::prelude::*;
 
-/// Human touches, kind by kind.
+/// Human touches, ordered by kind.
 #[derive(Clone, Debug)]
 pub struct HumanTouches {
-    /// What they are and how they are recorded.
+    /// Kinds of touch and settings of the recording.
     pub spec: HumanTouchSpec,
-    /// As many a kind.
+    /// Touches, with the same number for each kind.
     pub touches: Vec<RecordedTouch>,
 }
 
-/// A touch and when it is recorded.
+/// A touch and the start of its motion within the recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordedTouch {
     /// The touch.
     pub touch: HumanTouch,
-    /// When the hand begins to move, seconds after the first frame.
+    /// Start of the hand's motion, seconds after the first frame.
     pub onset: f64,
 }
 
 impl HumanTouches {
-    /// Draws every touch of a plan from a stream of its own.
+    /// Draws the touches of a study, each from its own random stream.
     ///
     /// # Errors
-    /// A touch that is longer than a recording.
+    /// If a touch is longer than a recording.
     pub fn draw(spec: &HumanTouchSpec, seed: &Seed) -> Result<Self> {
         let seed = seed.named("human touches");
         let kinds = spec.kinds.iter();
@@ -57,13 +57,13 @@ impl HumanTouches {
         })
     }
 
-    /// The touches of a kind, by its label.
+    /// Returns the touches of a kind, given by its label.
     pub fn of(&self, label: usize) -> &[RecordedTouch] {
         &self.touches[label * self.spec.per_kind..][..self.spec.per_kind]
     }
 }
 
-/// Records a touch into its frames, n_frames × n_taxels metres: whether it met nothing, and whether it saturated a taxel.
+/// Records a touch as frames, shape (n_frames, n_taxels), metres. Returns whether the touch missed the skin, and whether it saturated a taxel.
 pub fn record_touch(
     skin: &Patch,
     touch: &RecordedTouch,
@@ -72,7 +72,7 @@ pub fn record_touch(
     workspace: &mut Workspace,
 ) -> (bool, bool) {
     let (mut n_touched, mut n_saturated) = (0, 0);
-    // Most hands only move, and keep their spheres.
+    // Most hands only move and keep their shape, so their spheres are reused.
     let mut shape: Option<(Hand, [Model; 1])> = None;
     for (frame, row) in rows.outer_iter_mut().enumerate() {
         let state = touch.touch.at(frame as f64 * interval - touch.onset);

@@ -1,16 +1,16 @@
-//! Encoded frames in memory.
+//! Frames in memory, encoded to save space.
 
 use bubbletouch_sim::frame_coding::decode;
 use ndarray::{Array2, Axis};
 use rayon::prelude::*;
 
-/// (n_touches · F) frames of an array, n_values each (a metre of deflection a taxel, or more channels), and what happened while they were made: object by object, touch by
-/// touch, the deepest frame of a touch last. Only touched taxels are kept.
+/// Frames of an array, n_touches · F of them with n_values each (deflections in metres, or more channels), and counts from their simulation. Frames are
+/// ordered by object and touch; the deepest frame of a touch is the last. Only touched taxels are stored.
 #[derive(Debug)]
 pub struct Frames {
-    /// What happened.
+    /// Counts from the simulation of the frames.
     pub facts: FrameFacts,
-    /// Numbers of each.
+    /// Number of values of a frame.
     pub n_values: usize,
     encoded: Vec<Box<[u8]>>,
 }
@@ -34,12 +34,12 @@ impl Frames {
         self.encoded.extend(encoded);
     }
 
-    /// How many.
+    /// Returns the number of frames.
     pub fn n(&self) -> usize {
         self.encoded.len()
     }
 
-    /// Writes frame `number` into `frame` (n_values); several threads read.
+    /// Decodes frame `number` into `frame`, shape (n_values,). Several threads may read at the same time.
     ///
     /// # Panics
     /// If there is no such frame, or `frame` has another length.
@@ -59,15 +59,15 @@ impl Frames {
     }
 }
 
-/// What happened while frames were made.
+/// Counts from the simulation of frames.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrameFacts {
-    /// F, frames a touch.
+    /// Number F of frames per touch.
     pub n_frames: usize,
-    /// Touches that met nothing: no taxel is deflected when they are deepest.
+    /// Number of touches without a deflected taxel at the deepest point.
     pub n_missed: usize,
-    /// Touches with at least one taxel at its stroke when they are deepest.
+    /// Number of touches with at least one taxel at its stroke at the deepest point.
     pub n_saturated: usize,
-    /// Processor-seconds, summed over threads.
+    /// Processor time, s, summed over threads.
     pub cpu_s: f64,
 }

@@ -1,4 +1,4 @@
-//! Frames made on all threads, and put down in their order.
+//! Simulation of frames on all threads, with results in a fixed order.
 
 use crate::engine::progress::Progress;
 use crate::studies::recognition::frames::kept::{FrameFacts, Frames};
@@ -7,24 +7,24 @@ use ndarray::{Array2, ArrayViewMut2};
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// Frames made by one thread at a time, about: large enough to hide the hand-over, small enough to share out evenly.
+/// Approximate number of frames per task of a thread. If it is smaller, scheduling costs more; if larger, the threads finish at different times.
 const BLOCK: usize = 32;
-/// Blocks a thread before frames are put down.
+/// Number of tasks per thread before frames are stored.
 const BLOCKS_A_THREAD: usize = 8;
 
-/// Touches of F frames in a block.
+/// Returns the number of touches of F frames in a task.
 fn block(n_frames: usize) -> usize {
     (BLOCK / n_frames.max(1)).max(1)
 }
 
-/// Touches of F frames whose frames are held before they are put down.
+/// Returns the number of touches of F frames that are simulated before their frames are stored.
 fn made_at_once(n_frames: usize) -> usize {
     block(n_frames) * BLOCKS_A_THREAD * rayon::current_num_threads()
 }
 
 impl Frames {
-    /// Makes the frames of some touches, each thread in a workspace of its own; the same bytes at any number of threads. `press` writes a touch
-    /// into its F frames (F × n_values), and says whether it met nothing, and whether it saturated a taxel when it was deepest.
+    /// Simulates the frames of touches, each thread with its own workspace; the result does not depend on the number of threads. `press` writes a touch into
+    /// its F frames (F × n_values). It returns whether the touch missed, and whether it saturated a taxel at its deepest point.
     pub fn make<T: Sync, W>(
         &mut self,
         touches: &[T],

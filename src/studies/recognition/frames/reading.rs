@@ -1,4 +1,4 @@
-//! Frames → signal → measurements of single touches.
+//! Reading of touches: frames → signal chain → measurements.
 
 use crate::error::Result;
 use crate::random::Seed;
@@ -11,26 +11,26 @@ use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis};
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// Frames measured together: one matrix product. Fixed, so that results do not depend on the number of threads.
+/// Number of frames that are measured together as one matrix product. It is fixed, so that results do not depend on the number of threads.
 const BLOCK: usize = 128;
 
 /// Inputs of a reading.
 #[derive(Clone, Copy)]
 pub struct Reading<'a> {
-    /// The skins that touches are made with. All have frames of the same shape.
+    /// Skins of the touches. All have frames of the same shape.
     pub skins: &'a [ReadSkin<'a>],
-    /// The ensemble's matrix.
+    /// Measurement matrix of the ensemble.
     pub projection: &'a Projection,
 }
 
-/// A skin, and the frames of touches that are made with it.
+/// A skin and the frames of its touches.
 #[derive(Clone, Debug)]
 pub struct ReadSkin<'a> {
-    /// The signal of each channel.
+    /// Signal chain of each channel.
     pub chains: Vec<Chain>,
-    /// The taxels that were pressed.
+    /// Taxels of the skin.
     pub taxel: Taxel,
-    /// Approach speed at the moment of reading, m/s.
+    /// Approach speed at the time of reading, m/s.
     pub speed: f64,
     /// Frames of the touches.
     pub frames: &'a Frames,
@@ -39,19 +39,19 @@ pub struct ReadSkin<'a> {
 /// A touch to read.
 #[derive(Clone, Copy, Debug)]
 pub struct TouchToRead {
-    /// Its number: its frames are those of its skin from `number · F` on.
+    /// Number of the touch; its first frame in the skin's frames is `number · F`.
     pub number: usize,
-    /// Its name: what its own randomness is drawn from.
+    /// Seed of the touch's random numbers, derived from its name.
     pub seed: Seed,
-    /// Seconds between its frames; `None` when the press waits at each.
+    /// Time between the frames, seconds; `None` if the press stops for each frame.
     pub interval: Option<f64>,
-    /// The number of the touch that came before it; `None` for a fresh skin.
+    /// Number of the preceding touch; `None` for a skin without history.
     pub before: Option<usize>,
-    /// The index of its skin in the reading.
+    /// Index of the touch's skin in the reading.
     pub skin: usize,
 }
 
-/// All touches of some classes, named by their class and their number within it; each at rest while it is read, on a fresh skin.
+/// Returns all touches of some classes, named by class and number within the class. Each touch is at rest while it is read, on a skin without history.
 pub fn touches_to_read<'a>(
     classes: impl IntoIterator<Item = (&'a str, usize)>,
     seed: &Seed,
@@ -72,10 +72,10 @@ pub fn touches_to_read<'a>(
     touches
 }
 
-/// Reads touches. With the measurements (n_touches · F) × m come processor-seconds.
+/// Reads touches. Returns the measurements, shape (n_touches · F, m), and the processor time, seconds.
 ///
 /// # Errors
-/// Frames that are in a file cannot be read.
+/// If a signal step fails.
 pub fn measure(reading: Reading, touches: &[TouchToRead]) -> Result<(Array2<f64>, f64)> {
     let (n_touches, n_frames) = (touches.len(), reading.skins[0].frames.facts.n_frames);
     let block = (BLOCK / n_frames.max(1)).max(1);
@@ -96,14 +96,14 @@ pub fn measure(reading: Reading, touches: &[TouchToRead]) -> Result<(Array2<f64>
     Ok((values, cpu_s))
 }
 
-/// What a thread works in, for one block after the other.
+/// Scratch memory of a thread.
 #[derive(Debug, Default)]
 struct Working {
     /// Frames of a block.
     frames: Vec<f64>,
-    /// Those of a channel of a touch, behind two that may have come before it.
+    /// Frames of one channel of a touch, after up to two frames of history.
     with_history: Vec<f64>,
-    /// A frame of the touch before.
+    /// Deepest frame of the preceding touch.
     deepest: Vec<f64>,
     rates: Vec<f64>,
     scratch: Scratch,
@@ -119,7 +119,7 @@ fn measure_block(
     let first = reading.skins[0].frames;
     let (n_frames, n_values) = (first.facts.n_frames, first.n_values);
     let mut frames = std::mem::take(&mut working.frames);
-    // Whatever is there of another block is read over.
+    // Values of an earlier block are overwritten.
     frames.resize(touches.len() * n_frames * n_values, 0.0);
     let of_touches = frames.chunks_exact_mut(n_frames * n_values);
     for (touch, frames) in touches.iter().zip(of_touches) {
@@ -169,7 +169,7 @@ fn recording<'a>(
     }
 }
 
-/// Reads one channel of a touch's frames, in place.
+/// Applies the signal chain of one channel to a touch's frames, in place.
 fn read_channel(
     skin: &ReadSkin,
     (touch, channel): (&TouchToRead, usize),
@@ -188,7 +188,7 @@ fn read_channel(
     } = working;
     with_history.clear();
     if touch.before.is_some() {
-        // The deepest frame of the touch before, and the skin let go.
+        // History: the deepest frame of the preceding touch, then the released skin.
         with_history.extend_from_slice(&deepest[taxels.clone()]);
         with_history.resize(2 * n_taxels, 0.0);
     }
@@ -207,7 +207,7 @@ fn read_channel(
     }
 }
 
-/// δ̇ of every taxel: the approach speed (m/s) where the object pushes a taxel that can still move; `None` at rest.
+/// Returns the rate δ̇ of every taxel: the approach speed (m/s) if the object pushes the taxel and the taxel is not at its stroke; `None` at rest.
 pub fn rates_of<'a>(
     frame: &[f64],
     taxel: &Taxel,
@@ -217,7 +217,7 @@ pub fn rates_of<'a>(
     if speed == 0.0 {
         return None;
     }
-    // Frames are kept in f32, where a saturated taxel holds the rounded stroke, which may be the smaller one.
+    // Frames are stored in f32, where a saturated taxel has the rounded stroke, which may be smaller than the stroke.
     let stroke = taxel.stroke as f32;
     let moves = |deflection: f64| deflection > 0.0 && (deflection as f32) < stroke;
     rates.clear();

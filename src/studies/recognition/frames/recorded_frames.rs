@@ -1,7 +1,7 @@
-//! Recorded frames of a study: read once, in the place of touches that are simulated.
+//! Recorded frames of a study, read once in place of simulated touches.
 //!
-//! A reading v stands for the deflection `(v − zero) / (full_scale − zero)` of a stroke, so that noise and sensor errors that a study adds, which
-//! are shares of the full scale, mean the same as on a simulated skin. Readings of forces across the axes of taxels are newtons.
+//! A reading v corresponds to the deflection `stroke · (v − zero) / (full_scale − zero)`. Noise and sensor errors of a study, which are fractions of the full
+//! scale, therefore have the same effect as on a simulated skin. Readings of tangential forces are in newtons.
 
 use crate::calibration::plateau;
 use crate::contact::saturation_limit;
@@ -31,60 +31,60 @@ use rand::Rng;
 use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
 
-/// Share of its readings that a taxel lacks (NaN) from which on it is masked. Larger refuses recordings with a taxel that failed now and
-/// then; smaller masks a taxel for a few lost readings.
+/// Fraction of missing readings (NaN) from which a taxel is masked. If it is larger, recordings with an intermittently failing taxel are rejected; if smaller,
+/// a few lost readings mask a taxel.
 const MASKED: f64 = 0.1;
 
-/// Touches that a skin has read.
+/// Recorded touches of a skin.
 #[derive(Clone, Debug)]
 pub struct RecordedFrames {
-    /// Where they are from.
+    /// Specification of the recording.
     pub spec: RecordedSpec,
-    /// Of the classes, by their labels.
+    /// Names of the classes, by label.
     names: Vec<String>,
-    /// What the randomness of each class is drawn from.
+    /// Names from which the random streams of the classes are derived.
     streams: Vec<String>,
-    /// Touches of each class.
+    /// Number of touches of each class.
     counts: Vec<usize>,
-    /// Frames as they were read, of the touches that train (or all), and of the given test set.
+    /// Frames as recorded: of the training touches (or all touches), and of the separate test set.
     readings: [Array2<f64>; 2],
-    /// The place of each touch among those of both, class by class.
+    /// Index of each touch, ordered by class, among the rows of both sets.
     order: Vec<usize>,
     /// Whether each value of a frame is masked.
     is_masked: Vec<bool>,
-    /// What each taxel reads that nothing touches; 0 of a masked one.
+    /// Reading of each untouched taxel; 0 for a masked taxel.
     zeros: Vec<f64>,
-    /// The reading of a taxel at its stroke.
+    /// Reading of a taxel at its stroke.
     full_scale: f64,
-    /// The reading from which on a taxel is saturated.
+    /// Reading from which a taxel counts as saturated.
     saturation: f64,
-    /// F, frames a touch.
+    /// Number F of frames per touch.
     n_frames: usize,
-    /// Taxels; a frame may have more values.
+    /// Number of taxels; a frame may have several values per taxel.
     n_taxels: usize,
-    /// Of each touch, in the same order.
+    /// Group of each touch, in the same order as `order`.
     groups: Option<Array1<usize>>,
-    /// On which side of a given split each touch is.
+    /// Side of each touch, if the split is given.
     sides: Option<Vec<Side>>,
-    /// Metres that each touch was pressed.
+    /// Press depth of each touch, metres.
     depths: Option<Vec<f64>>,
 }
 
-/// Frames of a file and what they are.
+/// Frames of a file, with their shape.
 struct FramesOfFile {
     shape: FrameShape,
     readings: Array2<f64>,
     kind: ElementKind,
     place: String,
-    /// The file of the forces across, if they have one of their own.
+    /// Path of the tangential forces, if they have their own file.
     shear_place: Option<String>,
 }
 
 impl RecordedFrames {
-    /// Reads the files, unless the frames take more bytes than `ceiling` (`None`: no limit).
+    /// Reads the files, if the frames fit into `ceiling` bytes (`None`: no limit).
     ///
     /// # Errors
-    /// A file that cannot be read, or does not fit the others; a reading that is infinite, or NaN though its taxel is not masked.
+    /// If a file cannot be read or does not fit the others, or a reading is infinite, or NaN although its taxel is not masked.
     pub fn read(spec: &RecordedSpec, ceiling: Option<u64>) -> Result<Self> {
         spec.check_files()?;
         let train = spec.read_frames("frames", ceiling)?;
@@ -152,7 +152,7 @@ impl RecordedFrames {
         })
     }
 
-    /// The readings of a frame of a touch.
+    /// Returns the readings of a frame of a touch.
     fn frame(&self, touch: usize, frame: usize) -> ArrayView1<'_, f64> {
         let row = self.order[touch] * self.n_frames + frame;
         let [train, test] = &self.readings;
@@ -162,7 +162,7 @@ impl RecordedFrames {
         }
     }
 
-    /// A frame of a touch: metres of deflection, and newtons of forces across.
+    /// Returns the values of a frame of a touch: deflections in metres, and tangential forces in newtons.
     fn values(&self, (touch, frame): (usize, usize), stroke: f64) -> Array1<f64> {
         let readings = self.frame(touch, frame);
         let values = readings.iter().zip(&self.is_masked).enumerate();
@@ -179,7 +179,7 @@ impl RecordedFrames {
         values.collect()
     }
 
-    /// Readings of a touch along the axes of its taxels and what the taxels read that nothing touches, without those that are masked.
+    /// Returns the readings of a touch along the axes of its taxels, each with the reading of the untouched taxel; masked taxels are omitted.
     fn pushes(&self, touch: usize) -> impl Iterator<Item = (f64, f64)> + '_ {
         let frames = (0..self.n_frames).flat_map(move |frame| {
             let readings = self.frame(touch, frame).into_iter().zip(&self.is_masked);
@@ -190,10 +190,10 @@ impl RecordedFrames {
 }
 
 impl RecordedSpec {
-    /// SHA-256 of each file, by its path.
+    /// Returns the SHA-256 of each file, by its path.
     ///
     /// # Errors
-    /// One that cannot be read.
+    /// If a file cannot be read.
     pub fn content(&self) -> Result<BTreeMap<String, String>> {
         let files = self.files().into_iter();
         let content = files.map(|path| Ok((path.display().to_string(), file_content(path)?)));
@@ -207,7 +207,7 @@ impl RecordedSpec {
         let n = shape.n_touches;
         let of_shear = shear.as_ref().map_or(0, FrameShape::n_frame_values);
         let n_values = shape.n_frame_values() + of_shear;
-        // Twice in f64 where the axes are moved or files are joined.
+        // Data are in memory twice as f64 if axes are permuted or files are joined.
         let bytes = 16.0 * (n * shape.n_frames) as f64 * n_values as f64;
         check_memory(bytes, ceiling, "frames")
             .map_err(|allowed| Error::input(path.display(), format!("{n} touches"), allowed))?;
@@ -230,7 +230,7 @@ impl RecordedSpec {
         })
     }
 
-    /// The classes of all touches, those of the test set last.
+    /// Returns the classes of all touches, the separate test set last.
     fn class_labels(&self, n: [usize; 2]) -> Result<ClassLabels> {
         let mut values = Vec::new();
         for (name, n) in ["labels", "labels_test"].into_iter().zip(n) {
@@ -253,7 +253,7 @@ impl RecordedSpec {
         let (Some(names), Some(KeyValue::Text(_))) = (&self.names, values.first()) else {
             return Ok(labels);
         };
-        // Texts are numbered as the names are.
+        // Texts are numbered in the order of `names`.
         let known: Vec<KeyValue> = names.iter().cloned().map(KeyValue::Text).collect();
         let number = |value: &KeyValue| known.iter().position(|name| name == value);
         match values.iter().map(number).collect::<Option<Vec<_>>>() {
@@ -261,12 +261,12 @@ impl RecordedSpec {
                 labels: numbers,
                 classes: known,
             }),
-            // Other words for the classes, in the order of their first touches.
+            // Otherwise texts are numbered in the order of their first touches.
             None => Ok(labels),
         }
     }
 
-    /// Names of the classes, what their randomness is drawn from, and how many touches each has.
+    /// Returns the names of the classes, the names of their random streams, and the number of touches of each.
     fn classes(&self, labels: &ClassLabels) -> Result<(Vec<String>, Vec<String>, Vec<usize>)> {
         let n_classes = labels.classes.len();
         let mut counts = vec![0; n_classes];
@@ -303,7 +303,7 @@ impl RecordedSpec {
         Ok((names, streams, counts))
     }
 
-    /// The group of every touch, those of the test set last.
+    /// Returns the group of every touch, the separate test set last.
     fn group_keys(&self, [n_train, n_test]: [usize; 2]) -> Result<Option<Vec<usize>>> {
         let read = |name: &str, n: usize| -> Result<Option<Vec<KeyValue>>> {
             match self.file_of(name) {
@@ -330,7 +330,7 @@ impl RecordedSpec {
                 ))
             }
             (None, Some(test)) => {
-                // Training touches are groups of their own.
+                // Each training touch is a group of its own.
                 let keys = group_keys(&test);
                 let first = keys.iter().max().map_or(0, |last| last + 1);
                 Ok(Some((first..first + n_train).chain(keys).collect()))
@@ -347,7 +347,7 @@ impl RecordedSpec {
         }
     }
 
-    /// Refuses a class that only trains or is only tested.
+    /// Checks that each class has training and test touches.
     fn check_test_set(
         &self,
         names: &[String],
@@ -388,7 +388,7 @@ impl RecordedSpec {
         }
     }
 
-    /// What each taxel reads that nothing touches; 0 of a masked one.
+    /// Returns the reading of each untouched taxel; 0 for a masked taxel.
     fn checked_zeros(&self, shape: &FrameShape, is_masked: &[bool]) -> Result<Vec<f64>> {
         let mut zeros = self.zeros(shape)?;
         for (taxel, zero) in zeros.iter_mut().enumerate() {
@@ -405,8 +405,8 @@ impl RecordedSpec {
         Ok(zeros)
     }
 
-    /// The reading of a taxel at its full scale, and that from which on it is saturated: at or above a full scale that is given, or at a largest
-    /// reading that many frames share (of touches whose depths are known, that may be their depth).
+    /// Returns the reading of a taxel at its full scale, and the reading from which it counts as saturated. Saturated readings are at or above a given full
+    /// scale. Without one, a largest reading that many frames share counts as saturated, unless the depths are known, because equal depths may cause it.
     fn full_scale_of(
         &self,
         files: &[&FramesOfFile],
@@ -454,7 +454,7 @@ impl RecordedSpec {
     }
 }
 
-/// Refuses another number of values than touches.
+/// Checks that there is one value per touch.
 fn one_each(path: &Path, (n_given, n): (usize, usize), frames: &Path) -> Result<()> {
     let given = format!("{n_given} numbers");
     let allowed = format!("{n}, one a touch of {}", frames.display());
@@ -471,7 +471,7 @@ fn name_of(value: &KeyValue) -> String {
     }
 }
 
-/// Whether each value of a frame is NaN in so many frames that its taxel is masked.
+/// Returns, for each value of a frame, whether its taxel is masked because of too many NaN readings.
 fn masked(files: &[&FramesOfFile], n_taxels: usize) -> Result<Vec<bool>> {
     let n_values = files[0].readings.ncols();
     let n_frames: usize = files.iter().map(|file| file.readings.nrows()).sum();
@@ -561,7 +561,7 @@ impl TouchSet for RecordedFrames {
         frames
     }
 
-    /// Touches at the study's speed or rate, each after another one that is drawn at random: as pressed objects, or as the keys say.
+    /// Touches are read at the study's speed or frame rate. Each follows a randomly drawn touch, or no touch, as the keys of the study require.
     fn to_read(&self, speed: f64, n_frames: usize, seed: &Seed) -> Vec<TouchToRead> {
         let streams = self.streams.iter().map(String::as_str);
         let mut touches = touches_to_read(streams.zip(self.counts.iter().copied()), seed);
@@ -585,7 +585,7 @@ impl TouchSet for RecordedFrames {
         depths.filter(|&&depth| depth > limit).count()
     }
 
-    /// The last frame of the first touch of each class.
+    /// Samples are the last frames of the first touch of each class.
     fn samples(&self, plan: &Plan, _groups: &[Group]) -> Result<Samples> {
         let array = &plan.arrays[0];
         let (cells, stroke) = (array.picture_cells(), array.taxel().stroke);

@@ -1,4 +1,4 @@
-//! Recorded frames of a skin and what is known of them, for calibration.
+//! Recorded frames of a skin with additional data for calibration.
 
 use crate::calibration::RecordedSkin;
 use crate::error::{Error, Result};
@@ -8,43 +8,43 @@ use ndarray::{Array1, Array2, Axis};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// Which frames nothing touches.
+/// Selection of the frames in which nothing touches the skin.
 #[derive(Clone, Debug, PartialEq)]
 pub enum UntouchedFrames {
-    /// Nobody knows of any.
+    /// No untouched frames are known.
     None,
-    /// Those of a file of their own, read evenly over the same session, in order.
+    /// Frames in a separate file, read at even intervals over the same session, in order.
     File(PathBuf),
-    /// Some of the frames, by their numbers in the file.
+    /// Ranges of frame numbers in the main file.
     Among(Vec<Range<usize>>),
 }
 
-/// Files of a skin's frames, and what its readings are.
+/// Files of a skin's frames and the meaning of its readings.
 #[derive(Clone, Debug)]
 pub struct RecordedSkinFiles {
-    /// n × rows × columns, or n × F × rows × columns, in the order of time.
+    /// Frames in the order of time, shape (n, rows, columns) or (n, F, rows, columns).
     pub frames: PathBuf,
     /// A letter for each axis of the frames, as in `[recorded]`.
     pub order: Option<String>,
-    /// Rows and columns of the axis `c`.
+    /// Numbers of rows and columns into which the axis `c` is divided.
     pub grid: Option<[usize; 2]>,
-    /// Those of the untouched skin.
+    /// Frames of the untouched skin.
     pub untouched: UntouchedFrames,
-    /// n: newtons that press the skin as a whole in each frame.
+    /// Total force on the skin in each frame, newtons, shape (n,).
     pub forces: Option<PathBuf>,
-    /// The reading of a taxel that nothing touches.
+    /// Reading of an untouched taxel.
     pub zero: f64,
-    /// The reading at the full scale; the largest of all when left out.
+    /// Reading at the full scale. Default: the largest of all readings.
     pub full_scale: Option<f64>,
-    /// Millimetres of deflection at the full scale.
+    /// Deflection at the full scale, mm.
     pub stroke_mm: Option<f64>,
 }
 
 impl RecordedSkinFiles {
-    /// Reads them.
+    /// Reads the files.
     ///
     /// # Errors
-    /// A file that cannot be read or does not fit the others; ranges that are not among the frames; a full scale that is not above the zero.
+    /// If a file cannot be read or does not fit the others, if ranges exceed the frames, or if the full scale is not above the zero.
     pub fn read(&self) -> Result<RecordedSkin> {
         let (frames, shape) = self.frames_of(&self.frames)?;
         let n = frames.nrows();
@@ -101,7 +101,7 @@ impl RecordedSkinFiles {
 }
 
 impl RecordedSkinFiles {
-    /// Frames one a row, and rows and columns of each.
+    /// Returns frames as rows, with the numbers of rows and columns of each frame.
     fn frames_of(&self, path: &Path) -> Result<(Array2<f64>, (usize, usize))> {
         let spec = RecordedSpec::of_frames(path, self.order.as_deref(), self.grid);
         let shape = spec.shape_of("frames")?;
@@ -115,7 +115,7 @@ impl RecordedSkinFiles {
     }
 }
 
-/// One number a frame.
+/// Reads one number per frame.
 fn numbers_of(path: &Path, n: usize) -> Result<Array1<f64>> {
     let array = FileArray::read(path, "forces")?;
     if array.kind == ElementKind::Text {

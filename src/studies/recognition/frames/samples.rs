@@ -1,4 +1,4 @@
-//! Sample touches for the eye: what the array feels of a few objects, noise included.
+//! Sample pictures: readings of an array on a few objects, with noise.
 
 use crate::engine::axes::CombineSpec;
 use crate::engine::progress::Silent;
@@ -18,16 +18,16 @@ use crate::studies::recognition::spec::signal::StepSpec;
 use crate::studies::recognition::touches::drawn_touches::TouchedObject;
 use ndarray::{Array2, ArrayView1};
 
-/// How many objects a picture of samples shows when the study names none.
+/// Default number of objects in a picture of samples.
 const N_SAMPLES: usize = 4;
 
-/// The first touch of the objects that the study names for its picture (else of four spread over its list), read with its
-/// finest array at its highest noise, before smoothing; in a study of one imperfection at a time, the first touch of the first
-/// of them, read with each imperfection at its last value. A skin that remembers was touched by the last of them before. Beside them the
-/// first touch of every object, at the highest noise.
+/// Returns the samples of a study. The picture shows the first touch of the objects that the study lists, by default of four spread over the list. They are
+/// read with the finest array at the highest noise, without smoothing. In a study of one sensor error at a time, the picture shows the first touch of the
+/// first object, read with each error at its last value. On a skin with memory, each touch follows the touch of the last object. A second picture shows the
+/// first touch of every object at the highest noise.
 ///
 /// # Errors
-/// What a signal step refuses.
+/// If a signal step is invalid.
 pub fn sample_frames(plan: &Plan, groups: &[Group], touched: &[TouchedObject]) -> Result<Samples> {
     let group = loudest_group(plan, groups)
         .ok_or_else(|| Error::input("study", "no cells", "at least one value an axis"))?;
@@ -56,7 +56,7 @@ pub fn sample_frames(plan: &Plan, groups: &[Group], touched: &[TouchedObject]) -
     let groups = imperfect_groups(plan, groups, group.array);
     let shown = match chosen.first() {
         Some(&first) if !groups.is_empty() => {
-            // One taxel of a large gain would take the colours of all others.
+            // The full scale limits the colours, because one taxel with a large gain would dominate them.
             let full_scale = quantity.full_scale(on.taxel());
             let shown = groups.into_iter().map(|(words, group)| {
                 let frame = read(plan, group, (touched, before))?.swap_remove(first);
@@ -82,7 +82,7 @@ pub fn sample_frames(plan: &Plan, groups: &[Group], touched: &[TouchedObject]) -
     Ok(Samples { shown, each })
 }
 
-/// What an array of a group reads of each object's first touch along the axes of its taxels, ny × nx; a skin that remembers was touched by one of them before.
+/// Returns the readings along the taxels' axes of each object's first touch, shape (ny, nx); a skin with memory was touched by one of the objects before.
 fn read(
     plan: &Plan,
     group: &Group,
@@ -121,7 +121,7 @@ fn read(
     Ok(values.outer_iter().map(frame).collect())
 }
 
-/// The signal of each channel but for smoothing, which hides what it is there to hide.
+/// Returns the signal chain of each channel without smoothing, which would hide the other steps.
 fn chains(plan: &Plan, group: &Group) -> Result<Vec<Chain>> {
     let array = &plan.arrays[group.array];
     let skin = skin(&Seed::new(plan.spec.seed), array);
@@ -132,8 +132,8 @@ fn chains(plan: &Plan, group: &Group) -> Result<Vec<Chain>> {
     })
 }
 
-/// In a study of one sensor error at a time: the first group of an array, then for each error the group that has it at
-/// its last value, with what to call them. A scan is left out: it does not change a touch that is read once.
+/// For a study of one sensor error at a time: returns the first group of an array, then for each error the group with its last value, each with a title. Scan
+/// errors are omitted, because they do not change a touch that is read once.
 fn imperfect_groups<'a>(
     plan: &Plan,
     groups: &'a [Group],
@@ -170,7 +170,7 @@ fn imperfect_groups<'a>(
     chosen
 }
 
-/// The group with the most taxels and, among those, the most noise.
+/// Returns the group with the most taxels and, among these, the largest noise.
 fn loudest_group<'a>(plan: &Plan, groups: &'a [Group]) -> Option<&'a Group> {
     let n_taxels = |group: &Group| plan.arrays[group.array].n_taxels();
     groups.iter().max_by(|a, b| {
@@ -179,20 +179,20 @@ fn loudest_group<'a>(plan: &Plan, groups: &'a [Group]) -> Option<&'a Group> {
     })
 }
 
-/// The same, or four that are spread over the list.
+/// Returns the labels of the sample classes: those that the study lists, or four spread over the list.
 ///
 /// # Errors
-/// Those of [`named_samples`].
+/// If [`named_samples`] fails.
 pub(crate) fn spread_samples(plan: &Plan, classes: &[&str]) -> Result<Vec<usize>> {
     let n = N_SAMPLES.min(classes.len());
     let spread = || (0..n).map(|k| k * classes.len() / n).collect();
     Ok(named_samples(plan, classes)?.unwrap_or_else(spread))
 }
 
-/// Labels of those that the study names for its picture; `None` where it names none.
+/// Returns the labels of the sample classes that the study lists; `None` if it lists none.
 ///
 /// # Errors
-/// A name of none of these classes.
+/// If a listed name is not a class.
 pub(crate) fn named_samples(plan: &Plan, classes: &[&str]) -> Result<Option<Vec<usize>>> {
     let label = |name: &String| {
         let found = classes.iter().position(|class| class == name);

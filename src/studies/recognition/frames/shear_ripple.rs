@@ -1,4 +1,4 @@
-//! How uneven a flat face of packed spheres feels to a skin that reads shear.
+//! Unevenness of shear readings on a flat face of packed spheres.
 //!
 //! On an exact flat face every taxel reads the same shear. Spheres bulge by up to half the surface error, so their contact normals tilt
 //! and the readings of shear ripple, which a classifier can learn.
@@ -19,8 +19,7 @@ use glam::DVec3;
 /// Edges of the box that is pressed, metres: as large as the objects of the built-in sets.
 const BOX: DVec3 = DVec3::new(0.04, 0.04, 0.02);
 
-/// Mean and standard deviation of a shear reading along x over the taxels under a flat face of packed spheres, less its exact value;
-/// newtons.
+/// Mean and standard deviation of shear readings along x over the taxels under a flat face of packed spheres, minus the exact value, newtons.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShearRipple {
     /// Mean over the taxels.
@@ -30,8 +29,8 @@ pub struct ShearRipple {
 }
 
 impl ShearRipple {
-    /// Presses a box, packed within `surface_error` (metres), on an array that reads shear, to a depth (metres), and slides as the array
-    /// does. `None` if the array reads no shear, or no taxel lies under the face.
+    /// Presses a box, packed within `surface_error` (metres), on an array that reads shear, to a depth (metres), and slides it as the array does. Returns
+    /// `None` if the array does not read shear, or no taxel lies under the face.
     ///
     /// # Errors
     /// If the box cannot be packed within that error.
@@ -72,7 +71,7 @@ impl ShearRipple {
     }
 }
 
-/// The shear along x that each taxel reads of an object, newtons; `None` if nothing is met.
+/// Returns the shear reading of each taxel along x, newtons; `None` if nothing is touched.
 fn shear_along_x(array: &TaxelArray, object: &Model, depth: f64) -> Option<Vec<f64>> {
     let mut workspace = ArrayWorkspace::default();
     let pose = Pose::from_translation(DVec3::new(0.0, 0.0, 0.1));
@@ -82,7 +81,7 @@ fn shear_along_x(array: &TaxelArray, object: &Model, depth: f64) -> Option<Vec<f
     Some(press.values(&workspace).skip(n).take(n).collect())
 }
 
-/// The box as triangles.
+/// Returns the box as a triangle mesh.
 fn exact_box() -> Result<Model> {
     let sign = |corner: u32, bit: u32| if corner & bit == 0 { -0.5 } else { 0.5 };
     let corner = |c| BOX * DVec3::new(sign(c, 1), sign(c, 2), sign(c, 4));
@@ -101,10 +100,10 @@ fn exact_box() -> Result<Model> {
     Ok(MeshModel::new(mesh).into())
 }
 
-/// Reports on standard error how much shear readings ripple, if a study reads shear of packed objects; returns whether it did.
+/// Prints the ripple of shear readings on standard error, if a study reads shear of packed objects. Returns whether it did.
 ///
 /// # Errors
-/// Those of [`ShearRipple::measure`].
+/// If [`ShearRipple::measure`] fails.
 pub(crate) fn note_shear_ripple(plan: &Plan, objects: &[Object]) -> Result<bool> {
     let packed = objects
         .iter()

@@ -1,4 +1,4 @@
-//! Touches of an array: made once, shared by all cells.
+//! Simulation of an array's touches, shared by all configurations.
 
 use crate::contact::Contact;
 use crate::engine::progress::Progress;
@@ -10,7 +10,7 @@ use crate::studies::recognition::touches::drawn_touches::TouchedObject;
 use crate::world::Touch;
 use ndarray::ArrayViewMut2;
 
-/// Makes all touches on an array and keeps the frames in memory.
+/// Simulates all touches on an array and stores the frames in memory.
 pub fn simulate_array(
     touched: &dyn TouchSet,
     array: &TaxelArray,
@@ -20,10 +20,10 @@ pub fn simulate_array(
     touched.simulate((array, n_frames), progress)
 }
 
-/// Presses one array on every object, touch by touch; the same bytes at any number of threads.
+/// Presses one array on every object, touch by touch; the result does not depend on the number of threads.
 ///
-/// A touch to a depth d is read at `n_frames` ≥ 1 depths, d/F, 2d/F … d, or at as many places of its way where it slides, too: each is a touch
-/// of its own, since a taxel at rest does not remember how it came there.
+/// A touch to a depth d is read at `n_frames` ≥ 1 depths, d/F, 2d/F, …, d, or at as many points of its path if it slides. Each frame is simulated as a
+/// separate touch, because a taxel at rest has no memory.
 pub(crate) fn press_objects(
     touched: &[TouchedObject],
     (array, n_frames): (&TaxelArray, usize),

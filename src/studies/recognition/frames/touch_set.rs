@@ -1,4 +1,4 @@
-//! What a recognition study asks of its touches: of pressed objects, of human touches, or of recorded frames.
+//! Interface of a set of touches: pressed objects, human touches, or recorded frames.
 
 use crate::engine::progress::Progress;
 use crate::error::Result;
@@ -15,79 +15,79 @@ use crate::studies::recognition::touches::drawn_touches::touch_labels;
 use crate::world::Touch;
 use ndarray::Array1;
 
-/// Touches of several classes: objects, kinds of touch, or what a recording calls them. They follow each other class by class.
+/// Touches of several classes: objects, kinds of touch, or labels of a recording. The touches are ordered by class.
 pub trait TouchSet: Sync {
-    /// Name of every class, by its label, and how many touches it has.
+    /// Returns the name of every class, by its label, and its number of touches.
     fn classes(&self) -> Vec<(&str, usize)>;
 
-    /// Name of every class, by its label.
+    /// Returns the name of every class, by its label.
     fn class_names(&self) -> Vec<&str> {
         self.classes().into_iter().map(|(name, _)| name).collect()
     }
 
-    /// Label of every touch.
+    /// Returns the label of every touch.
     fn labels(&self) -> Array1<usize> {
         touch_labels(&self.classes())
     }
 
-    /// Group of every touch, for splits that keep groups together: its own, where touches share nothing.
+    /// Returns the group of every touch, for splits that do not divide groups. By default each touch is its own group.
     ///
     /// # Errors
-    /// An axis that is spread uniformly, without a distance.
+    /// If an axis is spread uniformly and has no distance.
     fn group_keys(&self, _together: &KeepTogether) -> Result<Array1<usize>> {
         Ok((0..self.labels().len()).collect())
     }
 
-    /// Where and how every touch is made; of none that is not placed.
+    /// Returns the pose of every touch; empty if the touches have no poses.
     fn poses(&self) -> Vec<&Touch> {
         Vec::new()
     }
 
-    /// Group of every touch, where they are what they are and no key says what stays together.
+    /// Returns the group of every touch if the data define groups; `None` otherwise.
     fn own_groups(&self) -> Option<Array1<usize>> {
         None
     }
 
-    /// On which side of every split each touch is, where a test set is given.
+    /// Returns the side of every touch in every split, if the data define a test set.
     fn given_sides(&self) -> Option<&[Side]> {
         None
     }
 
-    /// Taxels without readings, and all taxels.
+    /// Returns the number of masked taxels and the number of all taxels.
     fn n_masked(&self) -> (usize, usize) {
         (0, 0)
     }
 
-    /// Makes what all touches need on all threads now; the first touches would make it one after the other.
+    /// Computes data that all touches need on all threads; otherwise the first touches would compute them one after the other.
     fn prepare(&self) {}
 
-    /// Makes all touches on an array, F frames each; the same bytes at any number of threads.
+    /// Simulates all touches on an array, F frames each; the result does not depend on the number of threads.
     fn simulate(&self, on: (&TaxelArray, usize), progress: &dyn Progress) -> Frames;
 
-    /// How each touch is read in a trial, F frames each, whose randomness is drawn from `seed`: pressed objects at a speed (m/s, 0 at rest), each after
-    /// another touch that is drawn at random.
+    /// Returns how each touch is read in a trial with F frames per touch; `seed` is the source of randomness. By default objects are pressed at a speed (m/s,
+    /// 0 at rest), each touch after another randomly drawn touch.
     fn to_read(&self, speed: f64, n_frames: usize, seed: &Seed) -> Vec<TouchToRead>;
 
-    /// A few touches for the eye.
+    /// Returns a few touches for pictures.
     ///
     /// # Errors
-    /// What is shown cannot be made.
+    /// If a picture cannot be made.
     fn samples(&self, plan: &Plan, groups: &[Group]) -> Result<Samples>;
 
-    /// How many of them go deeper (metres past first contact) than a stroke.
+    /// Returns the number of touches that go deeper past first contact than a stroke, metres.
     fn n_deeper_than(&self, _stroke: f64) -> usize {
         0
     }
 
-    /// What a report says about them: name and value.
+    /// Returns names and values of settings for the report.
     fn settings(&self) -> Vec<(String, String)>;
 }
 
-/// First touches of a study's objects.
+/// First touches of a study's objects, for pictures.
 #[derive(Clone, Debug)]
 pub struct Samples {
-    /// What its picture shows.
+    /// Touches in the sample picture.
     pub shown: Snapshots,
-    /// One touch of each object; none where touches are of a hand.
+    /// One touch of each object; `None` for human touches.
     pub each: Option<Snapshots>,
 }

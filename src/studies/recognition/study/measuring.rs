@@ -1,4 +1,4 @@
-//! Makes the touches of an array once, measures each group once a trial, evaluates every family that is left.
+//! Computes the work items: simulates the touches of an array once, measures each group once per trial, and evaluates every pending family.
 
 use crate::engine::progress::{Progress, Silent};
 use crate::engine::work_items::pending::PendingItems;
@@ -13,10 +13,10 @@ use rayon::prelude::*;
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What is measured once in a trial, and those of the families that learn from it that are left.
+/// Measurement of a group in a trial, and the pending families that use it.
 pub(crate) struct Job<'a> {
     study: &'a RecognitionStudy,
-    /// The first of the groups that are measured together.
+    /// Index of the first of the groups that are measured together.
     group: usize,
     trial: usize,
     n_measurements: usize,
@@ -30,20 +30,20 @@ impl RecognitionStudy {
             part.tested.prepare();
         }
         let mut jobs = self.jobs_left(left);
-        // Most frames first: the items that learn from them take longest.
+        // Sets with most frames first, because their items take longest.
         jobs.sort_by_key(|(touches, _)| {
             let (part, array, n_frames) = self.made_on(*touches);
             (part, array, Reverse(n_frames))
         });
         if self.has_axes() {
-            // A line for the touches of each combination would hide the others.
+            // A progress line for each combination would be too many.
             let n_items =
                 |(_, jobs): &(usize, Vec<Job>)| 1 + jobs.iter().flat_map(Job::items).count();
             let n_items: usize = jobs.iter().map(n_items).sum();
             left.progress.stage("work items", n_items as u64);
         }
         let mut told = BTreeSet::new();
-        // Touches that are tested only are made with those that are learned.
+        // Separate test touches are simulated together with the training touches.
         let (learned, others): (Vec<_>, _) =
             jobs.into_iter().partition(|(_, jobs)| !jobs.is_empty());
         learned
@@ -58,12 +58,12 @@ impl RecognitionStudy {
         })
     }
 
-    /// Whether the study has axes of its own.
+    /// Returns whether the study has a table `[axes]`.
     fn has_axes(&self) -> bool {
         self.parts().len() > 1
     }
 
-    /// Touches that are made or that families need that are left, with what is measured of them.
+    /// Returns the sets of touches that pending items need, with the measurements of each.
     fn jobs_left(&self, left: &PendingItems<RecognitionRows>) -> Vec<(usize, Vec<Job<'_>>)> {
         let touches = 0..self.touch_sets.len();
         let jobs = touches.map(|touches| (touches, self.jobs(left, touches)));
@@ -73,8 +73,8 @@ impl RecognitionStudy {
         jobs.filter(is_left).collect()
     }
 
-    /// What is measured of some touches for families that are left. A group of prefixes is measured once and serves all cells; else each m
-    /// serves its own.
+    /// Returns the measurements of a set of touches for pending families. A group whose smaller sets of measurements are prefixes is measured once for all
+    /// configurations; otherwise each m is measured separately.
     fn jobs(&self, left: &PendingItems<RecognitionRows>, touches: usize) -> Vec<Job<'_>> {
         let mut alike: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (number, family) in self.families.iter().enumerate() {
@@ -109,7 +109,7 @@ impl RecognitionStudy {
         jobs
     }
 
-    /// Does the pending work items that learn from some touches, those with the same test touches together.
+    /// Computes the pending work items of a set of training touches, grouped by their test touches.
     fn on_touches(
         &self,
         left: &PendingItems<RecognitionRows>,
@@ -139,7 +139,8 @@ impl RecognitionStudy {
         Ok(())
     }
 
-    /// Makes touches for jobs, and finishes their work item if that is not `told` already. Returns `None` if they cannot be made; the jobs have failed then.
+    /// Simulates touches for jobs, and finishes their work item unless `told` is set. Returns `None` if they cannot be simulated; the jobs are then recorded
+    /// as failed.
     fn make(
         &self,
         left: &PendingItems<RecognitionRows>,
@@ -188,13 +189,13 @@ impl RecognitionStudy {
 }
 
 impl Job<'_> {
-    /// The numbers of its work items.
+    /// Returns the numbers of the job's work items.
     fn items(&self) -> impl Iterator<Item = usize> + '_ {
         let families = self.families.iter();
         families.map(|&family| self.study.family_item(self.trial, family))
     }
 
-    /// Measures, then evaluates the families.
+    /// Measures the group, then evaluates its families.
     fn run(&self, left: &PendingItems<RecognitionRows>, frames: [&Frames; 2]) -> Result<()> {
         let need: Vec<usize> = self.items().collect();
         let measured = left.prepare(&need, || self.measure(frames))?;
@@ -205,7 +206,7 @@ impl Job<'_> {
         let families = self.families.par_iter().zip(&need).enumerate();
         families.try_for_each(|(place, (&family, &item))| {
             left.finish(item, || {
-                // It is told once.
+                // The row of the measured touches is reported once.
                 let touches = (place == 0).then(|| TouchRow {
                     n_touches: self.study.group(self.group).0.sweep.labels.len(),
                     cpu_s,

@@ -1,4 +1,4 @@
-//! Tables of scores.
+//! Tables of results, computed from the scores of trials.
 
 pub mod published;
 pub mod summary;

@@ -1,4 +1,4 @@
-//! Published accuracies beside ours: which cells a claim is about, and the most accurate of them.
+//! Published accuracies beside ours: the configurations to which a claim applies, and the most accurate of them.
 
 use crate::error::{Error, Result};
 use crate::inputs::toml_value::number;
@@ -9,11 +9,10 @@ use crate::studies::recognition::spec::study::PublishedSpec;
 use crate::table::{Table, Value, column_name};
 use std::fmt::Display;
 
-/// Every claim is an accuracy about at least one cell.
+/// Checks that every claim is a valid accuracy and applies to at least one configuration.
 ///
 /// # Errors
-/// A claim whose accuracy is not from 0 to 1, a key that is no column of [`Cell`], a value that no cell has, or keys of which
-/// no cell has all.
+/// If an accuracy is not between 0 and 1, a key is not a column of [`Cell`], no configuration has a value, or no configuration has all values of a claim.
 pub fn check_published(published: &[PublishedSpec], cells: &[&Cell]) -> Result<()> {
     if published.is_empty() {
         return Ok(());
@@ -57,7 +56,7 @@ fn check(claim: &PublishedSpec, cells: &Table) -> Result<()> {
     }
 }
 
-/// A value as a study writes it.
+/// Returns a value as it is written in a study.
 fn setting(written: &toml::Value) -> Value {
     match (number(written), written.as_str()) {
         (Some(number), _) => Value::Number(number),
@@ -71,11 +70,10 @@ fn is_about(claim: &PublishedSpec, cells: &Table, row: usize) -> bool {
     keys.all(|(key, wanted)| cells.has_setting(column_name(key), row, &setting(wanted)))
 }
 
-/// Each claim beside the cell with the highest mean accuracy (the first of equals) among those it is about; once for each condition
-/// that these cells have.
+/// Returns each claim beside the most accurate configuration to which it applies (in a tie the first), once for each condition of these configurations.
 ///
 /// # Errors
-/// A cell that has no form in a table.
+/// If a configuration cannot be written as a row of a table.
 pub fn compare_with_published(
     published: &[PublishedSpec],
     summary: &[(Cell, CellScore)],
@@ -118,7 +116,7 @@ mod tests {
         toml::from_str(&text).unwrap()
     }
 
-    /// Two classifiers × two ratios × no or 10 % noise; accuracies grow with the number.
+    /// Two classifiers × two ratios × noise of 0 or 10 %; accuracies increase with the number of the configuration.
     fn summary() -> Vec<(Cell, CellScore)> {
         let mut rows = Vec::new();
         for noise_std in [0.0, 0.1] {

@@ -1,4 +1,4 @@
-//! Trials → cells: means, intervals, and every cell against the best one.
+//! Aggregation of trials to configurations: means, intervals, and comparisons with the best configuration.
 
 use crate::error::Result;
 use crate::statistics::bootstrap::Bootstrap;
@@ -15,14 +15,14 @@ use crate::table::front;
 use bubbletouch_sim::statistics::interval::{Interval, RowTest};
 use std::collections::BTreeMap;
 
-/// A row of the accuracy table.
+/// Row of the accuracy table.
 type Row = (Cell, TrialScore);
 
-/// Returns one row per cell from one row per cell and trial; the trials of a cell follow each other. `groups` are the groups that the trials tested,
-/// row by row, if there are any. `n_folds` returns the number of folds of a cell's study, 1 without folds.
+/// Returns one row per configuration from one row per configuration and trial; the trials of a configuration are adjacent. `groups` contains the tested groups
+/// of each row, if there are any. `n_folds` returns the number of folds of a configuration, 1 without folds.
 ///
 /// # Errors
-/// If trials of a cell have no rows.
+/// If a trial has no test rows.
 pub fn summarise<C: Clone + PartialEq>(
     rows: &[(C, TrialScore)],
     mut groups: &[Vec<GroupCount>],
@@ -36,7 +36,7 @@ pub fn summarise<C: Clone + PartialEq>(
             let here = groups.split_off(..trials.len()).unwrap_or_default();
             let of_cell = (here, n_folds(&trials[0].0));
             let mut score = score(&scores, of_cell, &mut bootstrap)?;
-            // Columns are those of all rows: where a cell holds out no groups, each row is one.
+            // All rows have the same columns; without held-out groups, each test row is a group.
             score.n_groups = score.n_groups.or(is_grouped.then_some(score.n_test));
             Ok((trials[0].0.clone(), score))
         })
@@ -56,7 +56,7 @@ pub fn grouped_tests<'a>(
     tested.collect()
 }
 
-/// What the trials of a cell say together.
+/// Returns the joint score of the trials of a configuration.
 fn score(
     trials: &[&TrialScore],
     (groups, n_folds): (&[Vec<GroupCount>], usize),
@@ -111,7 +111,7 @@ fn mean(trials: &[Row], value: fn(&TrialScore) -> f64) -> f64 {
     trials.iter().map(|(_, t)| value(t)).sum::<f64>() / trials.len() as f64
 }
 
-/// Every cell against the one with the highest mean accuracy in its condition (the first of equals), paired trial by trial.
+/// Compares every configuration with the one of the highest mean accuracy in its condition (in a tie the first), paired by trial.
 ///
 /// # Errors
 /// If a trial has no training or test rows.
@@ -140,7 +140,7 @@ pub fn compare_with_best(rows: &[Row]) -> Result<Vec<Comparison>> {
 }
 
 fn against(trials: &[Row], best: &[Row]) -> Result<Comparison> {
-    // A cell may have failed in some trials.
+    // Some trials of a configuration may have failed.
     let [ours, theirs] = [trials, best].map(|trials| {
         let scores = trials.iter();
         let scores = scores.map(|(cell, score)| score.repeat(cell.fused_touches));
@@ -167,11 +167,11 @@ fn against(trials: &[Row], best: &[Row]) -> Result<Comparison> {
     })
 }
 
-/// Pairs that a list of confusions shows, at most.
+/// Largest number of pairs in the list of confusions.
 const MOST_CONFUSED: usize = 15;
 
-/// The pairs of objects that a cell confuses most often, by the share of the touched object's test rows; of equals the one
-/// that the table has first. `fused` is the same cell with the most touches fused, and how many those are.
+/// Returns the pairs of objects that a configuration confuses most often, by the fraction of the touched object's test rows; in a tie the first in the table.
+/// `fused` is the number of the configuration with the most touches fused, and this number of touches.
 ///
 /// # Errors
 /// None for counts of a table.
@@ -213,7 +213,7 @@ pub fn most_confused(
     Ok(pairs)
 }
 
-/// Test rows of each object in a cell.
+/// Returns the number of test rows of each object in a configuration.
 fn rows_of_objects(confusion: &[Confusion], cell: usize) -> BTreeMap<&str, usize> {
     let mut n_test = BTreeMap::new();
     for row in confusion.iter().filter(|row| row.cell == cell) {
@@ -222,10 +222,10 @@ fn rows_of_objects(confusion: &[Confusion], cell: usize) -> BTreeMap<&str, usize
     n_test
 }
 
-/// What the accuracy of every cell costs, and which cells are worth their cost; both tables have the same rows.
+/// Returns the accuracy and the costs of every configuration, and marks the Pareto fronts; both tables have the same rows.
 ///
 /// # Errors
-/// If a cell has no form in a table.
+/// If a configuration cannot be written as a row of a table.
 pub fn pareto(rows: &[Row], times: &[(Cell, TrialTime)]) -> Result<Vec<(Cell, Pareto)>> {
     let same_cell = |a: &(Cell, TrialTime), b: &(Cell, TrialTime)| a.0.cell == b.0.cell;
     let mut table: Vec<(Cell, Pareto)> = rows
@@ -254,7 +254,7 @@ pub fn pareto(rows: &[Row], times: &[(Cell, TrialTime)]) -> Result<Vec<(Cell, Pa
     Ok(table)
 }
 
-/// Says of each cell whether none of the same condition beats it.
+/// Marks each configuration that no other of the same condition dominates.
 fn mark_fronts(table: &mut [(Cell, Pareto)]) -> Result<()> {
     for alike in by_condition(table.iter().map(|(cell, _)| cell))? {
         let on_front = |cost: fn(&Pareto) -> f64| {
@@ -319,7 +319,7 @@ mod tests {
             ("mug".to_owned(), 4, 10, 0.4),
         ];
         assert_eq!(found(&table), expected);
-        // Of ten decisions on two touches each, one is still wrong; of the bowl's none.
+        // Of ten decisions on two touches each, one is wrong for the mug and none for the bowl.
         table.extend([row(2, "mug", "mug", 9), row(2, "mug", "bowl", 1)]);
         table.push(row(2, "bowl", "bowl", 5));
         let fused = most_confused(&table, 1, Some((2, 2))).unwrap();

@@ -1,4 +1,4 @@
-//! Finished cells → tables: by cell, then by trial.
+//! Assembly of the tables from finished configurations, ordered by configuration and trial.
 
 use crate::error::Result;
 use crate::studies::recognition::rows::cell::Cell;
@@ -12,11 +12,11 @@ use crate::studies::recognition::tables::variance_table::variances;
 use crate::studies::recognition::training::trial::Evaluation;
 use std::collections::BTreeMap;
 
-/// Fills every table but those of stages and of published numbers; `name` returns the class of a label in a cell, `n_folds` the number of folds of a
-/// cell's study, 1 without folds, and `matrices` lists the cells that keep their confusion matrix.
+/// Fills every table except those of stages and of published accuracies. `name` returns the class of a label in a configuration. `n_folds` returns the number
+/// of folds of a configuration, 1 without folds. `matrices` lists the configurations whose confusion matrix is stored.
 ///
 /// # Errors
-/// If trials of a cell have no rows.
+/// If a trial has no test rows.
 pub fn tabulate(
     tables: &mut Tables,
     mut scored: Vec<(Cell, Evaluation)>,
@@ -52,7 +52,7 @@ pub fn tabulate(
     tables.summary = summarise(&tables.accuracy, &groups, n_folds)?;
     tables.variance = variances(&tables.accuracy)?;
     tables.comparison = compare_with_best(&tables.accuracy)?;
-    // What one touch confuses says more than what is left of it once many are fused.
+    // Confusions of single touches are more informative than those that remain after fusion.
     let cells = || tables.summary.iter().map(|(cell, _)| cell);
     let fewest = cells().map(|cell| cell.fused_touches).min().unwrap_or(1);
     let single = tables.summary.iter();
@@ -74,8 +74,8 @@ pub fn tabulate(
     Ok(())
 }
 
-/// Gives all rows the columns that any row has. Where a combination of axes holds out no groups, each test row is a group; a split that no earlier trial
-/// has is the same as itself.
+/// Gives all rows the columns that any row has. If a combination of axes holds out no groups, each test row counts as a group. A split without an earlier
+/// equal split is its own first equal split.
 pub fn share_columns(mut scores: Vec<&mut TrialScore>) {
     let has_groups = scores.iter().any(|score| score.n_groups.is_some());
     let has_repeats = scores.iter().any(|score| score.distinct_split.is_some());
@@ -90,7 +90,7 @@ pub fn share_columns(mut scores: Vec<&mut TrialScore>) {
     }
 }
 
-/// The cell that differs from one in no more than in fusing the most touches, and how many; none where none fuses more.
+/// Returns the configuration that differs only in the number of fused touches and has the largest, with this number; `None` if no configuration fuses more.
 fn most_fused<'a>(
     mut cells: impl Iterator<Item = &'a Cell> + Clone,
     of: usize,

@@ -1,4 +1,4 @@
-//! How much of the spread of each cell's accuracy comes from splits, from projections, and from the rest.
+//! Decomposition of the variance of each configuration's accuracy into splits, projections, and the rest.
 
 use crate::error::Result;
 use crate::statistics::p_status::CONFIDENCE;
@@ -7,10 +7,10 @@ use crate::statistics::variance::{Component, components};
 use crate::studies::recognition::rows::cell::Cell;
 use crate::studies::recognition::rows::table_rows::{Source, TrialScore, Variance};
 
-/// Three rows a cell whose trials combine every split with every projection; none for other cells.
+/// Returns three rows for each configuration whose trials combine every split with every projection; no rows for other configurations.
 ///
 /// # Errors
-/// If the scores of a cell cannot be decomposed.
+/// If the scores of a configuration cannot be decomposed.
 pub fn variances(rows: &[(Cell, TrialScore)]) -> Result<Vec<Variance>> {
     let mut table = Vec::new();
     for trials in rows.chunk_by(|a, b| a.0.cell == b.0.cell) {
