@@ -1,51 +1,51 @@
-//! What can go wrong, in two kinds: the input is bad, or the world failed.
+//! Errors of two kinds: invalid input, and failures of the system.
 
 use std::fmt::Display;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-/// The result of everything that can fail here.
+/// Result of the fallible functions of this crate.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// An error that a person can act on.
+/// Error with a message for the user.
 ///
-/// The text reads `<where>: <what was given>; <what is allowed>`.
+/// The message has the form `<where>: <what was given>; <what is allowed>`.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// The caller gave something that cannot be used. The command exits with code 2.
+    /// Invalid input. The command exits with code 2.
     #[error("{place}: {given}; {allowed}")]
     Input {
-        /// Where: a file (with line and key where known), an option, or an argument's name.
+        /// Place of the input: a file (with line and key if known), an option, or an argument's name.
         place: String,
-        /// What was given there.
+        /// Value that was given.
         given: String,
-        /// What is allowed there.
+        /// Values that are allowed.
         allowed: String,
     },
-    /// Reading or writing failed for a reason outside the input. The command exits with code 1.
+    /// Failure to read or write for a reason outside the input. The command exits with code 1.
     #[error("{path}: {action} failed: {source}", path = path.display())]
     Io {
-        /// The file or folder.
+        /// Path of the file or folder.
         path: PathBuf,
-        /// What was attempted: `read`, `write`, `create folder`, `rename`.
+        /// Attempted action: `read`, `write`, `create folder`, `rename`.
         action: &'static str,
-        /// What the system answered.
+        /// Error of the operating system.
         source: std::io::Error,
     },
-    /// Some work items of a study failed; what the others found is written. The command exits with code 1.
+    /// Failure of some work items of a study; the results of the others are written. The command exits with code 1.
     #[error("{path}: {n_failed} of {n_all} work items failed; the file says why, and the same command tries them again", path = path.display())]
     WorkItems {
-        /// The table of failures.
+        /// Path of the table of failures.
         path: PathBuf,
-        /// Those that failed.
+        /// Number of work items that failed.
         n_failed: usize,
-        /// All.
+        /// Number of all work items.
         n_all: usize,
     },
 }
 
 impl Error {
-    /// An [`Error::Input`] from anything printable. Of long lines, and of many, the beginning: what is quoted from a broken file
+    /// Creates an [`Error::Input`] from printable values. Long values are truncated, because a quotation from a broken file
     /// may be the whole file.
     pub fn input(place: impl ToString, given: impl ToString, allowed: impl ToString) -> Self {
         Self::Input {
@@ -55,7 +55,7 @@ impl Error {
         }
     }
 
-    /// The same, with `outer` before the place of bad input; `outer` ends in what parts the two (`: ` or `, `).
+    /// Prepends `outer` to the place of invalid input; `outer` ends in a separator (`: ` or `, `).
     pub fn under(self, outer: impl Display) -> Self {
         match self {
             Self::Input {
@@ -67,7 +67,7 @@ impl Error {
         }
     }
 
-    /// An [`Error::Io`] that says which file and which action; an [`Error::Input`] where a folder stands in the place of a file to read.
+    /// Creates an [`Error::Io`] with file and action, or an [`Error::Input`] if the path of a file to read is a folder.
     pub fn io(path: impl AsRef<Path>, action: &'static str, source: std::io::Error) -> Self {
         if action == "read" && source.kind() == ErrorKind::IsADirectory {
             return Self::input(path.as_ref().display(), "a folder", "a file");
@@ -79,8 +79,8 @@ impl Error {
         }
     }
 
-    /// What is said of a file that a person named and that cannot be read: bad input if it is not there or is a folder; what is
-    /// `allowed` is said then.
+    /// Creates the error for a file that the user named and that cannot be read. A missing file or a folder is invalid input, with `allowed`
+    /// in the message.
     pub fn unreadable(path: impl AsRef<Path>, allowed: &str, source: std::io::Error) -> Self {
         let path = path.as_ref();
         let given = match source.kind() {
@@ -92,7 +92,7 @@ impl Error {
         Self::input(path.display(), given, allowed)
     }
 
-    /// An [`Error::Input`] from a TOML file: `file:line:column: what was given; what is allowed`.
+    /// Creates an [`Error::Input`] from a TOML error: `file:line:column: what was given; what is allowed`.
     pub fn toml(place: &str, text: &str, error: &toml::de::Error) -> Self {
         let position = error.span().map_or(String::new(), |span| {
             let before = &text[..span.start.min(text.len())];
@@ -100,7 +100,7 @@ impl Error {
             let column = before.chars().rev().take_while(|&c| c != '\n').count() + 1;
             format!(":{line}:{column}")
         });
-        // What Rust calls usize, people call a whole number.
+        // Replaces names of Rust types by plain words.
         let message = error
             .message()
             .replace('\n', " ")
@@ -119,7 +119,7 @@ impl Error {
         Self::input(format!("{place}{position}"), given, allowed)
     }
 
-    /// The command's exit code: 2 for bad input, 1 when the world failed.
+    /// Returns the command's exit code: 2 for invalid input, 1 for other failures.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Input { .. } => 2,
@@ -128,7 +128,7 @@ impl Error {
     }
 }
 
-/// linfa's traits ask this of the error of every classifier.
+/// Required by linfa's traits for the error of every classifier.
 #[cfg(feature = "learning")]
 impl From<linfa::Error> for Error {
     fn from(error: linfa::Error) -> Self {
@@ -147,14 +147,14 @@ impl From<bubbletouch_svm::Error> for Error {
     }
 }
 
-/// Letters of a line that are shown.
+/// Largest number of characters shown per line.
 const LETTERS: usize = 500;
-/// Lines that are shown.
+/// Largest number of lines shown.
 const LINES: usize = 25;
-/// Bytes of all of them, about.
+/// Approximate largest number of bytes shown.
 const BYTES: usize = 2000;
 
-/// A text that a person can read to its end.
+/// Truncates a text to a readable length.
 fn shortened(text: String) -> String {
     if text.len() <= LETTERS {
         return text;

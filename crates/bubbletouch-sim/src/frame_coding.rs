@@ -1,16 +1,16 @@
-//! A frame by its touched taxels: one bit a taxel, in words of 64, then the values of those that are not zero, f32. Little-endian.
+//! Compact encoding of a frame: one bit per taxel, in words of 64, then the nonzero values as f32. Little-endian.
 //!
-//! A touch moves a tenth of the taxels of a usual array, so this is an eighth of the frame; at most it is a thirty-second more.
+//! In a typical touch a tenth of the taxels are nonzero, so the encoding takes an eighth of the f32 frame. At most it takes a thirty-second more.
 
-/// Taxels to a word of bits.
+/// Number of taxels per word of bits.
 const WORD: usize = 64;
 
-/// Most bytes that a frame takes.
+/// Returns the largest number of bytes of an encoded frame.
 pub fn most_bytes(n_taxels: usize) -> usize {
     n_taxels.div_ceil(WORD) * 8 + 4 * n_taxels
 }
 
-/// A frame in bytes.
+/// Encodes a frame.
 pub fn encode(frame: &[f32]) -> Box<[u8]> {
     let mut out = Vec::with_capacity(most_bytes(frame.len()));
     for taxels in frame.chunks(WORD) {
@@ -24,7 +24,7 @@ pub fn encode(frame: &[f32]) -> Box<[u8]> {
     out.into_boxed_slice()
 }
 
-/// Reads a frame back. The bytes are those of [`encode`] for as many taxels.
+/// Decodes a frame; `bytes` must be the result of [`encode`] for as many taxels.
 pub fn decode(bytes: &[u8], frame: &mut [f64]) {
     let (words, values) = bytes.split_at(frame.len().div_ceil(WORD) * 8);
     let mut values = values.chunks_exact(4);

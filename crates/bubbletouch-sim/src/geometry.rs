@@ -1,25 +1,25 @@
-//! Rigid motions, boxes and places.
+//! Rigid motions, boxes and points.
 
 use glam::{DQuat, DVec3, EulerRot};
 use std::collections::HashSet;
 
-/// A rigid motion: rotate, then translate. `a_from_b` maps points of frame b to frame a.
+/// Rigid motion: rotation, then translation. `a_from_b` maps points of frame b to frame a.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pose {
     /// Unit quaternion.
     pub rotation: DQuat,
-    /// Metres.
+    /// Translation, metres.
     pub translation: DVec3,
 }
 
 impl Pose {
-    /// No motion.
+    /// Identity: no motion.
     pub const IDENTITY: Self = Self {
         rotation: DQuat::IDENTITY,
         translation: DVec3::ZERO,
     };
 
-    /// Rotate by a unit quaternion, then translate (metres).
+    /// Creates the motion that rotates by a unit quaternion and then translates (metres).
     pub fn new(rotation: DQuat, translation: DVec3) -> Self {
         Self {
             rotation,
@@ -27,17 +27,17 @@ impl Pose {
         }
     }
 
-    /// A pure translation, metres.
+    /// Creates a pure translation, metres.
     pub fn from_translation(translation: DVec3) -> Self {
         Self::new(DQuat::IDENTITY, translation)
     }
 
-    /// A pure rotation.
+    /// Creates a pure rotation.
     pub fn from_rotation(rotation: DQuat) -> Self {
         Self::new(rotation, DVec3::ZERO)
     }
 
-    /// `a_from_b.compose(&b_from_c)` is `a_from_c`: the right one acts first.
+    /// Returns the composition: `a_from_b.compose(&b_from_c)` is `a_from_c`. The inner motion acts first.
     pub fn compose(&self, inner: &Self) -> Self {
         Self::new(
             (self.rotation * inner.rotation).normalize(),
@@ -45,14 +45,14 @@ impl Pose {
         )
     }
 
-    /// The motion that undoes this one.
+    /// Returns the inverse motion.
     pub fn inverse(&self) -> Self {
         let rotation = self.rotation.conjugate();
         Self::new(rotation, -(rotation * self.translation))
     }
 
-    /// `world_from_b.seen_from(&world_from_a)` is `a_from_b`: what `inverse().compose()` is, but of the difference of the
-    /// places, so that it has all its digits however far from the world's origin both are.
+    /// Returns the motion relative to a frame: `world_from_b.seen_from(&world_from_a)` is `a_from_b`. In contrast to `inverse().compose()`, the
+    /// translations are subtracted first, so that no digits are lost far from the world's origin.
     pub fn seen_from(&self, frame: &Self) -> Self {
         let back = frame.rotation.conjugate();
         Self::new(
@@ -61,41 +61,41 @@ impl Pose {
         )
     }
 
-    /// Where the motion takes a point, metres.
+    /// Returns the image of a point, metres.
     pub fn transform_point(&self, point: DVec3) -> DVec3 {
         self.rotation * point + self.translation
     }
 
-    /// Where the motion takes a direction.
+    /// Returns the image of a direction.
     pub fn transform_vector(&self, vector: DVec3) -> DVec3 {
         self.rotation * vector
     }
 }
 
-/// Turns about the fixed axes x, y, z in turn, radians (URDF's roll, pitch, yaw): `Rz(yaw) Ry(pitch) Rx(roll)`.
+/// Returns the rotation about the fixed axes x, y, z in this order, radians (URDF's roll, pitch, yaw): `Rz(yaw) Ry(pitch) Rx(roll)`.
 pub fn rotation_from_rpy(rpy: DVec3) -> DQuat {
-    // Fixed axes x, y, z in turn are moving axes z, y, x.
+    // Rotations about the fixed axes x, y, z equal rotations about the moving axes z, y, x.
     DQuat::from_euler(EulerRot::ZYX, rpy.z, rpy.y, rpy.x)
 }
 
-/// A quaternion as a person writes it, made exactly a rotation; `None` if its length is not 1 within 0.001, which holds four
-/// written digits.
+/// Normalises a quaternion from a file; `None` if its length differs from 1 by more than 0.001. Four written digits are
+/// accurate enough.
 pub fn written_rotation(quaternion: DQuat) -> Option<DQuat> {
     let is_near = (quaternion.length() - 1.0).abs() <= 1e-3;
     is_near.then(|| quaternion.normalize())
 }
 
-/// An axis-aligned box, metres.
+/// Axis-aligned box, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb {
-    /// Smallest corner.
+    /// Corner with the smallest coordinates.
     pub min: DVec3,
-    /// Largest corner.
+    /// Corner with the largest coordinates.
     pub max: DVec3,
 }
 
 impl Aabb {
-    /// The smallest box around other boxes; `None` for none.
+    /// Returns the smallest box around other boxes; `None` if there are none.
     pub fn around(boxes: impl IntoIterator<Item = Self>) -> Option<Self> {
         boxes.into_iter().reduce(|a, b| Self {
             min: a.min.min(b.min),
@@ -103,19 +103,19 @@ impl Aabb {
         })
     }
 
-    /// Edge lengths.
+    /// Returns the edge lengths, metres.
     pub fn size(&self) -> DVec3 {
         self.max - self.min
     }
 
-    /// The square of the distance from a point to the box, zero inside; m².
+    /// Returns the squared distance from a point to the box, zero inside; m².
     #[inline]
     pub fn distance_squared(&self, point: DVec3) -> f64 {
         let beyond = (self.min - point).max(point - self.max).max(DVec3::ZERO);
         beyond.length_squared()
     }
 
-    /// The box that is wider by `margin` (metres, not negative) on every side.
+    /// Returns the box enlarged by `margin` (metres, not negative) on every side.
     pub fn widened(&self, margin: f64) -> Self {
         Self {
             min: self.min - margin,
@@ -123,7 +123,7 @@ impl Aabb {
         }
     }
 
-    /// How far along a line (in lengths of `direction`) it enters the box, at least `from`; infinite if it passes by.
+    /// Returns the position, in lengths of `direction`, at which a line enters the box, at least `from`; infinite if the line misses the box.
     pub fn entry(&self, origin: DVec3, direction: DVec3, from: f64) -> f64 {
         let (mut start, mut end) = (from, f64::INFINITY);
         for axis in 0..3 {
@@ -139,7 +139,7 @@ impl Aabb {
             start = start.max(a.min(b));
             end = end.min(a.max(b));
         }
-        // Rounding must not let a line slip between two boxes that touch.
+        // Rounding must not let a line pass between two touching boxes.
         if start <= end + 1e-12 * end.abs() {
             start
         } else {
@@ -147,19 +147,19 @@ impl Aabb {
         }
     }
 
-    /// The middle.
+    /// Returns the centre.
     pub fn center(&self) -> DVec3 {
         0.5 * (self.min + self.max)
     }
 }
 
-/// The bits of a place: exactly the same places have the same.
+/// Returns the bits of a point's coordinates, equal exactly for equal points.
 pub fn place_bits(point: DVec3) -> [u64; 3] {
-    // Adding zero makes −0 and 0 the same place.
+    // Adding zero makes −0 and 0 equal.
     (point + DVec3::ZERO).to_array().map(f64::to_bits)
 }
 
-/// Each place of `points` once, in the order of first occurrence.
+/// Returns each distinct point of `points` once, in the order of first occurrence.
 pub fn distinct_places(points: &[DVec3]) -> Vec<DVec3> {
     let mut seen = HashSet::new();
     let is_new = |point: &DVec3| seen.insert(place_bits(*point));

@@ -7,19 +7,19 @@
 //! | [`packing`] | a mesh and a tolerance → few spheres |
 //! | [`world`] | taxels, layouts, resting poses → touches; robots and their motion → poses |
 //! | [`contact`] | a scene and poses → deflections and forces; free objects → poses at rest |
-//! | [`dynamics`] | the same with mass, in time: what the quasi-static model is compared with |
+//! | [`dynamics`] | a scene with masses → motion over time: a reference for the quasi-static model |
 //! | [`whole_body`] | millions of taxels, objects and poses → the taxels that are touched |
 //! | [`signal`] | deflections → frames, as the electronics report them |
-//! | [`calibration`] | recorded frames → the parameters of the signal chain that makes such frames |
-//! | [`sensing`] | frames → compressed measurements, and back |
-//! | [`features`] | frames → features that do not change with place, turn or pressure |
+//! | [`calibration`] | recorded frames → the parameters of the signal chain |
+//! | [`sensing`] | frames → compressed measurements, and reconstructed frames |
+//! | [`features`] | frames → features that are invariant to place, turn or pressure |
 //!
-//! A stage imports only from stages above it in this table and from the rooms that serve all:
+//! A stage imports only from stages above it in this table and from the shared modules:
 //!
 //! | module | contents |
 //! |---|---|
 //! | [`geometry`], [`random`], [`error`] | poses and boxes; named random streams; errors |
-//! | [`text`] | readers of numbers, names and TOML, with errors that name the line |
+//! | [`text`] | readers of numbers, names and TOML, whose errors contain the line |
 //! | [`statistics`] | quantiles, confidence intervals |
 //! | [`files`] | files that are complete or absent; paths in study files |
 //! | [`frame_coding`] | frames as bytes |
@@ -70,10 +70,10 @@
 //! # Ok::<(), bubbletouch_sim::Error>(())
 //! ```
 //!
-//! # Words
+//! # Terms
 //!
 //! - A **taxel** is one sensing element: a sphere on a spring and damper that slides along one axis.
-//! - A **patch** is a rigid substrate with taxels; a **frame** is what they all report at one instant.
+//! - A **patch** is a rigid substrate with taxels; a **frame** is the readings of all its taxels at one instant.
 //! - An **object** is a union of rigid spheres, or a triangle mesh.
 //! - A **touch** is one contact: a pose of the object, and a depth past first contact.
 //! - A **measurement** is a compressed frame, `y = Φx`.

@@ -1,43 +1,44 @@
 //! Implicit Euler with exact contact \[AP\].
 //!
-//! At the step's end, with `a = m/Δt² + c/Δt + k` (the stiffness that a step feels of a taxel) and `δ_f` where the taxel goes if nothing
-//! pushes it,
+//! At the step's end, with `a = m/Δt² + c/Δt + k` (the effective stiffness of a taxel within a step) and `δ_f` the deflection of a free
+//! taxel,
 //!
 //! ```text
 //! δ_f = (m/Δt² δ + m/Δt δ̇ + c/Δt δ) / a,   f = a max(0, x' − start − δ_f)
 //! M (x' − x − Δt ẋ − Δt² g) / Δt² + Σ f(x') = 0,   x' ≤ the floor
 //! ```
 //!
-//! which is one equation for x', increasing and convex: Newton's method from the right ends after a few steps, exactly. At the floor stops
-//! carry the rest. Of stacked balls those that would pass through what they lie on go on with it as one (x' of a chain of balls is an
-//! isotonic regression of where each would go alone).
+//! This is one equation for x', increasing and convex. Newton's method from the right ends after a few steps, exactly. At the floor, stops
+//! carry the remaining force. Stacked balls that would otherwise penetrate those below are merged into a group with one motion: x' of a chain of balls is
+//! an
+//! isotonic regression of their free motions.
 
 use super::state::{Integrator, Rider, State};
 use super::system::{Drive, System};
 
-/// The integrator and its state.
+/// Integrator and its state.
 #[derive(Clone, Debug)]
 pub struct ImplicitEuler {
     state: State,
-    /// Where each taxel goes if nothing pushes it, metres.
+    /// Deflection of each taxel if it is free, metres.
     free: Vec<f64>,
-    /// a of each taxel, N/m.
+    /// Effective stiffness a of each taxel, N/m.
     stiffness: Vec<f64>,
-    /// Of the object and of what is stacked on it, from below.
+    /// Groups of balls, from below: first the object's, then those stacked on it.
     groups: Vec<Group>,
 }
 
-/// Balls that go on as one.
+/// Group of balls that move together.
 #[derive(Clone, Copy, Debug)]
 struct Group {
     n_balls: usize,
     mass: f64,
-    /// Where it would go if nothing were in its way, metres of travel.
+    /// Free position after the step, metres of travel.
     aim: f64,
 }
 
 impl Group {
-    /// With another one on top of it.
+    /// Merges this group with the one on top of it.
     fn with(self, upper: Self) -> Self {
         let mass = self.mass + upper.mass;
         Self {
@@ -48,16 +49,16 @@ impl Group {
     }
 }
 
-/// Newton's method ends after a step for each taxel at the latest; a handful are usual.
+/// Largest number of Newton steps; a handful are usual. The method ends after at most one step per taxel.
 const MAX_NEWTON_STEPS: usize = 100;
 
 impl ImplicitEuler {
-    /// At rest.
+    /// Creates the integrator with everything at rest.
     pub fn new(system: &System) -> Self {
         Self::from_state(State::start(system))
     }
 
-    /// From somewhere.
+    /// Creates the integrator from a state.
     pub fn from_state(state: State) -> Self {
         Self {
             free: vec![0.0; state.deflection.len()],
@@ -67,7 +68,7 @@ impl ImplicitEuler {
         }
     }
 
-    /// Where the taxels go if nothing pushes them.
+    /// Computes the free deflections of the taxels at the step's end.
     fn let_go(&mut self, system: &System, dt: f64) {
         let m = system.taxel_mass;
         let taxels = system.patch.taxels();
@@ -82,7 +83,7 @@ impl ImplicitEuler {
         }
     }
 
-    /// Where a free object goes with what is stacked on it, metres of travel; the first group is left as what goes with the object.
+    /// Returns the position of a free object after the step, metres of travel. The first group then contains the balls that move with the object.
     fn balance(&mut self, system: &System, mass: f64, gravity: f64, dt: f64) -> f64 {
         let state = &self.state;
         let alone = |mass, travel: f64, speed: f64| Group {
@@ -110,7 +111,7 @@ impl ImplicitEuler {
         travel
     }
 
-    /// Where balls go that lie on the taxels, metres of travel.
+    /// Returns the position after the step of balls that lie on the taxels, metres of travel.
     fn push_in(&self, system: &System, balls: &Group, dt: f64) -> f64 {
         let inertia = balls.mass / (dt * dt);
         let aim = balls.aim;
@@ -133,7 +134,7 @@ impl ImplicitEuler {
         travel.min(system.floor())
     }
 
-    /// Takes what is stacked on the object along; what those that go with it need of what is below, newtons.
+    /// Moves the balls stacked on the object. Returns the force, newtons, that those moving with the object need from below.
     fn move_riders(&mut self, system: &System, lowest: f64, gravity: f64, dt: f64) -> f64 {
         let mut needed = 0.0;
         let travels = self.groups.iter().enumerate().flat_map(|(number, group)| {
@@ -151,7 +152,7 @@ impl ImplicitEuler {
         needed
     }
 
-    /// What the stops carry, shared by the taxels at the floor.
+    /// Distributes the force `rest` over the stops of the taxels at the floor.
     fn load_stops(&mut self, system: &System, rest: f64) {
         let floor = system.floor();
         let is_there = |taxel: usize| {
@@ -190,7 +191,7 @@ impl Integrator for ImplicitEuler {
         if let Drive::Free { mass, gravity, .. } = system.drive {
             let mut needed = mass * (gravity - (speed - self.state.speed) / dt);
             needed += self.move_riders(system, travel, gravity, dt);
-            // Rounding of the balance is not the stops'.
+            // Rounding of the balance must not load the stops.
             if travel >= system.floor() {
                 self.load_stops(system, (needed - support).max(0.0));
             }

@@ -1,8 +1,8 @@
-//! Dynamics: what the quasi-static model is measured against. A skin whose taxels have mass, stepped as people step it.
+//! Dynamics: skin whose taxels have mass, with common time integrators, as a reference for the quasi-static model.
 //!
-//! For taxel i of mass m: `m δ̈ + c δ̇ + k δ = f − s`, with f ≥ 0 the push of the object and s ≥ 0 that of the stop at the stroke.
-//! The object is on a **guide**: it moves along the taxels' common axis only, by its travel x, as a plunger does. So taxel i is
-//! pushed as far as `x − a`, where a is the travel at which they meet ([`System::starts`]), for every shape of object. It is free
+//! For taxel i of mass m: `m δ̈ + c δ̇ + k δ = f − s`, with f ≥ 0 the force of the object and s ≥ 0 the force of the stop at the stroke.
+//! The object is on a **guide**: like a plunger, it moves only along the taxels' common axis, by its travel x. For every shape of object, taxel i is
+//! pushed to `x − a`, where a is the travel at first contact with the taxel ([`System::starts`]). The object is either free
 //! under gravity, `M ẍ = M g − Σ f`, or its motion is imposed ([`Drive`]).
 //!
 //! | integrator | contact | damper and spring | breaks |
@@ -11,12 +11,12 @@
 //! | [`ImplicitEuler`] | exact: 0 ≤ f ⟂ gap ≥ 0 at the step's end | both implicit | never; its accuracy in time is of order Δt |
 //! | `RapierWorld` (feature `rapier`) | the engine's | the engine's joint motors | what the engine cannot solve in its iterations |
 //!
-//! Balls may be [stacked](System::stacked) on the object, free on the same guide.
+//! Balls may be [stacked](System::stacked) on the object, with free motion on the same guide.
 //!
-//! All are an [`Integrator`]; [`run`] steps one and gives a [`DynamicRecording`], whose [`Recording`](crate::contact::Recording) is that of
-//! the contact stage: everything downstream takes it. [`rest`] is where all of them must end: the springs carry the weight.
+//! All three implement [`Integrator`]. [`run`] performs the steps and returns a [`DynamicRecording`], which contains a
+//! [`Recording`](crate::contact::Recording) as in the contact stage. [`rest`] computes the common final state, where the springs carry the weight.
 //!
-//! What is not modelled: an object that turns or moves aside, friction, and a stop on the way out (a free taxel swings through 0).
+//! Not modelled: rotation and lateral motion of the object, friction, and a stop at zero deflection (a free taxel swings to negative ones).
 //!
 //! # Sources
 //!

@@ -1,55 +1,55 @@
-//! What the rigid-body engine is told beside a scene.
+//! Settings of the rigid-body engine.
 
 use super::skin_sim;
 use super::system::System;
 use rapier3d_f64::prelude::{IntegrationParameters, SpringCoefficients};
 
-/// What the engine is told beside the scene.
+/// Settings of the rigid-body engine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RapierSettings {
-    /// Iterations of the solver a step, at least 1. (Each is a small step of its own: the solver is of the TGS kind.)
+    /// Solver iterations per step, at least 1. Each is a small step of its own, because the solver is of the TGS kind.
     pub solver_iterations: usize,
     /// Sweeps over all constraints within each iteration, at least 1.
     pub sweeps: usize,
-    /// Engine steps within each of ours, at least 1.
+    /// Engine steps per step of the integrator, at least 1.
     pub substeps: usize,
-    /// What counts as small, metres: penetration that is allowed, and how near pairs are looked at, are multiples of it. (The engine's
-    /// own, 1 m, allows 5 mm of penetration.)
+    /// Length scale, metres: allowed penetration and contact search distance are multiples of it. The engine's
+    /// default, 1 m, allows 5 mm of penetration.
     pub length_unit: f64,
-    /// How hard contacts are.
+    /// Stiffness of contacts.
     pub contacts: RapierContacts,
-    /// What springs and dampers are.
+    /// Model of springs and dampers.
     pub joints: RapierJoints,
 }
 
-/// What the springs and dampers of taxels are in the engine.
+/// Model of the taxels' springs and dampers in the engine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RapierJoints {
-    /// Motors of joints to the world, which the solver takes as springs that are stiff for its step. Locked axes hold taxels on their lines
-    /// as well, so that the solver's iterations are left for what matters.
+    /// Motors of joints to the world, which the solver integrates as stiff springs. Locked axes keep taxels on their lines,
+    /// so that fewer constraints remain for the solver.
     Motors,
-    /// As SkinSim has them \[SK\]: forces that are computed before each step and stay the same for it, and joints alone that hold taxels,
-    /// on a light base which one more joint without room to move holds in the world.
+    /// Model of SkinSim \[SK\]: forces computed before each step and constant within it. Taxels are held by joints only,
+    /// on a light base that a joint without range of motion holds in the world.
     SkinSim {
-        /// Of the base, kg.
+        /// Mass of the base, kg.
         base_mass: f64,
     },
 }
 
-/// How hard the engine's contacts are.
+/// Stiffness of the engine's contacts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RapierContacts {
-    /// As the engine comes: springs of 30 Hz, and penetration taken back at 3 units of length a second at most.
+    /// Default of the engine: springs of 30 Hz; penetration is corrected at no more than 3 units of length per second.
     AsItComes,
-    /// Critically damped springs of 300 / Δt, and penetration taken back as fast as they say. Harder ones gain nothing; softer ones let
+    /// Critically damped springs of 300 / Δt, without a limit of the correction speed. Larger: no gain; smaller:
     /// light taxels sink in under springs that are stiff for the step.
     Hard,
-    /// As SkinSim tells its engine \[SK\]: rigid (CFM 0), a fifth of penetration taken back a step (ERP 0.2), at 100 m/s at most.
+    /// Contacts of SkinSim \[SK\]: rigid (CFM 0), a fifth of the penetration corrected per step (ERP 0.2), at 100 m/s at most.
     Ode,
 }
 
 impl RapierSettings {
-    /// As the engine comes, but for the unit of length: the stroke.
+    /// Returns the engine's default settings, with the stroke as unit of length.
     pub fn as_it_comes(system: &System) -> Self {
         Self {
             solver_iterations: 4,
@@ -61,7 +61,7 @@ impl RapierSettings {
         }
     }
 
-    /// Tuned for skin: hard contacts, and ten sweeps, without which light taxels do not carry.
+    /// Returns settings tuned for skin: hard contacts, and ten sweeps, without which light taxels do not carry the object.
     pub fn tuned(system: &System) -> Self {
         Self {
             sweeps: 10,
@@ -70,7 +70,7 @@ impl RapierSettings {
         }
     }
 
-    /// As SkinSim tells its engine: so many sweeps over all constraints in one solution a step.
+    /// Returns the settings of SkinSim: one solver iteration per step with `sweeps` sweeps over all constraints.
     pub fn skin_sim(system: &System, sweeps: usize) -> Self {
         Self {
             solver_iterations: 1,
@@ -95,7 +95,7 @@ impl RapierSettings {
             RapierContacts::AsItComes => return plain,
             RapierContacts::Hard => (SpringCoefficients::new(300.0 / dt, 1.0), 1e6),
             RapierContacts::Ode => {
-                // ω Δt = 2 ζ e / (1 − e) gives the ERP e; so large a ζ makes the CFM 1e-4 of the mass at the contact.
+                // ω Δt = 2 ζ e / (1 − e) gives the ERP e; with this large ζ the CFM is 1e-4 of the mass at the contact.
                 let damping_ratio = 100.0;
                 let turns = 0.25 * damping_ratio / std::f64::consts::PI;
                 let softness = SpringCoefficients::new(turns / dt, damping_ratio);

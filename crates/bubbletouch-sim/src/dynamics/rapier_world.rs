@@ -1,8 +1,8 @@
-//! The same scene in a rigid-body engine: rapier, in f64.
+//! Scene in a rigid-body engine: rapier, in f64.
 //!
-//! Each taxel is a ball on a prismatic joint whose limit is the stroke; what its spring and damper are, [`RapierJoints`] says. The object
-//! is one body with a ball for each sphere; taxels pass through each other. (Joints by coordinates, rapier's multibodies, are twenty
-//! times slower and no more exact.)
+//! Each taxel is a ball on a prismatic joint whose limit is the stroke; [`RapierJoints`] selects the model of its spring and damper. The object
+//! is one body with a ball for each sphere; taxels do not collide with each other. Joints in reduced coordinates, rapier's multibodies, are twenty
+//! times slower and not more accurate.
 
 use super::rapier_settings::{RapierJoints, RapierSettings};
 use super::state::{Integrator, Rider, State};
@@ -14,20 +14,20 @@ use rapier3d_f64::prelude::{
     MotorModel, PhysicsWorld, PrismaticJointBuilder, RigidBodyBuilder, RigidBodyHandle, Vector,
 };
 
-/// A scene in the engine.
+/// Scene in the engine.
 pub struct RapierWorld {
     world: PhysicsWorld,
     settings: RapierSettings,
     taxels: Vec<RigidBodyHandle>,
     colliders: Vec<ColliderHandle>,
     object: RigidBodyHandle,
-    /// The balls stacked on it, from below.
+    /// Balls stacked on the object, from below.
     riders: Vec<RigidBodyHandle>,
-    /// What the taxels hang on.
+    /// Body to which the taxels are attached.
     base: RigidBodyHandle,
-    /// The object at a travel of 0.
+    /// Position of the object at a travel of 0.
     origin: DVec3,
-    /// Of the last engine step, seconds.
+    /// Length of the last engine step, seconds.
     dt: f64,
     state: State,
 }
@@ -36,7 +36,7 @@ const SKIN: Group = Group::GROUP_1;
 const OBJECT: Group = Group::GROUP_2;
 
 impl RapierWorld {
-    /// Builds the scene; the error names an object that is no union of spheres.
+    /// Builds the scene; returns an error if the object is not a union of spheres.
     pub fn new(system: &System, settings: RapierSettings) -> Result<Self> {
         let Some(spheres) = system.object.spheres() else {
             let allowed = "a union of spheres";
@@ -127,7 +127,7 @@ impl RapierWorld {
         self.colliders.push(collider);
     }
 
-    /// How far a taxel is from its rest on the base along z, metres, and how fast it goes that way, m/s; inwards is positive.
+    /// Returns the displacement of a taxel from its rest position along −z relative to the base, metres, and its velocity, m/s.
     fn inwards(&self, system: &System, taxel: usize) -> (f64, f64) {
         let (body, base) = (
             &self.world.bodies[self.taxels[taxel]],
@@ -140,7 +140,7 @@ impl RapierWorld {
         )
     }
 
-    /// Springs and dampers as forces that stay the same for a step, on taxels and base.
+    /// Applies springs and dampers as forces on taxels and base that are constant within a step.
     fn push(&mut self, system: &System) {
         let mut on_base = 0.0;
         for taxel in 0..self.taxels.len() {
@@ -153,7 +153,7 @@ impl RapierWorld {
         self.set_force(self.base, on_base);
     }
 
-    /// Along z, newtons, in the place of what was there.
+    /// Replaces the force on a body by a force along z, newtons.
     fn set_force(&mut self, handle: RigidBodyHandle, force: f64) {
         let body = &mut self.world.bodies[handle];
         body.reset_forces(false);
@@ -161,7 +161,7 @@ impl RapierWorld {
     }
 }
 
-/// The world itself, or a light body that a joint with no room to move holds in it.
+/// Creates the base: the world itself, or a light body that a joint without range of motion holds in the world.
 fn insert_base(world: &mut PhysicsWorld, joints: RapierJoints) -> RigidBodyHandle {
     let ground = world.insert_body(RigidBodyBuilder::fixed());
     let RapierJoints::SkinSim { base_mass } = joints else {
@@ -178,12 +178,12 @@ fn insert_base(world: &mut PhysicsWorld, joints: RapierJoints) -> RigidBodyHandl
     base
 }
 
-/// Only along z.
+/// Allows motion along z only.
 const GUIDE: LockedAxes = LockedAxes::ROTATION_LOCKED
     .union(LockedAxes::TRANSLATION_LOCKED_X)
     .union(LockedAxes::TRANSLATION_LOCKED_Y);
 
-/// No taxel swings out so far, metres.
+/// Limit of the joint on the free side, metres, never reached.
 const FAR: f64 = 1.0;
 
 impl Integrator for RapierWorld {
@@ -245,7 +245,7 @@ fn ball(radius: f64, of: Group, with: Group) -> ColliderBuilder {
         .collision_groups(InteractionGroups::new(of, with, InteractionTestMode::And))
 }
 
-/// The engine has a glam of its own.
+/// Converts a vector to the engine's version of glam.
 fn engine(vector: DVec3) -> Vector {
     Vector::new(vector.x, vector.y, vector.z)
 }

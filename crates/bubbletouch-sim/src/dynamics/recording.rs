@@ -1,4 +1,4 @@
-//! The loop, and what it keeps.
+//! Time loop, and its recorded frames.
 
 use super::state::{Integrator, State};
 use super::system::System;
@@ -7,50 +7,50 @@ use crate::error::{Error, Result};
 use crate::text::in_range::positive;
 use ndarray::{Array1, Array2};
 
-/// How far to go, and what to keep.
+/// Step length, number of steps, and frames to record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Steps<'a> {
-    /// Seconds a step.
+    /// Length of a step, seconds.
     pub dt: f64,
-    /// How many.
+    /// Number of steps.
     pub n: usize,
-    /// The steps after which a frame is kept, from 1, ascending.
+    /// Numbers of the steps after which a frame is recorded, from 1, ascending.
     pub frames: &'a [usize],
-    /// Joules that everything together never has unless it has gained energy; infinite to never stop.
+    /// Energy above which the run counts as diverged, joules; infinite for no limit.
     pub energy_limit: f64,
 }
 
-/// Why a run was stopped.
+/// Reason why a run was stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Divergence {
-    /// A number is not finite.
+    /// A value is not finite.
     NotFinite,
-    /// There is more energy than the limit.
+    /// The energy exceeds the limit.
     EnergyGrowth,
 }
 
-/// Frames over time, and the object's part in them.
+/// Recorded frames, and the motion of the object.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DynamicRecording {
-    /// What the skin feels: deflections may be negative, and forces are those between object and taxels, what stops carry included.
+    /// Frames of the skin. Deflections may be negative; forces act between object and taxels, including the forces of stops.
     pub recording: Recording,
-    /// x, n_frames, metres.
+    /// Travel x, metres, shape (n_frames,).
     pub travel: Array1<f64>,
-    /// ẋ, n_frames, m/s.
+    /// Speed ẋ, m/s, shape (n_frames,).
     pub speed: Array1<f64>,
-    /// Why it ended early, if it did; frames that were not reached are not there.
+    /// Reason of an early end, if any; later frames are then missing.
     pub divergence: Option<Divergence>,
-    /// Steps that were made.
+    /// Number of completed steps.
     pub n_steps: usize,
 }
 
-/// Energy is looked at once in so many steps: more often costs time, less often lets a diverged run go on.
+/// Steps between two checks of the energy. Larger: a diverged run continues longer; smaller: the checks take more time.
 const LOOK_EVERY: usize = 64;
 
-/// Steps a system from where the integrator is.
+/// Advances a system from the integrator's state and records frames.
 ///
 /// # Errors
-/// The error names a `dt` that is not positive, and frames that are not ascending within the steps.
+/// If `dt` is not positive, or the frames are not ascending numbers of steps.
 pub fn run(
     system: &System,
     integrator: &mut dyn Integrator,

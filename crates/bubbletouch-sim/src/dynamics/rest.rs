@@ -1,22 +1,23 @@
-//! Where a free object on its guide must end.
+//! Final state of a free object on its guide.
 
 use super::system::{Drive, System};
 use crate::contact::{Sample, crossing};
 
-/// An object at rest.
+/// Object at rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rest {
-    /// x, metres.
+    /// Travel x, metres.
     pub travel: f64,
-    /// n_taxels, metres.
+    /// Deflections, metres, shape (n_taxels,).
     pub deflection: Vec<f64>,
-    /// What stops carry beside the springs, newtons.
+    /// Force carried by stops in addition to the springs, newtons.
     pub stops: f64,
 }
 
-/// Where the springs carry the weight of the object and of what is stacked on it, or the stops what they do not: found to the last bit, as a check of everything else.
+/// Returns the state in which the springs carry the weight of the object and the balls on it, and stops carry the remainder. The travel is accurate
+/// to the last bit, as a reference for the integrators.
 ///
-/// `None` for an imposed motion, and where no taxel is in the way.
+/// Returns `None` for an imposed motion, or if the object meets no taxel.
 pub fn rest(system: &System) -> Option<Rest> {
     let Drive::Free { mass, gravity, .. } = system.drive else {
         return None;

@@ -1,4 +1,4 @@
-//! Semi-implicit Euler with penalty contact: what most people write by hand.
+//! Semi-implicit Euler with penalty contact: the most common hand-written integrator.
 //!
 //! ```text
 //! f = κ max(0, x − a − δ),  s = κ max(0, δ − stroke)
@@ -6,24 +6,24 @@
 //! ẋ' = ẋ + Δt (g − Σ f / M),                        x' = x + Δt ẋ'
 //! ```
 //!
-//! with f of stacked balls as of taxels, κ max(0, travel of the upper one − travel of the lower one).
+//! The force f between stacked balls is computed likewise: κ max(0, travel of the upper one − travel of the lower one).
 //!
-//! The damper is taken implicitly, which costs nothing: explicitly it would halve the largest step of a well-damped taxel. A free taxel
-//! without a damper is stable for Δt < 2 √(m / k), exactly.
+//! The damper is implicit, at no additional cost; an explicit one would halve the largest stable step of a well-damped taxel. A free taxel
+//! without a damper is stable exactly for Δt < 2 √(m / k).
 
 use super::state::{Integrator, State};
 use super::system::{Drive, System};
 
-/// The integrator and its state.
+/// Integrator and its state.
 #[derive(Clone, Debug)]
 pub struct SemiImplicit {
     state: State,
-    /// κ, N/m: of contacts and stops. Larger: less penetration, but smaller steps only.
+    /// Contact stiffness κ of contacts and stops, N/m. Larger: less penetration, but smaller stable steps.
     contact_stiffness: f64,
 }
 
 impl SemiImplicit {
-    /// At rest, with κ in N/m.
+    /// Creates the integrator with everything at rest; κ in N/m.
     pub fn new(system: &System, contact_stiffness: f64) -> Self {
         Self {
             state: State::start(system),
@@ -31,7 +31,7 @@ impl SemiImplicit {
         }
     }
 
-    /// From somewhere.
+    /// Creates the integrator from a state; κ in N/m.
     pub fn from_state(state: State, contact_stiffness: f64) -> Self {
         Self {
             state,
@@ -39,8 +39,9 @@ impl SemiImplicit {
         }
     }
 
-    /// The stiffest contact that steps of `dt` seconds carry while `n_touched` equal taxels touch the object, N/m: half of the limit of a
-    /// taxel, `κ + k < 4 m / Δt² + 2 c / Δt`, or of the object, `n κ < 4 M / Δt²`; and no softer than the taxel's own spring.
+    /// Returns the stiffest stable contact, N/m, for steps of `dt` seconds while `n_touched` equal taxels touch the object. It is half the stability limit
+    /// of a
+    /// taxel, `κ + k < 4 m / Δt² + 2 c / Δt`, or of the object, `n κ < 4 M / Δt²`; at least the stiffness of the taxel's own spring.
     pub fn stiffest(system: &System, dt: f64, n_touched: usize) -> f64 {
         let taxel = system.patch.taxels().at(0);
         let of_taxel = (4.0 * system.taxel_mass / dt + 2.0 * taxel.damping) / dt;
@@ -81,7 +82,7 @@ impl Integrator for SemiImplicit {
         state.time += dt;
         match &system.drive {
             Drive::Free { mass, gravity, .. } => {
-                // What each rider puts on what is below it, as things are before the step.
+                // Force of each rider on the ball below, from the positions before the step.
                 let (mut below, mut lower) = (support, state.travel);
                 let (mut mass, mut speed, mut travel) =
                     (*mass, &mut state.speed, &mut state.travel);

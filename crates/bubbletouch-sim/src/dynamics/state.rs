@@ -1,37 +1,37 @@
-//! Where everything is, and who takes it a step further.
+//! State of a system, and the interface of integrators.
 
 use super::system::{Drive, System};
 
-/// A system at one instant.
+/// State of a system at one instant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
-    /// Seconds.
+    /// Time, seconds.
     pub time: f64,
-    /// δ, n_taxels, metres; negative where a free taxel swings out.
+    /// Deflections δ, metres, shape (n_taxels,); negative if a free taxel swings out.
     pub deflection: Vec<f64>,
-    /// δ̇, n_taxels, m/s.
+    /// Velocities δ̇, m/s, shape (n_taxels,).
     pub velocity: Vec<f64>,
-    /// f, n_taxels, newtons: what the object puts on each taxel, never negative.
+    /// Forces f of the object on each taxel, newtons, never negative, shape (n_taxels,).
     pub force: Vec<f64>,
-    /// x, metres.
+    /// Travel x, metres.
     pub travel: f64,
-    /// ẋ, m/s.
+    /// Speed ẋ, m/s.
     pub speed: f64,
-    /// The balls stacked on the object, from below.
+    /// Balls stacked on the object, from below.
     pub riders: Vec<Rider>,
 }
 
-/// A ball that may lie on what is below it: it does where both have travelled as far.
+/// Stacked ball; it touches the one below if both have equal travels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rider {
-    /// Metres.
+    /// Travel, metres.
     pub travel: f64,
-    /// m/s.
+    /// Speed, m/s.
     pub speed: f64,
 }
 
 impl State {
-    /// Taxels that stand out, and an object that nothing has touched.
+    /// Creates the start state: undeflected taxels, and an object without contact.
     pub fn start(system: &System) -> Self {
         let zeros = vec![0.0; system.n_taxels()];
         let rider = Rider {
@@ -49,7 +49,7 @@ impl State {
         }
     }
 
-    /// Σ ½ m δ̇² + Σ ½ k δ², and of each free object ½ M ẋ² − M g x; joules. What contacts and stops store does not count.
+    /// Returns the energy Σ ½ m δ̇² + Σ ½ k δ² plus ½ M ẋ² − M g x of each free object, joules, without energy stored in contacts and stops.
     pub fn energy(&self, system: &System) -> f64 {
         let m = system.taxel_mass;
         let taxels = self.deflection.iter().zip(&self.velocity).enumerate();
@@ -71,16 +71,16 @@ impl State {
         }
     }
 
-    /// Σ f, newtons.
+    /// Returns Σ f, newtons.
     pub fn support(&self) -> f64 {
         self.force.iter().sum()
     }
 }
 
-/// Takes a system from step to step.
+/// Time integrator of a system.
 pub trait Integrator {
-    /// One step of `dt` seconds.
+    /// Advances the system by one step of `dt` seconds.
     fn step(&mut self, system: &System, dt: f64);
-    /// Where everything is now. Forces are those of the step's end as the integrator sees them.
+    /// Returns the present state, with the forces at the end of the last step.
     fn state(&mut self, system: &System) -> &State;
 }

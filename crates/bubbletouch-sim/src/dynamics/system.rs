@@ -1,4 +1,4 @@
-//! What moves: taxels with mass, and an object on a guide.
+//! Mechanical system: taxels with mass, and an object on a guide.
 
 use crate::contact::{Workspace, press_with_contacts};
 use crate::error::{Error, Result};
@@ -8,46 +8,46 @@ use crate::text::in_range::positive;
 use crate::world::{Patch, VelocityPlan};
 use glam::DVec3;
 
-/// What moves the object along its guide.
+/// Cause of the object's motion along its guide.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Drive {
-    /// Its weight.
+    /// Free motion under gravity.
     Free {
-        /// M, kg, positive.
+        /// Mass M, kg, positive.
         mass: f64,
-        /// g, m/s², towards the skin, positive.
+        /// Gravity g towards the skin, m/s², positive.
         gravity: f64,
-        /// Where it is let go, at rest: metres of travel.
+        /// Initial travel, metres; the object starts at rest.
         travel: f64,
     },
-    /// A motion, whatever it costs: of the object's origin in the patch frame. Only the way along z counts; the travel is 0 where it
-    /// starts.
+    /// Imposed motion of the object's origin in the patch frame. Only the component along z is used; the travel is 0 at the
+    /// start.
     Imposed(VelocityPlan),
 }
 
-/// A skin with mass and one object above it.
+/// Skin whose taxels have mass, and one object above it.
 #[derive(Clone, Debug)]
 pub struct System<'a> {
-    /// The skin; all its axes are +z.
+    /// Skin; all axes are +z.
     pub patch: &'a Patch,
-    /// m of each taxel, kg.
+    /// Mass m of each taxel, kg.
     pub taxel_mass: f64,
-    /// The object.
+    /// Object.
     pub object: &'a Model,
     /// `patch_from_object` at a travel of 0.
     pub pose: Pose,
-    /// What moves it.
+    /// Cause of the object's motion.
     pub drive: Drive,
     starts: Vec<f64>,
-    /// Masses of the balls on top of it, from below, kg.
+    /// Masses of the balls stacked on the object, from below, kg.
     riders: Vec<f64>,
 }
 
 impl<'a> System<'a> {
-    /// Checks and prepares a system. Taxels that the object does not meet within `reach` metres of travel are never pushed.
+    /// Creates and checks a system. Taxels that the object does not meet within `reach` metres of travel are never pushed.
     ///
     /// # Errors
-    /// The error names a mass, a gravity or a reach that is not positive, and the first taxel whose axis is not +z.
+    /// If a mass, gravity or reach is not positive, or the axis of a taxel is not +z (the error names the first such taxel).
     pub fn new(
         patch: &'a Patch,
         taxel_mass: f64,
@@ -81,11 +81,11 @@ impl<'a> System<'a> {
         })
     }
 
-    /// Balls like the object stacked on top of it, each free on the same guide under the same gravity: their masses from below, kg. They lie
-    /// on each other where the object is let go.
+    /// Stacks balls like the object on top of it, each free on the same guide under gravity; `masses` from below, kg. All balls start
+    /// in contact.
     ///
     /// # Errors
-    /// A mass that is not positive; an object that is not one free sphere.
+    /// If a mass is not positive, or the object is not one free sphere.
     pub fn stacked(mut self, masses: &[f64]) -> Result<Self> {
         for &mass in masses {
             positive("mass of a stacked ball", mass, "kg")?;
@@ -106,22 +106,22 @@ impl<'a> System<'a> {
         Ok(self)
     }
 
-    /// Masses of the balls on top of the object, from below, kg.
+    /// Returns the masses of the balls on top of the object, from below, kg.
     pub fn riders(&self) -> &[f64] {
         &self.riders
     }
 
-    /// How many taxels.
+    /// Returns the number of taxels.
     pub fn n_taxels(&self) -> usize {
         self.starts.len()
     }
 
-    /// The travel at which the object meets each taxel, metres; infinite for those that it does not meet.
+    /// Returns the travel at which the object meets each taxel, metres; infinite for taxels that it does not meet.
     pub fn starts(&self) -> &[f64] {
         &self.starts
     }
 
-    /// The travel at which the first taxel is at its stroke, metres: no rigid stop lets the object go further.
+    /// Returns the travel at which the first taxel reaches its stroke, metres; the rigid stop then stops the object.
     pub fn floor(&self) -> f64 {
         let taxels = self.patch.taxels();
         let ends = self.starts.iter().enumerate();
@@ -129,7 +129,7 @@ impl<'a> System<'a> {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// The travel before the first step, metres.
+    /// Returns the travel before the first step, metres.
     pub fn first_travel(&self) -> f64 {
         match &self.drive {
             Drive::Free { travel, .. } => *travel,
@@ -137,13 +137,13 @@ impl<'a> System<'a> {
         }
     }
 
-    /// Where a motion has the object at a time, metres of travel.
+    /// Returns the travel of the object in an imposed motion at a time, metres.
     pub(super) fn imposed(&self, plan: &VelocityPlan, time: f64) -> f64 {
         plan.pose_at(0.0).translation.z - plan.pose_at(time).translation.z
     }
 }
 
-/// Along the axes a taxel that is pushed is pushed as much further as the object goes: one press at the end of the reach tells all.
+/// Along the axes the deflection of a pushed taxel grows with the travel, so one press at the end of the reach yields all starts.
 fn starts(patch: &Patch, object: &Model, pose: &Pose, reach: f64) -> Vec<f64> {
     let mut workspace = Workspace::new();
     let low = Pose::new(pose.rotation, pose.translation - reach * DVec3::Z);

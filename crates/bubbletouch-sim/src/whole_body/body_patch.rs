@@ -1,4 +1,4 @@
-//! A body: patches of skin as it keeps them, with few bytes a taxel.
+//! Body: patches of skin in a form with few bytes per taxel.
 
 use super::dome_patch::DomePatch;
 use super::draped_patch::{self, DrapedPatch};
@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::objects::Sphere;
 use crate::world::{Extrusion, Layout, Patch, Rule, Taxel, Taxels};
 
-/// A patch as a body keeps it, with few bytes a taxel.
+/// Patch of a body, stored with few bytes per taxel.
 #[derive(Clone, Debug)]
 pub struct BodyPatch {
     name: String,
@@ -16,20 +16,20 @@ pub struct BodyPatch {
     surface: Surface,
 }
 
-/// How the taxels of a patch lie.
+/// Arrangement of the taxels of a patch.
 #[derive(Clone, Debug)]
 pub(super) enum Surface {
     /// One row repeated along a line.
     Rows(RowPatch),
     /// Rings on a sphere.
     Dome(DomePatch),
-    /// Anywhere, each with an axis of its own.
+    /// Arbitrary places, each with an axis of its own.
     Draped(DrapedPatch),
 }
 
 impl BodyPatch {
     /// # Errors
-    /// Those of [`WholeBody::new`].
+    /// If [`WholeBody::new`] refuses the patch.
     fn new(patch: &Patch) -> Result<Self> {
         let name = patch.name().to_owned();
         let refuse = |what: &str, given: String, allowed: String| {
@@ -62,12 +62,12 @@ impl BodyPatch {
         })
     }
 
-    /// What it is called.
+    /// Returns the name of the patch.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Every taxel's place and axis, in the patch frame.
+    /// Returns the place and axis of every taxel, in the patch frame.
     pub fn layout(&self) -> Layout {
         match &self.surface {
             Surface::Rows(rows) => rows.extrusion().clone().into(),
@@ -76,17 +76,17 @@ impl BodyPatch {
         }
     }
 
-    /// What each of the taxels is.
+    /// Returns the properties shared by all taxels.
     pub fn taxel(&self) -> &Taxel {
         &self.taxel
     }
 
-    /// How many taxels.
+    /// Returns the number of taxels.
     pub fn n_taxels(&self) -> usize {
         self.n_taxels
     }
 
-    /// A ball in the patch frame that every sphere comes near to that pushes a taxel: nearer than the sum of the radii and ρ.
+    /// Returns a ball in the patch frame. A sphere can push a taxel only if its distance from the ball's centre is less than both radii plus ρ.
     pub fn ball(&self) -> Sphere {
         match &self.surface {
             Surface::Rows(rows) => rows.ball(),
@@ -95,12 +95,12 @@ impl BodyPatch {
         }
     }
 
-    /// How the taxels lie.
+    /// Returns the arrangement of the taxels.
     pub(super) fn surface(&self) -> &Surface {
         &self.surface
     }
 
-    /// How many rows, rings, or blocks of tiles.
+    /// Returns the number of rows, rings, or blocks of tiles.
     pub(super) fn n_rows(&self) -> usize {
         match &self.surface {
             Surface::Rows(rows) => rows.extrusion().rows().len(),
@@ -109,7 +109,7 @@ impl BodyPatch {
         }
     }
 
-    /// The number of the first taxel of a row.
+    /// Returns the number of the first taxel of a row.
     #[inline(always)]
     pub(super) fn row_start(&self, row: u32) -> u32 {
         match &self.surface {
@@ -126,17 +126,18 @@ impl BodyPatch {
 #[derive(Clone, Debug)]
 pub struct WholeBody {
     patches: Vec<BodyPatch>,
-    /// The number of each patch's first taxel.
+    /// Number of each patch's first taxel.
     firsts: Vec<usize>,
     n_taxels: usize,
 }
 
 impl WholeBody {
-    /// A body of patches, each of equal taxels. One that is no grid, [`Extrusion`] or [`Dome`](crate::world::Dome) is fast if neighbours
-    /// have near numbers: see [`Layout::with_neighbours_together`].
+    /// Creates a body of patches, each with equal taxels. For patches other than grids, [`Extrusion`]s and [`Dome`](crate::world::Dome)s, speed requires
+    /// that
+    /// neighbours have near numbers: see [`Layout::with_neighbours_together`].
     ///
     /// # Errors
-    /// A patch that has the name of another one, or taxels of more than one kind; a dome smaller than their depth.
+    /// If two patches have one name, a patch has taxels of more than one kind, or a dome is smaller than the depth of its taxels.
     pub fn new(patches: &[Patch]) -> Result<Self> {
         let patches = patches.iter().map(BodyPatch::new);
         let patches = patches.collect::<Result<Vec<_>>>()?;
@@ -159,31 +160,31 @@ impl WholeBody {
         })
     }
 
-    /// The patches, in the order in which their taxels are numbered.
+    /// Returns the patches, in the order in which their taxels are numbered.
     pub fn patches(&self) -> &[BodyPatch] {
         &self.patches
     }
 
-    /// The number of the first taxel of each patch.
+    /// Returns the number of the first taxel of each patch.
     pub fn firsts(&self) -> &[usize] {
         &self.firsts
     }
 
-    /// The patch of a taxel, and its number there.
+    /// Returns the patch of a taxel, and the taxel's number in the patch.
     ///
     /// # Panics
-    /// If there is no such taxel.
+    /// If the taxel does not exist.
     pub fn place_of(&self, taxel: usize) -> (usize, usize) {
         assert!(taxel < self.n_taxels, "a taxel of this body");
         let patch = self.firsts.partition_point(|&first| first <= taxel) - 1;
         (patch, taxel - self.firsts[patch])
     }
 
-    /// How many taxels all patches have.
+    /// Returns the number of taxels of all patches.
     pub fn n_taxels(&self) -> usize {
         self.n_taxels
     }
-    /// Bytes that it holds; what touches it has its own ([`BodyState::n_bytes`](super::BodyState::n_bytes)).
+    /// Returns the memory of the body in bytes, without the state ([`BodyState::n_bytes`](super::BodyState::n_bytes)).
     pub fn n_bytes(&self) -> usize {
         let patch = |patch: &BodyPatch| {
             let surface = match &patch.surface {
@@ -196,10 +197,10 @@ impl WholeBody {
         self.patches.iter().map(patch).sum::<usize>() + size_of_val(&self.firsts[..])
     }
 
-    /// A frame of the whole body, n_taxels, that is zero but for some taxels: touched ones with their deflections or forces.
+    /// Returns a dense frame of the whole body, shape (n_taxels,), from the values of some taxels; all others are zero.
     ///
     /// # Panics
-    /// If there is no such taxel.
+    /// If a taxel does not exist.
     pub fn frame(&self, touched: impl IntoIterator<Item = (usize, f64)>) -> Vec<f64> {
         let mut frame = vec![0.0; self.n_taxels];
         for (taxel, value) in touched {

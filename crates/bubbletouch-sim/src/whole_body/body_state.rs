@@ -1,4 +1,4 @@
-//! A body from step to step.
+//! State of a body between steps.
 
 use super::body_patch::WholeBody;
 use super::patch_state::PatchState;
@@ -6,44 +6,44 @@ use crate::contact::Instructions;
 use crate::geometry::Pose;
 use crate::objects::{Sphere, SphereClusters};
 
-/// Deflected taxels at the last step from which on threads share the work. Less is done before a second thread is awake.
+/// Number of deflected taxels at the last step above which threads share the work. Smaller: the work ends before a second thread has started.
 pub const WORTH_THREADS: usize = 4000;
 
-/// What touches a body, between steps; it is reused, so a step allocates nothing once the largest touch has been seen.
+/// Deflections of a body between steps. Reuse avoids allocations once the largest touch has been computed.
 #[derive(Clone, Debug, Default)]
 pub struct BodyState {
     patches: Vec<PatchState>,
     world_from_patches: Vec<Pose>,
-    /// Around each patch, ρ in it, in the world frame, metres.
+    /// Ball around each patch, including ρ, in the world frame, metres.
     balls: Vec<Sphere>,
-    /// Around each object at this step, in the world frame, metres.
+    /// Ball around each object at this step, in the world frame, metres.
     object_balls: Vec<Sphere>,
-    /// Patches with something to do in this step; ascending.
+    /// Patches that this step must evaluate; ascending.
     busy: Vec<u32>,
-    /// How long this step was, seconds.
+    /// Length of the last step, seconds.
     dt: f64,
     instructions: Instructions,
     contact: BodyContact,
 }
 
-/// What a step did.
+/// Summary of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BodyContact {
-    /// Taxels with a deflection above zero.
+    /// Number of taxels with a deflection above zero.
     pub n_touched: usize,
-    /// Taxels at their stroke that an object would push further.
+    /// Number of taxels at their stroke that an object would push further.
     pub n_saturated: usize,
-    /// Patches with a deflected taxel.
+    /// Number of patches with a deflected taxel.
     pub n_patches: usize,
-    /// Pairs of a sphere and a patch for which rows, rings or tiles were looked at: what is left of those of all spheres of the
+    /// Number of pairs of a sphere and a patch for which rows, rings or tiles were evaluated. The candidates are all spheres of
     /// objects near a patch.
     pub n_evaluated: usize,
-    /// The other ones of those pairs, left out with their clusters or by their distance from the whole patch.
+    /// Number of candidate pairs excluded by their clusters or by their distance from the whole patch.
     pub n_rejected: usize,
 }
 
 impl BodyState {
-    /// An untouched body, all its patches with their frames in the world's.
+    /// Creates the state of an untouched body, with the patch frames at the world frame.
     pub fn at_rest(body: &WholeBody) -> Self {
         let mut state = Self {
             patches: body.patches().iter().map(PatchState::at_rest).collect(),
@@ -53,15 +53,15 @@ impl BodyState {
         state
     }
 
-    /// Has the steps computed by some other than the best instructions, to compare them.
+    /// Selects other instructions than the best for later steps, for comparisons.
     pub fn use_instructions(&mut self, instructions: Instructions) {
         self.instructions = instructions;
     }
 
-    /// Moves the patches to `world_from_patch` poses, one each. A body that stands still is placed once.
+    /// Moves the patches to the poses `world_from_patches`, one per patch. A fixed body is placed once.
     ///
     /// # Panics
-    /// If there are not as many poses as patches.
+    /// If the number of poses differs from the number of patches.
     pub fn place(&mut self, body: &WholeBody, world_from_patches: &[Pose]) {
         let patches = body.patches();
         assert_eq!(world_from_patches.len(), patches.len(), "one pose a patch");
@@ -79,13 +79,13 @@ impl BodyState {
             }));
     }
 
-    /// Goes `dt` seconds (positive; of no effect on taxels without dampers) to where the objects are at `world_from_object`
-    /// poses, one each.
+    /// Advances by `dt` seconds (positive; irrelevant for taxels without dampers) to the objects' poses `world_from_objects`,
+    /// one per object.
     ///
-    /// Nothing that is not near an object, or still deflected, is looked at. The result does not depend on the number of threads.
+    /// Only patches near an object or with deflected taxels are evaluated. The result does not depend on the number of threads.
     ///
     /// # Panics
-    /// If there are not as many poses as objects, or if the state is another body's.
+    /// If the number of poses differs from the number of objects, or the state belongs to another body.
     pub fn press(
         &mut self,
         body: &WholeBody,
@@ -118,7 +118,7 @@ impl BodyState {
         self.count()
     }
 
-    /// The deflected taxels of the last step, ascending: number and deflection, metres.
+    /// Returns the deflected taxels of the last step, ascending: number and deflection, metres.
     pub fn touched(&self, body: &WholeBody) -> impl Iterator<Item = (usize, f64)> {
         self.touched_of_patches(body).flat_map(|(first, touched)| {
             let touched = touched.iter();
@@ -126,7 +126,7 @@ impl BodyState {
         })
     }
 
-    /// The same patch by patch: the number of its first taxel, and how far from there each of the touched ones is numbered.
+    /// Returns the deflected taxels patch by patch: the number of the patch's first taxel, and the touched taxels numbered from there.
     pub(crate) fn touched_of_patches(
         &self,
         body: &WholeBody,
@@ -137,10 +137,10 @@ impl BodyState {
         })
     }
 
-    /// The forces on the deflected taxels, ascending: number and newtons; 0 on one that relaxes freely.
+    /// Returns the forces on the deflected taxels, ascending: number and newtons; 0 for a taxel that relaxes freely.
     ///
-    /// They are those of [`DamperState`](crate::contact::DamperState): kδ without a damper, else the constant force that takes
-    /// the taxel there within the last step, which tends to kδ + cδ̇.
+    /// The forces equal those of [`DamperState`](crate::contact::DamperState): kδ without a damper, else the constant force that moves
+    /// the taxel to its deflection within the last step, which tends to kδ + cδ̇.
     pub fn forces(&self, body: &WholeBody) -> impl Iterator<Item = (usize, f64)> {
         self.busy.iter().flat_map(|&number| {
             let (patch, first) = (number as usize, body.firsts()[number as usize]);
@@ -149,21 +149,21 @@ impl BodyState {
         })
     }
 
-    /// How many patches the last step looked at: those near an object, and those on which something was still deflected.
+    /// Returns the number of patches that the last step evaluated: patches near an object or with deflected taxels.
     pub fn n_visited(&self) -> usize {
         self.busy.len()
     }
 
-    /// Bytes that it holds of each patch and taxel.
+    /// Returns the memory of the state in bytes.
     pub fn n_bytes(&self) -> usize {
         let patches = self.patches.iter().map(PatchState::n_bytes).sum::<usize>();
         patches + self.patches.len() * (size_of::<Pose>() + size_of::<Sphere>() + size_of::<u32>())
     }
 
-    /// All deflections of one patch, n_taxels, metres, in the order of its layout.
+    /// Returns all deflections of one patch, metres, shape (n_taxels,), in the order of its layout.
     ///
     /// # Panics
-    /// If there is no such patch.
+    /// If the patch does not exist.
     pub fn deflections(&self, patch: usize) -> &[f64] {
         self.patches[patch].deflections()
     }
@@ -196,7 +196,7 @@ impl BodyState {
     }
 }
 
-/// The ball around an object that is at a pose.
+/// Returns the ball around an object at a pose.
 fn in_world((object, pose): (&SphereClusters, &Pose)) -> Sphere {
     let Sphere { center, radius } = object.ball();
     Sphere {
@@ -205,13 +205,13 @@ fn in_world((object, pose): (&SphereClusters, &Pose)) -> Sphere {
     }
 }
 
-/// Whether two balls overlap.
+/// Returns whether two balls overlap.
 fn are_near(a: &Sphere, b: &Sphere) -> bool {
     let reach = a.radius + b.radius;
     a.center.distance_squared(b.center) <= reach * reach
 }
 
-/// Calls `step` with each number and its state, of which `states` begins with that of `first`; halves are shared by threads.
+/// Calls `step` with each number and its state; `first` is the number of the first of `states`. Threads share the work by halving.
 fn step_each(
     numbers: &[u32],
     first: u32,

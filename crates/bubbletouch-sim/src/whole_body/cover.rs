@@ -1,4 +1,4 @@
-//! A robot covered in skin: patches on the sides of its cylinders, on the half balls or the flat ends of these, and on boxes.
+//! Robot covered with skin: patches on cylinders, their hemispherical or flat ends, and boxes.
 
 use super::body_patch::WholeBody;
 use super::flat_ends::flat_ends;
@@ -9,45 +9,45 @@ use crate::world::{Dome, Extrusion, Grid, Layout, LinkGeometry, Patch, Robot, Ta
 use glam::{DMat3, DQuat, DVec3};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// A robot's skin, and where its patches are on the links.
+/// Skin of a robot, with the mounting poses of its patches on the links.
 #[derive(Clone, Debug)]
 pub struct CoveredRobot {
     body: WholeBody,
     mounts: Vec<Mount>,
 }
 
-/// Where a patch is.
+/// Mounting of a patch.
 #[derive(Clone, Copy, Debug)]
 struct Mount {
     link: usize,
     link_from_patch: Pose,
 }
 
-/// What covers: equal taxels, and how they are shared out.
+/// Properties of a cover: equal taxels, and size of the patches.
 #[derive(Clone, Copy)]
 struct Cover {
     taxel: Taxel,
-    /// From taxel to taxel, metres.
+    /// Distance between taxels, metres.
     pitch: f64,
-    /// Of a patch, about, metres.
+    /// Approximate side of a patch, metres.
     side: f64,
 }
 
 impl Cover {
-    /// Patches along a length.
+    /// Returns the number of patches along a length.
     fn parts(&self, length: f64) -> f64 {
         (length / self.side).round().max(1.0)
     }
 }
 
-/// Patches so far.
+/// Patches created so far.
 #[derive(Default)]
 struct Covered {
     patches: Vec<Patch>,
     mounts: Vec<Mount>,
 }
 
-/// A shape on a link.
+/// Shape on a link.
 struct On<'a> {
     name: &'a str,
     link: usize,
@@ -55,29 +55,29 @@ struct On<'a> {
 }
 
 impl CoveredRobot {
-    /// Covers the cylinders, capsules, balls and boxes that a robot's links touch with, cut into equal patches of about `side` by `side`
-    /// metres, a taxel about every `pitch` metres, across the seams too (on boxes, half to one and a half of it there).
+    /// Covers the collision cylinders, capsules, spheres and boxes of a robot with equal patches of about `side` by `side`
+    /// metres. Taxels are about `pitch` metres apart, also across seams; on boxes 0.5 to 1.5 pitches across seams.
     ///
-    /// - The side of a cylinder is cut around and along. Patches are called by their link, their ring from its lower end and their
-    ///   place around it from +x, both from 1: `trunk 2.3`; a link's second shape begins with `trunk'`.
-    /// - A ball at the end of a cylinder of its radius, and the end of a capsule, is covered on its outer half, any other ball
-    ///   wholly; each half is cut from pole to rim: `head cap 2.3` is the third part of the second half ball of the file. A ball
-    ///   within a larger one of another link, such as an elbow's inner one, is never touched, and left out.
-    /// - Each face of a box is a grid of flat patches: `palm face 5 1.2`, the faces towards +x, −x, +y, −y, +z, −z.
+    /// - The side of a cylinder is divided around and along. The name of a patch contains the link, the ring from its lower end, and the
+    ///  place around it from +x, both from 1: `trunk 2.3`. Names for the link's second shape begin with `trunk'`.
+    /// - The end of a capsule, and a sphere at the end of a cylinder of its radius, are covered on their outer half. Other spheres are covered
+    ///  wholly. Each half is divided from pole to rim: `head cap 2.3` is the third part of the second hemisphere in the file. A sphere
+    ///  within a larger one of another link, such as the inner one of an elbow, cannot be touched and is omitted.
+    /// - Each face of a box is a grid of flat patches: `palm face 5 1.2`. The faces are numbered in the order +x, −x, +y, −y, +z, −z.
     ///
-    /// Flat ends of cylinders stay bare.
+    /// Flat ends of cylinders are not covered.
     ///
     /// # Errors
-    /// A robot with nothing to cover, a taxel that cannot be, or a pitch or side for which a patch has no or too many taxels.
+    /// If there is nothing to cover, the taxel is invalid, or `pitch` and `side` give a patch with no or too many taxels.
     pub fn new(robot: &Robot, taxel: Taxel, pitch: f64, side: f64) -> Result<Self> {
         Self::of(robot, Cover { taxel, pitch, side }, &[])
     }
 
-    /// The same, with a round patch of staggered rows on each flat end of a cylinder, such as `palm end 1`; but for those that lie on
-    /// another cylinder, ball or box, all joints at zero, and are never touched.
+    /// Covers a robot like [`new`](Self::new), and additionally each flat end of a cylinder with a round patch of staggered rows, such as `palm end 1`.
+    /// Ends that lie on another cylinder, sphere or box with all joints at zero cannot be touched and are omitted.
     ///
     /// # Errors
-    /// Those of [`new`](Self::new).
+    /// If [`new`](Self::new) fails.
     pub fn with_flat_ends(robot: &Robot, taxel: Taxel, pitch: f64, side: f64) -> Result<Self> {
         Self::of(robot, Cover { taxel, pitch, side }, &flat_ends(robot)?)
     }
@@ -125,20 +125,20 @@ impl CoveredRobot {
         })
     }
 
-    /// The patches.
+    /// Returns the patches.
     pub fn body(&self) -> &WholeBody {
         &self.body
     }
 
-    /// The link that each patch is on.
+    /// Returns the index of the link of each patch.
     pub fn links(&self) -> impl ExactSizeIterator<Item = usize> {
         self.mounts.iter().map(|mount| mount.link)
     }
 
-    /// The `world_from_patch` poses for a robot whose links are at `world_from_link` poses, in the order of the patches.
+    /// Writes the poses `world_from_patch` for given link poses `world_from_links`, in the order of the patches.
     ///
     /// # Panics
-    /// If there are not as many poses as links.
+    /// If the number of poses differs from the number of links.
     pub fn patch_poses(&self, world_from_links: &[Pose], poses: &mut Vec<Pose>) {
         poses.clear();
         poses.extend(
@@ -161,7 +161,7 @@ impl Covered {
     fn add_side(&mut self, on: &On, (radius, length): (f64, f64), cover: Cover) -> Result<()> {
         let Cover { taxel, pitch, .. } = cover;
         let (n_around, n_along) = (cover.parts(TAU * radius), cover.parts(length));
-        // Half a pitch is left at each seam, so that taxels go on across it.
+        // Half a pitch is left at each seam, so that taxels continue at equal distances across it.
         let arc = TAU / n_around - pitch / radius;
         let part_length = length / n_along - pitch;
         let part = Extrusion::cylinder(radius, part_length.max(0.0), arc, pitch)
@@ -183,7 +183,7 @@ impl Covered {
         Ok(())
     }
 
-    /// Each face of a box, its x and y along the two axes that follow its own.
+    /// Adds the faces of a box; x and y of each patch are the two axes that follow its normal cyclically.
     fn add_faces(&mut self, on: &On, size: DVec3, cover: Cover) -> Result<()> {
         for (face, (axis, side)) in (0..6).map(|face| (face, (face / 2, face % 2))) {
             let outwards = DVec3::AXES[axis] * if side == 0 { 1.0 } else { -1.0 };
@@ -216,7 +216,7 @@ impl Covered {
         Ok(())
     }
 
-    /// Half a pitch is left to the rim.
+    /// Adds a flat end. Half a pitch is left to the rim.
     fn add_end(&mut self, name: &str, end: &End, cover: Cover) -> Result<()> {
         let radius = (end.radius - 0.5 * cover.pitch).max(0.5 * end.radius);
         let layout = Layout::disc(radius, cover.pitch);

@@ -1,4 +1,4 @@
-//! A patch on a sphere: rings of taxels around the z axis.
+//! Patch on a sphere: rings of taxels around the z axis.
 
 use super::lanes::ball_around;
 use crate::objects::Sphere;
@@ -8,14 +8,14 @@ use crate::world::Dome;
 #[derive(Clone, Debug)]
 pub(super) struct DomePatch {
     dome: Dome,
-    /// Of the sphere that the substrate is on, metres.
+    /// Radius of the sphere that contains the substrate, metres.
     pub substrate: f64,
-    /// Around all taxels from their rest centres back to the substrate, in the patch frame.
+    /// Ball around all taxels from their rest centres back to the substrate, in the patch frame.
     pub ball: Sphere,
 }
 
 impl DomePatch {
-    /// Taxels with their substrate at the height `behind`, metres, above minus the dome's radius.
+    /// Creates the patch with the substrate at the height `behind`, metres, above minus the dome's radius.
     pub fn new(dome: Dome, behind: f64) -> Self {
         let (outer, substrate) = (dome.radius(), dome.radius() + behind);
         let ends = dome
@@ -28,18 +28,18 @@ impl DomePatch {
         }
     }
 
-    /// Where the taxels rest.
+    /// Returns the rest centres and axes of the taxels.
     #[inline]
     pub fn dome(&self) -> &Dome {
         &self.dome
     }
 
-    /// Bytes that it holds on the heap.
+    /// Returns the heap memory in bytes.
     pub fn n_bytes(&self) -> usize {
         size_of_val(self.dome.rings()) + size_of_val(self.dome.directions())
     }
 
-    /// Above which t a taxel is pushed, metres.
+    /// Returns the value of t above which a taxel is pushed, metres.
     #[inline]
     pub fn least_along(&self, power: f64) -> f64 {
         let radius = self.dome.radius();

@@ -1,15 +1,16 @@
-//! Presses spheres on a patch on a sphere: a sphere covers one interval of each ring of taxels.
+//! Presses of spheres on a spherical patch: a sphere covers one interval of each ring of taxels.
 //!
-//! The axis of every taxel goes through the centre, so with t = c·n and Q = |c|² − S² the sphere needs
-//! `δ = √(t² − Q) − (t − R)`, wherever the taxel is. It is positive where t is above
+//! The axis of every taxel passes through the centre. With t = c·n and Q = |c|² − S² the sphere therefore needs
+//! `δ = √(t² − Q) − (t − R)` for any taxel. This is positive where t is above
 //!
 //! ```text
-//! √Q                if 0 ≤ Q ≤ R²: the sphere is beside the taxel's axis below
-//! (R² + Q) / (2R)   if Q > R²: it is above the taxel below
+//! √Q                if 0 ≤ Q ≤ R²: the taxels at the limit pass beside the sphere
+//! (R² + Q) / (2R)   if Q > R²: the taxels at the limit touch the sphere at rest
 //! ```
 //!
-//! and with B = R − s − ρ the sphere is in front of the substrate (`contact::law`) where `t + √(t² − Q) ≥ B`, which is where t is B or (B² + Q) / (2B) or more.
-//! On a ring t is A + A' cos(φ − φ_c): an interval.
+//! With B = R − s − ρ the sphere is in front of the substrate (`contact::law`) where `t + √(t² − Q) ≥ B`, that is, where t is at least B or (B² + Q) /
+//! (2B).
+//! On a ring t = A + A' cos(φ − φ_c), so the condition selects an interval.
 
 use super::dome_patch::DomePatch;
 use super::object_press::Pushed;
@@ -20,13 +21,13 @@ use glam::{DVec3, Vec3Swizzles};
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
-/// What rounding may add to an interval, in radians: far above 1e-16 and far below what is felt.
+/// Bound of rounding errors of an interval, radians: far above 1e-16 and far below any measurable angle.
 const ROUNDING: f64 = 1e-9;
-/// The same of an arc cosine, which turns an error of 1e-16 near 1 into one of 1e-8.
+/// Bound of rounding errors of an arc cosine, radians: near 1 it turns an error of 1e-16 into one of 1e-8.
 const ACOS_ROUNDING: f64 = 1e-7;
 
 impl Pushed for DomePatch {
-    /// Nothing is nearer than its ball, which has been looked at.
+    /// Always true: the bounding ball, which has been tested, is the only bound.
     #[inline(always)]
     fn is_near(&self, _: DVec3, _: f64) -> bool {
         true
@@ -65,8 +66,8 @@ impl Pushed for DomePatch {
     }
 }
 
-/// How far from φ_c, radians, `around · cos(φ − φ_c)` is `least` or more, and by no more than rounding beyond; `None` where it
-/// nowhere is.
+/// Returns the largest distance from φ_c, radians, at which `around · cos(φ − φ_c)` is at least `least`, plus rounding; `None` if
+/// there is none.
 fn half_width(least: f64, around: f64) -> Option<f64> {
     if least > around * (1.0 + ROUNDING) {
         return None;
@@ -77,14 +78,14 @@ fn half_width(least: f64, around: f64) -> Option<f64> {
     Some((least / around).min(1.0).acos() + ACOS_ROUNDING)
 }
 
-/// The columns of a ring within `half_width` radians of an angle: of a ring that goes around, in up to three parts.
+/// Returns the columns of a ring within `half_width` radians of an angle; up to three ranges if the ring is closed.
 fn covered(ring: &DomeRing, angle: f64, half_width: f64) -> [Range<usize>; 3] {
     [-TAU, 0.0, TAU].map(|turn| {
         let middle = (angle + turn - ring.start) / ring.step;
         let spread = half_width / ring.step + ROUNDING;
         let first = (middle - spread).ceil().max(0.0) as usize;
         let last = (middle + spread).floor();
-        // Below zero the cast would make it the first column.
+        // A cast of a negative number would give the first column.
         let end = if last < 0.0 { 0 } else { last as usize + 1 };
         first..end.min(ring.n)
     })

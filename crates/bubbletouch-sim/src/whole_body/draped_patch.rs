@@ -1,31 +1,31 @@
-//! A patch on any surface: tiles of taxels that each have their own axis.
+//! Patch on any surface: tiles of taxels, each with an axis of its own.
 //!
-//! The taxels are kept eight by eight in the order of their layout. Balls are around these tiles, around eight tiles that follow each
-//! other, around eight of those, and so on: a sphere goes down to the tiles that it is near.
+//! Taxels are stored in tiles of eight, in the order of their layout. Each tile has a bounding ball, as have eight consecutive tiles,
+//! eight of those groups, and so on. A sphere descends this tree to the tiles nearby.
 
 use super::lanes::{Balls, FAR, LANES, ball_around, filled};
 use crate::objects::Sphere;
 use crate::world::Layout;
 use glam::DVec3;
 
-/// Taxels whose touched span is remembered together.
+/// Number of taxels that share one touched range.
 pub(super) const BLOCK: usize = LANES * LANES;
 
-/// Equal taxels that rest anywhere: 61 bytes each with what is remembered of them.
+/// Equal taxels at arbitrary places; 61 bytes per taxel including the state.
 #[derive(Clone, Debug)]
 pub(super) struct DrapedPatch {
     pub n_taxels: usize,
     /// Height of the substrate, metres.
     pub behind: f64,
     pub tiles: Vec<Tile>,
-    /// The first level is one block of at most eight balls; a ball of a level is around the block of its number of the next one, and of
-    /// the last level around a tile.
+    /// Balls of the tree, level by level. The first level is one block of at most eight balls. Ball k bounds block k of the next level;
+    /// on the last level it bounds tile k.
     pub levels: Vec<Vec<Balls>>,
-    /// Around all taxels from their rest centres back to the substrate, in the patch frame.
+    /// Ball around all taxels from their rest centres back to the substrate, in the patch frame.
     pub ball: Sphere,
 }
 
-/// Eight taxels, coordinate by coordinate. The last one is filled up with some far away.
+/// Eight taxels, coordinate by coordinate. The last tile is padded with taxels far away.
 #[derive(Clone, Debug)]
 pub(super) struct Tile {
     /// Rest centres: x, y, z, metres.
@@ -35,7 +35,7 @@ pub(super) struct Tile {
 }
 
 impl DrapedPatch {
-    /// Taxels, at least one, with their substrate at the height `behind`, metres.
+    /// Creates a patch of at least one taxel, with the substrate at the height `behind`, metres.
     pub fn new(layout: &Layout, behind: f64) -> Self {
         let taxels = layout.centers().iter().copied();
         let taxels: Vec<_> = taxels.zip(layout.axes().iter().copied()).collect();
@@ -58,7 +58,7 @@ impl DrapedPatch {
         }
     }
 
-    /// Every taxel by itself, in the same order.
+    /// Returns the layout, in the order of the taxels.
     pub fn layout(&self) -> Layout {
         let lane = |lanes: &[[f64; LANES]; 3], k| DVec3::new(lanes[0][k], lanes[1][k], lanes[2][k]);
         let all = |of: fn(&Tile) -> &[[f64; LANES]; 3]| {
@@ -70,7 +70,7 @@ impl DrapedPatch {
             .expect("it has been a layout before")
     }
 
-    /// Bytes that it holds on the heap.
+    /// Returns the heap memory in bytes.
     pub fn n_bytes(&self) -> usize {
         let levels = self.levels.iter().map(|balls| size_of_val(&balls[..]));
         size_of_val(&self.tiles[..]) + levels.sum::<usize>()

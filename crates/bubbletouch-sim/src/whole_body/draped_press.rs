@@ -1,4 +1,4 @@
-//! Presses spheres on a patch on any surface: a sphere goes down the tree of balls to the tiles that it is near.
+//! Presses of spheres on a patch of any surface: a sphere descends the tree of balls to the tiles nearby.
 
 use super::draped_patch::{BLOCK, DrapedPatch, Tile};
 use super::lanes::{Balls, LANES};
@@ -8,7 +8,7 @@ use crate::contact::LanesBelow;
 use crate::contact::law::{beats, indent, squares_in_front};
 use glam::DVec3;
 
-/// Levels of balls, at most: eight times as many taxels with each.
+/// Largest number of levels of balls; each level allows eight times as many taxels.
 const MAX_LEVELS: usize = 10;
 
 impl Pushed for DrapedPatch {
@@ -26,10 +26,10 @@ impl Pushed for DrapedPatch {
 }
 
 impl DrapedPatch {
-    /// Pushes a tile.
+    /// Pushes the taxels of a tile.
     #[inline(always)]
     fn push_tile(&self, state: &mut PatchState, tile: usize, center: DVec3, reach: f64) {
-        // Of each taxel S² − b² and h.
+        // S² − b² and h of each taxel.
         let (mut squares, mut heights) = ([0.0; LANES], [0.0; LANES]);
         let Tile {
             centers: [x, y, z],
@@ -59,14 +59,14 @@ impl DrapedPatch {
     }
 }
 
-/// The tiles that a sphere is near, ascending.
+/// Iterator over the tiles near a sphere, ascending.
 struct Descent<'a> {
     levels: &'a [Vec<Balls>],
     center: DVec3,
     reach: f64,
-    /// The level that is looked at.
+    /// Present level.
     level: usize,
-    /// The block of each level down to it, and which of its balls are still to come.
+    /// Block of each level down to the present one, and its balls still to be visited.
     blocks: [(usize, LanesBelow); MAX_LEVELS],
 }
 

@@ -1,4 +1,4 @@
-//! The flat ends of a robot's cylinders that can be touched.
+//! Flat ends of a robot's cylinders that can be touched.
 
 use super::half_balls::{End, SAME, ends};
 use crate::error::Result;
@@ -6,8 +6,8 @@ use crate::geometry::Pose;
 use crate::world::{LinkGeometry, LinkShape, Robot};
 use glam::DVec3;
 
-/// Link by link, each link's in the order of the file, the lower end first. An end whose middle is in or on another shape that touches, all
-/// joints at zero, is left out: a ball makes it round, or a link goes on there.
+/// Returns the flat ends link by link, in the order of the file, the lower end of a cylinder first. An end is omitted if its middle is in or on
+/// another collision shape with all joints at zero: the end is then rounded by a sphere, or joined to another link.
 pub(super) fn flat_ends(robot: &Robot) -> Result<Vec<End>> {
     let world_from_links = robot.forward(&Pose::IDENTITY, &vec![0.0; robot.n_positions()])?;
     let links = robot.links().iter().zip(&world_from_links).enumerate();
@@ -42,7 +42,7 @@ pub(super) fn flat_ends(robot: &Robot) -> Result<Vec<End>> {
     Ok(found)
 }
 
-/// Whether a point in a shape's own frame is in or on it; of a mesh nobody says.
+/// Returns whether a point in a shape's own frame is in or on the shape; false for a mesh.
 fn holds(shape: &LinkGeometry, point: DVec3) -> bool {
     let beside = point.truncate().length();
     match *shape {

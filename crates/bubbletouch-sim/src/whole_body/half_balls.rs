@@ -1,19 +1,19 @@
-//! The half balls of a robot that can be touched: ends of capsules, and balls.
+//! Hemispheres of a robot that can be touched: ends of capsules, and spheres.
 
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::world::{Link, LinkGeometry, Robot};
 use glam::{DQuat, DVec3};
 
-/// Distances and radii that differ by less are meant to be the same, metres.
+/// Difference below which distances and radii count as equal, metres.
 pub(super) const SAME: f64 = 1e-6;
 
-/// Half a ball, or the flat end of a cylinder, on a link.
+/// Hemisphere, or flat end of a cylinder, on a link.
 pub(super) struct End {
     pub link: usize,
-    /// The centre, and +z to the pole, or outwards.
+    /// Pose of the end: the centre, with +z to the pole or outwards.
     pub link_from_end: Pose,
-    /// Metres.
+    /// Radius, metres.
     pub radius: f64,
 }
 
@@ -28,8 +28,8 @@ impl End {
     }
 }
 
-/// The outer halves of the balls that a robot's links touch with, link by link, each link's in the order of the file; both halves
-/// of a ball that is at no cylinder's end. Those within a larger ball of another link, all joints at zero, are left out.
+/// Returns the outer hemispheres of a robot's collision shapes, link by link, in the order of the file. A sphere that is not at a cylinder's end
+/// has two. Those within a larger sphere of another link, with all joints at zero, are omitted.
 pub(super) fn half_balls(robot: &Robot) -> Result<Vec<End>> {
     let all: Vec<End> = robot
         .links()
@@ -86,7 +86,7 @@ fn of_link(number: usize, link: &Link) -> Vec<End> {
     halves
 }
 
-/// The ends of a cylinder at a pose: centre, and unit outwards.
+/// Returns the ends of a cylinder at a pose: centre, and outward unit vector.
 pub(super) fn ends(link_from_cylinder: &Pose, length: f64) -> [(DVec3, DVec3); 2] {
     [-1.0, 1.0].map(|side| {
         let outwards = side * DVec3::Z;

@@ -1,15 +1,15 @@
-//! Eight at a time: what is near a sphere is looked for among blocks of eight balls, and taxels are pushed by eight.
+//! Blocks of eight: searches test eight balls at a time, and presses evaluate eight taxels at a time.
 
 use crate::contact::LanesBelow;
 use crate::objects::{ClusterBounds, MAX_IN_CLUSTER, Sphere, SphereClusters};
 use glam::{DMat3, DVec3};
 
-/// Taxels in a block, and balls: f64 lanes of 512 bits. More: taxels beside small spheres are computed in vain; fewer: blocks are
-/// looked at in vain.
+/// Number of taxels or balls in a block: f64 lanes of 512 bits. Larger: needless taxels beside small spheres; smaller: needless
+/// blocks.
 pub(super) const LANES: usize = 8;
-/// What rounding may add to a reach, far above 1e-16 and far below what is felt.
+/// Factor that covers rounding of a reach: far above 1e-16 and far below any measurable difference.
 pub(super) const ROUNDING: f64 = 1.0 + 1e-9;
-/// A coordinate of what fills a block up, metres: no reach is so long.
+/// Coordinate of padding in a block, metres: beyond any reach.
 pub(super) const FAR: f64 = 1e100;
 
 /// Eight balls, coordinate by coordinate, metres.
@@ -22,7 +22,7 @@ pub(super) struct Balls {
 }
 
 impl Balls {
-    /// Blocks of some balls, in their order; the last one is filled up with balls that nothing is near.
+    /// Creates blocks of balls, in order; the last one is padded with balls far away.
     pub fn blocks(balls: &[Sphere]) -> Vec<Self> {
         let nowhere = Sphere {
             center: DVec3::splat(FAR),
@@ -40,7 +40,7 @@ impl Balls {
         balls.chunks(LANES).map(block).collect()
     }
 
-    /// Which of them a sphere with this reach comes near.
+    /// Returns the balls that a sphere with this reach comes near.
     #[inline(always)]
     pub fn near(&self, center: DVec3, reach: f64) -> LanesBelow {
         let mut gaps = [0.0; LANES];
@@ -57,19 +57,19 @@ impl Balls {
     }
 }
 
-/// An object's frame seen from a patch, and where in it something can be pushed.
+/// Transform from an object's frame to a patch, with the region of the patch where taxels can be pushed.
 pub(super) struct View {
     /// Rows of the rotation.
     rows: DMat3,
     translation: DVec3,
     /// ρ.
     taxel_radius: f64,
-    /// Around all taxels from their rest centres back to the substrate.
+    /// Ball around all taxels from their rest centres back to the substrate.
     ball: Sphere,
 }
 
 impl View {
-    /// Of an object at `rotation` and `translation` from a patch with taxels of one radius, all of them in a ball.
+    /// Creates the transform for an object at `rotation` and `translation` and a patch with taxels of one radius inside `ball`.
     pub fn new(rotation: DMat3, translation: DVec3, taxel_radius: f64, ball: Sphere) -> Self {
         Self {
             rows: rotation.transpose(),
@@ -99,7 +99,7 @@ impl View {
         dx * dx + dy * dy + dz * dz - reach * reach
     }
 
-    /// How far each cluster is from touching the patch, as a difference of squares, m²: below zero if one of its spheres may.
+    /// Computes for each cluster a bound of its distance from the patch, as a difference of squares, m²; below zero if one of its spheres may touch.
     #[inline(always)]
     pub fn lay_gaps(&self, bounds: &ClusterBounds, gaps: &mut [f64]) {
         let n = gaps.len();
@@ -111,7 +111,7 @@ impl View {
         }
     }
 
-    /// The ball around a cluster: its centre in the patch, and its radius with ρ.
+    /// Returns the ball around a cluster: its centre in the patch, and its radius plus ρ.
     #[inline(always)]
     pub fn ball(&self, bounds: &ClusterBounds, cluster: usize) -> (DVec3, f64) {
         let [x, y, z] = &bounds.middle;
@@ -119,7 +119,7 @@ impl View {
         (self.at(middle), bounds.radius[cluster] + self.taxel_radius)
     }
 
-    /// The spheres of a cluster in the patch.
+    /// Returns the spheres of a cluster in the patch frame.
     #[inline(always)]
     pub fn spheres(&self, object: &SphereClusters, cluster: usize) -> Placed {
         let cluster = object.of(cluster);
@@ -146,32 +146,32 @@ impl View {
     }
 }
 
-/// The spheres of a cluster in a patch, coordinate by coordinate, metres.
+/// Spheres of a cluster in the patch frame, coordinate by coordinate, metres.
 pub(super) struct Placed {
     x: [f64; MAX_IN_CLUSTER],
     y: [f64; MAX_IN_CLUSTER],
     z: [f64; MAX_IN_CLUSTER],
-    /// S.
+    /// S = ρ + R.
     reaches: [f64; MAX_IN_CLUSTER],
-    /// Below zero of those that may touch the patch.
+    /// Below zero for spheres that may touch the patch.
     gaps: [f64; MAX_IN_CLUSTER],
 }
 
 impl Placed {
-    /// Those that may touch the patch.
+    /// Returns the spheres that may touch the patch.
     #[inline(always)]
     pub fn near(&self) -> LanesBelow {
         LanesBelow::new(&self.gaps, 0.0)
     }
 
-    /// The centre and S of one.
+    /// Returns the centre and S of one sphere.
     #[inline(always)]
     pub fn at(&self, k: usize) -> (DVec3, f64) {
         (DVec3::new(self.x[k], self.y[k], self.z[k]), self.reaches[k])
     }
 }
 
-/// A value of each of up to a block's items, filled up with those of another one.
+/// Returns a value of each item, at most a block, padded with the value of `behind`.
 pub(super) fn filled<T>(items: &[T], behind: &T, value: fn(&T) -> f64) -> [f64; LANES] {
     let mut values = [value(behind); LANES];
     for (lane, item) in values.iter_mut().zip(items) {
@@ -180,7 +180,7 @@ pub(super) fn filled<T>(items: &[T], behind: &T, value: fn(&T) -> f64) -> [f64; 
     values
 }
 
-/// A ball around some points, at least one, about their mean.
+/// Returns a ball around some points, at least one, centred at their mean.
 pub(super) fn ball_around(points: impl Iterator<Item = DVec3> + Clone) -> Sphere {
     let center = points.clone().sum::<DVec3>() / points.clone().count() as f64;
     let distances = points.map(|point| point.distance(center));
@@ -190,7 +190,7 @@ pub(super) fn ball_around(points: impl Iterator<Item = DVec3> + Clone) -> Sphere
     }
 }
 
-/// The largest of a block.
+/// Returns the largest value of a block.
 #[inline(always)]
 pub(super) fn largest(values: &[f64; LANES]) -> f64 {
     let larger = |a: f64, b: f64| if a > b { a } else { b };

@@ -1,19 +1,19 @@
-//! Whole body: millions of taxels that are mostly not touched → the touched ones, at a cost that follows the contact.
+//! Whole body: millions of taxels, most of them untouched → the touched taxels; the cost depends on the contact area.
 //!
-//! The equations are those of [`contact`](crate::contact), and so are the results, to 1e-12 m; with dampers to
-//! [`AT_REST`], below which a taxel that relaxes counts as at rest. What differs is what is looked at:
+//! Equations and results equal those of [`contact`](crate::contact) to 1e-12 m; with dampers to
+//! [`AT_REST`], below which a relaxing taxel counts as at rest. The search has three stages:
 //!
-//! 1. **patches** ([`BodyPatch`]): those whose ball is near an object's, and those on which something still relaxes;
-//! 2. **spheres** ([`SphereClusters`]): a cluster of neighbours at a time, only those near a bundle of the patch's columns;
-//! 3. **taxels**: a patch is a row of taxels repeated along a line ([`Extrusion`](crate::world::Extrusion)). Across the line a
-//!    sphere is `b` beside the axis of a column and `h` above it, the same in all rows; along it, `d` from a row. So
-//!    `δ = √(S² − b² − d²) − h`, with the first part once a column and sphere, the root once a taxel that it covers.
-//!    On a sphere of radius R around the origin ([`Dome`](crate::world::Dome)) taxels lie in rings, and all that a taxel's axis n
-//!    decides is t = c·n: `δ = √(t² − |c|² + S²) − (t − R)`, so that a sphere covers an interval of each ring. On any other surface
-//!    taxels have their own axes, and are looked at by tiles of eight.
+//! 1. **patches** ([`BodyPatch`]): those whose ball is near an object's, and those with relaxing taxels;
+//! 2. **spheres** ([`SphereClusters`]): clusters of neighbours, of which only those near a bundle of the patch's columns are opened;
+//! 3. **taxels**: a patch is a row of taxels repeated along a line ([`Extrusion`](crate::world::Extrusion)). Perpendicular to the line a
+//!  sphere is `b` beside the axis of a column and `h` above it, equally in all rows; along the line, `d` from a row. So
+//!  `δ = √(S² − b² − d²) − h`: the first terms are computed once per column and sphere, the root once per covered taxel.
+//!  On a sphere of radius R around the origin ([`Dome`](crate::world::Dome)) taxels lie in rings, and δ depends on a taxel's axis n
+//!  only through t = c·n: `δ = √(t² − |c|² + S²) − (t − R)`. A sphere therefore covers an interval of each ring. On other surfaces
+//!  taxels have their own axes and are evaluated in tiles of eight.
 //!
-//! A patch remembers which columns of which rows it has touched: only these are wiped, relaxed and read
-//! ([`BodyState::touched`], [`BodyState::forces`]); [`WholeBody::frame`] makes a dense frame of them.
+//! A patch stores which columns of which rows it has touched. Only these are cleared, relaxed and read
+//! ([`BodyState::touched`], [`BodyState::forces`]); [`WholeBody::frame`] converts them to a dense frame.
 //!
 //! ```
 //! use bubbletouch_sim::geometry::Pose;

@@ -1,4 +1,4 @@
-//! Presses an object on a patch: clusters of spheres, spheres, and then what the patch's surface makes of them.
+//! Presses of an object on a patch: clusters of spheres, then spheres, then the taxels of the surface.
 
 use super::SphereClusters;
 use super::body_patch::{BodyPatch, Surface};
@@ -8,17 +8,17 @@ use crate::contact::{Instructions, LanesBelow, for_instructions};
 use crate::geometry::Pose;
 use glam::{DMat3, DVec3};
 
-/// A surface of taxels that spheres push. (A trait, not closures: those would be compiled without vector instructions.)
+/// Surface of taxels that spheres push. A trait is used because closures would be compiled without vector instructions.
 pub(super) trait Pushed {
-    /// Whether a ball comes near any of its taxels; centre in its frame and radius with ρ in it, metres.
+    /// Returns whether a ball comes near any taxel; centre in the surface's frame and radius plus ρ, metres.
     fn is_near(&self, center: DVec3, reach: f64) -> bool;
 
-    /// Pushes by a sphere: centre in its frame and S, metres.
+    /// Pushes the taxels by a sphere: centre in the surface's frame and S, metres.
     fn push(&self, state: &mut PatchState, center: DVec3, reach: f64);
 }
 
 impl PatchState {
-    /// Relaxes what is deflected for `dt` seconds, then pushes by objects at poses in the patch frame.
+    /// Relaxes deflected taxels for `dt` seconds, then pushes them by objects at poses in the patch frame.
     pub fn step<'a>(
         &mut self,
         patch: &BodyPatch,

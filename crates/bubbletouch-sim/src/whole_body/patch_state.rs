@@ -1,4 +1,4 @@
-//! One patch from step to step: which of its taxels are deflected, and how far.
+//! State of one patch between steps: the deflected taxels and their deflections.
 
 use super::body_patch::BodyPatch;
 use super::lanes::LANES;
@@ -6,31 +6,31 @@ use super::row_patch::SphereOverBundle;
 use crate::contact::{Relaxation, relaxation_factor, saturation_limit};
 use std::ops::Range;
 
-/// What relaxes and is deflected by less is at rest, metres; a ten-thousandth of what the finest skins tell apart.
+/// Deflection below which a relaxing taxel counts as at rest, metres; a ten-thousandth of the resolution of the finest skins.
 pub const AT_REST: f64 = 1e-9;
 
-/// A patch in memory: 8 bytes a taxel, and as much again for those that are deflected.
+/// State of a patch: 8 bytes per taxel, and 8 more per deflected taxel.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PatchState {
-    /// n_taxels, metres, and a block's more, so that the last row has all of its blocks too.
+    /// Metres, shape (n_taxels,), padded by one block so that the last row consists of whole blocks too.
     deflections: Vec<f64>,
     n_taxels: usize,
-    /// Of each row the columns beside which all are at rest; empty where the row is.
+    /// Range of columns of each row outside which all taxels are at rest; empty if the whole row is at rest.
     spans: Vec<Range<u32>>,
-    /// The rows that are not at rest.
+    /// Rows that are not at rest.
     active: Vec<u32>,
-    /// The deflected taxels by number, and by how much, metres.
+    /// Deflected taxels by number, with their deflections, metres.
     touched: Vec<(u32, f64)>,
-    /// The same before the last step; of damped taxels only, whose force depends on it.
+    /// Deflected taxels before the last step; only with dampers, whose forces depend on them.
     before: Vec<(u32, f64)>,
     n_saturated: usize,
-    /// Spheres for which rows, rings or tiles were looked at in the last step.
+    /// Number of spheres for which rows, rings or tiles were evaluated in the last step.
     pub n_evaluated: usize,
-    /// Spheres of the objects near the patch that were left out before that.
+    /// Number of spheres of objects near the patch that were excluded before.
     pub n_rejected: usize,
-    /// Scratch of a search: of each cluster of an object, below zero if one of its spheres may touch.
+    /// Scratch memory of a search: for each cluster of an object a bound, below zero if one of its spheres may touch.
     pub gaps: Vec<f64>,
-    /// Scratch of a sphere: the bundles under it, by their first columns.
+    /// Scratch memory for a sphere: the bundles under it, by their first columns.
     pub under: Vec<(u32, SphereOverBundle)>,
 }
 
@@ -44,22 +44,22 @@ impl PatchState {
         }
     }
 
-    /// Whether no taxel is deflected.
+    /// Returns whether no taxel is deflected.
     pub fn is_at_rest(&self) -> bool {
         self.active.is_empty()
     }
 
-    /// The deflected taxels, ascending, and their deflections, metres.
+    /// Returns the deflected taxels, ascending, and their deflections, metres.
     pub fn touched(&self) -> &[(u32, f64)] {
         &self.touched
     }
 
-    /// How many taxels are at their stroke and would be pushed further.
+    /// Returns the number of taxels at their stroke that would be pushed further.
     pub fn n_saturated(&self) -> usize {
         self.n_saturated
     }
 
-    /// Bytes that it holds.
+    /// Returns the memory in bytes.
     pub fn n_bytes(&self) -> usize {
         size_of::<Self>()
             + size_of_val(&self.deflections[..])
@@ -70,12 +70,12 @@ impl PatchState {
             + (self.touched.capacity() + self.before.capacity()) * size_of::<(u32, f64)>()
     }
 
-    /// n_taxels deflections, metres.
+    /// Returns the deflections, metres, shape (n_taxels,).
     pub fn deflections(&self) -> &[f64] {
         &self.deflections[..self.n_taxels]
     }
 
-    /// Relaxes the deflected taxels for `dt` seconds: a step begins.
+    /// Begins a step: relaxes the deflected taxels for `dt` seconds.
     pub fn begin_step(&mut self, patch: &BodyPatch, dt: f64) {
         (self.n_evaluated, self.n_rejected) = (0, 0);
         if patch.taxel().damping > 0.0 {
@@ -84,7 +84,7 @@ impl PatchState {
         self.relax(patch, relaxation_factor(patch.taxel(), dt));
     }
 
-    /// The deflected taxels, ascending, and the forces, newtons, that took them there in the last step, which was of `dt` seconds.
+    /// Returns the deflected taxels, ascending, and the forces, newtons, that moved them in the last step of `dt` seconds.
     pub fn forces(&self, patch: &BodyPatch, dt: f64) -> impl Iterator<Item = (u32, f64)> {
         let relaxation = Relaxation::of(patch.taxel(), dt);
         let mut before = self.before.iter().copied().peekable();
@@ -96,7 +96,7 @@ impl PatchState {
         })
     }
 
-    /// Pushes taxels of a row, `columns` of it, as far as `needed` says of each, in metres.
+    /// Raises the deflections of a row's `columns` to those that `needed` returns, metres.
     #[inline(always)]
     pub fn push_row(
         &mut self,
@@ -113,13 +113,13 @@ impl PatchState {
         }
     }
 
-    /// Makes a row's span hold some columns, and the row active.
+    /// Extends a row's range to contain some columns, and marks the row as active.
     #[inline(always)]
     pub fn widen(&mut self, row: usize, columns: &Range<u32>) {
         widen(&mut self.spans[row], columns, row as u32, &mut self.active);
     }
 
-    /// A block of taxels; behind the last of its row come taxels of the next one.
+    /// Returns a block of taxels; beyond the row's end it contains taxels of the next row.
     #[inline(always)]
     pub fn block(&mut self, first: usize) -> &mut [f64; LANES] {
         let block = self.deflections[first..].first_chunk_mut();
@@ -145,7 +145,7 @@ impl PatchState {
         });
     }
 
-    /// Stops taxels at their stroke, and lists those that are deflected: a step ends.
+    /// Ends a step: limits deflections to the stroke and lists the deflected taxels.
     pub fn end_step(&mut self, patch: &BodyPatch) {
         let stroke = patch.taxel().stroke;
         self.active.sort_unstable();
@@ -161,9 +161,9 @@ impl PatchState {
     }
 }
 
-/// Stops taxels with consecutive numbers at their stroke, lists those that are deflected, and counts those that are stopped.
+/// Limits the deflections of consecutive taxels to the stroke, lists the deflected ones, and counts the saturated ones.
 ///
-/// (A function by itself: among others compilers keep its few values in memory, which takes a sixth longer.)
+/// As a separate function its few values stay in registers; inlined, it takes a sixth longer.
 #[inline(never)]
 fn read_row(taxels: &mut [f64], first: u32, stroke: f64, touched: &mut Vec<(u32, f64)>) -> usize {
     let limit = saturation_limit(stroke);
@@ -179,7 +179,7 @@ fn read_row(taxels: &mut [f64], first: u32, stroke: f64, touched: &mut Vec<(u32,
     n_saturated
 }
 
-/// Makes a row's span hold another one, and the row active.
+/// Extends a row's range to contain another one, and marks the row as active.
 #[inline(always)]
 fn widen(span: &mut Range<u32>, by: &Range<u32>, row: u32, active: &mut Vec<u32>) {
     if span.start >= span.end {

@@ -1,4 +1,4 @@
-//! A patch that is a row of taxels repeated along a line: flat, or a part of a cylinder.
+//! Patch made of a row of taxels repeated along a line: flat, or a part of a cylinder.
 
 use super::lanes::{Balls, FAR, LANES, ball_around, filled, largest};
 use crate::contact::Lines;
@@ -7,7 +7,7 @@ use crate::objects::Sphere;
 use crate::world::Extrusion;
 use glam::{DVec2, DVec3};
 
-/// Equal taxels in a row that is repeated, and what finds those that a sphere is near.
+/// Equal taxels in a repeated row, with the structures that find taxels near a sphere.
 #[derive(Clone, Debug)]
 pub(super) struct RowPatch {
     extrusion: Extrusion,
@@ -16,11 +16,11 @@ pub(super) struct RowPatch {
     bundles: Vec<Bundle>,
     circles: Vec<Balls>,
     lines: Lines,
-    /// Around all taxels from their rest centres back to the substrate: u, v, w.
+    /// Ball around all taxels from their rest centres back to the substrate: u, v, w.
     ball: Sphere,
 }
 
-/// Neighbouring columns, coordinate by coordinate: rest centres (metres) and axes. The last one is filled up with some far away.
+/// Neighbouring columns, coordinate by coordinate: rest centres (metres) and axes. The last bundle is padded with columns far away.
 #[derive(Clone, Debug)]
 pub(super) struct Bundle {
     pub u: [f64; LANES],
@@ -30,7 +30,7 @@ pub(super) struct Bundle {
 }
 
 impl RowPatch {
-    /// Taxels with their substrate at the height `behind`, metres.
+    /// Creates the patch, with the substrate at the height `behind`, metres.
     pub fn new(extrusion: Extrusion, behind: f64) -> Self {
         let columns = extrusion.places().iter().copied();
         let columns: Vec<_> = columns.zip(extrusion.axes().iter().copied()).collect();
@@ -60,18 +60,18 @@ impl RowPatch {
         }
     }
 
-    /// Where the taxels rest.
+    /// Returns the rest centres and axes of the taxels.
     pub fn extrusion(&self) -> &Extrusion {
         &self.extrusion
     }
 
-    /// Height of the substrate, metres.
+    /// Returns the height of the substrate, metres.
     #[inline(always)]
     pub fn behind(&self) -> f64 {
         self.behind
     }
 
-    /// As [`BodyPatch::ball`](super::BodyPatch::ball).
+    /// Returns the ball of [`BodyPatch::ball`](super::BodyPatch::ball).
     pub fn ball(&self) -> Sphere {
         Sphere {
             center: self.extrusion.uvw_from_patch().transpose() * self.ball.center,
@@ -79,12 +79,12 @@ impl RowPatch {
         }
     }
 
-    /// The same ball with its centre as u, v, w.
+    /// Returns the ball of the patch with its centre as u, v, w.
     pub fn ball_in_uvw(&self) -> Sphere {
         self.ball
     }
 
-    /// Bytes that it holds on the heap.
+    /// Returns the heap memory in bytes.
     pub fn n_bytes(&self) -> usize {
         size_of_val(self.extrusion.places())
             + size_of_val(self.extrusion.axes())
@@ -94,17 +94,17 @@ impl RowPatch {
             + size_of_val(&self.lines.positions[..])
     }
 
-    /// The rows.
+    /// Returns the rows.
     pub fn lines(&self) -> &Lines {
         &self.lines
     }
 
-    /// The bundles of columns.
+    /// Returns the bundles of columns.
     pub fn bundles(&self) -> &[Bundle] {
         &self.bundles
     }
 
-    /// Circles around them across the rows, as balls with their middles at w = 0.
+    /// Returns circles around the bundles across the rows, as balls with their centres at w = 0.
     pub fn circles(&self) -> &[Balls] {
         &self.circles
     }
@@ -112,7 +112,7 @@ impl RowPatch {
 
 impl Bundle {
     fn new(columns: &[(DVec2, DVec2)]) -> Self {
-        // Everything is in front of them: what is behind a substrate takes a slower way.
+        // Everything is in front of the padding, because a sphere behind a substrate takes a slower path.
         let nowhere = (DVec2::splat(FAR), DVec2::NEG_X);
         let of = |value| filled(columns, &nowhere, value);
         Self {
@@ -124,7 +124,7 @@ impl Bundle {
     }
 }
 
-/// A sphere above the columns of a bundle, the same for all rows.
+/// Sphere above the columns of a bundle, equal for all rows.
 #[derive(Clone, Debug)]
 pub(super) struct SphereOverBundle {
     /// S² − b² of each column, m².

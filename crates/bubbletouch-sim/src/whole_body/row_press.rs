@@ -1,8 +1,8 @@
-//! Presses spheres on a patch of rows: bundles of columns, then rows.
+//! Presses of spheres on a patch of rows: first bundles of columns, then rows.
 //!
-//! In doubles, though roots of singles would be 4.6 times as fast: a single's last digit in S² is worth more the larger the sphere.
-//! Of 32 spheres that touch all of 64 × 64 taxels singles were wrong by 5e-9 m (radius 45 mm, pressed lightly), 2e-7 m (as deep as
-//! its middle) and 6e-7 m (radius 4 m); of 512 × 512 by up to 5e-5 m. `cargo bench --bench precision` measures it again.
+//! Computed in f64, although f32 roots would be 4.6 times as fast: the rounding of S² in f32 grows with the sphere.
+//! For 32 spheres that touch all of 64 × 64 taxels the f32 error is 5e-9 m (radius 45 mm, light press), 2e-7 m (pressed to
+//! the sphere's centre) and 6e-7 m (radius 4 m); for 512 × 512 taxels up to 5e-5 m. `cargo bench --bench precision` repeats the measurement.
 
 use super::lanes::LANES;
 use super::object_press::Pushed;
@@ -12,7 +12,8 @@ use crate::contact::LanesBelow;
 use crate::contact::law::{beats, indent};
 use glam::DVec3;
 
-/// Under so few bundles a sphere is small: to know whether it needs more takes as long as the root.
+/// Number of bundles up to which a sphere counts as small: testing whether the sphere needs more than the present deflection then takes as long as the
+/// root.
 const FEW: usize = 3;
 
 impl Pushed for RowPatch {
@@ -53,7 +54,7 @@ impl Pushed for RowPatch {
     }
 }
 
-/// The lower ones of some heights.
+/// Replaces each of some heights by the lower of two.
 #[inline(always)]
 fn lower(lowest: &mut [f64; LANES], heights: &[f64; LANES]) {
     for k in 0..LANES {
@@ -65,14 +66,14 @@ fn lower(lowest: &mut [f64; LANES], heights: &[f64; LANES]) {
     }
 }
 
-/// Whether nothing within reach of a place along the rows is a row.
+/// Returns whether no row is within reach of a place along the rows.
 #[inline(always)]
 fn is_beside(patch: &RowPatch, w: f64, reach: f64) -> bool {
     let rows = &patch.lines().positions;
     w + reach <= rows[0] || w - reach >= rows[rows.len() - 1]
 }
 
-/// Pushes the rows within a distance of w, metres, of some bundles, which are known by their first columns.
+/// Pushes the rows within a distance of w, metres, for some bundles, given by their first columns.
 #[inline(always)]
 fn push_rows(
     state: &mut PatchState,
@@ -95,7 +96,7 @@ fn push_rows(
     }
 }
 
-/// The same of a sphere whose middle is behind a substrate.
+/// Pushes the rows by a sphere whose centre is behind a substrate.
 #[inline(always)]
 fn push_through(
     state: &mut PatchState,
