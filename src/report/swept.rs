@@ -174,8 +174,7 @@ impl<'a> Swept<'a> {
     }
 
     /// Returns the main setting for charts and tables: the independent numeric setting with the most values. Among equals, the last column is taken, because
-    /// columns follow the order of processing. A numeric setting that is absent in some rows comes after words, because its axis has no place
-    /// for such a row.
+    /// columns follow the order of processing. A setting that is absent in some rows comes after words: its axis has no place for such a row.
     pub fn main(&self, rows: &[usize]) -> Option<Setting<'a>> {
         let numbers = self.free.iter().filter(|setting| setting.is_number());
         let numbers = numbers.filter(|setting| numbers_are_there(setting, rows));

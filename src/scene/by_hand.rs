@@ -1,8 +1,9 @@
 //! Manual control of a scene: a program sets poses and joint positions instead of the scene file.
 //!
-//! A new pose takes effect in the next step and stays. Everything else follows the scene file. A manual step equals a step of the [time
-//! loop](Simulation::next_frame) bit by bit if length, time and poses are equal. For this, the manual step must be observed where the loop makes a frame.
-//! makes a frame.
+//! A new pose takes effect in the next step and stays. Everything else follows the scene file.
+//!
+//! A manual step equals a step of the [time loop](Simulation::next_frame) bit by bit if length, time and poses are equal. For this, the manual step must be
+//! observed where the loop makes a frame.
 
 use super::plan_object::Movement;
 use super::simulation::Simulation;

@@ -79,8 +79,7 @@ impl FreeObjects {
         }
     }
 
-    /// Computes the equilibrium of all objects that have not escaped, and returns whether all are at rest. `dt`: time since the last call; infinite at the
-    /// start.
+    /// Computes the equilibrium of all objects that have not escaped. Returns whether all are at rest. `dt`: time since the last call, infinite at the start.
     pub fn settle(
         &mut self,
         plan: &ScenePlan,

@@ -9,8 +9,7 @@ use crate::geometry::Pose;
 use crate::inputs::check::Check;
 use crate::objects::{Model, Sphere};
 
-/// Maximum overlap as a fraction of the smaller object's radius, for objects of coarse spheres. A larger value accepts deeper overlaps; a smaller one rejects
-/// coarse spheres.
+/// Maximum overlap, as a fraction of the smaller object's radius. A larger value accepts deeper overlaps; a smaller one rejects objects of coarse spheres.
 const MAX_SHARE: f64 = 0.5;
 
 /// An object at its initial pose.

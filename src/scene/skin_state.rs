@@ -173,8 +173,7 @@ impl SkinState {
         }
     }
 
-    /// Makes a step of `dt` seconds with the objects at their final poses; an infinite `dt` gives the steady state. `tips`: tangential springs of free
-    /// objects.
+    /// Makes a step of `dt` seconds to the objects' current poses; an infinite `dt` gives the steady state. `tips`: tangential springs of free objects.
     pub fn feel(
         &mut self,
         patch: &PlannedPatch,

@@ -171,8 +171,7 @@ pub fn entries_words(found: &[ColumnDifferences], tables: &[TableEntries]) -> Ve
     said.flatten().collect()
 }
 
-/// Describes one table. `counts_rows` states whether another sentence counts its rows. `has_moved` returns whether another sentence reports a difference of a
-/// column's means.
+/// Describes one table. `counts_rows`: another sentence counts its rows. `has_moved`: returns whether another sentence reports a change of a column's means.
 fn table_words(
     table: &TableEntries,
     counts_rows: bool,

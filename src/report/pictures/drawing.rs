@@ -1,8 +1,7 @@
 //! Vector drawing: text, lines and areas at pixel positions, written as SVG and as PNG.
 //!
 //! The crate kuva provides the primitives, the font and both writers. Its ready-made plots are not used for two reasons. First, the plots place ticks at
-//! powers of ten, but a sweep needs ticks at its own values. Second, the plots number clip paths per process, so that equal tables would not always give equal
-//! bytes.
+//! powers of ten, but a sweep needs ticks at its own values. Second, the plots number clip paths per process, so that equal tables could give different bytes.
 
 use crate::error::Result;
 use crate::report::pictures::colours::{INK, PAPER, Rgb};

@@ -71,8 +71,7 @@ impl RecordingFile {
         &self.time
     }
 
-    /// Returns a quantity of a patch in one frame, one number for each taxel: metres, or newtons (for vectors, the length). No other row is read and no
-    /// checksum is compared.
+    /// Returns a quantity of a patch in one frame, one number for each taxel: metres, or newtons (length of vectors). Reads only this row and no checksum.
     ///
     /// # Errors
     /// If there is no such frame, or the file cannot be read.
