@@ -17,7 +17,7 @@ use crate::spelling::nearest_names;
 use crate::world::Motion;
 use glam::DVec3;
 
-/// Object of a scene that can run.
+/// Checked object of an executable scene.
 #[derive(Clone, Debug)]
 pub struct PlannedObject {
     /// Name of the object in the scene.

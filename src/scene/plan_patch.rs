@@ -15,7 +15,7 @@ use crate::random::Seed;
 use crate::world::{DrapeRegion, Grid, Layout, Patch, Shears};
 use std::path::Path;
 
-/// Patch of a scene that can run, with its mount.
+/// Checked patch of an executable scene, with its mount.
 #[derive(Clone, Debug)]
 pub struct PlannedPatch {
     /// Taxels and layout of the patch.

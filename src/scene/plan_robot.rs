@@ -9,7 +9,7 @@ use crate::world::{Joint, JointTrajectory, Motion, Robot};
 use ndarray::Array2;
 use std::path::{Path, PathBuf};
 
-/// Robot of a scene that can run.
+/// Checked robot of an executable scene.
 #[derive(Clone, Debug)]
 pub struct PlannedRobot {
     /// Name of the robot in the scene.

@@ -19,12 +19,12 @@ const SMOOTHING: &str = "smoothing_mm";
 #[derive(Clone, Debug)]
 pub struct PlannedSignal {
     chain: Chain,
-    /// Input quantity of the chain.
+    /// Physical quantity of the chain's input.
     begins: Quantity,
 }
 
 impl PlannedSignal {
-    /// Returns the quantity of the output.
+    /// Returns the physical quantity of the chain's output.
     pub fn quantity(&self) -> Quantity {
         self.chain.quantity()
     }

@@ -31,7 +31,7 @@ pub(super) fn words(view: &View) -> String {
 }
 
 impl<'a> Front<'a> {
-    /// Computes the fronts of a chart. Without points if the specification has no front.
+    /// Computes the Pareto fronts of a chart. Empty if the specification has no front.
     pub fn of(view: &'a View) -> Self {
         let conditions = Setting::of_roles(view.table, &[Role::Condition]);
         let conditions: Vec<Setting> = conditions.collect();
