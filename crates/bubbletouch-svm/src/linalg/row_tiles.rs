@@ -29,12 +29,12 @@ pub(crate) fn products_in_place(_: &[&[f32]], _: &[&[f32]], _: &mut [f32]) -> bo
     false
 }
 
-/// Features that pass at once: the rows of a tile stay in the first cache while the others pass.
+/// Number of features processed at once; the rows of a tile stay in the first-level cache while the other rows are read.
 #[cfg(target_arch = "x86_64")]
 const DEPTH: usize = 1024;
 
-/// Goes over all tiles of N rows with M others: `tile` gives the products of one. What the last few lack is made up by their
-/// last row. Loops, not iterators: what the standard library does with closures is not always compiled into one piece with them.
+/// Computes all tiles of N rows with M others by `tile`. An incomplete tile is filled with its last row. The code uses loops instead of iterators, because
+/// closures passed to the standard library are not always inlined.
 #[cfg(target_arch = "x86_64")]
 fn by_tiles<'r, const N: usize, const M: usize>(
     (rows, others): (&[&'r [f32]], &[&'r [f32]]),
@@ -92,7 +92,7 @@ mod avx512 {
 
     /// Number of values in a vector register.
     const LANES: usize = 16;
-    /// Number of rows multiplied with N others at once; the sums of a row fit into one register.
+    /// Number of rows multiplied with N others at once; their sums are combined in one register.
     const N: usize = 4;
 
     #[target_feature(enable = "avx512f")]

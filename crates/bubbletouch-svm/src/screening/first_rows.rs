@@ -1,9 +1,10 @@
-//! The rows that pairs of classes are first solved on, [near their margins](crate::screening::near_margin).
+//! Selection of the rows on which pairs of classes are solved first, [near their margins](crate::screening::near_margin).
 //!
-//! They are found where it costs little: in the few dimensions that some of the rows span, by a few
-//! rounds of the same, to a rough tolerance. Those begin with the rows nearest to the other class along the line between
-//! the means. Of 6,000 touches of 43 objects in 1,024 features, 66 % of the rows that support a pair are among the 32 of
-//! either class that are nearest along that line, 84 % among the 24 that are nearest to the margin in 64 dimensions.
+//! The rows are selected in a low-dimensional subspace spanned by some of the rows. The pairs are solved there by a few rounds of screening with a rough
+//! tolerance. These rounds
+//! start with the rows that are nearest to the other class along the line between the class means. Example: 6,000 touches of 43 objects with 1,024 features.
+//! The 32 nearest
+//! rows of each class along this line contain 66 % of a pair's support vectors. The 24 rows nearest to the margin in 64 dimensions contain 84 %.
 
 use std::ops::Range;
 
@@ -17,10 +18,10 @@ use crate::screening::margin_rows::{Ranked, Sides, nearest};
 use crate::screening::near_margin::{Classes, NearMargin};
 use crate::smo::SolverScalar;
 
-/// Rows of each class that a pair starts with in the few dimensions.
+/// Number of rows of each class in the first round of the subspace.
 const ROWS_ALONG_MEANS: usize = 16;
 
-/// All pairs of classes, solved in turn.
+/// Screening of all pairs of classes, block by block.
 pub(crate) struct PairsNearMargin<'a, T> {
     few: Classes<'a, T>,
     all: Classes<'a, T>,
@@ -28,7 +29,7 @@ pub(crate) struct PairsNearMargin<'a, T> {
 }
 
 impl<'a, T: SolverScalar> PairsNearMargin<'a, T> {
-    /// Of these rows, and of the same in [`few_dimensions`].
+    /// Creates the screening of the given rows; `few` contains their projections from [`few_dimensions`].
     pub fn new(sorted: &'a Sorted<T>, few: &'a Sorted<T>) -> Self {
         Self {
             along_means: along_means(few),
@@ -37,7 +38,7 @@ impl<'a, T: SolverScalar> PairsNearMargin<'a, T> {
         }
     }
 
-    /// Pairs of some classes with a few others, in turn all: so few that what is known of them stays in the cache.
+    /// Iterates over all pairs in blocks of some classes with a few others; the data of a block fit into the cache.
     pub fn blocks(&self) -> impl Iterator<Item = Vec<(usize, usize)>> {
         let n = self.all.sorted.ranges().len();
         let some = move |start, at_once| start..n.min(start + at_once);
@@ -50,7 +51,7 @@ impl<'a, T: SolverScalar> PairsNearMargin<'a, T> {
         })
     }
 
-    /// Some pairs, not solved yet, on the rows that are near the margin for this C.
+    /// Returns unsolved pairs with their rows near the margin for this C.
     pub fn near(&self, pairs: &[(usize, usize)], c: f64) -> NearMargin<'_, 'a, T> {
         let mut ranked = Ranked::new();
         let rows = pairs.iter().map(|&pair| self.near_means(pair, &mut ranked));
@@ -59,7 +60,7 @@ impl<'a, T: SolverScalar> PairsNearMargin<'a, T> {
         NearMargin::new(&self.all, pairs, &rows)
     }
 
-    /// The rows of a pair that are nearest to the other class along the line between the means.
+    /// Returns the rows of a pair that are nearest to the other class along the line between the means.
     fn near_means(&self, (a, b): (usize, usize), ranked: &mut Ranked) -> Sides {
         let along: [Vec<T>; 2] = [a, b].map(|own| {
             let rows = self.few.sorted.ranges()[own].clone();
@@ -71,8 +72,8 @@ impl<'a, T: SolverScalar> PairsNearMargin<'a, T> {
     }
 }
 
-/// The pairs of some classes with others that come after them: with the others there and back in turn, so that the rows of the
-/// last are still in the cache.
+/// Returns the pairs of some classes with later classes. The order of the other classes alternates, so that the rows of the last class are still in the
+/// cache.
 fn to_and_fro(own: Range<usize>, others: Range<usize>) -> Vec<(usize, usize)> {
     let mut all = Vec::new();
     for a in own {
@@ -85,13 +86,13 @@ fn to_and_fro(own: Range<usize>, others: Range<usize>) -> Vec<(usize, usize)> {
     all
 }
 
-/// The rows in the few dimensions that some of them span.
+/// Returns the rows projected to the subspace spanned by some of them.
 pub(crate) fn few_dimensions<T: SolverScalar>(sorted: &Sorted<T>) -> Sorted<T> {
     let directions = spanned(sorted.points().all().values, FEW_DIMENSIONS);
     sorted.along(directions.view())
 }
 
-/// Products of all rows with the means of the classes: n_rows × n_classes.
+/// Returns the products of all rows with the class means: n_rows × n_classes.
 fn along_means<T: SolverScalar>(sorted: &Sorted<T>) -> Array2<T> {
     let mut means = Array2::zeros((sorted.ranges().len(), sorted.centre().len()));
     for (range, mut mean) in sorted.ranges().iter().zip(means.rows_mut()) {

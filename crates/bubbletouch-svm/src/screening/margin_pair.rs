@@ -1,4 +1,4 @@
-//! Two classes, solved on the rows that take part.
+//! A pair of classes solved on its active rows (the rows that take part in the problem).
 
 use ndarray::Array2;
 
@@ -13,9 +13,9 @@ use crate::smo::SolverScalar;
 use crate::smo::reached::Reached;
 use crate::smo::variables::extremes;
 
-/// Rows that join in a round, at least, while rows violate.
+/// Minimum number of rows added per round while rows violate the optimality conditions.
 const MIN_JOINING: usize = 24;
-/// The share of a pair's rows from which on all take part.
+/// Fraction of active rows of a pair above which all rows become active.
 const MAX_SHARE: f64 = 0.6;
 
 /// Products of a class's rows with each other.
@@ -25,7 +25,7 @@ pub(crate) struct Within<T> {
 }
 
 impl<T: SolverScalar> Within<T> {
-    /// Of n × n products, stored row by row.
+    /// Creates the products from n × n values, stored row by row.
     pub fn new(products: Array2<T>) -> Self {
         Self {
             diagonal: products.diag().to_vec(),
@@ -33,7 +33,7 @@ impl<T: SolverScalar> Within<T> {
         }
     }
 
-    /// The products of one row.
+    /// Returns the products of one row.
     fn row(&self, row: usize) -> &[T] {
         let n = self.diagonal.len();
         &self
@@ -43,15 +43,15 @@ impl<T: SolverScalar> Within<T> {
     }
 }
 
-/// What pairs need in turn, so that its memory is asked for once.
+/// Scratch memory reused by successive pairs.
 pub(crate) struct PairWorkspace<'r, T> {
-    /// The rows of both classes that take part.
+    /// Active rows of both classes.
     rows: [Vec<&'r [T]>; 2],
-    /// New products across.
+    /// New products between the classes.
     across: Vec<T>,
-    /// Rows by how far they are beyond something.
+    /// Rows ranked by a distance.
     pub ranked: Ranked,
-    /// Rows of one class that are below a bound.
+    /// Rows of one class below a bound.
     below: Vec<usize>,
 }
 
@@ -66,28 +66,28 @@ impl<T> Default for PairWorkspace<'_, T> {
     }
 }
 
-/// Two classes, the first of them positive.
+/// A pair of classes; the first class is positive.
 pub(crate) struct MarginPair<T> {
     classes: [usize; 2],
-    /// Of each class the rows that take part, in the order in which they joined.
+    /// Active rows of each class, in the order of activation.
     rows: Sides,
-    /// Whether each row of each class takes part.
+    /// Whether each row of each class is active.
     takes_part: [Vec<bool>; 2],
-    /// Products of the first's rows with the second's, and of the second's with the first's, row by row.
+    /// Products of the first class's rows with the second's, and of the second's with the first's, row by row.
     across: [Vec<T>; 2],
-    /// Coefficients of the first's rows, then of the second's.
+    /// Coefficients of the first class's rows, then of the second's.
     beta: Vec<f64>,
-    /// y − w·x of the same rows, about.
+    /// Approximate y − w·x of the active rows.
     f: Vec<f64>,
-    /// The C that the coefficients belong to; 0 before the first.
+    /// C of the coefficients; 0 before the first solution.
     c: f64,
     n_iterations: u64,
-    /// Whether the last solve ended within its tolerance.
+    /// Whether the last solve reached its tolerance.
     is_solved: bool,
 }
 
 impl<T: SolverScalar> MarginPair<T> {
-    /// Two classes of so many rows, of which none takes part.
+    /// Creates a pair of classes with the given numbers of rows; no row is active.
     pub fn new(classes: [usize; 2], sizes: [usize; 2]) -> Self {
         Self {
             classes,
@@ -102,13 +102,14 @@ impl<T: SolverScalar> MarginPair<T> {
         }
     }
 
-    /// The positions of the two classes.
+    /// Returns the positions of the two classes.
     pub fn classes(&self) -> [usize; 2] {
         self.classes
     }
 
-    /// Lets rows of both classes take part, with coefficients of 0. `products` are `w·x` of all rows of both, none before
-    /// the first solution; the rows of a class lie among all from `starts` on.
+    /// Activates rows of both classes, with coefficients of 0. `products` contains `w·x` of all rows of both classes; it is empty before the first solution.
+    /// `starts` contains
+    /// the positions of the classes' first rows.
     pub fn join<'r>(
         &mut self,
         joining: &Sides,
@@ -128,7 +129,7 @@ impl<T: SolverScalar> MarginPair<T> {
             );
         }
         let [first, second] = &*rows;
-        // The new rows of the first meet all of the second, the old ones its new ones.
+        // Products of the new rows of the first class with all rows of the second, and of its old rows with the new rows of the second.
         let n_new = second.len() - before[1];
         across.resize(first.len() * second.len(), T::zero());
         let (right, below) = across.split_at_mut(before[0] * n_new);
@@ -168,8 +169,8 @@ impl<T: SolverScalar> MarginPair<T> {
         (self.beta, self.f) = (beta, f);
     }
 
-    /// Solves on the rows that take part, from the last solution. `within` holds the products within each class; rows of the
-    /// Gram matrix are written into the memory of the last one.
+    /// Solves the pair on its active rows, starting from the last solution. `within` contains the products within each class; the Gram matrix reuses the
+    /// memory of `workspace`.
     pub fn solve(&mut self, within: &[Within<T>], workspace: &mut Workspace<T>, goal: PairGoal) {
         let (beta, f) = (std::mem::take(&mut self.beta), std::mem::take(&mut self.f));
         let [first, second] = &self.rows;
@@ -205,18 +206,18 @@ impl<T: SolverScalar> MarginPair<T> {
         labels
     }
 
-    /// The rows that weigh in the solution, by the place of their class and their number within it, with their coefficients.
+    /// Iterates over rows with non-zero coefficients: the side of the class, the row number within the class, and the coefficient.
     pub fn weighing(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
         let of_side = |side: usize| self.rows[side].iter().map(move |&row| (side, row));
         let rows = of_side(0).chain(of_side(1)).zip(&self.beta);
         rows.map(|((side, row), &beta)| (side, row, beta))
     }
 
-    /// The rows that are to join, when `w·x` of all rows of both classes are these: the worst of those that violate the
-    /// optimality conditions; all, once most take part; `None` when none violates them.
+    /// Returns the rows to activate, given `w·x` of all rows of both classes: the worst of the rows that violate the optimality conditions. If most rows are
+    /// active, all others are
+    /// returned. Returns `None` if no row violates the conditions.
     ///
-    /// All rows hold within the tolerance when none that does not take part is further than half of it beyond the middle of
-    /// what the others leave open.
+    /// An inactive row violates the conditions if it lies more than half the tolerance beyond the middle of the interval left by the active rows.
     pub fn joining(
         &self,
         products: [&[T]; 2],
@@ -225,7 +226,7 @@ impl<T: SolverScalar> MarginPair<T> {
     ) -> Option<Sides> {
         let (highest, lowest) = extremes(&self.beta, &self.labels(), &self.f, goal.c);
         let middle = (highest + lowest) / 2.0;
-        // By how much a row is beyond, least first.
+        // Violation of each row, ascending.
         let violating = &mut scratch.ranked;
         violating.clear();
         for (number, products) in products.into_iter().enumerate() {
@@ -256,13 +257,13 @@ impl<T: SolverScalar> MarginPair<T> {
         Some(joining)
     }
 
-    /// The rows of a class that do not take part.
+    /// Iterates over the inactive rows of a class.
     fn outside(&self, side: usize) -> impl Iterator<Item = usize> + '_ {
         let takes_part = &self.takes_part[side];
         (0..takes_part.len()).filter(|&row| !takes_part[row])
     }
 
-    /// The last solution in terms of all rows of both classes.
+    /// Returns the last solution with coefficients of all rows of both classes.
     pub fn solution(&mut self) -> DualSolution {
         let n_first = self.takes_part[0].len();
         let mut coefficients = vec![0.0; n_first + self.takes_part[1].len()];

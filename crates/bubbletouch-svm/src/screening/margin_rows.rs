@@ -1,28 +1,27 @@
-//! Rows of two classes, and which of them are nearest to the margin.
+//! Selection of the rows of two classes that are nearest to the margin.
 
 use crate::linalg::scalar::Scalar;
 
-/// Products looked at side by side.
+/// Number of products processed in parallel.
 const LANES: usize = 32;
 
-/// y of a pair's first class and of its second.
+/// Label y of a pair's first and second class.
 pub(crate) const SIGNS: [f64; 2] = [1.0, -1.0];
 
-/// Rows of a pair's first class and of its second, by their number within the class.
+/// Rows of a pair's first and second class, by number within the class.
 pub(crate) type Sides = [Vec<usize>; 2];
 
-/// A row by its class, the first or the second, and its number within the class.
+/// A row: its side (first or second class) and its number within the class.
 pub(crate) type RowOfPair = (usize, usize);
 
-/// A row of a pair by how far it is beyond something: compared by that, then by its place. In one number, since it is compared
-/// more often than read.
+/// A row of a pair ranked by a distance, then by its position. Both are packed into one number, because rows are compared more often than read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct RankedRow(u128);
 
 impl RankedRow {
-    /// A row that is so far beyond.
+    /// Creates a row with the given distance.
     pub fn new(beyond: f64, (side, row): RowOfPair) -> Self {
-        // Ordered like the number: a negative one's bits are turned round, a positive one comes after them.
+        // The bits are ordered like the number: bits of negative numbers are inverted, and positive numbers follow.
         let bits = beyond.to_bits();
         let turned = match bits >> 63 {
             0 => bits | 1 << 63,
@@ -31,17 +30,17 @@ impl RankedRow {
         Self(u128::from(turned) << 64 | (side as u128) << 63 | row as u128)
     }
 
-    /// Its class and its number within the class.
+    /// Returns the side and the number within the class.
     pub fn place(self) -> RowOfPair {
         let place = self.0 as u64;
         ((place >> 63) as usize, (place & (u64::MAX >> 1)) as usize)
     }
 }
 
-/// Rows of pairs by how far they are beyond something; in turn for all pairs, so that memory is asked for once.
+/// Buffer of ranked rows, reused by all pairs.
 pub(crate) type Ranked = Vec<RankedRow>;
 
-/// The n rows of either class that are nearest to the other when `w·x` of all rows of both are these.
+/// Returns the n rows of each class nearest to the other class, given `w·x` of all rows of both classes.
 pub(crate) fn nearest<T: Scalar>(products: [&[T]; 2], n: usize, ranked: &mut Ranked) -> Sides {
     [0, 1].map(|side| {
         let products = products[side].iter().enumerate();
@@ -55,7 +54,7 @@ pub(crate) fn nearest<T: Scalar>(products: [&[T]; 2], n: usize, ranked: &mut Ran
     })
 }
 
-/// The n rows that are least far beyond, in no order.
+/// Returns the n rows with the smallest distances, unordered.
 pub(crate) fn smallest(rows: &mut [RankedRow], n: usize) -> &[RankedRow] {
     if n < rows.len() {
         rows.select_nth_unstable(n);
@@ -64,7 +63,8 @@ pub(crate) fn smallest(rows: &mut [RankedRow], n: usize) -> &[RankedRow] {
     rows
 }
 
-/// Makes `places` those of the products that, times a sign, are below a bound. A piece at a time: most have none.
+/// Writes the positions of the products that, times `sign`, are below `bound`, into `places`. Whole chunks are tested first, because most contain no such
+/// product.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn find_below<T: Scalar>(products: &[T], sign: T, bound: T, places: &mut Vec<usize>) {
     places.clear();

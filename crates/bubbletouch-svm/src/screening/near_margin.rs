@@ -1,12 +1,14 @@
 //! One-vs-one linear SVMs solved on the rows near their margins.
 //!
-//! Where classes part well, a hyperplane rests on few rows, yet products of all rows with each other cost most of the
-//! training when there are many features. So each pair of classes is solved on a few rows of either; all rows are held
-//! against the hyperplane; those that violate the optimality conditions join, and the pair is solved again from where it
-//! was. At the end every row satisfies the conditions, so the solution is that of the whole problem. The pairs of
-//! some classes take such rounds together: a round's hyperplanes meet the rows of a class in one matrix product.
+//! If classes are well separated, a hyperplane depends on few rows. With many features, however, the products of all rows with each other dominate the
+//! training time. Each pair
+//! of classes is therefore solved on a few rows of each class. The optimality conditions of all rows are then checked; rows that violate them are added, and
+//! the pair is solved
+//! again from the last solution. At the end, every row satisfies the conditions, so the solution is the solution of the whole problem. The pairs of a block
+//! share rounds: one
+//! matrix product multiplies all hyperplanes of a round with the rows of a class.
 //!
-//! [Which rows to start with](crate::screening::first_rows) is found in a few dimensions.
+//! The [first rows](crate::screening::first_rows) are selected in a low-dimensional subspace.
 
 use std::ops::Range;
 
@@ -22,24 +24,24 @@ use crate::screening::margin_pair::{MarginPair, PairWorkspace, Within};
 use crate::screening::margin_rows::{Sides, nearest};
 use crate::smo::SolverScalar;
 
-/// Rounds in the few dimensions.
+/// Number of rounds in the subspace.
 const FEW_ROUNDS: usize = 2;
-/// The tolerance in the few dimensions: at 0.5 the rows found are no longer those of the solution.
+/// Tolerance in the subspace. With 0.5, the selected rows are no longer the rows of the solution.
 const ROUGH_TOLERANCE: f64 = 0.1;
-/// Iterations of a solve in the few dimensions, at most: classes that all features part may overlap there.
+/// Maximum number of iterations of a solve in the subspace, where separable classes may overlap.
 const ROUGH_ITERATIONS: u64 = 1000;
-/// Rows of each class that a pair starts with in all dimensions.
+/// Number of rows of each class in the first round with all features.
 const ROWS_NEAR_MARGIN: usize = 24;
 
-/// The rows of all classes, as their pairs need them.
+/// Rows of all classes, with their products.
 pub(crate) struct Classes<'a, T> {
     pub sorted: &'a Sorted<T>,
-    /// Products within each class.
+    /// Products of rows within each class.
     within: Vec<Within<T>>,
 }
 
 impl<'a, T: SolverScalar> Classes<'a, T> {
-    /// Of these rows.
+    /// Computes the products within each class.
     pub fn new(sorted: &'a Sorted<T>) -> Self {
         let within = |range: &Range<usize>| {
             let own = sorted.points().range(range.clone());
@@ -51,18 +53,18 @@ impl<'a, T: SolverScalar> Classes<'a, T> {
         }
     }
 
-    /// Where the rows of two classes begin.
+    /// Returns the positions of the first rows of two classes.
     fn starts(&self, classes: [usize; 2]) -> [usize; 2] {
         classes.map(|class| self.sorted.ranges()[class].start)
     }
 
-    /// How many rows two classes have.
+    /// Returns the numbers of rows of two classes.
     fn sizes(&self, classes: [usize; 2]) -> [usize; 2] {
         classes.map(|class| self.sorted.ranges()[class].len())
     }
 }
 
-/// Some pairs of classes, each with the rows it is solved on.
+/// Some pairs of classes, each with its active rows.
 pub(crate) struct NearMargin<'c, 'a, T> {
     classes: &'c Classes<'a, T>,
     pairs: Vec<MarginPair<T>>,
@@ -71,22 +73,22 @@ pub(crate) struct NearMargin<'c, 'a, T> {
     round: Round<T>,
 }
 
-/// What a round found of a pair: the normal of its hyperplane, and `w·x` of all rows of both classes.
+/// Result of a round for one pair: the normal of its hyperplane, and `w·x` of all rows of both classes.
 type Found<'f, T> = (&'f [T], [&'f [T]; 2]);
 
-/// What a round found, of one pair after another.
+/// Results of a round for all pairs, pair by pair.
 #[derive(Default)]
 struct Round<T> {
-    /// The hyperplanes' normals.
+    /// Normals of the hyperplanes.
     normals: Vec<T>,
-    /// `w·x` of all rows of both classes, class by class.
+    /// Products `w·x` of all rows of both classes, class by class.
     products: Vec<T>,
-    /// Where the products of both classes of each pair lie.
+    /// Ranges of the products of both classes of each pair.
     places: Vec<[Range<usize>; 2]>,
 }
 
 impl<T> Round<T> {
-    /// `w·x` of all rows of both classes of the pair that came so late.
+    /// Returns `w·x` of all rows of both classes of the pair with this number in the round.
     fn products(&self, number: usize) -> [&[T]; 2] {
         let places = self.places[number].each_ref();
         places.map(|place| &self.products[place.clone()])
@@ -94,7 +96,7 @@ impl<T> Round<T> {
 }
 
 impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
-    /// These pairs of classes, not solved yet, on these rows.
+    /// Creates unsolved pairs of classes with the given rows.
     pub fn new(classes: &'c Classes<'a, T>, pairs: &[(usize, usize)], rows: &[Sides]) -> Self {
         let pair = |&(a, b): &(usize, usize)| MarginPair::new([a, b], classes.sizes([a, b]));
         let mut all = Self {
@@ -110,23 +112,24 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
         all
     }
 
-    /// Bytes that the products take when all rows of all pairs take part, with the hyperplanes of a round, the rows of a pair and
-    /// the directions of few dimensions, and all rows along them.
+    /// Returns the maximum memory, bytes: the products if all rows of all pairs are active, the hyperplanes of a round, the rows of a pair, the directions of
+    /// the subspace, and all
+    /// projected rows.
     pub fn most_bytes(sorted: &Sorted<T>) -> usize {
         let sizes = || sorted.ranges().iter().map(Range::len);
         let within: usize = sizes().map(|n| n * n).sum();
         let largest = sizes().max().unwrap_or(0);
         let n_pairs = CLASSES_AT_ONCE * OTHERS_AT_ONCE;
-        // Both ways.
+        // Both orders of each pair.
         let across = n_pairs * 2 * largest.pow(2);
         let normals = n_pairs * (sorted.centre().len() + 2 * largest);
         let few = sorted.points().len() * FEW_DIMENSIONS;
         (2 * within + across + normals + few) * size_of::<T>() + Dense::<T>::bytes(2 * largest)
     }
 
-    /// Solves all pairs for this C, starting from the solutions of the last one, to a violation of the optimality conditions
-    /// of at most `tolerance`. Coefficients are those of all rows of the first class, then of the second. With each the
-    /// normal of its hyperplane.
+    /// Solves all pairs for this C, starting from the last solutions. The violation of the optimality conditions is at most `tolerance`. Returns the solution
+    /// and the normal of
+    /// each pair's hyperplane. The coefficients are those of all rows of the first class, then of the second.
     pub fn solve(&mut self, c: f64, tolerance: f64) -> Vec<(DualSolution, Vec<T>)> {
         let goal = PairGoal {
             c,
@@ -138,7 +141,7 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
         })
     }
 
-    /// The rows of all pairs that are near the margin for this C, roughly.
+    /// Returns the rows of all pairs that are approximately near the margin for this C.
     pub fn near_margin(mut self, c: f64) -> Vec<Sides> {
         let goal = PairGoal {
             c,
@@ -150,8 +153,9 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
         })
     }
 
-    /// Solves all pairs in rounds, until no row violates the optimality conditions or the rounds are over; what is made of
-    /// each pair after its last round.
+    /// Solves all pairs in rounds, until no row violates the optimality conditions or the maximum number of rounds is reached. Returns a result for each
+    /// pair, computed after its
+    /// last round.
     fn solve_rounds<R>(
         &mut self,
         goal: PairGoal,
@@ -188,7 +192,7 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
         results.into_iter().flatten().collect()
     }
 
-    /// Solves some pairs on the rows that take part, and multiplies all their rows with the hyperplanes.
+    /// Solves some pairs on their active rows, and multiplies all their rows with the hyperplanes.
     fn solve_round(&mut self, pairs: &[usize], goal: PairGoal) {
         let n_features = self.classes.sorted.centre().len();
         let mut round = std::mem::take(&mut self.round);
@@ -228,7 +232,7 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
         self.round = round;
     }
 
-    /// Adds a pair's `w = Σ β_i x_i`.
+    /// Adds a pair's normal `w = Σ β_i x_i` to `sums`.
     fn add_normal(&self, pair: usize, sums: &mut [f64]) {
         let starts = self.classes.starts(self.pairs[pair].classes());
         let rows = self.pairs[pair].weighing();
@@ -237,7 +241,7 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
         points.in_place().add_weighted(sums, rows);
     }
 
-    /// Lets rows of both classes of a pair take part, which came so late in the last round.
+    /// Activates rows of both classes of a pair; `number` is the pair's number in the last round.
     fn join(&mut self, pair: usize, joining: &Sides, number: Option<usize>) {
         let classes: &'c Classes<'a, T> = self.classes;
         let starts = classes.starts(self.pairs[pair].classes());

@@ -1,4 +1,4 @@
-//! The solver of a pair near its margin: pairs of variables, then equations of those that are free.
+//! Solver of a pair of classes near its margin: pairwise steps, followed by active-set steps.
 
 use crate::gram::matrix::Gram;
 use crate::smo::Smo;
@@ -6,25 +6,26 @@ use crate::smo::SolverScalar;
 use crate::smo::reached::Reached;
 use crate::smo::{ActiveSetGoal, solve_by_active_set};
 
-/// The violation of the optimality conditions from which on the way goes by equations.
+/// Violation of the optimality conditions below which the solver uses active-set steps.
 const EQUATIONS_FROM: f64 = 0.03;
 
-/// What to solve a pair for.
+/// Goal of the solution of a pair.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PairGoal {
-    /// C.
+    /// Penalty C.
     pub c: f64,
-    /// The largest violation of the optimality conditions, in units of the decision value.
+    /// Maximum violation of the optimality conditions, in units of the decision value.
     pub tolerance: f64,
-    /// Iterations after which a solve is left as it is; `None`: after those that count as unsolvable.
+    /// Maximum number of iterations of a solve; `None` for the solver's default cap.
     pub most_iterations: Option<u64>,
 }
 
-/// β and f.
+/// Coefficients β and gradient f.
 pub(crate) type State = (Vec<f64>, Vec<f64>);
 
-/// Goes from a state, with the labels of its rows and the C that it belongs to, to what is asked for: roughly by pairs of
-/// variables, then by equations, and by pairs where those left something.
+/// Solves a problem from a given state, with its labels and the C of the state: pairwise steps to a rough tolerance, then active-set steps. If these do not
+/// reach the tolerance,
+/// pairwise steps continue.
 pub(crate) fn reach_by_equations<T: SolverScalar, G: Gram<T>>(
     gram: &mut G,
     (labels, state, c): (&[f64], State, f64),

@@ -1,38 +1,39 @@
-//! The equations of the variables between their bounds, kept solved as variables join and leave.
+//! Linear equations of the variables between their bounds, with factors that are updated when variables become free or bound.
 //!
-//! `(K + δ) Δ + μ = f` on the free variables, with `Σ Δ = 0`, by the factors `L D Lᵀ` of `K + δ`: those of a variable more are a
-//! row of substitution, those of one fewer a change of rank one [Gill, Golub, Murray, Saunders 1974]. δ keeps apart rows that
-//! depend on each other to within the rounding of the kernel values; whoever steps in turns is not misled by it, since f says
-//! what is left.
+//! The equations `(K + δ) Δ + μ = f` on the free variables, with `Σ Δ = 0`, are solved by the factors `L D Lᵀ` of `K + δ`. Adding a variable adds a row by
+//! substitution. Removing one
+//! is a rank-one change [Gill, Golub, Murray, Saunders 1974]. The ridge δ separates rows that are linearly dependent within the rounding of the kernel
+//! values. The error due
+//! to δ is corrected by repeated steps, because f contains the remaining residual.
 
 use crate::gram::matrix::Gram;
 use crate::linalg::factors::{LANES, Piece, add_product, eliminate, substitute, substitute_back};
 use crate::linalg::scalar::Scalar;
 
-/// δ as a share of the largest kernel value of a row with itself: above the rounding of kernel values in f32.
+/// Ridge δ as a fraction of the largest diagonal kernel value; above the rounding error of kernel values in f32.
 const RIDGE: f64 = 1e-5;
-/// Variables that may join before the factors are made anew.
+/// Number of variables that can be added before a new factorisation.
 const JOINING: usize = 64;
 
-/// The factors of the free variables' kernel values.
+/// Factors of the kernel values of the free variables.
 #[derive(Default)]
 pub(crate) struct FreeFactor {
-    /// Which variable has which place; `None` where one has left.
+    /// Variable at each position; `None` if the variable was removed.
     places: Vec<Option<usize>>,
-    /// Pieces of a row, for as many places as there is room for.
+    /// Number of pieces per row: the capacity in positions.
     width: usize,
-    /// `D Lᵀ`, a row a place: 0 up to and on the diagonal, beyond the last place, and where a variable has left.
+    /// Rows of `D Lᵀ`, one per position. Entries are 0 up to the diagonal, beyond the last position, and for removed variables.
     rows: Vec<Piece>,
-    /// 1 over D; 0 where a variable has left.
+    /// Inverse of D; 0 for removed variables.
     inverse: Vec<f64>,
     ridge: f64,
 }
 
 impl FreeFactor {
-    /// Of these variables, but those whose rows depend on those before.
+    /// Factorises the equations of the given variables; rows that depend linearly on previous rows are omitted.
     pub fn new<T: Scalar, G: Gram<T>>(gram: &mut G, free: &[usize]) -> Self {
         let width = (free.len() + JOINING).div_ceil(LANES);
-        // Room for all that may join, so that rows stay where they are.
+        // The capacity includes all variables that may be added, so that rows are not moved.
         let mut rows = Vec::with_capacity(width * LANES * width);
         rows.resize(free.len() * width, [0.0; LANES]);
         let mut factor = Self {
@@ -59,33 +60,32 @@ impl FreeFactor {
         factor
     }
 
-    /// δ.
+    /// Returns the ridge δ.
     pub fn ridge(&self) -> f64 {
         self.ridge
     }
 
-    /// The free variables, each with its place before it.
+    /// Iterates over the free variables and their positions.
     pub fn variables(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         let places = self.places.iter().enumerate();
         places.filter_map(|(place, variable)| Some((place, (*variable)?)))
     }
 
-    /// The variable at a place.
+    /// Returns the variable at a position.
     pub fn variable(&self, place: usize) -> usize {
         self.places[place].expect("a place that is asked for is taken")
     }
 
-    /// The values of the free variables among all, by place; 0 where none is.
+    /// Returns the values of the free variables, by position; 0 for removed variables.
     pub fn values(&self, all: &[f64]) -> Vec<f64> {
         let places = self.places.iter();
         places.map(|at| at.map_or(0.0, |at| all[at])).collect()
     }
 
-    /// How far each free variable is to move, by place, and what f is on all of them then, given what it is now; `None` where
-    /// there is none.
+    /// Returns the change of each free variable, by position, and the resulting common f, given the current f. Returns `None` if there are no free variables.
     pub fn solve(&self, f: &[f64]) -> Option<(Vec<f64>, f64)> {
         let n_free = self.variables().count();
-        // About their mean: products with 1 are then small.
+        // f is centred at its mean, so that products with 1 are small.
         let mean = f.iter().sum::<f64>() / n_free as f64;
         let mut sides = vec![[[0.0; LANES]; 2]; self.places.len().div_ceil(LANES)];
         for (place, _) in self.variables() {
@@ -93,7 +93,7 @@ impl FreeFactor {
             (of_f[place % LANES], of_one[place % LANES]) = (f[place] - mean, 1.0);
         }
         substitute(&self.rows, self.width, &self.inverse, &mut sides);
-        // Sums of the solutions for f and for 1, which are their products with 1.
+        // Sums of the solutions for f and for 1: their products with the vector of ones.
         let mut sums = [0.0; 2];
         for (at, inverse) in self.inverse.iter().enumerate() {
             let [of_f, of_one] = sides[at / LANES].each_ref().map(|side| side[at % LANES]);
@@ -117,7 +117,7 @@ impl FreeFactor {
         is_solved.then_some((steps, mean + level))
     }
 
-    /// Takes in a variable that becomes free; whether there was room.
+    /// Adds a variable that becomes free; returns whether there was capacity.
     pub fn join<T: Scalar, G: Gram<T>>(&mut self, gram: &mut G, variable: usize) -> bool {
         let n = self.places.len();
         if n == self.width * LANES {
@@ -142,7 +142,7 @@ impl FreeFactor {
         true
     }
 
-    /// Leaves out the variable at a place.
+    /// Removes the variable at a position.
     pub fn leave(&mut self, place: usize) {
         let (before, rest) = self.rows.split_at_mut(place * self.width);
         let (own, after) = rest.split_at_mut(self.width);
@@ -164,14 +164,14 @@ mod tests {
 
     const N: usize = 120;
 
-    /// Kernel values of rows of m features with no pattern.
+    /// Returns kernel values of irregular rows with m features.
     fn kernel(m: usize) -> Array2<f64> {
         let feature = |(i, j): (usize, usize)| (((i * m + j) as f64).sin() * 1e4).fract();
         let rows = Array2::from_shape_fn((N, m), feature);
         rows.dot(&rows.t())
     }
 
-    /// What is solved for is `(K + δ) Δ + μ = f`, and `Σ Δ = 0`.
+    /// Asserts `(K + δ) Δ + μ = f` and `Σ Δ = 0` for the solution.
     fn assert_solves(factor: &FreeFactor, kernel: &Array2<f64>) {
         let f: Vec<f64> = (0..N).map(|i| (i as f64 * 0.7).cos()).collect();
         let (steps, level) = factor.solve(&factor.values(&f)).unwrap();
@@ -224,7 +224,7 @@ mod tests {
         gram.of_whole(kernel.view());
         let all: Vec<usize> = (0..N).collect();
         let mut factor = FreeFactor::new(&mut gram, &all);
-        // Five, and few that δ keeps apart.
+        // Five variables, few of which are separated only by δ.
         let n = factor.variables().count();
         assert!((5..10).contains(&n), "{n}");
         assert_solves(&factor, &kernel);

@@ -1,10 +1,12 @@
-//! The optimum of a binary problem by equations: an active-set method [Scheinberg 2006].
+//! Solution of a binary problem by linear equations: an active-set method [Scheinberg 2006].
 //!
-//! Pairs of variables come near the optimum in a few steps and then may take a million to reach it. But where it is known which
-//! variables rest on a bound, what is left is a system of linear equations: f is to be equal on all free variables, and the sum
-//! of their changes 0. Where that leads beyond a bound, the way ends there and goes on without that variable. Where it does not,
-//! the variable at a bound that violates the optimality conditions most becomes free, until none does. A support vector machine
-//! of few features has few free variables, so that [their equations](super::active_set::free_factor) are short.
+//! Pairwise steps approach the optimum in a few steps, but may need a million steps to reach it. If the variables at bounds are known, the optimum is the
+//! solution of linear
+//! equations: f is equal on all free variables, and the sum of their changes is 0. If the solution exceeds a bound, the step ends at the bound, and the
+//! variable is removed.
+//! Otherwise, the bound variable with the largest violation of the optimality conditions becomes free, until no variable violates them. Few features imply
+//! few free variables,
+//! so [their equations](super::active_set::free_factor) are small.
 
 mod free_factor;
 
@@ -15,27 +17,26 @@ use crate::linalg::scalar::Scalar;
 use crate::smo::reached::violation;
 use crate::smo::variables::bounds;
 
-/// Free variables whose equations are solved, at most; others wait until it is their turn.
+/// Maximum number of free variables in the equations; further variables are added later.
 const MAX_FREE: usize = 384;
-/// Variables that become free together, at most, and how far each is to violate the conditions as a share of the farthest.
+/// Maximum number of variables that become free together.
 const MAX_ENTERING: usize = 8;
 const SHARE_OF_FARTHEST: f64 = 0.5;
-/// Times that f may be found to differ on the free variables when it should be equal: rows that depend on each other.
+/// Maximum number of repetitions if f is unequal on the free variables after a solve, because of linearly dependent rows.
 const MAX_REPEATS: u64 = 8;
 
-/// What to go for.
+/// Goal of the active-set method.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ActiveSetGoal {
-    /// C.
+    /// Penalty C.
     pub c: f64,
-    /// The largest violation of the optimality conditions.
+    /// Maximum violation of the optimality conditions.
     pub tolerance: f64,
-    /// Ways to go at most: each ends at the optimum of the free variables or with one fewer.
+    /// Maximum number of steps. Each step ends at the optimum of the free variables, or with one variable fewer.
     pub most_ways: u64,
 }
 
-/// Goes from β of the problem's rows, and `f = y − Kβ`, toward their optimum. How many ways it took; 0 where fewer
-/// than two are free.
+/// Optimises β of the problem's rows and `f = y − Kβ` by active-set steps. Returns the number of steps; 0 if fewer than two variables are free.
 pub(crate) fn solve_by_active_set<T: Scalar, G: Gram<T>>(
     gram: &mut G,
     labels: &[f64],
@@ -47,7 +48,7 @@ pub(crate) fn solve_by_active_set<T: Scalar, G: Gram<T>>(
     };
     let (mut n_ways, mut n_repeats) = (0, 0);
     while n_ways < goal.most_ways {
-        // A turn at least, so that there is an end where nothing can move.
+        // At least one step is counted, so that the loop ends if nothing can move.
         n_ways += active_set.solve_free(goal.most_ways - n_ways).max(1);
         active_set.follow(gram);
         if active_set.violation() <= goal.tolerance {
@@ -62,24 +63,24 @@ pub(crate) fn solve_by_active_set<T: Scalar, G: Gram<T>>(
     n_ways
 }
 
-/// The way from one set of free variables to the next.
+/// State of the active-set method.
 struct ActiveSet<'a> {
     labels: &'a [f64],
     beta: &'a mut [f64],
-    /// y − Kβ of β before its last changes.
+    /// f = y − Kβ before the last changes of β.
     f: &'a mut [f64],
-    /// How β has changed since.
+    /// Changes of β since f was updated.
     changes: Vec<f64>,
     c: f64,
     factor: FreeFactor,
-    /// Whether each variable has a place there.
+    /// Whether each variable has a position in the factors.
     has_place: Vec<bool>,
-    /// f of all free variables when it was last made equal.
+    /// Common f of all free variables after the last solve.
     level: f64,
 }
 
 impl<'a> ActiveSet<'a> {
-    /// Of the variables that are free; `None` where they are fewer than two.
+    /// Creates the state for the free variables; `None` if fewer than two are free.
     fn new<T: Scalar, G: Gram<T>>(
         gram: &mut G,
         labels: &'a [f64],
@@ -107,7 +108,7 @@ impl<'a> ActiveSet<'a> {
         })
     }
 
-    /// Takes the equations of these variables.
+    /// Factorises the equations of the given variables.
     fn take<T: Scalar, G: Gram<T>>(&mut self, gram: &mut G, free: &[usize]) {
         self.factor = FreeFactor::new(gram, free);
         self.has_place = vec![false; self.labels.len()];
@@ -116,7 +117,7 @@ impl<'a> ActiveSet<'a> {
         }
     }
 
-    /// Goes to the optimum of the free variables, of which those that meet a bound stay there. How many ways it took.
+    /// Moves to the optimum of the free variables; variables that reach a bound stay there. Returns the number of steps.
     fn solve_free(&mut self, most_ways: u64) -> u64 {
         let mut f = self.factor.values(&self.f[..]);
         for n_ways in 0..most_ways {
@@ -145,8 +146,7 @@ impl<'a> ActiveSet<'a> {
         most_ways
     }
 
-    /// The share of these steps that leads to the first bound, at most 1, and where a variable meets that: its place, and the
-    /// bound.
+    /// Returns the fraction of the given steps up to the first bound, at most 1, and the blocking variable, if any: its position and its bound.
     fn way(&self, steps: &[f64]) -> (f64, Option<(usize, f64)>) {
         let (mut share, mut blocked) = (1.0, None);
         for (place, variable) in self.factor.variables() {
@@ -160,7 +160,7 @@ impl<'a> ActiveSet<'a> {
         (share, blocked)
     }
 
-    /// Takes f to β.
+    /// Updates f to the current β.
     fn follow<T: Scalar, G: Gram<T>>(&mut self, gram: &mut G) {
         gram.take_times(&self.changes, self.f);
         self.changes.fill(0.0);
@@ -170,7 +170,7 @@ impl<'a> ActiveSet<'a> {
         violation(self.beta, self.labels, self.f, self.c)
     }
 
-    /// The variables without equations that are farthest beyond the level, if any is farther than all that have them.
+    /// Returns the bound variables with the largest violations, if a violation exceeds those of all free variables.
     fn entering(&self) -> Vec<usize> {
         let mut beyond = vec![0.0; self.beta.len()];
         let mut farthest = [0.0_f64; 2];
@@ -194,11 +194,11 @@ impl<'a> ActiveSet<'a> {
         entering
     }
 
-    /// Makes variables free, as many as there is room for; whether that is any, or none was to be.
+    /// Makes variables free, up to the capacity. Returns true if at least one was added, or if none was to be added.
     fn join<T: Scalar, G: Gram<T>>(&mut self, gram: &mut G, entering: &[usize]) -> bool {
         for (number, &variable) in entering.iter().enumerate() {
             if !self.factor.join(gram, variable) {
-                // Those that enter come first: what depends on them waits.
+                // Entering variables come first; variables that depend on them linearly are omitted for now.
                 let free = self.factor.variables().map(|(_, variable)| variable);
                 let all = entering[number..].iter().copied().chain(free);
                 let all: Vec<usize> = all.take(MAX_FREE).collect();
@@ -219,11 +219,11 @@ mod tests {
     use crate::smo::variables::extremes;
     use ndarray::{Array1, Array2};
 
-    /// Products of n rows of m features with no pattern, the first half apart from the others.
+    /// Returns products of n irregular rows with m features; the first half is separated from the others.
     fn problem(n: usize, m: usize, apart: f64) -> (Array2<f64>, Vec<f64>) {
         let rows = Array2::from_shape_fn((n, m), |(i, j)| {
             let side = if i < n / 2 { apart } else { -apart };
-            // The sine's last digits: rows that do not depend on each other.
+            // The sine's last digits give linearly independent rows.
             (((i * m + j) as f64).sin() * 1e4).fract() + side
         });
         (
@@ -250,7 +250,7 @@ mod tests {
         }
     }
 
-    /// Settles from β, and compares with what pairs of variables reach.
+    /// Solves from β, and compares the result with the result of pairwise steps.
     fn assert_settles((kernel, labels): &(Array2<f64>, Vec<f64>), start: Vec<f64>, c: f64) {
         let mut gram = Dense::<f64>::default();
         gram.of_whole(kernel.view());
@@ -296,7 +296,7 @@ mod tests {
 
     #[test]
     fn of_rows_that_depend_on_each_other_more_are_free_than_there_are_equations() {
-        // Three features: no equations for more than four free ones. All are free at first, of the last more than have places.
+        // Three features allow at most four free variables. In the last case, more variables than the capacity are free at first.
         for n in [20, MAX_FREE + 60] {
             let problem = problem(n, 3, 0.1);
             let start = problem.1.iter().map(|y| 0.1 * y).collect();
@@ -307,7 +307,7 @@ mod tests {
     #[test]
     fn rows_that_take_no_part_keep_out() {
         let (kernel, mut labels) = problem(60, 8, 0.1);
-        // As many of either class.
+        // The numbers of rows of both classes are equal.
         for label in labels.iter_mut().step_by(5) {
             *label = 0.0;
         }
