@@ -230,7 +230,7 @@ impl<T: SolverScalar> MarginPair<T> {
         let violating = &mut scratch.ranked;
         violating.clear();
         for (number, products) in products.into_iter().enumerate() {
-            // f lies beyond the middle by more than half the tolerance where w·x is less than this, by its sign.
+            // f exceeds the middle by more than half the tolerance if w·x, times its sign, is below this bound.
             let bound = T::of(SIGNS[number] * (SIGNS[number] - middle) - goal.tolerance / 2.0);
             let sign = T::of(SIGNS[number]);
             find_below(products, sign, bound, &mut scratch.below);

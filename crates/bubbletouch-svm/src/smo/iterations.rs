@@ -1,18 +1,18 @@
-//! The iterations: pairs of variables moved until the optimality conditions hold, or few variables are left to move.
+//! Pairwise steps until the optimality conditions hold, or few variables can still move.
 
 use super::passes::{Down, select_down, select_up, step_along};
 use super::variables::Variables;
 use crate::gram::matrix::Gram;
 use crate::linalg::scalar::Scalar;
 
-/// Iterations before a look at which variables to leave out.
+/// Number of iterations between shrinking checks.
 pub(super) const SHRINK_PERIOD: u64 = 1000;
-/// Rows below which leaving variables out gains less than copying costs.
+/// Minimum number of rows for shrinking; with fewer rows, copying takes longer than the iterations saved.
 const SHRINK_ROWS: usize = 400;
-/// The share of the variables that may remain for the copy to be worth it.
+/// Maximum fraction of remaining variables for which the copy is worthwhile.
 const SHRINK_SHARE: f64 = 0.7;
 
-/// How far the search may go, and has gone.
+/// Limits and progress of a search.
 pub(crate) struct Search {
     pub tolerance: f64,
     pub max_iterations: u64,
@@ -29,16 +29,15 @@ impl Search {
     }
 }
 
-/// Why the iteration stopped.
+/// Reason why the iterations stopped.
 pub(crate) enum Stop {
-    /// Within the tolerance, or at the cap.
+    /// The tolerance or the iteration cap was reached.
     Done,
-    /// Only these variables may still move.
+    /// Only the given variables can still move.
     Shrink(Vec<usize>),
 }
 
-/// Moves pairs of variables until the optimality conditions hold, iterations run out, or few variables are left to move; with the two passes of
-/// any processor.
+/// Runs pairwise steps until the optimality conditions hold, the iteration cap is reached, or few variables can still move. The passes run on any processor.
 pub(crate) fn run_plain<T: Scalar, G: Gram<T>>(
     gram: &mut G,
     variables: &mut Variables<T>,
@@ -49,8 +48,9 @@ pub(crate) fn run_plain<T: Scalar, G: Gram<T>>(
     run_with((gram, passes), variables, search, first_look)
 }
 
-/// The same with these passes: what finds the variable to lower, given f, marks, inverse curvatures, the highest f and scratch;
-/// and what takes a step, given f, two rows, its length and marks, and finds the next variable to raise.
+/// Runs pairwise steps with the given passes. `select_down` finds the variable to lower from f, marks, inverse curvatures, the highest f and scratch memory.
+/// `step_along` takes a
+/// step from f, two rows, the step length and marks, and returns the next variable to raise.
 #[inline(always)]
 pub(super) fn run_with<T: Scalar, G: Gram<T>>(
     (gram, (select_down, step_along)): (
@@ -67,7 +67,7 @@ pub(super) fn run_with<T: Scalar, G: Gram<T>>(
     let Some(mut i) = select_up(&variables.f, &variables.up) else {
         return Stop::Done;
     };
-    // A little more than asked, so that f64 agrees.
+    // Slightly stricter than the requested tolerance, so that the check in f64 succeeds.
     let tolerance = T::of(0.95 * search.tolerance);
     let mut until_look = first_look;
     loop {

@@ -1,13 +1,15 @@
-//! The solver's two passes over all variables, written so that the compiler makes vector instructions of them; f32 has
-//! [its own](super::passes_512) where the processor allows it.
+//! The solver's two passes over all variables, written for automatic vectorisation. For f32, there are [explicit vector instructions](super::passes_512) if
+//! the processor supports
+//! them.
 //!
-//! Every slice is a whole number of [`LANES`] long ([`padded`]). Each lane keeps its own extreme; where the extreme of all is
-//! gets looked up afterwards, the lowest index of equals, so results do not depend on the processor.
+//! The length of every slice is a multiple of [`LANES`] ([`padded`]). Each lane has its own extreme. The position of the overall extreme is searched
+//! afterwards; of equal values, the
+//! lowest index is taken, so results do not depend on the processor.
 
 use crate::linalg::lanes::LANES;
 use crate::linalg::scalar::Scalar;
 
-/// The largest of `a + b`. A lane keeps its own; they meet at the end.
+/// Returns the largest `a + b`. Each lane has its own maximum; the lanes are combined at the end.
 #[inline(always)]
 fn largest_sum<T: Scalar>(a: &[T], b: &[T]) -> T {
     let mut lanes = [T::neg_infinity(); LANES];
@@ -31,7 +33,7 @@ fn largest_sum<T: Scalar>(a: &[T], b: &[T]) -> T {
         .fold(T::neg_infinity(), |a, &b| if b > a { b } else { a })
 }
 
-/// The largest of `a`, at least 0.
+/// Returns the largest `a`, at least 0.
 #[inline(always)]
 fn largest<T: Scalar>(a: &[T]) -> T {
     let mut lanes = [T::zero(); LANES];
@@ -49,7 +51,7 @@ fn largest<T: Scalar>(a: &[T]) -> T {
         .fold(T::zero(), |a, &b| if b > a { b } else { a })
 }
 
-/// The first index for which `is` holds; `any` says whether it does anywhere in a chunk, all lanes at once.
+/// Returns the first index for which `is` returns true. All lanes of a chunk are tested at once.
 #[inline(always)]
 fn first(n: usize, is: impl Fn(usize) -> bool) -> usize {
     for start in (0..n).step_by(LANES) {
@@ -66,7 +68,7 @@ fn first(n: usize, is: impl Fn(usize) -> bool) -> usize {
     0
 }
 
-/// Where the largest of `f + up` is, the first of equals: the next variable to raise. `None` when none can be.
+/// Returns the position of the largest `f + up`, the first of equal values: the next variable to raise. Returns `None` if no variable can be raised.
 #[inline(always)]
 pub(super) fn select_up<T: Scalar>(f: &[T], up: &[T]) -> Option<usize> {
     let up = &up[..f.len()];
@@ -78,7 +80,7 @@ pub(super) fn select_up<T: Scalar>(f: &[T], up: &[T]) -> Option<usize> {
     }
 }
 
-/// Takes `f − step (row_i − row_j)` in place, and finds the next variable to raise.
+/// Updates `f − step (row_i − row_j)` in place, and returns the next variable to raise.
 #[multiversion::multiversion(targets("x86_64+avx2+fma"))]
 pub(crate) fn step_along<T: Scalar>(
     f: &mut [T],
@@ -94,17 +96,19 @@ pub(crate) fn step_along<T: Scalar>(
     select_up(f, up)
 }
 
-/// What the second pass found.
+/// Result of the second pass.
 pub(crate) struct Down<T> {
-    /// The variable to lower with `i`: the largest gain of the dual objective, to second order [Fan, Chen, Lin 2005];
-    /// `None` when no pair violates the optimality conditions.
+    /// The variable to lower together with `i`: the one with the largest second-order gain of the dual objective [Fan, Chen, Lin 2005]. `None` if no pair
+    /// violates the optimality
+    /// conditions.
     pub j: Option<usize>,
-    /// How far they are violated: the largest of f that can be raised less the smallest that can be lowered.
+    /// Violation of the optimality conditions: the largest f of variables that can be raised minus the smallest f of variables that can be lowered.
     pub violation: T,
 }
 
-/// The variable to lower when i, whose f is `highest`, is raised. `low` is 0 where a variable can be lowered and −∞ elsewhere;
-/// `inverses` are the inverse curvatures along the lines of i; `gains` is scratch.
+/// Returns the variable to lower when variable i, with f = `highest`, is raised. `low` is 0 for variables that can be lowered and −∞ for others. `inverses`
+/// contains the inverse
+/// curvatures along the lines of i; `gains` is scratch memory.
 #[multiversion::multiversion(targets("x86_64+avx2+fma"))]
 pub(crate) fn select_down<T: Scalar>(
     (f, low): (&[T], &[T]),
@@ -135,7 +139,7 @@ pub(crate) fn select_down<T: Scalar>(
     }
 }
 
-/// The largest of `highest − f + low`, at least 0.
+/// Returns the largest `highest − f + low`, at least 0.
 #[inline(always)]
 fn violation<T: Scalar>(f: &[T], low: &[T], highest: T) -> T {
     let mut lanes = [T::zero(); LANES];
@@ -163,7 +167,7 @@ fn violation<T: Scalar>(f: &[T], low: &[T], highest: T) -> T {
 mod tests {
     use super::*;
 
-    /// Values with no pattern; some lanes repeat, so that ties occur.
+    /// Returns irregular values; some lanes repeat, so that ties occur.
     fn values(n: usize, salt: f64) -> Vec<f64> {
         (0..n)
             .map(|i| ((i % 37) as f64 * 1.7 + salt).sin())

@@ -1,4 +1,4 @@
-//! The solver's passes over f32 variables, sixteen at a time. They find what [the plain ones](super::passes) find, to the bit.
+//! The solver's passes over f32 variables, sixteen values at a time. The results equal those of [the generic passes](super::passes), bit by bit.
 
 use std::arch::x86_64::{
     __m512, __m512i, _CMP_EQ_OQ, _CMP_GT_OQ, _mm512_add_epi32, _mm512_add_ps, _mm512_cmp_ps_mask,
@@ -14,8 +14,8 @@ use crate::gram::matrix::Gram;
 use crate::linalg::lanes::LANES;
 use crate::linalg::vector_registers::{load, store};
 
-/// See [`run_plain`](super::iterations::run_plain). The passes are closures: functions would be called, which takes as long as a
-/// few of their steps.
+/// Runs pairwise steps like [`run_plain`](super::iterations::run_plain). The passes are closures, because calls of functions would take as long as a few of
+/// their steps.
 #[target_feature(enable = "avx512f")]
 pub(crate) fn run<G: Gram<f32>>(
     gram: &mut G,
@@ -23,7 +23,7 @@ pub(crate) fn run<G: Gram<f32>>(
     search: &mut Search,
     first_look: u64,
 ) -> Stop {
-    // See `passes::select_down`.
+    // Equals `passes::select_down`.
     let select_down =
         |(f, low): (&[f32], &[f32]), inverses: &[f32], highest: f32, _: &mut [f32]| {
             let f = lanes(f);
@@ -46,7 +46,7 @@ pub(crate) fn run<G: Gram<f32>>(
                 violation: _mm512_reduce_max_ps(violation),
             }
         };
-    // See `passes::step_along`.
+    // Equals `passes::step_along`.
     let step_along = |f: &mut [f32], (row_i, row_j): (&[f32], &[f32]), step: f32, up: &[f32]| {
         let f = f.as_chunks_mut::<LANES>().0;
         let n = f.len();
@@ -71,11 +71,11 @@ pub(crate) fn run<G: Gram<f32>>(
     )
 }
 
-/// The largest value of each lane so far, and where it was first.
+/// The largest value of each lane so far, and its first position.
 struct Largest {
     values: __m512,
     places: __m512i,
-    /// Those of the next values.
+    /// Positions of the next values.
     next: __m512i,
 }
 
@@ -102,7 +102,7 @@ impl Largest {
         }
     }
 
-    /// The largest of all lanes, and the first place of equals.
+    /// Returns the largest value of all lanes, and its first position.
     #[inline]
     #[target_feature(enable = "avx512f")]
     fn of_all(self) -> (f32, usize) {

@@ -1,27 +1,27 @@
-//! A binary problem, and the solution of the C for which it was solved last.
+//! A binary problem, and its solution for the last C.
 
 use super::reached::violation;
 use super::solver_scalar::SolverScalar;
 use super::variables::{linear_and_quadratic, rho};
 use crate::gram::matrix::Gram;
 
-/// Iterations after which a problem counts as not solved, as in LIBSVM; 100 per row if that is more. Larger: hard problems take hours; smaller:
-/// problems that LIBSVM solves are reported as not solved.
+/// Maximum number of iterations, as in LIBSVM; 100 per row if that is more. If larger, hard problems take hours; if smaller, problems that LIBSVM solves are
+/// reported as not solved.
 const MAX_ITERATIONS: u64 = 10_000_000;
 
-/// Binary problem on a Gram matrix, with the solution of the C for which it was solved last.
+/// Binary problem on a Gram matrix, with its solution for the last C.
 pub(crate) struct Smo<'a, G> {
     pub(super) gram: &'a mut G,
-    /// The labels: 1, −1, or 0 for a row that takes no part.
+    /// Labels: 1, −1, or 0 for a row that does not take part.
     pub(super) y: &'a [f64],
     pub(super) beta: Vec<f64>,
-    /// y − Kβ.
+    /// Gradient f = y − Kβ.
     pub(super) f: Vec<f64>,
-    /// The C that β belongs to; 0 before the first.
+    /// C of β; 0 before the first solution.
     pub(super) c: f64,
-    /// Whether f was summed from β in f64.
+    /// Whether f was computed from β in f64.
     pub(super) is_summed: bool,
-    /// Iterations after which the problem counts as not solved.
+    /// Maximum number of iterations.
     pub(super) max_iterations: u64,
 }
 
@@ -34,7 +34,7 @@ impl<'a, G> Smo<'a, G> {
         }
     }
 
-    /// Limits the iterations: after `max_iterations` the problem is left unsolved.
+    /// Limits the iterations to `max_iterations`; the problem is then reported as not solved.
     pub fn with_max_iterations(self, max_iterations: u64) -> Self {
         Self {
             max_iterations,
@@ -42,7 +42,7 @@ impl<'a, G> Smo<'a, G> {
         }
     }
 
-    /// Creates a problem with a start β and an approximate f of it, for the penalty `c`; 0 if they belong to none.
+    /// Creates a problem with a start β, its approximate f, and the penalty `c` of β; 0 if β belongs to no penalty.
     pub fn from_start(
         gram: &'a mut G,
         y: &'a [f64],
@@ -60,22 +60,22 @@ impl<'a, G> Smo<'a, G> {
         }
     }
 
-    /// β, and f of it.
+    /// Returns β and f.
     pub fn variables(&self) -> (&[f64], &[f64]) {
         (&self.beta, &self.f)
     }
 
-    /// ρ of the solution for a C.
+    /// Returns ρ of the solution for a C.
     pub fn rho(&self, c: f64) -> f64 {
         rho(&self.beta, self.y, &self.f, c)
     }
 
-    /// β, and f of it.
+    /// Returns β and f.
     pub fn into_variables(self) -> (Vec<f64>, Vec<f64>) {
         (self.beta, self.f)
     }
 
-    /// Sums f again in f64.
+    /// Recomputes f in f64.
     pub(super) fn refresh<T: SolverScalar>(&mut self)
     where
         G: Gram<T>,
@@ -87,7 +87,7 @@ impl<'a, G> Smo<'a, G> {
         self.is_summed = true;
     }
 
-    /// Takes f, which belongs to another β, to this one.
+    /// Updates f from another β to the current β.
     pub(super) fn follow<T: SolverScalar>(&mut self, before: Vec<f64>)
     where
         G: Gram<T>,
@@ -99,7 +99,7 @@ impl<'a, G> Smo<'a, G> {
         self.gram.take_times(&change, &mut self.f);
     }
 
-    /// `Σ y β − ½ β K β`.
+    /// Returns the dual objective `Σ y β − ½ β K β`.
     pub(super) fn objective(&self) -> f64 {
         let (linear, quadratic) = linear_and_quadratic(&self.beta, self.y, &self.f);
         linear - 0.5 * quadratic

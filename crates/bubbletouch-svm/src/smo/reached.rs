@@ -1,18 +1,18 @@
-//! What a search reached.
+//! Result of a search.
 
 use super::variables::{extremes, linear_and_quadratic, rho};
 use crate::dataset::all_finite;
 use crate::dual::DualSolution;
 
-/// How a search ended.
+/// Result of a search: whether it converged, and its number of iterations.
 pub(crate) struct Reached {
-    /// Whether within its tolerance.
+    /// Whether the tolerance was reached.
     pub is_solved: bool,
     pub n_iterations: u64,
 }
 
 impl Reached {
-    /// What is to be said of a solution, but its coefficients: of β, the labels of its rows, and f of it.
+    /// Creates the solution without its coefficients, given β, the labels and f.
     pub fn solution(self, variables: (&[f64], &[f64], &[f64]), c: f64) -> DualSolution {
         let (beta, y, f) = variables;
         let (linear, quadratic) = linear_and_quadratic(beta, y, f);
@@ -27,8 +27,7 @@ impl Reached {
     }
 }
 
-/// How far the optimality conditions for a C are violated; below 0 when they hold with room to spare, infinite when kernel
-/// values have left nothing to go by.
+/// Returns the violation of the optimality conditions for a C. The value is negative if the conditions hold strictly, and infinite if f is not finite.
 pub(crate) fn violation(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> f64 {
     if !all_finite(f) {
         return f64::INFINITY;

@@ -1,4 +1,4 @@
-//! Solution of a binary problem: pairwise steps, checked in f64, and active-set steps where they converge slowly.
+//! Solution of a binary problem: pairwise steps, checked in f64, and active-set steps if they converge slowly.
 
 use super::active_set::{ActiveSetGoal, solve_by_active_set};
 use super::iterations::{SHRINK_PERIOD, Search, Stop};
@@ -10,17 +10,18 @@ use super::variables::Variables;
 use crate::dual::DualSolution;
 use crate::gram::matrix::Gram;
 
-/// Pairwise steps before active-set steps, at least. Larger: problems that converge slowly take longer; smaller: equations are solved in vain.
+/// Minimum number of pairwise steps before active-set steps. If larger, slowly converging problems take longer; if smaller, equations are solved
+/// unnecessarily.
 const MIN_PAIR_STEPS: u64 = 10_000;
-/// The same for each row.
+/// Minimum number of pairwise steps per row before active-set steps.
 const PAIR_STEPS_PER_ROW: u64 = 20;
-/// Times that f64 may find a violation after convergence in the precision of the matrix. Larger: rounding is followed in vain; smaller: solutions miss
+/// Maximum number of restarts after f64 finds a violation that the precision of the matrix hides. If larger, rounding errors are optimised in vain; if
+/// smaller, solutions may miss
 /// their tolerance.
 const MAX_REFRESHES: usize = 30;
 
 impl<G> Smo<'_, G> {
-    /// Solves for this C, starting from the solution of the last one, to a violation of the optimality conditions of at most
-    /// `tolerance`.
+    /// Solves the problem for this C, starting from the last solution. The violation of the optimality conditions is at most `tolerance`.
     pub fn solve<T: SolverScalar>(&mut self, c: f64, tolerance: f64) -> DualSolution
     where
         G: Gram<T>,
@@ -28,7 +29,7 @@ impl<G> Smo<'_, G> {
         self.solve_or_from(c, tolerance, |_| None)
     }
 
-    /// [`solve`](Self::solve), or from another start that C allows, β and its f, if the objective is higher there.
+    /// Solves the problem like [`solve`](Self::solve), or from another feasible start (β and its f) if the objective is higher there.
     pub fn solve_or_from<T: SolverScalar>(
         &mut self,
         c: f64,
@@ -46,7 +47,7 @@ impl<G> Smo<'_, G> {
         }
     }
 
-    /// [`solve_or_from`](Self::solve_or_from), without what a solution says.
+    /// Solves the problem like [`solve_or_from`](Self::solve_or_from), but returns only the state of convergence.
     pub fn reach<T: SolverScalar>(
         &mut self,
         c: f64,
@@ -60,7 +61,7 @@ impl<G> Smo<'_, G> {
         if !self.is_summed && self.violation(c) <= tolerance {
             self.refresh();
         }
-        // Where no multiplier was kept down by its bound, a larger C changes nothing: β stays as it is.
+        // If no multiplier was limited by its bound, a larger C does not change β.
         let stays = self.c <= c && self.violation(c) <= tolerance;
         if !stays {
             self.stretch(c);
@@ -76,7 +77,7 @@ impl<G> Smo<'_, G> {
         }
     }
 
-    /// Searches until the tolerance is reached or iterations run out; returns whether it was reached.
+    /// Searches until the tolerance is reached or the iterations are exhausted; returns whether the tolerance was reached.
     fn search<T: SolverScalar>(&mut self, c: f64, search: &mut Search) -> bool
     where
         G: Gram<T>,
@@ -116,8 +117,8 @@ impl<G> Smo<'_, G> {
         false
     }
 
-    /// Searches among all variables, roughly where most are soon left out: what was left out should be looked at again before
-    /// much work goes on.
+    /// Searches among all variables. If most variables are soon omitted, the tolerance is rough at first, because omitted variables must be checked again
+    /// before further work.
     fn search_once<T: SolverScalar>(&mut self, c: f64, search: &mut Search, is_first: bool)
     where
         G: Gram<T>,

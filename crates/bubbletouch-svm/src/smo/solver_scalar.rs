@@ -1,4 +1,4 @@
-//! The iterations for each precision, by the instructions of the processor.
+//! Pairwise steps for each precision, with the instructions of the processor.
 
 use super::iterations::{Search, Stop, run_plain};
 #[cfg(target_arch = "x86_64")]
@@ -7,9 +7,9 @@ use super::variables::Variables;
 use crate::gram::matrix::Gram;
 use crate::linalg::scalar::Scalar;
 
-/// Precision of a Gram matrix that the solver has iterations for.
+/// Precision of a Gram matrix supported by the solver.
 pub(crate) trait SolverScalar: Scalar {
-    /// Runs the [iterations](run_plain).
+    /// Runs [pairwise steps](run_plain).
     fn run<G: Gram<Self>>(
         gram: &mut G,
         variables: &mut Variables<Self>,

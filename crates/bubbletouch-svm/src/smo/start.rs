@@ -1,4 +1,4 @@
-//! Where the search for a solution may start.
+//! Starting points of the search for a solution.
 
 use super::problem::Smo;
 use super::solver_scalar::SolverScalar;
@@ -7,16 +7,16 @@ use crate::gram::matrix::Gram;
 use crate::gram::row_sums::add_row;
 
 impl<G> Smo<'_, G> {
-    /// The same problem, not solved yet, to start from all multipliers at C, as the solution for a small one has them: all
-    /// but the surplus of the larger class, where these rows are farthest on their side. From nothing where the objective
-    /// is highest before C when all multipliers grow together. `sums` are `K y`.
+    /// Returns the unsolved problem with a start for small C: all multipliers at C, except the surplus of the larger class. The surplus rows are those
+    /// farthest on their
+    /// own side. If the objective of equal multipliers has its maximum below C, the start is 0. `sums` contains `K y`.
     pub fn at_bounds<T: SolverScalar>(mut self, c: f64, sums: &[f64]) -> Self
     where
         G: Gram<T>,
     {
         let y = self.y;
         let curvature: f64 = y.iter().zip(sums).map(|(y, sum)| y * sum).sum();
-        // Nor when kernel values have left nothing to go by.
+        // The comparison is also false if kernel values are not finite.
         let still_rises = c * curvature <= y.iter().map(|y| y * y).sum::<f64>();
         if !still_rises {
             return self;
@@ -36,7 +36,7 @@ impl<G> Smo<'_, G> {
         self
     }
 
-    /// Takes β to another C: multiplied by what is best for the objective, as far as the new bounds allow.
+    /// Scales β to another C by the factor with the best objective, within the new bounds.
     pub(super) fn stretch(&mut self, c: f64) {
         let (linear, quadratic) = linear_and_quadratic(&self.beta, self.y, &self.f);
         if self.c > 0.0 && self.c != c && quadratic > 0.0 {
@@ -56,14 +56,14 @@ impl<G> Smo<'_, G> {
         }
     }
 
-    /// Goes on from another β and its f if the objective is higher there.
+    /// Replaces β and f by the given start if the objective is higher there.
     pub(super) fn prefer(&mut self, other: (Vec<f64>, Vec<f64>)) {
         let objective = self.objective();
         let own = (
             std::mem::replace(&mut self.beta, other.0),
             std::mem::replace(&mut self.f, other.1),
         );
-        // Not either where kernel values have left nothing to compare.
+        // The comparison is also false if kernel values are not finite.
         let is_higher = self.objective() > objective;
         if !is_higher {
             (self.beta, self.f) = own;
@@ -77,7 +77,7 @@ mod tests {
     use crate::gram::matrix::Dense;
     use ndarray::Array2;
 
-    /// exp(−γ d²) of points on a line that the classes share; one class is larger by five.
+    /// Kernel values exp(−γ d²) of points on a line with overlapping classes; one class has five more rows.
     fn problem(gamma: f64) -> (Dense<f64>, Vec<f64>) {
         let n = 45;
         let at = |i: usize| (i as f64 * 1.7).sin() + if i % 9 < 4 { 0.4 } else { 0.0 };

@@ -1,15 +1,15 @@
-//! The variables of the dual problem that the solver may move, and one step of two of them.
+//! Variables of the dual problem, and one step of two variables.
 
 use crate::linalg::lanes::padded;
 use crate::linalg::scalar::Scalar;
 
-/// Variables looked at side by side.
+/// Number of variables processed in parallel.
 const LANES: usize = 8;
-/// Variables whose extremes are looked for side by side: so many that the compiler makes a loop of them, which it turns into
-/// vectors as it is; eight, written out one after the other, become vectors with much shuffling.
+/// Number of variables whose extremes are searched in parallel. With 64, the compiler generates a vectorised loop; with 8, it unrolls the loop and inserts
+/// many shuffles.
 const EXTREMES_LANES: usize = 64;
 
-/// 0 where β can move, −∞ elsewhere.
+/// Returns 0 if β can move, otherwise −∞.
 #[inline(always)]
 fn mark<T: Scalar>(can_move: bool) -> T {
     if can_move {
@@ -19,7 +19,7 @@ fn mark<T: Scalar>(can_move: bool) -> T {
     }
 }
 
-/// Notes in which directions all β can move.
+/// Marks the directions in which each β can move.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn mark_all<T: Scalar>(beta: &[f64], y: &[f64], c: f64, up: &mut [T], low: &mut [T]) {
     let n = beta.len();
@@ -31,27 +31,26 @@ fn mark_all<T: Scalar>(beta: &[f64], y: &[f64], c: f64, up: &mut [T], low: &mut 
     }
 }
 
-/// Where a variable may be: between 0 and C for a positive row, between −C and 0 for a negative one, at 0 for one that takes no
-/// part.
+/// Returns the bounds of a variable: 0 to C for a positive row, −C to 0 for a negative row, and 0 for a row that does not take part.
 #[inline(always)]
 pub(crate) fn bounds(y: f64, c: f64) -> (f64, f64) {
     (c * y.min(0.0), c * y.max(0.0))
 }
 
-/// β and what the passes read of it; slices are padded to whole lanes with variables that cannot move.
+/// State of the variables during the passes. Slices are padded to whole lanes with variables that cannot move.
 #[derive(Clone, Debug)]
 pub(crate) struct Variables<T> {
-    /// `β_i = y_i a_i`.
+    /// Coefficients `β_i = y_i a_i`.
     pub beta: Vec<f64>,
     y: Vec<f64>,
     c: f64,
-    /// `f_i = y_i − (Kβ)_i`, the gradient of the dual objective along β_i.
+    /// Gradient `f_i = y_i − (Kβ)_i` of the dual objective along β_i.
     pub f: Vec<T>,
-    /// 0 where β_i can be raised, −∞ elsewhere.
+    /// Marks: 0 if β_i can be raised, otherwise −∞.
     pub up: Vec<T>,
-    /// 0 where β_i can be lowered, −∞ elsewhere.
+    /// Marks: 0 if β_i can be lowered, otherwise −∞.
     pub low: Vec<T>,
-    /// Scratch of the second pass.
+    /// Scratch memory of the second pass.
     pub gains: Vec<T>,
 }
 
@@ -74,7 +73,7 @@ impl<T: Scalar> Variables<T> {
         variables
     }
 
-    /// Only the variables at these indices.
+    /// Returns only the variables at the given indices.
     pub fn select(&self, indices: &[usize]) -> Self {
         let beta: Vec<f64> = indices.iter().map(|&i| self.beta[i]).collect();
         let y: Vec<f64> = indices.iter().map(|&i| self.y[i]).collect();
@@ -82,7 +81,7 @@ impl<T: Scalar> Variables<T> {
         Self::new(&beta, &y, &f, self.c)
     }
 
-    /// Notes in which directions β_i can move, where that is new: what was just written piecemeal is slow to read as a whole.
+    /// Marks the directions in which β_i can move; writes only changed marks, because vector loads after scalar stores are slow.
     #[inline(always)]
     fn mark(&mut self, i: usize) {
         let (lowest, highest) = bounds(self.y[i], self.c);
@@ -95,14 +94,14 @@ impl<T: Scalar> Variables<T> {
         }
     }
 
-    /// Raises β_i and lowers β_j by as much: to the optimum along that line, or to the first bound. How much it was.
+    /// Raises β_i and lowers β_j by an equal amount, to the optimum along the line or to the first bound. Returns the amount.
     #[inline(always)]
     pub fn step(&mut self, i: usize, j: usize, curvature: f64) -> f64 {
         let wanted = (self.f[i].wide() - self.f[j].wide()) / curvature;
         let (lowest, highest) = (bounds(self.y[j], self.c).0, bounds(self.y[i], self.c).1);
         let (room_i, room_j) = (highest - self.beta[i], self.beta[j] - lowest);
         let step = wanted.min(room_i).min(room_j);
-        // Exactly on a bound that was reached: rounding must not leave a variable a hair from it.
+        // β is set exactly to a reached bound, without rounding error.
         self.beta[i] = if step == room_i {
             highest
         } else {
@@ -118,8 +117,9 @@ impl<T: Scalar> Variables<T> {
         step
     }
 
-    /// The variables that may still move, when `highest` is the largest f of those that can be raised and `lowest` the
-    /// smallest of those that can be lowered: the others are at a bound and want to stay there [Joachims 1999].
+    /// Returns the variables that may still move. `highest` is the largest f of variables that can be raised, `lowest` the smallest f of variables that can
+    /// be lowered. The other
+    /// variables are at a bound, and their gradient pushes them against it [Joachims 1999].
     pub fn worth_keeping(&self, highest: T, lowest: T) -> Vec<usize> {
         (0..self.beta.len())
             .filter(|&i| {
@@ -136,10 +136,10 @@ impl<T: Scalar> Variables<T> {
     }
 }
 
-/// `(max of f that can be raised, min of f that can be lowered)`, in f64, for any β within its bounds.
+/// Returns `(max of f that can be raised, min of f that can be lowered)`, in f64, for any β within its bounds.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn extremes(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> (f64, f64) {
-    // Each lane keeps its own; halves meet halves at the end.
+    // Each lane has its own extreme; the lanes are combined by halving.
     let mut highest = [f64::NEG_INFINITY; EXTREMES_LANES];
     let mut lowest = [f64::INFINITY; EXTREMES_LANES];
     let chunks = beta.chunks(EXTREMES_LANES).zip(y.chunks(EXTREMES_LANES));
@@ -170,19 +170,19 @@ pub(crate) fn extremes(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> (f64, f64)
     (highest[0], lowest[0])
 }
 
-/// The first if it is larger than the second, which is a number.
+/// Returns a if it is larger than b, otherwise b; b is not NaN.
 #[inline(always)]
 fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// The first if it is smaller than the second, which is a number.
+/// Returns a if it is smaller than b, otherwise b; b is not NaN.
 #[inline(always)]
 fn smaller(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
-/// `Σ y β` and `β K β` of β and its f, of which the dual objective is the first less half the second.
+/// Returns `Σ y β` and `β K β`, given β and its f. The dual objective is the first minus half of the second.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(super) fn linear_and_quadratic(beta: &[f64], y: &[f64], f: &[f64]) -> (f64, f64) {
     let (beta, last_beta) = beta.as_chunks::<LANES>();
@@ -190,7 +190,7 @@ pub(super) fn linear_and_quadratic(beta: &[f64], y: &[f64], f: &[f64]) -> (f64, 
     let (f, last_f) = f.as_chunks::<LANES>();
     let n = beta.len();
     let (y, f) = (&y[..n], &f[..n]);
-    // Each lane keeps its own; they meet at the end.
+    // Each lane has its own sum; the lanes are added at the end.
     let (mut linear, mut quadratic) = ([0.0; LANES], [0.0; LANES]);
     for at in 0..n {
         for lane in 0..LANES {
@@ -205,7 +205,7 @@ pub(super) fn linear_and_quadratic(beta: &[f64], y: &[f64], f: &[f64]) -> (f64, 
     (linear.iter().sum(), quadratic.iter().sum())
 }
 
-/// The sum of f over the variables between their bounds, and how many these are.
+/// Returns the sum of f over the variables between their bounds, and their number.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn sum_of_free(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> (f64, f64) {
     let (beta, last_beta) = beta.as_chunks::<LANES>();
@@ -213,7 +213,7 @@ fn sum_of_free(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> (f64, f64) {
     let (f, last_f) = f.as_chunks::<LANES>();
     let n = beta.len();
     let (y, f) = (&y[..n], &f[..n]);
-    // Each lane keeps its own; they meet at the end.
+    // Each lane has its own sum; the lanes are added at the end.
     let (mut sum, mut n_free) = ([0.0; LANES], [0.0; LANES]);
     for at in 0..n {
         for lane in 0..LANES {
@@ -230,14 +230,14 @@ fn sum_of_free(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> (f64, f64) {
     (sum.iter().sum(), n_free.iter().sum())
 }
 
-/// 1 for a variable between its bounds, 0 for another.
+/// Returns 1 for a variable between its bounds, otherwise 0.
 #[inline(always)]
 fn weight_if_free(beta: f64, y: f64, c: f64) -> f64 {
     let (low, high) = bounds(y, c);
     f64::from(u8::from((beta > low) & (beta < high)))
 }
 
-/// ρ: the mean of −f over the variables between their bounds, or the middle of what the others allow (LIBSVM's rule).
+/// Returns ρ: the mean of −f over the variables between their bounds, or the middle of the interval allowed by the others (LIBSVM's rule).
 pub(super) fn rho(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> f64 {
     let (sum, n_free) = sum_of_free(beta, y, f, c);
     if n_free > 0.0 {

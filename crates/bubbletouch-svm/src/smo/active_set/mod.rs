@@ -21,6 +21,7 @@ use crate::smo::variables::bounds;
 const MAX_FREE: usize = 384;
 /// Maximum number of variables that become free together.
 const MAX_ENTERING: usize = 8;
+/// Minimum violation of a variable that becomes free, as a fraction of the largest violation.
 const SHARE_OF_FARTHEST: f64 = 0.5;
 /// Maximum number of repetitions if f is unequal on the free variables after a solve, because of linearly dependent rows.
 const MAX_REPEATS: u64 = 8;
