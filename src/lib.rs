@@ -151,7 +151,7 @@
 //! - Wen et al., *Improving efficiency of SVM k-fold cross-validation by alpha seeding*, AAAI 2017.
 #![warn(missing_docs)]
 #![warn(clippy::missing_errors_doc)]
-// They panic where nobody reads any more.
+// `println!` panics on a closed pipe; output goes through the command.
 #![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
 
 pub mod engine;

@@ -1,13 +1,13 @@
-//! What is charted and said: what spheres buy, what they cost, and what an object's errors cost a classifier that has learned from it.
+//! Charts and answers of an object-detail study: errors of models, their costs, and the accuracy of classifiers trained on models.
 
 use crate::studies::object_detail::study::{ObjectDetailStudy, RECOGNITION};
 use crate::studies::object_detail::variants::within;
 use crate::table::{ChartSpec, Table, short_number};
 
-/// What runs along an axis: a part of the chart's name, words of its title, and a column.
+/// An axis: a part of the chart's file name, words of its title, and a column.
 type Named = (&'static str, &'static str, &'static str);
 
-/// What is bought.
+/// Deflection errors.
 const FELT: [Named; 2] = [
     (
         "deflection_error",
@@ -33,11 +33,11 @@ const SURFACE: [Named; 2] = [
     ),
 ];
 
-/// What it costs.
+/// Costs.
 const SPHERES: Named = ("spheres", "number of spheres", "n_spheres_median");
 const TIME: Named = ("time", "time of a touch", "us_per_touch_median");
 
-/// What was learned, by the error of what was learned from.
+/// Accuracies against the error of the models used in training.
 const LEARNED: [Named; 2] = [
     (
         "recognition",
@@ -52,7 +52,7 @@ const LEARNED: [Named; 2] = [
 ];
 
 impl ObjectDetailStudy {
-    /// Errors by what they cost; with what was learned, if anything was.
+    /// Returns charts of errors by cost, and of accuracies if classifiers were trained.
     pub(crate) fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
         let by_cost = [(FELT, SPHERES), (FELT, TIME), (SURFACE, SPHERES)];
         let errors = by_cost.into_iter().flat_map(|(errors, (by, of, x))| {
@@ -80,7 +80,7 @@ impl ObjectDetailStudy {
         errors.chain(learned).collect()
     }
 
-    /// The most exact model; the cheapest of each method that is within half a millimetre; what learning from a model costs.
+    /// Returns answers: the most exact model, the cheapest model of each method within half a millimetre, and the loss of accuracy by training on models.
     pub(crate) fn answers(&self, tables: &[Table]) -> Vec<String> {
         let costs = &tables[3];
         let rows = 0..costs.n_rows;
@@ -102,12 +102,12 @@ impl ObjectDetailStudy {
     }
 }
 
-/// What classifiers learned, if any did.
+/// Returns the table of classifiers, if any were trained.
 fn learned(tables: &[Table]) -> Option<&Table> {
     tables.iter().find(|table| table.file == RECOGNITION.name())
 }
 
-/// Models that are spheres.
+/// Methods whose models consist of spheres.
 const OF_SPHERES: [&str; 4] = [
     "packing",
     "vertex_spheres",
@@ -115,7 +115,7 @@ const OF_SPHERES: [&str; 4] = [
     "medial_spheres",
 ];
 
-/// The classifier that seems to be better than it is by most, in words; none where none does.
+/// Returns a sentence on the classifier whose accuracy on its own models exceeds its accuracy on the meshes the most; `None` if none exceeds it.
 fn misled_most(learned: &Table) -> Option<String> {
     let shares = |row: usize| {
         ["accuracy_on_mesh", "accuracy_on_itself"].map(|share| learned.number(share, row))
@@ -129,16 +129,16 @@ fn misled_most(learned: &Table) -> Option<String> {
     ))
 }
 
-/// What stands for meshes: `packing within 0.5 mm`.
+/// Returns the name of a model: `packing within 0.5 mm`.
 fn model_words(table: &Table, row: usize) -> String {
     let tolerance_mm = Some(table.number("tolerance_mm", row)).filter(|mm| !mm.is_nan());
     table.words("method", row) + &within(tolerance_mm)
 }
 
-/// A small error, mm.
+/// Error that counts as small, mm.
 const SMALL_MM: f64 = 0.5;
 
-/// The model that has the least of something, in words.
+/// Returns a description of the model with the smallest value in a column.
 fn least(costs: &Table, models: impl Iterator<Item = usize>, of: &str) -> Option<String> {
     let number = |column: &str, row: usize| costs.number(column, row);
     let row = models.min_by(|&a, &b| number(of, a).total_cmp(&number(of, b)))?;

@@ -1,4 +1,4 @@
-//! What the skin feels of a model, beside what it feels of the mesh itself.
+//! Deflections caused by a model, compared with the deflections caused by the exact mesh.
 
 use crate::contact::{Workspace, first_contact, press_to_depth, press_to_travel};
 use crate::error::Result;
@@ -11,17 +11,17 @@ use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use crate::studies::recognition::touches::drawn_touches::draw_touches;
 use crate::world::Placement;
 
-/// How far a model's deflections are from the exact ones, mm.
+/// Differences between the deflections by a model and the exact ones, mm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct DeflectionError {
-    /// |δ − δ*|, mean over taxels that either touches.
+    /// Mean of |δ − δ*| over the taxels that either model touches.
     pub mean_mm: f64,
-    /// 95th percentile over the same.
+    /// 95th percentile of |δ − δ*| over the same taxels.
     pub p95_mm: f64,
 }
 
 impl DeflectionError {
-    /// Of the errors of single taxels, metres; 0 of none.
+    /// Computes the summary of the errors of single taxels, metres; 0 if there are none.
     pub fn of(mut errors: Vec<f64>) -> Self {
         Self {
             mean_mm: in_mm(mean(&errors)),
@@ -30,7 +30,7 @@ impl DeflectionError {
     }
 }
 
-/// All digits of a length in millimetres.
+/// Converts metres to millimetres without rounding.
 pub(super) fn in_mm(metres: f64) -> f64 {
     1e3 * metres
 }
@@ -39,35 +39,35 @@ fn mean(errors: &[f64]) -> f64 {
     errors.iter().fold(0.0, |sum, error| sum + error) / errors.len().max(1) as f64
 }
 
-/// How an object was touched exactly, and what was read.
+/// Touches of the exact object and their readings.
 pub(super) struct Truth {
     array: TaxelArray,
-    /// Touches that met it.
+    /// Readings of the touches that reached the object.
     pub readings: Vec<Reading>,
-    /// Touches that met nothing.
+    /// Number of touches that reached nothing.
     pub n_missed: usize,
-    /// Taxels that were touched, all touches.
+    /// Number of touched taxels, over all touches.
     pub n_touched: usize,
 }
 
-/// One touch, and what exact contact says of it.
+/// One touch with its exact deflections.
 pub(super) struct Reading {
     patch_from_object: Pose,
-    /// Past first contact, metres.
+    /// Depth past first contact, metres.
     pub depth: f64,
     travel: f64,
     deflections: Vec<f64>,
 }
 
-/// Offsets that are tried before the best of them is refined. Fewer: the search may end in a lesser valley.
+/// Number of offsets that are tried before the best is refined. With fewer, the search may end in a local minimum.
 const N_OFFSETS: usize = 48;
-/// Halvings (about) of the interval around the best of them.
+/// Approximate number of interval reductions around the best offset.
 const N_STEPS: usize = 30;
-/// Each touch is timed so often.
+/// Number of repetitions of each timed touch.
 const N_REPEATS: usize = 3;
 
 impl Truth {
-    /// Touches an exact model as every study would touch an object of this name.
+    /// Touches an exact model at the same poses as other studies touch an object of this name.
     pub fn new(
         (name, exact): (&str, Model),
         array: &TaxelArray,
@@ -103,13 +103,13 @@ impl Truth {
         Ok(truth)
     }
 
-    /// Of a model read where the object was, the patch drawn back by `offset` metres.
+    /// Returns the error of a model at the pose of the exact object, with the patch retracted by `offset` metres.
     pub fn error(&self, model: &Model, offset: f64) -> DeflectionError {
         DeflectionError::of(self.errors(model, offset))
     }
 
-    /// Mean error of a model that is touched as far past its own first contact as the object past its: what a study feels that
-    /// has no other model of the object.
+    /// Returns the error of a model that is pressed to the same depth past its own first contact. This is the error in a study that only has this model of the
+    /// object.
     pub fn error_past_own_contact(&self, model: &Model) -> DeflectionError {
         let (patch, object) = (self.array.patch(), std::slice::from_ref(model));
         DeflectionError::of(self.errors_of(|pose, reading, workspace| {
@@ -117,7 +117,7 @@ impl Truth {
         }))
     }
 
-    /// The constant offset, metres, with which the error is least: 0 or better.
+    /// Returns the constant offset, metres, that minimises the error; its error is at most the error of offset 0.
     pub fn best_offset(&self, model: &Model) -> f64 {
         let cost = |offset| mean(&self.errors(model, offset));
         let Some((low, high)) = self.offset_range(model) else {
@@ -132,7 +132,7 @@ impl Truth {
         least(start, (refined, cost(refined))).0
     }
 
-    /// Median time of a touch to its depth on one thread, seconds; 0 if nothing was met.
+    /// Returns the median time of a touch to its depth on one thread, seconds; 0 if nothing was touched.
     pub fn seconds_per_touch(&self, model: &Model) -> f64 {
         let (patch, object) = (self.array.patch(), std::slice::from_ref(model));
         let mut workspace = Workspace::new();
@@ -140,12 +140,12 @@ impl Truth {
             let pose = [reading.patch_from_object];
             press_to_depth(patch, object, &pose, reading.depth, &mut workspace);
         };
-        // Once before it counts: the workspace grows, and the model comes into the processor's memory.
+        // One run before the measurement allocates the workspace and fills the caches.
         self.readings.iter().for_each(&mut press);
         median_s((0..N_REPEATS).flat_map(|_| &self.readings), press)
     }
 
-    /// |δ − δ*| of each taxel that either touches, all touches, the patch drawn back.
+    /// Returns |δ − δ*| of each taxel that either model touches, over all touches, with the patch retracted by `offset`.
     fn errors(&self, model: &Model, offset: f64) -> Vec<f64> {
         let (patch, object) = (self.array.patch(), std::slice::from_ref(model));
         self.errors_of(|pose, reading, workspace| {
@@ -153,7 +153,7 @@ impl Truth {
         })
     }
 
-    /// The same of what is pressed in some way.
+    /// Returns |δ − δ*| of each touched taxel for presses performed by `press`.
     fn errors_of(&self, press: impl Fn(&[Pose], &Reading, &mut Workspace)) -> Vec<f64> {
         let mut workspace = Workspace::new();
         let mut errors = Vec::new();
@@ -164,7 +164,7 @@ impl Truth {
         errors
     }
 
-    /// Offsets beyond these leave every touch either without contact or deeper than the mesh's everywhere.
+    /// Returns the range of useful offsets. Outside of it, every touch either has no contact or is deeper everywhere than on the mesh.
     fn offset_range(&self, model: &Model) -> Option<(f64, f64)> {
         let (patch, object) = (self.array.patch(), std::slice::from_ref(model));
         let mut workspace = Workspace::new();
@@ -179,7 +179,7 @@ impl Truth {
 }
 
 impl Reading {
-    /// |δ − δ*| of each taxel that either touches; `felt` is δ, n_taxels, metres.
+    /// Returns |δ − δ*| of each taxel that either model touches; `felt` contains δ, metres, shape (n_taxels,).
     pub fn errors<'a>(&'a self, felt: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
         let pairs = felt.iter().zip(&self.deflections);
         let touched = pairs.filter(|(model, mesh)| **model > 0.0 || **mesh > 0.0);
@@ -187,7 +187,7 @@ impl Reading {
     }
 }
 
-/// Where a function with one valley between two places is least, about.
+/// Returns an approximate minimiser of a unimodal function on an interval (golden-section search).
 fn golden_section(mut low: f64, mut high: f64, cost: impl Fn(f64) -> f64) -> f64 {
     let ratio = 0.5 * (5_f64.sqrt() - 1.0);
     let (mut left, mut right) = (high - ratio * (high - low), low + ratio * (high - low));

@@ -1,4 +1,4 @@
-//! An object's models: how near each is to its mesh, by its surface and by what the skin feels, and what a touch of it takes.
+//! Measurements of an object's models: deviation of the surface, deflection error, and time per touch.
 
 use crate::error::Result;
 use crate::inputs::object_files::NamedMesh;
@@ -17,7 +17,7 @@ pub(super) struct Measured<'a> {
     pub mesh: &'a NamedMesh,
     surface: Surface,
     pub truth: Truth,
-    /// The first of them is the mesh itself.
+    /// Models; the first is the mesh itself.
     pub variants: Vec<Variant>,
 }
 
@@ -38,7 +38,7 @@ impl<'a> Measured<'a> {
         })
     }
 
-    /// A row a model.
+    /// Returns one row per model.
     fn rows<T>(&self, row: impl Fn(&Variant) -> T) -> Vec<(DetailCell, T)> {
         let cell = |variant: &Variant| DetailCell {
             object: self.mesh.name.clone(),
@@ -65,11 +65,11 @@ impl<'a> Measured<'a> {
         })
     }
 
-    /// How near a model is to its mesh, seen from so many points of it.
+    /// Returns the deviation of a model from its mesh, measured at `n_points` points of the mesh.
     fn score(&self, variant: &Variant, n_points: usize) -> DetailScore {
         let (surface, truth) = (&self.surface, &self.truth);
         let model = &variant.model;
-        // An open surface has no inside that could hide a part of it.
+        // An open surface has no inside in which parts could be hidden.
         let body = match surface.is_closed() {
             true => Body::Solid,
             false => Body::Sheet,

@@ -1,18 +1,17 @@
-//! How detailed must an object be, so that the skin feels no difference, and what does detail cost?
+//! Object-detail studies: the model detail that a skin can detect, and its cost.
 //!
-//! A file with an `[object_detail]` table is such a study: [`ObjectDetailStudySpec`] (as written) → [`ObjectDetailPlan`]
+//! A file with an `[object_detail]` table is an object-detail study: [`ObjectDetailStudySpec`] (as written) → [`ObjectDetailPlan`]
 //! (checked, SI) → [`ObjectDetailStudy`] → tables of [`rows`].
 //!
-//! Each mesh is touched exactly ([`MeshModel`](crate::objects::MeshModel)); then sphere models of it are read with the patch
-//! at the very same places:
+//! Each mesh is touched exactly ([`MeshModel`](crate::objects::MeshModel)); then sphere models of the mesh are pressed with the patch at the same places:
 //!
 //! - **error**: |δ − δ\*|, mean over the taxels of all touches that the mesh (δ\*) or the model (δ) touches.
-//! - **error after offset**: the same with the patch drawn back by the constant distance, one for all touches of a model, that
-//!   makes the error least. A model that is only inflated has none left.
-//! - **error past own contact**: each touch as far past the model's own first contact as the mesh past its.
+//! - **error after offset**: the error with the patch retracted by a constant distance. The distance is the same for all touches of a model and minimises the
+//! error. A uniformly inflated model has no error after offset.
+//! - **error past own contact**: the error if model and mesh are pressed to equal depths past their own first contact.
 //!
-//! With an `[object_detail.recognition]` table classifiers learn from each level of models, and are tested on other touches of
-//! the meshes themselves: what a coarse object costs a skin that meets the real one.
+//! With an `[object_detail.recognition]` table, classifiers are trained on each kind of model and tested on other touches of the exact meshes. This measures
+//! the loss of accuracy if training uses coarse objects.
 
 mod charts;
 mod deflection;

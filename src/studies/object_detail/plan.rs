@@ -1,4 +1,4 @@
-//! A study of object detail that can run: every key checked, every unit SI.
+//! Plan of an object-detail study: checked keys in SI units.
 
 use crate::error::Result;
 use crate::inputs::check::{Check, Range, SURFACE_ERROR, TOUCHES};
@@ -9,23 +9,23 @@ use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use crate::world::Placement;
 use std::path::PathBuf;
 
-/// Settings of a study of object detail, ready to run.
+/// Checked settings of an object-detail study.
 #[derive(Clone, Debug)]
 pub struct ObjectDetailPlan {
-    /// As it was written.
+    /// Specification as written in the file.
     pub spec: ObjectDetailStudySpec,
-    /// The folder of meshes.
+    /// Folder of the meshes.
     pub meshes: PathBuf,
-    /// The array.
+    /// Array of taxels.
     pub array: TaxelArray,
-    /// How touches are drawn.
+    /// Distribution of touch poses.
     pub placement: Placement,
 }
 
-/// Points of a mesh, at most: all are in memory at once.
+/// Largest number of points of a mesh; all points are in memory at once.
 const MOST_POINTS: usize = 10_000_000;
 
-/// What the numbers of `[object_detail]` may be.
+/// Ranges of the numeric keys of `[object_detail]`.
 const KEYS: [(&str, Range); 7] = [
     ("tolerances_mm", SURFACE_ERROR),
     ("methods", Range::Any),
@@ -40,7 +40,7 @@ impl ObjectDetailPlan {
     /// Checks a study.
     ///
     /// # Errors
-    /// The error names `place` (the file) and the first key that is out of its range.
+    /// If a key is out of its range; the error names `place` (the file) and the first such key.
     pub fn new(place: &str, mut spec: ObjectDetailStudySpec) -> Result<Self> {
         let check = Check { place };
         check.objects(&spec.objects)?;
@@ -78,7 +78,7 @@ impl ObjectDetailPlan {
         })
     }
 
-    /// What learns from the models, if anything does.
+    /// Returns the specification of the recognition, if the study has any.
     pub fn recognition(&self) -> Option<&DetailRecognitionSpec> {
         self.spec.object_detail.recognition.as_ref()
     }
@@ -98,7 +98,7 @@ fn check_recognition(
         return Err(check.error(&key("measurements"), n_measurements, allowed));
     }
     let n_touches = wanted.n_touches();
-    // Of two objects, the fewest; with more it takes more.
+    // Memory for two objects, the minimum; more objects need more.
     let bytes = 16.0 * n_touches as f64 * n_measurements as f64;
     let what = "the measurements of all touches";
     check.memory(&key("training_touches"), n_touches, bytes, what)

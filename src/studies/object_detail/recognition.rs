@@ -1,7 +1,6 @@
-//! What an object's errors do to recognition: classifiers that learn from models and are tested on the meshes themselves.
+//! Effect of model errors on recognition: classifiers are trained on models and tested on the exact meshes.
 //!
-//! Every model of an object is touched as a study touches that has no other: in the same places, as far past its own first
-//! contact.
+//! All models of an object are touched at the same places and to the same depth past their own first contact, as in other studies.
 
 use crate::engine::progress::Silent;
 use crate::error::Result;
@@ -23,16 +22,16 @@ use crate::world::Placement;
 use ndarray::Array2;
 use std::ops::Range;
 
-/// A classifier that learns from one level of models.
+/// A classifier trained on one kind of model.
 pub(super) struct Learned {
-    /// Of the level.
+    /// Index of the method and tolerance.
     number: usize,
     level: Level,
     classifier: ClassifierKind,
 }
 
 impl Learned {
-    /// Level by level, of each every classifier; none if nothing learns.
+    /// Returns every classifier for each method and tolerance; empty if the study has no recognition.
     pub fn all(plan: &ObjectDetailPlan) -> Vec<Self> {
         let kinds = plan.recognition().map_or(&[][..], |spec| &spec.classifiers);
         let of_level = |(number, level)| {
@@ -46,7 +45,7 @@ impl Learned {
         levels.flat_map(of_level).collect()
     }
 
-    /// What it is called as a work item.
+    /// Returns the name of the work item.
     pub fn name(&self) -> String {
         let (method, tolerance_mm) = self.level;
         format!(
@@ -57,7 +56,7 @@ impl Learned {
     }
 }
 
-/// Makes measurements of models, for learning.
+/// Computes measurements of models, for training and testing.
 pub(super) struct Sensor<'a> {
     plan: &'a ObjectDetailPlan,
     spec: &'a DetailRecognitionSpec,
@@ -65,16 +64,16 @@ pub(super) struct Sensor<'a> {
     seed: Seed,
 }
 
-/// What was felt of a model.
+/// Measurements of a model.
 pub(super) struct Felt {
-    /// n_touches × m.
+    /// Measurements, shape (n_touches, m).
     measurements: Array2<f64>,
-    /// Mean deflection error past its own contact.
+    /// Mean deflection error past the model's own contact, mm.
     own_contact_error_mm: f64,
 }
 
 impl<'a> Sensor<'a> {
-    /// For a study in which something learns.
+    /// Creates a sensor for a study with recognition.
     pub fn new(plan: &'a ObjectDetailPlan, spec: &'a DetailRecognitionSpec) -> Result<Self> {
         let seed = Seed::new(plan.spec.seed);
         let grid = plan.array.shape();
@@ -87,8 +86,8 @@ impl<'a> Sensor<'a> {
         })
     }
 
-    /// What is felt of each model of an object, in their order; the first is the mesh itself, and all are touched in the same places of
-    /// its rest poses.
+    /// Returns the measurements of each model of an object, in order; the first is the mesh. All models are touched at the same places of the object's rest
+    /// poses.
     pub fn measure(&self, made: &Measured) -> Result<Vec<Felt>> {
         let object =
             |variant: &Variant| Object::of_one_part(&made.mesh.name, variant.model.clone());
@@ -108,7 +107,7 @@ impl<'a> Sensor<'a> {
         measured.collect()
     }
 
-    /// What a classifier learns from a level, from what was felt of the models of each object.
+    /// Trains a classifier on one kind of model, given the measurements of all models of each object, and returns its accuracy.
     pub fn row(&self, objects: &[Vec<Felt>], learned: &Learned) -> Result<DetailRecognition> {
         let (number, n_training) = (learned.number, self.spec.training_touches);
         let of_level = |number: usize, touches: Range<usize>| {

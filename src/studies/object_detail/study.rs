@@ -1,4 +1,4 @@
-//! A study of object detail: models of every mesh, their errors on all threads, then their times on one.
+//! Runs an object-detail study: models of every mesh and their errors on all threads, then their times on one thread.
 
 use crate::engine::work_items::pending::PendingItems;
 use crate::engine::work_items::scale::Scale;
@@ -21,24 +21,24 @@ use crate::table::{File, Table};
 use rayon::prelude::*;
 use std::path::PathBuf;
 
-/// A study of object detail and its meshes.
+/// An object-detail study and its meshes.
 pub struct ObjectDetailStudy {
-    /// What to run.
+    /// Plan of the study.
     pub plan: ObjectDetailPlan,
-    /// Each is an object.
+    /// Meshes, one for each object.
     pub meshes: Vec<NamedMesh>,
-    /// Where packings are looked for and kept, if anywhere.
+    /// Folder of cached packings, if any.
     pub packings: Option<PathBuf>,
 }
 
-/// What work items of the study found: how near models are, what they cost, and what was learned from them.
+/// Results of work items: errors of models, their costs, and accuracies of classifiers.
 pub type DetailRows = (
     Vec<(DetailCell, DetailScore)>,
     Vec<(DetailCell, DetailTime)>,
     Vec<DetailRecognition>,
 );
 
-/// Tables.
+/// Files of the result tables.
 const DETAIL: File<(DetailCell, DetailScore)> =
     File::new("object_detail.csv", "Models of each object", "");
 const SUMMARY: File<DetailSummary> = File::new(
@@ -60,18 +60,18 @@ pub(super) const RECOGNITION: File<DetailRecognition> = File::new(
     "",
 );
 
-/// The number of an object's models as a work item; of one more than the last object, that of the first classifier.
+/// Returns the number of the work item of an object's models. For the index after the last object, it is the number of the first classifier's item.
 fn models_item(object: usize) -> usize {
     2 * object
 }
 
-/// The number of their times.
+/// Returns the number of the work item of the times of an object's models.
 fn times_item(object: usize) -> usize {
     models_item(object) + 1
 }
 
 impl ObjectDetailStudy {
-    /// Makes an object's models and keeps how near they are; if they cannot be made, all fails that needs them, `learners` too.
+    /// Computes an object's models and stores their errors. If they cannot be computed, all items that need them fail, including `learners`.
     fn object(
         &self,
         object: usize,
@@ -84,7 +84,7 @@ impl ObjectDetailStudy {
             Ok((object.models(&self.plan), Vec::new(), Vec::new()))
         })?;
         let needed = [&[times_item(object)], learners].concat();
-        // Where it is not made, its rows are there from a run before.
+        // If the models are not computed, their rows are in the journal.
         left.prepare(&needed, || {
             made.map_or_else(
                 || Measured::new((&self.plan, self.packings.as_deref()), mesh),
@@ -149,12 +149,12 @@ impl Study for ObjectDetailStudy {
             },
             n_configurations: n_levels * (n_objects + n_classifiers),
             bytes: 8.0 * (n_objects * n_learned * n_levels * n_measurements) as f64,
-            // Frames as they were, and as they are read.
+            // Memory of simulated frames and of frames as read.
             item_bytes: 12.0 * (n_learned * n_taxels) as f64,
         }
     }
 
-    /// Of each object its models and their times; then each level and classifier, which all need all objects.
+    /// Each object has an item for its models and one for their times. Items of classifiers follow, which need all objects.
     fn work_items(&self) -> Vec<WorkItem> {
         let mut items = Vec::new();
         for (group, NamedMesh { name, .. }) in self.meshes.iter().enumerate() {

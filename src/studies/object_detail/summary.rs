@@ -1,4 +1,4 @@
-//! Methods and levels over all objects.
+//! Aggregation over all objects, by method and tolerance.
 
 use crate::quantile::quantile;
 use crate::studies::grouped;
@@ -14,7 +14,7 @@ fn level(cell: &DetailCell) -> Level {
     (cell.method, cell.tolerance_mm)
 }
 
-/// One row a method and level, in the order of their first appearance.
+/// Returns one row per method and tolerance, in the order of first occurrence.
 pub(super) fn summary(rows: &[Row]) -> Vec<DetailSummary> {
     let levels = grouped(rows, |(cell, _)| level(cell)).into_iter();
     levels
@@ -67,7 +67,7 @@ fn summary_row((method, tolerance_mm): Level, of_level: &[&Row], rows: &[Row]) -
     }
 }
 
-/// Each method and level with what a touch of it takes.
+/// Returns each method and tolerance with its time per touch.
 pub(super) fn costs(
     summary: &[DetailSummary],
     timing: &[(DetailCell, DetailTime)],

@@ -1,4 +1,4 @@
-//! What stands for a mesh: the models that are compared.
+//! Models of a mesh that are compared with it.
 
 use crate::error::Result;
 use crate::geometry::distinct_places;
@@ -13,10 +13,10 @@ use glam::DVec3;
 use std::path::Path;
 use std::time::Instant;
 
-/// What stands for a mesh, and within how many millimetres (as written) the packing that it is, or has as many spheres as.
+/// Method and tolerance, mm (as written). Without its own tolerance, a method has the tolerance of the packing with the same number of spheres.
 pub(super) type Level = (DetailMethod, Option<f64>);
 
-/// Within so many millimetres, in words; none where there are none.
+/// Returns a tolerance in words, or an empty text without a tolerance.
 pub(super) fn within(tolerance_mm: Option<f64>) -> String {
     tolerance_mm.map_or(String::new(), |mm| format!(" within {mm} mm"))
 }
@@ -25,13 +25,13 @@ pub(super) fn within(tolerance_mm: Option<f64>) -> String {
 pub(super) struct Variant {
     pub level: Level,
     pub model: Model,
-    /// Seconds that making it took.
+    /// Time to compute the model, seconds.
     pub prepare_s: f64,
-    /// Whether it was kept from before.
+    /// Whether the model was cached.
     pub was_kept: bool,
 }
 
-/// All models of a mesh, in the order of [`levels`]: the mesh itself first. The error names `place`, the mesh's file.
+/// Returns all models of a mesh in the order of [`levels`]; the mesh is the first. Errors name `place`, the mesh's file.
 pub(super) fn variants(
     plan: &ObjectDetailPlan,
     place: &str,
@@ -40,7 +40,7 @@ pub(super) fn variants(
 ) -> Result<Vec<Variant>> {
     let mesh = surface.mesh();
     let pack = |mm: f64| pack_within(place, surface, mm * MM, packings);
-    // The level of the last packing, and its spheres.
+    // Tolerance of the last packing and its number of spheres.
     let mut packed = (None, 0);
     let mut found = Vec::new();
     for (method, tolerance_mm) in levels(plan) {
@@ -73,7 +73,7 @@ pub(super) fn variants(
     Ok(found)
 }
 
-/// Those of the models of every mesh: the mesh itself, then methods without tolerances, then tolerance by tolerance.
+/// Returns the methods and tolerances: the mesh, then methods without tolerances, then all other methods by tolerance.
 pub(super) fn levels(plan: &ObjectDetailPlan) -> Vec<Level> {
     let wanted = &plan.spec.object_detail;
     let is_wanted = |method: &DetailMethod| wanted.methods.contains(method);
@@ -92,8 +92,8 @@ pub(super) fn levels(plan: &ObjectDetailPlan) -> Vec<Level> {
     levels
 }
 
-/// `n` of the places of `vertices` (all, if there are fewer; never fewer than two), each the farthest from those before it,
-/// from the first vertex on.
+/// Returns `n` distinct positions of `vertices` (all if there are fewer, but at least two). Starting with the first vertex, each position is the farthest from
+/// the previous ones.
 fn evenly_chosen(vertices: &[DVec3], n: usize) -> Vec<DVec3> {
     let places = distinct_places(vertices);
     if n >= places.len() {

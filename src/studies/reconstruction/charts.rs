@@ -1,4 +1,4 @@
-//! What is charted, and what was found in sentences.
+//! Charts and answers of a reconstruction study.
 
 use crate::error::Result;
 use crate::report::study_content::NamedPicture;
@@ -6,7 +6,7 @@ use crate::studies::reconstruction::study::ReconstructionStudy;
 use crate::table::{Along, ChartSpec, Mark, Rule, Table, short_number};
 
 impl ReconstructionStudy {
-    /// Of each noise level: error by measurements for each ensemble, then error against time.
+    /// Returns charts for each noise level: error by measurements for each ensemble, then error against time.
     pub(crate) fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
         let (cells, pareto) = (&tables[0], &tables[3]);
         let mut charts = Vec::new();
@@ -37,7 +37,7 @@ impl ReconstructionStudy {
         self.sample_frames(tables)
     }
 
-    /// At each noise level: the best cell of all, and the fewest measurements from which some cell is as good as full sampling.
+    /// Returns answers for each noise level: the best configuration, and the fewest measurements with which a configuration is as good as full sampling.
     pub(crate) fn answers(&self, tables: &[Table]) -> Vec<String> {
         let (cells, timing) = (&tables[0], &tables[2]);
         let error = |row: usize| cells.number("error", row);
@@ -76,7 +76,7 @@ impl ReconstructionStudy {
     }
 }
 
-/// A panel a dictionary, a line a solver; the noisy frame itself as a rule.
+/// Returns a chart with a panel per dictionary and a line per solver; a rule shows the error of the noisy frame.
 fn by_measurements(cells: &Table, rows: &[usize]) -> ChartSpec {
     let (code, ensemble) = (
         cells.word("ensemble", rows[0]),
@@ -102,7 +102,7 @@ fn by_measurements(cells: &Table, rows: &[usize]) -> ChartSpec {
     }
 }
 
-/// The noise of a cell: `noise of 10 % of full scale`.
+/// Returns the noise of a configuration in words: `noise of 10 % of full scale`.
 pub(super) fn noise_words(cells: &Table, row: usize) -> String {
     let level = cells.number("noise_std", row);
     match (level, cells.word("noise_unit", row)) {
@@ -113,7 +113,7 @@ pub(super) fn noise_words(cells: &Table, row: usize) -> String {
     }
 }
 
-/// The settings of a cell: `LMMSE, PCA, SBHE, m = 1024`.
+/// Returns the settings of a configuration in words: `LMMSE, PCA, SBHE, m = 1024`.
 pub(super) fn cell_words(cells: &Table, row: usize) -> String {
     let names = ["solver", "dictionary", "ensemble", "measurements"];
     let [solver, dictionary, ensemble, m] = names.map(|column| cells.words(column, row));

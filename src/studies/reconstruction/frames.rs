@@ -1,4 +1,4 @@
-//! A picture of a few test frames: as they were, as they were read, and as some cells reconstruct them.
+//! Picture of a few test frames: clean, as read, and as reconstructed by some configurations.
 
 use crate::engine::progress::Silent;
 use crate::error::Result;
@@ -12,7 +12,7 @@ use crate::table::Table;
 use ndarray::Array2;
 
 impl ReconstructionStudy {
-    /// Of the loudest noise; none where nothing was reconstructed.
+    /// Returns the picture at the largest noise; empty without results.
     pub(super) fn sample_frames(&self, tables: &[Table]) -> Result<Vec<NamedPicture>> {
         let Some(cells) = tables.first().filter(|cells| cells.n_rows > 0) else {
             return Ok(Vec::new());
@@ -72,7 +72,7 @@ impl ReconstructionStudy {
     }
 }
 
-/// The best cell at the m nearest to a quarter of the taxels, and at the fewest measurements.
+/// Returns the best configuration at the m nearest to a quarter of the taxels, and at the fewest measurements.
 fn shown_rows(cells: &Table, level: f64) -> Vec<usize> {
     let of_level: Vec<usize> = (0..cells.n_rows)
         .filter(|&row| cells.number("noise_std", row) == level)

@@ -1,4 +1,4 @@
-//! All that is reconstructed from the same measurements.
+//! Reconstructions from the same measurements.
 
 use crate::engine::work_items::pending::PendingItems;
 use crate::engine::work_items::shared::Shared;
@@ -16,17 +16,17 @@ use ndarray::{Array2, Axis};
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// Frames reconstructed together by one thread: enough for matrix products, few enough to share out.
+/// Number of frames that a thread reconstructs together. With fewer, matrix products are less efficient; with more, threads finish at different times.
 const BLOCK: usize = 64;
 
-/// Does what is left of all cells of an ensemble and m, by the number of these; dictionaries are learned when something needs them.
+/// Computes the pending configurations of one ensemble and m, given by index; dictionaries are computed when an item needs them.
 pub(super) fn measure_cells(
     (plan, touches): (&ReconstructionPlan, &Touches),
     (group, cells): (usize, &[ReconstructionCell]),
     left: &PendingItems<ReconstructionRows>,
 ) -> Result<()> {
     let first = &cells[0];
-    // Of each group the isometry of every dictionary comes before the cells.
+    // In each group, the isometries of all dictionaries precede the configurations.
     let n_dictionaries = plan.dictionaries.len();
     let isometries = first.cell + group * n_dictionaries;
     let projection = Shared::default();
@@ -58,7 +58,7 @@ pub(super) fn measure_cells(
     Ok(())
 }
 
-/// Errors and times of a cell.
+/// Returns errors and times of a configuration.
 fn reconstruct(
     (plan, touches): (&ReconstructionPlan, &Touches),
     cell: &ReconstructionCell,
@@ -97,7 +97,7 @@ fn reconstruct(
     Ok((cell, touches.truth.score(&found, &noisy.errors), time))
 }
 
-/// What a dictionary keeps apart, seen through a projection: a row a size of supports.
+/// Returns the isometry statistics of a dictionary seen through a projection; one row per size of supports.
 fn statistics(
     plan: &ReconstructionPlan,
     sensed: &SensedDictionary,

@@ -1,10 +1,10 @@
-//! How well does a frame come back from m measurements?
+//! Reconstruction studies: the accuracy of frames that are reconstructed from m measurements.
 //!
-//! A file with a `[reconstruction]` table in place of `[recognition]` is such a study:
+//! A file with a `[reconstruction]` table in place of `[recognition]` is a reconstruction study:
 //! [`ReconstructionStudySpec`] (as written) → [`ReconstructionPlan`] (checked, SI) → [`ReconstructionStudy`] → [its tables](rows).
 //!
-//! Noise is on taxels, before Φ. Dictionaries, covariances and which atoms to keep are learned from the **clean** frames of
-//! training touches, which a simulator has; test touches are never seen by them.
+//! Noise is added to taxels, before Φ. Dictionaries, covariances and the choice of atoms are computed from the **clean** frames of training touches, which are
+//! available in simulation. Test touches are not used for them.
 
 mod charts;
 mod frames;

@@ -1,4 +1,4 @@
-//! A reconstruction study that can run: every key checked, every unit SI.
+//! Plan of a reconstruction study: checked keys in SI units.
 
 use crate::engine::axes::CombineSpec;
 use crate::engine::work_items::shared::Shared;
@@ -15,32 +15,32 @@ use crate::studies::reconstruction::rows::ReconstructionCell;
 use crate::studies::reconstruction::spec::{ReconstructionSpec, ReconstructionStudySpec};
 use crate::world::{Grid, Placement};
 
-/// Axes and settings of a reconstruction study, ready to run.
+/// Checked axes and settings of a reconstruction study.
 #[derive(Clone, Debug)]
 pub struct ReconstructionPlan {
-    /// As it was written.
+    /// Specification as written in the file.
     pub spec: ReconstructionStudySpec,
-    /// The array.
+    /// Array of taxels.
     pub array: TaxelArray,
-    /// How touches are drawn.
+    /// Distribution of touch poses.
     pub placement: Placement,
-    /// Approach speed at the moment of reading, m/s.
+    /// Approach speed at the time of reading, m/s.
     pub speed: f64,
-    /// What the noise axis is measured in.
+    /// Unit of the noise axis.
     pub noise_unit: NoiseUnit,
-    /// The noise axis, in `noise_unit`.
+    /// Values of the noise axis, in `noise_unit`.
     pub noise: Vec<f64>,
-    /// The dictionary axis.
+    /// Values of the dictionary axis.
     pub dictionaries: Vec<Basis>,
 }
 
-/// Supports that are drawn of each size, at most: all are in memory at once.
+/// Largest number of supports drawn of each size; all are in memory at once.
 const MOST_SUBSETS: usize = 1_000_000;
 
-/// Atoms of a dictionary, at most: more than any array has taxels. One atom has no threshold: λ is √(2 ln k) of k atoms.
+/// Largest number of atoms of a dictionary, more than any array has taxels. The smallest is two, because λ = √(2 ln k) vanishes for k = 1 atom.
 const MOST_ATOMS: usize = 100_000_000;
 
-/// What the numbers of `[reconstruction]` may be.
+/// Ranges of the numeric keys of `[reconstruction]`.
 const KEYS: [(&str, Range); 10] = [
     ("dictionary", Range::Any),
     ("atoms", Range::Count(2, MOST_ATOMS)),
@@ -58,7 +58,7 @@ impl ReconstructionPlan {
     /// Checks a study.
     ///
     /// # Errors
-    /// The error names `place` (the file) and the first key that is out of its range.
+    /// If a key is out of its range; the error names `place` (the file) and the first such key.
     pub fn new(place: &str, mut spec: ReconstructionStudySpec) -> Result<Self> {
         let check = Check { place };
         check.objects(&spec.objects)?;
@@ -95,20 +95,20 @@ impl ReconstructionPlan {
         })
     }
 
-    /// The study's steps at a noise level; without its noise step for `None`.
+    /// Returns the study's signal steps at a noise level; without the noise step for `None`.
     pub fn signal_steps(&self, noise: Option<f64>) -> Vec<SignalStep> {
         let unit = self.noise_unit;
         let steps = self.spec.signal.steps.iter();
         let steps = steps.filter_map(|step| match step {
             StepSpec::Force => Some(SignalStep::Force),
             StepSpec::Noise => noise.map(|std| SignalStep::Noise(Noise { std, unit })),
-            // Steps that a reconstruction has no place for are refused.
+            // Steps that a reconstruction does not support were rejected before.
             _ => None,
         });
         steps.collect()
     }
 
-    /// What frames are when noise is added.
+    /// Returns the quantity of the frames to which noise is added.
     pub fn quantity(&self) -> Quantity {
         match self.spec.signal.steps.contains(&StepSpec::Force) {
             true => Quantity::Force,
@@ -116,7 +116,7 @@ impl ReconstructionPlan {
         }
     }
 
-    /// The measurements axis of an ensemble; identity has all taxels whatever is asked.
+    /// Returns the numbers m of measurements of an ensemble; the identity always has all taxels.
     pub fn measurement_counts(&self, ensemble: Ensemble) -> Vec<usize> {
         let n = self.array.n_taxels();
         if ensemble == Ensemble::Identity {
@@ -128,30 +128,30 @@ impl ReconstructionPlan {
         counts
     }
 
-    /// The study's projection of an ensemble to m measurements.
+    /// Returns the study's projection of an ensemble to m measurements.
     pub(super) fn projection(&self, ensemble: Ensemble, m: usize) -> Result<Projection> {
         let seed = Seed::new(self.spec.seed).named("projection").numbered(0);
         Projection::new(ensemble, self.shape(), m, &seed)
     }
 
-    /// Of a frame: rows and columns.
+    /// Returns the numbers of rows and columns of a frame.
     pub(super) fn shape(&self) -> (usize, usize) {
         self.array.shape()
     }
 
-    /// One for each dictionary, in their order.
+    /// Returns one shared value for each dictionary, in order.
     pub(super) fn of_each_dictionary<T>(&self) -> Vec<Shared<T>> {
         let each = self.dictionaries.iter();
         each.map(|_| Shared::default()).collect()
     }
 
-    /// Which of its dictionaries it is.
+    /// Returns the index of a dictionary in the plan.
     pub(super) fn place_of(&self, basis: Basis) -> usize {
         let place = self.dictionaries.iter().position(|&known| known == basis);
         place.expect("cells have the dictionaries of their plan")
     }
 
-    /// All cells, those of an ensemble and m together; how many atoms a dictionary has is known once it is learned.
+    /// Returns all configurations, ordered by ensemble and m. The numbers of atoms are set once dictionaries are computed.
     pub fn cells(&self) -> Vec<ReconstructionCell> {
         let n_taxels = self.array.n_taxels() as f64;
         let mut cells = Vec::new();
@@ -178,7 +178,7 @@ impl ReconstructionPlan {
 }
 
 impl Check<'_> {
-    /// Solvers assume independent noise on every taxel, and a clean frame to compare with: nothing may follow the noise.
+    /// Checks that no step follows the noise. Solvers assume independent noise on every taxel and need a clean frame for comparison.
     fn noise_is_last(&self, signal: &SignalSpec) -> Result<()> {
         let refuse = |key, given: &str, allowed| Err(self.error(key, given, allowed));
         if signal.tested_on.is_some() {
@@ -215,7 +215,7 @@ impl Check<'_> {
         }
     }
 
-    /// Each bound of a solver's work that is not as by default has a solver that it bounds.
+    /// Checks that each limit of a solver's work that differs from its default belongs to a solver of the study.
     fn efforts(&self, wanted: &ReconstructionSpec) -> Result<()> {
         let (given, usual) = (wanted.effort(), Effort::default());
         let pursuit = (Solver::Omp, "omp");

@@ -1,10 +1,10 @@
-//! The result tables of a reconstruction study: one plain struct a row, one field a column.
+//! Rows of the result tables of a reconstruction study: one plain struct for each kind of row, one field for each column.
 
 use crate::row;
 use crate::sensing::{Basis, Ensemble, Solver};
 use crate::signal::NoiseUnit;
 
-/// What people call ensembles, dictionaries and solvers.
+/// Names of ensembles, dictionaries and solvers in charts and tables.
 const ENSEMBLES: &[(&str, &str)] = &[("sbhe", "SBHE"), ("gaussian", "Gaussian")];
 const DICTIONARIES: &[(&str, &str)] = &[
     ("dct", "DCT"),
@@ -15,30 +15,30 @@ const DICTIONARIES: &[(&str, &str)] = &[
 const SOLVERS: &[(&str, &str)] = &[("omp", "OMP"), ("l1", "ℓ1"), ("lmmse", "LMMSE")];
 
 row! {
-/// The settings of one cell: every axis at one value.
+/// One configuration: one value of every axis.
 pub struct ReconstructionCell {
-    /// Number of the cell, from 0.
+    /// Number of the configuration, from 0.
     cell: usize => Note: Linear;
     /// Noise standard deviation on each taxel, in `noise_unit`.
     noise_std: f64 => Condition "noise": Linear;
-    /// What `noise_std` is measured in.
+    /// Unit of `noise_std`.
     noise_unit: NoiseUnit => Note;
-    /// How measurements are made.
+    /// Ensemble of the measurement matrix.
     ensemble: Ensemble => Choice named ENSEMBLES;
-    /// Measurements a touch, m.
+    /// Number m of measurements per touch.
     measurements: usize => Choice "measurements": Log;
     /// Compression ratio n / m.
     ratio: f64 => Choice "compression" in ":1": Log;
-    /// What frames are made of.
+    /// Dictionary of the frames.
     dictionary: Basis => Choice named DICTIONARIES;
-    /// Atoms of the dictionary.
+    /// Number of atoms of the dictionary.
     atoms: usize => Note "atoms of the dictionary": Linear;
-    /// How coefficients are found.
+    /// Solver of the coefficients.
     solver: Solver => Choice named SOLVERS;
 } }
 
 impl ReconstructionCell {
-    /// What it is called as a work item: by its settings, since its number is another where an axis has more values.
+    /// Returns the name of the configuration's work item. It contains the settings, because the number changes if an axis has more values.
     pub(super) fn name(&self) -> String {
         format!(
             "{:?} in {:?} of {:?}, m = {}, noise {} {:?}",
@@ -51,7 +51,7 @@ impl ReconstructionCell {
         )
     }
 
-    /// What the isometry of a dictionary through the same measurements is called.
+    /// Returns the name of the work item of a dictionary's isometry with the same measurements.
     pub(super) fn isometry_name(&self, basis: Basis) -> String {
         let (ensemble, m) = (self.ensemble, self.measurements);
         format!("isometry of {ensemble:?}, m = {m}, {basis:?}")
@@ -59,93 +59,93 @@ impl ReconstructionCell {
 }
 
 row! {
-/// How well a cell's test frames came back (with the [`ReconstructionCell`] before it: a row of `reconstruction.csv`).
+/// Reconstruction error of a configuration. A row of `reconstruction.csv` is a [`ReconstructionCell`] followed by a `ReconstructionScore`.
 pub struct ReconstructionScore {
-    /// Test frames.
+    /// Number of test frames.
     n_frames: usize => Note "test frames": Linear;
     /// √(Σ‖x̂ − x‖² / Σ‖x‖²) over test frames x without noise.
     error: f64 => Value(Less): Log between [error_low, error_high];
     /// Lower end of the 95 % interval of `error` over touches.
     error_low: f64 => Note "95 % interval over touches, lower end": Log;
-    /// Upper end of it.
+    /// Upper end of the 95 % interval of `error` over touches.
     error_high: f64 => Note "95 % interval over touches, upper end": Log;
-    /// The same error of the noisy frames themselves: all taxels read, nothing compressed.
+    /// Error of the noisy frames, in which all taxels are read without compression.
     full_sampling_error: f64 => Note: Log;
     /// −20 log₁₀ `error`, dB.
     snr_db: f64 => Value(More) "SNR" in "dB": Linear;
     /// 20 log₁₀ (full scale / root mean square error of a taxel), dB.
     psnr_db: f64 => Value(More) "peak SNR" in "dB": Linear;
-    /// Coefficients that are not zero, mean over frames.
+    /// Number of non-zero coefficients, mean over frames.
     atoms_used: f64 => Note "atoms used": Linear;
-    /// Frames whose solver stopped at its limit of atoms or steps.
+    /// Number of frames whose solver stopped at its limit of atoms or steps.
     n_capped: usize => Note "capped frames": Linear;
 } }
 
 row! {
-/// What a cell cost (with the [`ReconstructionCell`] before it: a row of `timing.csv`).
+/// Computing time of a configuration. A row of `timing.csv` is a [`ReconstructionCell`] followed by a `ReconstructionTime`.
 pub struct ReconstructionTime {
-    /// Seconds to prepare the solver, the dictionary as measured not included.
+    /// Time to prepare the solver, seconds, without the computation of ΦΨ.
     prepare_s: f64 => Cost "time to prepare" in "s": Log;
-    /// Microseconds a frame, one core, frames in blocks.
+    /// Time per frame on one core, µs; frames are processed in blocks.
     us_per_frame: f64 => Cost "time of a frame" in "us": Log;
-    /// Frames a second on one core.
+    /// Frames per second on one core.
     frames_per_s_per_core: f64 => Value(More) "frames a second on one core": Log;
 } }
 
 row! {
-/// Error against time (with the [`ReconstructionCell`] before it: a row of `pareto.csv`).
+/// Error against time of a configuration. A row of `pareto.csv` is a [`ReconstructionCell`] followed by a `ReconstructionPareto`.
 pub struct ReconstructionPareto {
-    /// As in `reconstruction.csv`.
+    /// Reconstruction error, as in `reconstruction.csv`.
     error: f64 => Value(Less): Log;
-    /// As in `timing.csv`.
+    /// Time per frame, µs, as in `timing.csv`.
     us_per_frame: f64 => Cost "time of a frame on one core" in "us": Log;
-    /// As in `timing.csv`.
+    /// Frames per second on one core, as in `timing.csv`.
     frames_per_s_per_core: f64 => Value(More) "frames a second on one core": Log;
-    /// Whether no cell of the same noise is both faster and better.
+    /// Whether no configuration with the same noise is both faster and more accurate.
     on_front: bool => Outcome "on the front";
 } }
 
 row! {
-/// How well an ensemble keeps atoms apart: a row of `ensembles.csv`.
+/// Isometry statistics of an ensemble and a dictionary: a row of `ensembles.csv`.
 ///
-/// Squared singular values are of s columns of ΦΨ drawn at random, all columns scaled to a mean square norm of 1.
+/// Squared singular values are computed for s randomly drawn columns of ΦΨ, all columns scaled to a mean square norm of 1.
 pub struct EnsembleStatistics {
-    /// How measurements are made.
+    /// Ensemble of the measurement matrix.
     ensemble: Ensemble => Choice named ENSEMBLES;
-    /// m.
+    /// Number m of measurements.
     measurements: usize => Choice: Log;
-    /// n / m.
+    /// Compression ratio n / m.
     ratio: f64 => Choice "compression" in ":1": Log;
-    /// What frames are made of.
+    /// Dictionary of the frames.
     dictionary: Basis => Choice named DICTIONARIES;
-    /// k.
+    /// Number k of atoms of the dictionary.
     atoms: usize => Note "atoms of the dictionary": Linear;
-    /// Mutual coherence over the atoms that are not invisible.
+    /// Mutual coherence over the visible atoms.
     coherence: f64 => Value(Less) "mutual coherence": Share;
-    /// The least that any as many columns in m dimensions have.
+    /// Welch bound: the smallest possible coherence of this number of columns in m dimensions.
     welch_bound: f64 => Note "Welch bound": Share;
-    /// Atoms that Φ maps to zero.
+    /// Number of atoms that Φ maps to zero.
     n_invisible: usize => Note "invisible atoms": Linear;
-    /// s, the atoms of a support.
+    /// Number s of atoms in a support.
     sparsity: usize => Condition: Linear;
-    /// Supports drawn.
+    /// Number of drawn supports.
     n_subsets: usize => Note "supports drawn": Linear;
     /// Smallest σ²_min over supports.
     low_min: f64 => Value(More) "least σ²": Linear;
-    /// Median σ²_min.
+    /// Median of σ²_min over supports.
     low_median: f64 => Value(More) "median of the least σ²": Linear;
-    /// Median σ²_max.
+    /// Median of σ²_max over supports.
     high_median: f64 => Value(Less) "median of the largest σ²": Linear;
-    /// Largest σ²_max.
+    /// Largest σ²_max over supports.
     high_max: f64 => Value(Less) "largest σ²": Linear;
-    /// Median of max(1 − σ²_min, σ²_max − 1).
+    /// Median of max(1 − σ²_min, σ²_max − 1) over supports.
     deviation_median: f64 => Value(Less) "median deviation": Linear;
-    /// The largest: a lower bound on the isometry constant δₛ, whose exact value is NP-hard to compute.
+    /// Largest max(1 − σ²_min, σ²_max − 1): a lower bound on the isometry constant δₛ, whose exact value is NP-hard to compute.
     delta_lower_bound: f64 => Value(Less) "lower bound of δ": Linear;
 } }
 
-/// What came of a cell, and what it cost.
+/// Configuration, score and computing time of a work item.
 pub type ReconstructionRow = (ReconstructionCell, ReconstructionScore, ReconstructionTime);
 
-/// Rows of work items: of cells, and of ensembles, m, dictionaries and sparsities.
+/// Rows of work items: configurations, and isometry statistics.
 pub type ReconstructionRows = (Vec<ReconstructionRow>, Vec<EnsembleStatistics>);

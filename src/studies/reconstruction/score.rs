@@ -1,4 +1,4 @@
-//! Errors of reconstructed frames, and which cells no other beats.
+//! Errors of reconstructed frames, and the Pareto front of the configurations.
 
 use crate::studies::reconstruction::rows::{
     ReconstructionCell, ReconstructionPareto, ReconstructionRow, ReconstructionScore,
@@ -6,30 +6,30 @@ use crate::studies::reconstruction::rows::{
 use crate::table::front;
 use ndarray::{Array2, ArrayView2};
 
-/// 95 % of a normal distribution lies within so many standard deviations.
+/// Half width of the central 95 % of a normal distribution, in standard deviations.
 const NORMAL_95: f64 = 1.959_963_984_540_054;
 
-/// ‖a − b‖² of each row.
+/// Returns ‖a − b‖² of each row.
 pub(super) fn square_errors(a: ArrayView2<f64>, b: ArrayView2<f64>) -> Vec<f64> {
     let rows = a.outer_iter().zip(b.outer_iter());
     rows.map(|(a, b)| a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum())
         .collect()
 }
 
-/// What clean frames a cell's frames are compared with.
+/// Clean frames with which reconstructions are compared.
 pub(super) struct Truth {
     /// ‖x‖² of each test frame.
     squares: Vec<f64>,
     n_taxels: usize,
-    /// The largest value a taxel can have.
+    /// Largest value that a taxel can have.
     full_scale: f64,
 }
 
-/// What a cell's solver made of some test frames.
+/// Reconstruction of some test frames.
 pub(super) struct Found {
-    /// ‖x̂ − x‖² of each.
+    /// ‖x̂ − x‖² of each frame.
     pub errors: Vec<f64>,
-    /// Coefficients that are not zero, all frames.
+    /// Number of non-zero coefficients over all frames.
     pub n_atoms: usize,
     pub n_capped: usize,
     pub seconds: f64,
@@ -45,7 +45,7 @@ impl Truth {
         }
     }
 
-    /// Of all test frames; `full` holds ‖noisy − x‖² of each.
+    /// Returns the score over all test frames; `full` contains ‖noisy − x‖² of each frame.
     pub(super) fn score(&self, found: &[Found], full: &[f64]) -> ReconstructionScore {
         let n_frames = self.squares.len();
         let errors: Vec<f64> = found.iter().flat_map(|f| f.errors.clone()).collect();
@@ -67,7 +67,7 @@ impl Truth {
         }
     }
 
-    /// Σe / Σ‖x‖², and half its 95 % interval over frames: that of a ratio of means, by linearisation (the delta method).
+    /// Returns Σe / Σ‖x‖² and the half width of its 95 % interval over frames, by linearisation of the ratio of means (delta method).
     fn ratio(&self, errors: &[f64]) -> (f64, f64) {
         let n = errors.len() as f64;
         let mean = self.squares.iter().sum::<f64>() / n;
@@ -79,7 +79,7 @@ impl Truth {
     }
 }
 
-/// Marks, among cells of one noise level, those that no other beats in both error and rate.
+/// Marks, among configurations of one noise level, those that no other dominates in error and rate.
 pub(super) fn pareto(
     rows: &[ReconstructionRow],
     levels: &[f64],
@@ -127,7 +127,7 @@ mod tests {
         assert_eq!((score.full_sampling_error, score.atoms_used), (1.0, 2.0));
         assert!(score.error_low < 0.2 && 0.2 < score.error_high);
         assert!((score.snr_db - 13.979_400_086_720_376).abs() < 1e-12);
-        // Mean square error 0.5 of a taxel against 10².
+        // Mean square error of 0.5 per taxel, relative to 10².
         assert!((score.psnr_db - 23.010_299_956_639_813).abs() < 1e-12);
     }
 }

@@ -1,4 +1,4 @@
-//! A reconstruction study as it is written.
+//! Specification of a reconstruction study: the keys of its TOML file.
 
 use crate::engine::axis::Axis;
 use crate::inputs::defaults::count;
@@ -12,18 +12,18 @@ use serde::{Deserialize, Serialize};
 
 study_file! {
 pub struct ReconstructionStudySpec {
-    /// What is touched.
+    /// Touched objects.
     pub objects: ObjectsSpec,
-    /// What touches; one array.
+    /// The skin, a single array.
     pub skin: SkinSpec,
-    /// How it touches.
+    /// The touches.
     pub touches: TouchesSpec,
-    /// What happens to a frame before it is sensed; no smoothing.
+    /// Processing of a frame before it is compressed; smoothing is not allowed.
     #[serde(default)]
     pub signal: SignalSpec,
-    /// How a frame is compressed.
+    /// Compression of a frame.
     pub sensing: SensingSpec,
-    /// How a frame is reconstructed.
+    /// Reconstruction of a frame.
     pub reconstruction: ReconstructionSpec,
 } }
 
@@ -31,37 +31,37 @@ pub struct ReconstructionStudySpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ReconstructionSpec {
-    /// Axis: how coefficients are found: `omp`, `l1`, `lmmse`.
+    /// Axis: solver of the coefficients, `omp`, `l1` or `lmmse`.
     pub solver: Axis<Solver>,
-    /// Axis: what frames are made of: `dct`, `haar`, `daubechies4`, `pca`.
+    /// Axis: dictionary, `dct`, `haar`, `daubechies4` or `pca`.
     pub dictionary: Axis<Basis>,
-    /// Atoms of a dictionary, at most: those that carry most of the training frames. All (of PCA 256) when left out.
+    /// Largest number of atoms of a dictionary; the atoms with the most energy in the training frames are kept. Default: all, or 256 for PCA.
     pub atoms: Option<usize>,
-    /// Atoms that matching pursuit may choose a frame.
+    /// Largest number of atoms that matching pursuit may select per frame.
     #[serde(default = "default_most_atoms")]
     pub most_atoms: usize,
-    /// λ of the ℓ1 problem, as a multiple of the universal threshold σ a √(2 ln k).
+    /// Regularisation λ of the ℓ1 problem, as a multiple of the universal threshold σ a √(2 ln k).
     #[serde(default = "default_lambda_scale")]
     pub lambda_scale: f64,
-    /// Relative duality gap at which an ℓ1 problem is solved.
+    /// Relative duality gap at which the ℓ1 solver stops.
     #[serde(default = "default_tolerance")]
     pub tolerance: f64,
-    /// Steps that the ℓ1 solver may take a frame.
+    /// Largest number of steps of the ℓ1 solver per frame.
     #[serde(default = "default_most_steps")]
     pub most_steps: usize,
     /// Fraction of the touches held out for testing.
     #[serde(default = "default_test_fraction")]
     pub test_fraction: f64,
-    /// Sizes of the supports whose isometry is sampled.
+    /// Sizes of the supports for the isometry statistics.
     #[serde(default = "default_isometry_sparsity")]
     pub isometry_sparsity: Axis<usize>,
-    /// Supports drawn for each size.
+    /// Number of supports drawn for each size.
     #[serde(default = "count::<200>")]
     pub isometry_subsets: usize,
 }
 
 impl ReconstructionSpec {
-    /// What bounds the solvers' work.
+    /// Returns the limits of the solvers' work.
     pub fn effort(&self) -> Effort {
         Effort {
             most_atoms: self.most_atoms,

@@ -1,4 +1,4 @@
-//! Runs a reconstruction study: touches once, dictionaries once, then every ensemble, m, noise, dictionary and solver.
+//! Runs a reconstruction study: touches and dictionaries once, then every ensemble, m, noise, dictionary and solver.
 
 use crate::engine::progress::Progress;
 use crate::engine::work_items::pending::PendingItems;
@@ -27,11 +27,11 @@ use std::collections::BTreeMap;
 
 /// A reconstruction study and its touches.
 pub struct ReconstructionStudy {
-    /// What to run.
+    /// Plan of the study.
     pub plan: ReconstructionPlan,
-    /// What is touched.
+    /// Objects with their touches.
     pub touched: Vec<TouchedObject>,
-    /// Their frames, once something needed them.
+    /// Frames of all touches, simulated when they are first needed.
     frames: Shared<Touches>,
 }
 
@@ -98,7 +98,7 @@ impl Study for ReconstructionStudy {
     fn scale(&self) -> Scale {
         let n_touches: usize = self.touched.iter().map(|t| t.touches.len()).sum();
         let n_taxels = self.plan.array.n_taxels() as f64;
-        // Frames clean, read and reconstructed; one dictionary.
+        // Memory of clean, read and reconstructed frames, and of one dictionary.
         let frames = 3.0 * n_touches as f64 * n_taxels;
         Scale {
             objects: self.touched.len().to_string(),
@@ -109,7 +109,7 @@ impl Study for ReconstructionStudy {
         }
     }
 
-    /// Of each ensemble and m what every dictionary keeps apart, then its cells.
+    /// For each ensemble and m, the isometry of every dictionary is followed by the configurations.
     fn work_items(&self) -> Vec<WorkItem> {
         let mut items = Vec::new();
         for (group, cells) in on_measured(&self.plan.cells()).enumerate() {
@@ -133,7 +133,7 @@ impl Study for ReconstructionStudy {
     }
 
     fn tables(&self, (mut rows, statistics): ReconstructionRows) -> Result<Vec<Table>> {
-        // Cells that were finished when axes had other values have other numbers.
+        // Configurations are renumbered, because the axes of an earlier run may have had other values.
         let numbers = self.plan.cells().into_iter();
         let numbers: BTreeMap<String, usize> =
             numbers.map(|cell| (cell.name(), cell.cell)).collect();
@@ -162,13 +162,13 @@ impl Study for ReconstructionStudy {
     }
 }
 
-/// Cells in groups that reconstruct from the same measurements.
+/// Returns the configurations in groups that share their measurements.
 fn on_measured(cells: &[ReconstructionCell]) -> impl Iterator<Item = &[ReconstructionCell]> {
     cells.chunk_by(|a, b| (a.ensemble, a.measurements) == (b.ensemble, b.measurements))
 }
 
 impl ReconstructionStudy {
-    /// The frames of all touches.
+    /// Returns the frames of all touches.
     pub(super) fn frames(&self, progress: &dyn Progress) -> Result<&Touches> {
         let simulate = || Touches::simulate(&self.plan, &self.touched, progress);
         self.frames.get(simulate)

@@ -1,4 +1,4 @@
-//! Frames of all touches: simulated once, split, with and without noise; and the dictionaries learned from them.
+//! Frames of all touches: simulated once, split, with and without noise, and the dictionaries computed from them.
 
 use crate::engine::progress::Progress;
 use crate::engine::work_items::shared::Shared;
@@ -19,10 +19,10 @@ use crate::studies::reconstruction::score::{Truth, square_errors};
 use bubbletouch_svm::split::Split;
 use ndarray::{Array1, Array2, Axis};
 
-/// Test frames that are kept for the eye.
+/// Number of test frames in the picture.
 const N_SAMPLES: usize = 3;
 
-/// Frames of all touches, split.
+/// Frames of all touches, divided into training and test frames.
 pub(super) struct Touches {
     /// Clean training frames.
     pub train: Array2<f64>,
@@ -30,16 +30,16 @@ pub(super) struct Touches {
     pub test: Array2<f64>,
     pub truth: Truth,
     pub noisy: Vec<Noisy>,
-    /// Learned from training frames once something needs them, in the order of the plan.
+    /// Dictionaries of the training frames, computed when first needed, in the order of the plan.
     dictionaries: Vec<Shared<Dictionary>>,
-    /// The test rows that are kept for the eye, and their objects.
+    /// Rows of the test frames in the picture, with their objects.
     pub shown: Vec<(usize, String)>,
 }
 
 /// Test frames at one noise level.
 pub(super) struct Noisy {
     pub level: f64,
-    /// σ of a taxel, in the frame's unit.
+    /// Standard deviation σ of the noise of a taxel, in the frame's unit.
     pub std: f64,
     pub frames: Array2<f64>,
     /// ‖noise‖² of each frame.
@@ -83,7 +83,7 @@ impl Touches {
         })
     }
 
-    /// A dictionary of the training frames.
+    /// Returns a dictionary of the training frames.
     pub(super) fn dictionary(
         &self,
         plan: &ReconstructionPlan,
@@ -96,14 +96,14 @@ impl Touches {
         })
     }
 
-    /// Those of some test frames that are for the eye.
+    /// Returns the frames in the picture.
     pub(super) fn pick(&self, frames: &Array2<f64>) -> Array2<f64> {
         let rows: Vec<usize> = self.shown.iter().map(|(row, _)| *row).collect();
         frames.select(Axis(0), &rows)
     }
 }
 
-/// Frames of some touches, with or without noise.
+/// Reads frames of some touches, with or without noise.
 fn read(
     plan: &ReconstructionPlan,
     frames: &Frames,
@@ -126,7 +126,7 @@ fn read(
     Ok(measure(reading, &touches)?.0)
 }
 
-/// The first test touch of a few objects spread over the list.
+/// Returns the first test touch of a few objects, spread over the list.
 fn shown(touched: &[TouchedObject], labels: &Array1<usize>, split: &Split) -> Vec<(usize, String)> {
     let n = N_SAMPLES.min(touched.len());
     let objects = (0..n).map(|sample| sample * touched.len() / n);

@@ -1,4 +1,4 @@
-//! An object on its way over a body, and where it touches first.
+//! Motion of an object over a body, and the search for its first contact.
 
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
@@ -8,24 +8,24 @@ use crate::studies::whole_body::plan::Aim;
 use crate::whole_body::{BodyContact, BodyState, SphereClusters, WholeBody};
 use glam::DVec3;
 
-/// What a damped taxel has forgotten after, seconds.
+/// Time after which a damped taxel is at rest, seconds.
 pub(super) const FORGOTTEN: f64 = 1e9;
-/// Of the search for the first contact, metres: steps, and how near it comes.
+/// Step of the search for the first contact, metres, and its accuracy.
 const SEARCH_STEP: f64 = 1e-3;
 const SEARCH_END: f64 = 1e-7;
-/// How far outside of a first touch the search begins, metres.
+/// Distance from first contact at which the search begins, metres.
 const SEARCH_START: f64 = 0.05;
 
-/// A body, and where everything of it is.
+/// A body with the poses of its patches and links.
 pub(super) struct Posture<'a> {
     pub body: &'a WholeBody,
-    /// `world_from_patch`, of each.
+    /// Pose of each patch, `world_from_patch`.
     pub patches: Vec<Pose>,
-    /// `world_from_link`, of each.
+    /// Pose of each link, `world_from_link`.
     pub links: Vec<Pose>,
 }
 
-/// An object on its way.
+/// An object that moves along a path.
 pub(super) struct Drive<'a> {
     pub body: &'a WholeBody,
     pub state: BodyState,
@@ -48,18 +48,18 @@ impl<'a> Drive<'a> {
         }
     }
 
-    /// Touches at the start of a path, as if nothing had been before.
+    /// Presses at the start of a path, without history.
     pub fn probe(&mut self, path: Path) -> BodyContact {
         let pose = [path.at(0.0)];
         self.state.press(self.body, &self.object, &pose, FORGOTTEN)
     }
 
-    /// The touched taxels of the last press: number, and metres.
+    /// Returns the touched taxels of the last press with their deflections, metres.
     pub fn touched(&self) -> impl Iterator<Item = (usize, f64)> {
         self.state.touched(self.body)
     }
 
-    /// Moves the start of the path along `from` (unit, out of the skin) to `depth` metres past the first contact on the way in.
+    /// Moves the start of the path along `from` (unit vector, out of the skin) to `depth` metres past the first contact.
     pub fn approach(&mut self, from: DVec3, depth: f64) -> Result<()> {
         let reach = self.object[0].ball().radius + self.object[0].ball().center.length();
         let path = self.path;

@@ -1,4 +1,4 @@
-//! What a step costs by the size of skin, touch and object: rungs of equal sleeves, far from each other, under a cushion of spheres.
+//! Scaling series: computing time of a step by the size of skin, touch and object. Bodies consist of equal sleeves, far apart, under a cushion of spheres.
 
 use crate::error::Result;
 use crate::geometry::Pose;
@@ -13,20 +13,20 @@ use crate::world::{Extrusion, Patch, Taxel};
 use glam::{DQuat, DVec3};
 use std::f64::consts::TAU;
 
-/// Patches around and along a sleeve of the ladder of skins, ten, so that 100,000 taxels are one sleeve of patches of 10,000; and
-/// of the other ladders, where the touch needs more room: as large as a trunk.
+/// Numbers of patches around and along a sleeve. Growing skins use ten patches, so that 100,000 taxels are one sleeve with patches of 10,000. The other series
+/// need a larger area, as large as a trunk.
 const SMALL: (usize, usize) = (5, 2);
 const LARGE: (usize, usize) = (9, 4);
-/// Share of a sleeve's taxels that a touch may cover, at most: there must be room for the cushion.
+/// Largest fraction of a sleeve's taxels that a touch may cover, to leave space for the cushion.
 const MOST_TOUCHED: f64 = 0.4;
-/// The cushion swings by so many radians about the sleeve's axis, and slides by such a share of its side, each half second.
+/// Amplitudes of the cushion's motion: rotation about the sleeve's axis, radians, and translation as a fraction of its side. The period is half a second.
 const SWING: f64 = 0.05;
 const SLIDE: f64 = 0.02;
 const PERIOD: f64 = 0.5;
-/// Halvings of the search for the depth at which so many taxels are touched.
+/// Number of bisections in the search for the depth at which the required number of taxels is touched.
 const N_HALVINGS: usize = 40;
 
-/// A rung: how much skin, how much of it touched, by how many spheres.
+/// One size of a scaling series: numbers of taxels, touched taxels and spheres.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Rung {
     pub series: Series,
@@ -37,7 +37,7 @@ pub(super) struct Rung {
     n_spheres: usize,
 }
 
-/// All rungs, ladder by ladder.
+/// Returns all sizes of all series.
 pub(super) fn rungs(wanted: &LaddersSpec) -> Vec<Rung> {
     let small = SMALL.0 * SMALL.1 * 10_000;
     let mut rungs = Vec::new();
@@ -71,12 +71,12 @@ pub(super) fn rungs(wanted: &LaddersSpec) -> Vec<Rung> {
     rungs
 }
 
-/// Climbs a rung.
+/// Simulates and times one size.
 pub(super) fn climb(plan: &WholeBodyPlan, rung: &Rung) -> Result<Driven> {
     let sleeve = Sleeve::of_body(rung.n_taxels, rung.sleeve, plan.pitch);
     let (body, patches) = sleeve.body(rung.n_taxels, plan.taxel, plan.pitch)?;
     let side = plan.pitch * (rung.n_touched as f64).sqrt();
-    // Its spheres are where a taxel's own sphere begins.
+    // The inner surface of the cushion lies at the spheres of the taxels.
     let object = cushion(rung.n_spheres, side, sleeve.radius() + plan.taxel.radius)?;
     let posture = Posture {
         body: &body,
@@ -95,7 +95,7 @@ pub(super) fn climb(plan: &WholeBodyPlan, rung: &Rung) -> Result<Driven> {
         path,
     };
     let mut drive = Drive::new(&posture, &object, &aim);
-    // A cushion that goes deeper than the stroke only saturates more.
+    // Beyond the stroke, a deeper cushion only saturates more taxels.
     let (mut out, mut deep) = (0.0, plan.taxel.stroke);
     for _ in 0..N_HALVINGS {
         let depth = 0.5 * (out + deep);
@@ -108,7 +108,7 @@ pub(super) fn climb(plan: &WholeBodyPlan, rung: &Rung) -> Result<Driven> {
     drive.run(plan, (rung.series, &rung.name), &[])
 }
 
-/// A sleeve: how many patches of `side` metres are around it and along it.
+/// A sleeve: the numbers of patches around and along it, and their side length, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Sleeve {
     n_around: usize,
@@ -116,11 +116,11 @@ struct Sleeve {
     side: f64,
 }
 
-/// From sleeve to sleeve, metres.
+/// Distance between sleeves, metres.
 const APART: f64 = 1.0;
 
 impl Sleeve {
-    /// Patches of 100 × 100 taxels, or smaller ones of a body that has fewer taxels than one sleeve of those.
+    /// Returns a sleeve of patches with 100 × 100 taxels, or with smaller patches if the body has fewer taxels than one such sleeve.
     fn of_body(n_taxels: usize, (n_around, n_along): (usize, usize), pitch: f64) -> Self {
         let a_patch = (n_taxels as f64 / (n_around * n_along) as f64).min(1e4);
         Self {
@@ -130,12 +130,12 @@ impl Sleeve {
         }
     }
 
-    /// Of the rest centres, metres.
+    /// Returns the radius of the rest centres, metres.
     fn radius(&self) -> f64 {
         self.n_around as f64 * self.side / TAU
     }
 
-    /// Sleeves about z in rows of twenty, the first at the origin, the last with patches missing: about `n_taxels` in all.
+    /// Returns a body of about `n_taxels`: sleeves about z in rows of twenty, the first at the origin. The last sleeve may have fewer patches.
     fn body(&self, n_taxels: usize, taxel: Taxel, pitch: f64) -> Result<(WholeBody, Vec<Pose>)> {
         let (radius, length) = (self.radius(), self.side - pitch);
         let part = Extrusion::cylinder(radius, length, length / radius, pitch)?;

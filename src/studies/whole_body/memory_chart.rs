@@ -1,8 +1,8 @@
-//! What the memory of a taxel buys.
+//! Chart of accuracy against memory.
 
 use crate::table::{ChartSpec, Mark, Table};
 
-/// Accuracy against the bytes that a compression keeps for each taxel, with the front; none where nothing was learned.
+/// Returns the chart of accuracy against the memory of a compression per taxel, with the Pareto front; `None` without results.
 pub(super) fn memory_chart(recognition: &Table) -> Option<ChartSpec> {
     (recognition.n_rows > 0).then(|| ChartSpec {
         lines: vec!["compression".to_owned()],

@@ -1,15 +1,15 @@
-//! What does a step of a whole body of skin cost, and is the way from touch to answer within its millisecond?
+//! Whole-body studies: the computing time of a step of a whole body of skin, from touch to recognition, compared with one millisecond.
 //!
-//! A file with a `[whole_body]` table is such a study: [`WholeBodyStudySpec`] (as written) → [`WholeBodyPlan`] (checked, SI) →
+//! A file with a `[whole_body]` table is a whole-body study: [`WholeBodyStudySpec`] (as written) → [`WholeBodyPlan`] (checked, SI) →
 //! [`run_whole`](crate::studies::study::run_whole) → [its tables](rows).
 //!
-//! 1. **Scenes**: an object goes along its path on a robot that is covered in skin ([`CoveredRobot`](crate::whole_body::CoveredRobot)).
-//!    Each step is pressed, what is touched is compressed ([`Columns`](crate::sensing::Columns)), and a linear SVM says what it is.
-//! 2. **Recognition**: that SVM has learned from simulated touches of some objects, and is tested on others of the same objects.
-//! 3. **Ladders**: what a step costs as the skin grows at the same touch, as the touch grows on the same skin, and with the spheres
-//!    of the object, on bodies of equal sleeves under a cushion of spheres.
+//! 1. **Scenes**: an object moves along its path on a robot that is covered in skin ([`CoveredRobot`](crate::whole_body::CoveredRobot)). In each step the skin
+//! is pressed, the touched taxels are compressed ([`Columns`](crate::sensing::Columns)), and a linear SVM recognises the object.
+//! 2. **Recognition**: the SVM is trained on simulated touches of some objects, and tested on other touches of the same objects.
+//! 3. **Scaling**: computing time of a step as the skin, the touch, or the object's number of spheres grows, on bodies of equal sleeves under a cushion of
+//! spheres.
 //!
-//! Counts, sums and decisions are the same bytes at any number of threads; times have tables of their own.
+//! Counts, sums and decisions do not depend on the number of threads; times are in separate tables.
 
 mod charts;
 mod drive;

@@ -1,4 +1,4 @@
-//! What touches a body: built-in objects, solids of a few parts, and cushions of spheres.
+//! Objects that touch a body: built-in objects, solids of a few parts, and cushions of spheres.
 
 use crate::error::Result;
 use crate::geometry::Pose;
@@ -7,7 +7,7 @@ use crate::objects::{Catalogue, Part, Shape, Solid, Sphere, SphereUnion, pack};
 use crate::studies::whole_body::spec::{BodyPartSpec, BodySceneSpec};
 use glam::DVec3;
 
-/// The spheres of what a scene has, metres.
+/// Returns the spheres of a scene's object, metres.
 pub(super) fn of_scene(scene: &BodySceneSpec, surface_error: f64) -> Result<SphereUnion> {
     match &scene.object {
         Some(name) => built_in(name, surface_error),
@@ -18,7 +18,7 @@ pub(super) fn of_scene(scene: &BodySceneSpec, surface_error: f64) -> Result<Sphe
     }
 }
 
-/// The spheres of a built-in object with the middle of its box at the origin, metres.
+/// Returns the spheres of a built-in object with the centre of its bounding box at the origin, metres.
 pub(super) fn built_in(name: &str, surface_error: f64) -> Result<SphereUnion> {
     let solid = Catalogue::builtin()?.object(name)?.solid.clone();
     let middle = solid.bounds().center();
@@ -55,13 +55,13 @@ fn part(part: &BodyPartSpec) -> Result<Part> {
     Part::new(shape, Pose::from_translation(MM * DVec3::from_array(at_mm)))
 }
 
-/// Radius of the spheres of a cushion, in distances between them. Larger: each taxel is under more of them.
+/// Radius of the spheres of a cushion, divided by their distance. With a larger radius, each taxel is under more spheres.
 const SPHERE_RADIUS: f64 = 3.0;
-/// Steps of a lattice whose points lie evenly in a square, however many they are: the golden ratio.
+/// Golden ratio: increment of a lattice that is evenly distributed in a square for any number of points.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-/// A square cushion of n spheres, `side` metres each way, bent around a cylinder about z, its middle at +x: half of the spheres touch
-/// the cylinder from outside, the others are on its far side, half a side away.
+/// Returns a square cushion of n spheres with side length `side`, metres, bent around a cylinder about z, with its centre at +x. Half of the spheres touch the
+/// cylinder from outside. The others are on the far side, half a side length away.
 pub(super) fn cushion(n: usize, side: f64, cylinder: f64) -> Result<SphereUnion> {
     let n_inside = n.div_ceil(2);
     let radius = SPHERE_RADIUS * side / (n_inside as f64).sqrt();

@@ -1,26 +1,26 @@
-//! Where an object is at a time: to and fro about a place in the frame of a link.
+//! Path of an object: sinusoidal motion about a pose in the frame of a link.
 
 use crate::geometry::Pose;
 use glam::{DQuat, DVec3};
 use std::f64::consts::TAU;
 
-/// A path. At time t, with s = sin(2π t / period), the object is turned about the link's z axis by s · swing and moved by s · moves.
+/// Path of an object. At time t, with s = sin(2π t / period), the object is rotated about the link's z axis by s · swing and translated by s · moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Path {
-    /// Where the link is: `world_from_link`.
+    /// Pose of the link, `world_from_link`.
     pub world_from_link: Pose,
-    /// Where the object starts: `link_from_object`.
+    /// Initial pose of the object, `link_from_object`.
     pub start: Pose,
-    /// Metres, in the frame of the link.
+    /// Amplitude of the translation in the frame of the link, metres.
     pub moves: DVec3,
-    /// Radians.
+    /// Amplitude of the rotation, radians.
     pub swing: f64,
-    /// Seconds.
+    /// Period, seconds.
     pub period: f64,
 }
 
 impl Path {
-    /// Of an object that does not move.
+    /// Returns the path of an object at rest.
     pub fn resting(start: Pose) -> Self {
         Self {
             world_from_link: Pose::IDENTITY,
@@ -31,7 +31,7 @@ impl Path {
         }
     }
 
-    /// `world_from_object` at a time, seconds.
+    /// Returns the pose `world_from_object` at a time, seconds.
     pub fn at(&self, time: f64) -> Pose {
         let share = (TAU * time / self.period).sin();
         let moved = Pose::new(
@@ -41,7 +41,7 @@ impl Path {
         self.world_from_link.compose(&moved.compose(&self.start))
     }
 
-    /// The same, starting further along a direction of the link's frame, metres.
+    /// Returns the path with its start shifted in the link's frame, metres.
     pub fn shifted(&self, by: DVec3) -> Self {
         Self {
             start: Pose::new(self.start.rotation, self.start.translation + by),

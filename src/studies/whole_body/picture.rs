@@ -1,4 +1,4 @@
-//! The picture of the scene that touches most of a robot: with what touches it, and the pressure on its patches without.
+//! Picture of the scene that touches most patches: the robot with the object, and without it with the pressure on its patches.
 
 use crate::error::Result;
 use crate::objects::Sphere;
@@ -14,34 +14,34 @@ use crate::table::{Table, short_number};
 use glam::{DQuat, DVec2, DVec3};
 use std::f64::consts::FRAC_PI_2;
 
-/// What a scene looks like, in the world frame.
+/// Contents of a picture of a scene, in the world frame.
 struct SceneView {
-    /// Places on the skin, metres, some millimetres apart, and the pressure on their patch: force over area, Pa.
+    /// Points on the skin, metres, some millimetres apart, each with the pressure on its patch (force divided by area), Pa.
     skin: Vec<(DVec3, f64)>,
-    /// Touched taxels, metres.
+    /// Positions of touched taxels, metres.
     touched: Vec<DVec3>,
-    /// What touches, metres.
+    /// Spheres of the object, metres.
     object: Vec<Sphere>,
 }
 
-/// Between the places of a picture's skin, metres.
+/// Distance between points of the skin in a picture, metres.
 const PICTURE_PITCH: f64 = 4e-3;
-/// Pixels of a panel.
+/// Size of a panel, pixels.
 const PANEL: [usize; 2] = [600, 900];
-/// Skin that nothing touches, and taxels that something does.
+/// Colours of untouched skin and of touched taxels.
 const BARE: [u8; 3] = [226, 214, 200];
 const TOUCHED: [u8; 3] = [0xd5, 0x5e, 0x00];
-/// Radius of a place on the skin, metres: neighbours overlap. A touched taxel stands a little out.
+/// Radius of a point of the skin, metres; neighbours overlap. Touched taxels are slightly raised.
 const SKIN_RADIUS: f64 = 3.4e-3;
 const TOUCHED_RADIUS: f64 = 3.8e-3;
-/// From where the eye looks, radians: to the right of the robot's front, and up.
+/// Viewing direction, radians: to the right of the robot's front, and upwards.
 const AZIMUTH: f64 = 0.7;
 const ELEVATION: f64 = 0.3;
 
-/// The scene in which most patches are touched, of those in which any taxel is; the last of equals.
+/// Returns the picture of the scene with most touched patches, if any scene has a touched taxel; in a tie the last.
 ///
 /// # Errors
-/// As of a run.
+/// If the scene cannot be simulated.
 pub(super) fn picture_of_body(plan: &WholeBodyPlan, cases: &Table) -> Result<Option<NamedPicture>> {
     let patches = |row: &usize| cases.number("patches_touched_mean", *row);
     let most = (0..cases.n_rows)
@@ -101,8 +101,8 @@ fn view(plan: &WholeBodyPlan, scene: &ScenePlan) -> Result<SceneView> {
     })
 }
 
-/// Two panels: the robot with what touches it, and the robot alone, its patches the bluer the higher their mean pressure, touched taxels
-/// orange. The same bytes for the same input.
+/// Draws two panels: the robot with the object, and the robot alone. Patches are the bluer the higher their mean pressure; touched taxels are orange. Equal
+/// inputs give equal bytes.
 fn draw(name: &str, scene: &SceneView) -> Result<Picture> {
     let turn = DQuat::from_rotation_z(-FRAC_PI_2);
     let sphere = |center: DVec3, radius| Sphere {

@@ -1,4 +1,4 @@
-//! A study of a whole body that can run: every key checked, every unit SI.
+//! Plan of a whole-body study: checked keys in SI units.
 
 use crate::error::Result;
 use crate::geometry::{Pose, rotation_from_rpy};
@@ -13,61 +13,61 @@ use crate::world::{Robot, Taxel};
 use glam::DVec3;
 use std::path::{Path, PathBuf};
 
-/// Settings of a study of a whole body, ready to run.
+/// Checked settings of a whole-body study.
 #[derive(Clone, Debug)]
 pub struct WholeBodyPlan {
-    /// As it was written.
+    /// Specification as written in the file.
     pub spec: WholeBodyStudySpec,
-    /// What is covered.
+    /// Covered robot.
     pub robot: Robot,
-    /// Its file.
+    /// Path of the robot's file.
     pub robot_file: PathBuf,
-    /// Each of the taxels.
+    /// Parameters of each taxel.
     pub taxel: Taxel,
-    /// Metres between taxels.
+    /// Distance between taxels, metres.
     pub pitch: f64,
-    /// Side of a patch, about, metres.
+    /// Approximate side length of a patch, metres.
     pub side: f64,
-    /// Length of a step, seconds.
+    /// Duration of a step, seconds.
     pub dt: f64,
-    /// How far the spheres of an object may be from its surface, metres.
+    /// Largest distance between an object's spheres and its surface, metres.
     pub surface_error: f64,
-    /// In the order of the file.
+    /// Scenes, in the order of the file.
     pub scenes: Vec<ScenePlan>,
-    /// By name (`sbhe_32`, `sparse`): taxels of a Hadamard block, or none for very sparse rows.
+    /// Compressions by name (`sbhe_32`, `sparse`), each with the taxels of a Hadamard block; `None` for very sparse rows.
     pub compressions: Vec<(String, Option<usize>)>,
-    /// Where objects are aimed that are told apart.
+    /// Target of the objects to be recognised.
     pub aim: Aim,
 }
 
 /// A scene: an object and its path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScenePlan {
-    /// As it was written.
+    /// Specification as written in the file.
     pub spec: BodySceneSpec,
-    /// Where the object is aimed, and its path.
+    /// Target and path of the object.
     pub aim: Aim,
-    /// Values of the robot's coordinates, radians or metres.
+    /// Joint positions of the robot, radians or metres.
     pub positions: Vec<f64>,
 }
 
-/// Where an object is aimed, in the frame of a link.
+/// Target of an object in the frame of a link.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aim {
-    /// The link's number.
+    /// Index of the link.
     pub link: usize,
-    /// From where it comes, unit.
+    /// Direction from the target to the start of the approach, unit vector.
     pub from: DVec3,
-    /// Its path; the link stands at the origin until a posture is known.
+    /// Path of the object, with the link at the origin until the posture is known.
     pub path: ObjectPath,
 }
 
-/// Steps of a scene, at most: the time of each is in memory.
+/// Largest number of steps of a scene; the time of each step is held in memory.
 const MOST_STEPS: usize = 10_000_000;
-/// Spheres of a cushion, at most.
+/// Largest number of spheres of a cushion.
 const MOST_SPHERES: usize = 10_000_000;
 
-/// What the numbers of `[whole_body]` may be.
+/// Ranges of the numeric keys of `[whole_body]`.
 const KEYS: [(&str, Range); 23] = [
     ("pitch_mm", Range::Positive),
     ("taxel_radius_mm", Range::Positive),
@@ -94,7 +94,7 @@ const KEYS: [(&str, Range); 23] = [
     ("ladders.taxels_at_touch", COUNT),
 ];
 
-/// What those of a scene may be.
+/// Ranges of the numeric keys of a scene.
 const SCENE_KEYS: [(&str, Range); 3] = [
     ("depth_mm", Range::Positive),
     ("period_ms", Range::Positive),
@@ -102,10 +102,10 @@ const SCENE_KEYS: [(&str, Range); 3] = [
 ];
 
 impl WholeBodyPlan {
-    /// Checks a study whose robot lies beside `folder`.
+    /// Checks a study; the path of the robot is relative to `folder`.
     ///
     /// # Errors
-    /// The error names `place` (the file) and the first key that is out of its range.
+    /// If a key is out of its range; the error names `place` (the file) and the first such key.
     pub fn new(place: &str, folder: &Path, spec: WholeBodyStudySpec) -> Result<Self> {
         let check = Check { place };
         let wanted = &spec.whole_body;
@@ -141,12 +141,12 @@ impl WholeBodyPlan {
         })
     }
 
-    /// What is recognised, as it was written.
+    /// Returns the specification of the recognition.
     pub fn recognition(&self) -> &BodyRecognitionSpec {
         &self.spec.whole_body.recognition
     }
 
-    /// Steps that are measured of each scene and rung.
+    /// Returns the number of measured steps of each scene and each size of a scaling series.
     pub fn n_steps(&self) -> usize {
         self.spec.whole_body.steps
     }
@@ -188,7 +188,7 @@ impl Check<'_> {
         Ok(positions)
     }
 
-    /// The link by its name, a place in millimetres and a direction.
+    /// Returns the target given by the name of a link, a position in millimetres and a direction.
     fn aim(
         &self,
         prefix: &str,

@@ -1,4 +1,4 @@
-//! Which object is it? A linear SVM for each compression, learned from simulated touches and tested on others.
+//! Object recognition from the measurements of a whole body: a linear SVM for each compression, trained and tested on simulated touches.
 
 use crate::engine::progress::Progress;
 use crate::error::Result;
@@ -20,14 +20,14 @@ use ndarray::{Array2, ArrayView2, Axis};
 use rand::Rng;
 use rayon::prelude::*;
 
-/// A compression and what has learned from it.
+/// A compression and its trained classifier.
 pub(super) struct Compression {
     pub columns: Columns,
     pub classifier: TrainedClassifier,
     pub score: BodyRecognition,
 }
 
-/// Draws every compression of a body, and learns from touches of it.
+/// Draws every compression of a body, and trains a classifier for each on touches of the body.
 pub(super) fn learn(
     plan: &WholeBodyPlan,
     posture: &Posture,
@@ -41,13 +41,13 @@ pub(super) fn learn(
     progress.stage("train", columns.len() as u64);
     let of_each = features.axis_chunks_iter(Axis(1), m);
     let named = plan.compressions.iter().zip(columns).zip(of_each);
-    // Each is a item of its own, which advances once it is kept.
+    // Each compression is a work item, which advances the progress when it is stored.
     named
         .map(|(((name, _), columns), features)| train(plan, name, columns, features))
         .collect()
 }
 
-/// Of very sparse rows, or of SBHE with blocks of so many taxels.
+/// Returns the matrix of the sparse ensemble or, with `block`, of SBHE with blocks of that many taxels.
 fn columns(plan: &WholeBodyPlan, posture: &Posture, block: Option<usize>) -> Result<Columns> {
     let size = (posture.body.n_taxels(), 1);
     let m = plan.spec.whole_body.sensing.measurements;
@@ -59,7 +59,7 @@ fn columns(plan: &WholeBodyPlan, posture: &Posture, block: Option<usize>) -> Res
     Ok(projection.columns())
 }
 
-/// A row a touch, object by object: the measurements of each compression, one after the other.
+/// Returns the measurements of all compressions, concatenated; one row per touch, ordered by object.
 fn measure(
     plan: &WholeBodyPlan,
     posture: &Posture,
@@ -74,7 +74,7 @@ fn measure(
     progress.stage("touch", wanted.n_touches() as u64);
     let mut features = Array2::zeros((wanted.n_touches(), columns.len() * m));
     let rows = features.axis_iter_mut(Axis(0)).into_par_iter().enumerate();
-    // A thread keeps the body and the object for its next touch of the same.
+    // Each thread keeps the body and the object for its next touch of the same object.
     rows.try_for_each_init(
         || None,
         |kept: &mut Option<(usize, Drive)>, (number, mut row)| -> Result<()> {
@@ -101,7 +101,7 @@ fn measure(
     Ok(features)
 }
 
-/// Where an object aims at a touch (`link_from_object`), and how far it goes past first contact, metres.
+/// Draws the target pose of an object in a touch (`link_from_object`) and its travel past first contact, metres.
 fn draw(plan: &WholeBodyPlan, object: usize, touch: usize) -> (Pose, f64) {
     let wanted = plan.recognition();
     let seed = Seed::new(plan.spec.seed).named("whole_body").named("touch");

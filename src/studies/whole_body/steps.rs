@@ -1,4 +1,4 @@
-//! What the steps of a path do and cost.
+//! Simulation and timing of the steps along a path.
 
 use crate::error::Result;
 use crate::geometry::Pose;
@@ -15,21 +15,21 @@ use glam::DVec3;
 use ndarray::ArrayView2;
 use std::time::Instant;
 
-/// Steps before it counts: memory grows, and comes near the processor.
+/// Number of steps before the measurement, during which memory is allocated and caches are filled.
 const WARM_UP: usize = 20;
 
-/// A step of the skin.
+/// Result of a step of the skin.
 struct Step {
     contact: BodyContact,
     n_visited: usize,
-    /// Sum over taxels, metres.
+    /// Sum of the deflections over taxels, metres.
     deflection: f64,
     press_s: f64,
 }
 
-/// A step of a compression.
+/// Result of a step of a compression.
 struct SensedStep {
-    /// Sum of the measurements' sizes, metres.
+    /// Sum of the magnitudes of the measurements, metres.
     size: f64,
     label: usize,
     compress_s: f64,
@@ -37,7 +37,7 @@ struct SensedStep {
 }
 
 impl Drive<'_> {
-    /// Goes along the path, after some steps that do not count; where there are threads, also once more with one alone.
+    /// Simulates the steps of the path after some warm-up steps. With several threads, the path is repeated on one thread.
     pub fn run(
         &mut self,
         plan: &WholeBodyPlan,
@@ -51,12 +51,12 @@ impl Drive<'_> {
             n_patches: self.body.patches().len(),
             n_spheres: self.object[0].n_spheres(),
         };
-        // Within the pool, as otherwise each step would have to be handed over to it.
+        // Runs within the pool, so that steps are not transferred to it one by one.
         let mut driven = rayon::scope(|_| self.walk(plan, case.clone(), compressions))?;
         if rayon::current_num_threads() > 1 {
             let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build();
             let alone = alone.expect("a thread can be had");
-            // With all that comes between two steps, as it fills the caches.
+            // All parts of a step are repeated, so that the caches are in the same state.
             let alone = alone.install(|| self.walk(plan, case, compressions))?;
             driven.times.push(alone.times[0].clone());
         }
@@ -120,7 +120,7 @@ impl Drive<'_> {
 }
 
 impl Compression {
-    /// Measures and decides, with room for a row of measurements.
+    /// Computes the measurements and the decision; `row` is scratch memory for measurements.
     fn sense(
         &self,
         touched: impl Iterator<Item = (usize, f64)>,
@@ -157,13 +157,13 @@ fn count(steps: &[Step], bytes_per_taxel: f64) -> BodyCount {
         patches_touched_mean: mean(|step| step.contact.n_patches),
         spheres_evaluated_mean: mean(|step| step.contact.n_evaluated),
         spheres_rejected_mean: mean(|step| step.contact.n_rejected),
-        // From 0: an empty sum would be −0.
+        // The sum starts at 0, because an empty sum would be −0.
         deflection_sum_mm: millimetres(steps.iter().fold(0.0, |sum, step| sum + step.deflection)),
         bytes_per_taxel,
     }
 }
 
-/// What a scene is taken for at most steps.
+/// Returns the most frequent decision over the steps of a scene.
 fn decision(
     plan: &WholeBodyPlan,
     (scene, compression): (&str, &str),
@@ -171,7 +171,7 @@ fn decision(
 ) -> BodySensed {
     let objects = &plan.recognition().objects;
     let votes = |label: usize| steps.iter().filter(|step| step.label == label).count();
-    // Of equals the first.
+    // In a tie the first object wins.
     let most = (0..objects.len()).rev().max_by_key(|&label| votes(label));
     let label = most.unwrap_or(0);
     BodySensed {

@@ -1,4 +1,4 @@
-//! Runs a study of a whole body: learn, then the scenes and the ladders one after the other, so that nothing else is timed.
+//! Runs a whole-body study: training first, then scenes and scaling series one after the other, so that timings do not disturb each other.
 
 use crate::engine::work_items::pending::PendingItems;
 use crate::engine::work_items::scale::Scale;
@@ -78,9 +78,9 @@ impl Study for WholeBodyPlan {
     }
 
     fn scale(&self) -> Scale {
-        // A taxel's place and what its compressions keep of it.
+        // Memory of a taxel: its position and the columns of its compressions.
         const TAXEL_BYTES: f64 = 150.0;
-        // Of a body, about, square metres.
+        // Approximate area of a body, square metres.
         const AREA: f64 = 2.0;
         let n_objects = self.recognition().objects.len();
         let n_taxels = AREA / (self.pitch * self.pitch);
@@ -96,7 +96,7 @@ impl Study for WholeBodyPlan {
         }
     }
 
-    /// Compressions and scenes need all that is learned; rungs need nothing.
+    /// Compressions and scenes depend on all training; scaling series do not.
     fn work_items(&self) -> Vec<WorkItem> {
         let compressions = self
             .compressions
@@ -185,7 +185,7 @@ impl Study for WholeBodyPlan {
     }
 }
 
-/// To two digits: a touch of 10,008 taxels is one of 10,000.
+/// Rounds to two digits: a touch of 10,008 taxels counts as 10,000.
 fn round_to_two(value: f64) -> f64 {
     let unit = 10f64.powf(value.max(1.0).log10().floor() - 1.0);
     (value / unit).round() * unit
@@ -197,7 +197,7 @@ impl WholeBodyPlan {
         ladders.map_or_else(Vec::new, rungs)
     }
 
-    /// The robot under skin with so many metres between taxels.
+    /// Returns the robot covered with skin of this pitch, metres.
     pub(super) fn cover(&self, pitch: f64) -> Result<CoveredRobot> {
         let cover = match self.spec.whole_body.flat_ends {
             true => CoveredRobot::with_flat_ends,
@@ -206,7 +206,7 @@ impl WholeBodyPlan {
         cover(&self.robot, self.taxel, pitch, self.side)
     }
 
-    /// Where everything of the robot is.
+    /// Returns the poses of all parts of the robot.
     pub(super) fn posture<'a>(
         &self,
         covered: &'a CoveredRobot,
@@ -222,7 +222,7 @@ impl WholeBodyPlan {
         })
     }
 
-    /// The object of a scene where that begins; the error names the scene.
+    /// Returns the object of a scene at its start; an error names the scene.
     pub(super) fn begin<'a>(
         &self,
         scene: &ScenePlan,
