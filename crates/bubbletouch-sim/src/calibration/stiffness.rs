@@ -13,7 +13,7 @@ const CLIPPED: f64 = 0.97;
 const FEWEST: usize = 40;
 /// Number of noise standard deviations from which on a reading counts, if readings are clipped at zero.
 const ABOVE_NOISE: f64 = 4.0;
-/// Noise standard deviation, relative to full scale, up to which few readings are lost by this threshold.
+/// Largest noise standard deviation, relative to full scale, for which clipped readings give an estimate.
 const LITTLE: f64 = 0.03;
 
 /// Estimates the stiffness, N/m. `clipped_noise` is the standard deviation of the noise if readings are clipped at zero, otherwise `None`.

@@ -66,7 +66,7 @@ impl BoxTree {
         self.search_unless(limit, bound, |_, _| false, visit);
     }
 
-    /// Visits leaves like [`search`](Self::search), but skips nodes for which `rules_out` returns true. It receives the node and
+    /// Visits leaves like [`search`](Self::search), but skips nodes for which `rules_out` returns true. The arguments of `rules_out` are the node and
     /// the current limit.
     pub(super) fn search_unless(
         &self,

@@ -1,4 +1,4 @@
-//! A box, sharp or with rounded edges: its distance, its surface, its spheres.
+//! Box with sharp or rounded edges: distance, surface and packing.
 
 use super::Sphere;
 use super::fit::{Fit, MAX_SPHERES};
@@ -6,12 +6,12 @@ use super::surface_patch::{SurfacePatch, frame};
 use crate::geometry::Pose;
 use glam::{DVec2, DVec3};
 
-/// An axis-aligned box about the origin.
+/// Axis-aligned box about the origin.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Block {
-    /// Half of each edge length.
+    /// Half edge lengths.
     pub half: DVec3,
-    /// Radius of its edges and corners, zero to the smallest half.
+    /// Radius of edges and corners, from zero to the smallest half edge length.
     pub rounding: f64,
 }
 
@@ -22,15 +22,15 @@ impl Block {
         outside + beyond.max_element().min(0.0) - self.rounding
     }
 
-    /// Largest p·direction over the box.
+    /// Returns the largest p·direction over the box.
     pub fn support(&self, direction: DVec3) -> f64 {
         let core = self.half - DVec3::splat(self.rounding);
         core.dot(direction.abs()) + self.rounding * direction.length()
     }
 
-    /// Corner balls, a row along each edge, then on each face rows that widen towards its middle.
+    /// Packs the corners, then rows along each edge, then rows on each face that become wider towards its middle.
     ///
-    /// A swollen ball of tangent radius r covers a flat face to sqrt(h(2r + h)) around its foot: a square cell of half side
+    /// An enlarged ball of tangent radius r covers a flat face to sqrt(h(2r + h)) around its foot: a square cell of half side
     /// sqrt(h(r + h/2)).
     pub fn pack(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
         let edge = EdgeRow::new(self, fit);
@@ -70,7 +70,7 @@ impl Block {
         }
     }
 
-    /// Six faces; if it is rounded, twelve edges and eight corners.
+    /// Returns six faces and, for a rounded box, twelve edges and eight corners.
     pub fn patches(&self) -> Vec<SurfacePatch> {
         const SIGNS: [f64; 2] = [-1.0, 1.0];
         let core = self.half - DVec3::splat(self.rounding);
@@ -124,7 +124,7 @@ impl Block {
         }
     }
 
-    /// From a point of the sharp box to the nearest point of the rounded one.
+    /// Moves a point of the sharp box to the nearest point of the rounded one.
     fn onto_surface(&self, point: DVec3) -> DVec3 {
         let core = self.half - DVec3::splat(self.rounding);
         let nearest = point.clamp(-core, core);
@@ -136,35 +136,35 @@ impl Block {
     }
 }
 
-/// The balls along the edges and in the corners of a box.
+/// Balls along the edges and in the corners of a box.
 struct EdgeRow {
-    /// Tangent radius; the centres lie this far inside both faces.
+    /// Tangent radius; the centres lie at this distance inside both faces.
     radius: f64,
-    /// Whether the edge is round, and the balls fill it.
+    /// Whether the edge is round, so that the balls fill it.
     is_round: bool,
-    /// How far from the edge the row covers each face.
+    /// Width of the strip that the row covers on each face, from the edge.
     width: f64,
-    /// How far along the edge the ball in the corner covers that strip.
+    /// Length of the strip that the ball in the corner covers along the edge.
     corner: f64,
     /// Half the distance between balls along the edge.
     half_spacing: f64,
 }
 
-/// Which share of its reach, squared, a ball in a round edge has for the faces. Smaller: the faces take more spheres; larger: the
-/// edge does, and stands out.
+/// Fraction of the squared reach that a ball in a round edge uses across the faces. If it is smaller, the faces need more spheres; if it is larger, the
+/// edge needs more spheres and protrudes.
 const ACROSS: f64 = 0.1;
 
 impl EdgeRow {
-    /// At a sharp edge r = h covers the most: the edge to sqrt(2)·h each way (2r² + y² ≤ (r + h)²), the faces to 2h.
+    /// At a sharp edge r = h covers the most: sqrt(2)·h in both directions along the edge (2r² + y² ≤ (r + h)²), and 2h on the faces.
     fn new(block: &Block, fit: Fit) -> Self {
         let h = fit.reach();
         if block.rounding >= h {
             let radius = block.rounding;
-            // Most of what a ball reaches goes along the edge, and little across the faces beside it: fewer balls, and the edge
-            // itself is as often below the spheres as above them.
+            // Most of the reach of a ball is used along the edge, and little across the adjacent faces. This needs fewer balls, and the edge
+            // itself is equally often below and above the spheres.
             let square = fit.disc_squared(radius);
             let across = ACROSS * square;
-            // Not swollen, the ball in the corner reaches the strip's border less far along.
+            // Without enlargement, the ball in the corner covers less of the strip's border.
             let corner = (fit.unswollen().disc_squared(radius) - across).sqrt();
             return Self {
                 radius,
@@ -185,10 +185,10 @@ impl EdgeRow {
     }
 }
 
-/// The two faces of a box across one axis.
+/// Two opposite faces of a box.
 struct Face {
     axis: usize,
-    /// Half of the box along the axis: no ball is larger.
+    /// Half of the box along the axis, the maximum radius of a ball.
     depth: f64,
     /// Half sides of the face.
     half: [f64; 2],
@@ -203,8 +203,8 @@ impl Face {
         }
     }
 
-    /// Rectangular rows from the border inwards; a plain grid once balls are as large as the box is thick, or when
-    /// less than two rows are left. `covered` is the width of the border that the edges' rows cover.
+    /// Places rectangular rows from the border inwards. A plain grid is used if balls are as large as the box is thick, or if
+    /// fewer than two rows remain. `covered` is the width of the border that the rows of the edges cover.
     fn pack(&self, mut covered: f64, fit: Fit, spheres: &mut Vec<Sphere>) {
         let h = fit.reach();
         loop {
@@ -237,7 +237,7 @@ impl Face {
         }
     }
 
-    /// Equal cells, as many as the outermost and so smallest balls need.
+    /// Packs equal cells; their number follows from the outermost and therefore smallest balls.
     fn pack_grid(&self, covered: f64, left: [f64; 2], fit: Fit, spheres: &mut Vec<Sphere>) {
         let largest = (0.5 * fit.disc_squared(self.depth)).sqrt();
         let mut counts = left.map(|l| (l / largest).ceil());
@@ -271,9 +271,9 @@ impl Face {
     }
 }
 
-/// Middles of the equal cells, no wider than 2 × `largest_half`, that cover −half … half; none for half ≤ 0.
+/// Returns the middles of equal cells, no wider than 2 × `largest_half`, that cover −half … half; none if half ≤ 0.
 fn cells(half: f64, largest_half: f64) -> Vec<f64> {
-    // Less than a billionth of a cell is rounding, not a missing cell.
+    // A remainder below a billionth of a cell is a rounding error, not a missing cell.
     let n = (half / largest_half - 1e-9).ceil().max(0.0);
     (0..n as usize)
         .take(MAX_SPHERES + 1)
@@ -281,7 +281,7 @@ fn cells(half: f64, largest_half: f64) -> Vec<f64> {
         .collect()
 }
 
-/// `x` and `−x`, or one zero.
+/// Returns `x` and `−x`, or one zero.
 fn both_signs(x: f64) -> impl Iterator<Item = f64> {
     let second = (x != 0.0).then_some(-x);
     std::iter::once(x).chain(second)

@@ -1,6 +1,6 @@
 //! The catalogue: named objects, as parametric solids with real dimensions.
 //!
-//! A catalogue file is a list of objects, each a union of parts, less what is subtracted from them
+//! A catalogue file is a list of objects. Each object is a union of parts minus subtracted shapes
 //! ([all shapes and keys](crate::guide::own_objects)):
 //!
 //! ```toml
@@ -18,8 +18,8 @@
 //!   position_mm = [0, 0, 35]
 //! ```
 //!
-//! Each object is then moved so that it rests on z = 0 with the middle of its box on the z axis, wherever its parts were
-//! written.
+//! After reading, each object is moved so that it rests on z = 0 with the middle of its bounding box on the z axis, for any positions of its
+//! parts.
 
 use super::solid_toml::WrittenPart;
 use super::{Hand, Object, Part, Solid, pack};
@@ -34,7 +34,7 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 use toml::Spanned;
 
-/// The files of `objects/`, by the name of their set.
+/// Files of `objects/`, by the name of their set.
 const BUILTIN: [(&str, &str); 4] = [
     ("balls", include_str!("../../objects/balls.toml")),
     ("boxes", include_str!("../../objects/boxes.toml")),
@@ -42,30 +42,30 @@ const BUILTIN: [(&str, &str); 4] = [
     ("household", include_str!("../../objects/household.toml")),
 ];
 
-/// Named objects in named sets. Invariant: no two objects of one set share a name, every set has an object.
+/// Named objects in named sets. Invariant: names are unique within a set, and every set has an object.
 #[derive(Clone, Debug)]
 pub struct Catalogue {
     entries: Vec<Entry>,
 }
 
-/// One object of a catalogue.
+/// Object of a catalogue.
 #[derive(Clone, Debug)]
 pub struct Entry {
-    /// The set that it belongs to: `balls`, `household`.
+    /// Name of the set: `balls`, `household`.
     pub set: String,
-    /// Unique within the set.
+    /// Name, unique within the set.
     pub name: String,
-    /// Where its dimensions are from.
+    /// Source of the dimensions.
     pub source: String,
-    /// Its shape, resting on z = 0, the middle of its box on the z axis.
+    /// Shape, resting on z = 0 with the middle of its bounding box on the z axis.
     pub solid: Solid,
 }
 
 impl Entry {
-    /// Spheres for the shape, with this surface error in metres: see [`pack`].
+    /// Packs the shape with spheres, with a surface error in metres; see [`pack`].
     ///
     /// # Errors
-    /// Those of [`pack`].
+    /// If [`pack`] fails.
     pub fn build(&self, surface_error: f64) -> Result<Object> {
         Ok(Object {
             name: self.name.clone(),
@@ -76,10 +76,10 @@ impl Entry {
 }
 
 impl Catalogue {
-    /// The objects that come with the crate: 16 balls, 16 boxes, 9 cans, a household, and hands.
+    /// Returns the built-in objects: 16 balls, 16 boxes, 9 cans, household objects, and hands.
     ///
     /// # Errors
-    /// None: the files that come with the crate are tested.
+    /// Never in practice: the built-in files are tested.
     pub fn builtin() -> Result<Self> {
         let mut entries = Vec::new();
         for (set, text) in BUILTIN {
@@ -89,10 +89,10 @@ impl Catalogue {
         Ok(Self { entries })
     }
 
-    /// One set from the text of a catalogue file.
+    /// Parses one set from the text of a catalogue file.
     ///
     /// # Errors
-    /// Errors begin with `place`, the file's name.
+    /// If the text is invalid; errors begin with `place`, the name of the file.
     pub fn parse(set: &str, place: &str, text: &str) -> Result<Self> {
         toml_text::check_brackets(place, text)?;
         check_bounds(place, text)?;
@@ -115,22 +115,22 @@ impl Catalogue {
         Ok(Self { entries })
     }
 
-    /// All objects, set by set, in the order of their files.
+    /// Returns all objects, set by set, in the order of their files.
     pub fn entries(&self) -> &[Entry] {
         &self.entries
     }
 
-    /// The names of the sets, in order.
+    /// Returns the names of the sets, in order.
     pub fn sets(&self) -> Vec<&str> {
         let mut sets: Vec<&str> = self.entries.iter().map(|e| e.set.as_str()).collect();
         sets.dedup();
         sets
     }
 
-    /// The objects of a set, in the order of its file.
+    /// Returns the objects of a set, in the order of its file.
     ///
     /// # Errors
-    /// The error lists the sets there are.
+    /// If the set does not exist; the error lists the existing sets.
     pub fn set(&self, set: &str) -> Result<Vec<&Entry>> {
         let entries: Vec<&Entry> = self.entries.iter().filter(|e| e.set == set).collect();
         if entries.is_empty() {
@@ -143,10 +143,10 @@ impl Catalogue {
         Ok(entries)
     }
 
-    /// The object of this name, in any set.
+    /// Returns the object with this name, in any set.
     ///
     /// # Errors
-    /// The error offers the names that resemble it.
+    /// If the object does not exist; the error suggests similar names.
     pub fn object(&self, name: &str) -> Result<&Entry> {
         if let Some(entry) = self.entries.iter().find(|e| e.name == name) {
             return Ok(entry);
@@ -166,7 +166,7 @@ impl Catalogue {
     }
 }
 
-/// Right hands of an average man in five poses; palm up, so that a patch from above feels the palm.
+/// Returns right hands of an average man in five poses, palm up, so that a patch from above touches the palm.
 fn hands() -> Result<Vec<Entry>> {
     let palm_up = Pose::from_rotation(DQuat::from_rotation_y(std::f64::consts::PI));
     let poses = [
@@ -205,7 +205,7 @@ struct WrittenObject {
 }
 
 impl WrittenObject {
-    /// `FILE, line LINE, object NAME`, the line that of its name.
+    /// Formats `FILE, line LINE, object NAME` with the line of the object's name.
     fn place(&self, place: &str, text: &str) -> String {
         let line = line_of(text, self.name.span().start);
         format!("{place}, line {line}, object `{}`", self.name.get_ref())
@@ -246,7 +246,7 @@ impl WrittenObject {
     }
 }
 
-/// What is wrong with a part, with the place of the key that is its error's place.
+/// Converts an error of a part to an error at the position of its key.
 fn of_part(error: Error, place: impl Fn(&str) -> String) -> Error {
     match error {
         Error::Input {
@@ -264,7 +264,7 @@ fn of_part(error: Error, place: impl Fn(&str) -> String) -> Error {
     }
 }
 
-/// What the TOML reader says, with line and object.
+/// Converts an error of the TOML reader, with line and object.
 fn unreadable(place: &str, text: &str, error: &toml::de::Error) -> Error {
     let place = match error.span() {
         Some(Range { start, .. }) => {
@@ -284,7 +284,7 @@ fn unreadable(place: &str, text: &str, error: &toml::de::Error) -> Error {
     )
 }
 
-/// The name, in quotes, of the `[[object]]` that this byte lies in.
+/// Returns the quoted name of the `[[object]]` that contains this byte.
 fn object_around(text: &str, byte: usize) -> Option<&str> {
     let mut starts = text.match_indices("[[object]]").map(|(at, _)| at);
     let start = starts.clone().take_while(|&at| at <= byte).last()?;
@@ -296,7 +296,7 @@ fn object_around(text: &str, byte: usize) -> Option<&str> {
     Some(value.trim())
 }
 
-/// Whether one name is in the other, or they share their first three letters.
+/// Returns whether one name contains the other, or both have the first three letters in common.
 fn resemble(a: &str, b: &str) -> bool {
     let (a, b) = (a.to_lowercase(), b.to_lowercase());
     let head = |s: &str| s.chars().take(3).collect::<String>();

@@ -1,33 +1,33 @@
-//! Spheres for solids from which other shapes are subtracted.
+//! Packing of solids with cuts.
 //!
-//! The surface of A less B is a part of A's and a part of B's. Both are cut into cells, and a cell is halved until one of three
-//! things is proved of it: it lies in a ball of nothing; it lies in a ball of solid (then none of it is surface); or one sphere
-//! covers it. Depths inside A less B are the smaller of the depth in A and the distance from B, so a ball of that radius is inside,
-//! and swollen it reaches outside by no more than it is swollen by.
+//! The surface of A minus B consists of a part of A's surface and a part of B's. Both are divided into cells. A cell is halved until one of three
+//! facts is proved: it lies in an empty ball; it lies in a solid ball (in both cases it contains no surface); or one sphere
+//! covers it. The depth inside A minus B is the minimum of the depth in A and the distance from B. A ball of this radius therefore lies inside,
+//! and after enlargement it reaches outside by at most the enlargement.
 //!
-//! A cut that ends exactly where a part does leaves nothing there, but a membrane without thickness would pass all tests; so cuts are
-//! taken larger by [`GROWTH`]. What is thinner than that beside a cut is lost.
+//! A cut that ends exactly at the surface of a part would leave a membrane of zero thickness that passes all tests. Cuts are therefore
+//! enlarged by [`GROWTH`], and walls thinner than this beside a cut are lost.
 
 use super::fit::{Fit, MAX_SPHERES};
 use super::surface_patch::{PatchCell, SurfacePatch};
 use super::{Part, Solid, Sphere};
 use glam::DVec3;
 
-/// How much larger cuts are taken, in allowed gaps. Larger: thin walls beside cuts are lost; smaller: cells where a cut ends in the
-/// surface of a part must be smaller before it is plain that nothing is there.
+/// Enlargement of cuts, in allowed gaps. If it is larger, thin walls beside cuts are lost; if it is smaller, cells where a cut ends in the
+/// surface of a part must be divided further before they are proved to be empty.
 const GROWTH: f64 = 0.01;
-/// Cells that are looked at for each sphere that is allowed, at most.
+/// Maximum number of cells to test, for the maximum number of spheres.
 const MAX_CELLS: usize = 4 * MAX_SPHERES;
-/// Spheres that were made last and may cover another cell.
+/// Number of recent spheres that are tested for covering another cell.
 const LAST_SPHERES: usize = 24;
 
-/// Spheres, or `None` if they are more than [`MAX_SPHERES`], or if that is needed to be sure.
+/// Returns the spheres; `None` if there are more than [`MAX_SPHERES`], or if too many cells are needed for the proof.
 pub(super) fn pack_difference(solid: &Solid, fit: Fit) -> Option<Vec<Sphere>> {
     let growth = GROWTH * fit.inside;
     let mut covering = Covering {
         solid,
         growth,
-        // What is covered is the surface of the larger cuts.
+        // The covered surface is that of the enlarged cuts.
         fit: Fit {
             inside: fit.inside - 2.0 * growth,
             ..fit
@@ -46,7 +46,7 @@ pub(super) fn pack_difference(solid: &Solid, fit: Fit) -> Option<Vec<Sphere>> {
     covering.spheres()
 }
 
-/// A ball inside the solid, and the farthest surface that it covers.
+/// Ball inside the solid, with the distance of the farthest surface point that it covers.
 struct InnerBall {
     center: DVec3,
     radius: f64,
@@ -57,16 +57,17 @@ struct Covering<'a> {
     solid: &'a Solid,
     growth: f64,
     fit: Fit,
-    /// No ball is larger.
+    /// Maximum radius of a ball.
     size: f64,
     balls: Vec<InnerBall>,
-    /// Cells smaller than the growth of which nothing is proved.
+    /// Cells smaller than the enlargement without a proof.
     doubtful: Vec<PatchCell>,
     n_cells: usize,
 }
 
 impl Covering<'_> {
-    /// Covers what of a patch is surface; the solid is where the normal points times `inwards`. `None` if it takes too much.
+    /// Covers the surface within a patch; the solid is in the direction of `inwards` times the normal. Returns `None` if too many spheres or cells are
+    /// needed.
     fn cover(&mut self, patch: &SurfacePatch, inwards: f64) -> Option<()> {
         let mut cells = patch.cells();
         while let Some(cell) = cells.pop() {
@@ -98,12 +99,12 @@ impl Covering<'_> {
         Some(())
     }
 
-    /// Metres from a point inside the solid to its surface, at most; negative outside.
+    /// Returns a lower bound of the distance from a point inside the solid to its surface, metres; negative outside.
     fn depth(&self, point: DVec3) -> f64 {
         self.solid.depth_with_cuts_grown(point, self.growth)
     }
 
-    /// Whether a ball about a point on the normal through the middle holds the cell and is all solid or all empty.
+    /// Returns whether some ball centred on the normal through the middle contains the cell and is entirely solid or entirely empty.
     fn is_no_surface(&self, cell: &PatchCell, (middle, normal): (DVec3, DVec3)) -> bool {
         let holds = |away: f64| {
             let center = middle + away * normal;
@@ -122,7 +123,7 @@ impl Covering<'_> {
         false
     }
 
-    /// The largest ball inside the solid that touches the surface there, about.
+    /// Returns approximately the largest ball inside the solid that touches the surface at a point.
     fn ball_at(&self, (foot, inward): (DVec3, DVec3)) -> Option<InnerBall> {
         let fits = |radius: f64| self.depth(foot + radius * inward) >= radius - 1.5 * self.growth;
         let mut low = 2.0 * self.growth;
@@ -153,7 +154,7 @@ impl Covering<'_> {
         cell.farthest(ball.center) <= ball.radius + self.fit.reach()
     }
 
-    /// Whether one of the spheres that were made last covers a cell, which it then does.
+    /// Returns whether one of the most recent spheres covers a cell, and assigns the cell to this sphere.
     fn is_covered(&mut self, cell: &PatchCell) -> bool {
         let last = self.balls.len().saturating_sub(LAST_SPHERES);
         let reach = self.fit.reach();
@@ -167,7 +168,7 @@ impl Covering<'_> {
         false
     }
 
-    /// `None` if a doubtful cell is covered by none of them.
+    /// Returns the spheres; `None` if no sphere covers a doubtful cell.
     fn spheres(mut self) -> Option<Vec<Sphere>> {
         for cell in std::mem::take(&mut self.doubtful) {
             let reach = self.fit.reach();

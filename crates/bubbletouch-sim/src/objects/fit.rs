@@ -1,30 +1,31 @@
-//! How near spheres come to the surface that they stand for.
+//! Tolerances of a packing: how far spheres may be from the surface of the solid.
 
 use super::Sphere;
 use glam::DVec3;
 
-/// Largest number of spheres that [`pack`](super::pack) makes of a part. Larger: packings take more than 100 MB, and a touch takes hours; smaller:
-/// fine tolerances of large parts are refused.
+/// Maximum number of spheres per part in [`pack`](super::pack). If it is larger, packings need more than 100 MB and a touch takes hours; if it is smaller,
+/// fine tolerances of large parts are rejected.
 pub const MAX_SPHERES: usize = 2_000_000;
 
-/// How far the surface of the spheres may lie outside and inside that of the solid, metres.
+/// Allowed distances of the spheres' surface outside and inside the surface of the solid, metres.
 ///
-/// A ball of radius r inside the solid that touches its surface is swollen by [`outside`](Self::outside). Such a sphere comes
+/// A ball of radius r inside the solid that touches its surface is enlarged by [`outside`](Self::outside). The resulting sphere comes
 /// within [`inside`](Self::inside) of every surface point p with |p − c| ≤ r + h, h = outside + inside.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fit {
-    /// How far a sphere reaches outside, at most.
+    /// Maximum distance that a sphere reaches outside the solid.
     pub outside: f64,
-    /// How far the surface lies outside all spheres, at most.
+    /// Maximum distance of the solid's surface outside all spheres.
     pub inside: f64,
 }
 
 impl Fit {
-    /// Half of the tolerance outside, all of it inside: over a flat cell, or along an edge, the spheres are as often above the
-    /// surface as below it.
+    /// Returns half of the tolerance outside and all of it inside. On a flat cell or along an edge, the mean of the spheres' surface is then
+    /// the surface of the solid.
     ///
-    /// At t times the half side of a square cell (or of an interval) the sphere stands outside − h·t² above the surface, t² summed
-    /// over both sides and divided by 2 in a square: its mean is 1/3. More outside: objects feel too large; less: more spheres.
+    /// At t times the half side of a square cell (or of an interval) the sphere is outside − h·t² above the surface, with t² summed
+    /// over both sides and divided by 2 in a square; its mean is 1/3. If more is outside, objects are too large; if less is outside, more spheres are
+    /// needed.
     pub fn within(tolerance: f64) -> Self {
         Self {
             outside: 0.5 * tolerance,
@@ -32,22 +33,22 @@ impl Fit {
         }
     }
 
-    /// h: a swollen ball covers the surface points within r + h of its centre.
+    /// Returns h: an enlarged ball covers the surface points within r + h of its centre.
     pub fn reach(&self) -> f64 {
         self.outside + self.inside
     }
 
-    /// On a flat face a swollen ball of tangent radius r covers a disc of this radius around its foot.
+    /// Returns the radius of the disc around its foot that an enlarged ball of tangent radius r covers on a flat face.
     pub fn disc(&self, radius: f64) -> f64 {
         self.disc_squared(radius).sqrt()
     }
 
-    /// (r + h)² − r².
+    /// Returns (r + h)² − r².
     pub fn disc_squared(&self, radius: f64) -> f64 {
         self.reach() * (2.0 * radius + self.reach())
     }
 
-    /// The same while nothing is swollen: for balls that are surface themselves.
+    /// Returns the tolerances without enlargement, for balls that are surface themselves.
     pub fn unswollen(&self) -> Self {
         Self {
             outside: 0.0,
@@ -55,8 +56,8 @@ impl Fit {
         }
     }
 
-    /// The sphere of a ball that is to cover surface points this far from its centre, at most r + h: what it need not
-    /// reach it is not swollen for.
+    /// Returns the sphere of a ball that covers surface points up to `farthest` from its centre, at most r + h. The ball is enlarged only as far
+    /// as this requires.
     pub fn covering(&self, center: DVec3, radius: f64, farthest: f64) -> Sphere {
         let needed = ((farthest - radius) / self.reach()).clamp(0.0, 1.0);
         Sphere {
@@ -65,7 +66,7 @@ impl Fit {
         }
     }
 
-    /// The sphere of a ball that touches the surface from inside.
+    /// Returns the enlarged sphere of a ball that touches the surface from inside.
     pub fn swollen(&self, center: DVec3, radius: f64) -> Sphere {
         Sphere {
             center,

@@ -1,55 +1,55 @@
-//! A human hand with posed fingers: palm and fingers as balls of changing size swept along the bones.
+//! Human hand with posed fingers: palm and fingers are balls of varying size swept along the bones.
 //!
-//! The hand is a right one, palm down, on the plane z = 0: fingers along +y, the thumb towards −x, the wrist's middle at the
-//! origin. A flat hand touches the plane with palm, fingers and thumb; fingers bend downwards, through the plane.
+//! The hand is a right hand, palm down, on the plane z = 0: fingers along +y, the thumb towards −x, the middle of the wrist at the
+//! origin. A flat hand touches the plane with palm, fingers and thumb; bent fingers extend below the plane.
 //!
-//! Lengths of bones are mean lengths of adults \[BK\]; breadths are our choice, those of an average man's fingers to half a
-//! millimetre or so. Skin is rigid here, as every object is.
+//! Bone lengths are mean values of adults \[BK\]. Breadths are estimates for the fingers of an average man, to about half a
+//! millimetre. The skin of the hand is rigid, as every object is.
 
 use super::{Part, Shape, Solid, Sphere};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use glam::{DQuat, DVec3};
 
-/// How a finger is bent, radians; 0 is straight.
+/// Joint angles of a finger, radians; 0 is straight.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FingerPose {
-    /// Towards the little finger, −0.5 to 0.5.
+    /// Abduction towards the little finger, −0.5 to 0.5.
     pub spread: f64,
-    /// Of the knuckle (the thumb's metacarpophalangeal joint), −0.5 to 1.7.
+    /// Flexion of the knuckle (the thumb's metacarpophalangeal joint), −0.5 to 1.7.
     pub knuckle: f64,
-    /// Of the middle joint (the thumb's last), −0.1 to 2.0.
+    /// Flexion of the middle joint (the thumb's last joint), −0.1 to 2.0.
     pub middle: f64,
-    /// Of the last joint (the thumb has none), −0.1 to 1.5.
+    /// Flexion of the last joint (unused for the thumb), −0.1 to 1.5.
     pub end: f64,
 }
 
-/// A hand's size and pose.
+/// Size and pose of a hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hand {
-    /// From wrist to middle fingertip when it is straight, metres; adults have 0.16 to 0.21.
+    /// Length from the wrist to the tip of the straight middle finger, metres; 0.16 to 0.21 for adults.
     pub length: f64,
-    /// Index, middle, ring and little finger.
+    /// Poses of the index, middle, ring and little finger.
     pub fingers: [FingerPose; 4],
-    /// Its joints.
+    /// Pose of the thumb.
     pub thumb: FingerPose,
-    /// How far the thumb's metacarpal is turned under the palm, 0 (beside it) to 1.2 radians.
+    /// Rotation of the thumb's metacarpal under the palm, radians, from 0 (beside the palm) to 1.2.
     pub opposition: f64,
 }
 
-/// One digit: lengths of its bones and diameters at its joints, mm, for a hand of [`MODEL_LENGTH`].
+/// Digit with the lengths of its bones and the diameters at its joints, mm, for a hand of [`MODEL_LENGTH`].
 struct Digit {
-    /// Where its metacarpal begins.
+    /// Position of the start of the metacarpal.
     base: [f64; 2],
-    /// How far the metacarpal points away from +y, towards +x, radians.
+    /// Angle of the metacarpal from +y towards +x, radians.
     angle: f64,
-    /// Metacarpal, then phalanges; the last one with its pulp.
+    /// Lengths of the metacarpal and the phalanges; the last one includes its pulp.
     bones: [f64; 4],
-    /// At the beginning of the metacarpal, and at the end of each bone.
+    /// Diameters at the start of the metacarpal and at the end of each bone.
     diameters: [f64; 5],
 }
 
-/// Index, middle, ring, little finger.
+/// Index, middle, ring and little finger.
 const FINGERS: [Digit; 4] = [
     Digit {
         base: [-14.0, 20.0],
@@ -77,7 +77,7 @@ const FINGERS: [Digit; 4] = [
     },
 ];
 
-/// Its third phalanx is none.
+/// Thumb; it has no third phalanx.
 const THUMB: Digit = Digit {
     base: [-17.0, 12.0],
     angle: -0.75,
@@ -85,14 +85,14 @@ const THUMB: Digit = Digit {
     diameters: [28.0, 25.0, 20.5, 15.0, 15.0],
 };
 
-/// From the origin to the middle fingertip of the digits above, mm.
+/// Distance from the origin to the tip of the middle finger in this model, mm.
 const MODEL_LENGTH: f64 = 183.1;
 
 impl Hand {
-    /// Which of its [`strands`](Self::strands) is the thumb.
+    /// Index of the thumb in [`strands`](Self::strands).
     pub const THUMB: usize = 7;
 
-    /// All fingers straight.
+    /// Returns a hand with straight fingers.
     pub fn flat() -> Self {
         Self {
             length: 0.189,
@@ -102,7 +102,7 @@ impl Hand {
         }
     }
 
-    /// Bent as to hold something round: 0 is flat, 1 a fist.
+    /// Returns a hand bent around a round object: 0 is flat, 1 is a fist.
     pub fn curled(share: f64) -> Self {
         let finger = FingerPose {
             spread: 0.0,
@@ -123,14 +123,14 @@ impl Hand {
         }
     }
 
-    /// A fist with the index finger straight.
+    /// Returns a fist with a straight index finger.
     pub fn pointing() -> Self {
         let mut hand = Self::curled(1.0);
         hand.fingers[0] = FingerPose::default();
         hand
     }
 
-    /// Fingers and thumb spread apart.
+    /// Returns a hand with fingers and thumb spread apart.
     pub fn spread() -> Self {
         let mut hand = Self::flat();
         for (finger, spread) in hand.fingers.iter_mut().zip([-0.22, -0.05, 0.12, 0.3]) {
@@ -140,10 +140,10 @@ impl Hand {
         hand
     }
 
-    /// The hand as a union of strands.
+    /// Returns the hand as a union of sphere sweeps.
     ///
     /// # Errors
-    /// The error names the joint and the range that it is out of.
+    /// If a joint angle is out of range; the error names the joint and the range.
     pub fn solid(&self) -> Result<Solid> {
         self.check()?;
         let parts = self.strands().into_iter().map(|balls| {
@@ -156,11 +156,11 @@ impl Hand {
         Solid::new(parts.collect::<Result<_>>()?)
     }
 
-    /// The balls at its joints, metres: the hand is the hulls of each two that follow each other. First the index, middle, ring and
-    /// little finger (from the wrist: metacarpal's beginning, then the end of each bone), then the palm between their metacarpals, then
+    /// Returns chains of balls at the joints, metres; the hand is the union of the convex hulls of consecutive balls. First the index, middle, ring and
+    /// little finger (from the wrist: start of the metacarpal, then the end of each bone), then the palm between their metacarpals, then
     /// [the thumb](Self::THUMB), and the ball of the thumb.
     pub fn strands(&self) -> [Vec<Sphere>; 9] {
-        // What the model's millimetres are in this hand.
+        // Scale from the model's millimetres to the metres of this hand.
         let scale = self.length / MODEL_LENGTH;
         let strand = |points: &[DVec3], diameters: &[f64]| -> Vec<Sphere> {
             let balls = points.iter().zip(diameters);
@@ -174,7 +174,7 @@ impl Hand {
         let joints: [[DVec3; 5]; 4] =
             std::array::from_fn(|finger| FINGERS[finger].joints(&self.fingers[finger], 0.0));
         let finger = |k: usize| strand(&joints[k], &FINGERS[k].diameters);
-        // The palm between metacarpals.
+        // Palm between the metacarpals.
         let palm = |k: usize| {
             let middle = |end: usize| 0.5 * (joints[k][end] + joints[k + 1][end]);
             let width =
@@ -182,7 +182,7 @@ impl Hand {
             strand(&[middle(0), middle(1)], &[width(0), width(1)])
         };
         let thumb = THUMB.joints(&self.thumb, self.opposition);
-        // The ball of the thumb, towards the middle of the palm.
+        // Ball of the thumb, towards the middle of the palm.
         let middle = 0.5 * (joints[1][0] + joints[1][1]);
         let ball = [thumb[0], 0.5 * (thumb[1] + middle)];
         [
@@ -225,12 +225,12 @@ impl FingerPose {
 }
 
 impl Digit {
-    /// Its five joints, mm: each bone turned down from the one before; a straight one has its underside on z = 0.
+    /// Returns the five joints of a digit, mm. Each bone is rotated down from the previous one; the underside of a straight digit is on z = 0.
     fn joints(&self, pose: &FingerPose, opposition: f64) -> [DVec3; 5] {
         let [base_x, base_y] = self.base;
         let mut joints = [DVec3::new(base_x, base_y, 0.5 * self.diameters[0]); 5];
         let sideways = |angle: f64| DVec3::new(angle.sin(), angle.cos(), 0.0);
-        // A metacarpal that is turned under the palm points down as much.
+        // A metacarpal rotated under the palm points down by this angle.
         let mut forward = sideways(self.angle) * opposition.cos() - DVec3::Z * opposition.sin();
         let bends = [0.0, pose.knuckle, pose.middle, pose.end];
         for (bone, bend) in bends.into_iter().enumerate() {
@@ -241,7 +241,7 @@ impl Digit {
                 .cross(DVec3::Z)
                 .normalize();
             forward = DQuat::from_axis_angle(hinge, -bend) * forward;
-            // Straight digits get thinner to the end, and their joints so much lower.
+            // Straight digits become thinner towards the tip, so their joints become lower.
             let sinks = 0.5 * (self.diameters[bone] - self.diameters[bone + 1]);
             let length = self.bones[bone];
             let up = forward.cross(hinge).normalize();

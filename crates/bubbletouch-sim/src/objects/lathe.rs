@@ -1,6 +1,6 @@
-//! A solid of revolution: a polygon in the half plane (distance from the axis, height) turned about z.
+//! Solid of revolution: a polygon in the half plane (distance from the axis, height), rotated about z.
 //!
-//! The nearest surface point of a solid of revolution lies in the same half plane, so its distance is the polygon's.
+//! The nearest surface point of a solid of revolution lies in the half plane of the query point, so the distance is that of the polygon.
 
 use super::Sphere;
 use super::fit::{Fit, MAX_SPHERES};
@@ -9,29 +9,29 @@ use super::surface_patch::SurfacePatch;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
-/// A turned polygon.
+/// Rotated polygon.
 #[derive(Clone, Debug)]
 pub(super) struct Lathe {
     outline: Outline,
 }
 
-/// Balls of one radius, evenly on a circle about the axis.
+/// Balls of one radius, equally spaced on a circle about the axis.
 #[derive(Clone, Copy, Debug)]
 struct Ring {
-    /// (distance from the axis, height) of the ball centres.
+    /// Distance from the axis and height of the ball centres.
     center: DVec2,
-    /// Tangent radius; the spheres are swollen.
+    /// Tangent radius, before enlargement.
     radius: f64,
     n: f64,
 }
 
-/// The parts of each edge, as distances from its start, that no ring covers yet.
+/// Intervals of each edge, as distances from its start, that no ring covers yet.
 struct Uncovered {
     intervals: Vec<Vec<[f64; 2]>>,
 }
 
 impl Lathe {
-    /// `profile` holds (distance from the axis ≥ 0, height); sides on the axis are no surface.
+    /// Creates a lathe from a profile of (distance from the axis ≥ 0, height). Sides on the axis are not surface.
     pub fn new(profile: &[DVec2]) -> Self {
         Self {
             outline: Outline::new(profile, |a, b| a.x > 0.0 || b.x > 0.0),
@@ -43,7 +43,7 @@ impl Lathe {
             .distance(DVec2::new(point.truncate().length(), point.z))
     }
 
-    /// Largest p·direction over the solid.
+    /// Returns the largest p·direction over the solid.
     pub fn support(&self, direction: DVec3) -> f64 {
         let across = direction.truncate().length();
         let corners = self.outline.vertices().iter();
@@ -52,7 +52,7 @@ impl Lathe {
             .fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Rings until every point of the profile is covered all around.
+    /// Adds rings until every point of the profile is covered all around.
     pub fn pack(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
         let mut uncovered = Uncovered::new(&self.outline);
         while let Some(ring) = self.next_ring(&uncovered, fit) {
@@ -74,7 +74,7 @@ impl Lathe {
         }
     }
 
-    /// The ring that covers an end of the first uncovered interval and, over all edges, the most length a sphere.
+    /// Returns the ring that covers an end of the first uncovered interval and the largest length of all edges per sphere.
     fn next_ring(&self, uncovered: &Uncovered, fit: Fit) -> Option<Ring> {
         let (edge, target, step) = uncovered.first_end(&self.outline)?;
         let available = if step > 0.0 {
@@ -112,7 +112,7 @@ impl Lathe {
         best.map(|(.., ring)| ring)
     }
 
-    /// Rings of the largest ball that touches an edge there, with several numbers of balls.
+    /// Returns rings of the largest ball that touches an edge at a point, with several numbers of balls.
     fn rings(&self, edge: usize, along: f64, fit: Fit) -> impl Iterator<Item = Ring> {
         let foot = self.outline.edges[edge].point(along);
         let inward = self.outline.edges[edge].inward;
@@ -123,7 +123,7 @@ impl Lathe {
         };
         let radius = self.outline.tangent_radius(edge, foot).min(to_axis);
         let mut center = foot + radius * inward;
-        // A centre meant to be on the axis is put there, so that one ball makes the ring.
+        // A centre close to the axis is moved onto the axis, so that the ring has one ball.
         if radius == to_axis || center.x < 1e-9 * radius {
             center.x = 0.0;
         }
@@ -139,10 +139,10 @@ impl Lathe {
         })
     }
 
-    /// Which interval of an edge a ring covers all around.
+    /// Returns the interval of an edge that a ring covers all around.
     ///
-    /// Half-way between two balls the profile point (ρ, z) is `(ρ − ρc)² + (z − zc)² + 4 ρ ρc sin²(π/2n)` from both
-    /// centres, squared: quadratic along an edge, and covered where it is at most `(r + h)²`.
+    /// Half-way between two balls the squared distance of the profile point (ρ, z) from both centres is `(ρ − ρc)² + (z − zc)² + 4 ρ ρc sin²(π/2n)`.
+    /// It is quadratic along an edge, and the point is covered if it is at most `(r + h)²`.
     fn covered(&self, ring: &Ring, edge: usize, fit: Fit) -> Option<[f64; 2]> {
         let edge = &self.outline.edges[edge];
         let from_center = edge.start - ring.center;
@@ -199,13 +199,13 @@ impl Lathe {
 }
 
 impl Ring {
-    /// From a point of the profile, half-way between two of the balls, to their centres.
+    /// Returns the distance of a profile point, half-way between two balls, to their centres.
     fn distance(&self, point: DVec2) -> f64 {
         let apart = 4.0 * point.x * self.center.x * (0.5 * PI / self.n).sin().powi(2);
         ((point - self.center).length_squared() + apart).sqrt()
     }
 
-    /// The spheres that cover profile points this far from their centres.
+    /// Adds the spheres that cover profile points up to `farthest` from their centres.
     fn push_spheres(&self, farthest: f64, fit: Fit, spheres: &mut Vec<Sphere>) {
         spheres.extend((0..self.n as usize).take(MAX_SPHERES + 1).map(|i| {
             let (sin, cos) = (TAU * i as f64 / self.n).sin_cos();
@@ -223,8 +223,8 @@ impl Uncovered {
         }
     }
 
-    /// (edge, end of its first uncovered interval, direction into the interval): the end nearer to a corner, so that
-    /// balls grow from both corners of an edge towards its middle.
+    /// Returns an edge, an end of its first uncovered interval, and the direction into the interval. The end is the one nearer to a corner, so
+    /// balls are added from both corners of an edge towards its middle.
     fn first_end(&self, outline: &Outline) -> Option<(usize, f64, f64)> {
         let edge = self.intervals.iter().position(|i| !i.is_empty())?;
         let first = self.intervals[edge][0];
@@ -237,7 +237,7 @@ impl Uncovered {
     }
 }
 
-/// Takes an interval out; leftovers shorter than a billionth of it are rounding and go too.
+/// Removes an interval. Remainders shorter than a billionth of it are rounding errors and are also removed.
 fn subtract(intervals: &mut Vec<[f64; 2]>, [low, high]: [f64; 2]) {
     let slack = 1e-9 * (high - low);
     *intervals = intervals
@@ -247,7 +247,7 @@ fn subtract(intervals: &mut Vec<[f64; 2]>, [low, high]: [f64; 2]) {
         .collect();
 }
 
-/// What an interval has in common with others.
+/// Returns the intersection of an interval with others.
 fn common(intervals: &[[f64; 2]], [low, high]: [f64; 2]) -> impl Iterator<Item = [f64; 2]> + '_ {
     let cut = move |[start, end]: &[f64; 2]| [start.max(low), end.min(high)];
     intervals.iter().map(cut).filter(|[start, end]| start < end)

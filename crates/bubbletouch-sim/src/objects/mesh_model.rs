@@ -1,11 +1,11 @@
-//! A triangle mesh as an object of its own: what the contact kernel needs to know of it beforehand.
+//! Triangle mesh as an object, with precomputed data for contacts.
 
 use crate::geometry::Aabb;
 use crate::mesh::{Bvh, TriangleMesh, Welded};
 use glam::{DMat3, DQuat, DVec3};
 use std::sync::Arc;
 
-/// A mesh that taxels can touch, exactly; both sides of a triangle are solid. Copies share their data.
+/// Mesh that taxels can touch exactly; both sides of a triangle are solid. Clones share their data.
 #[derive(Clone, Debug)]
 pub struct MeshModel {
     data: Arc<Data>,
@@ -15,26 +15,27 @@ pub struct MeshModel {
 struct Data {
     mesh: TriangleMesh,
     bvh: Bvh,
-    /// n_triangles, in the tree's order.
+    /// Contact data per triangle, in the order of the tree.
     faces: Vec<ContactFace>,
 }
 
-/// One triangle's share of the contact: its face, and those edges and corners that no earlier triangle has.
+/// Contact data of one triangle: its face, and the edges and corners that no earlier triangle owns.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactFace {
-    /// Unit; zero if the triangle is too thin to have one.
+    /// Unit normal; zero if the triangle is too thin.
     pub normal: DVec3,
-    /// Across each side the neighbour's unit normal, as if it ran along the side in the same direction as this triangle (so
-    /// about minus this triangle's where the surface is smooth); zero if there is not exactly one, or it is too thin.
+    /// For each side, the unit normal of the neighbour, with the neighbour's corners ordered as if it passed the side in the direction of this triangle. On
+    /// a smooth
+    /// surface it is about minus this triangle's normal. It is zero if there is not exactly one neighbour, or if the neighbour is too thin.
     pub across: [DVec3; 3],
-    /// Whether the side from corner k to the next is this triangle's.
+    /// Whether this triangle owns the side from corner k to the next.
     pub has_edge: [bool; 3],
-    /// Whether the corner is this triangle's.
+    /// Whether this triangle owns the corner.
     pub has_corner: [bool; 3],
 }
 
 impl MeshModel {
-    /// Prepares a mesh; a few microseconds a triangle.
+    /// Prepares a mesh; takes a few microseconds per triangle.
     pub fn new(mesh: TriangleMesh) -> Self {
         let bvh = Bvh::new(&mesh);
         let faces = contact_faces(&mesh, &Welded::new(&mesh));
@@ -45,27 +46,27 @@ impl MeshModel {
         }
     }
 
-    /// The mesh, metres.
+    /// Returns the mesh, metres.
     pub fn mesh(&self) -> &TriangleMesh {
         &self.data.mesh
     }
 
-    /// Its tree of boxes.
+    /// Returns the tree of bounding boxes.
     pub fn bvh(&self) -> &Bvh {
         &self.data.bvh
     }
 
-    /// n_triangles, in the tree's order.
+    /// Returns the contact data per triangle, in the order of the tree.
     pub fn faces(&self) -> &[ContactFace] {
         &self.data.faces
     }
 
-    /// The box around the mesh, metres.
+    /// Returns the bounding box, metres.
     pub fn bounds(&self) -> Aabb {
         self.data.bvh.bounds()
     }
 
-    /// The box around the mesh turned about its origin.
+    /// Returns the bounding box of the mesh after a rotation about its origin.
     pub fn turned_bounds(&self, rotation: DQuat) -> Aabb {
         let rotation = DMat3::from_quat(rotation);
         let corners = self.corners().map(|corner| rotation * corner);
@@ -76,7 +77,7 @@ impl MeshModel {
         Aabb::around(points).expect("a mesh has at least one triangle")
     }
 
-    /// Each vertex that a triangle has, once.
+    /// Returns each vertex of a triangle, once.
     pub fn corners(&self) -> impl Iterator<Item = DVec3> {
         let Data { bvh, faces, .. } = &*self.data;
         let triangles = bvh.triangles().iter().zip(faces);
@@ -94,7 +95,7 @@ fn contact_faces(mesh: &TriangleMesh, welded: &Welded) -> Vec<ContactFace> {
         .map(|number| ContactFace {
             normal: mesh.triangle(number).normal().unwrap_or(DVec3::ZERO),
             across: [DVec3::ZERO; 3],
-            // Until shared below; the sides of a triangle with a corner twice are shared with nobody.
+            // All sides, until shared ones are removed below. The sides of a triangle with a repeated corner are not shared.
             has_edge: [true; 3],
             has_corner: welded.corners[number].map(&mut own_corner),
         })

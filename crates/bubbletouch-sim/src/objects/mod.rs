@@ -3,12 +3,12 @@
 //! | from | by | gives |
 //! |---|---|---|
 //! | a [`Catalogue`] of [`Solid`]s (TOML, mm) | [`pack`] | few spheres, surface within a stated error |
-//! | a [`Hand`] with posed fingers | [`pack`] | the same |
-//! | the vertices of a [mesh](crate::mesh) | [`vertex_spheres`] | one sphere a vertex, as the original \[BT\] |
+//! | a [`Hand`] with posed fingers | [`pack`] | few spheres, surface within a stated error |
+//! | the vertices of a [mesh](crate::mesh) | [`vertex_spheres`] | one sphere per vertex, as in the original \[BT\] |
 //! | a [`TriangleMesh`](crate::mesh::TriangleMesh) | [`MeshModel::new`] | the triangles themselves |
-//! | a CSV file | [`read_spheres`] | those spheres |
+//! | a CSV file | [`read_spheres`] | the spheres of the file |
 //!
-//! [`surface_error`] measures how well spheres fit a solid.
+//! [`surface_error`] measures the distance between spheres and a solid.
 
 mod block;
 mod catalogue;
@@ -50,19 +50,19 @@ pub use sphere_union::SphereUnion;
 pub use surface_error::{SurfaceError, surface_error};
 pub use vertex_spheres::vertex_spheres;
 
-/// A named object that a patch can touch.
+/// Named object that a patch can touch.
 #[derive(Clone, Debug)]
 pub struct Object {
-    /// Unique within its set: `mug`, `can_68x40`.
+    /// Name, unique within its set: `mug`, `can_68x40`.
     pub name: String,
-    /// Its shape in its own frame: z up, resting on z = 0, centred in x and y unless its source says otherwise.
+    /// Shape in the object's frame: z up, resting on z = 0, centred in x and y unless its source defines another frame.
     pub model: Model,
-    /// How many solids it is made of (1 for a mesh).
+    /// Number of solids of the object (1 for a mesh).
     pub n_parts: usize,
 }
 
 impl Object {
-    /// An object that is one thing, such as a mesh.
+    /// Creates an object with one part, such as a mesh.
     pub fn of_one_part(name: impl Into<String>, model: Model) -> Self {
         Self {
             name: name.into(),

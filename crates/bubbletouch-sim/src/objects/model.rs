@@ -1,19 +1,19 @@
-//! What an object is made of for the contact kernel: spheres, or triangles.
+//! Contact model of an object: spheres or triangles.
 
 use super::{MeshModel, SphereUnion};
 use crate::geometry::Aabb;
 
-/// The two shapes that taxels can touch, each in the object's frame.
+/// Shape that taxels can touch, in the frame of the object.
 #[derive(Clone, Debug)]
 pub enum Model {
-    /// A union of spheres.
+    /// Union of spheres.
     Spheres(SphereUnion),
-    /// A triangle mesh, touched exactly.
+    /// Triangle mesh, with exact contact.
     Mesh(MeshModel),
 }
 
 impl Model {
-    /// The spheres, if it is made of them.
+    /// Returns the spheres; `None` for a mesh.
     pub fn spheres(&self) -> Option<&SphereUnion> {
         match self {
             Self::Spheres(spheres) => Some(spheres),
@@ -21,12 +21,12 @@ impl Model {
         }
     }
 
-    /// How many spheres; 0 for a mesh.
+    /// Returns the number of spheres; 0 for a mesh.
     pub fn n_spheres(&self) -> usize {
         self.spheres().map_or(0, SphereUnion::n_spheres)
     }
 
-    /// How many triangles; 0 for spheres.
+    /// Returns the number of triangles; 0 for spheres.
     pub fn n_triangles(&self) -> usize {
         match self {
             Self::Spheres(_) => 0,
@@ -34,14 +34,14 @@ impl Model {
         }
     }
 
-    /// Sorts its spheres into [clusters](SphereUnion::clusters) now, which the first touch would do; the tree of a mesh is there.
+    /// Computes the [clusters](SphereUnion::clusters) of the spheres now instead of at the first touch; the tree of a mesh already exists.
     pub fn prepare(&self) {
         if let Self::Spheres(spheres) = self {
             spheres.clusters();
         }
     }
 
-    /// The box around it, metres.
+    /// Returns the bounding box, metres.
     pub fn bounds(&self) -> Aabb {
         match self {
             Self::Spheres(spheres) => spheres.bounds(),

@@ -1,8 +1,8 @@
-//! A closed polygon in a plane: the profile of a lathe, the outline of a prism.
+//! Closed polygon in a plane: the profile of a lathe, or the outline of a prism.
 
 use glam::DVec2;
 
-/// One straight piece of an outline, walked with the inside on its left.
+/// Straight edge of an outline, with the inside on its left.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edge {
     pub start: DVec2,
@@ -25,7 +25,7 @@ impl Edge {
         }
     }
 
-    /// The point this far from the start.
+    /// Returns the point at a distance from the start.
     pub fn point(&self, distance: f64) -> DVec2 {
         self.start + distance * self.along
     }
@@ -43,10 +43,10 @@ impl Edge {
         (point - self.nearest(point)).length()
     }
 
-    /// Radius at which a disc growing from `foot` along `inward` first touches this edge; infinite if never.
+    /// Returns the radius at which a disc growing from `foot` along `inward` first touches this edge; infinite if it never does.
     ///
-    /// The disc through a point q has radius |q − foot|² / 2 n·(q − foot). Along a line that is quasi-convex, so its
-    /// least value on the edge lies where the disc is tangent to the line, or at an end.
+    /// The disc through a point q has radius |q − foot|² / 2 n·(q − foot). Along a line this radius is quasi-convex, so its
+    /// minimum on the edge lies where the disc is tangent to the line, or at an end.
     fn tangent_radius(&self, foot: DVec2, inward: DVec2) -> f64 {
         let height = (foot - self.start).dot(self.inward);
         let towards = self.inward * height.signum();
@@ -67,7 +67,7 @@ impl Edge {
     }
 }
 
-/// A simple polygon, counter-clockwise; the pieces of it that are surface.
+/// Simple polygon, counter-clockwise, with the edges that belong to the surface.
 #[derive(Clone, Debug)]
 pub(super) struct Outline {
     vertices: Vec<DVec2>,
@@ -75,7 +75,7 @@ pub(super) struct Outline {
 }
 
 impl Outline {
-    /// Orders the vertices counter-clockwise and keeps as surface the edges for which `is_surface(start, end)`.
+    /// Orders the vertices counter-clockwise; edges for which `is_surface(start, end)` is true belong to the surface.
     pub fn new(vertices: &[DVec2], is_surface: impl Fn(DVec2, DVec2) -> bool) -> Self {
         let mut vertices = vertices.to_vec();
         if area(&vertices) < 0.0 {
@@ -88,7 +88,7 @@ impl Outline {
         Self { vertices, edges }
     }
 
-    /// Distance to the nearest surface edge, negative inside.
+    /// Returns the signed distance to the nearest surface edge, negative inside.
     pub fn distance(&self, point: DVec2) -> f64 {
         let distances = self.edges.iter().map(|edge| edge.distance(point));
         let distance = distances.fold(f64::INFINITY, f64::min);
@@ -99,7 +99,7 @@ impl Outline {
         }
     }
 
-    /// The surface edge nearest to a point, and its point there.
+    /// Returns the surface edge nearest to a point, and the nearest point on it.
     pub fn nearest(&self, point: DVec2) -> (usize, DVec2) {
         let mut best = (f64::INFINITY, 0, point);
         for (index, edge) in self.edges.iter().enumerate() {
@@ -112,12 +112,12 @@ impl Outline {
         (best.1, best.2)
     }
 
-    /// The corners, counter-clockwise.
+    /// Returns the corners, counter-clockwise.
     pub fn vertices(&self) -> &[DVec2] {
         &self.vertices
     }
 
-    /// Radius of the largest inscribed disc that touches edge `edge` at `foot`.
+    /// Returns the radius of the largest inscribed disc that touches the edge `edge` at `foot`.
     pub fn tangent_radius(&self, edge: usize, foot: DVec2) -> f64 {
         let inward = self.edges[edge].inward;
         let others = self.edges.iter().enumerate().filter(|&(i, _)| i != edge);
@@ -136,7 +136,7 @@ impl Outline {
     }
 }
 
-/// Why a list of corners is not a simple polygon, if it is not.
+/// Returns the reason why corners do not form a simple polygon; `None` if they do.
 pub(super) fn polygon_fault(vertices: &[DVec2]) -> Option<String> {
     if vertices.len() < 3 {
         return Some(format!("{} corners", vertices.len()));

@@ -1,31 +1,31 @@
-//! From a solid to the spheres that stand for it, with a stated surface error.
+//! Packing of a solid with spheres, within a stated surface error.
 //!
-//! Let e be the tolerance. Each sphere is the largest ball inside the solid that touches its surface at some point,
-//! radius r, swollen by e/2: no point of it lies more than e/2 outside. Such a sphere comes within e of every surface point p
-//! with |p − c| ≤ r + h, h = 3e/2; the feet are chosen so that these reaches cover the whole surface. On a flat face a ball
-//! reaches sqrt(h(2r + h)) around its foot, so large balls are few; at a right-angled edge it must have r ≤ h/(√2 − 1) to
-//! reach the edge. Each form has its own closed layout of feet (`block`, `lathe`, `sphere_sweep`, `torus`), or cells that are split
+//! Let e be the tolerance. Each sphere is the largest ball inside the solid that touches its surface at some point (the foot),
+//! with radius r, enlarged by e/2. No point of it lies more than e/2 outside. Such a sphere comes within e of every surface point p
+//! with |p − c| ≤ r + h, h = 3e/2. The feet are chosen so that the spheres cover the whole surface. On a flat face a ball
+//! covers sqrt(h(2r + h)) around its foot, so few large balls suffice. At a right-angled edge a ball needs r ≤ h/(√2 − 1) to
+//! reach the edge. Each form has its own closed layout of feet (`block`, `lathe`, `sphere_sweep`, `torus`), or cells that are divided
 //! until they are covered (`prism`).
 //!
-//! Where shapes are subtracted, cells of all surfaces are split in that way (`difference`).
+//! If shapes are subtracted, cells of all surfaces are divided in this way (`difference`).
 //!
-//! With half of e outside, the spheres' bumps and hollows about cancel (`fit`): the mean of the spheres' surface is the
-//! solid's, as it is for packed meshes ([`crate::packing`]). A ball is its own sphere, and so are the balls of a strand:
-//! nothing of them is swollen.
+//! With e/2 outside, bumps and hollows of the spheres nearly cancel (`fit`). The mean surface of the spheres equals the surface of the
+//! solid, as for packed meshes ([`crate::packing`]). A ball is represented by one sphere, and so are the balls of a sphere sweep; these spheres
+//! are not enlarged.
 
 use super::difference::pack_difference;
 use super::fit::{Fit, MAX_SPHERES};
 use super::{Solid, Sphere, SphereUnion};
 use crate::error::{Error, Result};
 
-/// Spheres whose union is the solid to within `tolerance` (metres, positive).
+/// Packs a solid with spheres whose union approximates it within `tolerance` (metres, positive).
 ///
 /// No sphere reaches more than half of `tolerance` outside the solid, and no point of the solid's outer surface lies more than `tolerance`
-/// outside the spheres ([`surface_error`](super::surface_error) measures both); on average the two surfaces are equally high. A ball is one
-/// sphere, its own. The same input gives the same spheres, in the order of the parts.
+/// outside the spheres ([`surface_error`](super::surface_error) measures both). On average the two surfaces have equal height. A ball becomes one
+/// sphere. Equal inputs give equal spheres, in the order of the parts.
 ///
 /// # Errors
-/// A tolerance that is not positive, or so small that a part would need more than [`MAX_SPHERES`].
+/// If the tolerance is not positive, or is so small that a part would need more than [`MAX_SPHERES`].
 pub fn pack(solid: &Solid, tolerance: f64) -> Result<SphereUnion> {
     if !(tolerance.is_finite() && tolerance > 0.0) {
         return Err(Error::input(
@@ -34,7 +34,7 @@ pub fn pack(solid: &Solid, tolerance: f64) -> Result<SphereUnion> {
             "a finite positive length",
         ));
     }
-    // Leaves rounding errors a place, so that what is promised is kept to the last digit.
+    // The margin for rounding errors keeps the stated tolerance exact.
     let fit = Fit::within(tolerance * (1.0 - 1e-6));
     if !solid.cuts().is_empty() {
         return pack_less(solid, tolerance, fit);
@@ -63,16 +63,16 @@ pub fn pack(solid: &Solid, tolerance: f64) -> Result<SphereUnion> {
 }
 
 impl Solid {
-    /// Packs the solid, as [`pack`] does.
+    /// Packs the solid like [`pack`].
     ///
     /// # Errors
-    /// Those of [`pack`].
+    /// If [`pack`] fails.
     pub fn pack(&self, tolerance: f64) -> Result<SphereUnion> {
         pack(self, tolerance)
     }
 }
 
-/// A solid from which something is subtracted.
+/// Packs a solid with cuts.
 fn pack_less(solid: &Solid, tolerance: f64, fit: Fit) -> Result<SphereUnion> {
     match pack_difference(solid, fit) {
         Some(spheres) => SphereUnion::new(spheres),
@@ -87,9 +87,9 @@ fn pack_less(solid: &Solid, tolerance: f64, fit: Fit) -> Result<SphereUnion> {
     }
 }
 
-/// Whether all surface that a sphere is there for lies inside another part.
+/// Returns whether the whole surface that a sphere covers lies inside another part.
 ///
-/// It is there for surface points within what is covered of its centre: its radius and the gap that is allowed. Of two equal parts the later one is buried.
+/// A sphere covers surface points within its radius plus the allowed gap. Of two equal parts, the later one is buried.
 fn is_buried(sphere: &Sphere, part: usize, solid: &Solid, fit: Fit) -> bool {
     let others = solid.parts().iter().enumerate().filter(|&(i, _)| i != part);
     let reach = sphere.radius + fit.inside;

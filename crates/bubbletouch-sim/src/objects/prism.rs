@@ -1,4 +1,4 @@
-//! A polygon with a thickness: its distance, its surface, its spheres.
+//! Prism, a polygon with a thickness: distance, surface and packing.
 
 use super::Sphere;
 use super::fit::{Fit, MAX_SPHERES};
@@ -6,11 +6,11 @@ use super::outline::Outline;
 use super::surface_patch::SurfacePatch;
 use glam::{DVec2, DVec3};
 
-/// A polygon in the plane z = 0, thickened by half the thickness both ways.
+/// Polygon in the plane z = 0, extended by half the thickness in both directions.
 #[derive(Clone, Debug)]
 pub(super) struct Prism {
     outline: Outline,
-    /// Half of the thickness.
+    /// Half thickness.
     half: f64,
 }
 
@@ -29,21 +29,21 @@ impl Prism {
         outside + across.max(above).min(0.0)
     }
 
-    /// Largest p·direction over the prism.
+    /// Returns the largest p·direction over the prism.
     pub fn support(&self, direction: DVec3) -> f64 {
         let corners = self.outline.vertices().iter();
         let across = corners.map(|v| v.dot(direction.truncate()));
         across.fold(f64::NEG_INFINITY, f64::max) + self.half * direction.z.abs()
     }
 
-    /// Walls first, by cells of each wall; then what they leave of the two faces, by cells of a square around the outline.
+    /// Packs the walls by cells of each wall, then the uncovered rest of the two faces by cells of a square around the outline.
     ///
-    /// A cell holds the ball that touches the surface in its middle; the cell is split until that ball, swollen, covers its
+    /// The ball of a cell touches the surface in the middle of the cell. The cell is divided until the enlarged ball covers its
     /// farthest point: |p − c| ≤ r + h, which is |p − foot|² ≤ (r + h)² − r² on a plane.
     pub fn pack(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
         for edge in 0..self.outline.edges.len() {
             let length = self.outline.edges[edge].length;
-            // Start from about square cells; walls are much longer than high.
+            // The first cells are nearly square, because walls are much longer than high.
             let n = (0.5 * length / self.half).ceil();
             for i in 0..n as usize {
                 let cell = Cell {
@@ -108,8 +108,8 @@ impl Prism {
         }
     }
 
-    /// Centre and radius of a disc inside, at most `largest`, that touches the outline where it is nearest to a point outside; at a
-    /// corner it is the corner itself, radius 0.
+    /// Returns the centre and radius of a disc inside, at most `largest`, that touches the outline at its nearest point to a point outside. At a
+    /// corner it is the corner itself with radius 0.
     fn border_disc(&self, point: DVec2, largest: f64) -> (DVec2, f64) {
         let (edge, foot) = self.outline.nearest(point);
         let step = self
@@ -117,7 +117,7 @@ impl Prism {
             .min(largest)
             .min(self.outline.tangent_radius(edge, foot));
         let center = foot + step * self.outline.edges[edge].inward;
-        // At a corner rounding decides which neighbour the foot lies on; only the distance itself is to be trusted.
+        // At a corner rounding decides to which edge the foot belongs; only the distance itself is reliable.
         let inset = -self.outline.distance(center);
         if inset > 0.0 {
             (center, inset.min(self.half))
@@ -126,7 +126,7 @@ impl Prism {
         }
     }
 
-    /// Each wall, and a rectangle around each face: beside the outline it lies outside the prism.
+    /// Returns each wall, and a rectangle around each face; beside the outline, the rectangle lies outside the prism.
     pub fn patches(&self) -> Vec<SurfacePatch> {
         let walls = self.outline.edges.iter().map(|edge| {
             let middle = edge.point(0.5 * edge.length).extend(0.0);
@@ -171,7 +171,7 @@ impl Prism {
     }
 }
 
-/// A rectangle in the coordinates of a wall or a face.
+/// Rectangle in the coordinates of a wall or a face.
 #[derive(Clone, Copy)]
 struct Cell {
     middle: DVec2,
@@ -179,7 +179,7 @@ struct Cell {
 }
 
 impl Cell {
-    /// Halves across the longer side.
+    /// Returns two halves, cut across the longer side.
     fn split(&self) -> [Self; 2] {
         let mut half = self.half;
         let mut step = DVec2::ZERO;

@@ -4,94 +4,94 @@ use super::outline::polygon_fault;
 use crate::error::{Error, Result};
 use glam::{DVec2, DVec3};
 
-/// A shape in its own frame. All lengths are metres and positive; each shape is centred on the origin unless said.
+/// Shape in its own frame. All lengths are positive, in metres; shapes are centred on the origin unless stated otherwise.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
-    /// A ball.
+    /// Ball.
     Ball {
-        /// Its diameter.
+        /// Diameter.
         diameter: f64,
     },
-    /// A box.
+    /// Box.
     Box {
         /// Edge lengths along x, y, z.
         size: DVec3,
         /// Radius of edges and corners: 0 (sharp) to half the smallest edge length.
         rounding: f64,
     },
-    /// A cylinder about z.
+    /// Cylinder about z.
     Cylinder {
-        /// Its diameter.
+        /// Diameter.
         diameter: f64,
-        /// Along z.
+        /// Height along z.
         height: f64,
     },
-    /// A cylinder about z with a half ball on each end.
+    /// Cylinder about z with a half ball at each end.
     Capsule {
-        /// Its diameter.
+        /// Diameter.
         diameter: f64,
-        /// Along z, both half balls included: at least the diameter.
+        /// Length along z including both half balls: at least the diameter.
         length: f64,
     },
-    /// A cone about z with its tip cut off; one of the diameters may be 0.
+    /// Truncated cone about z; one of the diameters may be 0.
     ConeFrustum {
         /// Diameter of the lower end.
         bottom_diameter: f64,
         /// Diameter of the upper end.
         top_diameter: f64,
-        /// Along z.
+        /// Height along z.
         height: f64,
     },
-    /// A torus about z.
+    /// Torus about z.
     Torus {
-        /// Diameter of the circle in the middle of the tube: at least the tube's.
+        /// Diameter of the circle in the middle of the tube: at least the tube diameter.
         ring_diameter: f64,
         /// Diameter of the tube.
         tube_diameter: f64,
     },
-    /// A cylinder about z with a hole along it.
+    /// Cylinder about z with a hole along its axis.
     Tube {
-        /// Diameter of the outside.
+        /// Outer diameter.
         outer_diameter: f64,
         /// Diameter of the hole.
         inner_diameter: f64,
-        /// Along z.
+        /// Height along z.
         height: f64,
     },
-    /// A polygon turned about z: cups, bowls, bottles.
+    /// Polygon rotated about z: cups, bowls, bottles.
     Lathe {
-        /// Corners (distance from the axis, height z), either way round; the outline closes itself.
+        /// Corners (distance from the axis, height z) in either direction; the outline is closed automatically.
         profile: Vec<DVec2>,
     },
-    /// A polygon in the plane z = 0, thickened both ways: blades, jaws.
+    /// Polygon in the plane z = 0 with a thickness, centred on the plane: blades, jaws.
     Prism {
-        /// Corners (x, y), either way round; the outline closes itself.
+        /// Corners (x, y) in either direction; the outline is closed automatically.
         outline: Vec<DVec2>,
-        /// Along z.
+        /// Thickness along z.
         thickness: f64,
     },
-    /// A six-sided bar along z with two corners on the x axis: nuts, bolt heads, pencils.
+    /// Hexagonal bar along z with two corners on the x axis: nuts, bolt heads, pencils.
     HexagonalPrism {
-        /// Distance between opposite sides: the size of its spanner.
+        /// Distance between opposite sides (the spanner size).
         across_flats: f64,
-        /// Along z.
+        /// Height along z.
         height: f64,
     },
-    /// A ball swept along a broken line; its diameter changes linearly between points: handles, rings, bananas.
+    /// Ball swept along a polyline; its diameter changes linearly between points: handles, rings, bananas.
     SphereSweep {
-        /// Points of the line; the sweep is closed if the last ball equals the first.
+        /// Points of the polyline; the sweep is closed if the last ball equals the first.
         points: Vec<DVec3>,
         /// Diameter of the ball at each point.
         diameters: Vec<f64>,
     },
 }
 
-/// How errors name lengths and say how long they are.
+/// Format of dimension names and lengths in errors.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Wording {
     /// `height: -0.002 m`
     Metres,
-    /// `height_mm: -2`, as the keys of files of objects.
+    /// `height_mm: -2`, like the keys of object files.
     MillimetreKeys,
 }
 
@@ -103,11 +103,11 @@ impl Wording {
         }
     }
 
-    /// Of metres.
+    /// Formats a length given in metres.
     fn length(self, metres: f64) -> String {
         match self {
             Self::Metres => format!("{metres} m"),
-            // As it was written, but for what the conversion to metres and back rounds.
+            // The written value, without the rounding errors of the conversion to metres and back.
             Self::MillimetreKeys => format!("{}", (metres * 1e12).round() / 1e9),
         }
     }
@@ -120,7 +120,7 @@ impl Wording {
         Err(Error::input(self.name(name), self.length(metres), allowed))
     }
 
-    /// Largest and smallest included; the largest may be infinite.
+    /// Checks low ≤ metres ≤ high; `high` may be infinite.
     fn between(self, name: &str, metres: f64, low: f64, high: f64) -> Result<()> {
         if metres.is_finite() && (low..=high).contains(&metres) {
             return Ok(());
@@ -180,15 +180,15 @@ impl Wording {
 }
 
 impl Shape {
-    /// Whether it can be.
+    /// Checks that all dimensions are in range.
     ///
     /// # Errors
-    /// The first dimension that is out of its range.
+    /// If a dimension is out of range; the error names the first one.
     pub fn check(&self) -> Result<()> {
         self.check_worded(Wording::Metres)
     }
 
-    /// The error's place is the name of the dimension.
+    /// Checks the dimensions. The place of the error is the name of the dimension.
     pub(super) fn check_worded(&self, wording: Wording) -> Result<()> {
         let positive = |name, metres| wording.positive(name, metres);
         let at_least = |name, metres, low| wording.between(name, metres, low, f64::INFINITY);

@@ -1,4 +1,4 @@
-//! Unions of posed shapes, less other shapes: what the catalogue's objects are.
+//! Solids: unions of shapes with poses, minus other shapes; the objects of the catalogue.
 
 use super::block::Block;
 use super::fit::Fit;
@@ -12,30 +12,30 @@ use crate::error::{Error, Result};
 use crate::geometry::{Aabb, Pose};
 use glam::{DVec2, DVec3};
 
-/// A shape that is placed in the object's frame.
+/// Shape with a pose in the frame of the object.
 #[derive(Clone, Debug)]
 pub struct Part {
     shape: Shape,
     kernel: Kernel,
-    /// Object from part.
+    /// Pose of the part in the frame of the object.
     pose: Pose,
 }
 
-/// A union of parts, less other shapes. Invariant: at least one part.
+/// Union of parts minus other shapes. Invariant: there is at least one part.
 #[derive(Clone, Debug)]
 pub struct Solid {
     parts: Vec<Part>,
-    /// What is subtracted from all parts together.
+    /// Shapes that are subtracted from all parts.
     cuts: Vec<Part>,
-    /// How much larger the cuts are taken, metres.
+    /// Distance by which cuts are enlarged, metres.
     seam: f64,
 }
 
-/// How much larger cuts are taken, in diagonals of the box around the parts: where one ends in a part's surface no membrane without
-/// thickness is left. Smaller: rounding leaves one; larger: walls beside cuts are thinner.
+/// Enlargement of cuts, relative to the diagonal of the box around the parts. It removes membranes of zero thickness where a cut ends in a part's
+/// surface. If it is smaller, rounding leaves such membranes; if it is larger, walls beside cuts become thinner.
 const SEAM: f64 = 4e-6;
 
-/// The five forms that all shapes come down to.
+/// Five basic forms that represent all shapes.
 #[derive(Clone, Debug)]
 enum Kernel {
     Block(Block),
@@ -45,16 +45,16 @@ enum Kernel {
     SphereSweep(SphereSweep),
 }
 
-/// Smallest gap of a turned polygon, as a share of its size: intervals on its edges are known to 1e-9 of an edge. The rim of a sharp
-/// edge takes more spheres than are allowed long before. Larger: refuses fine packings; smaller: edges count as covered that no sphere
+/// Smallest gap of a turned polygon relative to its size, because intervals on its edges have an accuracy of 1e-9 of an edge. The rim of a sharp
+/// edge reaches the limit of spheres long before. If it is larger, fine packings are rejected; if it is smaller, edges count as covered that no sphere
 /// reaches.
 const MIN_REACH: f64 = 1e-8;
 
 impl Part {
-    /// A shape at a pose.
+    /// Creates a part from a shape and its pose.
     ///
     /// # Errors
-    /// The first dimension that is out of its range.
+    /// If a dimension is out of range; the error names the first one.
     pub fn new(shape: Shape, pose: Pose) -> Result<Self> {
         shape.check()?;
         if !(pose.translation.is_finite() && pose.rotation.is_finite()) {
@@ -72,12 +72,12 @@ impl Part {
         })
     }
 
-    /// What was given.
+    /// Returns the shape.
     pub fn shape(&self) -> &Shape {
         &self.shape
     }
 
-    /// Metres from a point of the object's frame to the part's surface, negative inside.
+    /// Returns the signed distance from a point in the object's frame to the part's surface, metres, negative inside.
     pub fn distance(&self, point: DVec3) -> f64 {
         let point = self.pose.inverse().transform_point(point);
         match &self.kernel {
@@ -89,7 +89,7 @@ impl Part {
         }
     }
 
-    /// Largest p·direction over the part, in the object's frame.
+    /// Returns the largest p·direction over the part, in the object's frame.
     fn support(&self, direction: DVec3) -> f64 {
         let inside = self.pose.rotation.conjugate() * direction;
         let support = match &self.kernel {
@@ -102,14 +102,14 @@ impl Part {
         support + self.pose.translation.dot(direction)
     }
 
-    /// Whether rounding is small beside the gaps that a packing may leave.
+    /// Returns whether rounding errors are small compared with the gaps that a packing may leave.
     pub(super) fn resolves(&self, fit: Fit) -> bool {
         let along = |axis: DVec3| self.support(axis) + self.support(-axis);
         let size = DVec3::new(along(DVec3::X), along(DVec3::Y), along(DVec3::Z)).length();
         !matches!(self.kernel, Kernel::Lathe(_)) || fit.reach() >= MIN_REACH * size
     }
 
-    /// Spheres whose union is the part.
+    /// Returns spheres whose union approximates the part.
     pub(super) fn pack(&self, fit: Fit) -> Vec<Sphere> {
         let mut spheres = Vec::new();
         match &self.kernel {
@@ -125,7 +125,7 @@ impl Part {
         spheres
     }
 
-    /// All of the part's surface, in the object's frame.
+    /// Returns patches of the whole surface of the part, in the object's frame.
     pub(super) fn patches(&self) -> Vec<SurfacePatch> {
         let patches = match &self.kernel {
             Kernel::Block(block) => block.patches(),
@@ -138,7 +138,7 @@ impl Part {
         moved.collect()
     }
 
-    /// Points of the part's surface, at most about `spacing` apart, corners and edges among them.
+    /// Returns points of the part's surface including corners and edges, at most about `spacing` (metres) apart.
     fn surface_points(&self, spacing: f64) -> Vec<DVec3> {
         let mut points = Vec::new();
         match &self.kernel {
@@ -156,10 +156,10 @@ impl Part {
 }
 
 impl Solid {
-    /// A solid of parts.
+    /// Creates a solid from parts.
     ///
     /// # Errors
-    /// No parts.
+    /// If there are no parts.
     pub fn new(parts: Vec<Part>) -> Result<Self> {
         if parts.is_empty() {
             return Err(Error::input("solid", "no parts", "at least one part"));
@@ -171,10 +171,10 @@ impl Solid {
         })
     }
 
-    /// What these shapes leave of the solid.
+    /// Subtracts shapes from the solid.
     ///
     /// # Errors
-    /// They leave nothing of one of its parts' surfaces, as far as points a hundredth of its size apart can tell.
+    /// If the cuts remove the whole surface of a part, as tested at points a hundredth of the part's size apart.
     pub fn less(self, cuts: Vec<Part>) -> Result<Self> {
         let seam = SEAM * self.bounds().size().length();
         let solid = Self { cuts, seam, ..self };
@@ -192,38 +192,38 @@ impl Solid {
         Ok(solid)
     }
 
-    /// A solid of one shape in its own frame.
+    /// Creates a solid of one shape in its own frame.
     ///
     /// # Errors
-    /// Those of [`Part::new`].
+    /// If [`Part::new`] fails.
     pub fn of(shape: Shape) -> Result<Self> {
         Self::new(vec![Part::new(shape, Pose::IDENTITY)?])
     }
 
-    /// In the order in which they were given.
+    /// Returns the parts in the order in which they were given.
     pub fn parts(&self) -> &[Part] {
         &self.parts
     }
 
-    /// What is subtracted, in the order in which it was given.
+    /// Returns the subtracted shapes in the order in which they were given.
     pub fn cuts(&self) -> &[Part] {
         &self.cuts
     }
 
-    /// Metres from a point to the surface, negative inside.
+    /// Returns the signed distance from a point to the surface, metres, negative inside.
     ///
-    /// Exact outside if nothing is subtracted, else never farther than the truth; inside exact for one part of any shape but a
-    /// strand, else never deeper than the truth. What is subtracted is taken larger by 4 millionths of the diagonal of the box.
+    /// Outside, the distance is exact without cuts; with cuts it is a lower bound. Inside, the depth is exact for a single part of any shape except a
+    /// sphere sweep, otherwise a lower bound. Cuts are enlarged by 4 millionths of the diagonal of the bounding box.
     pub fn distance(&self, point: DVec3) -> f64 {
         nearest(&self.parts, point).max(self.seam - nearest(&self.cuts, point))
     }
 
-    /// Minus the distance where all that is subtracted is larger by `growth` (metres).
+    /// Returns minus the signed distance, with all cuts enlarged by `growth` (metres).
     pub(super) fn depth_with_cuts_grown(&self, point: DVec3, growth: f64) -> f64 {
         (-nearest(&self.parts, point)).min(nearest(&self.cuts, point) - growth)
     }
 
-    /// The exact box around the parts, whatever is subtracted from them, metres.
+    /// Returns the exact bounding box of the parts without cuts, metres.
     pub fn bounds(&self) -> Aabb {
         let support = |direction: DVec3| {
             let supports = self.parts.iter().map(|part| part.support(direction));
@@ -239,7 +239,7 @@ impl Solid {
         }
     }
 
-    /// The same solid after a rigid motion.
+    /// Returns the solid after a rigid motion.
     pub fn moved(&self, motion: &Pose) -> Self {
         let mut solid = self.clone();
         for part in solid.parts.iter_mut().chain(&mut solid.cuts) {
@@ -248,16 +248,16 @@ impl Solid {
         solid
     }
 
-    /// The same solid resting on z = 0, the middle of its box on the z axis.
+    /// Returns the solid moved so that it rests on z = 0 with the middle of its bounding box on the z axis.
     pub fn resting(&self) -> Self {
         let bounds = self.bounds();
         let middle = bounds.center().truncate();
         self.moved(&Pose::from_translation(-middle.extend(bounds.min.z)))
     }
 
-    /// Points of the union's surface, at most about `spacing` (metres) apart.
+    /// Returns points of the surface of the union, at most about `spacing` (metres) apart.
     pub fn surface_points(&self, spacing: f64) -> Vec<DVec3> {
-        // A point of a part's surface that lies inside another part, or inside its own strand, is not surface.
+        // A point of a part's surface inside another part, or inside its own sphere sweep, is not on the surface.
         let rounding = 1e-9 * self.bounds().size().length();
         let points = self.parts.iter().flat_map(|p| p.surface_points(spacing));
         let of_parts = points
@@ -270,7 +270,7 @@ impl Solid {
     }
 }
 
-/// Metres to the nearest of these shapes, negative inside one; infinite without any.
+/// Returns the signed distance to the nearest of several shapes, metres, negative inside one; infinite if there are none.
 fn nearest(parts: &[Part], point: DVec3) -> f64 {
     let distances = parts.iter().map(|part| part.distance(point));
     distances.fold(f64::INFINITY, f64::min)

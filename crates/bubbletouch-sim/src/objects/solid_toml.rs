@@ -1,4 +1,4 @@
-//! Parts as a person writes them: millimetres and degrees.
+//! Parts as written in object files: millimetres and degrees.
 
 use super::shape::Wording;
 use super::{Part, Shape};
@@ -9,14 +9,14 @@ use serde::Deserialize;
 use std::ops::Range;
 use toml::Spanned;
 
-/// One `[[object.part]]` or `[[object.subtract]]`: a shape's name, where it is, and the lengths that this shape has and no others.
+/// One `[[object.part]]` or `[[object.subtract]]`: the name of a shape, its position, and the lengths of this shape only.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct WrittenPart {
     shape: Spanned<ShapeName>,
-    /// Where the shape's origin goes.
+    /// Position of the shape's origin.
     position_mm: Option<Spanned<[f64; 3]>>,
-    /// Before that the shape turns about the object's fixed x axis, then y, then z (URDF's roll, pitch, yaw).
+    /// Rotation, applied before the position: about the object's fixed x axis, then y, then z (URDF's roll, pitch, yaw).
     rotation_deg: Option<Spanned<[f64; 3]>>,
     size_mm: Option<Spanned<[f64; 3]>>,
     diameter_mm: Option<Spanned<f64>>,
@@ -31,7 +31,7 @@ pub(super) struct WrittenPart {
     across_flats_mm: Option<Spanned<f64>>,
     thickness_mm: Option<Spanned<f64>>,
     rounding_mm: Option<Spanned<f64>>,
-    /// Corners (diameter, height) of a turned part, as its drawing gives them.
+    /// Corners (diameter, height) of a turned part, as in its drawing.
     profile_mm: Option<Spanned<Vec<[f64; 2]>>>,
     outline_mm: Option<Spanned<Vec<[f64; 2]>>>,
     points_mm: Option<Spanned<Vec<[f64; 3]>>>,
@@ -56,7 +56,7 @@ enum ShapeName {
 }
 
 impl WrittenPart {
-    /// The same in metres, checked. The error's place is a key.
+    /// Converts the part to metres and checks it. The place of an error is a key.
     pub fn part(mut self) -> Result<Part> {
         let moved = |value: &mut Option<Spanned<[f64; 3]>>, key: &str| {
             let value = value.take().map_or([0.0; 3], Spanned::into_inner);
@@ -84,14 +84,14 @@ impl WrittenPart {
         Part::new(shape, Pose::new(rotation, metres3(position)))
     }
 
-    /// Where in the file the value of a key is; of the shape if the key is missing.
+    /// Returns the position in the file of the value of a key; of the shape if the key is missing.
     pub fn place(&self, key: &str) -> Range<usize> {
         let keys = self.keys().into_iter();
         let mut named = keys.filter_map(|(name, place)| (name == key).then_some(place));
         named.next().flatten().unwrap_or(self.shape.span())
     }
 
-    /// The shape's name as it is written.
+    /// Returns the name of the shape as written.
     pub fn name(&self) -> &'static str {
         match self.shape.get_ref() {
             ShapeName::Ball => "ball",
@@ -168,7 +168,7 @@ impl WrittenPart {
         })
     }
 
-    /// Every key that a shape may have, and where its value is in the file.
+    /// Returns every key that a shape may have, with the position of its value in the file.
     fn keys(&self) -> Vec<(&'static str, Option<Range<usize>>)> {
         fn place<T>(value: &Option<Spanned<T>>) -> Option<Range<usize>> {
             value.as_ref().map(Spanned::span)
@@ -197,7 +197,7 @@ impl WrittenPart {
     }
 }
 
-/// Metres in a millimetre.
+/// Length of one millimetre, metres.
 const MM: f64 = 1e-3;
 
 fn metres(value: &mut Option<Spanned<f64>>, key: &str) -> Result<f64> {

@@ -3,7 +3,7 @@
 use crate::geometry::Aabb;
 use glam::DVec3;
 
-/// A rigid sphere.
+/// Rigid sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
     /// Centre, metres.

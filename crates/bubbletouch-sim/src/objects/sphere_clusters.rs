@@ -1,44 +1,44 @@
-//! Spheres of an object, neighbours together, so that those far from the skin are left out by the dozen.
+//! Spheres of an object in clusters of neighbours, so that distant spheres can be skipped in groups.
 
 use super::Sphere;
 use glam::{DVec3, DVec4};
 
-/// Spheres in a cluster, at most. More: spheres are looked at in vain; fewer: clusters are.
+/// Maximum number of spheres in a cluster. If it is larger, more distant spheres are tested; if it is smaller, more clusters are tested.
 pub(crate) const MAX_IN_CLUSTER: usize = 16;
 
-/// The spheres of an object in clusters: near each other and about as large. The same spheres always give the same clusters.
+/// Spheres of an object in clusters of similar position and size. Equal spheres give equal clusters.
 #[derive(Clone, Debug)]
 pub struct SphereClusters {
-    /// Centres of the spheres, cluster by cluster: x, y, z, metres. Zeros behind the last, so that a whole cluster can be looked
-    /// at from any of them.
+    /// Centres of the spheres, cluster by cluster: x, y, z, metres. Zeros follow the last sphere, so that a full cluster can be
+    /// loaded from any position.
     centers: [Vec<f64>; 3],
-    /// Their radii.
+    /// Radii of the spheres, metres.
     radii: Vec<f64>,
-    /// Which of the object's spheres each is.
+    /// Index of each sphere in the object.
     numbers: Vec<u32>,
-    /// Where each cluster begins among the spheres, and behind them where the last one ends.
+    /// Index of the first sphere of each cluster, followed by the total number of spheres.
     starts: Vec<u32>,
     bounds: ClusterBounds,
-    /// Around all.
+    /// Ball around all spheres.
     ball: Sphere,
 }
 
-/// What is around each cluster, coordinate by coordinate, so that several clusters are looked at with one instruction; metres,
-/// in the object's frame.
+/// Bounds of each cluster, stored by coordinate for vectorised tests; metres,
+/// in the frame of the object.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ClusterBounds {
     /// Middles of the boxes around the centres of the spheres: x, y, z.
     pub middle: [Vec<f64>; 3],
-    /// Half the sides of these boxes.
+    /// Half sides of these boxes.
     pub half: [Vec<f64>; 3],
     /// Radii of the largest spheres.
     pub largest: Vec<f64>,
-    /// Radii of balls about the middles that hold the spheres.
+    /// Radii of balls around the middles that contain the spheres.
     pub radius: Vec<f64>,
 }
 
 impl SphereClusters {
-    /// Sorts the spheres of an object into clusters; about 100 ns per sphere.
+    /// Groups the spheres of an object into clusters; takes about 100 ns per sphere.
     pub(super) fn from_spheres(spheres: &[Sphere]) -> Self {
         let mut numbered: Vec<(u32, Sphere)> = (0..).zip(spheres.to_vec()).collect();
         let mut sizes = Vec::new();
@@ -71,27 +71,27 @@ impl SphereClusters {
         }
     }
 
-    /// How many spheres.
+    /// Returns the number of spheres.
     pub fn n_spheres(&self) -> usize {
         self.starts[self.starts.len() - 1] as usize
     }
 
-    /// A ball around all of them, in the object's frame, metres.
+    /// Returns a ball around all spheres, in the frame of the object, metres.
     pub fn ball(&self) -> Sphere {
         self.ball
     }
 
-    /// Around each cluster.
+    /// Returns the bounds of the clusters.
     pub(crate) fn bounds(&self) -> &ClusterBounds {
         &self.bounds
     }
 
-    /// Which of the object's spheres are in a cluster.
+    /// Returns the indices in the object of the spheres of a cluster.
     pub(crate) fn numbers(&self, cluster: usize) -> &[u32] {
         &self.numbers[self.starts[cluster] as usize..self.starts[cluster + 1] as usize]
     }
 
-    /// The spheres of a cluster.
+    /// Returns the spheres of a cluster.
     #[inline(always)]
     pub(crate) fn of(&self, cluster: usize) -> Cluster<'_> {
         let first = self.starts[cluster] as usize;
@@ -104,18 +104,18 @@ impl SphereClusters {
     }
 }
 
-/// The spheres of a cluster; in the lanes behind the last, any others.
+/// Spheres of a cluster; unused lanes contain arbitrary spheres.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cluster<'a> {
     pub n_spheres: usize,
-    /// x, y, z in the object's frame, metres.
+    /// Centres x, y, z in the frame of the object, metres.
     pub centers: [&'a [f64; MAX_IN_CLUSTER]; 3],
-    /// Metres.
+    /// Radii, metres.
     pub radii: &'a [f64; MAX_IN_CLUSTER],
 }
 
 impl Cluster<'_> {
-    /// One of its spheres.
+    /// Returns one sphere of the cluster.
     #[inline(always)]
     pub fn at(&self, k: usize) -> Sphere {
         let [x, y, z] = self.centers;
@@ -143,7 +143,7 @@ impl ClusterBounds {
         self.radius.push(ball.radius);
     }
 
-    /// The ball around a cluster.
+    /// Returns the ball around a cluster.
     pub fn ball(&self, cluster: usize) -> Sphere {
         Sphere {
             center: DVec3::from_array([0, 1, 2].map(|axis| self.middle[axis][cluster])),
@@ -151,13 +151,13 @@ impl ClusterBounds {
         }
     }
 
-    /// How many clusters.
+    /// Returns the number of clusters.
     pub fn len(&self) -> usize {
         self.radius.len()
     }
 }
 
-/// The smallest and largest centre and radius (as w) of some spheres.
+/// Minimum and maximum of the centres and radii (component w) of spheres.
 struct Extent {
     low: DVec4,
     high: DVec4,
@@ -176,7 +176,7 @@ impl Extent {
         self.high - self.low
     }
 
-    /// About the middle of the centres, around the spheres.
+    /// Returns the ball around the middle of the centres that contains the spheres.
     fn ball(&self, spheres: &[Sphere]) -> Sphere {
         let center = (0.5 * (self.low + self.high)).truncate();
         let reaches = spheres.iter().map(|s| s.center.distance(center) + s.radius);
@@ -187,7 +187,7 @@ impl Extent {
     }
 }
 
-/// Halves spheres across the longest side of where their centres are, or by their size if that differs more, until few are left.
+/// Divides spheres in halves until a cluster is small enough, along the coordinate of the centres or the radius with the largest range.
 fn cut(spheres: &mut [(u32, Sphere)], sizes: &mut Vec<usize>) {
     if spheres.len() <= MAX_IN_CLUSTER {
         sizes.push(spheres.len());

@@ -6,13 +6,13 @@ use crate::text::numbers_csv::{check_width, finite, line_of, rows_of, unreadable
 use glam::DVec3;
 use std::io::{self, Read, Write};
 
-/// The columns, in order.
+/// Columns in order.
 const COLUMNS: [&str; 4] = ["x", "y", "z", "r"];
 
-/// Spheres from `x,y,z,r` in metres, with a header (columns in any order, others ignored) or without one (exactly four columns).
+/// Reads spheres from `x,y,z,r` in metres, with a header (columns in any order, others ignored) or without one (exactly four columns).
 ///
 /// # Errors
-/// Errors begin with `place`, the file's name, and give line and column.
+/// If the file is invalid; errors begin with `place`, the name of the file, and contain line and column.
 pub fn read_spheres(place: &str, source: impl Read) -> Result<SphereUnion> {
     let mut reader = rows_of(source);
     let mut layout = None;
@@ -42,10 +42,10 @@ pub fn read_spheres(place: &str, source: impl Read) -> Result<SphereUnion> {
     SphereUnion::new(spheres)
 }
 
-/// Writes a header and one row a sphere, 17 significant digits: [`read_spheres`] gives back the same bits.
+/// Writes a header and one row per sphere with 17 significant digits; [`read_spheres`] restores equal bits.
 ///
 /// # Errors
-/// The sink cannot be written.
+/// If the sink cannot be written.
 pub fn write_spheres(union: &SphereUnion, mut sink: impl Write) -> io::Result<()> {
     writeln!(sink, "{}", COLUMNS.join(","))?;
     for Sphere { center, radius } in union.spheres() {
@@ -64,14 +64,14 @@ struct Row<'a> {
 }
 
 impl Row<'_> {
-    /// A first row with no number in it.
+    /// Returns whether the first row contains no number.
     fn is_header(&self) -> bool {
         self.record
             .iter()
             .all(|field| field.parse::<f64>().is_err())
     }
 
-    /// Where x, y, z, r are, and how many columns there are.
+    /// Returns the indices of x, y, z, r, and the number of columns.
     fn header(&self) -> Result<([usize; 4], usize)> {
         let mut columns = [0; 4];
         for (column, name) in columns.iter_mut().zip(COLUMNS) {

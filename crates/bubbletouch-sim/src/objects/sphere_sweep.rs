@@ -1,4 +1,4 @@
-//! A ball of changing size swept along a broken line: balls, capsules, handles, bananas.
+//! Ball of varying size swept along a polyline: balls, capsules, handles, bananas.
 
 use super::Sphere;
 use super::fit::{Fit, MAX_SPHERES};
@@ -6,24 +6,24 @@ use super::surface_patch::{SurfacePatch, frame};
 use crate::geometry::Pose;
 use glam::{DVec2, DVec3};
 
-/// Sphere swept along a broken line: the union of the convex hulls of neighbouring balls.
+/// Sphere swept along a polyline: the union of the convex hulls of consecutive balls.
 #[derive(Clone, Debug)]
 pub(super) struct SphereSweep {
-    /// Centres and radii, at least one.
+    /// Balls with centres and radii, at least one.
     pub balls: Vec<Sphere>,
 }
 
-/// The hull of two balls, neither inside the other.
+/// Convex hull of two balls, neither of which contains the other.
 struct Hull {
     first: Sphere,
     along: DVec3,
     length: f64,
-    /// Change of the radius per metre along the axis; the sine of the cone's half angle, negative when it narrows.
+    /// Change of the radius per metre along the axis; the sine of the cone's half angle, negative if it becomes narrower.
     slope: f64,
 }
 
 impl Hull {
-    /// `None` when one ball holds the other: then the larger ball is the hull.
+    /// Returns `None` if one ball contains the other; then the larger ball is the hull.
     fn new(first: Sphere, last: Sphere) -> Option<Self> {
         let axis = last.center - first.center;
         let length = axis.length();
@@ -47,7 +47,7 @@ impl Hull {
         (1.0 - self.slope * self.slope).sqrt()
     }
 
-    /// min over t of |p − c(t)| − r(t), which is convex in t.
+    /// Returns the minimum over t of |p − c(t)| − r(t), which is convex in t.
     fn distance(&self, point: DVec3) -> f64 {
         let from_first = point - self.first.center;
         let x = from_first.dot(self.along);
@@ -56,10 +56,10 @@ impl Hull {
         y.hypot(x - t) - self.first.radius - t * self.slope
     }
 
-    /// Balls between the two ends, each placed as far ahead as leaves no gap behind it.
+    /// Packs balls between the two ends, each as far ahead as possible without a gap behind it.
     ///
     /// A ball at t touches the hull at u = t·cos along its side and covers u ± sqrt((r + h)² − r²); the balls of the ends are not
-    /// swollen and reach less far.
+    /// enlarged and cover less.
     fn pack_between(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
         let exact = fit.unswollen();
         let end = self.length * self.cosine() - exact.disc(self.ball(self.length).radius);
@@ -92,7 +92,7 @@ impl SphereSweep {
             .filter_map(|pair| Hull::new(pair[0], pair[1]))
     }
 
-    /// Exact outside; inside, never deeper than the truth.
+    /// Returns the signed distance; exact outside, and a lower bound of the depth inside.
     pub fn distance(&self, point: DVec3) -> f64 {
         let to_balls = self
             .balls
@@ -102,7 +102,7 @@ impl SphereSweep {
         to_balls.chain(to_hulls).fold(f64::INFINITY, f64::min)
     }
 
-    /// Largest p·direction over the strand.
+    /// Returns the largest p·direction over the sweep.
     pub fn support(&self, direction: DVec3) -> f64 {
         let length = direction.length();
         let supports = self
@@ -112,7 +112,7 @@ impl SphereSweep {
         supports.fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// The balls themselves, and a row of swollen ones along each hull.
+    /// Packs the balls themselves, and a row of enlarged balls along each hull.
     pub fn pack(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
         let closed = self.balls.len() > 1 && self.balls.first() == self.balls.last();
         let ends = &self.balls[usize::from(closed)..];
@@ -122,7 +122,7 @@ impl SphereSweep {
         }
     }
 
-    /// All of each ball, and the side of each hull.
+    /// Returns the surface of each ball and the side of each hull.
     pub fn patches(&self) -> Vec<SurfacePatch> {
         let balls = self.balls.iter();
         let balls = balls.map(|ball| SurfacePatch::ball(ball.center, ball.radius));
@@ -167,7 +167,7 @@ impl SphereSweep {
     }
 }
 
-/// Points of a sphere on a Fibonacci spiral, about `spacing` apart.
+/// Adds points of a sphere on a Fibonacci spiral, about `spacing` apart.
 pub(super) fn sphere_points(sphere: &Sphere, spacing: f64, points: &mut Vec<DVec3>) {
     let ratio = sphere.radius / spacing;
     let n = (4.0 * std::f64::consts::PI * ratio * ratio)

@@ -1,4 +1,4 @@
-//! A union of rigid spheres.
+//! Union of rigid spheres.
 
 use super::{Sphere, SphereClusters};
 use crate::error::{Error, Result};
@@ -6,13 +6,13 @@ use crate::geometry::{Aabb, Pose};
 use glam::DVec3;
 use std::sync::OnceLock;
 
-/// A union of rigid spheres in the object's frame.
+/// Union of rigid spheres in the frame of the object.
 ///
 /// Invariant: at least one sphere, every centre finite, every radius finite and positive.
 #[derive(Clone, Debug)]
 pub struct SphereUnion {
     spheres: Vec<Sphere>,
-    /// Of these spheres; made when they are first asked for.
+    /// Clusters of the spheres, computed on first use.
     clusters: OnceLock<Box<SphereClusters>>,
 }
 
@@ -26,7 +26,7 @@ impl SphereUnion {
     /// Checks the invariant.
     ///
     /// # Errors
-    /// The error names the first offending sphere.
+    /// If a sphere violates the invariant; the error names the first one.
     pub fn new(spheres: Vec<Sphere>) -> Result<Self> {
         if spheres.is_empty() {
             return Err(Error::input(
@@ -60,35 +60,35 @@ impl SphereUnion {
         Self { spheres, clusters }
     }
 
-    /// The spheres, in their order of construction.
+    /// Returns the spheres in their order of construction.
     pub fn spheres(&self) -> &[Sphere] {
         &self.spheres
     }
 
-    /// The spheres in clusters of neighbours: sorted at the first call, about 100 ns a sphere, and kept.
+    /// Returns the spheres in clusters of neighbours, computed on first use in about 100 ns per sphere.
     pub fn clusters(&self) -> &SphereClusters {
         let sort = || Box::new(SphereClusters::from_spheres(&self.spheres));
         self.clusters.get_or_init(sort)
     }
 
-    /// How many spheres.
+    /// Returns the number of spheres.
     pub fn n_spheres(&self) -> usize {
         self.spheres.len()
     }
 
-    /// The box around all spheres, metres.
+    /// Returns the bounding box of all spheres, metres.
     pub fn bounds(&self) -> Aabb {
         Aabb::around(self.spheres.iter().map(Sphere::bounds))
             .expect("a union has at least one sphere")
     }
 
-    /// From a point to the farthest point of a sphere, metres: the radius of a ball about the point around them all.
+    /// Returns the distance from a point to the farthest point of a sphere, metres: the radius of an enclosing ball around the point.
     pub fn reach_from(&self, point: DVec3) -> f64 {
         let reach = |sphere: &Sphere| sphere.center.distance(point) + sphere.radius;
         self.spheres.iter().map(reach).fold(0.0, f64::max)
     }
 
-    /// The same union after a rigid motion.
+    /// Returns the union after a rigid motion.
     pub fn moved(&self, pose: &Pose) -> Self {
         let spheres = self
             .spheres
@@ -103,7 +103,7 @@ impl SphereUnion {
 }
 
 impl SphereClusters {
-    /// Sorts the spheres of an object into clusters; about 100 ns per sphere.
+    /// Groups the spheres of an object into clusters; takes about 100 ns per sphere.
     pub fn new(union: &SphereUnion) -> Self {
         Self::from_spheres(&union.spheres)
     }

@@ -1,21 +1,21 @@
-//! How far a union of spheres is from the solid that it stands for: measured, not promised.
+//! Measured distances between a solid and the spheres that approximate it.
 
 use super::sphere_sweep::sphere_points;
 use super::{Solid, Sphere, SphereUnion};
 use glam::DVec3;
 
-/// Largest distances found between the surfaces of a solid and of its spheres, metres; never negative.
+/// Largest measured distances between the surfaces of a solid and of its spheres, metres; never negative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceError {
-    /// How far a sphere reaches outside the solid.
+    /// Largest distance that a sphere reaches outside the solid.
     pub protrusion: f64,
-    /// How far the solid's surface lies outside all spheres.
+    /// Largest distance of the solid's surface outside all spheres.
     pub gap: f64,
-    /// How many points of the solid's surface were tried.
+    /// Number of tested points of the solid's surface.
     pub n_surface_points: usize,
 }
 
-/// Tries points of the solid's surface at most about `spacing` (metres) apart, and points all over each sphere.
+/// Measures at points of the solid's surface, at most about `spacing` (metres) apart, and at points all over each sphere.
 pub fn surface_error(solid: &Solid, union: &SphereUnion, spacing: f64) -> SurfaceError {
     let points = solid.surface_points(spacing);
     SurfaceError {
@@ -29,7 +29,7 @@ fn protrusion(solid: &Solid, spheres: &[Sphere]) -> f64 {
     let mut largest = 0.0f64;
     let mut points = Vec::new();
     for sphere in spheres {
-        // No point of a sphere is farther out than this; most spheres cannot raise the largest by more than rounding.
+        // An upper bound for all points of a sphere; most spheres cannot increase the maximum by more than rounding.
         let bound = solid.distance(sphere.center) + sphere.radius;
         if bound <= largest + 1e-9 * sphere.radius {
             continue;
@@ -43,7 +43,7 @@ fn protrusion(solid: &Solid, spheres: &[Sphere]) -> f64 {
     largest
 }
 
-/// The point of a sphere in the direction in which the solid's surface is nearest to its centre.
+/// Returns the point of a sphere in the direction in which the solid's surface is nearest to its centre.
 fn outermost_point(solid: &Solid, sphere: &Sphere) -> DVec3 {
     let step = 1e-4 * sphere.radius;
     let slope = |axis: DVec3| {
@@ -53,10 +53,10 @@ fn outermost_point(solid: &Solid, sphere: &Sphere) -> DVec3 {
     sphere.center + sphere.radius * gradient.normalize_or(DVec3::Z)
 }
 
-/// Largest over the points of the smallest distance to a sphere.
+/// Returns the maximum over the points of the smallest distance to a sphere.
 ///
-/// A point stops looking as soon as some sphere is nearer than the largest gap so far: it cannot raise it. Neighbours in
-/// the list are neighbours on the surface, so the sphere that stopped the last point is tried first.
+/// The search for a point ends as soon as a sphere is nearer than the largest gap so far. Neighbours in
+/// the list are neighbours on the surface, so the sphere that ended the previous search is tested first.
 fn gap(points: &[DVec3], spheres: &[Sphere]) -> f64 {
     let mut largest = 0.0f64;
     let mut last = 0;

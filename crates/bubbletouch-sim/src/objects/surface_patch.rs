@@ -1,44 +1,44 @@
-//! Pieces of the surfaces of forms, each a map from a rectangle: what is cut into cells where no closed layout of spheres is known.
+//! Patches of the surfaces of forms, each a map from a rectangle; they are divided into cells if no closed layout of spheres is known.
 
 use crate::geometry::Pose;
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// A piece of the surface of a form.
+/// Patch of the surface of a form.
 #[derive(Clone, Debug)]
 pub(super) struct SurfacePatch {
     form: PatchForm,
-    /// Where the patch is, in the frame of what it belongs to.
+    /// Pose of the patch, in the frame of its form.
     pose: Pose,
-    /// How far the points lie outside the form, metres.
+    /// Offset of the points outside the form, metres.
     offset: f64,
-    /// The corners of its rectangle of parameters.
+    /// Corners of the rectangle of parameters.
     pub low: DVec2,
     pub high: DVec2,
 }
 
 #[derive(Clone, Copy, Debug)]
 enum PatchForm {
-    /// Parameters x, y: the plane z = 0, outside above.
+    /// Parameters x, y: the plane z = 0; the outside is above.
     Flat,
-    /// Parameters distance along a line of the half plane (distance from the axis, height), angle about z.
+    /// Parameters: distance along a line of the half plane (distance from the axis, height), and angle about z.
     Turned { start: DVec2, along: DVec2 },
-    /// Parameters latitude on the tube, angle about z: a torus, and with a ring of 0 a ball.
+    /// Parameters: latitude on the tube, and angle about z; a torus, or a ball if `ring` is 0.
     Round { ring: f64, tube: f64 },
 }
 
-/// A rectangle of parameters as a piece of surface: it lies within `bulge` of the hull of its corners.
+/// Rectangle of parameters of a surface patch; its surface lies within `bulge` of the convex hull of its corners.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PatchCell {
     pub low: DVec2,
     pub high: DVec2,
-    /// In the order low, along x, along y, high.
+    /// Corners in the order low, along x, along y, high.
     pub corners: [DVec3; 4],
     bulge: f64,
 }
 
 impl SurfacePatch {
-    /// A rectangle about the origin of a plane, `x` and `y` its unit axes, at right angles; outside is where x × y points.
+    /// Returns a rectangle about the origin of a plane with orthogonal unit axes `x` and `y`; x × y points outside.
     pub fn flat(origin: DVec3, [x, y]: [DVec3; 2], half: DVec2) -> Self {
         Self {
             form: PatchForm::Flat,
@@ -49,7 +49,7 @@ impl SurfacePatch {
         }
     }
 
-    /// A line of the half plane (distance from the axis, height), turned about z by `angles`; outside is on its right.
+    /// Returns a line of the half plane (distance from the axis, height), rotated about z by `angles`; the outside is on its right.
     pub fn turned(start: DVec2, end: DVec2, angles: [f64; 2]) -> Self {
         let length = (end - start).length();
         let along = (end - start) / length;
@@ -62,7 +62,7 @@ impl SurfacePatch {
         }
     }
 
-    /// All of a torus about z.
+    /// Returns the surface of a torus about z.
     pub fn torus(ring: f64, tube: f64) -> Self {
         Self {
             form: PatchForm::Round { ring, tube },
@@ -73,7 +73,7 @@ impl SurfacePatch {
         }
     }
 
-    /// All of a ball.
+    /// Returns the surface of a ball.
     pub fn ball(center: DVec3, radius: f64) -> Self {
         Self {
             pose: Pose::from_translation(center),
@@ -83,7 +83,7 @@ impl SurfacePatch {
         }
     }
 
-    /// The eighth of a ball on these sides (1 or −1) of its centre.
+    /// Returns the octant of a ball on the given sides (1 or −1) of its centre.
     pub fn eighth_of_ball(center: DVec3, radius: f64, sides: DVec3) -> Self {
         let axes = [sides.x * DVec3::X, sides.y * DVec3::Y];
         let is_up = sides.x * sides.y * sides.z > 0.0;
@@ -96,19 +96,19 @@ impl SurfacePatch {
         }
     }
 
-    /// The same after a rigid motion, or with its own z along another axis.
+    /// Returns the patch after a rigid motion, which may also change the direction of its z axis.
     pub fn moved(mut self, motion: &Pose) -> Self {
         self.pose = motion.compose(&self.pose);
         self
     }
 
-    /// The same, this far outside.
+    /// Returns the patch moved outside by an offset.
     pub fn grown(mut self, offset: f64) -> Self {
         self.offset = offset;
         self
     }
 
-    /// The point of the surface at these parameters, and the unit normal outwards.
+    /// Returns the surface point at parameters, with the outward unit normal.
     pub fn at(&self, place: DVec2) -> (DVec3, DVec3) {
         let turned = |flat: DVec2, angle: f64| {
             let (sin, cos) = angle.sin_cos();
@@ -132,7 +132,7 @@ impl SurfacePatch {
         )
     }
 
-    /// The whole patch in pieces that turn by an eighth of a circle at most.
+    /// Divides the patch into cells that span at most an eighth of a circle.
     pub fn cells(&self) -> Vec<PatchCell> {
         let size = self.high - self.low;
         let is_angle = match self.form {
@@ -156,7 +156,7 @@ impl SurfacePatch {
         cells
     }
 
-    /// The two halves of a cell, across its longer side.
+    /// Returns the two halves of a cell, cut across its longer side.
     pub fn halves(&self, cell: &PatchCell) -> [PatchCell; 2] {
         let [a, b, c, d] = cell.corners;
         let along_x = a.distance(b).max(c.distance(d));
@@ -169,8 +169,8 @@ impl SurfacePatch {
         [self.cell(cell.low, left), self.cell(right, cell.high)]
     }
 
-    /// A map differs from the one that is linear in both parameters and agrees at the corners by at most 1/8 of the squared side
-    /// times the second derivative, summed over both sides; and that one stays in the hull of the corners.
+    /// The difference between a map and its bilinear interpolant at the corners is at most 1/8 of the squared side
+    /// times the second derivative, summed over both sides. The interpolant lies in the convex hull of the corners.
     fn cell(&self, low: DVec2, high: DVec2) -> PatchCell {
         let squared = (high - low) * (high - low);
         let second = match self.form {
@@ -181,7 +181,7 @@ impl SurfacePatch {
             }
             PatchForm::Round { ring, tube } => {
                 let tube = tube + self.offset;
-                // Farthest from the axis at an end: the first cells end where the tube's equator is.
+                // The maximum distance from the axis is at an end, because the first cells end at the equator of the tube.
                 let away = |latitude: f64| ring + tube * latitude.cos();
                 DVec2::new(tube, away(low.x).max(away(high.x)))
             }
@@ -202,13 +202,13 @@ impl SurfacePatch {
 }
 
 impl PatchCell {
-    /// No point of the cell is farther from a point than this.
+    /// Returns an upper bound of the distance from a point to the cell.
     pub fn farthest(&self, from: DVec3) -> f64 {
         let distances = self.corners.map(|corner| corner.distance(from));
         distances.into_iter().fold(0.0, f64::max) + self.bulge
     }
 
-    /// The parameters of its middle and of its corners.
+    /// Returns the parameters of the middle and of the corners.
     pub fn places(&self) -> [DVec2; 5] {
         let (low, high) = (self.low, self.high);
         let middle = 0.5 * (low + high);
@@ -222,7 +222,7 @@ impl PatchCell {
     }
 }
 
-/// The rotation that takes the axes x and y to these two unit vectors, which are at right angles.
+/// Returns the rotation that maps the axes x and y to two orthogonal unit vectors.
 pub(super) fn frame(x: DVec3, y: DVec3) -> DQuat {
     DQuat::from_mat3(&DMat3::from_cols(x, y, x.cross(y)))
 }

@@ -1,11 +1,11 @@
-//! A torus about z: its distance, its surface, its spheres.
+//! Torus about z: distance, surface and packing.
 
 use super::Sphere;
 use super::fit::{Fit, MAX_SPHERES};
 use super::surface_patch::SurfacePatch;
 use glam::DVec3;
 
-/// All points within `tube` of the circle of radius `ring` about z.
+/// Points within `tube` of the circle of radius `ring` about z.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Torus {
     pub ring: f64,
@@ -18,15 +18,16 @@ impl Torus {
         (from_axis - self.ring).hypot(point.z) - self.tube
     }
 
-    /// Largest p·direction over the torus.
+    /// Returns the largest p·direction over the torus.
     pub fn support(&self, direction: DVec3) -> f64 {
         self.ring * direction.truncate().length() + self.tube * direction.length()
     }
 
-    /// One ring of n tube-sized balls.
+    /// Packs one ring of n balls with the radius of the tube.
     ///
-    /// Half-way between two balls a point of the tube at distance ρ from the axis is `tube² + 4 ρ ring sin²(π/2n)` from
-    /// both centres, squared; that is largest on the outer equator and must not exceed `(tube + h)²`.
+    /// Half-way between two balls the squared distance of a point of the tube from both centres is `tube² + 4 ρ ring sin²(π/2n)`, where ρ is its distance
+    /// from the axis.
+    /// It is largest on the outer equator and must not exceed `(tube + h)²`.
     pub fn pack(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
         let (ring, tube) = (self.ring, self.tube);
         let sine = (0.25 * fit.disc_squared(tube) / (ring * (ring + tube)))

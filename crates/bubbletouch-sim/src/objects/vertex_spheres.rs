@@ -5,13 +5,13 @@ use crate::error::{Error, Result};
 use crate::geometry::distinct_places;
 use glam::DVec3;
 
-/// A sphere around each vertex, all of radius R = 2 × the mean distance from a vertex to its nearest neighbour \[BT\].
+/// Returns a sphere around each vertex, all of radius R = 2 × the mean distance from a vertex to its nearest neighbour \[BT\].
 ///
-/// Vertices at exactly the same place (files that store a corner once a face) count once: their nearest neighbour would be themselves, and R
-/// would shrink with how a file is written. Order: first occurrence.
+/// Vertices with identical coordinates (in files that repeat a corner for each face) count once. Otherwise their distances would be 0, and R
+/// would depend on the format of the file. The order is that of the first occurrence.
 ///
 /// # Errors
-/// Fewer than two places; it begins with `place`.
+/// If there are fewer than two distinct vertices; the error begins with `place`.
 pub fn vertex_spheres(place: &str, vertices: &[DVec3]) -> Result<SphereUnion> {
     let centers = distinct_places(vertices);
     if centers.len() < 2 {
@@ -27,10 +27,10 @@ pub fn vertex_spheres(place: &str, vertices: &[DVec3]) -> Result<SphereUnion> {
     SphereUnion::new(spheres.collect())
 }
 
-/// For each point the distance to the nearest other one. At least two points, no two at the same place.
+/// Returns, for each point, the distance to the nearest other one. There must be at least two points, all distinct.
 ///
-/// The points lie in the cells of a uniform grid; rings of cells around a point's own are searched until no unsearched
-/// cell can hold a nearer one.
+/// The points lie in the cells of a uniform grid. Rings of cells around a point's own cell are searched until no remaining
+/// cell can contain a nearer point.
 fn nearest_distances(points: &[DVec3]) -> Vec<f64> {
     let grid = PointGrid::new(points);
     (0..points.len()).map(|i| grid.nearest(i)).collect()
@@ -51,8 +51,8 @@ impl<'a> PointGrid<'a> {
         let low = points.iter().copied().fold(DVec3::MAX, DVec3::min);
         let high = points.iter().copied().fold(DVec3::MIN, DVec3::max);
         let size = high - low;
-        // About one point a cell on a surface, whose area is about longest². More than 128 cells each way would cost
-        // more memory than they save time.
+        // About one point per cell on a surface, whose area is about longest². More than 128 cells per axis would cost
+        // more memory than the saved time justifies.
         let longest = size.max_element();
         let cell = longest / (points.len() as f64).sqrt().clamp(1.0, 128.0);
         let n = (size / cell).to_array().map(|s| s as usize + 1);
@@ -93,7 +93,7 @@ impl<'a> PointGrid<'a> {
         let mut best = f64::INFINITY;
         let n_rings = self.n.into_iter().max().unwrap_or(1);
         for ring in 0..n_rings {
-            // Everything in ring k is at least k − 1 cells away, and the point's own cell can be left only at its border.
+            // All points in ring k are at least k − 1 cells away, because the point can lie at the border of its own cell.
             if best <= (ring as f64 - 1.0) * self.cell {
                 break;
             }
@@ -107,7 +107,7 @@ impl<'a> PointGrid<'a> {
         best
     }
 
-    /// Points of the cells whose largest offset from `home` is `ring`.
+    /// Visits points of the cells whose largest offset from `home` is `ring`.
     fn each_in_ring(&self, home: [usize; 3], ring: usize, mut visit: impl FnMut(usize)) {
         let range = |axis: usize| {
             home[axis].saturating_sub(ring)..=(home[axis] + ring).min(self.n[axis] - 1)
