@@ -1,6 +1,6 @@
 //! Dampers of the taxels: free relaxation and rate-dependent forces.
 //!
-//! Over a step Δt a free taxel relaxes as `δ → δ e^(−k Δt / c)`, exactly for any Δt, so
+//! Over a step Δt a free taxel relaxes as `δ → δ e^(−k Δt / c)`, exactly for any Δt. So
 //! `δ(t + Δt) = max(δ(t) e^(−k Δt / c), δ*(t + Δt))`.
 //! The force is the constant force that moves the taxel to δ(t + Δt) within the step,
 //!
@@ -8,7 +8,7 @@
 //! f = k (δ(t + Δt) − δ(t) φ) / (1 − φ),   φ = e^(−k Δt / c)
 //! ```
 //!
-//! The force is zero exactly if the taxel relaxes freely and positive if the taxel is pushed: the complementarity condition
+//! The force is zero exactly if the taxel relaxes freely, and positive if the taxel is pushed. This is the complementarity condition
 //! 0 ≤ f ⟂ gap ≥ 0 of \[PT\] in closed form. The force tends to `k δ + c δ̇` for Δt → 0 and equals `k δ` for c = 0 or at rest.
 
 use crate::world::{Taxel, Taxels};

@@ -32,7 +32,7 @@ pub struct MovedObject<'a> {
 }
 
 impl MovedObject<'_> {
-    /// Moves the object until the springs of the patch carry `force` newtons together (Σ k δ of all objects), to within a relative 1e-13 or
+    /// Moves the object until the springs of the patch carry `force` newtons together (Σ k δ of all objects). The accuracy is a relative 1e-13 or
     /// the last bit of the travel.
     ///
     /// `poses` has one `patch_from_object` per object; the moved object's is its pose before any travel, and afterwards its pose at the last press.

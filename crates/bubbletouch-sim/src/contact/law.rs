@@ -17,15 +17,15 @@
 //!
 //! ([`is_in_front`]). A press from the front has B = −∞: all spheres with q > 0 count.
 //!
-//! Every layout has its own evaluator of this law, which finds the pairs of taxels and spheres with q > 0 and shares q and h among taxels:
-//! `placed_sphere` (rows of a flat grid), `near_spheres` (leaves of the taxel tree), `equilibrium::reach` (with derivatives), and in `whole_body`
-//! `row_press` (extrusions), `dome_patch` (rings) and `draped_patch` (tiles). A mesh obeys the same rule with the heights at which it stops a taxel
-//! ([`reaches_front`]).
+//! Every layout has its own evaluator of this law, which finds the pairs of taxels and spheres with q > 0 and shares q and h among taxels.
+//! The evaluators are `placed_sphere` (rows of a flat grid), `near_spheres` (leaves of the taxel tree), and `equilibrium::reach` (with derivatives).
+//! In `whole_body` they are `row_press` (extrusions), `dome_patch` (rings) and `draped_patch` (tiles). For a mesh the rule is applied to the
+//! heights at which the mesh stops a taxel ([`reaches_front`]).
 
 use super::LanesBelow;
 
-/// Returns the deflection, metres, above which a taxel of this stroke (metres) is saturated: the stroke plus rounding (1e-12 of the
-/// stroke), so that a press to a depth of exactly the stroke saturates no taxel.
+/// Returns the deflection, metres, above which a taxel of this stroke (metres) is saturated: the stroke times 1 + 1e-12. The tolerance ensures
+/// that a press to a depth of exactly the stroke saturates no taxel.
 pub fn saturation_limit(stroke: f64) -> f64 {
     stroke * (1.0 + 1e-12)
 }

@@ -12,10 +12,10 @@
 //!
 //! **Behind the substrate.** A press to a depth, a travel or a force approaches from the front, and all spheres count at any depth. The
 //! deflection of a taxel of a flat patch therefore never decreases with the depth. At a pose without a path ([`press_at_pose`],
-//! [`press_with_contacts`]) and for free objects, a sphere or a mesh counts until it is wholly behind the substrate. This is decided for each taxel:
-//! the obstacle is behind if a taxel resting on its far side would be behind the substrate, `h + √(S² − b²) < −s − ρ` (predicate in the module `law`).
-//! So a ball that moves through a skin leaves it taxel by taxel. In a time loop, and along the path of a press, a part that pushed a taxel in the step
-//! before continues to push this taxel.
+//! [`press_with_contacts`]) and for free objects, a sphere or a mesh counts until it is wholly behind the substrate. This is decided for each taxel.
+//! The obstacle is behind if a taxel resting on its far side would be behind the substrate, `h + √(S² − b²) < −s − ρ` (predicate in the module `law`).
+//! A ball that moves through a skin therefore leaves it taxel by taxel. In a time loop, and along the path of a press, a part that pushed a taxel in
+//! the step before continues to push this taxel.
 //!
 //! A taxel that an object would push further than its stroke s is saturated; [`Contact`] counts such taxels.
 //!
@@ -23,8 +23,8 @@
 //! directions other than z and can then slide sideways. A **time loop** ([`simulate()`], [`DamperState`]) adds the damper: a free taxel
 //! relaxes, `k δ + c δ̇ = 0`. Without a damper both agree exactly, so a scene without dampers needs no loop.
 //!
-//! On a flat grid with equal radii and substrate heights the kernel works along rows; on any other layout it finds the taxels near each sphere in a
-//! tree. [`press_with_contacts`] also records which part of which object determines each deflection ([`TaxelContact`]). [`spring_load`] sums
+//! On a flat grid with equal radii and substrate heights the kernel works along rows. On any other layout a search tree finds the taxels near each
+//! sphere. [`press_with_contacts`] also records which part of which object determines each deflection ([`TaxelContact`]). [`spring_load`] sums
 //! the forces of the springs.
 //!
 //! A free object rests where its weight and the forces of the taxels balance: [`equilibrium`].

@@ -12,7 +12,7 @@ pub(crate) struct Sample {
 /// function needs more steps.
 const HALVED_EACH: usize = 3;
 
-/// Returns the argument at which a function reaches `wanted`, between `low`, where it is smaller, and `high`, where it is not. The search ends within
+/// Returns the argument at which a function reaches `wanted`. The value is smaller at `low` and not smaller at `high`. The search ends within
 /// `tolerance` of the value or at the last bit of the argument; if the tolerance is negative, only at the last bit.
 ///
 /// If the function jumps past the value, the upper side of the jump is returned.

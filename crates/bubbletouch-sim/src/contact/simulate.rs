@@ -22,7 +22,7 @@ pub struct Recording {
     pub n_saturated: usize,
 }
 
-/// Moves the patch and the objects along their plans from t = 0 and records `n_frames` frames, one every `dt` seconds; frame k is at (k + 1) dt.
+/// Moves the patch and the objects along their plans from t = 0 and records `n_frames` frames. Frame k shows the time (k + 1) dt, seconds.
 ///
 /// A part that pushed a taxel in the frame before continues to push this taxel, even from behind the substrate, as in a
 /// direct press.

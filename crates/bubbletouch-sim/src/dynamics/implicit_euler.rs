@@ -1,7 +1,7 @@
 //! Implicit Euler with exact contact \[AP\].
 //!
-//! At the step's end, with `a = m/Δt² + c/Δt + k` (the effective stiffness of a taxel within a step) and `δ_f` the deflection of a free
-//! taxel,
+//! At the step's end, let `a = m/Δt² + c/Δt + k` be the effective stiffness of a taxel within a step, and `δ_f` the deflection of a free
+//! taxel:
 //!
 //! ```text
 //! δ_f = (m/Δt² δ + m/Δt δ̇ + c/Δt δ) / a,   f = a max(0, x' − start − δ_f)
@@ -9,9 +9,8 @@
 //! ```
 //!
 //! This is one equation for x', increasing and convex. Newton's method from the right ends after a few steps, exactly. At the floor, stops
-//! carry the remaining force. Stacked balls that would otherwise penetrate those below are merged into a group with one motion: x' of a chain of balls is
-//! an
-//! isotonic regression of their free motions.
+//! carry the remaining force. Stacked balls that would otherwise penetrate those below are merged into a group with one motion. The x' of a chain of
+//! balls is an isotonic regression of their free motions.
 
 use super::state::{Integrator, Rider, State};
 use super::system::{Drive, System};

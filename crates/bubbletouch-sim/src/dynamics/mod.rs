@@ -1,7 +1,7 @@
 //! Dynamics: skin whose taxels have mass, with common time integrators, as a reference for the quasi-static model.
 //!
-//! For taxel i of mass m: `m δ̈ + c δ̇ + k δ = f − s`, with f ≥ 0 the force of the object and s ≥ 0 the force of the stop at the stroke.
-//! The object is on a **guide**: like a plunger, it moves only along the taxels' common axis, by its travel x. For every shape of object, taxel i is
+//! For taxel i of mass m: `m δ̈ + c δ̇ + k δ = f − s`, where f ≥ 0 is the force of the object and s ≥ 0 the force of the stop at the stroke.
+//! The object is on a **guide**: it moves only along the taxels' common axis, by its travel x. For every shape of object, taxel i is
 //! pushed to `x − a`, where a is the travel at first contact with the taxel ([`System::starts`]). The object is either free
 //! under gravity, `M ẍ = M g − Σ f`, or its motion is imposed ([`Drive`]).
 //!
@@ -9,7 +9,7 @@
 //! |---|---|---|---|
 //! | [`SemiImplicit`] | penalty, f = κ (x − a − δ) | damper implicit, spring explicit | beyond Δt > 2 √(m / (k + κ)), less for light objects |
 //! | [`ImplicitEuler`] | exact: 0 ≤ f ⟂ gap ≥ 0 at the step's end | both implicit | never; its accuracy in time is of order Δt |
-//! | `RapierWorld` (feature `rapier`) | the engine's | the engine's joint motors | what the engine cannot solve in its iterations |
+//! | `RapierWorld` (feature `rapier`) | contact model of the engine | joint motors of the engine | if the engine's iterations do not converge |
 //!
 //! Balls may be [stacked](System::stacked) on the object, with free motion on the same guide.
 //!

@@ -81,7 +81,7 @@ impl<'a> System<'a> {
         })
     }
 
-    /// Stacks balls like the object on top of it, each free on the same guide under gravity; `masses` from below, kg. All balls start
+    /// Stacks balls on the object, each equal to it and free on the same guide under gravity; `masses` from below, kg. All balls start
     /// in contact.
     ///
     /// # Errors

@@ -132,8 +132,7 @@ pub struct WholeBody {
 }
 
 impl WholeBody {
-    /// Creates a body of patches, each with equal taxels. For patches other than grids, [`Extrusion`]s and [`Dome`](crate::world::Dome)s, speed requires
-    /// that
+    /// Creates a body of patches, each with equal taxels. Patches other than grids, [`Extrusion`]s and [`Dome`](crate::world::Dome)s are fast only if
     /// neighbours have near numbers: see [`Layout::with_neighbours_together`].
     ///
     /// # Errors

@@ -139,8 +139,8 @@ impl BodyState {
 
     /// Returns the forces on the deflected taxels, ascending: number and newtons; 0 for a taxel that relaxes freely.
     ///
-    /// The forces equal those of [`DamperState`](crate::contact::DamperState): kδ without a damper, else the constant force that moves
-    /// the taxel to its deflection within the last step, which tends to kδ + cδ̇.
+    /// The forces equal those of [`DamperState`](crate::contact::DamperState): kδ without a damper. With a damper, the force is the constant one that
+    /// moves the taxel to its deflection within the last step, which tends to kδ + cδ̇.
     pub fn forces(&self, body: &WholeBody) -> impl Iterator<Item = (usize, f64)> {
         self.busy.iter().flat_map(|&number| {
             let (patch, first) = (number as usize, body.firsts()[number as usize]);

@@ -59,10 +59,10 @@ impl CoveredRobot {
     /// metres. Taxels are about `pitch` metres apart, also across seams; on boxes 0.5 to 1.5 pitches across seams.
     ///
     /// - The side of a cylinder is divided around and along. The name of a patch contains the link, the ring from its lower end, and the
-    ///  place around it from +x, both from 1: `trunk 2.3`. Names for the link's second shape begin with `trunk'`.
+    ///   place around it from +x, both from 1: `trunk 2.3`. Names for the link's second shape begin with `trunk'`.
     /// - The end of a capsule, and a sphere at the end of a cylinder of its radius, are covered on their outer half. Other spheres are covered
-    ///  wholly. Each half is divided from pole to rim: `head cap 2.3` is the third part of the second hemisphere in the file. A sphere
-    ///  within a larger one of another link, such as the inner one of an elbow, cannot be touched and is omitted.
+    ///   wholly. Each half is divided from pole to rim: `head cap 2.3` is the third part of the second hemisphere in the file.
+    /// - A sphere within a larger one of another link, such as the inner one of an elbow, cannot be touched and is omitted.
     /// - Each face of a box is a grid of flat patches: `palm face 5 1.2`. The faces are numbered in the order +x, −x, +y, −y, +z, −z.
     ///
     /// Flat ends of cylinders are not covered.
@@ -73,7 +73,7 @@ impl CoveredRobot {
         Self::of(robot, Cover { taxel, pitch, side }, &[])
     }
 
-    /// Covers a robot like [`new`](Self::new), and additionally each flat end of a cylinder with a round patch of staggered rows, such as `palm end 1`.
+    /// Covers a robot as [`new`](Self::new) does, and covers each flat end of a cylinder with a round patch of staggered rows, such as `palm end 1`.
     /// Ends that lie on another cylinder, sphere or box with all joints at zero cannot be touched and are omitted.
     ///
     /// # Errors

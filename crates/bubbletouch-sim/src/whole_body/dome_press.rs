@@ -4,13 +4,12 @@
 //! `δ = √(t² − Q) − (t − R)` for any taxel. This is positive where t is above
 //!
 //! ```text
-//! √Q                if 0 ≤ Q ≤ R²: the taxels at the limit pass beside the sphere
-//! (R² + Q) / (2R)   if Q > R²: the taxels at the limit touch the sphere at rest
+//! √Q                if 0 ≤ Q ≤ R²: for smaller t the sphere misses the taxel's axis
+//! (R² + Q) / (2R)   if Q > R²: for smaller t the sphere is above the taxel at rest
 //! ```
 //!
-//! With B = R − s − ρ the sphere is in front of the substrate (`contact::law`) where `t + √(t² − Q) ≥ B`, that is, where t is at least B or (B² + Q) /
-//! (2B).
-//! On a ring t = A + A' cos(φ − φ_c), so the condition selects an interval.
+//! With B = R − s − ρ the sphere is in front of the substrate (`contact::law`) where `t + √(t² − Q) ≥ B`. This holds where t is at least B or
+//! (B² + Q) / (2B). On a ring t = A + A' cos(φ − φ_c), so the condition selects an interval.
 
 use super::dome_patch::DomePatch;
 use super::object_press::Pushed;

@@ -29,7 +29,7 @@ impl End {
 }
 
 /// Returns the outer hemispheres of a robot's collision shapes, link by link, in the order of the file. A sphere that is not at a cylinder's end
-/// has two. Those within a larger sphere of another link, with all joints at zero, are omitted.
+/// has two. Hemispheres within a larger sphere of another link, with all joints at zero, are omitted.
 pub(super) fn half_balls(robot: &Robot) -> Result<Vec<End>> {
     let all: Vec<End> = robot
         .links()

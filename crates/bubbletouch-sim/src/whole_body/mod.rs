@@ -3,14 +3,18 @@
 //! Equations and results equal those of [`contact`](crate::contact) to 1e-12 m; with dampers to
 //! [`AT_REST`], below which a relaxing taxel counts as at rest. The search has three stages:
 //!
-//! 1. **patches** ([`BodyPatch`]): those whose ball is near an object's, and those with relaxing taxels;
-//! 2. **spheres** ([`SphereClusters`]): clusters of neighbours, of which only those near a bundle of the patch's columns are opened;
-//! 3. **taxels**: a patch is a row of taxels repeated along a line ([`Extrusion`](crate::world::Extrusion)). Perpendicular to the line a
-//!  sphere is `b` beside the axis of a column and `h` above it, equally in all rows; along the line, `d` from a row. So
-//!  `δ = √(S² − b² − d²) − h`: the first terms are computed once per column and sphere, the root once per covered taxel.
-//!  On a sphere of radius R around the origin ([`Dome`](crate::world::Dome)) taxels lie in rings, and δ depends on a taxel's axis n
-//!  only through t = c·n: `δ = √(t² − |c|² + S²) − (t − R)`. A sphere therefore covers an interval of each ring. On other surfaces
-//!  taxels have their own axes and are evaluated in tiles of eight.
+//! 1. **Patches** ([`BodyPatch`]): those whose ball is near an object's, and those with relaxing taxels.
+//! 2. **Spheres** ([`SphereClusters`]): clusters of neighbours, of which only those near a bundle of the patch's columns are opened.
+//! 3. **Taxels**, depending on the surface:
+//!
+//! On an [`Extrusion`](crate::world::Extrusion), a row of taxels is repeated along a line. Let b be the distance of a sphere beside the axis of a column
+//! and h its height above the column, equal for all rows. Let d be its distance from a row along the line. Then `δ = √(S² − b² − d²) − h`.
+//! The first terms are computed once per column and sphere, the root once per covered taxel.
+//!
+//! On a sphere of radius R around the origin ([`Dome`](crate::world::Dome)) taxels lie in rings, and δ depends on a taxel's axis n
+//! only through t = c·n. Then `δ = √(t² − |c|² + S²) − (t − R)`, so a sphere covers an interval of each ring.
+//!
+//! On other surfaces taxels have their own axes and are evaluated in tiles of eight.
 //!
 //! A patch stores which columns of which rows it has touched. Only these are cleared, relaxed and read
 //! ([`BodyState::touched`], [`BodyState::forces`]); [`WholeBody::frame`] converts them to a dense frame.

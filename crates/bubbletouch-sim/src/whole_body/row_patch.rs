@@ -134,8 +134,8 @@ pub(super) struct SphereOverBundle {
 }
 
 impl SphereOverBundle {
-    /// Returns the sphere above the columns, and the square of the largest distance along the rows at which it pushes a taxel from the front, m²;
-    /// zero or less if it pushes none.
+    /// Returns the sphere above the columns, and the square of the largest distance along the rows, m², at which it pushes a taxel from the front.
+    /// The square is zero or less if the sphere pushes none.
     #[inline(always)]
     pub fn new(bundle: &Bundle, center: DVec3, reach: f64) -> (Self, f64) {
         let (mut squares, mut heights, mut spares) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
@@ -164,7 +164,7 @@ impl SphereOverBundle {
         }
     }
 
-    /// Returns S² − b² − `along2`, m², with substrates at the height `behind`; zero or less where the sphere does not reach through a substrate.
+    /// Returns S² − b² − `along2`, m², for substrates at the height `behind`; zero or less if the sphere does not reach through a substrate.
     #[inline(always)]
     pub fn through(&self, along2: f64, behind: f64) -> [f64; LANES] {
         let mut squares = self.squares;

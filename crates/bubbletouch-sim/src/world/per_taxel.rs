@@ -34,8 +34,7 @@ impl<T> PerTaxel<T> {
     }
 
     /// Checks that there is one value, or one for each place of the patch, and that each is valid. Errors contain the patch's name, and the taxel (from 1)
-    /// if
-    /// there is one value each.
+    /// if there is one value each.
     pub(super) fn check(
         &self,
         patch: &str,

@@ -129,9 +129,9 @@ impl TouchAxis {
 
 /// Rules for choosing the touches of an object; [`touches`](super::touches()) applies them.
 ///
-/// - No uniform spread, no `per_object`: every combination, resting poses × values; the first of [`TouchAxis`] runs slowest.
-/// - No uniform spread, `per_object` given: that many different combinations, drawn without replacement, all equally likely.
-/// - A uniform spread: `per_object` touches, each drawn alone by its number; resting poses by their probability.
+/// - No uniform spread, no `per_object`: every combination of resting poses and values; the first [`TouchAxis`] varies slowest.
+/// - No uniform spread, `per_object` given: this number of different combinations, drawn without replacement, all equally likely.
+/// - A uniform spread: `per_object` touches, each drawn by its own number; resting poses are drawn by their probability.
 ///
 /// Drawn touches are nested: the touches for a smaller `per_object` are the first ones for a larger.
 #[derive(Clone, Debug, PartialEq)]
@@ -217,8 +217,8 @@ impl Touch {
         }
     }
 
-    /// Returns the object's pose in the patch frame before the patch travels along its axis. With zero offsets and angles, the top of the
-    /// object's box lies in the plane z = 0 and the rest of the box in front (z > 0).
+    /// Returns the object's pose in the patch frame before the patch travels along its axis. If offsets and angles are zero, the top of the
+    /// object's box lies in the plane z = 0, and the box is in front (z > 0).
     pub fn patch_from_object(&self, rest: &RestPose) -> Pose {
         let yawed = Pose::from_rotation(DQuat::from_rotation_z(self.yaw));
         let to_axis = DVec3::new(-self.offset[0], -self.offset[1], -rest.height);

@@ -1,6 +1,6 @@
 //! Tree of boxes over the taxels of a patch, with which a sphere finds the taxels within its reach.
 //!
-//! With h = (c − p)·n and b the distance beside the axis, a sphere (c, R) pushes a taxel (rest centre p, axis n, radius ρ, stroke s) only if
+//! Let h = (c − p)·n, and b the distance beside the axis. A sphere (c, R) pushes a taxel (rest centre p, axis n, radius ρ, stroke s) only if
 //! b < S = ρ + R. Also, the sphere must not be wholly behind the substrate: `h + √(S² − b²) ≥ −s − ρ` (see [`contact`](crate::contact)).
 //! So the distance of c from the taxel's segment, from p back to p − (s + ρ) n, is less than S. The boxes bound these segments.
 

@@ -136,8 +136,8 @@ fn combined(values: &[&[f64]; 6], mut combination: usize) -> Touch {
     touch_at(coordinates, indices.map(Some))
 }
 
-/// Returns `count` different numbers below n in random order: the start of a shuffle that stores only the moved places,
-/// so that the result for a smaller count is a prefix of the result for a larger one.
+/// Returns `count` different numbers below n in random order: the start of a shuffle that stores only the moved places.
+/// The result for a smaller count is a prefix of the result for a larger one.
 fn without_replacement(n: usize, count: usize, seed: &Seed) -> Vec<usize> {
     let mut rng = seed.named("combinations").rng();
     let mut moved = HashMap::new();

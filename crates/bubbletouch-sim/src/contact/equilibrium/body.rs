@@ -5,8 +5,8 @@ use super::symmetric::Six;
 use crate::geometry::Pose;
 use glam::{DQuat, DVec3};
 
-/// Pose of a free object. A motion has six numbers: three translations of the centre of mass along the world's axes, and three rotations about these
-/// axes through the centre, times the arm (metres).
+/// Pose of a free object. A motion has six numbers: three translations of the centre of mass along the world's axes, and three rotations
+/// about them. A rotation is multiplied by the arm, so that all six numbers are in metres.
 #[derive(Clone, Debug)]
 pub(super) struct Body<'a> {
     /// Number of the object in the list passed to the solver.

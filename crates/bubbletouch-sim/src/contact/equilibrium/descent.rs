@@ -13,8 +13,7 @@ use super::symmetric::{Symmetric, norm};
 use glam::DVec3;
 
 /// Largest number of poses evaluated per body; a body that rolls across a whole skin takes some hundreds. Larger: problems that do not converge take
-/// longer;
-/// smaller: long rolls do not converge.
+/// longer; smaller: long rolls do not converge.
 const MAX_STEPS: usize = 4000;
 /// Largest number of multiplier updates; three to six are usual.
 const MAX_ROUNDS: usize = 40;

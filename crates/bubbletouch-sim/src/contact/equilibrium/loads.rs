@@ -8,7 +8,7 @@
 //!
 //! Here ψ is measured from the taxel's free position, and k includes the damper's stiffness within the step. For a rigid contact k = s = 0.
 //!
-//! The second term is the augmented Lagrangian of the rigid stop ψ ≤ s \[RW\]: with the correct λ the stop holds exactly, and
+//! The second term is the augmented Lagrangian of the rigid stop ψ ≤ s \[RW\]. With the correct λ the stop holds exactly, and
 //! λ is the force on it.
 
 use super::pair::{Key, Pair, Part};

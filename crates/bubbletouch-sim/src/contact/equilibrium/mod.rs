@@ -6,15 +6,14 @@
 //! method with closed-form derivatives. The energy never increases, and the method leaves saddles because it follows negative curvature. An object
 //! without a minimum [escapes](Outcome::Escaped), and the others continue without it.
 //!
-//! E has three kinds of kinks, all of which are kept exactly:
+//! E has three kinds of kinks, all of which are kept exactly by constraints with multipliers:
 //!
-//! - taxels between two spheres of one object or of two (`tied_max`); the multipliers are the shares of the spheres;
-//! - rigid stops of taxels at their stroke; the multipliers are the forces on the stops;
-//! - rigid contacts: half-spaces ([`HalfSpace`]), fixed objects ([`Obstacle`]), and the spheres of other free objects; the multipliers are
-//!  the contact forces.
+//! - Taxels between two spheres of one object or of two (`tied_max`). The multipliers are the shares of the spheres.
+//! - Rigid stops of taxels at their stroke. The multipliers are the forces on the stops.
+//! - Rigid contacts with half-spaces ([`HalfSpace`]), fixed objects ([`Obstacle`]), and other free objects. The multipliers are the contact forces.
 //!
-//! A damper delays its taxel: within a step Δt a free taxel returns to φ δ_before (φ = e^(−k Δt / c)), and beyond this deflection its stiffness
-//! is k / (1 − φ). Within a step, therefore, E = Σ ½ k/(1 − φ) (δ − φ δ_before)², and the forces are those of
+//! A damper delays its taxel. Within a step Δt a free taxel returns to φ δ_before (φ = e^(−k Δt / c)); beyond this deflection its stiffness
+//! is k / (1 − φ). The energy within a step is therefore E = Σ ½ k/(1 − φ) (δ − φ δ_before)², and the forces equal those of
 //! [`DamperState`](crate::contact::DamperState).
 //!
 //! With friction, the shear springs of the taxels that touched an object at the beginning of the step also act on this object (`shear_springs`).

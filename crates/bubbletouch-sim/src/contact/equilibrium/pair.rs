@@ -1,7 +1,7 @@
 //! Pair of a sphere of a free object and the taxel or rigid contact that it pushes.
 //!
-//! A rigid surface is treated as a taxel without a spring at the end of its stroke: its deflection is the penetration of the sphere, and its force
-//! is that of the stop.
+//! A rigid surface is treated as a taxel without a spring at the end of its stroke. Its deflection is the penetration of the sphere, and its force
+//! is the force of the stop.
 
 use super::reach::Reach;
 use super::rigid_contact::{Touched, Touching};
@@ -19,7 +19,7 @@ pub(super) enum Key {
     Rigid(Part, Touched),
 }
 
-/// Marks a pair that stands for objects that are not free: the deflection that they need.
+/// Marks a pair whose deflection is due to objects that are not free.
 pub(super) const OTHERS: Part = (u32::MAX, u32::MAX);
 
 /// Sphere and the taxel or rigid contact that it pushes.

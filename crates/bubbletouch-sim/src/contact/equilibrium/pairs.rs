@@ -1,7 +1,7 @@
 //! Pairs of spheres of free objects and the taxels or rigid contacts that they push, or could push after a small step.
 //!
-//! A rigid contact is treated as a taxel without a spring at the end of its stroke: its deflection is the penetration of the sphere, and its force
-//! is the force on the stop. Both kinds are therefore pairs with the same interface.
+//! A rigid contact is treated as a taxel without a spring at the end of its stroke. Its deflection is the penetration of the sphere, and its force
+//! is the force on the stop. Taxels and rigid contacts thus share one pair type.
 
 use super::super::taxel_contact::GRAZING;
 use super::body::Body;

@@ -1,8 +1,7 @@
 //! Friction of taxels whose shear springs act on free objects.
 //!
-//! The material point a of the object drags the tip that touched it at the beginning of the step. With v = u + P (a − a₀) perpendicular to
-//! the taxel's axis, k_t the stiffness of the shear spring and r = μ f / k_t, the energy of the spring is
-//!
+//! The material point a of the object drags the tip that touched it at the beginning of the step. Let v = u + P (a − a₀) perpendicular to
+//! the taxel's axis, k_t the stiffness of the shear spring, and r = μ f / k_t. The energy of the spring is
 //!
 //! ```text
 //! ½ k_t |v|²               |v| ≤ r        it sticks

@@ -157,8 +157,8 @@ impl Factor {
 /// Returns the step d with |d| ≤ `reach` that minimises `g·d + ½ dᵀHd`, and the decrease; H may have negative
 /// curvature. \[MS\]
 ///
-/// The step solves `(H + σ) d = −g` with the least σ ≥ 0 for which H + σ is positive definite and |d| ≤ `reach`, by Newton's method for
-/// `1/|d| = 1/reach`. If g has no component along the lowest eigenvector of an indefinite H (the hard case), this vector is added up to
+/// The step solves `(H + σ) d = −g` with the least σ ≥ 0 for which H + σ is positive definite and |d| ≤ `reach`. Newton's method solves
+/// `1/|d| = 1/reach` for σ. If g has no component along the lowest eigenvector of an indefinite H (the hard case), this vector is added up to
 /// the boundary of the ball.
 pub(super) fn best_step(gradient: &[f64], h: &Symmetric, reach: f64) -> (Vec<f64>, f64) {
     /// Relative distance from the boundary of the ball within which a step counts as on it.

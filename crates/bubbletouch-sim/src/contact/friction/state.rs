@@ -9,7 +9,7 @@
 //! f_t = k_t u on the tip,  |f_t| ≤ μ f_n                            stick inside the cone, slip on it
 //! ```
 //!
-//! The module `coulomb` solves the step of u in closed form: the predictor u + Δ is returned to the friction cone of the normal force at the step's end.
+//! The module `coulomb` solves the step of u in closed form: the predictor u + Δ is returned to the friction cone at the step's end.
 //! If the object rolls, X₁ a − X₀ a and X₁ b − X₀ b cancel to second order, so rolling drags nothing.
 //!
 //! For a free object the motion is unknown before its equilibrium, which depends on the shear springs. There b is omitted, and u + Δ is returned
@@ -27,8 +27,8 @@
 //!
 //! **Laws**: the friction cone holds after any step, and no step size is unstable. The work of f_t on the object is at most the energy released by
 //! the shear springs, at any step size, so friction only dissipates. While f is constant, one step along a straight path equals many steps. If f
-//! changes, the error of a step is of first order. It is also of first order for taxels that come into contact within a step, which begin with
-//! u = 0 at the step's end. If a taxel leaves contact or touches another object, u is reset to zero. For a saturated taxel the normal force
+//! changes, the error of a step is of first order. The same holds for taxels that come into contact within a step, whose u is zero at the
+//! step's end. If a taxel leaves contact or touches another object, u is reset to zero. For a saturated taxel the normal force
 //! is the spring's k s. The additional force of the stop is unknown, so the friction is a lower bound; a press counts such taxels.
 
 use super::coulomb::{Dragged, drag};
@@ -168,9 +168,9 @@ impl FrictionState {
         &self.shears
     }
 
-    /// Returns the readings `force3` of three-axis sensors, N, shape (n_taxels,): the object's force on each tip.
-    /// x and y, along the axes of the taxel's [frame](crate::world::Layout::frame), are friction plus the lateral force of an inclined contact.
-    /// z is the force against the taxel's axis, never negative. The reading is zero if nothing presses the taxel.
+    /// Returns the readings of three-axis sensors (`force3`), N, shape (n_taxels,): the force of the object on each tip.
+    /// The components x and y, along the axes of the taxel's [frame](crate::world::Layout::frame), are friction plus the lateral force of an inclined
+    /// contact. The component z is the force against the taxel's axis, never negative. The reading is zero if nothing presses the taxel.
     pub fn force3(&self) -> &[DVec3] {
         &self.forces
     }

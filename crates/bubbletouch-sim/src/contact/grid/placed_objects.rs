@@ -1,4 +1,4 @@
-//! Objects above a flat grid, and how far the grid travels.
+//! Objects above a flat grid, and the travel of the grid.
 
 use super::lines::GridLines;
 use crate::geometry::Pose;

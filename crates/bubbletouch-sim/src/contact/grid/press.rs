@@ -25,8 +25,8 @@ pub(crate) struct GridPress {
     /// Heights at which the meshes stop the taxels; empty if there are no meshes.
     envelope: Envelope,
     deflections: DeflectionGrid,
-    /// Height of the substrate, metres. A sphere with a lower centre pushes only taxels whose substrate is inside the sphere. −s − ρ at a pose;
-    /// −∞ if the press comes from the front, where all spheres count.
+    /// Height of the substrate, metres: −s − ρ at a pose, −∞ if the press comes from the front and all spheres count.
+    /// A sphere with a lower centre pushes only taxels whose substrate is inside the sphere.
     behind: f64,
     /// Result of [`starts`](Self::starts) in the last press to a force.
     starts: Vec<f64>,

@@ -1,4 +1,4 @@
-//! Stop of a taxel that moves up along its own axis by a mesh.
+//! Stop of a taxel by a mesh as the taxel moves up along its axis.
 
 use super::swept_triangle::stopping_height;
 use crate::contact::law;

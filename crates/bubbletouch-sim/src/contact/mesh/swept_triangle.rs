@@ -1,6 +1,6 @@
 //! Contact of a ball that rises along a line with a triangle: with the face, an edge or a corner, each in closed form.
 //!
-//! The ball's centre is at (x, y) and rises from z = −∞. The ball stops at the lowest point of the triangle swept by the ball:
+//! The ball's centre is at (x, y) and rises from z = −∞. The ball stops at the lowest point of the triangle swept by the ball. This is
 //! the smallest of the heights below, over the parts that contain the point of the triangle nearest to the stopped centre.
 //!
 //! | part | with | stops at |
@@ -109,8 +109,8 @@ impl SweptEdge {
     /// `faces` has the unit normals of the faces at the edge, zero for none. Seen from above, a face lies to the left of the edge if
     /// its normal points up, and to the right if its normal points down.
     ///
-    /// A face hides the edge if the direction from the edge to the centre of the stopped ball points towards the face: beyond
-    /// the place where the face begins after it is moved down by the radius, ρ n·aside beside the edge.
+    /// A face hides the edge if the direction from the edge to the centre of the stopped ball points towards the face. This is the case beyond
+    /// the place where the face, moved down by the radius, begins: at the distance ρ n·aside beside the edge.
     #[inline]
     pub fn new(from: DVec3, to: DVec3, radius: f64, faces: [DVec3; 2]) -> Option<Self> {
         let edge = to - from;

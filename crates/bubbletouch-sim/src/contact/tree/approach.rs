@@ -15,8 +15,8 @@ use std::sync::OnceLock;
 
 /// Motion of a patch along a direction.
 ///
-/// First contact depends on the taxels' spheres and the direction, not on the taxels' axes. It is therefore found with taxels at the same
-/// places whose axes are the direction and whose strokes are unlimited: the taxel with the largest deflection touches first.
+/// First contact depends on the taxels' spheres and the direction, not on the taxels' axes. The search therefore uses taxels at the same
+/// places whose axes are the direction and whose strokes are unlimited. The taxel with the largest deflection touches first.
 #[derive(Clone, Debug)]
 pub struct Approach<'a> {
     patch: &'a Patch,

@@ -207,9 +207,10 @@ pub(crate) fn stop(patch: &Patch, workspace: &mut Workspace) -> Contact {
 
 /// Presses a patch on objects at their given poses and records the contacts; `patch_from_objects` has one pose per object.
 ///
-/// Parts behind the substrate of a taxel do not count for this taxel (rule in [`contact`](crate::contact)), so an object below a forearm does not press on
-/// its upper side. A part pushed far past the stroke is also behind the substrate; [`press_to_depth`](crate::contact::press_to_depth)
-/// counts it because its path is known. One part determines each deflection. If parts need equal deflections, the first object and its first sphere count.
+/// Parts behind the substrate of a taxel do not count for this taxel (rule in [`contact`](crate::contact)). An object below a forearm therefore
+/// does not press on its upper side. A part pushed far past the stroke is also behind the substrate;
+/// [`press_to_depth`](crate::contact::press_to_depth) counts it because its path is known. One part determines each deflection: of parts with equal
+/// deflections the first object, and its first sphere.
 ///
 /// ```
 /// use bubbletouch_sim::contact::{Workspace, press_with_contacts, spring_load};

@@ -9,7 +9,7 @@
 //! negative height. Ball j of the hand has the radius R, and its centre is at y beside and z above the place. The ball is at height 0 where
 //! `y² + (z + s)² = (R + s)²` with s = `surface`. First contact thus has a closed form and is independent of the angle around the arm.
 //!
-//! **Time.** A touch is a sequence of phases. Each leads from one state (height, displacement along the skin, closing of the fingers) to the next along
+//! **Time.** A touch is a sequence of phases between states (height, displacement along the skin, closing of the fingers). Each phase follows
 //! `10 τ³ − 15 τ⁴ + 6 τ⁵`, the minimum-jerk movement between two stops \[FH\]. The hand starts and ends in the air.
 //!
 //! The six kinds are gestures of \[CoST\] or similar to them (`hold` corresponds to its press). Their courses in space and time are

@@ -16,9 +16,9 @@ impl Layout {
     /// - `radius`: radius to the rest centres, metres.
     /// - `length`: distance between the first and the last ring, metres, not negative; the middle is at z = 0.
     /// - `arc`: angle, radians, above 0 to 2π, with its middle at +x. Both ends have taxels. If the remaining gap is less than half a
-    ///  pitch, the ring is closed.
+    ///   pitch, the ring is closed.
     /// - `pitch`: distance along the surface, metres, adjusted to whole numbers of rings and columns. A length or an arc
-    ///  shorter than 0.75 pitches has one ring or column, in its middle.
+    ///   shorter than 0.75 pitches has one ring or column, in its middle.
     ///
     /// # Errors
     /// If an argument is out of its range, or the layout has more than [`MAX_TAXELS`](crate::world::MAX_TAXELS) taxels.
@@ -42,7 +42,7 @@ impl Layout {
     /// - `radius`: radius to the rest centres, metres.
     /// - `half_angle`: angle from the pole to the last ring, radians, above 0 to π; π/2 is half a sphere, π a whole one.
     /// - `pitch`: distance along the surface, metres, adjusted to whole numbers of rings and of taxels per ring. A cap
-    ///  smaller than 0.75 pitches from its pole to its end has one taxel, at the pole.
+    ///   smaller than 0.75 pitches from its pole to its end has one taxel, at the pole.
     ///
     /// # Errors
     /// If an argument is out of its range, or the layout has more than [`MAX_TAXELS`](crate::world::MAX_TAXELS) taxels.

@@ -10,8 +10,8 @@ use glam::DVec3;
 use rand::seq::SliceRandom;
 use std::collections::{BTreeMap, HashMap};
 
-/// Smallest distance between taxels, in pitches. If random places are added until no further place has this distance from all others, there are
-/// about 0.7 / distance² per square pitch: at 0.83 as many as on a grid of the pitch.
+/// Smallest distance between taxels, in pitches. Random places are added until no further place has this distance from all others. Then there are
+/// about 0.7 / distance² taxels per square pitch: at 0.83 as many as on a grid of the pitch.
 const LEAST: f64 = 0.83;
 /// Longest edge of a piece of surface, in pitches. Smaller: taxels are packed more densely, and more memory is used; larger: the
 /// surface between two pieces may be farther from a taxel than a pitch (0.83 + 2/3 of this).

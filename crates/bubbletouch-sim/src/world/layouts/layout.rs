@@ -65,8 +65,8 @@ impl Layout {
     /// Creates a layout of arbitrary places (metres) and axes (unit, away from the substrate). Axes are normalised, because files contain few digits.
     ///
     /// # Errors
-    /// If a place or an axis is invalid, such as an axis whose length differs from one by more than 1 %; the error names the first such taxel
-    /// (from 1). Also if the two lists differ in length.
+    /// If the two lists differ in length, or a place or an axis is invalid; the error contains the first such taxel (from 1). An axis is
+    /// invalid if its length differs from one by more than 1 %.
     pub fn new(centers: Vec<DVec3>, mut axes: Vec<DVec3>) -> Result<Self> {
         if centers.len() != axes.len() {
             return Err(Error::input(

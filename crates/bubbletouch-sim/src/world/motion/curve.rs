@@ -47,8 +47,7 @@ pub(super) struct Extremes {
 
 impl Curve {
     /// Creates the curve through `values` at `times`, at least one each, times ascending. Returns `None` if a coefficient is not finite, because
-    /// way-points
-    /// are too far apart in value or too close in time.
+    /// way-points are too far apart in value or too close in time.
     pub fn through(times: &[f64], values: &[f64], interpolation: Interpolation) -> Option<Self> {
         let steps: Vec<f64> = times.windows(2).map(|t| t[1] - t[0]).collect();
         let rises = values.windows(2).map(|x| x[1] - x[0]);

@@ -4,7 +4,7 @@
 /// velocities between n values.
 ///
 /// Adjacent pieces have equal accelerations at their way-point:
-/// `m₋/h₋ + 2 (1/h₋ + 1/h₊) m + m₊/h₊ = 3 (d₋/h₋ + d₊/h₊)`, with h the duration and d the secant before and after. This is a
+/// `m₋/h₋ + 2 (1/h₋ + 1/h₊) m + m₊/h₊ = 3 (d₋/h₋ + d₊/h₊)`. Here h is the duration and d the secant before and after. This is a
 /// tridiagonal system with a dominant diagonal, solved by elimination.
 pub(super) fn clamped_spline(steps: &[f64], secants: &[f64]) -> Vec<f64> {
     let n = steps.len() + 1;
@@ -33,8 +33,8 @@ pub(super) fn monotone(steps: &[f64], secants: &[f64]) -> Vec<f64> {
     slopes
 }
 
-/// Returns the velocity between two pieces: zero where the direction turns, else the weighted harmonic mean of the secants on both
-/// sides (Fritsch and Butland's choice), which is at most three times the smaller one.
+/// Returns the velocity between two pieces: zero at reversals, else the weighted harmonic mean of the secants on both
+/// sides (Fritsch and Butland's choice). The mean is at most three times the smaller secant.
 pub(super) fn monotone_slope([h0, h1]: [f64; 2], [d0, d1]: [f64; 2]) -> f64 {
     match d0 * d1 > 0.0 {
         true => {

@@ -2,8 +2,8 @@
 //!
 //! 1. On a mesh of directions, each direction flows to its lowest neighbour, which defines basins.
 //! 2. Basins with a low barrier between them are merged, first by the barrier along the mesh. Then each minimum is refined, and the barrier
-//!  is measured along a smooth path between two minima. This path follows the valley of a lying can, which the mesh only
-//!  approximates.
+//!    is measured along a smooth path between two minima. This path follows the valley of a lying can, which the mesh only
+//!    approximates.
 
 use super::descent::descend;
 use super::support::Support;
@@ -211,7 +211,7 @@ impl Merging {
     }
 }
 
-/// Returns the highest point of a path between two minima. The path is the great circle if it stays below `enough`; otherwise it passes through
+/// Returns the highest point of a path between two minima. The path is the great circle if it stays below `enough`. Otherwise it passes through
 /// the minimum below its middle, which bends the path into the curved valley of a lying cone.
 fn valley_pass(support: &Support, ends: (DVec3, DVec3), enough: f64, halvings: usize) -> f64 {
     let (from, to) = ends;

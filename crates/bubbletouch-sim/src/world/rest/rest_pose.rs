@@ -2,8 +2,8 @@
 //!
 //! Let d be the direction of down in the object's frame. The centre of mass is at the height h(d) = max_j (c_j · d + r_j) above the table,
 //! with c_j relative to it. An object that is tipped slowly moves downhill on h over the sphere of directions, and rests in the
-//! local minima. The probability of a minimum is the fraction of directions that lead to it, as if the object were put
-//! down in a random orientation (quasi-static toppling; Goldberg, Mirtich, Zhuang, Craig, Carlisle, Canny, *Part pose
+//! local minima. The probability of a minimum is the fraction of directions that lead to it: the object is put
+//! down slowly in a random orientation (quasi-static toppling; Goldberg, Mirtich, Zhuang, Craig, Carlisle, Canny, *Part pose
 //! statistics*, 1999).
 
 use super::basins::basins;

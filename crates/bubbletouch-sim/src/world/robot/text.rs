@@ -33,8 +33,8 @@ pub(super) fn decoded(place: &str, bytes: &[u8]) -> (String, Option<String>) {
     }
 }
 
-/// Returns the text with spaces in place of comments and of an XML declaration that is not at the beginning, and with a declaration
-/// of each undeclared namespace prefix. Line numbers are unchanged.
+/// Returns the text with spaces in place of comments and of an XML declaration that is not at the beginning. Undeclared namespace prefixes
+/// get a declaration. Line numbers are unchanged.
 pub(super) fn repaired(place: &str, text: &str, lines: &Lines) -> String {
     let text = text.trim_start_matches('\u{feff}').trim_end_matches('\0');
     let mut repaired = without(text, "<!--", "-->");

@@ -52,11 +52,11 @@ impl ArrayLayout {
         (self.about().place_on_plane)(center, radius)
     }
 
-    /// Returns the taxels of the layout in place of those of a square grid (nx = ny). `radius` is the radius of curvature to the rest centres, metres; flat
+    /// Returns the taxels of the layout for the area of a square grid (nx = ny). `radius` is the radius of curvature to the rest centres, metres; flat
     /// layouts ignore it.
     ///
     /// # Errors
-    /// If the grid is not square, or if the layout does not fit around the radius: a cylinder at most half around, a cap at most half a sphere.
+    /// If the grid is not square, or the layout does not fit around the radius. A cylinder covers at most half a turn, a cap at most half a sphere.
     pub fn taxels(self, grid: &Grid, radius: f64) -> Result<Layout> {
         grid.check()?;
         let about = self.about();
