@@ -1,6 +1,6 @@
-//! NumPy arrays in and out.
+//! Conversion of NumPy arrays to and from the library's types.
 //!
-//! What comes in is looked at as float64, whatever real type it has; a copy is made only of other types and of strided arrays.
+//! Inputs of any real type are accepted as float64. A copy is made only of other types and of strided arrays.
 
 use crate::errors::bad_input;
 use bubbletouch::geometry::Aabb;
@@ -11,16 +11,16 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyAny;
 
-/// `numpy.asarray`.
+/// Calls `numpy.asarray`.
 fn asarray<'py>(py: Python<'py>, array: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     static ASARRAY: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     ASARRAY.import(py, "numpy", "asarray")?.call1((array,))
 }
 
-/// Real numbers of any shape as float64, in C order.
+/// Returns real numbers of any shape as float64, in C order.
 ///
 /// # Errors
-/// Something that is no array of real numbers; its text begins with `place`.
+/// If the input is not an array of real numbers; the message begins with `place`.
 pub fn numbers<'py>(
     place: &str,
     given: &Bound<'py, PyAny>,
@@ -43,10 +43,10 @@ pub fn numbers<'py>(
     Ok(array.cast_into::<PyArrayDyn<f64>>()?)
 }
 
-/// Looks at real numbers of a shape that `is_shape` allows.
+/// Returns a view of real numbers whose shape satisfies `is_shape`.
 ///
 /// # Errors
-/// Those of [`numbers`]; another shape.
+/// Returns the errors of [`numbers`], or an error if the shape is not allowed.
 pub fn view<T>(
     place: &str,
     given: &Bound<PyAny>,
@@ -64,7 +64,7 @@ pub fn view<T>(
     look(array.as_array())
 }
 
-/// `shape (3, 7)`, as Python writes it.
+/// Returns the shape as Python writes it: `shape (3, 7)`.
 pub fn shape_of(shape: &[usize]) -> String {
     let sides: Vec<String> = shape.iter().map(ToString::to_string).collect();
     match &sides[..] {
@@ -73,10 +73,10 @@ pub fn shape_of(shape: &[usize]) -> String {
     }
 }
 
-/// n points or directions of an n × 3 array.
+/// Reads n points or directions from an n × 3 array.
 ///
 /// # Errors
-/// Another shape. Numbers that are not finite are left to the library, which says what is wrong with which.
+/// If the shape is wrong. Numbers that are not finite are checked by the library, whose error names them.
 pub fn points(place: &str, given: &Bound<PyAny>) -> PyResult<Vec<DVec3>> {
     let is_shape = |shape: &[usize]| matches!(shape, [_, 3]);
     view(place, given, "(n, 3)", is_shape, |array| {
@@ -85,10 +85,10 @@ pub fn points(place: &str, given: &Bound<PyAny>) -> PyResult<Vec<DVec3>> {
     })
 }
 
-/// n numbers: an array of n, or one for all.
+/// Reads n numbers: an array of n, or one number for all.
 ///
 /// # Errors
-/// Another shape.
+/// If the shape is wrong.
 pub fn each(place: &str, given: &Bound<PyAny>, n: usize) -> PyResult<Vec<f64>> {
     let is_shape = |shape: &[usize]| shape.is_empty() || shape == [n];
     let allowed = format!("({n},), or one number for all");
@@ -100,7 +100,7 @@ pub fn each(place: &str, given: &Bound<PyAny>, n: usize) -> PyResult<Vec<f64>> {
     })
 }
 
-/// A whole number of the library's type; a negative one, or one that is too large, is refused by name.
+/// Converts an integer to the library's type; the error contains `place`.
 ///
 /// # Errors
 /// If the number is out of the range of the type.
@@ -109,12 +109,13 @@ pub fn whole_number<T: TryFrom<i128>>(place: &str, given: i128) -> PyResult<T> {
     T::try_from(given).map_err(|_| bad_input(place, given, allowed))
 }
 
-/// Whether an array has this shape as that of one frame, or of frames along its first axis. A frame of a grid (`sides`: rows, columns) has
-/// that many rows and columns, or its taxels in one row.
+/// Returns whether an array has the shape of one frame, or of frames along the first axis. A frame of a grid (`sides`: rows, columns) has this shape, or all
+/// taxels
+/// in one row.
 pub fn is_of_frames(shape: &[usize], n_taxels: usize, sides: Option<[usize; 2]>) -> bool {
     let is_frame = |frame: &[usize]| {
         let is_whole = frame.iter().product::<usize>() == n_taxels && !frame.is_empty();
-        // Sides of one say nothing of the order.
+        // Sides of length 1 do not determine the order of the axes.
         let known = frame.iter().filter(|&&side| side != 1);
         is_whole
             && (known.clone().count() < 2
@@ -123,10 +124,10 @@ pub fn is_of_frames(shape: &[usize], n_taxels: usize, sides: Option<[usize; 2]>)
     is_frame(shape) || shape.len() > 1 && is_frame(&shape[1..])
 }
 
-/// Frames of n taxels as n_frames × n: shapes (n_frames, …) whose sides after the first make n, or one frame alone.
+/// Reads frames of n taxels as n_frames × n. The shape is (n_frames, …), where the product of the other sides is n, or the shape of one frame.
 ///
 /// # Errors
-/// Another number of taxels; of a grid (`sides`: rows, columns) frames of other sides; a number that is not finite.
+/// If the number of taxels is wrong, frames of a grid (`sides`: rows, columns) have other sides, or a number is not finite.
 pub fn frames(
     place: &str,
     given: &Bound<PyAny>,
@@ -150,7 +151,7 @@ pub fn frames(
     })
 }
 
-/// n × 3 numbers for Python.
+/// Converts points to an n × 3 array for Python.
 pub fn to_rows<'py>(
     py: Python<'py>,
     points: impl ExactSizeIterator<Item = DVec3>,
@@ -161,7 +162,7 @@ pub fn to_rows<'py>(
     rows.into_pyarray(py)
 }
 
-/// n numbers for Python.
+/// Converts n numbers to an array for Python.
 pub fn to_column<T: numpy::Element>(
     py: Python<'_>,
     values: impl IntoIterator<Item = T>,

@@ -1,4 +1,4 @@
-//! Work on each item of a batch, on several threads, each with its own scratch.
+//! Parallel processing of a batch; each thread has its own scratch memory.
 
 use crate::errors::bad_input;
 use crate::threads::{Interrupt, pool};
@@ -6,15 +6,15 @@ use pyo3::prelude::*;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Items that a thread takes at once, at most. Larger: threads end farther apart; smaller: they queue more often.
+/// Maximum number of items that a thread takes at once. If larger, threads finish at different times; if smaller, they wait for each other more often.
 const MOST_AT_ONCE: usize = 16;
-/// Fewer items for each thread are not worth waking it: 5 to 50 µs.
+/// Minimum number of items per thread; fewer items are not worth the time of waking a thread, 5 to 50 µs.
 const LEAST_PER_THREAD: usize = 4;
 
-/// How many threads: those asked for, or as many as the pool has.
+/// Returns the requested number of threads; `None` for all threads of the pool.
 ///
 /// # Errors
-/// Zero or less.
+/// If the number is zero or less.
 pub fn n_threads(asked: Option<i64>) -> PyResult<Option<usize>> {
     let Some(asked) = asked else {
         return Ok(None);
@@ -29,11 +29,11 @@ pub fn n_threads(asked: Option<i64>) -> PyResult<Option<usize>> {
     }
 }
 
-/// Scratch that calls leave for each other.
+/// Scratch memory reused by successive calls.
 pub struct Spare<S>(Mutex<Vec<S>>);
 
 impl<S> Spare<S> {
-    /// None yet.
+    /// Creates an empty store.
     pub const fn new() -> Self {
         Self(Mutex::new(Vec::new()))
     }
@@ -49,11 +49,11 @@ impl<S> Spare<S> {
     }
 }
 
-/// Calls `work` with each item's number, the item and a thread's scratch, without the interpreter's lock; this thread is one of those that
-/// work, and looks for Ctrl-C.
+/// Calls `work` with each item's number, the item and the thread's scratch memory, without the interpreter's lock. The calling thread also processes items,
+/// and checks for Ctrl-C.
 ///
 /// # Errors
-/// The first that some `work` returns, by the items' numbers among those that were begun; what Ctrl-C raises.
+/// Returns the first error of `work`, ordered by item number among the started items, or the exception of Ctrl-C.
 pub fn for_each<T: Send, S: Send>(
     py: Python,
     items: Vec<T>,

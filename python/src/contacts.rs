@@ -1,4 +1,4 @@
-//! `Contacts`: which part touches which taxel, from where, with what force.
+//! `Contacts`: for each touched taxel, the touching part, the contact point, and the force.
 
 use crate::arrays::{to_column, to_rows};
 use bubbletouch::contact::{Contact, TaxelContact, Workspace};
@@ -34,15 +34,15 @@ pub struct Contacts {
     n_saturated: Py<PyArray1<i64>>,
 }
 
-/// What a press at one pose did.
+/// Contacts of a press at one pose.
 pub struct OfPose {
-    /// `None` where the patch met nothing.
+    /// Result of the press; `None` if the patch touched nothing.
     pressed: Option<Contact>,
     contacts: Vec<(TaxelContact, DVec3)>,
 }
 
 impl OfPose {
-    /// Of a press, and of the same press that left its contacts in the workspace.
+    /// Collects the contacts of a press from the workspace.
     pub fn new(
         patch: &Patch,
         (pressed, met): (Option<Contact>, Option<Contact>),
@@ -65,10 +65,10 @@ impl OfPose {
 }
 
 impl Contacts {
-    /// Of poses in any order, each with its number.
+    /// Combines the contacts of poses, each given with its number, in any order.
     ///
     /// # Errors
-    /// None but Python's.
+    /// Returns only errors of Python.
     pub fn of(py: Python, mut poses: Vec<(usize, OfPose)>) -> PyResult<Self> {
         poses.sort_unstable_by_key(|(number, _)| *number);
         let all: Vec<(usize, &TaxelContact, DVec3)> = poses

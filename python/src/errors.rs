@@ -1,10 +1,10 @@
-//! Errors of the library as exceptions, and what becomes of a panic.
+//! Conversion of library errors and panics to Python exceptions.
 //!
 //! | library | Python |
 //! |---|---|
-//! | [`Error::Input`] | `ValueError`, the same sentence |
+//! | [`Error::Input`] | `ValueError` with the library's message |
 //! | [`Error::Io`] | `OSError`, or its subclass for the system's number, with the file's name |
-//! | [`Error::WorkItems`] | `RuntimeError`, the same sentence |
+//! | [`Error::WorkItems`] | `RuntimeError` with the library's message |
 //! | a panic | `InternalError`, which asks for a report |
 
 use bubbletouch::Error;
@@ -23,10 +23,10 @@ create_exception!(
     "A bug of bubbletouch itself, wherever it was called from: its text asks for a report."
 );
 
-/// What the last panic said, and where.
+/// Message and location of the last panic.
 static LAST_PANIC: Mutex<Option<String>> = Mutex::new(None);
 
-/// From now on a panic is kept for its exception, and nothing is printed.
+/// Installs a panic hook that stores the message for the exception and prints nothing.
 pub fn keep_panics() {
     set_hook(Box::new(|info: &PanicHookInfo| {
         let place = info.location().map_or(String::new(), |location| {
@@ -45,10 +45,10 @@ fn message(payload: &dyn Any) -> &str {
     text.unwrap_or("no message")
 }
 
-/// What `call` returns; a panic in it as an [`InternalError`].
+/// Returns the result of `call`; a panic is converted to an [`InternalError`].
 ///
 /// # Errors
-/// Its own, and that one.
+/// Returns the errors of `call`, or an [`InternalError`] after a panic.
 pub fn guarded<T>(call: impl FnOnce() -> PyResult<T>) -> PyResult<T> {
     catch_unwind(AssertUnwindSafe(call)).unwrap_or_else(|payload| {
         let kept = LAST_PANIC.lock().ok().and_then(|mut last| last.take());
@@ -60,7 +60,7 @@ pub fn guarded<T>(call: impl FnOnce() -> PyResult<T>) -> PyResult<T> {
     })
 }
 
-/// The exception for an error of the library.
+/// Returns the exception for an error of the library.
 pub fn exception(error: Error) -> PyErr {
     let said = error.to_string();
     match error {
@@ -70,7 +70,7 @@ pub fn exception(error: Error) -> PyErr {
     }
 }
 
-/// `OSError`: Python makes a `FileNotFoundError` and its like of the number.
+/// Returns an `OSError`; Python chooses the subclass, such as `FileNotFoundError`, from the error number.
 pub fn os_error(path: &Path, source: &std::io::Error, said: String) -> PyErr {
     match source.raw_os_error() {
         Some(number) => PyOSError::new_err((number, said, path.display().to_string())),
@@ -78,31 +78,31 @@ pub fn os_error(path: &Path, source: &std::io::Error, said: String) -> PyErr {
     }
 }
 
-/// `ValueError` as `<where>: <what was given>; <what is allowed>`.
+/// Returns a `ValueError` with the message `<where>: <what was given>; <what is allowed>`.
 pub fn bad_input(place: impl ToString, given: impl ToString, allowed: impl ToString) -> PyErr {
     exception(Error::input(place, given, allowed))
 }
 
-/// An `OSError` if there is no file at `path`, or it may not be opened, before the library looks at what is in it.
+/// Checks that the file at `path` exists and can be opened, before the library reads it.
 ///
 /// # Errors
-/// That one.
+/// If the file does not exist or cannot be opened (`OSError`).
 pub fn check_readable(path: &Path) -> PyResult<()> {
     let failed = |error: std::io::Error| {
         let said = format!("{}: cannot be read", path.display());
         os_error(path, &error, said)
     };
-    // A pipe would wait for who writes to it; the library refuses it by its kind.
+    // Opening a pipe would block until another process writes to it; the library rejects pipes.
     if std::fs::metadata(path).map_err(failed)?.is_file() {
         std::fs::File::open(path).map_err(failed)?;
     }
     Ok(())
 }
 
-/// An `OSError` if the folder of a file to write is not there.
+/// Checks that the folder of an output file exists.
 ///
 /// # Errors
-/// That one.
+/// If the folder does not exist (`OSError`).
 pub fn check_folder(path: &Path) -> PyResult<()> {
     let folder = path
         .parent()
@@ -116,7 +116,7 @@ pub fn check_folder(path: &Path) -> PyResult<()> {
     })
 }
 
-/// Panics, so that tests see what becomes of it.
+/// Panics, for tests of the conversion to an exception.
 #[pyfunction]
 pub fn _panic() -> PyResult<()> {
     guarded(|| panic!("asked for"))

@@ -1,4 +1,4 @@
-//! How far a press goes.
+//! Goal of a press: pose, depth, force or travel.
 
 use crate::arrays::view;
 use crate::errors::bad_input;
@@ -11,17 +11,17 @@ use glam::DVec3;
 use pyo3::prelude::*;
 use std::slice::from_ref;
 
-/// What ends a press, and how much of it: one number for all poses or one each.
+/// Goal of presses: its kind, and one amount for all poses or one per pose.
 pub struct Goal {
     kind: fn(f64) -> contact::Goal,
     amounts: Vec<f64>,
 }
 
 impl Goal {
-    /// At most one of the three; none: right at the pose.
+    /// Creates a goal from at most one of the three amounts; without any, the goal is the pose itself.
     ///
     /// # Errors
-    /// Two of them; a number that is none, or a negative depth.
+    /// If two amounts are given, an amount is not a number, or a depth is negative.
     pub fn of(
         depth: Option<&Bound<PyAny>>,
         travel: Option<&Bound<PyAny>>,
@@ -78,10 +78,10 @@ impl Goal {
         }
     }
 
-    /// Checks that there is one number for all of n poses, or one each.
+    /// Checks that there is one amount for all n poses, or one per pose.
     ///
     /// # Errors
-    /// Another number of them.
+    /// If the number of amounts is wrong.
     pub fn check(&self, n_poses: usize) -> PyResult<()> {
         let n = self.amounts.len();
         if n == 1 || n == n_poses {
@@ -95,12 +95,12 @@ impl Goal {
         ))
     }
 
-    /// What ends it, whatever the amount.
+    /// Returns the kind of the goal, with amount 0.
     pub fn kind(&self) -> contact::Goal {
         (self.kind)(0.0)
     }
 
-    /// Returns what a press did, `None` for a miss: also for a press to a pose or a travel that touches no taxel.
+    /// Returns the result of a press; `None` for a miss, including a press to a pose or travel that touches no taxel.
     pub fn unless_missed(&self, pressed: Option<Contact>) -> Option<Contact> {
         let may_touch_none = matches!(self.kind(), contact::Goal::Pose | contact::Goal::Travel(_));
         pressed.filter(|contact| !may_touch_none || contact.n_touched > 0)
@@ -113,7 +113,7 @@ impl Goal {
         }
     }
 
-    /// The press at the pose of a number.
+    /// Returns the press at the pose with the given number.
     pub fn of_pose<'a>(
         &self,
         number: usize,
@@ -129,7 +129,7 @@ impl Goal {
     }
 }
 
-/// One press.
+/// A press of a patch on objects at one pose.
 pub struct Press<'a> {
     patch: &'a Patch,
     models: &'a [Model],
@@ -138,18 +138,18 @@ pub struct Press<'a> {
 }
 
 impl Press<'_> {
-    /// Deflects the taxels; `None` where the patch meets nothing.
+    /// Deflects the taxels; returns `None` if the patch touches nothing.
     ///
     /// # Errors
-    /// A force that cannot be reached.
+    /// If a force cannot be reached.
     pub fn deflect(&self, workspace: &mut Workspace) -> Result<Option<Contact>> {
         contact::press(self.patch, self.models, self.poses, self.goal, workspace)
     }
 
-    /// The same, written into a row, of zeros or of anything.
+    /// Deflects the taxels and writes the deflections into a row; previous values are overwritten.
     ///
     /// # Errors
-    /// A force that cannot be reached.
+    /// If a force cannot be reached.
     pub fn deflect_into(
         &self,
         (row, is_zeros): (Row, bool),
@@ -163,10 +163,11 @@ impl Press<'_> {
         press(patch, models, poses, self.goal, row, workspace)
     }
 
-    /// The same press, to rounding, that leaves what touches what; `None` where nothing does, whatever the workspace holds then.
+    /// Repeats the press, equal up to rounding, and leaves the contacts in the workspace. Returns `None` if nothing is touched; the content of the workspace
+    /// is then undefined.
     ///
     /// # Errors
-    /// A force that cannot be reached.
+    /// If a force cannot be reached.
     pub fn meet(&self, workspace: &mut Workspace) -> Result<Option<Contact>> {
         let (patch, models, poses) = (self.patch, self.models, self.poses);
         let approach = Approach::new(patch, DVec3::Z)?;

@@ -1,13 +1,14 @@
-//! How deflections change with the pose of the object, from the contact normals.
+//! Derivatives of deflections with respect to the object's pose, computed from the contact normals.
 //!
-//! A motion of the object in the frame of the patch, dx of its origin o and a turn dω about it, changes the deflection that contact i needs by
-//! `g·dx + ((p − o) × g)·dω`: p where they touch, g = −n_c / (n_c·n). What the patch travels to its goal changes too:
+//! A motion of the object in the patch frame consists of a translation dx of its origin o and a rotation dω about o. It changes the deflection of contact i
+//! by
+//! `g·dx + ((p − o) × g)·dω`, where p is the contact point and g = −n_c / (n_c·n). The travel of the patch to its goal also changes:
 //!
-//! - at a pose or to a travel it does not;
-//! - to a depth past first contact, on a flat patch, the deepest taxel d keeps its deflection, so its change is subtracted: `J_i − J_d`;
-//! - to a force Σ k δ it changes by `dT = −Σ k J / Σ k r`, r = −g_z what a travel adds to a deflection: `J_i + r_i dT`.
+//! - to a pose or a travel, the travel is constant;
+//! - to a depth past first contact, on a flat patch, the deepest taxel d keeps its deflection, so its derivative is subtracted: `J_i − J_d`;
+//! - to a force Σ k δ, the travel changes by `dT = −Σ k J / Σ k r`, where r = −g_z is the change of a deflection per travel: `J_i + r_i dT`.
 //!
-//! A saturated taxel, and one that nothing touches, does not change.
+//! The derivative of a saturated or untouched taxel is 0.
 
 use crate::errors::bad_input;
 use bubbletouch::contact::{Goal, TaxelContact};
@@ -15,18 +16,18 @@ use bubbletouch::world::Patch;
 use glam::DVec3;
 use pyo3::prelude::*;
 
-/// Numbers that a pose has: translation x, y, z and a turn about x, y, z.
+/// Number of pose parameters: translation along x, y, z and rotation about x, y, z.
 pub const N: usize = 6;
 
-/// Whether all axes of a patch are z.
+/// Returns whether all axes of a patch are z.
 fn is_flat(patch: &Patch) -> bool {
     patch.layout().as_grid().is_some() || patch.layout().axes().iter().all(|axis| *axis == DVec3::Z)
 }
 
-/// That the derivative to a goal is known.
+/// Checks that the derivative for a goal is implemented.
 ///
 /// # Errors
-/// It is not: a depth on a patch that is not flat.
+/// If the goal is a depth and the patch is not flat.
 pub fn check(goal: Goal, patch: &Patch) -> PyResult<()> {
     if !matches!(goal, Goal::Depth(_)) || is_flat(patch) {
         return Ok(());
@@ -39,7 +40,7 @@ pub fn check(goal: Goal, patch: &Patch) -> PyResult<()> {
     ))
 }
 
-/// Writes the changes of all taxels (n_taxels × 6, zero before), from the contacts of a press; `origin`: of the object, where the press left it.
+/// Writes the derivatives of all taxels (n_taxels × 6, initially 0) from the contacts of a press. `origin` is the position of the object after the press.
 pub fn fill(
     changes: &mut [f64],
     goal: Goal,

@@ -1,10 +1,10 @@
-//! Units of length by their names.
+//! Length units by name.
 
 use crate::errors::bad_input;
 use bubbletouch::mesh::LengthUnit;
 use pyo3::prelude::*;
 
-/// Returns the unit of a name, as files spell it.
+/// Returns the unit with the given name, as used in files.
 ///
 /// # Errors
 /// If there is no unit of this name.

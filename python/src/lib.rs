@@ -1,7 +1,8 @@
 //! `bubbletouch._core`: the library for Python.
 //!
-//! Python's own side (`python/bubbletouch`) names what is here, and documents it in `_core.pyi`. Nothing here computes: arguments are checked
-//! and taken from arrays, the library is called without the interpreter's lock, results are put into arrays.
+//! The Python package (`python/bubbletouch`) exports the items of this module, and documents them in `_core.pyi`. This module contains no algorithms.
+//! Arguments are checked and
+//! converted from arrays, the library is called without the interpreter's lock, and results are converted to arrays.
 
 mod arrays;
 mod batch;

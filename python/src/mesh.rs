@@ -1,4 +1,4 @@
-//! `Mesh`: triangles.
+//! `Mesh`: triangle meshes.
 
 use crate::arrays::{corners, numbers, points, shape_of, to_rows};
 use crate::errors::{bad_input, check_readable, exception, guarded};
@@ -17,7 +17,7 @@ use pyo3::prelude::*;
 use std::ffi::CString;
 use std::path::PathBuf;
 
-/// What else may be done about a mesh that cannot be packed.
+/// Advice in the error for a mesh that cannot be packed.
 const ADVICE: &str = "Mesh.read(…, close_holes=WIDTH) closes holes up to that width, pack(…, sheet=True) packs the surface without thickness";
 
 /// A triangle mesh, touched exactly: taxels feel its faces, edges and corners, from both sides.
@@ -26,7 +26,7 @@ const ADVICE: &str = "Mesh.read(…, close_holes=WIDTH) closes holes up to that 
 /// outside. Raises ValueError for numbers that are not finite and vertices that are not there.
 #[pyclass(frozen, module = "bubbletouch")]
 pub struct Mesh {
-    /// Where it is from, for errors.
+    /// Source of the mesh, for error messages.
     place: String,
     triangles: MeshModel,
     model: Model,
@@ -43,20 +43,20 @@ impl Mesh {
         }
     }
 
-    /// Itself, as the contact kernel takes it.
+    /// Returns the mesh as a model of the contact kernel.
     pub fn model(&self) -> &Model {
         &self.model
     }
 
-    /// Its triangles.
+    /// Returns the triangle mesh.
     pub fn triangle_mesh(&self) -> &TriangleMesh {
         self.triangles.mesh()
     }
 
-    /// Warns in Python if triangles of this mesh were turned outwards.
+    /// Issues a Python warning if triangles of the mesh were turned outwards.
     ///
     /// # Errors
-    /// The warning, where Python raises it.
+    /// If Python raises the warning as an exception.
     pub fn warn_if_turned(&self, py: Python, orientation: &Orientation) -> PyResult<()> {
         if !orientation.is_turned() {
             return Ok(());
@@ -214,7 +214,7 @@ impl Mesh {
     }
 }
 
-/// Vertex numbers of an n × 3 array of whole numbers.
+/// Reads vertex numbers from an n × 3 array of integers.
 fn corner_numbers(given: &Bound<PyAny>) -> PyResult<Vec<[u32; 3]>> {
     const PLACE: &str = "triangles";
     let array = numbers(PLACE, given)?;

@@ -1,4 +1,4 @@
-//! What patches press on: a [`Mesh`] or a [`SphereUnion`].
+//! Models of objects that patches can press: a [`Mesh`] or a [`SphereUnion`].
 
 use crate::mesh::Mesh;
 use crate::sphere_union::SphereUnion;
@@ -6,10 +6,10 @@ use bubbletouch::objects::Model;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
-/// The model of an object.
+/// Returns the model of an object.
 ///
 /// # Errors
-/// Something else, named by `place`.
+/// If the object is neither; the message begins with `place`.
 pub fn model_of<'a>(place: &str, object: &'a Bound<PyAny>) -> PyResult<&'a Model> {
     if let Ok(spheres) = object.cast::<SphereUnion>() {
         return Ok(spheres.get().model());

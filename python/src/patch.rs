@@ -13,7 +13,7 @@ use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-/// A taxel's spring if nobody says, N/m: the command's (and written out in signatures, where help() shows it).
+/// Default stiffness of a taxel, N/m: equal to the command's default, and written out in signatures for `help()`.
 const STIFFNESS: f64 = 100.0;
 
 /// Taxels on a rigid substrate, made by one of its static methods.
@@ -24,14 +24,14 @@ const STIFFNESS: f64 = 100.0;
 #[pyclass(frozen, module = "bubbletouch")]
 pub struct Patch {
     patch: world::Patch,
-    /// Sides of a frame: (ny, nx) of a grid, otherwise (n_taxels,).
+    /// Shape of a frame: (ny, nx) for a grid, otherwise (n_taxels,).
     shape: Vec<usize>,
-    /// What presses work in.
+    /// Workspaces reused by presses.
     spare: Spare<Workspace>,
 }
 
 impl Patch {
-    /// Of the library's.
+    /// Wraps a patch of the library.
     pub fn of(patch: world::Patch) -> Self {
         let grid = patch.layout().as_grid();
         Self {
@@ -46,12 +46,12 @@ impl Patch {
         Ok(Self::of(patch.map_err(exception)?))
     }
 
-    /// The library's.
+    /// Returns the patch of the library.
     pub fn inner(&self) -> &world::Patch {
         &self.patch
     }
 
-    /// A property of the taxels: one number if all are equal, otherwise one each.
+    /// Returns a property of the taxels: one number if all are equal, otherwise one per taxel.
     fn property<'py>(
         &self,
         py: Python<'py>,
@@ -64,12 +64,12 @@ impl Patch {
     }
 }
 
-/// Rows or columns, which the library takes from 0.
+/// Converts a number of rows or columns; the library checks that it is at least 1.
 fn side(place: &str, given: i64) -> PyResult<usize> {
     usize::try_from(given).map_err(|_| bad_input(place, given, "at least 1"))
 }
 
-/// Equal taxels; the radius is half the pitch if nobody says.
+/// Returns the common taxel of a patch; the default radius is half the pitch.
 fn taxel(pitch: f64, stroke: f64, (radius, stiffness, damping): (Option<f64>, f64, f64)) -> Taxel {
     Taxel {
         radius: radius.unwrap_or(0.5 * pitch),
@@ -362,7 +362,7 @@ impl Patch {
         }
     }
 
-    /// A grid as its call, another patch as its arrays.
+    /// Pickles a grid as its constructor call, and another patch as its arrays.
     fn __reduce__<'py>(
         &self,
         py: Python<'py>,

@@ -1,4 +1,4 @@
-//! Frames as files.
+//! Image files of frames.
 
 use crate::arrays::view;
 use crate::errors::{bad_input, check_folder, exception, guarded};

@@ -1,4 +1,4 @@
-//! Where a patch that comes from above touches an object on a table.
+//! Contact positions of a patch that approaches an object on a table from above.
 
 use crate::arrays::view;
 use crate::errors::{bad_input, guarded};
@@ -9,7 +9,7 @@ use ndarray::{Array1, Array2};
 use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::prelude::*;
 
-/// Numbers in groups of `width`, as one group for all or one each.
+/// Groups of `width` numbers: one group for all, or one per item.
 struct Groups {
     values: Vec<f64>,
     width: usize,

@@ -1,4 +1,4 @@
-//! Poses: `patch_from_object`, seven numbers each or 4 × 4.
+//! Poses `patch_from_object`, each as seven numbers or a 4 × 4 matrix.
 
 use crate::arrays::{numbers, shape_of};
 use crate::errors::bad_input;
@@ -8,23 +8,23 @@ use ndarray::ArrayView1;
 use numpy::{PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-/// How far R Rᵀ may be from one, entry by entry, and a quaternion's length: written digits, or float32's rounding.
+/// Tolerance of each entry of R Rᵀ, and of a quaternion's length, for numbers with few digits or float32 rounding.
 const ROUNDING: f64 = 1e-3;
 const ALLOWED: &str = "(n, 7) of x, y, z, qw, qx, qy, qz, or (n, 4, 4); without n for one";
 
-/// Poses, and whether it was one alone rather than a batch.
+/// Poses, and whether the input was a single pose or a batch.
 pub struct Poses {
-    /// `patch_from_object`.
+    /// Poses `patch_from_object`.
     pub poses: Vec<Pose>,
-    /// Given without a first side n.
+    /// Whether the input was a single pose, without the first axis n.
     pub is_one: bool,
 }
 
 impl Poses {
-    /// From an array of (n, 7), (7,), (n, 4, 4) or (4, 4).
+    /// Reads poses from an array of shape (n, 7), (7,), (n, 4, 4) or (4, 4).
     ///
     /// # Errors
-    /// Another shape; a pose, named by its number from 0, that is not finite or whose rotation is none.
+    /// If the shape is wrong, or a pose is not finite or contains no rotation; the error names the pose's number, from 0.
     pub fn of(place: &str, given: &Bound<PyAny>) -> PyResult<Self> {
         let array = numbers(place, given)?;
         let (n_numbers, is_one) = match array.shape() {
@@ -64,7 +64,7 @@ fn from_seven(values: &[f64]) -> Result<Pose, &'static str> {
     let at = DVec3::new(values[0], values[1], values[2]);
     let turn = DQuat::from_xyzw(values[4], values[5], values[6], values[3]);
     let length = turn.length();
-    // Not a number is not near, either.
+    // The check also fails for NaN.
     if at.is_finite() && (length - 1.0).abs() <= ROUNDING {
         return Ok(Pose::new(turn.normalize(), at));
     }
@@ -84,7 +84,7 @@ fn from_matrix(values: &[f64]) -> Result<Pose, &'static str> {
     Ok(Pose::new(DQuat::from_mat3(&rotation).normalize(), at))
 }
 
-/// x, y, z, qw, qx, qy, qz.
+/// Returns x, y, z, qw, qx, qy, qz.
 pub fn seven(pose: &Pose) -> [f64; 7] {
     let (at, turn) = (pose.translation, pose.rotation);
     [at.x, at.y, at.z, turn.w, turn.x, turn.y, turn.z]

@@ -1,4 +1,4 @@
-//! Presses in batches, written into a NumPy array.
+//! Batches of presses that write into a NumPy array.
 
 use crate::arrays::shape_of;
 use crate::batch::{Spare, for_each, n_threads};
@@ -20,7 +20,7 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::PyTuple;
 use std::sync::Mutex;
 
-/// What frames can be made of.
+/// Element type of frames: float32 or float64.
 trait Real: Element + Copy + Default + Send + Sync {
     fn row(frame: &mut [Self]) -> Row<'_>;
 }
@@ -37,12 +37,12 @@ impl Real for f32 {
     }
 }
 
-/// What is asked for beside frames.
+/// Requested results beside the frames.
 #[derive(Clone, Copy)]
 pub struct Wanted {
-    /// What touches what.
+    /// Whether contacts are requested.
     pub contacts: bool,
-    /// How deflections change with the pose.
+    /// Whether derivatives of the deflections with respect to the pose are requested.
     pub jacobian: bool,
 }
 
@@ -51,16 +51,16 @@ pub struct Wanted {
 pub struct PatchToPress<'a> {
     /// The patch.
     pub patch: &'a world::Patch,
-    /// Sides of a frame: (ny, nx) of a grid, otherwise (n_taxels,).
+    /// Shape of a frame: (ny, nx) for a grid, otherwise (n_taxels,).
     pub sides: &'a [usize],
-    /// Workspaces that presses reuse.
+    /// Workspaces reused by presses.
     pub spare: &'a Spare<Workspace>,
 }
 
-/// Frames of deflections, or frames and what else is wanted, contacts first.
+/// Returns the frames of deflections, or a tuple of the frames and the other requested results, contacts first.
 ///
 /// # Errors
-/// What is wrong with the arguments; a force that cannot be reached, by its pose; Ctrl-C.
+/// If an argument is invalid, a force cannot be reached (the error names the pose), or Ctrl-C was pressed.
 pub fn press<'py>(
     py: Python<'py>,
     patch: PatchToPress,
@@ -101,7 +101,7 @@ pub fn press<'py>(
     }
 }
 
-/// Whether numbers of a NumPy type are float32; float64 is the other that can be.
+/// Returns whether a NumPy type is float32; the only other allowed type is float64.
 fn is_single(py: Python, dtype: &Bound<PyAny>) -> PyResult<bool> {
     let allowed = "float32 or float64";
     let descr = numpy::PyArrayDescr::new(py, dtype.clone())
@@ -116,7 +116,7 @@ fn is_single(py: Python, dtype: &Bound<PyAny>) -> PyResult<bool> {
     }
 }
 
-/// `numpy.zeros`: what nothing comes near is never written, and large arrays lie in large pages.
+/// Calls `numpy.zeros`; memory of untouched taxels is never written, and large arrays use large memory pages.
 fn zeros<'py>(py: Python<'py>) -> PyResult<&'py Bound<'py, PyAny>> {
     static ZEROS: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     ZEROS.import(py, "numpy", "zeros")
@@ -190,7 +190,7 @@ impl<'py> Batch<'_, 'py> {
         })
     }
 
-    /// Writes a frame for each pose, onto zeros or whatever is there, and its changes.
+    /// Writes a frame for each pose, over zeros or previous values, and its derivatives.
     fn run<T: Real>(
         &self,
         py: Python,
@@ -252,7 +252,7 @@ impl<'py> Batch<'_, 'py> {
     }
 }
 
-/// Whether an array can take the frames as they come.
+/// Checks that an array can receive the frames.
 fn check_out<T: Element>(array: &Bound<PyArrayDyn<T>>, shape: &[usize]) -> PyResult<()> {
     if array.shape() != shape {
         return Err(bad_input("out", shape_of(array.shape()), shape_of(shape)));

@@ -15,24 +15,24 @@ use pyo3::prelude::*;
 #[pyclass(frozen, module = "bubbletouch")]
 pub struct Projection {
     projection: sensing::Projection,
-    /// As it was asked for, so that it can be pickled.
+    /// Constructor arguments, for pickling.
     asked: (String, (usize, usize), usize, u64),
 }
 
 impl Projection {
-    /// The library's.
+    /// Returns the projection of the library.
     pub fn inner(&self) -> &sensing::Projection {
         &self.projection
     }
 
-    /// Rows and columns of a frame.
+    /// Returns the rows and columns of a frame.
     pub fn shape(&self) -> (usize, usize) {
         self.asked.1
     }
 }
 
 fn ensemble_of(name: &str) -> PyResult<Ensemble> {
-    // What is learned from touches is a study's.
+    // Ensembles learned from touches exist only in studies.
     let drawn = || {
         let all = Ensemble::ALL.iter().zip(Ensemble::NAMES);
         all.filter(|(ensemble, _)| !ensemble.is_learned())

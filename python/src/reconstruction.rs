@@ -1,4 +1,4 @@
-//! `Reconstructor`: whole frames back from measurements.
+//! `Reconstructor`: reconstruction of frames from measurements.
 
 use crate::arrays::{frames, to_column, view, whole_number};
 use crate::errors::{bad_input, exception, guarded};
@@ -15,7 +15,7 @@ use self_cell::self_cell;
 type Prepared<'a> = sensing::Reconstructor<'a>;
 
 self_cell!(
-    /// A dictionary seen through a projection, beside both.
+    /// A projected dictionary, stored with its projection and dictionary.
     struct Sensed {
         owner: (sensing::Projection, Dictionary),
         #[covariant]
@@ -24,7 +24,7 @@ self_cell!(
 );
 
 self_cell!(
-    /// A solver beside what it solves with.
+    /// A solver, stored with the data that it borrows.
     struct Solving {
         owner: Box<Sensed>,
         #[not_covariant]

@@ -1,4 +1,4 @@
-//! `Step` and `Chain`: what electronics make of deflections.
+//! `Step` and `Chain`: conversion of deflections to sensor signals, with sensor errors.
 
 use crate::arrays::{frames, is_of_frames, view, whole_number};
 use crate::batch::{Spare, for_each, n_threads};
@@ -18,11 +18,11 @@ use pyo3::types::{PyDict, PyTuple};
 #[derive(Clone)]
 pub struct Step {
     kind: Kind,
-    /// As it was made.
+    /// Constructor call, for the representation.
     call: String,
 }
 
-/// A step before it is known whose skin it is.
+/// Kind of a step, before its sensor is known.
 #[derive(Clone)]
 enum Kind {
     Plain(SignalStep),
@@ -38,7 +38,7 @@ impl Step {
     }
 }
 
-/// The words of all sensor errors.
+/// Returns the names of all sensor errors.
 fn words() -> String {
     let words: Vec<&str> = SENSOR_ERRORS
         .iter()
@@ -143,7 +143,7 @@ impl Step {
 #[pyclass(frozen, module = "bubbletouch")]
 pub struct Chain {
     chain: signal::Chain,
-    /// Rows and columns of a grid.
+    /// Rows and columns of a grid; `None` for other patches.
     sides: Option<[usize; 2]>,
     steps: Vec<Step>,
     spare: Spare<Scratch>,
@@ -301,7 +301,7 @@ impl Chain {
 }
 
 impl Chain {
-    /// One rate for each value of the frames.
+    /// Reads one rate per value of the frames.
     fn rates(&self, given: Option<&Bound<PyAny>>, n_frames: usize) -> PyResult<Option<Vec<f64>>> {
         let n_taxels = self.chain.n_taxels();
         let n = n_frames * n_taxels;
@@ -325,7 +325,7 @@ impl Chain {
     }
 }
 
-/// Frames in the shape that they had.
+/// Returns the frames in the shape of the input.
 fn as_given<'py>(
     frames: Bound<'py, PyAny>,
     shape: Option<Bound<'py, PyAny>>,

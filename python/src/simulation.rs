@@ -1,4 +1,4 @@
-//! `Simulation`: a scene, frame by frame, or step by step by hand.
+//! `Simulation`: execution of a scene, frame by frame or in manual steps.
 
 use crate::arrays::{to_column, to_rows, view, whole_number};
 use crate::errors::{bad_input, exception, guarded};
@@ -20,7 +20,7 @@ use std::sync::Arc;
 type Going<'p> = scene::Simulation<'p>;
 
 self_cell!(
-    /// A scene on its way, and the plan that it follows.
+    /// A running simulation, and the plan of its scene.
     struct OnItsWay {
         owner: Arc<ScenePlan>,
         #[not_covariant]
@@ -228,7 +228,7 @@ impl Simulation {
     }
 }
 
-/// What a call of the simulation returns.
+/// Calls the simulation and converts its errors.
 fn on<T>(
     going: &mut OnItsWay,
     call: impl FnOnce(&mut Going) -> bubbletouch::Result<T>,
@@ -236,7 +236,7 @@ fn on<T>(
     going.with_dependent_mut(|_, simulation| call(simulation).map_err(exception))
 }
 
-/// `world_from_…`.
+/// Reads one pose `world_from_…`.
 fn one_pose(given: &Bound<PyAny>) -> PyResult<Pose> {
     let poses = Poses::of("pose", given)?;
     match (poses.is_one, &poses.poses[..]) {

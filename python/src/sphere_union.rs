@@ -21,14 +21,14 @@ pub struct SphereUnion {
 }
 
 impl SphereUnion {
-    /// Of the library's.
+    /// Wraps a union of the library.
     pub fn of(spheres: objects::SphereUnion) -> Self {
         Self {
             model: spheres.into(),
         }
     }
 
-    /// Itself, as the contact kernel takes it.
+    /// Returns the spheres as a model of the contact kernel.
     pub fn model(&self) -> &Model {
         &self.model
     }

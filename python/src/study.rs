@@ -1,4 +1,4 @@
-//! Studies: what `bubbletouch run` does, with the tables in memory.
+//! Studies: execution as in `bubbletouch run`, with the tables in memory.
 
 use crate::arrays::whole_number;
 use crate::errors::{bad_input, exception, guarded};
@@ -22,15 +22,15 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant, SystemTime};
 
-/// Between two calls of a callback. Shorter: workers wait for the interpreter more often.
+/// Minimum time between two calls of a callback. If shorter, workers wait for the interpreter more often.
 const BETWEEN_CALLS: Duration = Duration::from_millis(50);
 
-/// Tells a callback how far a study is, and ends it when it should.
+/// Progress reporter that calls a Python callback, and stops the study if the callback raises.
 struct Told {
     stop: Stop,
     callback: Option<Py<PyAny>>,
     stage: Mutex<Stage>,
-    /// What the callback raised.
+    /// Exception raised by the callback.
     raised: Arc<Mutex<Option<PyErr>>>,
 }
 
@@ -90,10 +90,10 @@ impl Progress for Told {
     fn finish(&self, _message: &str) {}
 }
 
-/// Of a table its file's name, title, note and columns.
+/// File name, title, note and columns of a table.
 type Said<'py> = (String, String, String, Bound<'py, PyDict>);
 
-/// A study's own words, and where its results go.
+/// A study's text, and the folder of its results.
 struct Asked {
     source: Source,
     name: String,

@@ -1,4 +1,4 @@
-//! What the estimators of `bubbletouch.learning` train: soft-margin SVMs on features and labels 0, 1, …
+//! Models behind the estimators of `bubbletouch.learning`: soft-margin SVMs trained on features and labels 0, 1, …
 
 use crate::arrays::view;
 use crate::errors::{bad_input, exception, guarded};
@@ -19,7 +19,7 @@ use pyo3::types::{PyDict, PyTuple};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Rows of numbers.
+/// Reads rows of numbers.
 fn rows_of(given: &Bound<PyAny>) -> PyResult<Array2<f64>> {
     let is_shape = |shape: &[usize]| matches!(shape, [_, _]);
     view(
@@ -34,13 +34,14 @@ fn rows_of(given: &Bound<PyAny>) -> PyResult<Array2<f64>> {
     )
 }
 
-/// Rows that the library predicts at once.
+/// Number of rows that the library predicts at once.
 const BLOCK_ROWS: usize = 256;
 
-/// What is predicted of parts of the rows on the threads of the pool: parts are whole blocks of the library's, so that their bits are the same.
+/// Predicts parts of the rows on the threads of the pool. Each part is a multiple of the library's block size, so the results are bitwise equal to a single
+/// call.
 ///
 /// # Errors
-/// That of all rows at once, which names the right one.
+/// Returns the error of a prediction of all rows at once, which names the correct row.
 fn in_parts<T: Send>(
     features: &Array2<f64>,
     predict: impl Fn(ArrayView2<f64>) -> bubbletouch::Result<T> + Sync,
@@ -55,7 +56,7 @@ fn in_parts<T: Send>(
     predicted.or_else(|_| Ok(vec![predict(features.view())?]))
 }
 
-/// Whole numbers from 0.
+/// Reads integers from 0.
 fn whole(place: &str, given: &Bound<PyAny>) -> PyResult<Vec<usize>> {
     let is_shape = |shape: &[usize]| shape.len() == 1;
     view(place, given, "(n,)", is_shape, |array| {
@@ -69,7 +70,7 @@ fn whole(place: &str, given: &Bound<PyAny>) -> PyResult<Vec<usize>> {
     })
 }
 
-/// What is predicted of rows, without the interpreter's lock, on the threads of the pool.
+/// Predicts rows on the threads of the pool, without the interpreter's lock.
 fn predicted<T: Send>(
     features: &Bound<PyAny>,
     predict: impl FnOnce(&Array2<f64>) -> bubbletouch::Result<T> + Send,
@@ -79,7 +80,7 @@ fn predicted<T: Send>(
     predicted.map_err(exception)
 }
 
-/// What is trained, and from what: models are pickled as that.
+/// Returns the trained model and its training data; models are pickled as their training data.
 fn trained<T: Send + 'static>(
     features: &Bound<PyAny>,
     labels: &Bound<PyAny>,
@@ -96,12 +97,12 @@ fn data_of(features: &Bound<PyAny>, labels: &Bound<PyAny>) -> PyResult<Dataset> 
     dataset(rows_of(features)?, labels).map_err(|error| exception(error.into()))
 }
 
-/// The kernel and C of a call, as Python names them.
+/// Kernel and C of a call, with their Python names.
 #[derive(Clone, FromPyObject)]
 #[pyo3(from_item_all)]
 struct Asked {
     kernel: String,
-    /// `None`: that of scale.
+    /// Value of γ; `None` for 'scale'.
     gamma: Option<f64>,
     coef0: f64,
     degree: u32,
@@ -151,7 +152,7 @@ impl Asked {
 #[pyclass(frozen, module = "bubbletouch._core")]
 pub struct KernelSvm {
     model: SvmModel,
-    /// What it was trained from: it is pickled as that, and trained again.
+    /// Training arguments: the model is pickled as these, and trained again.
     asked: Py<PyDict>,
     data: Arc<Dataset>,
 }
@@ -362,7 +363,7 @@ pub fn choose_svm<'py>(
             })
         };
         let folds: Vec<Split> = folds.iter().map(fold).collect::<PyResult<_>>()?;
-        // Multiples of "scale", whatever γ the estimator has.
+        // Multiples of 'scale', independent of the estimator's γ.
         let params = match gamma_scales.is_empty() {
             true => params,
             false => SvmParams {

@@ -1,7 +1,6 @@
-//! Threads of long calls, and Ctrl-C during them.
+//! Thread pool of long calls, and handling of Ctrl-C.
 //!
-//! All parallel work runs in one pool. A process that was forked (`multiprocessing` on Linux) has none of its parent's threads, so it
-//! gets a pool of its own at its first such call.
+//! All parallel work runs in one pool. A forked process (`multiprocessing` on Linux) inherits no threads, so it creates its own pool at its first long call.
 
 use crate::errors::guarded;
 use pyo3::exceptions::PyKeyboardInterrupt;
@@ -13,15 +12,15 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-/// Between two looks for Ctrl-C. Larger: a call is left later; smaller: more time is spent looking, 1 µs each.
+/// Time between two checks for Ctrl-C. If larger, calls end later; if smaller, checks take more time, 1 µs each.
 const PATIENCE: Duration = Duration::from_millis(20);
 
 static POOL: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
 
-/// The pool of this process, with a thread for each core.
+/// Returns the pool of this process, with one thread per core.
 ///
 /// # Errors
-/// The system gives no threads.
+/// If the system cannot create threads.
 pub fn pool() -> PyResult<Arc<ThreadPool>> {
     let process = std::process::id();
     let mut kept = POOL.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
@@ -35,29 +34,29 @@ pub fn pool() -> PyResult<Arc<ThreadPool>> {
         .map_err(|error| pyo3::exceptions::PyOSError::new_err(error.to_string()))?;
     let pool = Arc::new(pool);
     if let Some((_, parents)) = kept.replace((process, Arc::clone(&pool))) {
-        // Its threads are not here, so nobody would end them.
+        // The threads of the parent's pool do not exist in this process and cannot be ended, so the pool is not dropped.
         std::mem::forget(parents);
     }
     Ok(pool)
 }
 
-/// Says now and then whether somebody pressed Ctrl-C.
+/// Periodic check for Ctrl-C.
 pub struct Interrupt {
     looked: Instant,
 }
 
 impl Interrupt {
-    /// From now on.
+    /// Creates a check; the period starts now.
     pub fn new() -> Self {
         Self {
             looked: Instant::now(),
         }
     }
 
-    /// Lets Python handle its signals, if it is time to.
+    /// Handles Python's signals, if the period has elapsed.
     ///
     /// # Errors
-    /// What the handler raises, `KeyboardInterrupt` if it is Python's own.
+    /// Returns the exception of the signal handler; Python's own handler raises `KeyboardInterrupt`.
     pub fn check(&mut self) -> PyResult<()> {
         if self.looked.elapsed() < PATIENCE {
             return Ok(());
@@ -68,38 +67,38 @@ impl Interrupt {
     }
 }
 
-/// Whether a long call should end early; what it runs in asks now and then.
+/// Flag that ends a long call early; the call checks it periodically.
 #[derive(Clone, Default)]
 pub struct Stop(Arc<AtomicBool>);
 
-/// What unwinds a call that was told to stop.
+/// Payload of the panic that unwinds a stopped call.
 struct Stopped;
 
 impl Stop {
-    /// Ends the call here if it should: unwinds to [`aside`].
+    /// Ends the call if the flag is set, by unwinding to [`aside`].
     pub fn end_if_told(&self) {
         if self.is_told() {
             resume_unwind(Box::new(Stopped));
         }
     }
 
-    /// Whether it should.
+    /// Returns whether the flag is set.
     pub fn is_told(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }
 
-    /// It should.
+    /// Sets the flag.
     pub fn tell(&self) {
         self.0.store(true, Ordering::Relaxed);
     }
 }
 
-/// Runs a long call in the pool, without the interpreter's lock, while this thread looks for Ctrl-C.
+/// Runs a long call in the pool, without the interpreter's lock, while this thread checks for Ctrl-C.
 ///
-/// After Ctrl-C it returns at once; the call ends where it next asks [`Stop`], and one that never asks ends by itself, unheard.
+/// After Ctrl-C, the function returns at once. The call ends at its next check of [`Stop`]; without checks, it runs to its end, and its result is dropped.
 ///
 /// # Errors
-/// The call's own; `KeyboardInterrupt`; a panic of the call.
+/// Returns the errors of the call, `KeyboardInterrupt` after Ctrl-C, or an error after a panic of the call.
 pub fn aside<T: Send + 'static>(
     py: Python,
     call: impl FnOnce(&Stop) -> T + Send + 'static,
@@ -111,7 +110,7 @@ pub fn aside<T: Send + 'static>(
     py.detach(move || {
         pool.spawn(move || {
             let called = catch_unwind(AssertUnwindSafe(|| call(&told)));
-            // Nobody hears it after Ctrl-C.
+            // After Ctrl-C, there is no receiver.
             let _ = sender.send(called);
         });
         loop {
