@@ -17,7 +17,7 @@ pub(super) fn saturation(skin: &RecordedSkin, faults: &FoundFaults) -> f64 {
     plateau(frames).map_or(1.0, |level| level.min(1.0))
 }
 
-/// Returns touched frames without their zeros, which are interpolated between runs of untouched frames. Unknown readings and those of faulty taxels are
+/// Returns touched frames without their zeros, which are interpolated between runs of untouched frames. Unknown readings and readings of faulty taxels are
 /// NaN. Readings that the converter clipped at zero stay at zero. Saturated readings become 1, and all estimates leave them out.
 pub(super) fn touched(
     skin: &RecordedSkin,

@@ -1,12 +1,11 @@
-//! The image, shifted so that its centroid is in the middle and rotated so that its principal axes are those of the array, sampled at a quarter of
-//! its taxels.
+//! The image with its centroid shifted to the middle and its principal axes rotated to the axes of the array, sampled at a quarter of its taxels.
 //!
 //! With the central moments μ_pq = Σ δ (x − x̄)ᵖ (y − ȳ)^q, the longer principal axis is at the angle φ = ½ atan2(2 μ₁₁, μ₂₀ − μ₀₂). Its direction
 //! is chosen so that Σ δ a³ > 0, a along it; the other axis is a quarter turn from it. Values are sampled at every second
 //! taxel of the rotated grid, interpolated bilinearly, and are 0 beyond the array.
 //!
-//! The feature is invariant to shifts by whole taxels, as long as the contact stays on the array, and to quarter turns; for other motions the sampling
-//! limits the invariance. An image with two equal principal moments (a disc, a square) has no axes. If its moments are nearly equal, or its
+//! The feature is invariant to quarter turns, and to shifts by whole taxels that keep the contact on the array. For other motions the sampling limits the
+//! invariance. An image with two equal principal moments (a disc, a square) has no axes. If its moments are nearly equal, or its
 //! third moment is near 0, noise determines the rotation. [`polar_harmonics`](super::ImageFeature::PolarHarmonics) need no axes.
 //!
 //! Source: Hu (1962), *Visual pattern recognition by moment invariants*, IRE Transactions on Information Theory 8, 179, section III.

@@ -119,7 +119,7 @@ mod tests {
                 assert_eq!(one, 0.0, "{place} is beside the patch");
             } else if outermost < 7.0 {
                 assert!((one - 1.0).abs() < 1e-12);
-                // A mean of taxels less than a pitch away, mostly on both sides.
+                // A pixel is a mean of taxels less than a pitch away, mostly on both sides.
                 assert!((value - slope.dot(place)).abs() < 0.5 * slope.length());
             }
         }

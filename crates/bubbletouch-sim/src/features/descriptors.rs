@@ -10,8 +10,8 @@
 //! | 24 | Σ δ / (area) in rings about the centroid, r from k h / 24 to (k + 1) h / 24, h half the shorter side |
 //!
 //! The root of an area is a length, like the other numbers. Each number is a sum over touched taxels that depends on their positions only
-//! through distances from the centroid. Descriptors are exactly invariant to shifts that keep the contact on the array, to quarter turns and to
-//! mirror images (except for two of the moments, which change sign); for other rotations the sampling limits the invariance.
+//! through distances from the centroid. Descriptors are exactly invariant to shifts that keep the contact on the array and to quarter turns. They are also
+//! invariant to mirror images, except for two of the moments, which change sign. For other rotations the sampling limits the invariance.
 //!
 //! Sources: Hu (1962), IRE Transactions on Information Theory 8, 179 (moments); level sets and radial profiles are common in
 //! granulometry: Serra (1982), *Image Analysis and Mathematical Morphology*.
@@ -154,7 +154,7 @@ mod tests {
         assert_eq!(found.len(), N_VALUES);
         let deepest = frame.iter().copied().fold(0.0, f64::max);
         assert_eq!(found[0], deepest);
-        // Full scale is 1 in tests.
+        // The full scale is 1 in tests.
         for k in 1..=24 {
             let level = k as f64 / 24.0;
             let expected = [
@@ -168,7 +168,7 @@ mod tests {
         }
     }
 
-    /// A rigid press further in adds the same to every taxel that it touches.
+    /// A deeper press of a rigid object adds a constant to every touched taxel.
     #[test]
     fn areas_behind_the_foremost_point_do_not_change_with_depth() {
         let shape = (32, 32);
@@ -181,7 +181,7 @@ mod tests {
         };
         let behind = |depth| {
             let found = features_of(ImageFeature::Descriptors, shape, &ball(depth));
-            // As far behind as both depths reach.
+            // Levels within the depth of both presses.
             found[3 + 48..3 + 48 + 12].to_vec()
         };
         assert_eq!(behind(0.52), behind(0.52 + 0.25));

@@ -111,7 +111,7 @@ mod tests {
     use super::super::{Cut, Image, ImageFeature};
     use super::*;
 
-    /// Everything by its definition, frequency by frequency.
+    /// Compares all values with their definition, frequency by frequency.
     #[test]
     fn they_are_what_the_equation_says() {
         let shape = (12, 10);

@@ -74,7 +74,7 @@ mod tests {
     const GRID: (usize, usize) = (8, 8);
     const M: usize = 16;
 
-    /// Twelve uneven frames of 8 × 8 taxels.
+    /// Returns twelve irregular frames of 8 × 8 taxels.
     fn frames() -> Array2<f64> {
         let mut rng = Seed::new(3).named("frames").rng();
         Array2::from_shape_fn((12, 64), |_| 1e-3 * rng.r#gen::<f64>())
@@ -153,7 +153,7 @@ mod tests {
             let rows = features(Features::Centred, &projection, &frames());
             let raised = features(Features::Centred, &projection, &(frames() + 4e-3));
             assert!(largest_difference(&rows, &raised) < 1e-15, "{ensemble:?}");
-            // A projection: done twice, it is done once; and what it takes is not nothing.
+            // The operation is a projection: applying it again changes nothing, and its effect is nonzero.
             let mut twice = rows.clone();
             Features::Centred.apply(twice.view_mut(), of_ones(&projection).view());
             assert!(largest_difference(&rows, &twice) < 1e-15, "{ensemble:?}");

@@ -94,7 +94,7 @@ pub(super) mod tests {
     use super::*;
     use std::f64::consts::TAU;
 
-    /// |F(u, v)| by its definition; u may be negative.
+    /// Returns |F(u, v)| by its definition; u may be negative.
     pub(crate) fn by_definition(image: &Image, u: isize, v: isize) -> f64 {
         let of = |n: usize, k: isize, i: f64| k as f64 * i / n as f64;
         let super::super::image::Touched { x, y, value } = &image.touched;

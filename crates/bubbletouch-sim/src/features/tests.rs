@@ -1,10 +1,10 @@
-//! Laws of all features of images, each held to all of them.
+//! Laws of image features, tested on all of them.
 
 use super::*;
 use crate::random::Seed;
 use rand::Rng;
 
-/// An uneven blob with holes in the middle third of an array, between 0 and 1.
+/// Returns an irregular blob with holes in the middle third of an array, between 0 and 1.
 pub(super) fn frame((ny, nx): (usize, usize)) -> Vec<f64> {
     let mut rng = Seed::new(7).named("frame").rng();
     let near = |i: usize, n: usize| 3 * i >= n && 3 * i < 2 * n;
@@ -15,7 +15,7 @@ pub(super) fn frame((ny, nx): (usize, usize)) -> Vec<f64> {
     (0..ny * nx).map(value).collect()
 }
 
-/// The features of a frame of full scale 1 without noise.
+/// Returns the features of a noise-free frame of full scale 1.
 pub(super) fn features_of(feature: ImageFeature, shape: (usize, usize), frame: &[f64]) -> Vec<f64> {
     let join = Join::new(&[feature]).unwrap();
     written(join, shape, frame, 0.0)
@@ -36,13 +36,13 @@ fn cut_off(join: Join, shape: (usize, usize), frame: &[f64], cut: Cut) -> Vec<f6
     out
 }
 
-/// The frame moved by whole taxels, around the array's edges.
+/// Returns the frame shifted cyclically by whole taxels.
 fn shifted(frame: &[f64], (ny, nx): (usize, usize), (up, along): (usize, usize)) -> Vec<f64> {
     let from = |i: usize| (i / nx + ny - up) % ny * nx + (i % nx + nx - along) % nx;
     (0..ny * nx).map(|i| frame[from(i)]).collect()
 }
 
-/// The frame turned by 90°.
+/// Returns the frame rotated by 90°.
 fn turned(frame: &[f64], side: usize) -> Vec<f64> {
     let from = |i: usize| (i % side) * side + side - 1 - i / side;
     (0..side * side).map(|i| frame[from(i)]).collect()
@@ -58,7 +58,7 @@ fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
     pairs.fold(0.0, |most, (a, b)| f64::max(most, (a - b).abs()))
 }
 
-/// Of numbers of order 1 to 10, and of roots of what is 0 but for the rounding of such numbers.
+/// Rounding error of numbers of order 1 to 10, and of roots of numbers that are 0 except for rounding.
 const ROUNDING: f64 = 1e-7;
 
 #[test]
@@ -231,7 +231,7 @@ fn every_name_reads_back_and_others_are_told_what_there_is() {
     }
 }
 
-/// A rigid object that goes in deeper adds the same to every taxel that it touches, and touches more.
+/// A deeper press of a rigid object adds a constant to every touched taxel, and touches more taxels.
 #[test]
 fn what_is_behind_the_foremost_point_does_not_change_with_depth() {
     let shape = (32, 32);
@@ -252,6 +252,6 @@ fn what_is_behind_the_foremost_point_does_not_change_with_depth() {
     assert!(largest_difference(&shallow, &deep) < ROUNDING);
     let [shallow, deep] = [0.4, 0.75].map(|depth| found(depth, None));
     assert!(largest_difference(&shallow, &deep) > 1.0);
-    // What is not so deep is as it is.
+    // A press less deep than the window is unchanged.
     assert!(found(0.2, Some(0.3)) == found(0.2, None));
 }

@@ -44,7 +44,7 @@ mod tests {
 
     const NX: usize = 40;
 
-    /// How deep a corner-down block, a ball or a saddle is at (x, y), pressed so that its foremost point is 1 deep.
+    /// Returns the depth of a surface at (x, y), pressed so that its foremost point has depth 1.
     fn pressed(height: impl Fn(f64, f64) -> f64) -> Vec<f64> {
         let at = |i: usize| height((i % NX) as f64 - 19.5, (i / NX) as f64 - 14.5);
         let heights: Vec<f64> = (0..NX * 30).map(at).collect();
@@ -59,7 +59,7 @@ mod tests {
         out
     }
 
-    /// Where both are touched, a tilted copy is the frame of the tilted surface, up to how deep that is there: exactly where its
+    /// Compares a tilted copy with the frame of the tilted surface where both are touched. They are equal up to an offset, which is 0 if the
     /// foremost point was touched before.
     #[test]
     fn a_copy_is_the_frame_of_the_tilted_surface_where_that_was_touched() {
@@ -90,7 +90,7 @@ mod tests {
         let deepest = |frame: &[f64]| frame.iter().copied().fold(0.0, f64::max);
         let copy = tilted(&frame, (0.05, -0.03));
         assert!((deepest(&copy) - deepest(&frame)).abs() < 1e-15);
-        // Noise where nothing is touched is no contact, and a frame of nothing stays one.
+        // Noise on untouched taxels is no contact, and an empty frame stays empty.
         frame[0] = 0.01;
         let mut out = vec![0.0; frame.len()];
         tilt_frame(&frame, NX, (0.1, 0.0), 0.02, &mut out);

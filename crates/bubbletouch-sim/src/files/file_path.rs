@@ -228,7 +228,7 @@ mod tests {
         let sets = again["sets"].as_array().unwrap();
         assert_eq!(sets[0].as_str(), Some("balls"));
         assert_eq!(sets[1].as_str(), Some(&*own));
-        // Outside, nothing is known of a folder.
+        // Outside `with_folder`, the folder is unknown.
         let spec: Spec = toml::from_str(text).unwrap();
         assert_eq!(&*spec.mesh, Path::new("a/b.obj"));
     }

@@ -133,8 +133,7 @@ impl OwnedFiles {
     }
 }
 
-/// Checks that a single output file can be written: it must not be an input of this command, nor a file that another command wrote into
-/// an output folder.
+/// Checks that a single output file can be written. The file must not be an input of this command, nor belong to an output folder of another command.
 ///
 /// # Errors
 /// If the file is an input or belongs to another output folder; the error names the file.

@@ -85,8 +85,8 @@ impl Builder {
         Aabb::around(boxes).expect("no part of the tree is empty")
     }
 
-    /// Reorders a range, and returns the start of its second part and the bounding boxes of both. The cut has the lowest expected
-    /// cost (surface area heuristic, cuts at equal distances); the median is used if there is no such cut or the tree is deep.
+    /// Reorders a range, and returns the start of its second part and the bounding boxes of both. The cut has the lowest expected cost (surface area
+    /// heuristic, cuts at equal distances). The median is used if there is no such cut or the tree is deep.
     fn partition(&mut self, range: Range<usize>, depth: usize) -> (usize, [Aabb; 2]) {
         let centers = &self.centers;
         let order = &mut self.order[range.clone()];

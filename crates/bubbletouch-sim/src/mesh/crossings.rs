@@ -80,7 +80,7 @@ mod tests {
     use super::*;
     use crate::mesh::TriangleMesh;
 
-    /// A tetrahedron with a corner at the origin, outwards; or inwards.
+    /// Returns a tetrahedron with a corner at the origin, facing outwards or inwards.
     fn tetrahedron(size: f64, is_outwards: bool) -> Vec<Triangle> {
         let [o, x, y, z] = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z].map(|p| size * p);
         let faces = [[o, y, x], [o, x, z], [o, z, y], [x, y, z]];

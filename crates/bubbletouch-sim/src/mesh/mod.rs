@@ -14,7 +14,7 @@
 //! d(x) = ± min_y |x − y|,   y on a triangle
 //! ```
 //!
-//! On a closed mesh the sign is that of `(x − y)·n`, where n is the angle-weighted pseudonormal of the face, edge or vertex that contains y
+//! On a closed mesh the sign equals the sign of `(x − y)·n`, where n is the angle-weighted pseudonormal of the face, edge or vertex that contains y
 //! \[BA\]. The sign is exact if the mesh does not intersect itself.
 //!
 //! # The solid of a mesh

@@ -45,7 +45,7 @@ mod tests {
     const FLAT: Triangle = Triangle([DVec3::ZERO, DVec3::X, DVec3::Y]);
 
     fn moved(by: DVec3) -> Triangle {
-        // Stands on the plane of `FLAT`, across it.
+        // The triangle stands on the plane of `FLAT`, across it.
         let corners = [
             DVec3::new(0.2, 0.2, -0.5),
             DVec3::new(0.3, 0.2, -0.5),

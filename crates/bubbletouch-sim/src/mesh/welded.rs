@@ -7,7 +7,7 @@ use std::collections::HashMap;
 /// Triangles over welded corners, with all sides of all triangles sorted by edge.
 #[derive(Clone, Debug)]
 pub struct Welded {
-    /// Corners of each triangle; the index of a corner is that of the first vertex with its coordinates.
+    /// Corners of each triangle; a corner has the index of the first vertex with its coordinates.
     pub corners: Vec<[u32; 3]>,
     /// Sides of the triangles with three different corners, sorted by edge.
     pub sides: Vec<Side>,

@@ -1,8 +1,9 @@
 //! Packing of solids with cuts.
 //!
-//! The surface of A minus B consists of a part of A's surface and a part of B's. Both are divided into cells. A cell is halved until one of three
-//! facts is proved: it lies in an empty ball; it lies in a solid ball (in both cases it contains no surface); or one sphere
-//! covers it. The depth inside A minus B is the minimum of the depth in A and the distance from B. A ball of this radius therefore lies inside,
+//! The surface of A minus B consists of a part of A's surface and a part of B's. Both surfaces are divided into cells. A cell is halved until one of three
+//! facts is
+//! proved: the cell lies in an empty ball, the cell lies in a solid ball, or one sphere covers the cell. In the first two cases the cell contains no
+//! surface. The depth inside A minus B is the minimum of the depth in A and the distance from B. A ball of this radius therefore lies inside,
 //! and after enlargement it reaches outside by at most the enlargement.
 //!
 //! A cut that ends exactly at the surface of a part would leave a membrane of zero thickness that passes all tests. Cuts are therefore
@@ -16,7 +17,7 @@ use glam::DVec3;
 /// Enlargement of cuts, in allowed gaps. If it is larger, thin walls beside cuts are lost; if it is smaller, cells where a cut ends in the
 /// surface of a part must be divided further before they are proved to be empty.
 const GROWTH: f64 = 0.01;
-/// Maximum number of cells to test, for the maximum number of spheres.
+/// Maximum number of tested cells: four per allowed sphere.
 const MAX_CELLS: usize = 4 * MAX_SPHERES;
 /// Number of recent spheres that are tested for covering another cell.
 const LAST_SPHERES: usize = 24;

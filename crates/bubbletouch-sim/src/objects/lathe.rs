@@ -1,6 +1,6 @@
 //! Solid of revolution: a polygon in the half plane (distance from the axis, height), rotated about z.
 //!
-//! The nearest surface point of a solid of revolution lies in the half plane of the query point, so the distance is that of the polygon.
+//! The nearest surface point of a solid of revolution lies in the half plane of the query point, so the distance equals the distance to the polygon.
 
 use super::Sphere;
 use super::fit::{Fit, MAX_SPHERES};

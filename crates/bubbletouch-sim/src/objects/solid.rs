@@ -31,7 +31,8 @@ pub struct Solid {
     seam: f64,
 }
 
-/// Enlargement of cuts, relative to the diagonal of the box around the parts. It removes membranes of zero thickness where a cut ends in a part's
+/// Enlargement of cuts, relative to the diagonal of the box around the parts. The enlargement removes membranes of zero thickness where a cut ends in a
+/// part's
 /// surface. If it is smaller, rounding leaves such membranes; if it is larger, walls beside cuts become thinner.
 const SEAM: f64 = 4e-6;
 

@@ -58,8 +58,7 @@ impl Hull {
 
     /// Packs balls between the two ends, each as far ahead as possible without a gap behind it.
     ///
-    /// A ball at t touches the hull at u = t·cos along its side and covers u ± sqrt((r + h)² − r²); the balls of the ends are not
-    /// enlarged and cover less.
+    /// A ball at t touches the hull at u = t·cos along its side and covers u ± sqrt((r + h)² − r²). The balls of the ends are not enlarged and cover less.
     fn pack_between(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
         let exact = fit.unswollen();
         let end = self.length * self.cosine() - exact.disc(self.ball(self.length).radius);

@@ -8,7 +8,7 @@ use glam::DVec3;
 /// Returns a sphere around each vertex, all of radius R = 2 × the mean distance from a vertex to its nearest neighbour \[BT\].
 ///
 /// Vertices with identical coordinates (in files that repeat a corner for each face) count once. Otherwise their distances would be 0, and R
-/// would depend on the format of the file. The order is that of the first occurrence.
+/// would depend on the format of the file. The order follows the first occurrences.
 ///
 /// # Errors
 /// If there are fewer than two distinct vertices; the error begins with `place`.

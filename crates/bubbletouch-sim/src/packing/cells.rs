@@ -81,7 +81,7 @@ mod tests {
     #[test]
     fn every_cell_holds_some_points_and_not_too_many() {
         let mut rng = Seed::new(1).named("cells").rng();
-        // On a lattice many points share a coordinate.
+        // On a lattice, many points have a coordinate in common.
         let mut lattice = || f64::from(rng.gen_range(0..12));
         let points: Vec<DVec3> = (0..3000)
             .map(|_| DVec3::new(lattice(), lattice(), 0.1 * lattice()))

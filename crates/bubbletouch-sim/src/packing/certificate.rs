@@ -122,7 +122,7 @@ mod tests {
     use crate::mesh::{Surface, TriangleMesh};
     use crate::packing::Body;
 
-    /// A square of side 2 in the plane z = 0, as a sheet.
+    /// Returns a square of side 2 in the plane z = 0.
     fn square() -> Surface {
         let corner = |x, y| DVec3::new(x, y, 0.0);
         let corners = [
@@ -149,7 +149,7 @@ mod tests {
     fn four_balls_hold_a_square_exactly_when_they_reach_its_middle_and_corners() {
         let places = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)];
         let balls = places.map(|(x, y)| Ball::on_surface(DVec3::new(x, y, 0.0)));
-        // Each must reach √½ = 0.7071 = 3e/2.
+        // Each ball must reach √½ = 0.7071 = 3e/2.
         assert!(gaps_with(&balls, 0.4715).is_empty());
         let open = gaps_with(&balls, 0.4713);
         assert!(!open.is_empty());

@@ -47,7 +47,7 @@ mod tests {
             let depth = -surface.signed_distance(sphere.center);
             assert!((sphere.radius - depth).abs() < 1e-9, "{sphere:?}");
             assert!(sphere.radius <= 1.0 + 1e-9);
-            // It touches a second face: its centre is on the medial axis.
+            // The sphere touches a second face, because its centre is on the medial axis.
             let to_faces = (DVec3::new(3.0, 2.0, 1.0) - sphere.center.abs()).to_array();
             let mut to_faces = [to_faces[0], to_faces[1], to_faces[2], 2.0 - to_faces[2]];
             to_faces.sort_by(f64::total_cmp);

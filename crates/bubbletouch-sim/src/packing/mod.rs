@@ -23,8 +23,8 @@
 //!   a triangle contains the whole triangle. Triangles are halved until one ball contains each piece, or until a piece is proved to lie
 //!   inside the solid (`certificate`). If the proof fails, packing returns an error.
 //!
-//! The two surfaces need not be within e of each other everywhere: spheres may close clefts narrower than e,
-//! and may leave hollows inside the solid, where nothing touches.
+//! The two surfaces need not be within e of each other everywhere. Spheres may close clefts narrower than e, and may leave hollows inside the solid, where
+//! nothing touches.
 //!
 //! Thin walls, edges and tips need no special treatment: a ball around a surface point (d = 0) always contains the surface
 //! within 3e/2 of this point.
@@ -44,8 +44,8 @@
 //!
 //! # How many spheres?
 //!
-//! Let h = 3e/2. On a flat face a ball of depth d covers a disc of radius `a = sqrt(h(2d + h))`. In the best covering of the
-//! plane by discs the area per disc is `(3√3/2)·a² ≈ 2.6·h(2d + h)`, so a face needs its area divided by this value. Along a sharp
+//! Let h = 3e/2. On a flat face a ball of depth d covers a disc of radius `a = sqrt(h(2d + h))`. In the best covering of the plane by discs the area per
+//! disc is `(3√3/2)·a² ≈ 2.6·h(2d + h)`. A face needs its area divided by this value. Along a sharp
 //! right-angled edge the best ball has d = h and covers 2√2·h of the edge, so an edge needs its length divided by 2.8·h. Thin
 //! walls have small balls on both sides at once and need the most spheres.
 //!

@@ -18,9 +18,8 @@ pub struct Packing {
 
 /// Packs the solid of a mesh with few spheres, within `tolerance` (metres, positive).
 ///
-/// The tolerance is proved, as [the module](super#the-promise) describes: no sphere reaches more than half the tolerance outside the solid, and
-/// every
-/// point of its surface is within the tolerance of the spheres. Equal meshes give equal spheres.
+/// The tolerance is proved, as [the module](super#the-promise) describes. No sphere reaches more than half the tolerance outside the solid. Every point of
+/// the solid's surface is within the tolerance of the spheres. Equal meshes give equal spheres.
 ///
 /// # Errors
 /// - If the tolerance is not positive, or is so small that more than two million spheres are needed.

@@ -292,7 +292,7 @@ mod tests {
     use crate::random::Seed;
     use rand::Rng;
 
-    /// Sets of random rows; every row is in at least one.
+    /// Returns sets of random rows; every row is in at least one set.
     fn random_sets(n_sets: usize, n_rows: usize, case: u64) -> Lists {
         let mut rng = Seed::new(case).named("sets").rng();
         let mut rows_of = Lists::new();
@@ -335,7 +335,7 @@ mod tests {
     #[test]
     fn a_set_that_became_superfluous_is_dropped() {
         let mut rows_of = Lists::new();
-        // Greedy takes the middle first, then needs both ends, which hold the middle between them.
+        // The greedy choice takes the middle set first, then needs both end sets, which together cover the middle rows.
         rows_of.push([1, 2, 3, 4]);
         rows_of.push([0, 1, 2]);
         rows_of.push([3, 4, 5]);

@@ -67,8 +67,8 @@ impl<'a> Target<'a> {
         self.body == Body::Solid && self.surface.contains(point + normal * (LIFT * self.e))
     }
 
-    /// Returns whether the winding number is proved to be constant over a part of a face, shifted by [`LIFT`] along the normal: no
-    /// face of the mesh crosses it there.
+    /// Returns whether the winding number is proved to be constant over a part of a face, shifted by [`LIFT`] along the normal. The proof is that no face of
+    /// the mesh crosses the shifted part.
     pub fn is_uncrossed(&self, piece: &Triangle, normal: DVec3) -> bool {
         let lift = normal * (LIFT * self.e);
         let lifted = piece.0.map(|corner| corner + lift);

@@ -156,7 +156,7 @@ mod tests {
 
     #[test]
     fn words_are_those_of_the_published_generator() {
-        // Known answers of Philox4x32-10, as the authors' library has them: counter, key, words.
+        // Known answers of Philox4x32-10 from the authors' library: counter, key, words.
         let known: [([u64; 4], [u32; 2], [u64; 4]); 3] = [
             (
                 [0; 4],
@@ -190,7 +190,7 @@ mod tests {
             for pair in [0, 2] {
                 let [u, w] = [0, 1].map(|k| (words[pair + k] + 0.5) / 2f64.powi(32));
                 let radius = (-2.0 * u.ln()).sqrt();
-                // Their angles begin an eighth of a turn later.
+                // The angles of `box_muller` start an eighth of a turn later.
                 let (sin, cos) = (std::f64::consts::TAU * (w - 0.125)).sin_cos();
                 assert!((normals[pair] - radius * cos).abs() < 1e-10);
                 assert!((normals[pair + 1] - radius * sin).abs() < 1e-10);

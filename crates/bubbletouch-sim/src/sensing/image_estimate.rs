@@ -110,7 +110,7 @@ pub(super) mod tests {
 
     pub(in crate::sensing) const GRID: (usize, usize) = (12, 12);
 
-    /// Bumps that lie anywhere.
+    /// Returns frames of bumps at random positions.
     pub(in crate::sensing) fn bumps(n: usize, name: &str) -> Array2<f64> {
         let mut rng = Seed::new(3).named(name).rng();
         let mut frames = Array2::zeros((n, 144));

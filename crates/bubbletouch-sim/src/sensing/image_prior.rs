@@ -1,7 +1,7 @@
 //! Statistics of images, learned from frames of training touches.
 //!
-//! Statistics of few frames overfit: images of training touches would be more accurate than images of test touches, and a classifier
-//! trained on them would err on the others. Shifted and mirrored copies of the frames reduce this effect.
+//! Statistics of few frames overfit: images of training touches would be more accurate than images of test touches. A classifier trained on the former would
+//! err on the latter. Shifted and mirrored copies of the frames reduce this effect.
 
 use super::{Basis, Dictionary};
 use crate::error::Result;
@@ -116,7 +116,7 @@ mod tests {
         let copies = with_copies(frames.view(), GRID, 305, &Seed::new(1));
         assert_eq!(copies.nrows(), 300);
         assert_eq!(copies.slice(s![..30, ..]), frames);
-        // Each is its frame moved: none of its values is another's, and none is there twice.
+        // Each copy is its shifted frame: its values come from that frame, and none is repeated.
         for (copy, frame) in copies.outer_iter().zip(frames.outer_iter().cycle()) {
             let sorted = |values: ndarray::ArrayView1<f64>| {
                 let mut values: Vec<f64> = values.iter().copied().filter(|&v| v > 0.0).collect();

@@ -1,7 +1,6 @@
 //! Sensing: frames → measurements `y = Φx`, and back.
 //!
-//! A [`Projection`] turns a frame x of n taxels (ny × nx, row after row) into m measurements, 1 ≤ m ≤ n; n / m is the
-//! compression ratio.
+//! A [`Projection`] converts a frame x of n taxels (ny × nx, row after row) to m measurements, 1 ≤ m ≤ n. The compression ratio is n / m.
 //!
 //! | ensemble | row of Φ | a row's norm | stored |
 //! |---|---|---|---|
@@ -21,8 +20,8 @@
 //!
 //! **Nesting.** For one seed, the first m measurements of a larger projection are bit by bit the measurements of the
 //! smaller one ([`Ensemble::is_prefix_nested`]). A sweep over ratios projects once, at its largest m, and takes leading columns.
-//! Plain block averages cannot be nested in this way: one block is the whole array, two blocks are its halves, and the mean of the
-//! array is the mean of neither half. For the nesting of block averages see [`Ensemble::BlockAverage`].
+//! Plain block averages cannot be nested in this way: the mean of the whole array is the mean of neither of its halves. For the nesting of block averages
+//! see [`Ensemble::BlockAverage`].
 //!
 //! **Repeatability.** A row of measurements has equal bits in any batch.
 //!

@@ -115,7 +115,7 @@ mod tests {
     use super::*;
 
     fn frames(n_frames: usize, n: usize) -> Array2<f64> {
-        // A spectrum that falls: neighbours resemble each other.
+        // The spectrum decreases, so neighbours are similar.
         Array2::from_shape_fn((n_frames, n), |(i, j)| {
             let x = j as f64 / n as f64;
             (1..8)

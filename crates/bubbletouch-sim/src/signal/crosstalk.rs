@@ -1,8 +1,8 @@
 //! Crosstalk: a fraction of each taxel's value leaks to its neighbours.
 //!
 //! xᵢ ← (1 − κ) xᵢ + κ/4 (x_left + x_right + x_above + x_below): a fraction κ of each value leaks, a quarter of it to each of
-//! the four neighbours. At an edge the missing neighbour is replaced by the taxel itself. Rows and columns of this operator sum to 1: a
-//! uniform pressure is unchanged, and the sum over the array is conserved, as if a cover or a shared wire distributed the load.
+//! the four neighbours. At an edge the missing neighbour is replaced by the taxel itself. Rows and columns of this operator sum to 1. A uniform pressure is
+//! therefore unchanged, and the sum over the array is conserved, as if a cover or a shared wire distributed the load.
 //! Only four of the eight neighbours are coupled directly, because coupling decreases with distance; values reach a diagonal
 //! neighbour through two steps.
 

@@ -1,7 +1,7 @@
 //! Offset drift: the zero of each taxel changes randomly over a session.
 //!
-//! The zero of a taxel is a random walk over the time t of a session. The zero is 0 at the beginning (the skin has just been zeroed) and
-//! has the standard deviation σ at the end: xᵢ ← xᵢ + σ Wᵢ(t), W a Wiener process, the usual model of a sensor's bias instability.
+//! The zero of a taxel is a random walk over the time t of a session. The zero is 0 at the beginning (the skin has just been zeroed) and has the standard
+//! deviation σ at the end: xᵢ ← xᵢ + σ Wᵢ(t). W is a Wiener process, the usual model of a sensor's bias instability.
 //! The walk is computed from its Karhunen–Loève expansion
 //!
 //! W(t) = c Σₖ ξₖ √2 sin((k − ½) π t) / ((k − ½) π),  ξₖ ~ N(0, 1),  k = 1 … 64,
@@ -20,9 +20,9 @@ use rand::Rng;
 use rand_distr::StandardNormal;
 use std::f64::consts::{PI, SQRT_2};
 
-/// Number of terms of the expansion. If it is smaller, the zeros of all taxels vary in a space of few dimensions, which a classifier can learn to
-/// ignore
-/// (with 8 terms, drift of any strength hardly affects a linear classifier); a real walk does not allow this. If it is larger, time and memory
+/// Number of terms of the expansion. If the number is smaller, the zeros of all taxels vary in a space of few dimensions, which a classifier can learn to
+/// ignore. With 8 terms, drift of any strength hardly affects a linear classifier; a real random walk does not allow this. If the number is larger, time and
+/// memory
 /// increase.
 const N_MODES: usize = 64;
 
@@ -37,9 +37,8 @@ struct Zeros {
 }
 
 impl Zeros {
-    /// Draws the drift of a skin. `full_scale` is in the unit of the frames; `std` is the standard deviation of the zeros at the end of the
-    /// session, as a
-    /// fraction of the full scale. The pattern does not depend on `std`. Returns an error if `std` is negative or not finite.
+    /// Draws the drift of a skin. `full_scale` is in the unit of the frames. `std` is the standard deviation of the zeros at the end of the session,
+    /// relative to the full scale. The pattern does not depend on `std`. Returns an error if `std` is negative or not finite.
     fn of(std: f64, skin: &Seed, n_taxels: usize, full_scale: f64) -> Result<Self> {
         not_negative("drift std", std, "")?;
         let usual: Vec<f64> = (0..N_MODES).map(|mode| SQRT_2 / frequency(mode)).collect();
@@ -140,7 +139,7 @@ impl TaxelEffect for ZerosByNumber {
     }
 }
 
-/// Returns indices and weights of the normal numbers whose weighted sum is a Wiener process at a time from 0 to 1, by Lévy's construction: number 0
+/// Returns indices and weights of normal numbers. Their weighted sum is a Wiener process at a time from 0 to 1, by Lévy's construction: number 0
 /// is the value at the end, and number 2ˡ + k displaces the middle of piece k when 2ˡ pieces of time are halved.
 fn walk(time: f64) -> [(u64, f64); 1 + N_HALVINGS as usize] {
     let mut terms = [(0, time); 1 + N_HALVINGS as usize];
@@ -174,12 +173,12 @@ mod tests {
         let n = 40_000;
         let (early, late, end) = (zeros_at(0.3, n), zeros_at(0.8, n), zeros_at(1.0, n));
         let variance = 0.5e-3f64.powi(2);
-        // Four standard errors and the 0.3 % that 64 terms leave out.
+        // Four standard errors, and the 0.3 % that 64 terms omit.
         let near = |found: f64, of: f64| (found / variance - of).abs() < 0.003 + 4.0 * 1.5 / 200.0;
         assert!((covariance(&end, &end) / variance - 1.0).abs() < 4.0 * (2.0 / n as f64).sqrt());
         assert!(near(covariance(&early, &early), 0.3));
         assert!(near(covariance(&late, &late), 0.8));
-        // Cov(W(s), W(t)) = min(s, t): what came earlier stays.
+        // Cov(W(s), W(t)) = min(s, t): later values include earlier ones.
         assert!(near(covariance(&early, &late), 0.3));
         assert!(near(covariance(&early, &end), 0.3));
         let neighbours = covariance(&end[1..], &end[..n - 1]);

@@ -92,7 +92,7 @@ mod tests {
             let variance = gains.iter().map(|g| (g - mean).powi(2)).sum::<f64>() / n;
             assert!(gains.iter().all(|&g| g > 0.0));
             assert!((mean - 1.0).abs() < 4.0 * std / n.sqrt(), "{std}: {mean}");
-            // A log-normal's tails make its spread an uncertain estimate: 3 % at std = 1.
+            // The tails of a log-normal distribution make its spread uncertain: 3 % at std = 1.
             assert!((variance.sqrt() / std - 1.0).abs() < 0.03, "{std}");
         }
     }
@@ -103,7 +103,7 @@ mod tests {
         let mut order: Vec<usize> = (0..64).collect();
         order.sort_by(|&a, &b| weak[a].total_cmp(&weak[b]));
         assert!(order.windows(2).all(|w| strong[w[0]] < strong[w[1]]));
-        // A larger array of the same skin continues the pattern.
+        // A larger array of this skin continues the pattern.
         assert_eq!(gains(0.1, 80)[..64], weak[..]);
     }
 

@@ -94,7 +94,7 @@ mod tests {
 
     const FULL_SCALE: f64 = 5e-3;
 
-    /// One taxel that is led through these deflections.
+    /// Returns the readings of one taxel for a sequence of deflections.
     fn read(width: f64, felt: &[f64]) -> Vec<f64> {
         let mut frames = felt.to_vec();
         let hysteresis = Hysteresis::new(width, FULL_SCALE).unwrap();
@@ -102,7 +102,7 @@ mod tests {
         frames
     }
 
-    /// From a to b in equal steps, both included.
+    /// Returns equal steps from a to b, both included.
     fn ramp(a: f64, b: f64, steps: usize) -> Vec<f64> {
         (0..=steps)
             .map(|i| a + (b - a) * i as f64 / steps as f64)
@@ -146,7 +146,7 @@ mod tests {
             assert_eq!(out[0], 0.0);
             assert!((out[100] - FULL_SCALE).abs() < 1e-17);
             assert!(out.windows(2).all(|w| w[1] >= w[0]));
-            // A direct press is the last moment of a slow one: only where the load turned counts.
+            // A direct press equals the end of a slow one, because only turning points of the load matter.
             for (deflection, slow) in felt.iter().zip(&out) {
                 assert!((read(width, &[*deflection])[0] - slow).abs() < 1e-17);
             }
@@ -157,7 +157,7 @@ mod tests {
     fn a_small_load_before_a_larger_one_is_forgotten() {
         let out = read(0.2, &[2e-3, 0.0, 4e-3]);
         assert!((out[2] - read(0.2, &[4e-3])[0]).abs() < 1e-18);
-        // A larger one is remembered, at zero and under a smaller load.
+        // A larger press affects later readings, at zero and under a smaller load.
         let after = read(0.2, &[FULL_SCALE, 0.0, 2e-3]);
         assert!((after[1] - 2.0 * 0.2 * FULL_SCALE).abs() < 1e-15);
         assert!(after[2] > read(0.2, &[2e-3])[0] + 0.05e-3);

@@ -186,14 +186,14 @@ mod tests {
         out
     }
 
-    /// Some taxels pressed, some not.
+    /// Returns a frame with pressed and unpressed taxels.
     fn pressed(n: usize, case: u64) -> Vec<f64> {
         let mut rng = Seed::new(3).numbered(case).rng();
         let value = |_| FULL_SCALE * rng.gen_range(-1.0..1.0_f64).max(0.0);
         (0..n).map(value).collect()
     }
 
-    /// Kirchhoff's law at every line, row by row, by elimination: the currents that columns give while a row is driven.
+    /// Solves Kirchhoff's law at every line by elimination, row by row: the currents of the columns while one row is driven.
     fn network(frame: &[f64], (nx, ny): (usize, usize), resistance: f64) -> Vec<f64> {
         let line = 1.0 / resistance;
         let mut out = Vec::new();
@@ -249,10 +249,10 @@ mod tests {
     fn lines_without_resistance_read_each_taxel_as_it_is() {
         let frame = pressed(20, 1);
         assert_eq!(read(&frame, (5, 4), 0.0), frame);
-        // One taxel alone is in series with its two lines.
+        // A single taxel is in series with its two lines.
         let one = read(&[FULL_SCALE], (1, 1), 0.25)[0];
         assert!((one - FULL_SCALE / 1.5).abs() < 1e-17);
-        // Below zero nothing conducts.
+        // Negative values do not conduct.
         assert_eq!(read(&[-1e-3, 0.0], (2, 1), 0.25), [-1e-3, 0.0]);
     }
 
@@ -270,7 +270,7 @@ mod tests {
         let out = read(&frame, (5, 4), 0.1);
         let ghost = out[8] / FULL_SCALE; // column 3 of row 1
         assert!((0.005..0.1).contains(&ghost), "{ghost}");
-        // The line that two taxels share carries more: both read less.
+        // The shared line of two taxels carries more current, so both read less.
         assert!(out[16] < out[6] && out[18] > out[16]);
     }
 

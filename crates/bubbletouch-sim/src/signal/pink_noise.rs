@@ -105,7 +105,7 @@ mod tests {
 
     #[test]
     fn the_power_falls_by_half_an_octave() {
-        // Sums of neighbouring octaves of frequency of a 1/f spectrum hold the same power.
+        // In a 1/f spectrum, all octaves of frequency have equal power.
         const N: usize = 256;
         let mut octaves = [0.0; 6];
         for touch in 0..400 {
@@ -124,7 +124,7 @@ mod tests {
             .iter()
             .fold((f64::MAX, 0.0_f64), |(a, b), &p| (a.min(p), b.max(p)));
         assert!(most / least < 1.5, "{octaves:?}");
-        // White noise would have 16 times as much in the last of these octaves as in the first.
+        // White noise would have 16 times the power in the last of these octaves.
     }
 
     #[test]

@@ -110,7 +110,7 @@ mod tests {
         let frame: Vec<f64> = (0..=1000).map(|i| f64::from(i) * 5e-6).collect();
         for bits in [1, 2, 3, 6] {
             let mut codes = converted(bits, &frame);
-            // Converted again, nothing changes; and codes rise with the value.
+            // A second conversion changes nothing, and codes increase with the value.
             assert_eq!(converted(bits, &codes), codes);
             assert!(codes.windows(2).all(|w| w[1] >= w[0]));
             codes.dedup();

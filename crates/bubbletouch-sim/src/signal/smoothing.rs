@@ -184,7 +184,7 @@ mod tests {
     fn width_zero_changes_nothing() {
         let frame: Vec<f64> = (0..12).map(|i| (i as f64).sin()).collect();
         assert_eq!(smoothed(&frame, 4, 3, 0.0), frame);
-        // Half a step of reach is none at all: 4 σ + ½ < 1.
+        // A reach below half a step has no effect: 4 σ + ½ < 1.
         assert_eq!(smoothed(&frame, 4, 3, 0.1), frame);
     }
 

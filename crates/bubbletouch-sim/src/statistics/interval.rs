@@ -127,7 +127,7 @@ mod tests {
 
     #[test]
     fn wilson_intervals_are_those_of_statsmodels() {
-        // statsmodels 0.15.0, proportion_confint(k, n, alpha, method="wilson").
+        // Reference values: statsmodels 0.15.0, proportion_confint(k, n, alpha, method="wilson").
         let table = [
             (98, 100, 0.95, 0.929988209271456, 0.9944980324498376),
             (0, 20, 0.95, 0.0, 0.1611251580528194),
@@ -169,7 +169,7 @@ mod tests {
         let of = |parts, counts: &[(usize, usize)]| {
             Interval::wilson_of_tests(&tests_of(parts, counts), 0.95).unwrap()
         };
-        // 222 and 219 of 225: both round to 44 of 45. The formula in NumPy with z = 1.959963984540054.
+        // 222 and 219 of 225 both round to 44 of 45. Reference values: the formula in NumPy with z = 1.959963984540054.
         let (more, less) = (
             of(1, &[(45, 45), (44, 45), (44, 45), (45, 45), (44, 45)]),
             of(1, &[(44, 45), (44, 45), (44, 45), (43, 45), (44, 45)]),
@@ -181,12 +181,12 @@ mod tests {
             assert!((found.low - low).abs() < 1e-9, "{found:?}");
             assert!((found.high - high).abs() < 1e-9, "{found:?}");
         }
-        // Five folds of 24 rows test 120 rows; tested twice they are the same rows.
+        // Five folds of 24 rows test 120 rows; a second test of a fold adds no rows.
         let folds = [(20, 24), (22, 24), (18, 24), (24, 24), (21, 24)];
         let all = Interval::wilson(105, 120, 0.95).unwrap();
         assert_eq!(of(5, &folds), all);
         assert_eq!(of(5, &[folds, folds].concat()), all);
-        // Trials without folds have the rows of one, with the same bits where the shares are equal.
+        // Trials without folds have the rows of one trial, with equal bits if the proportions are equal.
         assert_eq!(
             of(1, &[(18, 24), (20, 24)]),
             Interval::wilson(19, 24, 0.95).unwrap()

@@ -75,7 +75,7 @@ pub fn check_brackets(place: &str, text: &str) -> Result<()> {
 mod tests {
     use super::*;
 
-    /// On a stack as small as that of a thread.
+    /// Runs on a stack as small as that of a thread.
     fn refused(text: &'static str) -> String {
         let read = move || read::<toml::Table>("study.toml", text).unwrap_err();
         let thread = std::thread::Builder::new().stack_size(2 << 20);

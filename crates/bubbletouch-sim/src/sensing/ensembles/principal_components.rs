@@ -42,7 +42,7 @@ mod tests {
     use crate::sensing::{Ensemble, Projection};
     use ndarray::Array2;
 
-    /// Frames of three patterns, the first the strongest.
+    /// Returns frames of three patterns; the first has the largest variance.
     fn frames() -> Array2<f64> {
         Array2::from_shape_fn((40, 12), |(i, j)| {
             let pattern = |k: usize| ((j * (k + 1)) as f64 * 0.7 + k as f64).sin();
@@ -66,7 +66,7 @@ mod tests {
         assert!(unit.iter().all(|e| e.abs() < 1e-12));
         let most = kept(&rows);
         for seed in 0..50 {
-            // Nearby pairs of orthonormal rows, by Gram and Schmidt.
+            // Pairs of orthonormal rows near the principal components, by Gram–Schmidt.
             let drawn = Projection::new(Ensemble::Gaussian, (3, 4), 2, &Seed::new(seed));
             let mut other = &rows + &(0.3 * drawn.unwrap().matrix());
             let first = other.row(0).to_owned() / other.row(0).dot(&other.row(0)).sqrt();

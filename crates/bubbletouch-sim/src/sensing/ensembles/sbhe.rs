@@ -146,7 +146,7 @@ mod tests {
     use super::*;
     use ndarray::Array2;
 
-    /// Φ from its definition, entry by entry.
+    /// Returns Φ by its definition, entry by entry.
     fn dense(hadamard: &ScrambledHadamard) -> Array2<f64> {
         let mut matrix = Array2::zeros((hadamard.picks.len(), hadamard.n_taxels));
         hadamard.each_entry(&mut |measurement, taxel, value| matrix[[measurement, taxel]] = value);

@@ -160,8 +160,8 @@ mod tests {
     const N: usize = 20_000;
     const ROWS: u64 = 400;
 
-    /// Of many rows of one way to draw: entries a row (mean, variance), share of plus, entries in each tenth of the taxels,
-    /// and neighbours that are both entries.
+    /// Returns statistics of many drawn rows: entries per row (mean, variance), fraction of positive entries, entries in each tenth of the taxels,
+    /// and the number of adjacent pairs of entries.
     fn counts(draw: fn(usize, f64, &Seed) -> Row) -> ([f64; 4], [f64; 10]) {
         let density = 1.0 / (N as f64).sqrt();
         let (mut sizes, mut n_plus, mut n_pairs, mut tenths) = (Vec::new(), 0, 0, [0.0; 10]);
@@ -193,12 +193,12 @@ mod tests {
         let root = (N as f64).sqrt();
         for draw in [Row::draw_each, Row::draw_by_gaps] {
             let ([mean, variance, plus, pairs], tenths) = counts(draw);
-            // Five standard errors each of the binomial law with n = N and p = 1/√N.
+            // Five standard errors of the binomial distribution with n = N and p = 1/√N.
             let spread = (root / ROWS as f64).sqrt();
             assert!((mean - root).abs() < 5.0 * spread, "{mean} of {root}");
             assert!((variance / root - 1.0).abs() < 5.0 * (2.0 / ROWS as f64).sqrt());
             assert!((plus - 0.5).abs() < 5.0 * 0.5 / (root * ROWS as f64).sqrt());
-            // Two neighbours are both entries with p² = 1/N, some N times a row.
+            // Two adjacent taxels are both entries with probability p² = 1/N; a row has about N such pairs.
             assert!(
                 (pairs - ROWS as f64).abs() < 5.0 * (ROWS as f64).sqrt(),
                 "{pairs}"

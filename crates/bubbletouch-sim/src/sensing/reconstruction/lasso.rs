@@ -2,8 +2,8 @@
 //!
 //! FISTA (Beck and Teboulle 2009): a gradient step of length 1/L from a point extrapolated along the last change, then
 //! soft thresholding by λ/L, where L is the largest eigenvalue of AᵀA. The momentum restarts if it points uphill
-//! (O'Donoghue and Candès 2015). A frame is solved if the gap between the objective and the dual value at
-//! θ = s·(y − Aα), s = min(1, λ/‖Aᵀ(y − Aα)‖∞), is small, because the dual value is a lower bound of the objective (Kim et al. 2007).
+//! (O'Donoghue and Candès 2015). The dual value at θ = s·(y − Aα), s = min(1, λ/‖Aᵀ(y − Aα)‖∞), is a lower bound of the objective. A frame is solved if the
+//! gap between objective and dual value is small (Kim et al. 2007).
 
 use crate::error::{Error, Result};
 use crate::sensing::{SensedDictionary, Solved};

@@ -2,8 +2,8 @@
 //!
 //! Pati, Rezaiifar and Krishnaprasad (1993): choose the atom with the largest correlation with the residual, project onto all chosen atoms,
 //! repeat. Rubinstein, Zibulevsky and Elad (2008, *Batch-OMP*): with G = AᵀA and b = Aᵀy the residual itself is never
-//! computed. A Cholesky factor of G on the chosen atoms gains one row per step, and the squared norm of the residual decreases by the square of
-//! the newest entry of L⁻¹b.
+//! computed. A Cholesky factor L of G on the chosen atoms gains one row per step. The squared norm of the residual decreases by the square of the newest
+//! entry of L⁻¹b.
 
 use crate::error::{Error, Result};
 use crate::sensing::{SensedDictionary, Solved};

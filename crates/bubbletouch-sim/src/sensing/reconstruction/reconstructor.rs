@@ -88,8 +88,8 @@ impl<'a> Reconstructor<'a> {
     /// Prepares a solver for noise of standard deviation σ (in the unit of the frames, zero or positive) on each taxel.
     ///
     /// All solvers also count the part outside the span of the atoms as noise: √(σ² + τ) per taxel, τ from training frames
-    /// ([`Energy::rest`](crate::sensing::Energy)). Matching pursuit and the ℓ1 problem multiply it by the root
-    /// mean square norm of a row of Φ to obtain the noise of a measurement; the linear estimate uses ΦΦᵀ itself.
+    /// ([`Energy::rest`](crate::sensing::Energy)). Matching pursuit and the ℓ1 problem multiply this noise by the root mean square norm of a row of Φ to
+    /// obtain the noise of a measurement. The linear estimate uses ΦΦᵀ itself.
     ///
     /// # Errors
     /// If [`Lmmse::new`] fails. Limits of `effort` are checked by [`reconstruct`](Self::reconstruct).
