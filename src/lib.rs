@@ -1,14 +1,14 @@
 //! Simulated touch for robot skin: press, sense, recognise.
 //!
-//! # Words
+//! # Terms
 //!
 //! - A **taxel** is one sensing element: a sphere on a spring and damper, sliding along one axis.
-//! - A **patch** is a rigid substrate with a grid of taxels; a **frame** is what they all report at one instant.
+//! - A **patch** is a rigid substrate with a grid of taxels; a **frame** contains the values of all its taxels at one instant.
 //! - An **object** is a union of rigid spheres, or a triangle mesh.
 //! - A **touch** is one contact experiment: a patch comes down on an object that lies on a table, to first contact and then
 //!   further by a **depth**.
 //! - A **measurement** is a compressed frame, `y = Φx`; the **compression ratio** is taxels per measurement, n / m.
-//! - A **study** is a TOML file that asks a question: axes to sweep, in; tables and charts, out.
+//! - A **study** is a TOML file with a question and the axes to sweep; its results are tables and charts.
 //!
 //! # One touch, from the object to the picture
 //!
@@ -76,12 +76,12 @@
 //! # Ok::<(), bubbletouch::Error>(())
 //! ```
 //!
-//! A whole [`study`] does this for every object and touch, splits them into training and test rows, and trains the
+//! A [`study`] simulates all touches of all objects in this way, splits them into training and test rows, and trains the
 //! classifiers of [`recognition`].
 //!
 //! # The pipeline
 //!
-//! Each stage imports only from those before it; [`geometry`], [`random`], [`files`] and [`error`] serve all.
+//! Each stage imports only from the stages before it; [`geometry`], [`random`], [`files`] and [`error`] serve all.
 //!
 //! | stage | in → out |
 //! |---|---|
@@ -90,27 +90,27 @@
 //! | [`packing`] | a mesh and a tolerance → few spheres |
 //! | [`world`] | taxels, layouts, resting poses → touches; robots and hands and their motion → poses |
 //! | [`contact`] | a scene and poses → deflections; free objects → poses at rest |
-//! | [`dynamics`] | the same with mass, in time: what the quasi-static model is measured against |
-//! | [`whole_body`] | millions of taxels, objects and poses → the taxels that are touched |
+//! | [`dynamics`] | taxels and objects with mass, over time: the reference for the quasi-static model |
+//! | [`whole_body`] | millions of taxels, objects and poses → the touched taxels and their deflections |
 //! | [`signal`] | deflections → frames |
 //! | [`sensing`] | frames → measurements, and back |
-//! | [`calibration`] | recorded frames → the signal that makes such frames |
+//! | [`calibration`] | recorded frames → the parameters of the signal chain that made them |
 //! | [`learning`], [`statistics`] | labelled measurements → classifiers, scores, intervals |
 //! | [`inputs`] | files of the user → objects, arrays, checked values of keys |
 //! | [`engine`] | work items → rows: axes, journal, shards, provenance |
 //! | [`scene`] | TOML → robots, skin and objects that move → frames over time |
-//! | [`report`] | tables and frames → files for people |
+//! | [`report`] | tables and frames → charts, pages, pictures, terminal output |
 //! | [`studies`] | TOML → plan → work items → tables, charts, page |
 //!
 //! [`recognition`], [`study`] and [`kinds`] re-export names of these stages under shorter paths.
 //!
-//! The eleven stages from `mesh` to `calibration` are pure: no files (but a robot's, if it is asked for by its path), clock,
-//! threads, printing or global state; but large touches in `whole_body` and chains of packings in `packing` use the threads of the pool. All
-//! other threads live in `studies` and `report`, files in these and in `inputs` and `engine`, in `scene` (what a scene names) and in the command.
+//! The stages from `mesh` to `calibration` are pure: they use no files, clock, threads, printing or global state. There are three exceptions. A robot may be
+//! read from its path. Large touches in `whole_body` and chains of packings in `packing` use the threads of the pool. All other threads are started in
+//! `studies` and `report`. Files are read and written in `studies`, `report`, `inputs`, `engine`, `scene` and the command.
 //!
 //! The [`guide`] has chapters for users of the command and of the library, from a [first study](guide::first_study) and the
 //! [study file](guide::study_file) to [objects of your own](guide::own_objects), [statistics](guide::statistics), [long
-//! runs](guide::long_runs) and what happens at the [limits](guide::limits) of every method.
+//! runs](guide::long_runs) and the [limits](guide::limits) of every method.
 //!
 //! # Sources
 //!

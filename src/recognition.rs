@@ -1,13 +1,13 @@
 //! Recognition: labelled measurements → classifier, scores.
 //!
-//! | room | enters | leaves |
+//! | stage | input | output |
 //! |---|---|---|
 //! | [`data`] | features y (n_rows × m), labels `0..n_classes` | a checked [data set](data::dataset), [split](data::split) into training and test rows, on one [scale](data::scaling) |
-//! | [`features`] | frames, or measurements of them | what does not change with constant pressure, stiffness, place or turn |
+//! | [`features`] | frames, or measurements of them | features that are invariant to constant pressure, stiffness, position or rotation |
 //! | [`classifiers`] | training rows | a [trained classifier](classifiers::trained_classifier) of any [kind](ClassifierKind) |
 //! | [`svm`] | training rows | soft-margin [SVMs](svm), and the [choice](svm::cross_validation::choice) of their C and γ |
 //! | [`evaluation`] | labels | a [confusion matrix](evaluation::metrics), [fused](evaluation::fusion) touches, [where to touch next](evaluation::next_touch) |
-//! | [`statistics`] | scores of trials | [intervals](statistics::interval), [comparisons](statistics::comparison), [what each source of chance brings](statistics::variance) |
+//! | [`statistics`] | scores of trials | [intervals](statistics::interval), [comparisons](statistics::comparison), [the variance of each source of chance](statistics::variance) |
 //!
 //! A [`Classifier`](classifiers::classifier::Classifier) fits its scaling, its parameters and its model on training rows only; test rows are only predicted.
 //! All results are deterministic, because random numbers come from a named [`Seed`](crate::random::Seed).

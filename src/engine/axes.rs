@@ -27,7 +27,7 @@ use toml::de::{DeTable, DeValue};
 /// Rules of a kind of study for keys in `[axes]`.
 #[derive(Clone, Copy, Debug)]
 pub struct AxisRules {
-    /// Returns whether a key accepts a list in its own table. Such keys are moved from `[axes]` to their table.
+    /// Returns whether a key accepts a list in its own table. Keys that do are moved from `[axes]` to their table.
     pub in_place: fn(&str) -> bool,
     /// Keys that must be equal within a study, including all keys below them.
     pub refused: &'static [&'static str],
@@ -353,7 +353,7 @@ impl StudyAxis {
         }
     }
 
-    /// Returns the column of the axis in result tables; `is_taken` tells which names other columns use.
+    /// Returns the column of the axis in result tables; `is_taken` returns whether another column uses a name.
     pub fn column(&self, is_taken: impl Fn(&str) -> bool) -> Column {
         let last = self.name();
         let last = &last[..];
@@ -451,7 +451,7 @@ const ROLES: [(&str, Role); 19] = [
 ];
 
 /// Ratio of the largest to the smallest value from which an axis is logarithmic. If it is larger, the small values of a sweep by powers of two overlap on a
-/// linear axis. If it is smaller, evenly spaced values look uneven. Zero is drawn separately.
+/// linear axis. If it is smaller, evenly spaced values are drawn unevenly. Zero is drawn separately.
 const LOG_FROM: f64 = 16.0;
 
 /// Returns whether two values are equal; 1 and 1.0 are equal.
@@ -488,7 +488,7 @@ impl StudyAxes {
         axes.any(|axis| axis.keys().iter().any(|own| own == key))
     }
 
-    /// Returns the columns of the axes that have no column of their own yet; `is_taken` tells which names other columns use.
+    /// Returns the columns of the axes that have no column of their own yet; `is_taken` returns whether another column uses a name.
     pub fn columns(&self, is_taken: impl Fn(&str) -> bool) -> Vec<Column> {
         let column = |axis: &StudyAxis| {
             let alike = self.axes.iter().filter(|other| other.name() == axis.name());

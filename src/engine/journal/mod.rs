@@ -6,7 +6,6 @@
 //!
 //! The key of a line depends on all inputs of the result. A study with more values on its axes, or more trials, therefore reuses the existing results. A
 //! process that is killed loses only the items that it was computing: an incomplete last line is detected and removed, and its item is computed again.
-//! torn, dropped, and its work done again.
 
 pub(crate) mod identity;
 pub(crate) mod journal_file;

@@ -7,7 +7,7 @@
 //!
 //! - **error**: |δ − δ\*|, mean over the taxels of all touches that the mesh (δ\*) or the model (δ) touches.
 //! - **error after offset**: the error with the patch retracted by a constant distance. The distance is the same for all touches of a model and minimises the
-//! error. A uniformly inflated model has no error after offset.
+//!   error. A uniformly inflated model has no error after offset.
 //! - **error past own contact**: the error if model and mesh are pressed to equal depths past their own first contact.
 //!
 //! With an `[object_detail.recognition]` table, classifiers are trained on each kind of model and tested on other touches of the exact meshes. This measures

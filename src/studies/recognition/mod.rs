@@ -1,21 +1,21 @@
 //! Recognition studies: studies that recognise objects by touch.
 //!
-//! Data flow in one direction. Each stage is a folder, and a stage imports only from stages above it in this table.
+//! Data flow in one direction: each stage is a folder, and a stage imports only from stages above it in this table.
 //!
 //! | stage | in → out |
 //! |---|---|
 //! | [`rows`] | the rows of all result tables |
-//! | [`spec`] | TOML → keys as they are written |
+//! | [`spec`] | TOML → keys as written |
 //! | [`plan`] | keys → checked values in SI units, arrays of taxels |
 //! | [`touches`] | placements → drawn touches |
-//! | [`frames`] | touches → deflections of all taxels, and what the signal makes of them |
+//! | [`frames`] | touches → deflections of all taxels, and frames after the signal chain |
 //! | [`sweep`] | touches → splits and configurations |
 //! | [`measurements`] | frames → measurements and features |
 //! | [`training`] | features → classifiers and scores |
 //! | [`tables`] | scores → rows of tables |
 //! | [`exports`] | frames and features → arrays in files |
 //! | [`charts`] | tables → charts, answers, sections of the page |
-//! | [`study`] | the whole, in work items |
+//! | [`study`] | the whole study as work items |
 
 pub mod charts;
 pub mod exports;

@@ -4,10 +4,10 @@
 //! [`run_whole`](crate::studies::study::run_whole) → [its tables](rows).
 //!
 //! 1. **Scenes**: an object moves along its path on a robot that is covered in skin ([`CoveredRobot`](crate::whole_body::CoveredRobot)). In each step the skin
-//! is pressed, the touched taxels are compressed ([`Columns`](crate::sensing::Columns)), and a linear SVM recognises the object.
+//!    is pressed, the touched taxels are compressed ([`Columns`](crate::sensing::Columns)), and a linear SVM recognises the object.
 //! 2. **Recognition**: the SVM is trained on simulated touches of some objects, and tested on other touches of the same objects.
 //! 3. **Scaling**: computing time of a step as the skin, the touch, or the object's number of spheres grows, on bodies of equal sleeves under a cushion of
-//! spheres.
+//!    spheres.
 //!
 //! Counts, sums and decisions do not depend on the number of threads; times are in separate tables.
 

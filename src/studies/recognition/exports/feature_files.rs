@@ -1,15 +1,15 @@
 //! Training data of one configuration as files, so that any program can train on exactly the same rows.
 //!
-//! | file | holds |
+//! | file | content |
 //! |---|---|
-//! | `features.npy` | n × m, f64: the measurements of every touch, before scaling; with several readings of training touches the first of every touch, then the second … |
-//! | `labels.npy` | n, i64: the object's number (of mislabelled training touches another's) |
-//! | `train.npy` | i64: the rows that the trial trains on, in its order; a prefix is a smaller training set |
-//! | `test.npy` | i64: the rows that it tests, ascending |
-//! | `groups.npy` | n, i64: the group of every row, where the study has groups of touches that are never on both sides of a split |
-//! | `objects.csv` | one row an object: number, name |
-//! | `cell.toml` | the settings of the cell and the trial |
-//! | `manifest.json` | the files of the folder; only files that it lists are ever replaced |
+//! | `features.npy` | n × m, f64: the measurements of every touch, before scaling; with several readings, the first reading of every touch, then the second, … |
+//! | `labels.npy` | n, i64: the object's number (another object's for mislabelled training touches) |
+//! | `train.npy` | i64: training rows of the trial, in drawing order; a prefix is a smaller training set |
+//! | `test.npy` | i64: test rows of the trial, ascending |
+//! | `groups.npy` | n, i64: the group of every row, if the split does not divide groups |
+//! | `objects.csv` | one row per object: number, name |
+//! | `cell.toml` | the settings of the configuration and the trial |
+//! | `manifest.json` | the files of the folder; only files listed in it may be replaced |
 
 use crate::engine::progress::{Progress, Silent};
 use crate::error::{Error, Result};
@@ -147,8 +147,8 @@ impl StudyPart {
         self.measure(group, [&frames, tested], (trial, n_measurements))
     }
 
-    /// Reads and measures the frames of a group in a trial, those of touches that are learned and those of touches that are tested. Runs and exports share this path: what is learned for measurements is learned from the
-    /// training touches of the whole split, however few of them a cell learns from.
+    /// Reads and measures the frames of a group in a trial, for training and test touches. Runs and exports share this function: projections and image
+    /// estimators are fitted to the training touches of the whole split, even if a configuration trains on fewer.
     pub(crate) fn measure(
         &self,
         group: &Group,

@@ -1,16 +1,16 @@
 //! Touches of a study as files for other programs: NumPy arrays and CSV, written as a stream.
 //!
-//! | file | holds |
+//! | file | content |
 //! |---|---|
-//! | `frames.npy` | n × ny × nx (1 × n_taxels of layouts without rows), f32, metres of deflection, without noise; or as a cell reads them; of touches of F frames n × F × ny × nx |
+//! | `frames.npy` | n × ny × nx (1 × n_taxels of layouts without rows), f32, metres of deflection, without noise; or as a configuration reads them; n × F × ny × nx for touches of F frames |
 //! | `shear.npy` | with `skin.sensed = "shear"` n × 2 × ny × nx (n × F × 2 × ny × nx), f32: the forces across the axis of each taxel, along x and y of its frame, newtons |
 //! | `labels.npy` | n, i64: the object's number |
-//! | `poses.npy` | n × 7, f64: the object in the patch frame when it is read: x, y, z in metres, quaternion x, y, z, w |
+//! | `poses.npy` | n × 7, f64: the pose of the object in the patch frame at the time of reading: x, y, z in metres, quaternion x, y, z, w |
 //! | `depths.npy` | n, f64: metres past first contact |
-//! | `taxels.npy` | n_taxels × 6, f64, of layouts that are no grid: rest centres (metres) and axes in the patch frame |
-//! | `touches.csv` | one row a touch: object, resting pose, offset, yaw, tilts, depth, taxels touched and saturated |
-//! | `recorded.toml` | `[recorded]` and `[skin]` of a study that learns from these files what the study of the touches learns; not of frames as a cell reads them |
-//! | `objects.csv` | one row an object: number, name, spheres (0 of a mesh), touches |
+//! | `taxels.npy` | n_taxels × 6, f64, for layouts other than the grid: rest centres (metres) and axes in the patch frame |
+//! | `touches.csv` | one row per touch: object, resting pose, offset, yaw, tilts, depth, taxels touched and saturated |
+//! | `recorded.toml` | `[recorded]` and `[skin]` of an equivalent study that trains on these files; not for frames as a configuration reads them |
+//! | `objects.csv` | one row per object: number, name, spheres (0 for a mesh), touches |
 //!
 //! Deflections are the direct result of the press: without noise, smoothing or any sensor error of `[signal]`. Frames as a configuration reads them
 //! ([`ReadFrames`]) include all of these, in metres or, with the step `force`, in newtons; only `frames.npy` differs. With `skin.sensed = "shear"` a

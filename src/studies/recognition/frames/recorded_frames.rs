@@ -405,8 +405,8 @@ impl RecordedSpec {
         Ok(zeros)
     }
 
-    /// Returns the reading of a taxel at its full scale, and the reading from which it counts as saturated. Saturated readings are at or above a given full
-    /// scale. Without one, a largest reading that many frames share counts as saturated, unless the depths are known, because equal depths may cause it.
+    /// Returns the reading of a taxel at its full scale, and the reading from which a taxel counts as saturated. The latter is a given full scale, or a
+    /// largest reading that many frames share. A shared reading does not count if the depths are known, because equal depths may cause it.
     fn full_scale_of(
         &self,
         files: &[&FramesOfFile],

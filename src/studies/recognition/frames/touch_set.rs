@@ -64,8 +64,8 @@ pub trait TouchSet: Sync {
     /// Simulates all touches on an array, F frames each; the result does not depend on the number of threads.
     fn simulate(&self, on: (&TaxelArray, usize), progress: &dyn Progress) -> Frames;
 
-    /// Returns how each touch is read in a trial with F frames per touch; `seed` is the source of randomness. By default objects are pressed at a speed (m/s,
-    /// 0 at rest), each touch after another randomly drawn touch.
+    /// Returns how each touch is read in a trial with F frames per touch; `seed` is the source of randomness. Pressed objects are read at a speed (m/s, 0 at
+    /// rest), each touch after another randomly drawn touch.
     fn to_read(&self, speed: f64, n_frames: usize, seed: &Seed) -> Vec<TouchToRead>;
 
     /// Returns a few touches for pictures.
@@ -74,7 +74,7 @@ pub trait TouchSet: Sync {
     /// If a picture cannot be made.
     fn samples(&self, plan: &Plan, groups: &[Group]) -> Result<Samples>;
 
-    /// Returns the number of touches that go deeper past first contact than a stroke, metres.
+    /// Returns the number of touches whose depth past first contact exceeds a stroke, given in metres.
     fn n_deeper_than(&self, _stroke: f64) -> usize {
         0
     }

@@ -5,7 +5,7 @@ use bubbletouch_sim::features::Join;
 /// Image features that configurations of a group use.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FeaturesOfImages {
-    /// Which image features are computed.
+    /// Kinds of image features.
     pub join: Join,
     /// Depth window behind the foremost point, as a fraction of the full scale.
     pub foremost: Option<f64>,

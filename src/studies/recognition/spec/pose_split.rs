@@ -1,7 +1,7 @@
 //! Splits by pose: which poses train and which test, if the touches have listed values.
 //!
-//! Values are numbered in ascending order, whatever their order in the study. Each trial holds out one part. The parts are held out in order, and after the
-//! last part the first follows again:
+//! Values are numbered in ascending order, whatever their order in the study. Each trial holds out one part. The parts are held out in order, and the
+//! first part follows the last:
 //!
 //! | `recognition.split` | tested | learned | parts |
 //! |---|---|---|---|

@@ -146,7 +146,7 @@ pub enum RangeSpec {
     Grid(f64, f64, usize),
     /// Values drawn uniformly between two bounds.
     Uniform(f64, f64),
-    /// Values drawn uniformly from [−w, w] for the given half width w; 0: always zero.
+    /// Values drawn uniformly between −w and w, for a given half width w ≥ 0.
     Within(f64),
 }
 

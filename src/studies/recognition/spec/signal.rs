@@ -33,7 +33,6 @@ pub struct SignalSpec {
 /// Hysteresis: each touch follows another touch of the study, drawn at random and released. Gains, drift and faults belong to a skin: they depend only on the
 /// seed and the array, and are equal in all touches and trials. Drift: a session consists of the study's touches in random order, trial by trial, and starts
 /// with zero drift. Scan: the press continues at `touches.speed_mm_per_s` while the array is read; the last frame of a touch is read at rest.
-/// frame of a touch is read at rest.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SignalAxes(BTreeMap<usize, SignalAxis>);
 

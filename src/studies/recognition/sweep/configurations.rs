@@ -60,7 +60,7 @@ pub struct Sweep {
     pub poses: Option<Hashed<Poses>>,
 }
 
-/// One combination of the values in `[axes]`, ready to run.
+/// Plan, touches and configurations of one combination of the values in `[axes]`.
 pub struct StudyPart {
     /// Plan of the combination.
     pub plan: Plan,

@@ -78,7 +78,7 @@ pub fn first_equal(splits: &[Split]) -> Vec<usize> {
 /// enough touches in every trial: test touches for at least one group, training touches for each inner fold and for each imbalance.
 ///
 /// # Errors
-/// If a split has fewer training touches of an object than the study asks for.
+/// If a split has fewer training touches of an object than the study requires.
 pub fn train_touches(plan: &Plan, splits: &[Split], labels: &Array1<usize>) -> Result<Vec<usize>> {
     let recognition = &plan.spec.recognition;
     let at_most = |key: &str, given: f64, most: usize, what: &str| {

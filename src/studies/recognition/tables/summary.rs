@@ -22,7 +22,7 @@ type Row = (Cell, TrialScore);
 /// of each row, if there are any. `n_folds` returns the number of folds of a configuration, 1 without folds.
 ///
 /// # Errors
-/// If a trial has no test rows.
+/// If the trials of a configuration have no rows.
 pub fn summarise<C: Clone + PartialEq>(
     rows: &[(C, TrialScore)],
     mut groups: &[Vec<GroupCount>],

@@ -12,11 +12,11 @@ use crate::studies::recognition::tables::variance_table::variances;
 use crate::studies::recognition::training::trial::Evaluation;
 use std::collections::BTreeMap;
 
-/// Fills every table except those of stages and of published accuracies. `name` returns the class of a label in a configuration. `n_folds` returns the number
+/// Fills all tables except the stages and the published accuracies. `name` returns the class of a label in a configuration. `n_folds` returns the number
 /// of folds of a configuration, 1 without folds. `matrices` lists the configurations whose confusion matrix is stored.
 ///
 /// # Errors
-/// If a trial has no test rows.
+/// If the trials of a configuration have no rows.
 pub fn tabulate(
     tables: &mut Tables,
     mut scored: Vec<(Cell, Evaluation)>,
