@@ -6,8 +6,7 @@ use std::{fmt, fs};
 pub const GIB: f64 = (1u64 << 30) as f64;
 
 /// Returns the memory available to this process, bytes: the machine's memory, or its control group's limit if that is less. Returns `None` if the system does
-/// not
-/// report it.
+/// not report it.
 pub fn machine_memory() -> Option<u64> {
     let of_machine = kilobytes("/proc/meminfo", "MemTotal")?;
     let group = fs::read_to_string("/sys/fs/cgroup/memory.max").ok();

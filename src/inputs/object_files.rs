@@ -168,8 +168,7 @@ fn check_regular(path: &Path) -> Result<()> {
 }
 
 /// Builds an object from a mesh file as specified in `spec`; its name is the file name without extension. Packings are read from and written to the folder
-/// `packings`, if
-/// given. Vertex spheres that are far from the mesh are reported on standard error.
+/// `packings`, if given. Vertex spheres that are far from the mesh are reported on standard error.
 ///
 /// # Errors
 /// If the file cannot be read, the size is outside the allowed range, or the mesh cannot be converted to the requested model.
@@ -213,8 +212,7 @@ fn build_mesh(path: &Path, spec: &ObjectsSpec, packings: Option<&Path>) -> Resul
 }
 
 /// Returns the largest measured distance between the surface of a mesh and of spheres around its vertices, metres. Returns `None` if the file has no faces,
-/// or faces that are
-/// not convex.
+/// or faces that are not convex.
 fn vertex_sphere_error(file: MeshFile, spheres: &SphereUnion) -> Option<f64> {
     let (mesh, _) = file.into_mesh("").ok()?.turned_outwards();
     let is_closed = Welded::new(&mesh).n_unbalanced() == 0;
@@ -246,8 +244,7 @@ fn note_vertex_spheres(built: &[BuiltMesh], spec: &ObjectsSpec) {
 }
 
 /// Reads the triangles of a mesh file, and turns its closed parts outwards. Returns the mesh and its orientation. Holes of up to `close_holes` metres are
-/// closed first.
-/// Both changes are reported on standard error.
+/// closed first. Both changes are reported on standard error.
 ///
 /// # Errors
 /// If [`read_mesh_file`] fails, a face is not convex, or the width is negative.

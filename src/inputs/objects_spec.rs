@@ -32,8 +32,8 @@ pub struct ObjectsSpec {
     #[serde(skip)]
     pub pitch: Option<f64>,
     /// Largest distance of the surface of a solid, or of a packed mesh, outside its spheres, mm. Spheres extend at most half of this distance beyond the
-    /// surface, so the mean
-    /// heights are equal. Default: 0.25; with `model = "packed"` a tenth of the finest pitch, which gives a mean deflection error of about 2 % of the pitch.
+    /// surface, so the mean heights are equal. Default: 0.25; with `model = "packed"` a tenth of the finest pitch, which gives a mean deflection error of
+    /// about 2 % of the pitch.
     pub surface_error_mm: Option<f64>,
     /// Largest width of holes that are closed before a mesh is packed or used, mm. Default: no holes are closed.
     pub close_holes_mm: Option<f64>,

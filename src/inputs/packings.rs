@@ -1,8 +1,7 @@
 //! Packed meshes (spheres within a tolerance), stored in a folder beside the results. Each is a CSV file, named after the hash of its inputs.
 //!
 //! The last line of a file, 80 bytes, is its seal: `# bubbletouch <method>, crc32 <of all bytes before the line>`. If a file is truncated, changed or of
-//! another version, the mesh
-//! is packed again; this is reported in one line on standard error.
+//! another version, the mesh is packed again; this is reported in one line on standard error.
 
 use crate::error::{Error, Result};
 use crate::files::write_bytes;

@@ -16,8 +16,7 @@ pub const FEWEST: usize = 5;
 const RESAMPLES: usize = 4000;
 
 /// Returns the true coverage of the 95 % interval for `n_trials` trials, rounded to 0.01; `None` if there is no interval. The value is the lowest coverage
-/// among
-/// normal scores and accuracies of 0.9 and 0.98 at 100 test rows (20,000 draws each). Source: the test `print_the_table_of_the_guide`.
+/// among normal scores and accuracies of 0.9 and 0.98 at 100 test rows (20,000 draws each). Source: the test `print_the_table_of_the_guide`.
 pub fn coverage_of_95(n_trials: usize) -> Option<f64> {
     match n_trials {
         0..FEWEST => None,
@@ -37,20 +36,15 @@ pub struct Bootstrap {
 
 impl Bootstrap {
     /// Returns the bootstrap interval of the mean of `scores`. The shape is (n_trials, 1), or splits × projections for crossed trials. Returns `None` for
-    /// fewer
-    /// than [`FEWEST`] rows, or for 2 to 4 columns.
+    /// fewer than [`FEWEST`] rows, or for 2 to 4 columns.
     ///
     /// Rows are drawn with replacement. If there are several columns, columns are drawn too, independently of the rows (Owen, *The pigeonhole bootstrap*,
-    /// Annals of
-    /// Applied Statistics 2007).
+    /// Annals of Applied Statistics 2007).
     ///
     /// The interval is the expanded percentile interval (Hesterberg, *What teachers should know about the bootstrap*, American Statistician 2015). The
-    /// percentiles of
-    /// the resampled means are moved outwards for two reasons: Student's t is wider than a normal distribution, and s² exceeds the variance of the resamples.
-    /// Let n be
-    /// the smaller number of rows or columns (of rows alone, if there is one column). The tail is Φ(−√(n/(n−1)) · t). Plain percentiles of five trials would
-    /// cover
-    /// 83 % instead of 95 %.
+    /// percentiles of the resampled means are moved outwards for two reasons: Student's t is wider than a normal distribution, and s² exceeds the variance of
+    /// the resamples. Let n be the smaller number of rows or columns (of rows alone, if there is one column). The tail is Φ(−√(n/(n−1)) · t). Plain
+    /// percentiles of five trials would cover 83 % instead of 95 %.
     ///
     /// # Errors
     /// If a score is not finite, there are no columns, or the confidence is outside 0..1.

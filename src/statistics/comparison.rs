@@ -40,9 +40,8 @@ pub struct TrialSize {
 /// one size for all trials.
 ///
 /// All trials split one set of touches, so their scores are not independent. The plain paired t-test (1/J alone) would find differences that do not exist.
-/// Scores
-/// are multiples of about 1/n_test, so s² is at least the variance of such rounding, `1/(12 n_test²)`. Equal differences in a few trials are therefore no
-/// proof.
+/// Scores are multiples of about 1/n_test, so s² is at least the variance of such rounding, `1/(12 n_test²)`. Equal differences in a few trials are therefore
+/// no proof.
 ///
 /// # Errors
 /// If `a` and `b` differ in length, a score is not finite, a trial has no training or no test rows, or the confidence is outside 0..1.
@@ -72,8 +71,7 @@ pub fn compare(
 }
 
 /// Compares two configurations whose trials combine all S splits (rows of `a` and `b`) with all P projections (columns). Returns `None` for fewer than two
-/// splits
-/// or two projections, or if `a` and `b` differ in shape.
+/// splits or two projections, or if `a` and `b` differ in shape.
 ///
 /// With the mean squares of the differences by splits, projections and residual, the variance of the mean difference is
 ///
@@ -126,14 +124,12 @@ const AGREED: f64 = 3.0;
 const MOST_TRIALS: usize = 1000;
 
 /// Returns the smallest number of trials J (for crossed trials: splits) that can give a significant result. With J trials, [`compare`] finds a difference of
-/// three
-/// standard deviations between trials significant; practically every trial agrees on such a difference. The condition is
+/// three standard deviations between trials significant; practically every trial agrees on such a difference. The condition is
 ///
 /// `t(J − 1) · sqrt(1/J + n_test/n_train) ≤ 3`
 ///
 /// with Student's two-sided quantile t. With three training rows for each test row, J is 4: three trials would need 3.5 standard deviations, two 11.6.
-/// Returns
-/// `None` if 1,000 trials are not enough, because there are more than twice as many test rows as training rows.
+/// Returns `None` if 1,000 trials are not enough, because there are more than twice as many test rows as training rows.
 ///
 /// # Errors
 /// If a trial has no training or no test rows, or the confidence is outside 0..1.

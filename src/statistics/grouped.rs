@@ -20,8 +20,7 @@
 //!   Methodology 24, 1998.
 //!
 //! Differs from both sources: D* replaces D, because a few errors cannot show whether errors are clustered. Without errors, D is unknown, and each group
-//! counts
-//! as one row. Each observed error increases the weight of D.
+//! counts as one row. Each observed error increases the weight of D.
 //!
 //! Several tests may split one set of touches, so a group can be tested several times. The number n counts the rows of each group once.
 
@@ -115,8 +114,7 @@ pub fn interval_of_groups(tests: &[GroupedTest], confidence: f64) -> Result<(Int
 }
 
 /// Returns the effective number of independent rows: n/D*, reduced by the squared ratio of the normal quantile to Student's quantile at this confidence.
-/// Returns
-/// 0 for a single group.
+/// Returns 0 for a single group.
 ///
 /// # Errors
 /// Returns the errors of [`interval_of_groups`].
@@ -199,8 +197,7 @@ fn clustered(tests: &[GroupedTest]) -> Result<Clustered> {
 }
 
 /// Returns the interval of an accuracy and the number of groups. Without grouped tests, the interval is Wilson's for `n_correct` of `n_rows` and the number
-/// is
-/// `None`. With grouped tests, [`interval_of_groups`] computes both.
+/// is `None`. With grouped tests, [`interval_of_groups`] computes both.
 ///
 /// # Errors
 /// Returns the errors of [`Interval::wilson`] and [`interval_of_groups`].
@@ -355,8 +352,7 @@ mod tests {
         let mut rng = Seed::new(30).rng();
         let [(_, by_groups), (_, by_rows)] = coverage((40, 20), (0.6, 0.0), &mut rng);
         // Student's t of 39 degrees of freedom is 3.2 % wider. The estimated design effect has standard deviation √(2/39) and a lower bound of 1, which adds
-        // 0.09 on
-        // average. The prior design effect of one row a group has weight 1 in 321, which adds 0.06.
+        // 0.09 on average. The prior design effect of one row a group has weight 1 in 321, which adds 0.06.
         let expected = 1.032 * f64::sqrt(1.0 + 0.09 + 19.0 / 321.0);
         // The relative standard error of the width is half of the relative standard error of the design effect.
         let standard_error = of_mean(0.5 * f64::sqrt(2.0 / 39.0), N_DRAWS);

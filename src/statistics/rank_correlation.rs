@@ -1,8 +1,7 @@
 //! Rank correlation of two runs over the same configurations: Kendall's τ and its confidence interval.
 //!
 //! τ_b = (C − D) / √((P − T_x)(P − T_y)). Of the P = n (n − 1) / 2 pairs, C are ordered alike in both runs and D in opposite order. T_x and T_y pairs are
-//! tied in
-//! the first and second run. τ_b is 1 if all pairs are ordered alike, and −1 if all are in opposite order.
+//! tied in the first and second run. τ_b is 1 if all pairs are ordered alike, and −1 if all are in opposite order.
 //!
 //! Sources: Kendall, *The treatment of ties in ranking problems*, Biometrika 33, 1945. The O(n log n) algorithm: Knight, *A computer method for calculating
 //! Kendall's tau with ungrouped data*, Journal of the American Statistical Association 61, 1966.
@@ -32,13 +31,11 @@ pub fn kendall(pairs: &[[f64; 2]]) -> Option<f64> {
 }
 
 /// Minimum number of configurations for a correct coverage of [`kendall_interval`]. With five configurations, the 95 % interval covers a τ of 0 in 98 %, of
-/// 0.6 in
-/// 87 %, and of 0.8 in 63 % of cases. The reason: resamples of few configurations in nearly equal order hardly differ.
+/// 0.6 in 87 %, and of 0.8 in 63 % of cases. The reason: resamples of few configurations in nearly equal order hardly differ.
 pub const ENOUGH_SETTINGS: usize = 10;
 
 /// Returns the percentile bootstrap interval of Kendall's τ_b over configurations; `None` if no resample has a τ_b. Source: Efron and Tibshirani, *An
-/// introduction
-/// to the bootstrap*, 1993, chapter 13. A configuration drawn twice is tied with itself. The draws depend only on the number of configurations.
+/// introduction to the bootstrap*, 1993, chapter 13. A configuration drawn twice is tied with itself. The draws depend only on the number of configurations.
 pub fn kendall_interval(pairs: &[[f64; 2]], confidence: f64) -> Option<Interval> {
     let n = pairs.len();
     let seed = Seed::new(0).named("rank correlation");

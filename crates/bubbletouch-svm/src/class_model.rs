@@ -57,8 +57,7 @@ pub trait ClassModel: Debug + Send + Sync {
 /// Returns `ln((votes + 1) / (all votes + n_classes))` of each row: Laplace's rule of succession.
 ///
 /// A class without votes keeps a finite score; −∞ would exclude the class in all further touches. Few votes weigh less than many. The order and ties of the
-/// votes
-/// are preserved.
+/// votes are preserved.
 pub fn log_vote_shares(mut votes: Array2<f64>) -> Array2<f64> {
     for mut row in votes.axis_iter_mut(Axis(0)) {
         let all = row.sum() + row.len() as f64;

@@ -38,8 +38,7 @@ pub enum Kernel {
         gamma: Gamma,
     },
     /// Laplacian kernel `exp(−γ|x − z|₁)` of the sum of absolute differences. Outlying features have less influence than with [`Rbf`](Self::Rbf). The kernel
-    /// is slower,
-    /// because these distances are not computed by matrix products.
+    /// is slower, because these distances are not computed by matrix products.
     Laplacian {
         /// Width parameter γ.
         gamma: Gamma,
@@ -174,8 +173,7 @@ pub(crate) enum KernelFunction {
 
 impl KernelFunction {
     /// Returns an error if the largest squared norm makes some kernel value infinite. No kernel value exceeds `K(x, x)` of the row with the largest norm, and
-    /// no squared
-    /// distance exceeds four times the largest squared norm.
+    /// no squared distance exceeds four times the largest squared norm.
     fn check(&self, norm: f64) -> Result<()> {
         let largest = match *self {
             Self::Linear | Self::Rbf { .. } | Self::Laplacian { .. } => 4.0 * norm,
@@ -206,8 +204,7 @@ impl KernelFunction {
     }
 
     /// Returns the centre that is subtracted from rows. If a constant added to all features changes only ρ of a decision function, the centre is the mean of
-    /// the rows. Otherwise
-    /// it is the origin. About the mean, products are small and lose fewer digits.
+    /// the rows. Otherwise it is the origin. About the mean, products are small and lose fewer digits.
     pub fn centre(&self, statistics: &RowStatistics) -> Array1<f64> {
         match self {
             Self::Linear | Self::Rbf { .. } | Self::Laplacian { .. } => statistics.mean.clone(),
@@ -225,8 +222,7 @@ impl KernelFunction {
             Self::Rbf { .. } => Some(1.0),
             Self::Laplacian { .. } => None,
             // Each multiplication of a power adds a rounding error. Most centred products are far below the maximum; powers about the origin are not.
-            // Example: for a cubic
-            // kernel at C K = 4e3, the violation of the optimality conditions is three times the tolerance of 1e-3.
+            // Example: for a cubic kernel at C K = 4e3, the violation of the optimality conditions is three times the tolerance of 1e-3.
             Self::Polynomial { degree, .. } => {
                 Some(10.0 * f64::from(degree) * self.of_norm(farthest))
             }

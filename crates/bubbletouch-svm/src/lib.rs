@@ -35,10 +35,8 @@
 //! 1. **Rows** are checked, sorted by class and centred, in single or double precision (`gram::sorted`, `row_statistics`).
 //! 2. **Kernel values** `K(x_i, x_j)` between two classes are computed once for all problems, by matrix products of the rows (`gram`, `linalg`).
 //! 3. **Each problem** is solved by sequential minimal optimisation (`smo`). With `β_i = y_i a_i`, a solution is optimal if no variable that can be raised
-//! has a larger
-//!    `y_i − (Kβ)_i` than one that can be lowered. If convergence is slow, the linear equations of the free variables are solved (`smo::active_set`). Well
-//! separated
-//!    classes are solved on the rows near the margin (`screening`).
+//!    has a larger `y_i − (Kβ)_i` than one that can be lowered. If convergence is slow, the linear equations of the free variables are solved
+//!    (`smo::active_set`). Well separated classes are solved on the rows near the margin (`screening`).
 //! 4. **Along C and over folds**, each solution starts from the previous solution ([`cross_validation`]).
 //! 5. **Prediction** computes one matrix product for all problems and counts the votes of their signs ([`predict`]).
 //!

@@ -34,8 +34,7 @@ impl Scaling {
     /// Fits the scaling to the training features (n_rows × m).
     ///
     /// Standard deviations are population values (divided by n), as in scikit-learn's `StandardScaler`. A feature counts as constant if its spread is within
-    /// the rounding
-    /// error of its mean.
+    /// the rounding error of its mean.
     ///
     /// # Errors
     /// If the features are empty, or a feature is NaN or infinite.

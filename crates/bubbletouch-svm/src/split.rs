@@ -1,8 +1,7 @@
 //! Splits of rows into training and test rows: random with a seed, stratified by class, or by whole groups.
 //!
 //! Every split contains rows of every class in both `train` and `test`. Every row is in exactly one of them, except rows left out by [`given_hold_out`]. Rows
-//! are drawn
-//! from one named stream per class, so the split of a class does not depend on the rows of other classes.
+//! are drawn from one named stream per class, so the split of a class does not depend on the rows of other classes.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -17,8 +16,7 @@ use crate::{Error, Result};
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Split {
     /// Training rows in drawing order: the classes alternate, and the rows of each class are shuffled. A smaller training set is therefore a prefix of a
-    /// larger one; see
-    /// [`at_most`](Split::at_most).
+    /// larger one; see [`at_most`](Split::at_most).
     pub train: Vec<usize>,
     /// Test rows, ascending.
     pub test: Vec<usize>,
@@ -115,8 +113,7 @@ pub fn given_hold_out(
 }
 
 /// Stratified k-fold: k splits with disjoint test rows that cover all rows. The rows of each class, and all rows, are distributed as evenly as possible:
-/// counts differ
-/// by at most 1.
+/// counts differ by at most 1.
 ///
 /// # Errors
 /// If k is below 2, or a class has fewer than k rows.
@@ -142,8 +139,7 @@ pub fn stratified_k_fold(
 /// Group hold-out: test rows are whole groups (a pose, an offset, all copies of one touch), so no row of a test group is a training row.
 ///
 /// Groups with equal sets of classes form a stratum. Of its n groups, `test_fraction · n` (rounded, 1 to n − 1) are test groups. Strata of a single group are
-/// pooled.
-/// `groups` contains one group number per row.
+/// pooled. `groups` contains one group number per row.
 ///
 /// # Errors
 /// If the fraction is outside 0 < f < 1, the numbers of groups and labels differ, or a class has no training or no test row.

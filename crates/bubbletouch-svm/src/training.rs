@@ -1,10 +1,9 @@
 //! Training of many binary problems on one set of rows; shared quantities are computed once.
 //!
 //! One-vs-one needs each block of kernel values between two classes exactly once, and each block within a class for all its pairs. The rows are sorted by
-//! class, and the blocks
-//! within classes are stored. Of the block of a pair, the solver reads only the rows that it needs. n rows of k classes take about n²/k values in memory, not
-//! n².
-//! One-vs-rest shares the whole matrix. All C of a path are solved while a problem's Gram matrix is in memory; each C starts from the previous solution.
+//! class, and the blocks within classes are stored. Of the block of a pair, the solver reads only the rows that it needs. n rows of k classes take about n²/k
+//! values in memory, not n². One-vs-rest shares the whole matrix. All C of a path are solved while a problem's Gram matrix is in memory; each C starts from
+//! the previous solution.
 
 use std::ops::Range;
 

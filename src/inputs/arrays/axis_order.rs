@@ -1,8 +1,8 @@
 //! Axes of recorded frames: touch, time, and position on the skin.
 //!
 //! An order is a string with one letter per axis of the file. `n` counts touches, `t` frames of a touch, `y` rows, and `x` columns. Beside `y` and `x`, `c`
-//! counts the values of
-//! a taxel; otherwise `c` counts the taxels of a skin without rows and columns. Several axes `c` without `y` and `x` are combined to one axis of taxels.
+//! counts the values of a taxel; otherwise `c` counts the taxels of a skin without rows and columns. Several axes `c` without `y` and `x` are combined to one
+//! axis of taxels.
 
 use crate::error::{Error, Result};
 use crate::inputs::units::{MOST_FRAMES, MOST_SIDE};

@@ -5,8 +5,7 @@ use crate::inputs::arrays::file_array::{ElementKind, Elements, FileArray};
 use std::path::Path;
 
 /// Reads a table of numbers or, if a cell is not a number, of texts. An empty cell among numbers is NaN. The first line contains names if a cell is not a
-/// number and the
-/// other lines contain numbers. A column without a name contains row numbers and is skipped.
+/// number and the other lines contain numbers. A column without a name contains row numbers and is skipped.
 ///
 /// # Errors
 /// If the file cannot be read, is empty, or its lines differ in the number of cells.

@@ -1,8 +1,7 @@
 //! Arrays in files: `.npy`, members of `.npz`, and `.csv`. All element types of NumPy for numbers and texts are supported.
 //!
 //! In a `.npz` archive, the member with the requested name (`frames`, `labels` …) is read, or its only member. A `.csv` file is a table of rows and columns.
-//! Elements are
-//! converted to f64 (integers exactly up to 2⁵³), or kept as texts.
+//! Elements are converted to f64 (integers exactly up to 2⁵³), or kept as texts.
 
 use crate::inputs::arrays::file_array::{Elements, FileArray};
 pub(crate) mod axis_order;

@@ -1,14 +1,11 @@
 //! Temporal features: features of the sequence of measured frames of a touch.
 //!
 //! A touch is a sequence of F frames y_t of m measurements each. Random measurements approximately preserve distances between frames (Johnson and
-//! Lindenstrauss).
-//! The strength, duration, number and steadiness of contacts can therefore be computed from measurements, without reconstructing taxels. The **level** of a
-//! frame
-//! is ‖y_t‖.
+//! Lindenstrauss). The strength, duration, number and steadiness of contacts can therefore be computed from measurements, without reconstructing taxels. The
+//! **level** of a frame is ‖y_t‖.
 //!
 //! The **course** of a touch consists of ten numbers for any m. A frame is in contact if its level is above the midpoint between the lowest and highest level
-//! of
-//! the touch. The pattern of a frame is `ŷ = y / ‖y‖`.
+//! of the touch. The pattern of a frame is `ŷ = y / ‖y‖`.
 //!
 //! | number | definition |
 //! |---|---|

@@ -1,8 +1,7 @@
 //! Fusion of several touches of one object into one decision.
 //!
 //! The scores of k touches are summed, and one label is decided for the sum. If scores are log-probabilities, this is the decision for independent
-//! observations. If
-//! scores are decision values of an SVM, this is a vote weighted by margins.
+//! observations. If scores are decision values of an SVM, this is a vote weighted by margins.
 
 use std::collections::BTreeMap;
 

@@ -66,8 +66,7 @@ impl ConfusionMatrix {
     }
 
     /// Returns the F1 score of each class (n_classes): `2 · correct / (true + predicted)`, the harmonic mean of precision and recall. The score is 0 if the
-    /// class does
-    /// not occur.
+    /// class does not occur.
     pub fn f1(&self) -> Array1<f64> {
         let occurrences = self.counts.sum_axis(Axis(0)) + self.counts.sum_axis(Axis(1));
         shares(self.counts.diag(), &occurrences) * 2.0

@@ -1,8 +1,7 @@
 //! Choice of the next pose in which to touch an unknown object: random, farthest from the previous touches, or most informative.
 //!
 //! The pose can be commanded, but the object there is known only after the touch. A classifier assigns labels a₁ … a_t to touches in poses x₁ … x_t. The
-//! posterior
-//! probability (belief) of object o is
+//! posterior probability (belief) of object o is
 //!
 //! P(o) ∝ Π P(a_i | o, x_i), with a uniform prior.
 //!
@@ -12,8 +11,7 @@
 //! P(a | o) = (n_oa + 1/n) / (n_o + 1), for n objects and n_o touches of o, of which n_oa have the label a.
 //!
 //! The distance d² sums squared differences along the axes of a pose, each divided by the bandwidth of its axis. The bandwidths and s maximise the
-//! leave-one-out
-//! likelihood of the labels. The most informative pose has the least expected entropy of P(o) after the touch, that is the greatest
+//! leave-one-out likelihood of the labels. The most informative pose has the least expected entropy of P(o) after the touch, that is the greatest
 //! [information](PoseAnswers::information)
 //!
 //! I(O; A | x) = H(A | x) − Σ_o P(o) H(A | o, x), P(a | x) = Σ_o P(o) P(a | o, x) (Lindley, 1956).
@@ -213,8 +211,7 @@ impl PoseAnswers {
 }
 
 /// Returns the position in `left` of the most informative pose; the first, if several are equal. `poses` and `answers` are indexed by touch. The belief is
-/// computed from
-/// the labels of the touches in `made`; the labels of `left` are not used.
+/// computed from the labels of the touches in `made`; the labels of `left` are not used.
 pub fn most_informative(
     (poses, answers): (&[PoseAnswers], &[usize]),
     made: &[usize],
@@ -229,8 +226,7 @@ pub fn most_informative(
 }
 
 /// Returns a sequence of k ≤ n of the touches `0..n`, starting with `first`. Each further touch is chosen by `next`, which receives the touches made, in
-/// order, and the
-/// remaining touches, ascending. `next` returns a position in the latter list.
+/// order, and the remaining touches, ascending. `next` returns a position in the latter list.
 pub fn sequence(
     (first, k): (usize, usize),
     n: usize,

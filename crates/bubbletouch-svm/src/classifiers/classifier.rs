@@ -1,8 +1,7 @@
 //! Classifiers of a study's configurations, with one interface for training and prediction of all kinds.
 //!
 //! [`Classifier`] and [`TrainedClassifier`] implement linfa's `Fit` and `PredictInplace`, so they can replace any linfa classifier. [`predict_split`]
-//! evaluates any
-//! classifier that implements these traits.
+//! evaluates any classifier that implements these traits.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -34,8 +33,7 @@ pub enum Cost {
     /// Fixed value of C.
     Fixed(f64),
     /// C (and γ) with the highest accuracy on validation rows; of equal candidates the smaller γ, then the smaller C. The final model is trained on all
-    /// training
-    /// rows.
+    /// training rows.
     Chosen(Candidates),
 }
 
@@ -97,8 +95,7 @@ impl Classifier {
     }
 
     /// Trains on the training rows. All random draws come from `seed`: the five stratified folds that choose C, the trees of a forest, and the order of
-    /// coordinate
-    /// descent.
+    /// coordinate descent.
     ///
     /// # Errors
     /// If a parameter is out of range, or the training of the kind or [`stratified_k_fold`] rejects the data.
@@ -114,8 +111,7 @@ impl Classifier {
     }
 
     /// Trains on the training rows. If C is to be chosen, it is chosen on `folds`, which contain positions within `training` (for instance folds that keep
-    /// groups
-    /// apart). The scaling is fitted to all training rows, without their labels, before the folds are made. Other random draws come from `seed`.
+    /// groups apart). The scaling is fitted to all training rows, without their labels, before the folds are made. Other random draws come from `seed`.
     ///
     /// # Errors
     /// If a parameter is out of range, or the training of the kind or [`choose`](Self::choose) rejects the data.

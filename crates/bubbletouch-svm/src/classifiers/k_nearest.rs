@@ -4,10 +4,8 @@
 //! scikit-learn's.
 //!
 //! Distances are computed by one matrix product per block, `|a|² + |b|² − 2 a·b`, which is inaccurate for close rows. The product therefore only selects
-//! candidates:
-//! all rows that could be among the k nearest within the rounding error. The distances of the candidates are recomputed by `Σ (a − b)²`, so the result equals
-//! that of
-//! an exact pairwise search. Far from the origin, there are many candidates; scale the features.
+//! candidates: all rows that could be among the k nearest within the rounding error. The distances of the candidates are recomputed by `Σ (a − b)²`, so the
+//! result equals that of an exact pairwise search. Far from the origin, there are many candidates; scale the features.
 
 use crate::classifiers::classifier_about::ClassifierAbout;
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis};
@@ -18,8 +16,7 @@ use crate::dataset::{Dataset, check_width, checked_classes, positions};
 use crate::{Error, Result};
 
 /// Number of rows whose distances to all training rows are computed together. If larger, the distances exceed the processor's cache; if smaller, the products
-/// are
-/// inefficient.
+/// are inefficient.
 const BLOCK_ROWS: usize = 128;
 
 /// Trained k-nearest-neighbours classifier: the training rows and their labels. Scores are the logarithms of smoothed vote fractions.
@@ -39,8 +36,7 @@ impl KNearest {
     ///
     /// # Errors
     /// If `n_neighbours` is not in 1 to the number of rows, the data are empty, a feature is NaN, infinite or too large to square, the number of labels
-    /// differs from the
-    /// number of rows, or there is a single class.
+    /// differs from the number of rows, or there is a single class.
     pub fn train(data: &Dataset, n_neighbours: usize) -> Result<Self> {
         let classes = checked_classes(data)?;
         let n_rows = data.records.nrows();

@@ -1,8 +1,7 @@
 //! Gaussian naive Bayes, fitted by linfa-bayes: the features of a class are normal and independent.
 //!
 //! linfa's prediction is not used. Ties are resolved in the order of a `HashMap`, and probabilities are normalised without subtracting the maximum first:
-//! with 64
-//! features all underflow to 0. linfa's joint log-likelihoods are correct and are used.
+//! with 64 features all underflow to 0. linfa's joint log-likelihoods are correct and are used.
 
 use crate::classifiers::classifier_about::ClassifierAbout;
 use linfa::traits::Fit;
@@ -31,8 +30,7 @@ impl NaiveBayes {
     ///
     /// # Errors
     /// If the data are empty, a feature is NaN or infinite, the number of labels differs from the number of rows, there is a single class, or all features
-    /// are
-    /// constant (no variance for smoothing).
+    /// are constant (no variance for smoothing).
     pub fn train(data: &Dataset) -> Result<Self> {
         let classes = checked_classes(data)?;
         let is_constant = |column: ArrayView1<f64>| column.iter().all(|x| *x == column[0]);

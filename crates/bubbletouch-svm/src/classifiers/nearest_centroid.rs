@@ -1,10 +1,8 @@
 //! Nearest centroid: each class is represented by the mean of its training rows; a row is assigned to the class with the nearest mean (Euclidean).
 //!
 //! The classifier equals scikit-learn's `NearestCentroid`. It stores n_classes × m numbers and has no parameters; a decision costs one distance per class.
-//! Scores are
-//! −½|x − μₖ|², which is `ln p(x | k)` of normal classes of variance 1, up to a constant per row. The sum over several touches is therefore the joint score.
-//! Of
-//! equal distances, the lower label wins, as in scikit-learn.
+//! Scores are −½|x − μₖ|², which is `ln p(x | k)` of normal classes of variance 1, up to a constant per row. The sum over several touches is therefore the
+//! joint score. Of equal distances, the lower label wins, as in scikit-learn.
 
 use crate::Result;
 use crate::class_model::ClassModel;

@@ -1,10 +1,8 @@
 //! Random forests [Breiman 2001]. Each tree is grown on a bootstrap sample of the rows, with √m random features per node. The trees vote with the class
-//! fractions of
-//! their leaves, as in scikit-learn.
+//! fractions of their leaves, as in scikit-learn.
 //!
 //! Differs from linfa-ensemble 0.8.1 for three reasons. Its trees (linfa-trees 0.8.1) sum impurities in f32 in the order of a `HashMap`, so two trainings on
-//! equal
-//! rows differ. It breaks ties of votes in the order of a `HashMap`. It draws features once per tree instead of once per node.
+//! equal rows differ. It breaks ties of votes in the order of a `HashMap`. It draws features once per tree instead of once per node.
 
 use crate::classifiers::classifier_about::ClassifierAbout;
 use ndarray::{Array2, ArrayView2};
@@ -32,8 +30,7 @@ impl RandomForest {
     ///
     /// # Errors
     /// If there are no trees, the depth is 0, the data are empty, a feature is NaN or infinite, the number of labels differs from the number of rows, or
-    /// there is a
-    /// single class.
+    /// there is a single class.
     pub fn train(
         data: &Dataset,
         n_trees: usize,

@@ -71,8 +71,7 @@ impl TrainedClassifier {
     }
 
     /// Returns the scores (n_rows × n_scores) of unscaled features; [`labels_of_scores`](Self::labels_of_scores) converts them to labels. Scores are
-    /// additive: the sum of
-    /// the scores of several touches of one object is their joint score.
+    /// additive: the sum of the scores of several touches of one object is their joint score.
     ///
     /// | classifier | score |
     /// |---|---|

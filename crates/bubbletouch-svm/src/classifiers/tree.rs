@@ -1,12 +1,10 @@
 //! The classification trees of a random forest [Breiman et al. 1984]: Gini impurity, binary splits `x_f ≤ threshold`, no pruning.
 //!
 //! A node is divided by the split that lowers the impurity most, i.e. with the largest `Σ_k l_k² / l + Σ_k r_k² / r` (l_k, r_k: rows of class k left and
-//! right).
-//! Of equal splits, the feature visited first and its lowest threshold are taken. Thresholds are midpoints between values that occur in the node.
+//! right). Of equal splits, the feature visited first and its lowest threshold are taken. Thresholds are midpoints between values that occur in the node.
 //!
 //! Differs from linfa-trees 0.8.1, because it sums impurities in f32 in the order of a `HashMap`. Two trainings on equal rows differ (2,000 rows, 20 classes:
-//! 3 of
-//! 500 predictions). linfa-trees also treats values closer than 1e-5 as equal in any unit, and visits every row and feature at every node.
+//! 3 of 500 predictions). linfa-trees also treats values closer than 1e-5 as equal in any unit, and visits every row and feature at every node.
 
 use crate::classifiers::ranked::Ranked;
 use crate::streams::DynStreams;
@@ -276,8 +274,7 @@ mod tests {
     }
 
     /// The labels equal those of scikit-learn 1.9.1, `DecisionTreeClassifier(max_depth=3)`. No two splits of these rows are equally good, so scikit-learn's
-    /// tree does not
-    /// depend on its `random_state`.
+    /// tree does not depend on its `random_state`.
     #[test]
     fn a_shallow_tree_is_scikit_learns() {
         let (features, label) = waves();

@@ -1,8 +1,7 @@
 //! Alpha seeding: the solution of one fold gives the start for the next fold.
 //!
 //! Two of k folds share all but 2/k of their rows. The multipliers of removed rows are moved to the most similar added rows [DeCoste, Wagstaff 2000; Wen et
-//! al. 2017].
-//! The constraint `Σβ = 0` and the bounds remain satisfied.
+//! al. 2017]. The constraint `Σβ = 0` and the bounds remain satisfied.
 
 use std::ops::Range;
 

@@ -20,8 +20,7 @@ pub struct Candidates {
     /// Candidate values of C; at least one.
     pub c: Vec<f64>,
     /// Candidate values of γ as multiples of the kernel's own γ; empty to use the kernel's own γ. The kernel's own γ is its number, or [`Gamma::Scale`] of
-    /// the training rows.
-    /// A linear kernel has no γ.
+    /// the training rows. A linear kernel has no γ.
     pub gamma_scales: Vec<f64>,
 }
 
@@ -48,17 +47,14 @@ pub struct Chosen {
 }
 
 /// Evaluates every C with every γ on every fold, and returns the most accurate candidate. Of equal candidates, the smaller γ is taken, then the smaller C
-/// (smoother, more
-/// regularised, and faster).
+/// (smoother, more regularised, and faster).
 ///
 /// `training` contains only scaled training rows; the scaling may be fitted to all of them, without labels. `folds` split these rows. The whole grid is
-/// evaluated on one
-/// matrix of products. Duplicated candidates count once.
+/// evaluated on one matrix of products. Duplicated candidates count once.
 ///
 /// # Errors
 /// If there are no candidates or folds, a candidate is out of range, or a fold contains a row beyond the training rows or a single class. If
-/// [`SvmParams::train`]
-/// returns an error, or the matrix exceeds the memory limit.
+/// [`SvmParams::train`] returns an error, or the matrix exceeds the memory limit.
 pub fn choose(
     params: &SvmParams,
     training: &Dataset,
@@ -89,8 +85,7 @@ pub fn choose(
 }
 
 /// Chooses C as [`choose`] does, for any classifier. `train` fits a classifier to rows with a given C; it returns a prediction function and the number of
-/// capped
-/// solves.
+/// capped solves.
 ///
 /// # Errors
 /// Returns the errors of [`choose`] and of `train`.

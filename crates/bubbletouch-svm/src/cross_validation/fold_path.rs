@@ -1,8 +1,7 @@
 //! A binary problem on the rows of all folds, solved fold by fold along C.
 //!
 //! Held-out rows keep their position; their label and multiplier are 0. Their f is the negative decision sum, so validation rows are scored by the solver's
-//! own
-//! values. A fold starts from the previous fold's multipliers, or from the previous C's rescaled multipliers, whichever has the higher objective.
+//! own values. A fold starts from the previous fold's multipliers, or from the previous C's rescaled multipliers, whichever has the higher objective.
 
 use std::ops::Range;
 
@@ -35,8 +34,8 @@ pub(crate) struct FoldSolution {
 }
 
 impl FoldPath {
-    /// Solves a pair of classes fold by fold; calls `told` with each solved fold. `folds` contains the labels of each fold, one per row of the Gram matrix; the rows of `positive`
-    /// are positive.
+    /// Solves a pair of classes fold by fold; calls `told` with each solved fold. `folds` contains the labels of each fold, one per row of the Gram matrix;
+    /// the rows of `positive` are positive.
     pub fn of_pair<T: SolverScalar>(
         gram: &mut Dense<T>,
         (folds, positive): (Vec<Vec<f64>>, &Range<usize>),
@@ -64,9 +63,8 @@ impl FoldPath {
         }
     }
 
-    /// Solves one class against all others, fold by fold; calls `told` with each solved fold. If a class is not separable from the rest, several decision values can be equal within
-    /// the tolerance.
-    /// The start then determines the winner, so each fold starts from zero, as in training.
+    /// Solves one class against all others, fold by fold; calls `told` with each solved fold. If a class is not separable from the rest, several decision
+    /// values can be equal within the tolerance. The start then determines the winner, so each fold starts from zero, as in training.
     pub fn of_class<T: SolverScalar>(
         gram: &mut Dense<T>,
         folds: Vec<Vec<f64>>,

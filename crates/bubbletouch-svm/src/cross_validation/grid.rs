@@ -1,8 +1,7 @@
 //! Cross-validation of a whole grid of C and kernels on one matrix of products.
 //!
-//! All folds and candidates share the products of rows. The kernel values of a pair of classes are computed once for all folds, which
-//! [hold out rows](crate::cross_validation::fold_path). Along C, each solution starts from the previous one. For the first C, a pair starts with all
-//! multipliers at
+//! All folds and candidates share the products of rows. The kernel values of a pair of classes are computed once for all folds, which [hold out
+//! rows](crate::cross_validation::fold_path). Along C, each solution starts from the previous one. For the first C, a pair starts with all multipliers at
 //! their bounds. From the second fold on, it starts from [the previous fold](super::alpha_seeding) if that start is closer. Validation rows are
 //! [scored](super::validation_scorer) by the problems of their own class first.
 
@@ -46,8 +45,7 @@ struct Fold {
 
 impl<T: SolverScalar> Grid<'_, T> {
     /// Returns the number of recognised validation rows over all folds, per kernel and C (kernels.len() × path.len()), and the number of solves stopped at
-    /// the iteration
-    /// cap.
+    /// the iteration cap.
     pub fn n_correct(&self, kernels: &[KernelFunction], goal: Goal) -> (Array2<usize>, usize) {
         let rows = (self.sorted.points(), self.sorted.ranges());
         // The kernels differ only in γ, so they share the pairwise numbers.

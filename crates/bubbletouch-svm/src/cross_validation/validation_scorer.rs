@@ -1,8 +1,7 @@
 //! Scores of a fold: which of its validation rows are classified correctly.
 //!
 //! The results of a row's own class are known as soon as its problems are solved. If the class wins all its pairs, the row is recognised, because every other
-//! class has
-//! lost a pair. The remaining rows are classified by the votes of all problems, with the matrix products of [prediction](crate::predict).
+//! class has lost a pair. The remaining rows are classified by the votes of all problems, with the matrix products of [prediction](crate::predict).
 
 use std::ops::Range;
 
@@ -40,8 +39,7 @@ pub(crate) struct ValidationScorer<T> {
 
 impl<T: Scalar> ValidationScorer<T> {
     /// Creates a scorer for `rows` (row, position of its class) and `n_path` values of C. `is_class` contains whether each class has training rows; `ranges`
-    /// contains the rows
-    /// of all classes.
+    /// contains the rows of all classes.
     pub fn new(
         (rows, is_class): (Vec<(usize, usize)>, &[bool]),
         ranges: &[Range<usize>],

@@ -13,8 +13,7 @@ use crate::linalg::scalar::Scalar;
 /// Rows (n × m) minus a centre, with their squared norms.
 ///
 /// For some kernels, the centre is arbitrary. A constant added to all features does not change RBF distances. In a linear decision function it changes only
-/// ρ, because
-/// the coefficients sum to zero. About the mean, products are small and lose fewer digits.
+/// ρ, because the coefficients sum to zero. About the mean, products are small and lose fewer digits.
 #[derive(Clone, Debug)]
 pub(crate) struct CenteredRows<T> {
     /// n × m.

@@ -1,6 +1,5 @@
 //! Kernel values computed from pairwise numbers of all rows (products, for most kernels). Values within classes are computed once, values between two classes
-//! when their
-//! pair is solved, and values of a validation row when it is scored.
+//! when their pair is solved, and values of a validation row when it is scored.
 
 use std::ops::Range;
 

@@ -7,8 +7,7 @@ pub(crate) const LANES: usize = 32;
 /// Number of values of a right-hand side computed one after another.
 const BLOCK: usize = 8;
 /// Threshold of linear independence, as a multiple of the ridge. After elimination, the diagonal of a dependent row is about the ridge; of a nearly dependent
-/// row, slightly
-/// more.
+/// row, slightly more.
 const INDEPENDENT_FROM: f64 = 10.0;
 
 /// A piece of a row.

@@ -13,8 +13,7 @@ pub(crate) trait Scalar: NdFloat + Default {
     /// Replaces each squared distance by `exp(−γ · distance)`.
     fn exponentials(distances: &mut [Self], gamma: f64);
     /// Writes the products of rows with other rows of equal length into `products`, row by row, without copying. Returns `false`, and writes nothing, if
-    /// there is no fast
-    /// implementation.
+    /// there is no fast implementation.
     fn products_in_place(_: &[&[Self]], _: &[&[Self]], _: &mut [Self]) -> bool {
         false
     }
@@ -55,8 +54,7 @@ impl Scalar for f32 {
 }
 
 /// Computes `exp(−γ d)` by range reduction and the Cephes polynomial of `expf` (Moshier 1989). The error is at most 2 units in the last place; results below
-/// the
-/// smallest normal number are 0. The code has no branches, so that it is vectorised.
+/// the smallest normal number are 0. The code has no branches, so that it is vectorised.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn exponentials_f32(distances: &mut [f32], gamma: f32) {
     /// 1.5 · 2²³: adding it rounds to an integer, which is then contained in the low bits.

@@ -36,8 +36,7 @@ impl LinearSvmParams {
     ///
     /// # Errors
     /// If C, the tolerance or the cap is out of range, the data are empty, or a feature is NaN, infinite or too large to square. If the number of labels
-    /// differs from the
-    /// number of rows, or there is a single class.
+    /// differs from the number of rows, or there is a single class.
     pub fn train(&self, data: &Dataset, seed: &dyn DynStreams) -> Result<LinearSvm> {
         self.check()?;
         let classes = checked_classes(data)?;

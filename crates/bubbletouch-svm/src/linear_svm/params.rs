@@ -11,8 +11,7 @@ pub struct LinearSvmParams {
     /// Penalty C > 0 per unit of margin violation.
     pub c: f64,
     /// Stopping tolerance, above 0: the largest violation of the optimality conditions (spread of projected gradients), in units of the margin.
-    /// scikit-learn's default for
-    /// LinearSVC is 1e-4.
+    /// scikit-learn's default for LinearSVC is 1e-4.
     pub tolerance: f64,
     /// Maximum number of passes over the rows, at least 1; beyond it, the solver stops and marks the problem as capped.
     pub max_passes: usize,

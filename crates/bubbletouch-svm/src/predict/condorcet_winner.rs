@@ -1,10 +1,8 @@
 //! Condorcet winner: the class that wins all its pairs, found without evaluating all pairs of the other classes.
 //!
 //! One-vs-one elects the class with the most votes. If one of n classes wins all its n − 1 pairs, it is elected, because every other class has lost a pair. A
-//! knock-out finds
-//! the only candidate with n − 1 pairs. The candidate must then win the pairs not yet evaluated, so at most 2 (n − 1) of n (n − 1) / 2 pairs are evaluated.
-//! On touches of 43
-//! objects, 99 rows of 100 have a Condorcet winner.
+//! knock-out finds the only candidate with n − 1 pairs. The candidate must then win the pairs not yet evaluated, so at most 2 (n − 1) of n (n − 1) / 2 pairs
+//! are evaluated. On touches of 43 objects, 99 rows of 100 have a Condorcet winner.
 //!
 //! A pair counts only if the distance of its value from ρ exceeds the rounding error. Its sign then does not depend on the order of summation.
 //!
@@ -262,8 +260,7 @@ fn wins<T: Scalar>(pairs: &mut impl Decides<T>, (first, second): (usize, usize))
     let (sum, size, n_terms, rho) = pairs.value(pair);
     let value = sum.wide() - rho;
     // The error of adding n products one by one is at most n u Σ|products|, where u is half of epsilon. Two orders of summation differ by at most twice this
-    // value. The 8
-    // accounts for adding lanes and classes.
+    // value. The 8 accounts for adding lanes and classes.
     let error = (n_terms + 8) as f64 * T::epsilon().wide() * size.wide();
     if value > error {
         Some(true)

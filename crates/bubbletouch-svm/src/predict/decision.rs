@@ -16,8 +16,7 @@ use crate::predict::class_weights::{ClassWeights, weighted_sums};
 use crate::predict::voting::VoteCounter;
 
 /// Number of rows per block of decision values. If smaller, the packing of the support vectors dominates; if larger, the kernel values (10 MB with 5,000
-/// support vectors) take
-/// much memory.
+/// support vectors) take much memory.
 const BLOCK_ROWS: usize = 512;
 
 /// Decision functions `Σ y a K(x_i, x) − ρ` of all problems.
@@ -51,8 +50,7 @@ struct Support<T> {
 
 impl<T: Scalar> DecisionFunctions<T> {
     /// Creates the decision functions of problems trained on the given rows. Owned rows are reduced to the support vectors in place. The normals of linear
-    /// problems are computed
-    /// unless given.
+    /// problems are computed unless given.
     pub fn new(
         rows: Cow<Sorted<T>>,
         problems: &[BinaryProblem],

@@ -1,10 +1,8 @@
 //! A trained SVM: decision values and labels, by matrix products.
 //!
 //! For a block of rows, one matrix product computes the kernel values with all support vectors of a class. A second product applies their coefficients in all
-//! binary problems.
-//! A linear SVM needs one product with its hyperplanes. The products have the precision of training. Labels of one-vs-one SVMs with a kernel need the second
-//! product only
-//! for rows without a class that wins all its pairs (`condorcet_winner`).
+//! binary problems. A linear SVM needs one product with its hyperplanes. The products have the precision of training. Labels of one-vs-one SVMs with a kernel
+//! need the second product only for rows without a class that wins all its pairs (`condorcet_winner`).
 
 use std::borrow::Cow;
 
@@ -126,8 +124,7 @@ impl<F: Precision, D: Data<Elem = F>> PredictInplace<ArrayBase<D, Ix2>, Array1<u
     ///
     /// # Panics
     /// If the number of columns differs from training, a feature is not finite, or `targets` has a wrong length, because linfa's trait cannot return an
-    /// error. Use
-    /// [`SvmModel::labels`] for errors.
+    /// error. Use [`SvmModel::labels`] for errors.
     fn predict_inplace(&self, features: &ArrayBase<D, Ix2>, targets: &mut Array1<usize>) {
         match self.labels(F::double_features(features).view()) {
             Ok(labels) => targets.assign(&labels),

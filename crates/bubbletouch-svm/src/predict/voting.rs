@@ -6,8 +6,7 @@ use crate::linalg::scalar::Scalar;
 use crate::multiclass::Multiclass;
 
 /// Rule that converts decision values to a class. One-vs-one has one value per pair of class positions (0, 1), (0, 2), …, (1, 2), …, where the first class is
-/// positive.
-/// One-vs-rest has one value per class.
+/// positive. One-vs-rest has one value per class.
 #[derive(Clone, Debug)]
 pub(crate) struct Voting {
     classes: Vec<usize>,
@@ -78,8 +77,7 @@ impl VoteCounter {
     }
 
     /// Adds the values of one problem, minus ρ; positive values are votes for the positive class. The problem is given by the positions of its positive and
-    /// negative class.
-    /// Problems must be added in the order of [`Multiclass::problems`].
+    /// negative class. Problems must be added in the order of [`Multiclass::problems`].
     pub fn take<T: Scalar>(
         &mut self,
         (positive, negative): (usize, Option<usize>),
@@ -111,8 +109,7 @@ impl VoteCounter {
     }
 
     /// Returns the position of the elected class of each row, given the sums of the problems (n_problems × n_rows) and their ρ. Problems with a class that
-    /// does not take part have
-    /// no vote.
+    /// does not take part have no vote.
     pub fn elect<T: Scalar>(
         sums: &Array2<T>,
         rho: ArrayView1<f64>,
@@ -144,8 +141,7 @@ impl VoteCounter {
 }
 
 /// Counts the votes per class as LIBSVM does: a positive value is a vote for the positive class, any other value for the negative class. The problems are all
-/// pairs of classes in
-/// order, so the problems of a class with all later classes are contiguous.
+/// pairs of classes in order, so the problems of a class with all later classes are contiguous.
 fn count(values: &[f64], votes: &mut [u32]) {
     let mut rest = values;
     for class in 0..votes.len() {

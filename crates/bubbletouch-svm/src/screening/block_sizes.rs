@@ -4,8 +4,7 @@
 pub(crate) const FEW_DIMENSIONS: usize = 64;
 
 /// Number of classes whose pairs with [`OTHERS_AT_ONCE`] other classes are solved together. If larger, their products exceed the cache; if smaller, the tiles
-/// of matrix
-/// products are incomplete.
+/// of matrix products are incomplete.
 pub(crate) const CLASSES_AT_ONCE: usize = 8;
 
 /// Number of other classes of a block, see [`CLASSES_AT_ONCE`]. If larger, their rows near margins exceed the second-level cache; if smaller, there are more

@@ -214,8 +214,7 @@ impl<T: SolverScalar> MarginPair<T> {
     }
 
     /// Returns the rows to activate, given `w·x` of all rows of both classes: the worst of the rows that violate the optimality conditions. If most rows are
-    /// active, all others are
-    /// returned. Returns `None` if no row violates the conditions.
+    /// active, all others are returned. Returns `None` if no row violates the conditions.
     ///
     /// An inactive row violates the conditions if it lies more than half the tolerance beyond the middle of the interval left by the active rows.
     pub fn joining(

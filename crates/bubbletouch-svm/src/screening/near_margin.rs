@@ -1,12 +1,9 @@
 //! One-vs-one linear SVMs solved on the rows near their margins.
 //!
 //! If classes are well separated, a hyperplane depends on few rows. With many features, however, the products of all rows with each other dominate the
-//! training time. Each pair
-//! of classes is therefore solved on a few rows of each class. The optimality conditions of all rows are then checked; rows that violate them are added, and
-//! the pair is solved
-//! again from the last solution. At the end, every row satisfies the conditions, so the solution is the solution of the whole problem. The pairs of a block
-//! share rounds: one
-//! matrix product multiplies all hyperplanes of a round with the rows of a class.
+//! training time. Each pair of classes is therefore solved on a few rows of each class. The optimality conditions of all rows are then checked; rows that
+//! violate them are added, and the pair is solved again from the last solution. At the end, every row satisfies the conditions, so the solution is the
+//! solution of the whole problem. The pairs of a block share rounds: one matrix product multiplies all hyperplanes of a round with the rows of a class.
 //!
 //! The [first rows](crate::screening::first_rows) are selected in a low-dimensional subspace.
 
@@ -113,8 +110,7 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
     }
 
     /// Returns the maximum memory, bytes: the products if all rows of all pairs are active, the hyperplanes of a round, the rows of a pair, the directions of
-    /// the subspace, and all
-    /// projected rows.
+    /// the subspace, and all projected rows.
     pub fn most_bytes(sorted: &Sorted<T>) -> usize {
         let sizes = || sorted.ranges().iter().map(Range::len);
         let within: usize = sizes().map(|n| n * n).sum();
@@ -128,8 +124,7 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
     }
 
     /// Solves all pairs for this C, starting from the last solutions. The violation of the optimality conditions is at most `tolerance`. Returns the solution
-    /// and the normal of
-    /// each pair's hyperplane. The coefficients are those of all rows of the first class, then of the second.
+    /// and the normal of each pair's hyperplane. The coefficients are those of all rows of the first class, then of the second.
     pub fn solve(&mut self, c: f64, tolerance: f64) -> Vec<(DualSolution, Vec<T>)> {
         let goal = PairGoal {
             c,
@@ -154,8 +149,7 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
     }
 
     /// Solves all pairs in rounds, until no row violates the optimality conditions or the maximum number of rounds is reached. Returns a result for each
-    /// pair, computed after its
-    /// last round.
+    /// pair, computed after its last round.
     fn solve_rounds<R>(
         &mut self,
         goal: PairGoal,

@@ -24,8 +24,7 @@ pub(crate) struct PairGoal {
 pub(crate) type State = (Vec<f64>, Vec<f64>);
 
 /// Solves a problem from a given state, with its labels and the C of the state: pairwise steps to a rough tolerance, then active-set steps. If these do not
-/// reach the tolerance,
-/// pairwise steps continue.
+/// reach the tolerance, pairwise steps continue.
 pub(crate) fn reach_by_equations<T: SolverScalar, G: Gram<T>>(
     gram: &mut G,
     (labels, state, c): (&[f64], State, f64),

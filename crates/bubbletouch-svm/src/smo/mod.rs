@@ -1,14 +1,11 @@
 //! One binary soft-margin problem, solved by sequential minimal optimisation.
 //!
 //! With `β_i = y_i a_i`, the dual problem is: maximise `Σ_i y_i β_i − ½ Σ_ij β_i β_j K_ij` subject to `0 ≤ y_i β_i ≤ C` and `Σ_i β_i = 0`. The gradient is `f
-//! = y − Kβ`. A
-//! solution β is optimal if no variable that can be raised has a larger f than one that can be lowered. Each iteration chooses such a pair by second-order
-//! information [Fan,
-//! Chen, Lin 2005] and moves it to the optimum along its line, in two passes over f (`passes`).
+//! = y − Kβ`. A solution β is optimal if no variable that can be raised has a larger f than one that can be lowered. Each iteration chooses such a pair by
+//! second-order information [Fan, Chen, Lin 2005] and moves it to the optimum along its line, in two passes over f (`passes`).
 //!
 //! - **Shrinking** [Joachims 1999]: variables that are likely to stay at a bound are omitted. The remaining part of the Gram matrix is copied, so that
-//!   iterations use short
-//!   contiguous rows.
+//!   iterations use short contiguous rows.
 //! - **Warm start along C**: the last solution is scaled by the factor with the best objective.
 //! - **Active-set steps**: if pairwise steps converge slowly, the solver periodically solves the equations of the free variables (`active_set`).
 //! - **Precision**: the Gram matrix and f may be f32; the stopping criterion is checked in f64.

@@ -1,10 +1,8 @@
 //! The solver's two passes over all variables, written for automatic vectorisation. For f32, there are [explicit vector instructions](super::passes_512) if
-//! the processor supports
-//! them.
+//! the processor supports them.
 //!
 //! The length of every slice is a multiple of [`LANES`] ([`padded`]). Each lane has its own extreme. The position of the overall extreme is searched
-//! afterwards; of equal values, the
-//! lowest index is taken, so results do not depend on the processor.
+//! afterwards; of equal values, the lowest index is taken, so results do not depend on the processor.
 
 use crate::linalg::lanes::LANES;
 use crate::linalg::scalar::Scalar;
@@ -99,16 +97,14 @@ pub(crate) fn step_along<T: Scalar>(
 /// Result of the second pass.
 pub(crate) struct Down<T> {
     /// The variable to lower together with `i`: the one with the largest second-order gain of the dual objective [Fan, Chen, Lin 2005]. `None` if no pair
-    /// violates the optimality
-    /// conditions.
+    /// violates the optimality conditions.
     pub j: Option<usize>,
     /// Violation of the optimality conditions: the largest f of variables that can be raised minus the smallest f of variables that can be lowered.
     pub violation: T,
 }
 
 /// Returns the variable to lower when variable i, with f = `highest`, is raised. `low` is 0 for variables that can be lowered and −∞ for others. `inverses`
-/// contains the inverse
-/// curvatures along the lines of i; `gains` is scratch memory.
+/// contains the inverse curvatures along the lines of i; `gains` is scratch memory.
 #[multiversion::multiversion(targets("x86_64+avx2+fma"))]
 pub(crate) fn select_down<T: Scalar>(
     (f, low): (&[T], &[T]),

@@ -8,8 +8,7 @@ use crate::gram::row_sums::add_row;
 
 impl<G> Smo<'_, G> {
     /// Returns the unsolved problem with a start for small C: all multipliers at C, except the surplus of the larger class. The surplus rows are those
-    /// farthest on their
-    /// own side. If the objective of equal multipliers has its maximum below C, the start is 0. `sums` contains `K y`.
+    /// farthest on their own side. If the objective of equal multipliers has its maximum below C, the start is 0. `sums` contains `K y`.
     pub fn at_bounds<T: SolverScalar>(mut self, c: f64, sums: &[f64]) -> Self
     where
         G: Gram<T>,

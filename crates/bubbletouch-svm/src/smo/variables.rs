@@ -118,8 +118,7 @@ impl<T: Scalar> Variables<T> {
     }
 
     /// Returns the variables that may still move. `highest` is the largest f of variables that can be raised, `lowest` the smallest f of variables that can
-    /// be lowered. The other
-    /// variables are at a bound, and their gradient pushes them against it [Joachims 1999].
+    /// be lowered. The other variables are at a bound, and their gradient pushes them against it [Joachims 1999].
     pub fn worth_keeping(&self, highest: T, lowest: T) -> Vec<usize> {
         (0..self.beta.len())
             .filter(|&i| {

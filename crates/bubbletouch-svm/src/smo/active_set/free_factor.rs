@@ -1,10 +1,8 @@
 //! Linear equations of the variables between their bounds, with factors that are updated when variables become free or bound.
 //!
 //! The equations `(K + δ) Δ + μ = f` on the free variables, with `Σ Δ = 0`, are solved by the factors `L D Lᵀ` of `K + δ`. Adding a variable adds a row by
-//! substitution. Removing one
-//! is a rank-one change [Gill, Golub, Murray, Saunders 1974]. The ridge δ separates rows that are linearly dependent within the rounding of the kernel
-//! values. The error due
-//! to δ is corrected by repeated steps, because f contains the remaining residual.
+//! substitution. Removing one is a rank-one change [Gill, Golub, Murray, Saunders 1974]. The ridge δ separates rows that are linearly dependent within the
+//! rounding of the kernel values. The error due to δ is corrected by repeated steps, because f contains the remaining residual.
 
 use crate::gram::matrix::Gram;
 use crate::linalg::factors::{LANES, Piece, add_product, eliminate, substitute, substitute_back};

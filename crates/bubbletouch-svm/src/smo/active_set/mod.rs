@@ -1,12 +1,9 @@
 //! Solution of a binary problem by linear equations: an active-set method [Scheinberg 2006].
 //!
 //! Pairwise steps approach the optimum in a few steps, but may need a million steps to reach it. If the variables at bounds are known, the optimum is the
-//! solution of linear
-//! equations: f is equal on all free variables, and the sum of their changes is 0. If the solution exceeds a bound, the step ends at the bound, and the
-//! variable is removed.
-//! Otherwise, the bound variable with the largest violation of the optimality conditions becomes free, until no variable violates them. Few features imply
-//! few free variables,
-//! so [their equations](super::active_set::free_factor) are small.
+//! solution of linear equations: f is equal on all free variables, and the sum of their changes is 0. If the solution exceeds a bound, the step ends at the
+//! bound, and the variable is removed. Otherwise, the bound variable with the largest violation of the optimality conditions becomes free, until no variable
+//! violates them. Few features imply few free variables, so [their equations](super::active_set::free_factor) are small.
 
 mod free_factor;
 
