@@ -6,7 +6,7 @@ use std::collections::HashSet;
 /// Rigid motion: rotation, then translation. `a_from_b` maps points of frame b to frame a.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pose {
-    /// Unit quaternion.
+    /// Rotation, unit quaternion.
     pub rotation: DQuat,
     /// Translation, metres.
     pub translation: DVec3,

@@ -71,15 +71,15 @@ impl DamperState {
 /// Relaxation of equal taxels over a step of fixed length.
 pub struct Relaxation {
     stiffness: f64,
-    /// φ.
+    /// Remaining fraction φ of a deflection after the step.
     left: f64,
-    /// 1 − φ.
+    /// Lost fraction 1 − φ of a deflection after the step.
     gone: f64,
 }
 
 impl Relaxation {
     pub(crate) fn of(taxel: &Taxel, dt: f64) -> Self {
-        // 1 − φ without cancellation for steps much shorter than c / k.
+        // Computes 1 − φ without cancellation for steps much shorter than c / k.
         let gone = if taxel.damping == 0.0 {
             1.0
         } else {

@@ -6,7 +6,7 @@ use crate::error::Error;
 /// smaller: rounding of the sum of forces decides, and the search takes needless steps.
 pub(super) const FORCE_ACCURACY: f64 = 1e-13;
 
-/// Returns the error of a force (newtons) above the `largest` one; `where_to` describes the state at the largest force.
+/// Creates the error for a force (newtons) above the `largest` one; `where_to` describes the state at the largest force.
 pub(super) fn unreachable_force(force: f64, largest: f64, where_to: &str) -> Error {
     Error::input(
         "touch force",

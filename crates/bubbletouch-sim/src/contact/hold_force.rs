@@ -21,9 +21,9 @@ pub struct HeldForce {
 /// Skin, and one object among others that is moved onto the skin along a line.
 #[derive(Clone, Copy, Debug)]
 pub struct MovedObject<'a> {
-    /// The skin.
+    /// Patch of the skin.
     pub patch: &'a Patch,
-    /// All objects.
+    /// All objects of the scene.
     pub objects: &'a [Model],
     /// Number of the moved object.
     pub moving: usize,

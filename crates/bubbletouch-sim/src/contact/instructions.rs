@@ -13,9 +13,9 @@ pub enum Instructions {
     Best,
     /// Instructions that every processor of the compilation target has.
     Baseline,
-    /// 256 bits: AVX2.
+    /// AVX2: 256 bits.
     Avx2,
-    /// 512 bits: AVX-512 F, BW, DQ and VL.
+    /// AVX-512 F, BW, DQ and VL: 512 bits.
     Avx512,
 }
 

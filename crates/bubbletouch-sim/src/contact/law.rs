@@ -47,7 +47,7 @@ pub(crate) fn is_in_front(q: f64, height: f64, behind: f64) -> bool {
     q > gap * gap
 }
 
-/// Returns whether an obstacle counts on whose far side a taxel would rest at the height `far_side`, metres: [`is_in_front`] with the root taken.
+/// Returns whether an obstacle counts; `far_side` is the height at which a taxel would rest on its far side, metres. See [`is_in_front`].
 #[inline(always)]
 pub(super) fn reaches_front(far_side: f64, behind: f64) -> bool {
     far_side >= behind
@@ -56,7 +56,7 @@ pub(super) fn reaches_front(far_side: f64, behind: f64) -> bool {
 /// Returns the deflection that a sphere needs, metres; 0 if the sphere does not count, and at most 0 if it is above the taxel.
 #[inline(always)]
 pub(super) fn needed(q: f64, height: f64, behind: f64) -> f64 {
-    // The root of every value: a choice between two numbers becomes a vector instruction, a branch does not.
+    // The root is taken for every value: selecting between two numbers compiles to a vector instruction, a branch does not.
     let depth = deflection(q.max(0.0), height);
     if is_in_front(q, height, behind) {
         depth
@@ -65,7 +65,7 @@ pub(super) fn needed(q: f64, height: f64, behind: f64) -> f64 {
     }
 }
 
-/// Returns whether a sphere may need more than a deflection of at least 0, metres, without taking a root. False where it does not.
+/// Returns whether a sphere may need more than a deflection of at least 0, metres, without taking a root. The result false is exact.
 #[inline(always)]
 pub(super) fn may_exceed(q: f64, height: f64, deflection: f64) -> bool {
     shortfall(q, height, deflection) < 0.0
@@ -93,7 +93,7 @@ pub(crate) fn squares_in_front<const N: usize>(
     squares
 }
 
-/// Returns whether √q − h may be above a deflection in any lane; `squares` are q, m², and `heights` h, metres. False where it is not.
+/// Returns whether √q − h may be above a deflection in any lane; `squares` are q, m², and `heights` h, metres. The result false is exact.
 #[inline(always)]
 pub(crate) fn beats<const N: usize>(
     squares: &[f64; N],
@@ -147,7 +147,7 @@ mod tests {
             indent(&counting, &heights, &mut raised);
             for k in 0..8 {
                 let (q, h) = (squares[k], heights[k]);
-                // The rule with the root taken.
+                // Rule with the root taken.
                 let far_side = h + q.max(0.0).sqrt();
                 let counts = q > 0.0 && reaches_front(far_side, behind);
                 n_counting += usize::from(counts);

@@ -118,7 +118,7 @@ fn to_goal(
     Ok(to_place(patch, placed, until, scratch))
 }
 
-/// Presses to a pose, a travel or a depth; `None` if the goal is a depth and nothing is met.
+/// Presses to a pose, a travel or a depth. Returns `None` if the goal is a depth and the patch meets nothing.
 fn to_place(
     patch: &Patch,
     (objects, patch_from_objects): (&[Model], &[Pose]),

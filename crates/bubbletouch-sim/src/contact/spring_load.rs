@@ -31,7 +31,7 @@ impl SpringLoad {
 pub struct AxialLoad {
     /// Load on the objects without friction: Σ f n_c / (n_c·n) at the contact points.
     pub on_object: Wrench,
-    /// Σ f, N.
+    /// Sum of the forces Σ f, N.
     pub force: f64,
     /// Mean rest centre of the touched taxels, weighted by f; metres, in the patch frame. `None` if the force is zero.
     pub center_of_pressure: Option<DVec3>,

@@ -19,7 +19,7 @@ pub struct TaxelContact {
     pub object: usize,
     /// Number of the sphere in its union, or of the triangle in its mesh.
     pub part: usize,
-    /// δ, metres, above 0 to the stroke.
+    /// Deflection δ, metres, above 0 to the stroke.
     pub deflection: f64,
     /// Deflection that the object needs, without the stop, metres; larger than `deflection` if the taxel is saturated.
     pub needed: f64,

@@ -3,12 +3,12 @@
 use glam::DVec3;
 use std::ops::{Add, Neg};
 
-/// A force and its torque about the origin of the patch frame, in the patch frame.
+/// Force, and its torque about the origin of the patch frame; both in the patch frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wrench {
-    /// N.
+    /// Force, N.
     pub force: DVec3,
-    /// N·m.
+    /// Torque, N·m.
     pub torque: DVec3,
 }
 

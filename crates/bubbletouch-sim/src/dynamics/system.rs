@@ -34,7 +34,7 @@ pub struct System<'a> {
     pub taxel_mass: f64,
     /// Object.
     pub object: &'a Model,
-    /// `patch_from_object` at a travel of 0.
+    /// Pose `patch_from_object` at a travel of 0.
     pub pose: Pose,
     /// Cause of the object's motion.
     pub drive: Drive,

@@ -59,10 +59,10 @@ impl Balls {
 
 /// Transform from an object's frame to a patch, with the region of the patch where taxels can be pushed.
 pub(super) struct View {
-    /// Rows of the rotation.
+    /// Rows of the rotation matrix.
     rows: DMat3,
     translation: DVec3,
-    /// ρ.
+    /// Radius ρ of a taxel, metres.
     taxel_radius: f64,
     /// Ball around all taxels from their rest centres back to the substrate.
     ball: Sphere,
@@ -151,7 +151,7 @@ pub(super) struct Placed {
     x: [f64; MAX_IN_CLUSTER],
     y: [f64; MAX_IN_CLUSTER],
     z: [f64; MAX_IN_CLUSTER],
-    /// S = ρ + R.
+    /// Sum of the radii S = ρ + R of each sphere, metres.
     reaches: [f64; MAX_IN_CLUSTER],
     /// Below zero for spheres that may touch the patch.
     gaps: [f64; MAX_IN_CLUSTER],

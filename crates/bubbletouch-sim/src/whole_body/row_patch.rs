@@ -129,7 +129,7 @@ impl Bundle {
 pub(super) struct SphereOverBundle {
     /// S² − b² of each column, m².
     pub squares: [f64; LANES],
-    /// h of each column, metres.
+    /// Height h of the sphere above each column, metres.
     pub heights: [f64; LANES],
 }
 

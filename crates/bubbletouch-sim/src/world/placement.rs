@@ -30,9 +30,9 @@ pub enum Spread {
     Values(Vec<f64>),
     /// Uniform distribution from `low` to `high`.
     Uniform {
-        /// Smallest value.
+        /// Smallest value of the range.
         low: f64,
-        /// Largest value, at least `low`.
+        /// Largest value of the range, at least `low`.
         high: f64,
     },
 }
@@ -63,17 +63,17 @@ impl RestPoses {
 pub enum TouchAxis {
     /// Resting pose.
     Rest,
-    /// Offset along table x.
+    /// Offset of the patch along table x.
     OffsetX,
-    /// Offset along table y.
+    /// Offset of the patch along table y.
     OffsetY,
     /// Turn of the object about table z.
     Yaw,
-    /// Tilt of the patch about its own x.
+    /// Tilt of the patch about its own x axis.
     TiltX,
-    /// Tilt of the patch about its own y.
+    /// Tilt of the patch about its own y axis.
     TiltY,
-    /// Travel past first contact.
+    /// Depth: travel of the patch past first contact.
     Depth,
 }
 
@@ -142,13 +142,13 @@ pub struct Placement {
     pub offset_x: Spread,
     /// Offset of the patch's axis along table y; metres.
     pub offset_y: Spread,
-    /// Turn of the object about table z; radians.
+    /// Yaw: turn of the object about table z; radians.
     pub yaw: Spread,
-    /// Tilt of the patch about its own x; radians, less than a quarter turn either way.
+    /// Tilt of the patch about its own x axis; radians, less than a quarter turn either way.
     pub tilt_x: Spread,
-    /// Tilt of the patch about its own y, after `tilt_x`; radians, less than a quarter turn either way.
+    /// Tilt of the patch about its own y axis, after `tilt_x`; radians, less than a quarter turn either way.
     pub tilt_y: Spread,
-    /// Travel past first contact; metres, zero or positive.
+    /// Depth: travel of the patch past first contact; metres, zero or positive.
     pub depth: Spread,
     /// Number of touches of each object; every combination if `None`.
     pub per_object: Option<usize>,
@@ -157,15 +157,15 @@ pub struct Placement {
 /// One touch of one object.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Touch {
-    /// Index of the resting pose.
+    /// Index of the resting pose in the object's list.
     pub rest: usize,
     /// Offset of the patch's axis at the height of the object's top, table x and y, metres.
     pub offset: [f64; 2],
-    /// Turn of the object about table z, radians.
+    /// Yaw: turn of the object about table z, radians.
     pub yaw: f64,
-    /// Tilt of the patch about its own x, then y, radians.
+    /// Tilts of the patch about its own x axis, then about its own y axis, radians.
     pub tilt: [f64; 2],
-    /// Travel past first contact, metres.
+    /// Depth: travel of the patch past first contact, metres.
     pub depth: f64,
     /// For each [`TouchAxis`], the index among the listed values; `None` if the spread is uniform.
     pub indices: [Option<usize>; 7],

@@ -7,9 +7,9 @@ use crate::text::in_range::{not_negative, positive};
 /// Shear spring and friction of a taxel, optional for a [`Patch`]; without them taxels move along their axes only.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shear {
-    /// k_t, N/m, positive: stiffness of the tip perpendicular to its axis.
+    /// Shear stiffness k_t, N/m, positive: stiffness of the tip perpendicular to the taxel's axis.
     pub stiffness: f64,
-    /// μ, zero or positive: coefficient of friction between the tip and objects.
+    /// Coefficient of friction μ between tip and object, zero or positive.
     pub friction: f64,
 }
 

@@ -4,16 +4,16 @@ use crate::error::{Error, Result};
 use crate::text::in_range::{not_negative, positive};
 use glam::DVec3;
 
-/// One sensing element: a sphere on a spring and damper, sliding along one axis.
+/// Sensing element: a sphere on a spring and damper that slides along one axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Taxel {
-    /// ρ, metres, positive.
+    /// Radius ρ, metres, positive.
     pub radius: f64,
-    /// k, N/m, positive.
+    /// Stiffness k, N/m, positive.
     pub stiffness: f64,
-    /// c, N·s/m, zero or positive.
+    /// Damping c, N·s/m, zero or positive.
     pub damping: f64,
-    /// s, metres, positive: deflection at which the taxel is saturated.
+    /// Stroke s, metres, positive: deflection at which the taxel is saturated.
     pub stroke: f64,
 }
 

@@ -21,7 +21,7 @@ pub struct TaxelTree {
     /// Nodes, each before all nodes below it.
     nodes: Vec<Node>,
     leaves: Vec<Leaf>,
-    /// The largest s + ρ, metres.
+    /// Largest depth s + ρ of a taxel, metres.
     depth: f64,
 }
 
@@ -65,7 +65,7 @@ const NONE: u32 = u32::MAX;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Node {
     pub bounds: Aabb,
-    /// The largest ρ, metres.
+    /// Largest radius ρ of the node's taxels, metres.
     pub radius: f64,
     /// Index of the leaf, if the node is one.
     leaf: Option<u32>,

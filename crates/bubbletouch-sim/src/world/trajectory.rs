@@ -7,7 +7,7 @@ use glam::{DQuat, DVec3};
 /// Period of constant velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Phase {
-    /// Seconds, zero or positive.
+    /// Duration, seconds, zero or positive.
     pub duration: f64,
     /// Velocity of the body's origin in the world, m/s.
     pub linear: DVec3,

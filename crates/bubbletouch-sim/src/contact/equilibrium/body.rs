@@ -12,7 +12,7 @@ pub(super) struct Body<'a> {
     /// Number of the object in the list passed to the solver.
     pub number: usize,
     pub object: FreeObject<'a>,
-    /// m g, newtons.
+    /// Weight m g, newtons.
     pub weight: DVec3,
     start: DVec3,
     /// Centre of mass, metres.

@@ -17,17 +17,17 @@ use glam::DVec3;
 const MAX_STEPS: usize = 4000;
 /// Largest number of multiplier updates; three to six are usual.
 const MAX_ROUNDS: usize = 40;
-/// Imbalance at which a pose is at rest; ten times less than the accepted one.
+/// Imbalance at which the iteration stops; a tenth of the largest accepted imbalance.
 const TARGET_IMBALANCE: f64 = 1e-7;
-/// Largest imbalance of a pose at rest, also where flanks are so steep that no nearby pose is better.
+/// Largest imbalance of a pose that is reported at rest; needed for steep flanks, where no nearby pose is better.
 const ACCEPTED_IMBALANCE: f64 = 1e-6;
-/// [Complementarity residual](super::energy::Energy::complementarity_residual) at which a pose is at rest.
+/// [Complementarity residual](super::energy::Energy::complementarity_residual) at which the iteration stops.
 const TARGET_RESIDUAL: f64 = 1e-7;
-/// Largest complementarity residual of a pose at rest, also where many stops carry and rounding limits their stiffness.
+/// Largest complementarity residual of a pose that is reported at rest; needed if many stops carry and rounding limits their stiffness.
 const ACCEPTED_RESIDUAL: f64 = 1e-5;
-/// Longest step, relative to the farthest, for which all contacts that it makes are gathered. Larger: more pairs; smaller: more steps.
+/// Largest step, relative to the longest allowed one, for which all contacts on its way are gathered. Larger: more pairs; smaller: more steps.
 const NEARBY: f64 = 0.04;
-/// Smoothing of ties, relative to the largest deflection and to the deflection at which a taxel carries all the weight.
+/// Width of the smoothing of ties, relative to the largest deflection and to the deflection at which a taxel carries all the weight.
 const SMOOTHING: f64 = 1e-2;
 /// Least smoothing, in units of rounding of the object's size.
 const LAST_BITS: f64 = 64.0;
@@ -36,7 +36,7 @@ const MAX_TIGHTENINGS: usize = 12;
 /// Distance below which two places count as equal, relative to size and travel of the object.
 const SAME_PLACE: f64 = 1e-15;
 
-/// Memory of descents, reused; the multipliers of one descent start the next one.
+/// Reused memory of descents; the multipliers of one descent start the next one.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DescentWorkspace {
     /// Energy at the current poses.
@@ -50,7 +50,7 @@ pub(super) struct DescentWorkspace {
 /// Bodies during a descent.
 pub(super) struct Descent<'a, 'b> {
     pub workspace: &'b mut DescentWorkspace,
-    /// Bodies, ground, and the multipliers of the round.
+    /// Bodies, ground, and present multipliers.
     pub scene: Scene<'a>,
     /// Length of the longest step, metres.
     pub farthest: f64,

@@ -66,8 +66,8 @@ impl Energy {
 
     /// Returns the complementarity residual of each [island](Pairs::islands), dimensionless, by the island's number; 0 if nothing touches.
     ///
-    /// Spheres that share a taxel should push it equally far; a stop that carries should be reached exactly, and no stop passed. The residual
-    /// is the force of the taxel's spring over the largest violation, divided by the largest force of a spring. Rigid contacts count with
+    /// Without violations, spheres that share a taxel push it equally far, a stop that carries is reached exactly, and no stop is passed. The residual
+    /// is the taxel's stiffness times the largest violation, divided by the largest force of a spring. Rigid contacts count with
     /// the stiffness [`RIGID_MISS`].
     pub fn complementarity_residual(&self, islands: &[usize]) -> Vec<f64> {
         let (mut loose, mut largest) = (vec![0.0_f64; islands.len()], vec![0.0_f64; islands.len()]);

@@ -45,7 +45,7 @@ impl<'a> FreeObject<'a> {
 /// Skin at a pose, as part of the ground.
 #[derive(Clone, Copy, Debug)]
 pub struct PlacedSkin<'a> {
-    /// The skin.
+    /// Patch of the skin.
     pub patch: &'a Patch,
     /// Pose of the patch in the world.
     pub world_from_patch: Pose,
@@ -101,7 +101,7 @@ pub struct HalfSpace {
 pub struct Obstacle<'a> {
     /// Shape of the obstacle.
     pub spheres: &'a SphereUnion,
-    /// `world_from_object`.
+    /// Pose `world_from_object`.
     pub pose: Pose,
 }
 

@@ -28,13 +28,13 @@ pub(super) struct Multipliers {
 /// Parameters that make the energy smooth.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Smoothness {
-    /// μ of soft taxels, metres.
+    /// Smoothing μ of soft taxels, metres.
     pub smoothing: f64,
     /// μ k of stiff taxels, relative to the weight. A smoothing that is small for a soft taxel can exceed the deflection of a stiff one.
     pub load: f64,
     /// Least μ, metres; below this value rounding of deflections would decide ties.
     pub least: f64,
-    /// κ, N/m.
+    /// Stiffness κ of stops in the augmented Lagrangian, N/m.
     pub stop_stiffness: f64,
 }
 
@@ -59,7 +59,7 @@ pub(super) struct Load {
     pub n_sharing: usize,
     /// max δ, metres; negative if nothing touches the taxel.
     pub deepest: f64,
-    /// μ, metres.
+    /// Smoothing μ of the taxel, metres.
     pub smoothing: f64,
     /// Force on the stop, newtons.
     pub stop: f64,
@@ -76,7 +76,7 @@ pub(super) struct Loads {
     pub all: Vec<Load>,
     /// One share per pair.
     pub shares: Vec<f64>,
-    /// E, joules.
+    /// Elastic energy E, joules.
     pub elastic: f64,
     /// One deflection per pair, metres.
     deflections: Vec<f64>,

@@ -8,21 +8,21 @@ use glam::{DMat3, DVec3};
 /// δ of a sphere and a taxel, and the quantities from which it is computed; all in the patch frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reach {
-    /// δ, metres.
+    /// Deflection δ, metres.
     pub deflection: f64,
     /// Vector from the taxel's axis to the sphere's centre, metres.
     beside: DVec3,
     /// Axis n of the taxel, unit.
     axis: DVec3,
-    /// S = ρ + R.
+    /// Sum of the radii S = ρ + R, metres.
     reach: f64,
 }
 
 /// First two derivatives of δ with respect to the sphere's centre.
 pub(super) struct Derivatives {
-    /// ∂δ/∂c.
+    /// Gradient ∂δ/∂c.
     pub gradient: DVec3,
-    /// ∂²δ/∂c², 1/m.
+    /// Second derivative ∂²δ/∂c², 1/m.
     pub curvature: DMat3,
     pub is_grazing: bool,
 }
@@ -106,7 +106,7 @@ fn outer(a: DVec3, b: DVec3) -> DMat3 {
 mod tests {
     use super::*;
 
-    /// At the origin, ρ = 1 mm, s = 5 mm.
+    /// Taxel at the origin with ρ = 1 mm, s = 5 mm.
     fn taxel(axis: DVec3) -> PlacedTaxel {
         let (x, y) = axis.any_orthonormal_pair();
         PlacedTaxel {
@@ -125,7 +125,7 @@ mod tests {
         let taxel = taxel(axis);
         let at = |c: DVec3| Reach::new(c, 4e-3, &taxel, 0.0).unwrap();
         let side = axis.any_orthonormal_vector();
-        // The last is on the slope beside the sphere.
+        // The last case is on the slope beside the sphere.
         for (beside, height) in [
             (1e-3, 2e-3),
             (3e-3, -1e-3),

@@ -35,7 +35,7 @@ pub(super) struct Spring {
     axes: [DVec3; 2],
     /// Place of the point at the beginning of the step, moved with the patch; in the world.
     start: DVec3,
-    /// r, metres.
+    /// Limit r = μ f / k_t of |v|, metres.
     reach: f64,
 }
 

@@ -29,7 +29,7 @@ pub enum Outcome {
 /// Final pose of a free object, and the forces on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Equilibrium {
-    /// `world_from_object`.
+    /// Pose `world_from_object`.
     pub pose: Pose,
     /// Result of the solver.
     pub outcome: Outcome,
@@ -37,7 +37,7 @@ pub struct Equilibrium {
     pub force: DVec3,
     /// Torque of these forces about the centre of mass, N·m.
     pub torque: DVec3,
-    /// Force residual divided by the weight, or torque residual divided by weight times radius of the object, whichever is larger;
+    /// Largest of the force residual divided by the weight and the torque residual divided by weight times radius of the object;
     /// dimensionless.
     pub imbalance: f64,
     /// Number of taxels that carry the object.
@@ -90,7 +90,7 @@ impl EquilibriumSolver {
         &self.touches
     }
 
-    /// Solves for the equilibrium of one object on skins, from a pose (`world_from_object`), under `gravity` (m/s², in the world).
+    /// Solves for the equilibrium of one object on skins, from the pose `start` (`world_from_object`), under `gravity` (m/s², in the world).
     ///
     /// # Errors
     /// If [`solve_all`](Self::solve_all) fails.
@@ -109,7 +109,7 @@ impl EquilibriumSolver {
         Ok(solutions[0])
     }
 
-    /// Solves for the equilibrium of objects together, from their poses (`world_from_object`, one an object), under `gravity` (m/s², in the world).
+    /// Solves for the equilibrium of several objects together; `starts` has one `world_from_object` per object, `gravity` is in m/s², in the world.
     ///
     /// The energy never increases from the start to the solution; objects at rest do not move. The ground is fixed.
     ///

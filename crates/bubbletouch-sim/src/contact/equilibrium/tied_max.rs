@@ -1,4 +1,4 @@
-//! The maximum of several deflections, smooth enough for Newton's method and exact in the end.
+//! Maximum of several deflections, smoothed for Newton's method; the smoothing vanishes at convergence.
 //!
 //! A taxel between two spheres touches both, and the shares of its force on each are unknown. The maximum is
 //! `max over w in the simplex of w·δ`; its augmented Lagrangian about the present shares w⁰,

@@ -80,7 +80,7 @@ mod tests {
     use crate::random::Seed;
     use rand::Rng;
 
-    /// A start inside of a disc, a motion, and the disc's radius.
+    /// Returns a start inside a disc, a motion, and the disc's radius.
     fn random_case(case: u64) -> (DVec2, DVec2, f64) {
         let mut rng = Seed::new(5).named("drag").numbered(case).rng();
         let mut random =

@@ -54,9 +54,9 @@ pub enum ContactMode {
 /// Normal force that limits friction.
 #[derive(Clone, Copy, Debug)]
 pub enum NormalForce<'a> {
-    /// Springs alone: k δ.
+    /// Springs only: k δ.
     Springs,
-    /// Springs and dampers, after their step to the same contact.
+    /// Springs and dampers; the damper state must have been advanced to the same contacts.
     Dampers(&'a DamperState),
 }
 
@@ -87,7 +87,7 @@ pub struct FrictionLoad {
     pub friction: Wrench,
 }
 
-/// The shear springs of one patch between steps.
+/// Shear springs of one patch between steps.
 ///
 /// ```
 /// use bubbletouch_sim::contact::{FrictionState, NormalForce, Workspace, press_with_contacts};
@@ -124,11 +124,11 @@ pub struct FrictionState {
     forces: Vec<DVec3>,
     /// Shape (n_taxels,).
     contact_modes: Vec<ContactMode>,
-    /// Taxels in contact, ascending.
+    /// Contacts of taxels, ascending by taxel.
     held: Vec<Held>,
     /// Taxels in contact at the step before; used only during a step.
     before: Vec<Held>,
-    /// `patch_from_object` after the last step.
+    /// Poses `patch_from_object` after the last step.
     poses: Vec<Pose>,
 }
 
@@ -142,7 +142,7 @@ struct Held {
     /// Position of the material point, and position where the friction acts, metres, in the patch frame.
     place: DVec3,
     acts_at: DVec3,
-    /// u, metres, along x and y of the taxel's frame.
+    /// Tangential displacement u, metres, along x and y of the taxel's frame.
     displacement: DVec2,
 }
 
@@ -163,7 +163,7 @@ impl FrictionState {
         })
     }
 
-    /// The shear springs.
+    /// Returns the properties of the shear springs.
     pub fn shears(&self) -> &Shears {
         &self.shears
     }
@@ -175,7 +175,7 @@ impl FrictionState {
         &self.forces
     }
 
-    /// Contact modes of the last step, shape (n_taxels,).
+    /// Returns the contact modes of the last step, shape (n_taxels,).
     pub fn contact_modes(&self) -> &[ContactMode] {
         &self.contact_modes
     }

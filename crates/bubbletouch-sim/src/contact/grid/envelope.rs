@@ -81,7 +81,7 @@ impl Envelope {
 /// State of the search over one mesh. The heights are in cells, so that the search can compare a box with the heights found so far.
 struct Sweep<'a> {
     view: MeshView,
-    /// ρ.
+    /// Radius ρ of a taxel, metres.
     radius: f64,
     lines: &'a GridLines,
     /// Goal, and the travel at first contact with the objects evaluated before.

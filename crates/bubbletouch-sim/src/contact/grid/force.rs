@@ -56,7 +56,7 @@ const ROUNDING: f64 = 1e-12;
 
 /// Force F(t) of a grid up to a travel.
 struct ForceCurve<'a> {
-    /// t_i, metres.
+    /// Travels t_i at which taxels begin to move, metres.
     starts: &'a [f64],
     /// Travel beyond which the force is constant or unknown, metres.
     end: f64,

@@ -19,7 +19,7 @@ pub struct GridLines {
 /// Equidistant lines, ascending.
 #[derive(Clone, Debug, Default)]
 pub struct Lines {
-    /// Metres.
+    /// Positions of the lines, metres.
     pub positions: Vec<f64>,
     /// Lines per metre.
     density: f64,

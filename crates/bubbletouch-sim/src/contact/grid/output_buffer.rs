@@ -38,7 +38,7 @@ impl Row<'_> {
 pub(crate) struct OutputBuffer<'a> {
     pub row: Row<'a>,
     n_filled: usize,
-    /// Numbers that are filled in one step.
+    /// Number of values that are filled in one step.
     step: usize,
 }
 
@@ -72,7 +72,7 @@ impl<'a> OutputBuffer<'a> {
         self.step = step.next_multiple_of(LINE);
     }
 
-    /// Fills the numbers of one step.
+    /// Fills the values of one step.
     #[inline(always)]
     pub fn step(&mut self) {
         if self.step > 0 {
@@ -80,7 +80,7 @@ impl<'a> OutputBuffer<'a> {
         }
     }
 
-    /// Fills the remaining numbers.
+    /// Fills the remaining values.
     pub fn finish(&mut self) {
         self.fill(self.row.len());
     }
@@ -97,5 +97,5 @@ impl<'a> OutputBuffer<'a> {
     }
 }
 
-/// Numbers of whole lines of a cache: of 64 bytes, or two of them.
+/// Values per fill unit: one or two cache lines of 64 bytes.
 const LINE: usize = 16;

@@ -4,14 +4,14 @@ use super::lines::GridLines;
 use crate::geometry::Pose;
 use crate::objects::Model;
 
-/// Travel of a press, and which spheres count during it.
+/// Goal of a press on a grid, and rule for the spheres that count.
 #[derive(Clone, Copy)]
 pub(crate) enum TravelGoal {
-    /// To this travel, metres, from the front; all spheres count.
+    /// Travel from the front, metres; all spheres count.
     Travel(f64),
     /// No travel. A sphere that is wholly behind the substrate of a taxel does not push this taxel.
     Pose,
-    /// To first contact and this depth past it, metres, from the front; all spheres count.
+    /// Depth past first contact from the front, metres; all spheres count.
     Depth(f64),
 }
 
@@ -24,6 +24,6 @@ pub(super) struct PlacedObjects<'a> {
     pub radius: f64,
     /// Height of the substrate, metres; −∞ if the press comes from the front.
     pub behind: f64,
-    /// Places of the taxels.
+    /// Lines of the grid.
     pub lines: &'a GridLines,
 }

@@ -1,4 +1,4 @@
-//! A sphere over a flat grid, and the taxels under it, row by row.
+//! Sphere over a flat grid, and the taxels under it, row by row.
 
 use super::deflection_grid::{BLOCK, DeflectionGrid, WIDE};
 use super::lines::GridLines;
@@ -12,7 +12,7 @@ use std::ops::Range;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PlacedSphere {
     pub center: DVec3,
-    /// S = ρ + R.
+    /// Sum of the radii S = ρ + R, metres.
     pub reach: f64,
 }
 
@@ -26,10 +26,10 @@ const SQUARE: usize = 10;
 /// Transform from an object's frame to the patch frame.
 #[derive(Clone, Debug)]
 pub(crate) struct View {
-    /// Rows of the rotation.
+    /// Rows of the rotation matrix.
     rows: DMat3,
     translation: DVec3,
-    /// ρ.
+    /// Radius ρ of a taxel, metres.
     taxel_radius: f64,
     /// Largest |x| and |y| of a taxel, metres.
     half_size: [f64; 2],

@@ -20,7 +20,7 @@ pub(crate) struct GridPress {
     pub instructions: Instructions,
     /// Lines of the last grid.
     lines: GridLines,
-    /// Spheres that can press.
+    /// Search for the spheres that can press.
     search: SphereSearch,
     /// Heights at which the meshes stop the taxels; empty if there are no meshes.
     envelope: Envelope,

@@ -65,7 +65,7 @@ impl<'a> MeshAt<'a> {
                 _ => limit,
             },
         );
-        // A taxel at its stroke stays there, however much further the mesh reaches.
+        // A taxel at its stroke stays there, even if the mesh reaches further.
         match found {
             Some(stop) if stop.height < taxel.behind + taxel.radius => found,
             _ => self.entered(&view).or(found),

@@ -19,7 +19,7 @@ const STEEP: f64 = 1e-8;
 
 /// Returns the height of the centre of a ball that rises along z at (x, y) and stops at a triangle; `None` if the ball misses the triangle.
 ///
-/// All in metres; the triangle is solid from both sides and may be as thin as a line or a point.
+/// All lengths are in metres. The triangle is solid from both sides and may degenerate to a line or a point.
 pub fn stopping_height(triangle: &Triangle, radius: f64, at: DVec2) -> Option<f64> {
     let [a, b, c] = triangle.0;
     let face = triangle

@@ -71,7 +71,7 @@ impl<'a> Approach<'a> {
             "one pose an object"
         );
         let [_, end] = meeting(self.patch, objects, patch_from_objects, self.direction)?;
-        // There everything is past that is on the path.
+        // At this travel the patch is past everything on its path.
         let mut farthest = 0.0;
         for (object, pose) in objects.iter().zip(patch_from_objects) {
             let pose = Pose {

@@ -1,4 +1,4 @@
-//! Presses of patches of any layout: each sphere finds the taxels near it in a tree.
+//! Presses of patches of any layout: a search tree finds the taxels near each sphere.
 //!
 //! | stage | input → output |
 //! |---|---|

@@ -1,4 +1,4 @@
-//! The path of a patch along a line past objects, in steps.
+//! Path of a patch along a line past objects, in steps.
 
 use super::press::{self, press_with_contacts};
 use crate::contact::{Contact, FrictionState, NormalForce, Workspace};

@@ -56,7 +56,7 @@ impl Layout {
         let rings = (0..=n_rings).map(|ring| {
             let (sin, cos) = (half_angle * ring as f64 / n_rings.max(1) as f64).sin_cos();
             Ring {
-                // Never below zero at the far pole.
+                // The sine must not be negative at the far pole.
                 radius: radius * sin.max(0.0),
                 height: radius * cos,
             }

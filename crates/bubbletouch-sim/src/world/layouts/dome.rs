@@ -49,7 +49,6 @@ impl Dome {
     ///
     /// # Errors
     /// If an argument is out of its range, or the layout has too many taxels.
-    /// The error names an argument out of its range, or a layout of too many taxels.
     pub fn new(radius: f64, polar: f64, arc: f64, pitch: f64) -> Result<Self> {
         positive("taxel pitch", pitch, "m")?;
         positive("dome radius", radius, "m")?;

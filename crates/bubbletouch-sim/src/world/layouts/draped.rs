@@ -32,8 +32,8 @@ impl Layout {
 
     /// Distributes taxels over a region of a mesh's outer surface, as many as on a grid of this pitch (metres), ordered by triangle.
     ///
-    /// The outer surface consists of the places whose axis leaves the mesh freely: a ray along the axis does not meet the mesh again. Other
-    /// places, such as the walls of a cavity, carry no taxel; [`n_left_out`](Self::n_left_out) counts the taxels that they would carry.
+    /// The outer surface consists of the places from which a ray along the axis does not meet the mesh again. Other
+    /// places, such as the walls of a cavity, carry no taxel; [`n_left_out`](Self::n_left_out) counts the taxels omitted there.
     ///
     /// Each taxel is at least 0.83 pitches from the others, except those on the back of a thin sheet. Every place of the outer surface
     /// is within a pitch of a taxel. Random places are accepted if they are far enough from all accepted ones (dart
@@ -119,9 +119,9 @@ struct Piece {
     /// Number of the mesh's triangle that contains the piece.
     triangle: usize,
     middle: DVec3,
-    /// Unit.
+    /// Unit normal.
     normal: DVec3,
-    /// m².
+    /// Area, m².
     area: f64,
 }
 

@@ -22,7 +22,7 @@ pub enum Interpolation {
 pub(super) struct Curve {
     /// Coefficients c of each piece: `x = c₀ + c₁ s + c₂ s² + c₃ s³`, with s in seconds after the piece's first way-point.
     pieces: Vec<[f64; 4]>,
-    /// The value at the last way-point.
+    /// Value at the last way-point.
     last: f64,
 }
 
@@ -36,7 +36,7 @@ pub(super) struct Taken {
     pub piece: usize,
 }
 
-/// The extremes of a curve over its whole time.
+/// Extremes of a curve over its whole time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Extremes {
     pub lowest: Taken,

@@ -1,4 +1,4 @@
-//! A robot's positions over time.
+//! Positions of a robot over time.
 
 use super::Interpolation;
 use super::curve::{Curve, Moment};

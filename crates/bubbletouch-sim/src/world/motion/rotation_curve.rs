@@ -21,7 +21,7 @@ struct Piece {
     start: DQuat,
     /// ω₁, ω₂, ω₃: rotation vectors in the body's frame, radians.
     turns: [DVec3; 3],
-    /// h, seconds.
+    /// Duration h, seconds.
     duration: f64,
 }
 

@@ -9,7 +9,7 @@ use super::descent::descend;
 use super::support::Support;
 use glam::{DQuat, DVec3};
 
-/// Spacing of the heights taken along a path, radians: a quarter of the mesh's.
+/// Spacing of the heights computed along a path, radians: a quarter of the mesh's spacing.
 const PATH_SPACING: f64 = 0.01;
 /// Largest number of times that a path between two minima is halved to follow a bent valley; 4 follows a quarter circle.
 const VALLEY_HALVINGS: usize = 4;

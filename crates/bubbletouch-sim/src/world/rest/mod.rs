@@ -1,4 +1,4 @@
-//! Rest: an object → the poses in which it rests on a table.
+//! Rest: an object → its resting poses on a table.
 //!
 //! | stage | input → output |
 //! |---|---|

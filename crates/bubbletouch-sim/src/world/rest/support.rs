@@ -20,7 +20,7 @@ pub(crate) struct Support {
     pub heights: Vec<f64>,
     /// Corners of the finest triangles; triangle t of a level contains 4t … 4t + 3 of the next.
     pub triangles: Vec<[usize; 3]>,
-    /// Triangles of every level but the finest.
+    /// Triangles of every level except the finest.
     coarse: Vec<Vec<[usize; 3]>>,
     /// For each triangle of the last coarse level, the spheres that can be highest inside it.
     candidates: Vec<Vec<u32>>,

@@ -34,24 +34,24 @@ pub enum JointKind {
     Continuous,
     /// Slide.
     Prismatic,
-    /// No motion.
+    /// Rigid connection without motion.
     Fixed,
-    /// Six coordinates.
+    /// Free motion: six coordinates.
     Floating,
-    /// Three coordinates in the plane perpendicular to the axis.
+    /// Motion in the plane perpendicular to the axis: three coordinates.
     Planar,
 }
 
 /// Limits of a hinge or slide: radians or metres, and seconds. Missing or contradictory limits are infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Lowest position, rad or m; −∞ if there is none, as on a continuous joint.
+    /// Lowest position, rad or m; −∞ without a limit, as for a continuous joint.
     pub lower: f64,
-    /// Highest position, rad or m, not below `lower`; +∞ if there is none, as on a continuous joint.
+    /// Highest position, rad or m, not below `lower`; +∞ without a limit, as for a continuous joint.
     pub upper: f64,
-    /// Highest speed, rad/s or m/s, zero or positive; +∞ if there is none.
+    /// Highest speed, rad/s or m/s, zero or positive; +∞ without a limit.
     pub velocity: f64,
-    /// Highest torque or force, N·m or N, zero or positive; +∞ if there is none. Unused by this library.
+    /// Highest torque or force, N·m or N, zero or positive; +∞ without a limit. Unused by this library.
     pub effort: f64,
 }
 
@@ -60,7 +60,7 @@ pub struct Limits {
 pub struct Mimic {
     /// Index of the other joint, which may itself follow one.
     pub joint: usize,
-    /// Dimensionless, rad/m or m/rad.
+    /// Factor of the other joint's position; dimensionless, rad/m or m/rad.
     pub multiplier: f64,
     /// Offset, rad or m.
     pub offset: f64,

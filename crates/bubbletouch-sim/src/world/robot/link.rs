@@ -20,9 +20,9 @@ pub struct Link {
 pub struct LinkShape {
     /// Purpose of the shape.
     pub role: ShapeRole,
-    /// Its form and size.
+    /// Form and size of the shape.
     pub geometry: LinkGeometry,
-    /// `link_from_shape`
+    /// Pose `link_from_shape`.
     pub origin: Pose,
 }
 
@@ -42,14 +42,14 @@ pub enum ShapeRole {
 pub enum LinkGeometry {
     /// Box.
     Box {
-        /// Edge lengths.
+        /// Edge lengths of the box.
         size: DVec3,
     },
     /// Cylinder with flat ends.
     Cylinder {
-        /// Radius.
+        /// Radius of the cylinder.
         radius: f64,
-        /// Distance between the ends.
+        /// Length of the cylinder, between its ends.
         length: f64,
     },
     /// Cylinder with hemispheres on its ends (URDF 1.2).
@@ -61,7 +61,7 @@ pub enum LinkGeometry {
     },
     /// Sphere.
     Sphere {
-        /// Radius.
+        /// Radius of the sphere.
         radius: f64,
     },
     /// Triangle mesh in a separate file.

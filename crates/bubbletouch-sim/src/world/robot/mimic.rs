@@ -18,7 +18,7 @@ pub(super) struct Drive {
 /// Returns the drive of each joint. A joint that mimics a fixed one stays at its offset.
 ///
 /// # Errors
-/// If a chain ends in itself or its numbers are too large. The error names the line of a joint of the chain.
+/// If a chain ends in itself or its numbers are too large. The error contains the line of a joint of the chain.
 ///
 /// # Panics
 /// If a joint mimics a joint of several coordinates.

@@ -1,4 +1,4 @@
-//! The text of a URDF file: its bytes → text → XML that a strict reader accepts, with the same lines.
+//! Text of a URDF file: bytes → text → XML that a strict parser accepts, with unchanged line numbers.
 //!
 //! Many public files are not well-formed XML, although other tools accept them. Examples are comments or spaces before `<?xml`, `--` inside
 //! a comment, undeclared namespace prefixes, and NUL bytes at the end.

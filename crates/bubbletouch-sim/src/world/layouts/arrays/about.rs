@@ -8,17 +8,17 @@ use glam::{DVec2, DVec3};
 pub struct LayoutAbout {
     /// Name of the layout in texts.
     pub words: &'static str,
-    /// Places the taxels on the area of a square grid; the second argument is the radius of curvature, metres.
+    /// Function that creates the taxels on the area of a square grid; the second argument is the radius of curvature, metres.
     pub taxels: fn(&Grid, f64) -> Result<Layout>,
-    /// Numbers of rows and columns, if taxels are numbered row after row.
+    /// Function that returns the numbers of rows and columns, if taxels are numbered row by row.
     pub sides: fn(&Grid) -> Option<(usize, usize)>,
     /// Curvature; `None` for a flat layout.
     pub curved: Option<Curved>,
-    /// Distance between neighbours in pitches, if it is another length than the pitch.
+    /// Distance between neighbours in pitches, if it differs from the pitch.
     pub neighbour_pitches: Option<f64>,
     /// Whether the taxels lie in straight rows and columns, one pitch apart along the surface.
     pub is_image: bool,
-    /// Place of a taxel on a plane, metres, from its centre and the radius of curvature.
+    /// Function from a taxel's centre and the radius of curvature to its place on a plane, metres.
     pub place_on_plane: fn(DVec3, f64) -> DVec2,
 }
 

@@ -36,13 +36,13 @@ impl ArrayLayout {
         self.about().is_image
     }
 
-    /// Returns the distance between neighbours in a lattice whose pitch is another length, metres: √(2/√3) pitches in a hexagonal lattice. Returns `None`
+    /// Returns the distance between neighbours, metres, if it differs from the pitch: √(2/√3) pitches in a hexagonal lattice. Returns `None`
     /// for other layouts, whose neighbours are about a pitch apart.
     pub fn neighbour_distance(self, pitch: f64) -> Option<f64> {
         self.about().neighbour_pitches.map(|n| n * pitch)
     }
 
-    /// Returns the name of the layout for people.
+    /// Returns the name of the layout for texts.
     pub fn words(self) -> &'static str {
         self.about().words
     }
@@ -77,7 +77,7 @@ impl ArrayLayout {
         (about.taxels)(grid, radius)
     }
 
-    /// Returns the numbers of rows and columns if taxels are numbered row after row, else `None`.
+    /// Returns the numbers of rows and columns if taxels are numbered row by row, else `None`.
     pub fn sides(self, grid: &Grid) -> Option<(usize, usize)> {
         (self.about().sides)(grid)
     }
