@@ -4,7 +4,7 @@
 
 use super::{Estimate, RecordedSkin};
 
-/// Approximate maximum number of evaluated readings. If it is larger, the estimate takes longer without a better result.
+/// Approximate maximum number of evaluated readings. If the value is larger, the estimate takes longer without a better result.
 const N_READINGS: usize = 200_000;
 /// Largest difference of equal readings due to single precision, as a fraction of the full scale.
 const ROUNDING: f64 = 4e-7;

@@ -13,7 +13,7 @@ use crate::signal::Crosstalk;
 use crate::world::Grid;
 use ndarray::{Array1, Array2};
 
-/// Maximum number of evaluated frames, evenly spaced among all. If it is larger, the estimate takes longer.
+/// Maximum number of evaluated frames, evenly spaced among all. If the value is larger, the estimate takes longer.
 const N_FRAMES: usize = 1000;
 /// Minimum sum of the readings of a taxel's neighbours: as a fraction of the full scale, and in standard deviations of the noise.
 const PRESSED: [f64; 2] = [0.15, 60.0];

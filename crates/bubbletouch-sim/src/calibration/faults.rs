@@ -1,16 +1,15 @@
 //! Faults: taxels whose standard deviation over touched frames is below a tenth of the typical value among the 5 × 5 taxels around them.
 //!
 //! A faulty taxel that stays at its zero is dead; one that stays at another level is stuck. Of stuck levels that are uniform over the full scale, 1 % are
-//! classified
-//! as dead. If no taxel around changed, the state is unknown.
+//! classified as dead. If no taxel around changed, the state is unknown.
 
 use super::robust::median;
 use super::{Estimate, RecordedSkin};
 use crate::statistics::interval::Interval;
 use ndarray::Axis;
 
-/// Minimum standard deviation of a sound taxel relative to its neighbours. If it is larger, taxels of low gain count as faulty; if it is smaller, noisy
-/// faulty taxels are missed.
+/// Minimum standard deviation of a sound taxel relative to its neighbours. If the value is larger, taxels of low gain count as faulty; if the value is
+/// smaller, noisy faulty taxels are missed.
 const MOVES: f64 = 0.1;
 /// Largest constant level of a dead taxel, as a fraction of the full scale.
 const DEAD: f64 = 0.01;

@@ -1,12 +1,9 @@
 //! Gain: estimated from the readings of taxels relative to the readings of their four neighbours.
 //!
 //! dᵢ is the median of ln xᵢ − ¼ Σⱼ ln xⱼ over frames in which all five taxels are well pressed. The pressure under a contact has an equal effect on every
-//! taxel
-//! on average, so the differences between taxels are ln gᵢ − ¼ Σⱼ ln gⱼ. The variance of ln g is the variance of d divided by ‖L S‖², the squared norm of
-//! this
-//! operator L after the smoothing S (5/4 without smoothing). Medians of even and of odd frames have independent errors, so their covariance over taxels is
-//! the
-//! variance of d without the effects of contacts and noise. Gains are log-normal: std² = exp(Var ln g) − 1.
+//! taxel on average, so the differences between taxels are ln gᵢ − ¼ Σⱼ ln gⱼ. The variance of ln g is the variance of d divided by ‖L S‖², the squared norm
+//! of this operator L after the smoothing S (5/4 without smoothing). Medians of even and of odd frames have independent errors, so their covariance over
+//! taxels is the variance of d without the effects of contacts and noise. Gains are log-normal: std² = exp(Var ln g) − 1.
 
 use super::robust::{jackknife, mean, median};
 use super::{Estimate, RecordedSkin};
@@ -22,7 +19,7 @@ const ABOVE_NOISE: f64 = 10.0;
 const MIN_FRAMES: usize = 3;
 /// Minimum number of taxels with known gains; with 50 the error of their spread is a tenth.
 const MIN_TAXELS: usize = 50;
-/// Number of Gauss–Seidel sweeps. If it is smaller, errors that vary slowly over the array remain.
+/// Number of Gauss–Seidel sweeps. If the value is smaller, errors that vary slowly over the array remain.
 const N_SWEEPS: usize = 200;
 
 /// Gains of the taxels of a skin.

@@ -3,7 +3,7 @@
 use super::Estimate;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// Number of groups of the jackknife. If it is smaller, the jackknife itself is less accurate; if it is larger, it takes longer.
+/// Number of groups of the jackknife. If the value is smaller, the jackknife itself is less accurate; if the value is larger, it takes longer.
 const N_GROUPS: usize = 20;
 /// Deviation at which the weight of a value becomes 0, in median absolute deviations. Smaller values lose precision for normal data; larger values are
 /// less robust.

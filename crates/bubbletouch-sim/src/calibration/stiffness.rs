@@ -1,7 +1,6 @@
 //! Stiffness: the median over frames of the force divided by the sum of deflections. Springs of one stiffness k carry F = k Σ δᵢ; gains of mean 1 and
-//! crosstalk
-//! hardly change the sum. A taxel without a known reading gets the mean of its neighbours. If readings are clipped at zero, the noise of
-//! untouched taxels does not cancel, so only readings well above the noise are counted.
+//! crosstalk hardly change the sum. A taxel without a known reading gets the mean of its neighbours. If readings are clipped at zero, the noise of untouched
+//! taxels does not cancel, so only readings well above the noise are counted.
 
 use super::robust::{jackknife, median};
 use super::{Estimate, RecordedSkin};

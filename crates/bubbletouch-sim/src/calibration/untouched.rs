@@ -10,7 +10,7 @@ use super::robust::mean;
 use ndarray::{Array2, ArrayView1, s};
 use statrs::distribution::{Continuous, ContinuousCDF, Normal};
 
-/// Number of frames per run. If it is smaller, the zero is less accurate; if it is larger, the zero drifts during a run.
+/// Number of frames per run. If the value is smaller, the zero is less accurate; if the value is larger, the zero drifts during a run.
 const N_RUN: usize = 50;
 /// Minimum number of untouched frames for an estimate.
 const FEWEST: usize = 20;

@@ -4,8 +4,7 @@ use glam::DVec2;
 use ndarray::{Array2, ArrayView2};
 
 /// Distance, in pitches, up to which a taxel contributes to a pixel. No place between taxels is farther than 0.62 from one on a hexagonal lattice with one
-/// taxel
-/// per square pitch, or than 0.8 on rings on a sphere. If it is smaller, images have holes; if it is larger, they are blurred.
+/// taxel per square pitch, or than 0.8 on rings on a sphere. If the value is smaller, images have holes; if the value is larger, they are blurred.
 const NEAR: f64 = 1.0;
 /// Distance, in pitches, within which a pixel of the patch has a taxel. Other pixels lie beside the patch and are 0.
 const ON_PATCH: f64 = 0.8;
@@ -23,8 +22,7 @@ pub struct Chart {
 
 impl Chart {
     /// Creates a chart from the positions of taxels on the plane (metres) and their approximate pitch. The image has `shape` (rows, columns) square pixels,
-    /// centred
-    /// on the origin; their size is in metres.
+    /// centred on the origin; their size is in metres.
     pub fn new(
         places: &[DVec2],
         pitch: f64,

@@ -8,8 +8,7 @@ use ndarray::ArrayView2;
 pub struct Cut {
     /// Threshold ℓ, zero or positive: values δ below it count as 0. So do negative values, which noise and estimates can have, and NaN.
     pub level: f64,
-    /// Depth window d, positive: the image keeps the depth within d of the foremost point, max(0, δ − δ_max + d). If a rigid object moves deeper, δ
-    /// increases
+    /// Depth window d, positive: the image keeps the depth within d of the foremost point, max(0, δ − δ_max + d). If a rigid object moves deeper, δ increases
     /// equally on all touched taxels below their stroke. The images of all presses of depth d or more are therefore exactly equal.
     pub foremost: Option<f64>,
 }

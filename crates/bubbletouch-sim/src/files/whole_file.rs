@@ -96,7 +96,7 @@ impl WholeFile {
     }
 }
 
-/// Maximum length of a chain of symbolic links, as in Linux. If it is larger, loops are detected later; if it is smaller, long chains fail.
+/// Maximum length of a chain of symbolic links, as in Linux. If the value is larger, loops are detected later; if the value is smaller, long chains fail.
 const MAX_LINKS: usize = 40;
 
 /// Returns the target of a symbolic link, or `path` itself if it is not a link.

@@ -21,9 +21,9 @@ impl Node {
     }
 }
 
-/// Maximum number of boxes in a leaf. If it is larger, more boxes are tested; if it is smaller, there are more nodes.
+/// Maximum number of boxes in a leaf. If the value is larger, more boxes are tested; if the value is smaller, there are more nodes.
 const LEAF: usize = 4;
-/// Number of candidate cuts per axis. If it is larger, the tree is better and takes longer to build.
+/// Number of candidate cuts per axis. If the value is larger, the tree is better and takes longer to build.
 const BINS: usize = 16;
 /// Depth from which on nodes are cut at the median, at any cost.
 const BALANCED_FROM: usize = 24;

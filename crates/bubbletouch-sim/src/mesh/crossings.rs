@@ -9,8 +9,8 @@ use super::{Bvh, Triangle};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// Smallest distance of a ray from an edge of a triangle, in barycentric coordinates. If it is larger, more rays are rejected;
-/// if it is smaller, rounding may count both triangles at the edge, or none.
+/// Smallest distance of a ray from an edge of a triangle, in barycentric coordinates. If the value is larger, more rays are rejected; if the value is
+/// smaller, rounding may count both triangles at the edge, or none.
 const NEAR_EDGE: f64 = 1e-7;
 
 /// Maximum number of directions; about one in a million fails.

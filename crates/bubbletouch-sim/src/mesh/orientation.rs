@@ -14,9 +14,8 @@ use crate::geometry::Aabb;
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// Maximum number of triangles from which rays are sent to find the outside of an open part. If it is larger, the test is slower; if it is smaller, parts
-/// with
-/// narrow openings are tested by few rays.
+/// Maximum number of triangles from which rays are sent to find the outside of an open part. If the value is larger, the test is slower; if the value is
+/// smaller, parts with narrow openings are tested by few rays.
 const MAX_RAYS: usize = 2000;
 
 /// Number of points of a part that are tested against another part; the majority decides, so the number is odd.
@@ -25,8 +24,8 @@ const N_POINTS: usize = 9;
 /// Smallest volume of a part relative to its area to the power 3/2. Parts below it enclose nothing: they are both sides of a sheet.
 const MIN_VOLUME: f64 = 1e-9;
 
-/// Fraction of area facing inwards from which on an open part is unsettled. If it is smaller, scans with a few
-/// flipped triangles are rejected; if it is larger, a skin on the part may point both ways.
+/// Fraction of area facing inwards from which on an open part is unsettled. If the value is smaller, scans with a few flipped triangles are rejected; if the
+/// value is larger, a skin on the part may point both ways.
 const MAX_DISAGREEING: f64 = 0.05;
 
 /// Orientation of the triangles of a mesh, after [`TriangleMesh::turned_outwards`].

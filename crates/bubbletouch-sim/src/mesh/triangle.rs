@@ -19,8 +19,8 @@ pub enum Feature {
 }
 
 /// Smallest height of a triangle relative to its longest edge. A thinner triangle is replaced by its three edges, because the direction of its plane has a
-/// relative error of 1e-16 / 1e-8. If it is larger, faces that taxels can touch are replaced by edges; if it is smaller,
-/// distances to such planes are rounding errors.
+/// relative error of 1e-16 / 1e-8. If the value is larger, faces that taxels can touch are replaced by edges; if the value is smaller, distances to such
+/// planes are rounding errors.
 const SLIVER: f64 = 1e-8;
 
 impl Triangle {

@@ -8,8 +8,8 @@ use super::{Bvh, Triangle};
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// Distance in radii of a part from which on the dipole is used. If it is larger, queries are slower; if it is smaller, the error exceeds
-/// a tenth on real meshes.
+/// Distance in radii of a part from which on the dipole is used. If the value is larger, queries are slower; if the value is smaller, the error exceeds a
+/// tenth on real meshes.
 const FAR: f64 = 2.5;
 
 /// Tree with one dipole per node of a [`Bvh`].

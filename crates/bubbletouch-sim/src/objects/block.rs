@@ -150,8 +150,8 @@ struct EdgeRow {
     half_spacing: f64,
 }
 
-/// Fraction of the squared reach that a ball in a round edge uses across the faces. If it is smaller, the faces need more spheres; if it is larger, the
-/// edge needs more spheres and protrudes.
+/// Fraction of the squared reach that a ball in a round edge uses across the faces. If the value is smaller, the faces need more spheres; if the value is
+/// larger, the edge needs more spheres and protrudes.
 const ACROSS: f64 = 0.1;
 
 impl EdgeRow {

@@ -14,7 +14,7 @@ use super::surface_patch::{PatchCell, SurfacePatch};
 use super::{Part, Solid, Sphere};
 use glam::DVec3;
 
-/// Enlargement of cuts, in allowed gaps. If it is larger, thin walls beside cuts are lost; if it is smaller, cells where a cut ends in the
+/// Enlargement of cuts, in allowed gaps. If the value is larger, thin walls beside cuts are lost; if the value is smaller, cells where a cut ends in the
 /// surface of a part must be divided further before they are proved to be empty.
 const GROWTH: f64 = 0.01;
 /// Maximum number of tested cells: four per allowed sphere.

@@ -3,8 +3,8 @@
 use super::Sphere;
 use glam::DVec3;
 
-/// Maximum number of spheres per part in [`pack`](super::pack). If it is larger, packings need more than 100 MB and a touch takes hours; if it is smaller,
-/// fine tolerances of large parts are rejected.
+/// Maximum number of spheres per part in [`pack`](super::pack). If the value is larger, packings need more than 100 MB and a touch takes hours; if the value
+/// is smaller, fine tolerances of large parts are rejected.
 pub const MAX_SPHERES: usize = 2_000_000;
 
 /// Allowed distances of the spheres' surface outside and inside the surface of the solid, metres.

@@ -32,8 +32,7 @@ pub struct Solid {
 }
 
 /// Enlargement of cuts, relative to the diagonal of the box around the parts. The enlargement removes membranes of zero thickness where a cut ends in a
-/// part's
-/// surface. If it is smaller, rounding leaves such membranes; if it is larger, walls beside cuts become thinner.
+/// part's surface. If the value is smaller, rounding leaves such membranes; if the value is larger, walls beside cuts become thinner.
 const SEAM: f64 = 4e-6;
 
 /// Five basic forms that represent all shapes.
@@ -46,8 +45,8 @@ enum Kernel {
     SphereSweep(SphereSweep),
 }
 
-/// Smallest gap of a turned polygon relative to its size, because intervals on its edges have an accuracy of 1e-9 of an edge. The rim of a sharp
-/// edge reaches the limit of spheres long before. If it is larger, fine packings are rejected; if it is smaller, edges count as covered that no sphere
+/// Smallest gap of a turned polygon relative to its size, because intervals on its edges have an accuracy of 1e-9 of an edge. The rim of a sharp edge reaches
+/// the limit of spheres long before. If the value is larger, fine packings are rejected; if the value is smaller, edges count as covered that no sphere
 /// reaches.
 const MIN_REACH: f64 = 1e-8;
 

@@ -3,7 +3,7 @@
 use super::Sphere;
 use glam::{DVec3, DVec4};
 
-/// Maximum number of spheres in a cluster. If it is larger, more distant spheres are tested; if it is smaller, more clusters are tested.
+/// Maximum number of spheres in a cluster. If the value is larger, more distant spheres are tested; if the value is smaller, more clusters are tested.
 pub(crate) const MAX_IN_CLUSTER: usize = 16;
 
 /// Spheres of an object in clusters of similar position and size. Equal spheres give equal clusters.

@@ -30,9 +30,8 @@ pub(super) fn relief(e: f64) -> f64 {
     (1.0 + PROTRUSION) * e
 }
 
-/// Distance from a ball's centre on the surface at which the code tests whether the centre lies in the solid, relative to the tolerance.
-/// If it is larger than the rounding reserve of [`Target::new`], the protrusion exceeds the tolerance; if it is too small, rounding decides the
-/// test.
+/// Distance from a ball's centre on the surface at which the code tests whether the centre lies in the solid, relative to the tolerance. If the value is
+/// larger than the rounding reserve of [`Target::new`], the protrusion exceeds the tolerance; if it is too small, rounding decides the test.
 const BESIDE: f64 = 1e-7;
 
 impl Ball {

@@ -58,8 +58,8 @@ pub fn pack_mesh_watched(
     })
 }
 
-/// Number of spheres from which on [`slow_packing`] returns a sentence: about half a minute on one processor. If it is larger, long packings start
-/// without a notice; if it is smaller, packings of a few seconds are announced.
+/// Number of spheres from which on [`slow_packing`] returns a sentence: about half a minute on one processor. If the value is larger, long packings start
+/// without a notice; if the value is smaller, packings of a few seconds are announced.
 const MANY_SPHERES: f64 = 5_000.0;
 
 /// Approximate computing time per sphere on one processor, milliseconds: 13 s for 2201 spheres of a scan.

@@ -25,8 +25,8 @@ pub(super) struct Sampling {
     pub balls: Vec<Ball>,
 }
 
-/// Distance, relative to the radius covered by a ball, up to which its size is reused. If it is larger, edges and tips have too few samples;
-/// if it is smaller, sampling is slower.
+/// Distance, relative to the radius covered by a ball, up to which its size is reused. If the value is larger, edges and tips have too few samples; if the
+/// value is smaller, sampling is slower.
 const NEAR: f64 = 0.3;
 /// Area per disc in the best covering of a plane by discs of unit radius: 3·√3/2, a hexagon.
 const HEXAGON: f64 = 2.598_076_211_353_316;
@@ -34,10 +34,10 @@ const HEXAGON: f64 = 2.598_076_211_353_316;
 /// Effort of a packing; the effort per sphere decreases with the number of spheres.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Effort {
-    /// Samples in the area per ball (in the best covering of a plane). If it is larger, sampling is slower and leaves fewer gaps to repair;
-    /// if it is smaller, the local search overlooks gaps.
+    /// Samples in the area per ball (in the best covering of a plane). If the value is larger, sampling is slower and leaves fewer gaps to repair; if the
+    /// value is smaller, the local search overlooks gaps.
     pub samples_a_ball: f64,
-    /// Candidate balls in the area per ball. If it is larger, the covering needs fewer balls and takes longer.
+    /// Candidate balls in the area per ball. If the value is larger, the covering needs fewer balls and takes longer.
     pub feet_a_ball: f64,
     /// Exchanges of the local search per chosen ball.
     pub steps_a_ball: f64,
@@ -48,11 +48,9 @@ pub(super) struct Effort {
 }
 
 impl Effort {
-    /// Returns the full effort up to 2,000 spheres, then less per sphere, so that the time grows more slowly than the number of spheres.
-    /// From 30,000 spheres on, there are also fewer candidate balls. Candidates are reduced further, to no fewer than about 1,000, where a ball
-    /// covers
-    /// much more than on a plane. An example is a sphere, whose centre is equally far from its whole surface; there a ball takes longest to
-    /// compute.
+    /// Returns the full effort up to 2,000 spheres, then less per sphere, so that the time grows more slowly than the number of spheres. From 30,000 spheres
+    /// on, there are also fewer candidate balls. Candidates are reduced further, to no fewer than about 1,000, where a ball covers much more than on a plane.
+    /// An example is a sphere, whose centre is equally far from its whole surface; there a ball takes longest to compute.
     fn for_about(demand: &Demand) -> Self {
         let share = (2000.0 / demand.flat).clamp(0.03, 1.0);
         let feet_a_ball = 5.0 + 35.0 * share.sqrt();
@@ -269,9 +267,8 @@ pub(super) struct SampleTree {
     tree: BoxTree,
 }
 
-/// Fraction of a sample's radius that must also be covered, times the slope of the ball there. If it is larger, more spheres are needed; if it is
-/// smaller,
-/// more gaps must be repaired, which needs more spheres in the end.
+/// Fraction of a sample's radius that must also be covered, times the slope of the ball there. If the value is larger, more spheres are needed; if the value
+/// is smaller, more gaps must be repaired, which needs more spheres in the end.
 const MARGIN: f64 = 0.7;
 
 impl SampleTree {

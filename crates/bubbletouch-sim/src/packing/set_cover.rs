@@ -109,7 +109,7 @@ pub(super) struct Cover<'a> {
     moved_at: Vec<u32>,
 }
 
-/// Number of randomly drawn chosen sets among which the removed set is selected. If it is larger, the search is greedier and slower.
+/// Number of randomly drawn chosen sets among which the removed set is selected. If the value is larger, the search is greedier and slower.
 const TRIED: usize = 64;
 
 impl<'a> Cover<'a> {

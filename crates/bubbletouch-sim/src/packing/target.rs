@@ -7,8 +7,8 @@ use glam::DVec3;
 /// Name of the mesh in errors if its file is not known.
 pub(super) const MESH: &str = "mesh";
 
-/// Height above a face, as a fraction of the tolerance, at which the code tests whether the face lies inside the solid; narrower clefts
-/// count as closed. If it is larger, wider clefts are closed; if it is smaller, rounding decides where faces coincide.
+/// Height above a face, as a fraction of the tolerance, at which the code tests whether the face lies inside the solid; narrower clefts count as closed. If
+/// the value is larger, wider clefts are closed; if the value is smaller, rounding decides where faces coincide.
 const LIFT: f64 = 1e-3;
 
 /// Body that a mesh represents.

@@ -10,8 +10,7 @@ use ndarray::{Array1, Array2, ArrayView2, Axis, s};
 use rand::Rng;
 
 /// Maximum number of principal components; others belong to the remainder. More components take longer to compute and rarely help, because there are usually
-/// fewer
-/// measurements.
+/// fewer measurements.
 pub const N_COMPONENTS: usize = 512;
 
 /// Readings for the estimate, one row of n taxels each, all through one signal chain.
@@ -33,8 +32,8 @@ pub struct ImagePrior {
     pub(super) untouched: Array2<f64>,
 }
 
-/// Largest shift of copies of training frames, relative to the sides of the array. If it is larger, contacts leave the array; if it is smaller, some places
-/// are covered by few frames.
+/// Largest shift of copies of training frames, relative to the sides of the array. If the value is larger, contacts leave the array; if the value is smaller,
+/// some places are covered by few frames.
 const MOVED: f64 = 0.25;
 
 impl ImagePrior {

@@ -1,4 +1,4 @@
-//! Signal steps in the order in which the study lists them.
+//! Signal chain: prepared signal steps, applied in the order in which the study lists them.
 
 use super::surface_smoothing::SurfaceSmoothing;
 use super::{Effect, Quantity, SignalStep, Skin, Smoothing, TouchRead, force, noise};
@@ -45,9 +45,8 @@ pub struct Recording<'a> {
     pub frames: &'a mut [f64],
     /// Rates of deflection δ̇, m/s, one per deflection; `None` if the patch is at rest. Only the force step uses them.
     pub rates: Option<&'a [f64]>,
-    /// Number of leading frames that came before the touch. If the chain [depends on history](Chain::remembers), they change the readings of the
-    /// touch.
-    /// Their own values have no meaning after the chain.
+    /// Number of leading frames that came before the touch. If the chain [depends on history](Chain::remembers), they change the readings of the touch. Their
+    /// own values have no meaning after the chain.
     pub n_before: usize,
     /// Time between frames, seconds; `None` if the press stops at each frame until all taxels are read.
     pub interval: Option<f64>,

@@ -22,8 +22,7 @@ use std::f64::consts::{PI, SQRT_2};
 
 /// Number of terms of the expansion. If the number is smaller, the zeros of all taxels vary in a space of few dimensions, which a classifier can learn to
 /// ignore. With 8 terms, drift of any strength hardly affects a linear classifier; a real random walk does not allow this. If the number is larger, time and
-/// memory
-/// increase.
+/// memory increase.
 const N_MODES: usize = 64;
 
 /// Drifting zeros of a skin, at any time of its session.

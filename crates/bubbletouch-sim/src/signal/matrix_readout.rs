@@ -8,11 +8,9 @@
 //! A = ⎡ diag(t + Σⱼ gᵢⱼ)       −G        ⎤  and what is read is  xᵢⱼ ← X t² (A⁻¹)ᵢⱼ,
 //!     ⎣       −Gᵀ        diag(t + Σᵢ gᵢⱼ) ⎦
 //!
-//! exactly, for all rows i and columns j. There are two visible effects. A taxel reads too little if its lines carry large currents. If three
-//! corners of a
-//! rectangle are pressed, the fourth corner also has a reading (a ghost). With ε = 0 the readings are exact. A value below zero (due to earlier
-//! noise)
-//! has zero conductance and is kept.
+//! exactly, for all rows i and columns j. There are two visible effects. A taxel reads too little if its lines carry large currents. If three corners of a
+//! rectangle are pressed, the fourth corner also has a reading (a ghost). With ε = 0 the readings are exact. A value below zero (due to earlier noise) has
+//! zero conductance and is kept.
 //!
 //! \[DA\] D'Alessio, *Measurement errors in the scanning of piezoresistive sensors arrays*, Sensors and Actuators A 72, 1999.
 

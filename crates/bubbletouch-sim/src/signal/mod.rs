@@ -27,16 +27,13 @@
 //! **Units.** A chain starts from deflections in metres. `Force` converts them to newtons and may occur once. [`Noise`] converts its
 //! standard deviation to the current unit of the frame; so does each step whose strength is a fraction of the full scale.
 //!
-//! **Randomness.** The draws z depend on the touch (a [`Seed`](crate::random::Seed)) and on the position among the noise steps of the chain,
-//! but not on the level σ. Two chains that differ only in σ add the same pattern with another amplitude, so a sweep over noise compares paired
-//! frames.
-//! Properties of one piece of hardware (gains, the drift's walk, faults) are constant over all touches: they depend on the `skin`'s seed and are
-//! drawn
-//! in [`Chain::new`]. Errors that change from touch to touch are drawn in [`Chain::apply`]. Their patterns do not depend on the strengths either.
+//! **Randomness.** The draws z depend on the touch (a [`Seed`](crate::random::Seed)) and on the position among the noise steps of the chain, but not on the
+//! level σ. Two chains that differ only in σ add the same pattern with another amplitude, so a sweep over noise compares paired frames. Properties of one
+//! piece of hardware (gains, the drift's walk, faults) are constant over all touches: they depend on the `skin`'s seed and are drawn in [`Chain::new`].
+//! Errors that change from touch to touch are drawn in [`Chain::apply`]. Their patterns do not depend on the strengths either.
 //!
-//! **Whole bodies.** A [`BodyReadout`] supports the steps that act on each taxel independently. It uses counter-based random numbers instead of
-//! streams,
-//! so the touched taxels among millions are read at a cost proportional to their number.
+//! **Whole bodies.** A [`BodyReadout`] supports the steps that act on each taxel independently. It uses counter-based random numbers instead of streams, so
+//! the touched taxels among millions are read at a cost proportional to their number.
 //!
 //! **Time.** A touch is a [`Recording`]: frames in the order of time. Hysteresis and scan order depend on several frames. A single frame is
 //! a recording of one frame, read at rest, by a skin without earlier touches.

@@ -7,8 +7,8 @@ use crate::contact::{Instructions, for_instructions};
 use crate::random::{CounterKey, GROUP};
 use std::fmt::Debug;
 
-/// Number of taxels that are read together. If it is larger, the data leave the processor's cache; if it is smaller, blocks of counters are only
-/// partly used.
+/// Number of taxels that are read together. If the value is larger, the data leave the processor's cache; if the value is smaller, blocks of counters are
+/// only partly used.
 pub(super) const CHUNK: usize = 512;
 /// Number of counters that are computed together: f64 lanes of 512 bits.
 const LANES: usize = 8;

@@ -46,7 +46,7 @@ pub fn table(text: &str) -> Option<toml::Table> {
 /// Rejects invalid TOML text whose parsing would need a deep stack.
 ///
 /// # Errors
-/// If more brackets are open at once than [`MAX_OPEN`].
+/// If more than 200 brackets are open at once.
 pub fn check_brackets(place: &str, text: &str) -> Result<()> {
     // Square and curly brackets are counted separately; in invalid text one kind may close the other.
     let mut open = [0_usize; 2];

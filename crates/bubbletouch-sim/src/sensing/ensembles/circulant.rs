@@ -1,8 +1,7 @@
 //! Rows of a random circulant matrix: cyclic shifts of one row of signs, ±1/√n (Romberg 2009).
 //!
 //! y = Φx with Φᵣᵢ = g₍ᵢ₋ₛᵣ₎ mod n, where g has n independent signs and s is a random order of the shifts 0 … n − 1. The ensemble stores n signs and m
-//! shifts,
-//! while a dense ensemble stores m × n numbers. A shift register wired to the taxels can implement it.
+//! shifts, while a dense ensemble stores m × n numbers. A shift register wired to the taxels can implement it.
 
 use super::ensemble::{EnsembleAbout, Operator};
 use super::subsample::permutation;

@@ -1,7 +1,6 @@
 //! The lowest Fourier coefficients of a frame, as real numbers.
 //!
-//! Rows are cos and sin of 2π (u x / nx + v y / ny) with norm 1, ordered by increasing (u/nx)² + (v/ny)²: frequency 0 first, then a cosine and a sine of
-//! each
+//! Rows are cos and sin of 2π (u x / nx + v y / ny) with norm 1, ordered by increasing (u/nx)² + (v/ny)²: frequency 0 first, then a cosine and a sine of each
 //! pair ± (u, v). The rows are orthonormal; all n of them form a rotation. Low frequencies contain most of a smooth contact. Its placement, which varies from
 //! touch to touch, is in the phases of all frequencies.
 
