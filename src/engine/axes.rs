@@ -33,7 +33,7 @@ pub struct AxisRules {
     pub refused: &'static [&'static str],
 }
 
-/// How axes are combined.
+/// Rule that combines the values of several axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CombineSpec {
@@ -50,7 +50,7 @@ pub enum CombineSpec {
 pub struct StudyAxes {
     /// Axes, in the order in which they are written.
     pub axes: Vec<StudyAxis>,
-    /// How the axes are combined.
+    /// Rule that combines the values of the axes.
     pub combine: CombineSpec,
 }
 

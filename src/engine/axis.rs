@@ -10,9 +10,9 @@ use std::marker::PhantomData;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Axis<T> {
-    /// `key = 2.0`
+    /// One value: `key = 2.0`.
     One(T),
-    /// `key = [2.0, 4.0]`
+    /// List of values: `key = [2.0, 4.0]`.
     Many(Vec<T>),
 }
 

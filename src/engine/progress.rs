@@ -6,9 +6,9 @@ pub trait Progress: Sync {
     fn stage(&self, name: &str, total: u64);
     /// Advances the stage by `n` steps.
     fn advance(&self, n: u64);
-    /// Sets the number of work items of a run. It is called once, before the first stage.
+    /// Sets the number of work items of a run; called once, before the first stage.
     fn expect(&self, _n_items: usize) {}
-    /// Counts one work item as finished. It may be called by any thread.
+    /// Counts one work item as finished; may be called by any thread.
     fn item_finished(&self) {}
     /// Ends the last stage; the message describes the result of the run.
     fn finish(&self, message: &str);

@@ -112,7 +112,7 @@ impl Manifest {
         }
     }
 
-    /// Reads the manifest of a folder of results. Returns `None` if there is none, or only that of a page made by `bubbletouch report`.
+    /// Reads the manifest of a result folder. Returns `None` if there is no manifest, or only the manifest of a page made by `bubbletouch report`.
     ///
     /// # Errors
     /// If the file cannot be read or was not written by this program.

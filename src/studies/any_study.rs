@@ -28,7 +28,7 @@ pub trait AnyStudy: Send {
     /// Returns the number of work items in `part` that have no result in the journal.
     fn n_pending(&self, part: Part, journal: &Journal) -> usize;
 
-    /// Returns the number of work items in `part` that have not succeeded according to the journal.
+    /// Returns the number of work items in `part` without a successful result in the journal.
     fn n_without_success(&self, part: Part, journal: &Journal) -> usize;
 
     /// Runs the pending work items.

@@ -114,11 +114,11 @@ pub enum TableFiles {
         /// Files of optional parts of a study.
         of_parts: &'static [&'static dyn AnyFile],
     },
-    /// Tables whose columns depend on the study.
+    /// Files of tables whose columns depend on the study.
     Own {
         /// Names of all files that a study may write.
         names: &'static [&'static str],
-        /// Reads the tables of a folder.
+        /// Function that reads the tables of a folder.
         read: fn(&Path) -> Result<Vec<Table>>,
     },
 }
@@ -180,7 +180,7 @@ pub trait Study: Send + Sized + Sync + 'static {
     /// Description of the kind.
     const ABOUT: About;
 
-    /// The files of [`tables`](Self::tables).
+    /// Files to which [`tables`](Self::tables) are written.
     const TABLES: TableFiles;
 
     /// Rows that a work item produces.
@@ -189,7 +189,7 @@ pub trait Study: Send + Sized + Sync + 'static {
     /// Reads and checks a study, and loads its objects.
     ///
     /// # Errors
-    /// If a key is unknown or out of its range, or a file cannot be read. The error names place, key and what is allowed.
+    /// If a key is unknown or out of its range, or a file cannot be read. The error names the place, the key and the allowed values.
     fn load(source: &Source) -> Result<Self>;
 
     /// Returns the content of the study file and of the files that it refers to.
@@ -259,7 +259,7 @@ pub(crate) fn run_items<S: Study>(
 /// Runs a whole study without a journal; the first item that fails ends the run.
 ///
 /// # Errors
-/// If an item fails; the error is that of the item.
+/// If an item fails; returns the error of the first item that failed.
 pub fn run_whole<S: Study>(study: &S, progress: &dyn Progress) -> Result<S::Rows> {
     let items = study.work_items();
     Ok(run_items(study, &items, &RunOptions::whole(progress))?.0)

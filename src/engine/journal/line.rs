@@ -4,8 +4,8 @@
 //! 1c291ca3 {"key":"piece 0f3a, trial 0","record":{…}}
 //! ```
 //!
-//! The checksum of the first line, which identifies the study, is the CRC-32 of its JSON. Each other checksum continues that of the first line, so that a line
-//! does not fit a journal of another study.
+//! The checksum of the first line, which identifies the study, is the CRC-32 of its JSON. Each other checksum continues the checksum of the first line, so
+//! that a line does not fit a journal of another study.
 
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;

@@ -20,7 +20,7 @@ pub struct ObjectDetailStudySpec {
     pub object_detail: ObjectDetailSpec,
 } }
 
-/// `[object_detail]`
+/// `[object_detail]`: models that replace meshes, and their comparison.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ObjectDetailSpec {
@@ -36,7 +36,7 @@ pub struct ObjectDetailSpec {
     pub recognition: Option<DetailRecognitionSpec>,
 }
 
-/// `[object_detail.recognition]`
+/// `[object_detail.recognition]`: classifiers trained on models and tested on meshes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DetailRecognitionSpec {
@@ -64,7 +64,7 @@ impl DetailRecognitionSpec {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DetailMethod {
-    /// The exact mesh, which is the reference for all other methods. It is always measured.
+    /// The exact mesh, which is the reference for all other methods; always measured.
     Mesh,
     /// Packed spheres within each tolerance.
     Packing,

@@ -63,7 +63,7 @@ row! {
 pub struct ReconstructionScore {
     /// Number of test frames.
     n_frames: usize => Note "test frames": Linear;
-    /// √(Σ‖x̂ − x‖² / Σ‖x‖²) over test frames x without noise.
+    /// Relative error √(Σ‖x̂ − x‖² / Σ‖x‖²) of the reconstructions x̂ over clean test frames x.
     error: f64 => Value(Less): Log between [error_low, error_high];
     /// Lower end of the 95 % interval of `error` over touches.
     error_low: f64 => Note "95 % interval over touches, lower end": Log;
@@ -71,9 +71,9 @@ pub struct ReconstructionScore {
     error_high: f64 => Note "95 % interval over touches, upper end": Log;
     /// Error of the noisy frames, in which all taxels are read without compression.
     full_sampling_error: f64 => Note: Log;
-    /// −20 log₁₀ `error`, dB.
+    /// Signal-to-noise ratio −20 log₁₀ `error`, dB.
     snr_db: f64 => Value(More) "SNR" in "dB": Linear;
-    /// 20 log₁₀ (full scale / root mean square error of a taxel), dB.
+    /// Peak signal-to-noise ratio 20 log₁₀ (full scale / root mean square error of a taxel), dB.
     psnr_db: f64 => Value(More) "peak SNR" in "dB": Linear;
     /// Number of non-zero coefficients, mean over frames.
     atoms_used: f64 => Note "atoms used": Linear;

@@ -27,7 +27,7 @@ pub struct ReconstructionStudySpec {
     pub reconstruction: ReconstructionSpec,
 } }
 
-/// `[reconstruction]`
+/// `[reconstruction]`: solvers and dictionaries that reconstruct frames.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ReconstructionSpec {

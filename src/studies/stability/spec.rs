@@ -19,7 +19,7 @@ pub struct StabilityStudySpec {
     pub stability: StabilitySpec,
 }
 
-/// `[stability]`
+/// `[stability]`: scenes and simulation methods to compare.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StabilitySpec {
@@ -72,7 +72,7 @@ pub enum StabilityScene {
     Press,
     /// A ball is released as in `rest`, with SkinSim's dampers: c / k = 0.13 / 16.37 s.
     Plunger,
-    /// Two equal balls, one on top of the other in a smooth square tube of their width, are released as in `rest`. The mass is that of each ball.
+    /// Two equal balls, one on top of the other in a smooth square tube of their width, are released as in `rest`. `object_mass_kg` is the mass of each ball.
     StackOfTwo,
     /// Four equal balls in a tube, as in `stack_of_two`.
     StackOfFour,
@@ -99,7 +99,7 @@ pub enum ContactMethod {
     /// [`SemiImplicit`](crate::dynamics::SemiImplicit) with the better of two contact stiffnesses. One limits the penetration to 1/400 of the deflection or
     /// stroke; the other is the largest stable stiffness at the given time step.
     SemiImplicit,
-    /// [`ImplicitEuler`](crate::dynamics::ImplicitEuler).
+    /// [`ImplicitEuler`](crate::dynamics::ImplicitEuler): implicit Euler steps with exact contact.
     ImplicitEuler,
     /// rapier with default settings, except for the unit of length. Requires the feature `rapier`; omitted without it.
     RapierAsItComes,

@@ -140,11 +140,11 @@ pub struct BodyTouch {
 row! {
 /// Computing time of a step.
 pub struct StepTime {
-    /// Median over steps, µs.
+    /// Median time of a step, µs.
     us_median: f64 => Cost "time of a step" in "us": Log between [us_p05, us_p95];
-    /// 5th percentile, µs.
+    /// 5th percentile of the time of a step, µs.
     us_p05: f64 => Note "5th to 95th percentile, lower end" in "us": Log;
-    /// 95th percentile, µs.
+    /// 95th percentile of the time of a step, µs.
     us_p95: f64 => Note "5th to 95th percentile, upper end" in "us": Log;
     /// Steps per second, computed from the median.
     steps_per_s: f64 => Value(More) "steps a second": Log;

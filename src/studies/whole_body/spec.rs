@@ -13,7 +13,7 @@ pub struct WholeBodyStudySpec {
     pub whole_body: WholeBodySpec,
 } }
 
-/// `[whole_body]`
+/// `[whole_body]`: a robot covered with skin, its scenes, and the measurement of computing time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WholeBodySpec {
@@ -130,7 +130,7 @@ pub enum BodyPartSpec {
     },
 }
 
-/// `[whole_body.sensing]`
+/// `[whole_body.sensing]`: compression of the touched taxels into measurements.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodySensingSpec {
@@ -170,7 +170,7 @@ pub struct BodyRecognitionSpec {
     pub test_touches: usize,
 }
 
-/// `[whole_body.ladders]`
+/// `[whole_body.ladders]`: series of growing skins, touches and objects for the measurement of computing time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LaddersSpec {

@@ -1,8 +1,8 @@
-//! The value of a condition at which half of the accuracy above chance is lost.
+//! Robustness: the value of a condition at which half of the accuracy above chance is lost.
 //!
-//! For each design (all other columns equal) and each numeric condition with at least three values: the highest mean accuracy a₀ along the condition, and
-//! the first value from there, towards larger or smaller values, at which the accuracy is chance + (a₀ − chance) / 2. Between two values the accuracy
-//! is interpolated linearly over the scale of the condition.
+//! The value is computed for each design (all other columns equal) and each numeric condition with at least three values. Let a₀ be the highest mean
+//! accuracy along the condition. From there, towards larger or smaller values, the result is the first value at which the accuracy is
+//! chance + (a₀ − chance) / 2. Between two values the accuracy is interpolated linearly over the scale of the condition.
 //!
 //! The interval comes from simulation: each mean accuracy a of n independent test rows is drawn from Beta(a n + ½, (1 − a) n + ½), and the value is computed
 //! again. The interval contains the middle 95 % of the results. n is the number of rows whose Wilson interval is as wide as the interval in `summary.csv`, so
@@ -39,11 +39,11 @@ pub struct Robustness {
     direction: Direction => Subject "towards";
     /// Value of the condition with the highest accuracy.
     clean_at: f64 => Note "most accurate at": Linear;
-    /// The highest mean accuracy.
+    /// Highest mean accuracy along the condition.
     clean_accuracy: f64 => Note "accuracy there": Share;
     /// Chance level: one divided by the number of objects.
     chance: f64 => Note: Share;
-    /// `chance + (clean_accuracy − chance) / 2`.
+    /// Accuracy half-way to chance, `chance + (clean_accuracy − chance) / 2`.
     half_accuracy: f64 => Note "half-way to chance": Share;
     /// Whether the accuracy falls to `half_accuracy`.
     status: HalfStatus => Outcome "half-way is";
@@ -522,7 +522,7 @@ mod tests {
 
     #[test]
     fn half_way_lies_on_a_line_between_two_values_on_the_scale_of_the_condition() {
-        // From 0.9 half-way to 0.1: 0.5.
+        // Half-way from 0.9 to chance 0.1 is 0.5.
         let log = curve(&[0.01, 0.1, 1.0, 10.0], &[0.9, 0.7, 0.3, 0.1], 1e6, 0.1);
         let [at, low, high] = log
             .half(Direction::Larger, &Seed::new(1))

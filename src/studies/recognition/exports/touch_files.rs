@@ -374,7 +374,7 @@ fn recorded(
     }
 }
 
-/// Writes `recorded.toml`: the tables of a study that learns from these files.
+/// Writes `recorded.toml`: the tables of a study that trains on these files.
 fn write_recorded(
     folder: &Path,
     recorded: RecordedSpec,

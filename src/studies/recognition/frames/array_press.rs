@@ -16,7 +16,7 @@ pub struct ArrayWorkspace {
     friction: Option<FrictionState>,
 }
 
-/// An array and one object.
+/// Press of an array on one object.
 pub struct ArrayPress<'a> {
     array: &'a TaxelArray,
     object: [Model; 1],

@@ -11,10 +11,10 @@ use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis};
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// Number of frames that are measured together as one matrix product. It is fixed, so that results do not depend on the number of threads.
+/// Number of frames that are measured together as one matrix product. A fixed number makes results independent of the number of threads.
 const BLOCK: usize = 128;
 
-/// Inputs of a reading.
+/// Inputs of the reading of touches: skins and projection.
 #[derive(Clone, Copy)]
 pub struct Reading<'a> {
     /// Skins of the touches. All have frames of the same shape.
@@ -36,7 +36,7 @@ pub struct ReadSkin<'a> {
     pub frames: &'a Frames,
 }
 
-/// A touch to read.
+/// A touch, and how it is read.
 #[derive(Clone, Copy, Debug)]
 pub struct TouchToRead {
     /// Number of the touch; its first frame in the skin's frames is `number · F`.

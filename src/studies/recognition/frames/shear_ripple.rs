@@ -22,9 +22,9 @@ const BOX: DVec3 = DVec3::new(0.04, 0.04, 0.02);
 /// Mean and standard deviation of shear readings along x over the taxels under a flat face of packed spheres, minus the exact value, newtons.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShearRipple {
-    /// Mean over the taxels.
+    /// Mean over the taxels, newtons.
     pub mean: f64,
-    /// Standard deviation over the taxels.
+    /// Standard deviation over the taxels, newtons.
     pub std: f64,
 }
 

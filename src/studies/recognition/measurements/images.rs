@@ -12,7 +12,7 @@ use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis, s};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Number of frames that are estimated together as one matrix product. It is fixed, so that results do not depend on the number of threads.
+/// Number of frames that are estimated together as one matrix product. A fixed number makes results independent of the number of threads.
 const BLOCK: usize = 64;
 
 /// Estimators of the images of a group's frames, one for each number of measurements.

@@ -43,7 +43,7 @@ pub struct Measurements {
 /// Projection of a group in a trial, with the estimators fitted on training touches.
 #[derive(Clone, Debug)]
 pub struct SensedBy {
-    /// The ensemble's matrix.
+    /// Measurement matrix of the ensemble.
     pub projection: Projection,
     /// Image estimators, if a configuration uses image features.
     pub images: Option<Images>,

@@ -10,7 +10,7 @@ use crate::studies::recognition::rows::image_features::FeaturesOfImages;
 /// Configurations that are computed from the same measurements.
 #[derive(Clone, Debug)]
 pub struct Group {
-    /// Index into the plan's arrays.
+    /// Index of the array in the plan.
     pub array: usize,
     /// Number of frames per touch.
     pub frames: usize,

@@ -43,7 +43,7 @@ macro_rules! configuration {
             }
         }
 
-        /// Returns all columns except those of the axes in `[axes]`.
+        /// Returns all columns except the columns of the axes in `[axes]`.
         impl Columns for $cell {
             fn columns() -> Vec<Column> {
                 let mut columns = Vec::new();

@@ -24,15 +24,15 @@ pub struct TrialScore {
     /// trials repeat splits, as splits by pose do if there are more trials than parts. Statistical tests count trials of one split once.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     distinct_split: Option<usize> => Note "same split as": Linear, optional;
-    /// Training rows.
+    /// Number of training rows.
     n_train: usize => Note "training rows": Linear;
-    /// Test rows: groups of `fused_touches` test touches.
+    /// Number of test rows. A test row is a group of `fused_touches` test touches.
     n_test: usize => Note "test rows": Linear;
     /// Test touches that do not fill a whole group of `fused_touches`, over all objects.
     n_left_out: usize => Note "test touches left out": Linear;
-    /// Test rows recognised.
+    /// Number of correctly recognised test rows.
     n_correct: usize => Note "test rows recognised": Linear;
-    /// `n_correct / n_test`.
+    /// Accuracy of the trial, `n_correct / n_test`.
     accuracy: f64 => Value(More): Share between [accuracy_low, accuracy_high];
     /// Lower end of the 95 % interval of the accuracy: Wilson's interval of the test rows, or [of the held-out groups](crate::statistics::grouped).
     accuracy_low: f64 => Note "95 % interval, lower end": Share;
@@ -47,7 +47,7 @@ pub struct TrialScore {
     c_used: Option<f64> => Note "C used": Log;
     /// γ used by the RBF or polynomial kernel: given, scaled or chosen. Empty if the kernel has no γ.
     gamma_used: Option<f64> => Note "γ used": Log;
-    /// Binary SVMs that stopped at the iteration cap.
+    /// Number of binary SVMs that stopped at the iteration cap.
     n_capped: usize => Note "solves that stopped at the cap": Linear;
 } }
 
@@ -74,7 +74,7 @@ row! {
 pub struct CellScore {
     /// Number of trials.
     n_trials: usize => Note "trials": Linear;
-    /// Test rows of one trial: groups of `fused_touches` test touches.
+    /// Number of test rows of one trial. A test row is a group of `fused_touches` test touches.
     n_test: usize => Note "test rows": Linear;
     /// Mean accuracy over trials.
     accuracy: f64 => Value(More): Share between [accuracy_low, accuracy_high];
@@ -133,7 +133,7 @@ pub struct Confused {
     count: usize => Note "test rows": Log;
     /// Number of the object's test rows, over all trials.
     n_test: usize => Note "test rows of the object": Linear;
-    /// `count / n_test`.
+    /// Fraction of the test rows that were recognised as `predicted`, `count / n_test`.
     share: f64 => Value(Less) "share of the object's test rows": Share between [share_low, share_high];
     /// Lower end of the 95 % Wilson interval of `share`.
     share_low: f64 => Note "95 % interval, lower end": Share, optional;
@@ -164,7 +164,7 @@ pub struct Published {
     accuracy_low: f64 => Note "95 % interval, lower end": Share;
     /// Upper end of the 95 % interval of our accuracy.
     accuracy_high: f64 => Note "95 % interval, upper end": Share;
-    /// `accuracy − published_accuracy`.
+    /// Difference between our accuracy and the published one, `accuracy − published_accuracy`.
     difference: f64 => Value(More) "difference to what was published": Linear;
     /// Number of configurations in this condition to which the claim applies.
     n_matching: usize => Note "configurations that it is about": Linear;
@@ -220,7 +220,7 @@ row! {
 pub struct Pareto {
     /// Mean accuracy over trials.
     accuracy: f64 => Value(More): Share;
-    /// Mean seconds to fit.
+    /// Mean time to fit, seconds.
     fit_s: f64 => Cost "time to train" in "s": Log;
     /// Mean microseconds of fitting per training touch.
     fit_us_per_touch: f64 => Cost "time to train, of a training touch" in "µs": Log;
@@ -299,7 +299,7 @@ pub struct Tables {
 pub enum Source {
     /// Division into training and test touches.
     Split,
-    /// The random projection.
+    /// Random projection.
     Projection,
     /// Noise and all other random draws of a trial, and the interaction of split and projection.
     Rest,

@@ -5,7 +5,7 @@ use crate::inputs::defaults::number;
 use crate::world::{ArrayLayout, RestPoses};
 use serde::{Deserialize, Serialize};
 
-/// `[skin]`
+/// `[skin]`: the arrays of taxels.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SkinSpec {
@@ -39,7 +39,7 @@ pub struct SkinSpec {
     pub damping_n_s_per_m: f64,
 }
 
-/// `[touches]`
+/// `[touches]`: poses and depths at which objects are touched.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct TouchesSpec {
@@ -130,11 +130,11 @@ pub enum SensedSpec {
     expecting = "expected a number, a list, { grid = [first, last, count] }, { uniform = [low, high] } or { within = half_width }"
 )]
 pub enum SpreadSpec {
-    /// `yaw_deg = 30.0`
+    /// One value for all touches: `yaw_deg = 30.0`.
     One(f64),
     /// `yaw_deg = [0.0, 10.0, 20.0]`: every configuration contains all of these values, so the list is not an axis.
     List(Vec<f64>),
-    /// `yaw_deg = { grid = [0.0, 50.0, 6] }`, `{ uniform = [0.0, 360.0] }` or `{ within = 15.0 }`
+    /// Grid or interval: `yaw_deg = { grid = [0.0, 50.0, 6] }`, `{ uniform = [0.0, 360.0] }` or `{ within = 15.0 }`.
     Range(RangeSpec),
 }
 

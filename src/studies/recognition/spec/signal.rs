@@ -10,7 +10,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// `[signal]`
+/// `[signal]`: noise, sensor errors and processing of the readings.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SignalSpec {
     /// Steps of the signal chain, applied to a frame of deflections in this order; each step at most once.
@@ -20,7 +20,7 @@ pub struct SignalSpec {
     pub axes: SignalAxes,
     /// Axis: skin of the test touches, `same_skin` (default: the skin of the training touches) or `another_skin`.
     pub tested_on: Option<Axis<TestedOn>>,
-    /// How the axes of `[signal]` are combined with each other. They are always combined with all other axes.
+    /// How the axes of `[signal]` are combined with each other; all combinations with other axes are run.
     #[serde(skip_serializing_if = "is_default")]
     pub combine: CombineSpec,
 }

@@ -114,7 +114,7 @@ const AXIS_RULES: AxisRules = AxisRules {
     ],
 };
 
-/// `[sensing]`
+/// `[sensing]`: compression of frames into measurements.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SensingSpec {
@@ -127,7 +127,7 @@ pub struct SensingSpec {
     pub measurements: Option<Axis<usize>>,
 }
 
-/// `[recognition]`
+/// `[recognition]`: features, classifiers, and the split into training and test touches.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RecognitionSpec {
@@ -136,7 +136,7 @@ pub struct RecognitionSpec {
     /// `"force"` to `signal.steps`.
     #[serde(default = "default_features")]
     pub features: Axis<Features>,
-    /// Axis: depth window of the image features behind the foremost point, as a fraction of the full scale. It makes the features invariant to the press
+    /// Axis: depth window of the image features behind the foremost point, as a fraction of the full scale. The window makes the features invariant to the press
     /// depth. Default: the whole image.
     pub foremost_full_scale: Option<Axis<f64>>,
     /// Axis: number of additional copies of each training touch, tilted at random as far as its images allow. The copies make recognition robust to tilts that
@@ -220,7 +220,7 @@ pub struct RecognitionSpec {
     pub keep_together_deg: Option<f64>,
 }
 
-/// `[report]`
+/// `[report]`: contents of the page and of some tables.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ReportSpec {

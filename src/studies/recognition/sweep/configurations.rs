@@ -1,11 +1,11 @@
 //! The configurations of a study, grouped by the computations that they share.
 //!
 //! ```text
-//! array × frames a touch ── touches simulated once
+//! array × frames per touch ── touches simulated once
 //!   └─ condition of the signal × test skin × ensemble (a group), and trial ── frames read and projected once, at the largest m
-//!        └─ m × over time × features × classifier × training rows (a family) ── rows made once
+//!        └─ m × over time × features × classifier × training rows (a family) ── rows computed once
 //!             └─ C ── fit, score test touches
-//!                  └─ fused touches × how they are chosen (a cell) ── decide
+//!                  └─ fused touches × choice of the next touch (a configuration) ── decide
 //! ```
 
 use crate::engine::axes::AxisValues;

@@ -43,7 +43,7 @@ pub fn summarise<C: Clone + PartialEq>(
         .collect()
 }
 
-/// Returns the tests of trials that hold out groups.
+/// Returns the group counts of trials that hold out groups, for statistics over groups.
 pub fn grouped_tests<'a>(
     trials: impl Iterator<Item = (&'a TrialScore, &'a Vec<GroupCount>)>,
 ) -> Vec<GroupedTest<'a>> {

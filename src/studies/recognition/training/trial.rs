@@ -39,7 +39,7 @@ pub struct Evaluation {
 /// Data that the evaluations of a group share in a trial.
 #[derive(Clone, Copy)]
 pub struct Trial<'a> {
-    /// Labels, split and groups.
+    /// Labels, split and groups of the trial.
     pub inputs: TrialInputs<'a>,
     /// Measurements of all touches, with at least as many per frame as a configuration needs.
     pub measurements: &'a Measurements,
