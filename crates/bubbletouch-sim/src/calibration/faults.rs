@@ -1,6 +1,6 @@
 //! Faults: taxels whose standard deviation over touched frames is below a tenth of the typical value among the 5 × 5 taxels around them.
 //!
-//! A faulty taxel that stays at its zero is dead; one that stays at another level is stuck. Of stuck levels that are uniform over the full scale, 1 % are
+//! A faulty taxel that stays at its zero is dead; one that stays at another level is stuck. If stuck levels are uniform over the full scale, 1 % of them are
 //! classified as dead. If no taxel around changed, the state is unknown.
 
 use super::robust::median;

@@ -1,7 +1,7 @@
 //! Smoothing: estimated from the correlation of the noise of neighbours along rows and columns.
 //!
 //! Independent noise has the covariance S Sᵀ after a smoothing S. The mean correlation of neighbours increases with
-//! the width, so the measured correlation determines the width. Only smoothing after the noise is visible; a soft cover is not.
+//! the width, so the measured correlation determines the width. Only smoothing that acts after the noise is identifiable; the effect of a soft cover is not.
 
 use super::estimate::NONE;
 use super::robust::jackknife;

@@ -6,7 +6,7 @@ use ndarray::ArrayView2;
 /// Parts of a frame that its image leaves out. The limits `level` and `foremost` are in the unit of the frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cut {
-    /// Threshold ℓ, zero or positive: values δ below it count as 0. So do negative values, which noise and estimates can have, and NaN.
+    /// Threshold ℓ, zero or positive: values δ below it count as 0. Negative values (from noise or estimates) and NaN also count as 0.
     pub level: f64,
     /// Depth window d, positive: the image keeps the depth within d of the foremost point, max(0, δ − δ_max + d). If a rigid object moves deeper, δ increases
     /// equally on all touched taxels below their stroke. The images of all presses of depth d or more are therefore exactly equal.

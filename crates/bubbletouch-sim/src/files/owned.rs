@@ -1,4 +1,4 @@
-//! Files of an output folder that the program wrote; it may replace only these.
+//! Files of an output folder that the program wrote; the program may replace only these files.
 
 use super::inputs::check_output;
 use super::whole_file::write_bytes;

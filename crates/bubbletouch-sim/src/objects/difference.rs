@@ -1,10 +1,9 @@
 //! Packing of solids with cuts.
 //!
-//! The surface of A minus B consists of a part of A's surface and a part of B's. Both surfaces are divided into cells. A cell is halved until one of three
-//! facts is
-//! proved: the cell lies in an empty ball, the cell lies in a solid ball, or one sphere covers the cell. In the first two cases the cell contains no
-//! surface. The depth inside A minus B is the minimum of the depth in A and the distance from B. A ball of this radius therefore lies inside,
-//! and after enlargement it reaches outside by at most the enlargement.
+//! The surface of A minus B consists of a part of A's surface and a part of B's surface. Both surfaces are divided into cells. A cell is halved until one of
+//! three facts is proved: the cell lies in an empty ball, the cell lies in a solid ball, or one sphere covers the cell. In the first two cases the cell
+//! contains no surface. The depth inside A minus B is the minimum of the depth in A and the distance from B. A ball of this radius therefore lies inside, and
+//! after enlargement it reaches outside by at most the enlargement.
 //!
 //! A cut that ends exactly at the surface of a part would leave a membrane of zero thickness that passes all tests. Cuts are therefore
 //! enlarged by [`GROWTH`], and walls thinner than this beside a cut are lost.
@@ -28,7 +27,7 @@ pub(super) fn pack_difference(solid: &Solid, fit: Fit) -> Option<Vec<Sphere>> {
     let mut covering = Covering {
         solid,
         growth,
-        // The covered surface is that of the enlarged cuts.
+        // The covered surface is the surface after enlarging the cuts.
         fit: Fit {
             inside: fit.inside - 2.0 * growth,
             ..fit

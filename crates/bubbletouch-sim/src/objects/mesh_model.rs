@@ -25,8 +25,8 @@ pub struct ContactFace {
     /// Unit normal; zero if the triangle is too thin.
     pub normal: DVec3,
     /// For each side, the unit normal of the neighbour, with the neighbour's corners ordered as if it passed the side in the direction of this triangle. On
-    /// a smooth
-    /// surface it is about minus this triangle's normal. It is zero if there is not exactly one neighbour, or if the neighbour is too thin.
+    /// a smooth surface this normal is approximately minus the normal of this triangle. The normal is zero if there is not exactly one neighbour, or if the
+    /// neighbour is too thin.
     pub across: [DVec3; 3],
     /// Whether this triangle owns the side from corner k to the next.
     pub has_edge: [bool; 3],

@@ -1,7 +1,7 @@
 //! Packing of a solid with spheres, within a stated surface error.
 //!
 //! Let e be the tolerance. Each sphere is the largest ball inside the solid that touches its surface at some point (the foot),
-//! with radius r, enlarged by e/2. No point of it lies more than e/2 outside. Such a sphere comes within e of every surface point p
+//! with radius r, enlarged by e/2. No point of it lies more than e/2 outside. The sphere comes within e of every surface point p
 //! with |p − c| ≤ r + h, h = 3e/2. The feet are chosen so that the spheres cover the whole surface. On a flat face a ball
 //! covers sqrt(h(2r + h)) around its foot, so few large balls suffice. At a right-angled edge a ball needs r ≤ h/(√2 − 1) to
 //! reach the edge. Each form has its own closed layout of feet (`block`, `lathe`, `sphere_sweep`, `torus`), or cells that are divided
@@ -89,7 +89,7 @@ fn pack_less(solid: &Solid, tolerance: f64, fit: Fit) -> Result<SphereUnion> {
 
 /// Returns whether the whole surface that a sphere covers lies inside another part.
 ///
-/// A sphere covers surface points within its radius plus the allowed gap. Of two equal parts, the later one is buried.
+/// A sphere covers surface points within its radius plus the allowed gap. If two parts are equal, the later one is buried.
 fn is_buried(sphere: &Sphere, part: usize, solid: &Solid, fit: Fit) -> bool {
     let others = solid.parts().iter().enumerate().filter(|&(i, _)| i != part);
     let reach = sphere.radius + fit.inside;

@@ -27,7 +27,7 @@ impl Torus {
     ///
     /// Half-way between two balls the squared distance of a point of the tube from both centres is `tube² + 4 ρ ring sin²(π/2n)`, where ρ is its distance
     /// from the axis.
-    /// It is largest on the outer equator and must not exceed `(tube + h)²`.
+    /// This distance is largest on the outer equator and must not exceed `(tube + h)²`.
     pub fn pack(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
         let (ring, tube) = (self.ring, self.tube);
         let sine = (0.25 * fit.disc_squared(tube) / (ring * (ring + tube)))

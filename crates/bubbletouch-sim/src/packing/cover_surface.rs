@@ -11,7 +11,8 @@ use crate::random::Seed;
 use glam::DVec3;
 use rand::Rng;
 
-/// Samples per cell. If the value is larger, there are fewer borders between cells, but the data of the search exceed the processor's cache.
+/// Maximum number of samples per cell. If the value is larger, there are fewer borders between cells, but the data of the search exceed the processor's
+/// cache.
 const CELL: usize = 24_000;
 
 /// Fraction of the total time that sampling takes, for progress reports.

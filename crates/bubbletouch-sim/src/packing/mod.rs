@@ -56,7 +56,7 @@
 //!   problem*, 2015.
 //! - Earlier work: Bradshaw & O'Sullivan, *Adaptive medial-axis approximation for sphere-tree construction*, 2004; Wang et al.,
 //!   *Variational sphere set approximation for solid objects*, 2006; Stolpner, Kry, Siddiqi, *Medial spheres for shape
-//!   approximation*, 2011. They minimise the error for a given number of spheres; here the error is given.
+//!   approximation*, 2011. These methods minimise the error for a given number of spheres; here the error is given.
 
 mod ball;
 #[cfg(test)]

@@ -34,10 +34,12 @@ const HEXAGON: f64 = 2.598_076_211_353_316;
 /// Effort of a packing; the effort per sphere decreases with the number of spheres.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Effort {
-    /// Samples in the area per ball (in the best covering of a plane). If the value is larger, sampling is slower and leaves fewer gaps to repair; if the
+    /// Number of samples in the area that one ball covers in the best covering of a plane. If the value is larger, sampling is slower and leaves fewer gaps
+    /// to repair; if the
     /// value is smaller, the local search overlooks gaps.
     pub samples_a_ball: f64,
-    /// Candidate balls in the area per ball. If the value is larger, the covering needs fewer balls and takes longer.
+    /// Number of candidate balls in the area that one ball covers in the best covering of a plane. If the value is larger, the covering needs fewer balls
+    /// and takes longer.
     pub feet_a_ball: f64,
     /// Exchanges of the local search per chosen ball.
     pub steps_a_ball: f64,

@@ -1,7 +1,7 @@
 //! Faults: dead taxels read 0, and stuck taxels read a constant level.
 //!
 //! The faulty taxels and their levels are fixed for a skin. Taxels fail in a random order: dead taxels are taken from its beginning and stuck
-//! taxels from its end. The faulty taxels at a lower fraction are therefore a subset of those at a higher fraction.
+//! taxels from its end. If a fraction increases, taxels that were faulty at the lower fraction remain faulty.
 //!
 //! In a [`BodyReadout`](super::BodyReadout) each taxel fails independently, and the fractions are probabilities.
 

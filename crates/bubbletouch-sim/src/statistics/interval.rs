@@ -36,8 +36,8 @@ impl RowTest {
 }
 
 impl Interval {
-    /// Returns the Wilson score interval of a proportion, such as an accuracy. It stays within 0..=1 and is valid near these ends, unlike
-    /// the normal approximation (Wilson 1927; without continuity correction).
+    /// Returns the Wilson score interval of a proportion, such as an accuracy. The interval stays within 0..=1 and is valid near these ends, unlike the
+    /// normal approximation (Wilson 1927; without continuity correction).
     ///
     /// `confidence` is the coverage, such as 0.95. The rows are assumed to be independent. Touches of one object in
     /// neighbouring poses are slightly dependent, so the interval is rather too narrow than too wide. If rows are held out in
@@ -62,7 +62,7 @@ impl Interval {
     /// Returns the Wilson score interval of the mean accuracy of several tests, such as the trials of a study.
     ///
     /// The proportion is Σ n_correct / Σ n_rows if all tests have equally many rows, otherwise the mean of the tests' accuracies. Tests of one
-    /// part (fold) test equal rows, or other rows of equal touches. The interval therefore counts the rows of one test per part: repeated
+    /// part (fold) test identical rows, or other rows of identical touches. The interval therefore counts the rows of one test per part: repeated
     /// trials of one part add no rows, and k folds add up the rows of all k parts.
     ///
     /// # Errors
