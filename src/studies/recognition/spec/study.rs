@@ -131,13 +131,13 @@ pub struct SensingSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RecognitionSpec {
-    /// Axis: transformation of a touch's measurements before scaling. Invariances: `raw`, `centred`, `unit_norm`, `centred_unit_norm`. Features of images:
+    /// Axis: transformation of a touch's measurements before scaling. Values: `raw`, `centred`, `unit_norm`, `centred_unit_norm`. Features of images:
     /// `fourier_magnitude`, `fourier_mellin`, `polar_harmonics`, `descriptors`, `aligned`, or several of these joined by `+`. For features of force, add
     /// `"force"` to `signal.steps`.
     #[serde(default = "default_features")]
     pub features: Axis<Features>,
-    /// Axis: depth window of the image features behind the foremost point, as a fraction of the full scale. The window makes the features invariant to the press
-    /// depth. Default: the whole image.
+    /// Axis: depth window of the image features behind the foremost point, as a fraction of the full scale. The window makes the features invariant to the
+    /// press depth. Default: the whole image.
     pub foremost_full_scale: Option<Axis<f64>>,
     /// Axis: number of additional copies of each training touch, tilted at random as far as its images allow. The copies make recognition robust to tilts that
     /// were not trained on. Only for image features; default: none.
