@@ -6,7 +6,7 @@ use super::robust::{jackknife, median};
 use super::{Estimate, RecordedSkin};
 use ndarray::Array2;
 
-/// Reading from which on a taxel may be at its stroke, where the force exceeds that of its spring; as a fraction of the full scale.
+/// Reading from which on a taxel may be at its stroke, as a fraction of the full scale. At the stroke, the force exceeds the spring force.
 const CLIPPED: f64 = 0.97;
 /// Minimum number of frames.
 const FEWEST: usize = 40;

@@ -6,7 +6,7 @@ use ndarray::{Array2, ArrayView2};
 /// Distance, in pitches, up to which a taxel contributes to a pixel. No place between taxels is farther than 0.62 from one on a hexagonal lattice with one
 /// taxel per square pitch, or than 0.8 on rings on a sphere. If the value is smaller, images have holes; if the value is larger, they are blurred.
 const NEAR: f64 = 1.0;
-/// Distance, in pitches, within which a pixel of the patch has a taxel. Other pixels lie beside the patch and are 0.
+/// Maximum distance, in pitches, from a pixel of the patch to its nearest taxel. Pixels without such a taxel lie beside the patch and are 0.
 const ON_PATCH: f64 = 0.8;
 
 /// Chart of a patch: the positions of its taxels on a plane, and an image of them. A pixel is the weighted mean of the taxels near it, with

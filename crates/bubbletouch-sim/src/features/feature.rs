@@ -8,7 +8,7 @@ use std::fmt::Debug;
 /// Description of an image feature.
 #[derive(Debug)]
 pub struct FeatureAbout {
-    /// Name in texts.
+    /// Name in reports and charts.
     pub words: &'static str,
     /// Returns the number of values for an ny × nx image.
     pub n_values: fn((usize, usize)) -> usize,

@@ -5,7 +5,8 @@
 //! f(j, k)² = |Σ_θ δ(x̄ + r cos θ, ȳ + r sin θ) exp(−ikθ)| / 32, θ in 32 equal steps, k = 0 … 15.
 //!
 //! δ between taxels is interpolated bilinearly, and is 0 beyond the array. The centroid moves with the contact, and a rotation of the image
-//! rotates the rings. The feature is exactly invariant to quarter turns. It is exactly invariant to shifts by whole taxels as long as no ring that meets the
+//! rotates the rings. The feature is exactly invariant to quarter turns. The feature is also exactly invariant to shifts by whole taxels as long as no ring
+//! that meets the
 //! contact leaves the array. For other motions the sampling by taxels limits the invariance. The root brings weak harmonics closer to strong ones.
 //!
 //! Source: the angular part of Sheng and Arsenault (1986), JOSA A 3, 771, without the transform before it.

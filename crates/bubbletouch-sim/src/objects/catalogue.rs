@@ -79,7 +79,7 @@ impl Catalogue {
     /// Returns the built-in objects: 16 balls, 16 boxes, 9 cans, household objects, and hands.
     ///
     /// # Errors
-    /// Never in practice: the built-in files are tested.
+    /// If a built-in file is invalid, which tests exclude.
     pub fn builtin() -> Result<Self> {
         let mut entries = Vec::new();
         for (set, text) in BUILTIN {

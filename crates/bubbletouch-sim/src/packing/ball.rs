@@ -35,7 +35,7 @@ pub(super) fn relief(e: f64) -> f64 {
 const BESIDE: f64 = 1e-7;
 
 impl Ball {
-    /// Returns the largest ball that touches the surface from inside at `foot`. For a [`Body::Sheet`] it returns the ball of radius 0 at `foot`.
+    /// Returns the largest ball that touches the surface from inside at `foot`. For a [`Body::Sheet`], returns the ball of radius 0 at `foot`.
     pub fn at(target: &Target, foot: DVec3, normal: DVec3) -> Self {
         let largest = Self::largest(target, foot, -normal, 0.0, target.largest_radius());
         largest.unwrap_or(Self::on_surface(foot))

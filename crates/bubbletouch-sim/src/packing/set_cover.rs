@@ -91,7 +91,7 @@ impl Members {
     }
 }
 
-/// Set cover under construction.
+/// Partial set cover: the chosen sets, and the scores of all sets for the next exchange.
 pub(super) struct Cover<'a> {
     rows_of: &'a Lists,
     sets_of: Lists,

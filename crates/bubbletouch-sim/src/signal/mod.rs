@@ -32,7 +32,7 @@
 //! piece of hardware (gains, the drift's walk, faults) are constant over all touches: they depend on the `skin`'s seed and are drawn in [`Chain::new`].
 //! Errors that change from touch to touch are drawn in [`Chain::apply`]. Their patterns do not depend on the strengths either.
 //!
-//! **Whole bodies.** A [`BodyReadout`] supports the steps that act on each taxel independently. It uses counter-based random numbers instead of streams, so
+//! **Whole bodies.** A [`BodyReadout`] supports the steps that act on each taxel independently. Its random numbers are counter-based instead of streams, so
 //! the touched taxels among millions are read at a cost proportional to their number.
 //!
 //! **Time.** A touch is a [`Recording`]: frames in the order of time. Hysteresis and scan order depend on several frames. A single frame is
