@@ -8,8 +8,8 @@
 //! f = k (δ(t + Δt) − δ(t) φ) / (1 − φ),   φ = e^(−k Δt / c)
 //! ```
 //!
-//! The force is zero exactly if the taxel relaxes freely, and positive if the taxel is pushed. This is the complementarity condition
-//! 0 ≤ f ⟂ gap ≥ 0 of \[PT\] in closed form. The force tends to `k δ + c δ̇` for Δt → 0 and equals `k δ` for c = 0 or at rest.
+//! The force is zero exactly if the taxel relaxes freely, and positive if the taxel is pushed. The step thus solves the complementarity
+//! problem 0 ≤ f ⟂ gap ≥ 0 of \[PT\] in closed form. The force tends to `k δ + c δ̇` for Δt → 0 and equals `k δ` for c = 0 or at rest.
 
 use crate::world::{Taxel, Taxels};
 

@@ -12,8 +12,9 @@
 //!
 //! **Behind the substrate.** A press to a depth, a travel or a force approaches from the front, and all spheres count at any depth. The
 //! deflection of a taxel of a flat patch therefore never decreases with the depth. At a pose without a path ([`press_at_pose`],
-//! [`press_with_contacts`]) and for free objects, a sphere or a mesh counts until it is wholly behind the substrate. This is decided for each taxel.
-//! The obstacle is behind if a taxel resting on its far side would be behind the substrate, `h + √(S² − b²) < −s − ρ` (predicate in the module `law`).
+//! [`press_with_contacts`]) and for free objects, a sphere or a mesh counts until it is wholly behind the substrate. The rule is applied to each taxel
+//! separately. The obstacle is behind if a taxel resting on its far side would be behind the substrate, `h + √(S² − b²) < −s − ρ` (predicate in the
+//! module `law`).
 //! A ball that moves through a skin therefore leaves it taxel by taxel. In a time loop, and along the path of a press, a part that pushed a taxel in
 //! the step before continues to push this taxel.
 //!
@@ -32,8 +33,8 @@
 //! A **touch to a force** ends where the springs carry Σ k δ = F together; the result equals a press to the travel found.
 //! [`MovedObject`] presses one object among others to a force.
 //!
-//! **Friction** is optional: with [`Shear`](crate::world::Shear) springs the objects drag the tips of the taxels until they slip. Each
-//! taxel then measures a three-axis force ([`FrictionState`] has the equations). Without friction, and to the bit with μ = 0, the forces
+//! **Friction** is optional: with [`Shear`](crate::world::Shear) springs the objects drag the tips of the taxels until they slip. With
+//! friction each taxel measures a three-axis force ([`FrictionState`] has the equations). Without friction, and to the bit with μ = 0, the forces
 //! equal `spring_load`.
 
 mod damper;

@@ -11,7 +11,7 @@ use glam::DVec3;
 pub struct SpringLoad {
     /// Load on the objects without friction: Σ k δ n_c / (n_c·n) at the contact points.
     pub on_object: Wrench,
-    /// Σ k δ, N: the sum of the taxels' readings.
+    /// Sum of the taxels' readings Σ k δ, N.
     pub spring_force: f64,
     /// Mean rest centre of the touched taxels, weighted by k δ; metres, in the patch frame. `None` if none is touched.
     pub center_of_pressure: Option<DVec3>,

@@ -23,9 +23,9 @@ pub struct TaxelContact {
     pub deflection: f64,
     /// Deflection that the object needs, without the stop, metres; larger than `deflection` if the taxel is saturated.
     pub needed: f64,
-    /// n_c in the patch frame: unit, from the object's surface to the taxel at the deflection needed.
+    /// Contact normal n_c in the patch frame: unit, from the object's surface to the taxel at the deflection needed.
     pub normal: DVec3,
-    /// −n_c·n, 0 to 1; 1 for a head-on contact.
+    /// Cosine −n_c·n of the angle between normal and axis, 0 to 1; 1 for a head-on contact.
     pub cosine: f64,
     /// Contact point on the object, metres, in the patch frame.
     pub point: DVec3,

@@ -8,7 +8,7 @@
 //! M (x' − x − Δt ẋ − Δt² g) / Δt² + Σ f(x') = 0,   x' ≤ the floor
 //! ```
 //!
-//! This is one equation for x', increasing and convex. Newton's method from the right ends after a few steps, exactly. At the floor, stops
+//! The second line is one equation for x', increasing and convex. Newton's method from the right ends after a few steps, exactly. At the floor, stops
 //! carry the remaining force. Stacked balls that would otherwise penetrate those below are merged into a group with one motion. The x' of a chain of
 //! balls is an isotonic regression of their free motions.
 

@@ -7,7 +7,7 @@ use rapier3d_f64::prelude::{IntegrationParameters, SpringCoefficients};
 /// Settings of the rigid-body engine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RapierSettings {
-    /// Solver iterations per step, at least 1. Each is a small step of its own, because the solver is of the TGS kind.
+    /// Solver iterations per step, at least 1. An iteration is a small time step of its own, because the solver is of the TGS kind.
     pub solver_iterations: usize,
     /// Sweeps over all constraints within each iteration, at least 1.
     pub sweeps: usize,

@@ -40,8 +40,8 @@ impl SemiImplicit {
     }
 
     /// Returns the stiffest stable contact, N/m, for steps of `dt` seconds while `n_touched` equal taxels touch the object.
-    /// It is half the stability limit of a taxel, `κ + k < 4 m / Δt² + 2 c / Δt`, or of the object, `n κ < 4 M / Δt²`. It is at least the
-    /// stiffness of the taxel's own spring.
+    /// The stiffness is half the stability limit of a taxel, `κ + k < 4 m / Δt² + 2 c / Δt`, or of the object, `n κ < 4 M / Δt²`. The result is at least
+    /// the stiffness of the taxel's own spring.
     pub fn stiffest(system: &System, dt: f64, n_touched: usize) -> f64 {
         let taxel = system.patch.taxels().at(0);
         let of_taxel = (4.0 * system.taxel_mass / dt + 2.0 * taxel.damping) / dt;

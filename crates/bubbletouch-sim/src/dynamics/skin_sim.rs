@@ -1,4 +1,4 @@
-//! Parameters of SkinSim \[SK\], the simulator that the quasi-static model was built to replace. There each taxel is a body on a spring-loaded joint in a
+//! Parameters of SkinSim \[SK\], the simulator that the quasi-static model was built to replace. In SkinSim each taxel is a body on a spring-loaded joint in a
 //! dynamics engine, and a plug-in sets spring and damper forces before each step. SkinSim was reported to be unstable near 280 joints.
 
 use crate::world::Taxel;

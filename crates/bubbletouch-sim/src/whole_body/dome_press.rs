@@ -1,14 +1,14 @@
 //! Presses of spheres on a spherical patch: a sphere covers one interval of each ring of taxels.
 //!
 //! The axis of every taxel passes through the centre. With t = c·n and Q = |c|² − S² the sphere therefore needs
-//! `δ = √(t² − Q) − (t − R)` for any taxel. This is positive where t is above
+//! `δ = √(t² − Q) − (t − R)` for any taxel. The deflection is positive where t is above
 //!
 //! ```text
 //! √Q                if 0 ≤ Q ≤ R²: for smaller t the sphere misses the taxel's axis
 //! (R² + Q) / (2R)   if Q > R²: for smaller t the sphere is above the taxel at rest
 //! ```
 //!
-//! With B = R − s − ρ the sphere is in front of the substrate (`contact::law`) where `t + √(t² − Q) ≥ B`. This holds where t is at least B or
+//! With B = R − s − ρ the sphere is in front of the substrate (`contact::law`) where `t + √(t² − Q) ≥ B`. The inequality holds where t is at least B or
 //! (B² + Q) / (2B). On a ring t = A + A' cos(φ − φ_c), so the condition selects an interval.
 
 use super::dome_patch::DomePatch;

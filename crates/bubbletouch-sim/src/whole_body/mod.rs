@@ -8,11 +8,11 @@
 //! 3. **Taxels**, depending on the surface:
 //!
 //! On an [`Extrusion`](crate::world::Extrusion), a row of taxels is repeated along a line. Let b be the distance of a sphere beside the axis of a column
-//! and h its height above the column, equal for all rows. Let d be its distance from a row along the line. Then `δ = √(S² − b² − d²) − h`.
+//! and h its height above the column, equal for all rows. Let d be its distance from a row along the line. The deflection is `δ = √(S² − b² − d²) − h`.
 //! The first terms are computed once per column and sphere, the root once per covered taxel.
 //!
 //! On a sphere of radius R around the origin ([`Dome`](crate::world::Dome)) taxels lie in rings, and δ depends on a taxel's axis n
-//! only through t = c·n. Then `δ = √(t² − |c|² + S²) − (t − R)`, so a sphere covers an interval of each ring.
+//! only through t = c·n. The deflection is `δ = √(t² − |c|² + S²) − (t − R)`, so a sphere covers an interval of each ring.
 //!
 //! On other surfaces taxels have their own axes and are evaluated in tiles of eight.
 //!

@@ -5,8 +5,8 @@
 //! axes belong to opposite sides of a thin sheet and are not neighbours. Taxels at one place are neighbours, and share their other neighbours. Places
 //! farther apart than three times the local spacing are not neighbours: the skin has a gap.
 //!
-//! The distance along the surface is the length of an arc that turns as far as the axes do: chord · (θ/2) / sin(θ/2). Here θ is the angle
-//! between the axes. The formula is exact on planes, on spheres, and across and along cylinders.
+//! The distance along the surface is the length of an arc that turns as far as the axes do: chord · (θ/2) / sin(θ/2). The angle between the axes
+//! is θ. The formula is exact on planes, on spheres, and across and along cylinders.
 
 use super::Patch;
 use glam::DVec3;

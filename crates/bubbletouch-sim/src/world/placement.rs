@@ -1,8 +1,8 @@
 //! Placement of touches: pose of a patch relative to an object that rests on the table.
 //!
 //! The object rests in one of its poses with its bounding box centred at x = y = 0, turned by the yaw about the table's z. The
-//! patch comes from above, facing down. Its axis passes through the offset (x, y) at the height of the object's top. There the patch
-//! is tilted about its own x, then about its own y:
+//! patch comes from above, facing down. The patch's axis passes through the offset (x, y) at the height of the object's top. At this point the
+//! patch is tilted about its own x, then about its own y:
 //!
 //! patch_from_table = R_y(tilt_y)⁻¹ · R_x(tilt_x)⁻¹ · F · T(−offset_x, −offset_y, −height), F = half a turn about x.
 //!

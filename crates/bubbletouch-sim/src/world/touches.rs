@@ -27,7 +27,7 @@ enum Order {
     Drawn(usize),
     /// All `n` combinations, in order.
     Product(usize),
-    /// Chosen combinations.
+    /// Randomly chosen combinations, by their numbers.
     Chosen(Vec<usize>),
 }
 

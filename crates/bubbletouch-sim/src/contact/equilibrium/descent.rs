@@ -25,7 +25,7 @@ const ACCEPTED_IMBALANCE: f64 = 1e-6;
 const TARGET_RESIDUAL: f64 = 1e-7;
 /// Largest complementarity residual of a pose that is reported at rest; needed if many stops carry and rounding limits their stiffness.
 const ACCEPTED_RESIDUAL: f64 = 1e-5;
-/// Largest step, relative to the longest allowed one, for which all contacts on its way are gathered. Larger: more pairs; smaller: more steps.
+/// Largest step, relative to the longest allowed one, whose contacts are all gathered. Larger: more pairs; smaller: more steps.
 const NEARBY: f64 = 0.04;
 /// Width of the smoothing of ties, relative to the largest deflection and to the deflection at which a taxel carries all the weight.
 const SMOOTHING: f64 = 1e-2;

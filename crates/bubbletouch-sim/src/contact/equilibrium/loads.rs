@@ -6,7 +6,7 @@
 //! E = Σ ½ k ψ² + (max(0, λ + κ (ψ − s))² − λ²) / 2κ
 //! ```
 //!
-//! Here ψ is measured from the taxel's free position, and k includes the damper's stiffness within the step. For a rigid contact k = s = 0.
+//! The value ψ is measured from the taxel's free position, and k includes the damper's stiffness within the step. For a rigid contact k = s = 0.
 //!
 //! The second term is the augmented Lagrangian of the rigid stop ψ ≤ s \[RW\]. With the correct λ the stop holds exactly, and
 //! λ is the force on it.

@@ -1,7 +1,7 @@
 //! Pairs of spheres of free objects and the taxels or rigid contacts that they push, or could push after a small step.
 //!
-//! A rigid contact is treated as a taxel without a spring at the end of its stroke. Its deflection is the penetration of the sphere, and its force
-//! is the force on the stop. Taxels and rigid contacts thus share one pair type.
+//! A rigid contact is treated as a taxel without a spring at the end of its stroke. The penetration of the sphere is treated as deflection, and the
+//! contact force as force on the stop. Taxels and rigid contacts thus share one pair type.
 
 use super::super::taxel_contact::GRAZING;
 use super::body::Body;
@@ -39,7 +39,7 @@ pub(super) struct Margins {
 /// Pairs at the present poses of all bodies.
 ///
 /// A sphere behind a taxel's substrate does not push the taxel. A sphere that comes up from behind also does not push it: the energy would
-/// jump at the substrate, and an object could hang on this jump. Such pairs are stored until sphere and taxel are apart.
+/// jump at the substrate, and an object could hang on this jump. Pairs of this kind are stored until sphere and taxel are apart.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Pairs {
     /// Pairs that push or could push, sorted by taxel or rigid contact and then by sphere.

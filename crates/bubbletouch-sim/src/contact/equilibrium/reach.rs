@@ -32,8 +32,8 @@ impl Reach {
     /// and cannot after a motion of `motion` metres.
     ///
     /// `δ = √(S² − b²) − h` for `√(S² − b²) ≥ γS` with γ = [`GRAZING`]. On steeper flanks of the sphere δ continues along
-    /// the tangent, so a sphere that comes from the side climbs a slope of 1/γ instead of a cliff. This is also the bound of the gradient
-    /// used for forces.
+    /// the tangent, so a sphere that comes from the side climbs a slope of 1/γ instead of a cliff. Forces use the same bound 1/γ of the
+    /// gradient.
     pub fn new(center: DVec3, radius: f64, taxel: &PlacedTaxel, motion: f64) -> Option<Self> {
         let (axis, reach) = (taxel.axis, taxel.radius + radius);
         let from_rest = center - taxel.center;

@@ -21,7 +21,7 @@ pub struct TaxelLoad {
     pub sphere: usize,
     /// Force of the sphere on the taxel along the taxel's axis, newtons, above 0.
     pub force: f64,
-    /// Part of `force` that the spring at its stroke does not carry, newtons; 0 below the stroke. It is the share in the reaction of the stop, the
+    /// Part of `force` that the spring at its stroke does not carry, newtons; 0 below the stroke. The value is the share in the reaction of the stop, the
     /// multiplier of δ ≤ s.
     pub stop: f64,
     /// Whether the sphere's flank is nearly parallel to the axis: see [`GRAZING`](crate::contact::GRAZING).

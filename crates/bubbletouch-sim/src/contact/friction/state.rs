@@ -12,8 +12,8 @@
 //! The module `coulomb` solves the step of u in closed form: the predictor u + Δ is returned to the friction cone at the step's end.
 //! If the object rolls, X₁ a − X₀ a and X₁ b − X₀ b cancel to second order, so rolling drags nothing.
 //!
-//! For a free object the motion is unknown before its equilibrium, which depends on the shear springs. There b is omitted, and u + Δ is returned
-//! radially to the cone (`equilibrium::shear_springs`). On a straight path both rules give the same u.
+//! For a free object the motion is unknown before its equilibrium, which depends on the shear springs. The step of a free object therefore omits b and
+//! returns u + Δ radially to the cone (`equilibrium::shear_springs`). On a straight path both rules give the same u.
 //!
 //! **Normal direction**: the sensor's axis, f_n = f = k δ (+ c δ̇ with a damper), not the contact normal n_c. Friction perpendicular to the axis
 //! has no component along it, so δ and f keep their frictionless closed form and no wedge can jam a taxel. The cone then refers

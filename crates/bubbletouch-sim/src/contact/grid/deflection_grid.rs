@@ -20,7 +20,7 @@ pub(crate) struct DeflectionGrid {
 }
 
 impl DeflectionGrid {
-    /// All deflections, metres.
+    /// Returns all deflections, metres.
     pub fn deflections(&self) -> &[f64] {
         &self.deflections[..self.n_taxels]
     }

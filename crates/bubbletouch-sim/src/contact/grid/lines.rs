@@ -67,7 +67,7 @@ impl Lines {
 
     /// Returns the lines within `half_width` of a coordinate, including those that are beyond by no more than rounding.
     ///
-    /// Casts truncate and saturate beside the grid. They replace floor and ceil, which are function calls on the oldest supported processors.
+    /// Casts truncate and saturate beside the grid. Casts replace floor and ceil, which are function calls on the oldest supported processors.
     /// The cast to 32 bits needs fewer instructions than one to 64 bits.
     #[inline(always)]
     pub fn within(&self, coordinate: f64, half_width: f64) -> Range<usize> {

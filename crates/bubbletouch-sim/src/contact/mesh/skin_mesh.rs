@@ -79,8 +79,8 @@ impl<'a> MeshAt<'a> {
         Some(Stop { height, triangle })
     }
 
-    /// Returns the triangle through which a taxel's axis entered the mesh, if the substrate is inside the solid mesh. Then the nearest
-    /// triangle behind the substrate faces outwards, and the nearest one ahead shows its inner side.
+    /// Returns the triangle through which a taxel's axis entered the mesh, if the substrate is inside the solid mesh. The nearest triangle
+    /// behind the substrate then faces outwards, and the nearest one ahead shows its inner side.
     fn entered(&self, view: &AxisView) -> Option<Stop> {
         let beside = view.taxel.radius * BESIDE;
         let place = view.to_mesh(beside.extend(view.taxel.behind));

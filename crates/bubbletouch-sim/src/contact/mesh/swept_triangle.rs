@@ -1,7 +1,7 @@
 //! Contact of a ball that rises along a line with a triangle: with the face, an edge or a corner, each in closed form.
 //!
-//! The ball's centre is at (x, y) and rises from z = −∞. The ball stops at the lowest point of the triangle swept by the ball. This is
-//! the smallest of the heights below, over the parts that contain the point of the triangle nearest to the stopped centre.
+//! The ball's centre is at (x, y) and rises from z = −∞. The ball stops at the lowest point of the triangle swept by the ball. The stopping
+//! height is the smallest of the heights below, over the parts that contain the point of the triangle nearest to the stopped centre.
 //!
 //! | part | with | stops at |
 //! |---|---|---|
@@ -109,8 +109,8 @@ impl SweptEdge {
     /// `faces` has the unit normals of the faces at the edge, zero for none. Seen from above, a face lies to the left of the edge if
     /// its normal points up, and to the right if its normal points down.
     ///
-    /// A face hides the edge if the direction from the edge to the centre of the stopped ball points towards the face. This is the case beyond
-    /// the place where the face, moved down by the radius, begins: at the distance ρ n·aside beside the edge.
+    /// A face hides the edge if the direction from the edge to the centre of the stopped ball points towards the face. The hidden region begins where
+    /// the face, moved down by the radius, begins: at the distance ρ n·aside beside the edge.
     #[inline]
     pub fn new(from: DVec3, to: DVec3, radius: f64, faces: [DVec3; 2]) -> Option<Self> {
         let edge = to - from;
@@ -150,7 +150,7 @@ impl SweptEdge {
 
     /// Returns the lowest and highest corner of a ground rectangle that contains all places where the edge can stop the ball.
     ///
-    /// These places are the edge moved by ρ along all directions between its faces' normals. The arc of directions deviates from its chord by at most
+    /// The places are the edge moved by ρ along all directions between its faces' normals. The arc of directions deviates from its chord by at most
     /// ρ (1 − cos β) / 2, where β is the angle between the normals.
     #[inline]
     pub fn ground(&self) -> (DVec2, DVec2) {

@@ -15,7 +15,7 @@ impl Approach<'_> {
     /// Presses until the springs carry `force` newtons together, Σ k δ, to within a relative 1e-12 or the last bit of the travel.
     ///
     /// `patch_from_objects` has the objects' poses before the motion, one per object. Returns `None` if the path misses all objects; the workspace then
-    /// contains the last press on the path. On a curved skin several travels can have this force. The first one found by steps of half a stroke is
+    /// contains the last press on the path. On a curved skin several travels can have this force; the first one found by steps of half a stroke is
     /// returned. If the force jumps past `force` (an edge meets a taxel from the side), the
     /// upper side of the jump is returned. A part that pushes a taxel continues to push it behind the substrate, so nothing passes through the skin.
     ///

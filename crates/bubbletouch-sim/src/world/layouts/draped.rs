@@ -10,7 +10,7 @@ use glam::DVec3;
 use rand::seq::SliceRandom;
 use std::collections::{BTreeMap, HashMap};
 
-/// Smallest distance between taxels, in pitches. Random places are added until no further place has this distance from all others. Then there are
+/// Smallest distance between taxels, in pitches. Random places are added until no further place has this distance from all others. This process yields
 /// about 0.7 / distance² taxels per square pitch: at 0.83 as many as on a grid of the pitch.
 const LEAST: f64 = 0.83;
 /// Longest edge of a piece of surface, in pitches. Smaller: taxels are packed more densely, and more memory is used; larger: the
@@ -39,8 +39,8 @@ impl Layout {
     /// is within a pitch of a taxel. Random places are accepted if they are far enough from all accepted ones (dart
     /// throwing); equal seeds give equal taxels. The run time is about 0.3 ms per taxel.
     ///
-    /// Axes are the mean normals of the surface within half a pitch. This smooths the facets of a scan and keeps the sides
-    /// of a box flat. If a ray along a mean normal meets the mesh again, the axis is the normal of the taxel's own triangle.
+    /// Axes are the mean normals of the surface within half a pitch. The averaging smooths the facets of a scan and keeps the
+    /// sides of a box flat. If a ray along a mean normal meets the mesh again, the axis is the normal of the taxel's own triangle.
     ///
     /// # Errors
     /// If the pitch is not positive, the surface has no area, an open mesh has no [known outside](TriangleMesh::turned_outwards), or the

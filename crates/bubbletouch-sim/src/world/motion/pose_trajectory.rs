@@ -19,8 +19,8 @@ const RPY: [&str; 3] = ["roll", "pitch", "yaw"];
 /// Pose of a body over time, through way-points; constant before the first and after the last.
 ///
 /// The position's three numbers are interpolated as in a [`JointTrajectory`](super::JointTrajectory). Rotations take the shorter
-/// path between neighbours. Linear interpolation uses slerp, the others use Hermite curves of quaternions \[KKS\]. Their angular velocity is
-/// continuous and zero at both ends (for squad only with equidistant times). If monotone, a turn about one axis never leaves the range of its
+/// path between neighbours. Linear interpolation uses slerp, the others use Hermite curves of quaternions \[KKS\]. The angular velocity of these
+/// curves is continuous and zero at both ends (for squad only with equidistant times). If monotone, a turn about one axis never leaves the range of its
 /// two way-points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoseTrajectory {
@@ -50,7 +50,8 @@ impl PoseTrajectory {
     }
 
     /// Reads a trajectory from CSV. Columns: `time_s`; `x`, `y`, `z` in metres (`_m`) or with `_mm`; and a rotation. The rotation is either
-    /// `qx`, `qy`, `qz`, `qw`, or `roll`, `pitch`, `yaw` in radians (`_rad`) or with `_deg`. These turn about the fixed axes x, y, z in this order.
+    /// `qx`, `qy`, `qz`, `qw`, or `roll`, `pitch`, `yaw` in radians (`_rad`) or with `_deg`. Roll, pitch and yaw turn about the fixed axes x, y, z in
+    /// this order.
     ///
     /// # Errors
     /// If the table is invalid; the message begins with `place`, the file's name, and contains the line.

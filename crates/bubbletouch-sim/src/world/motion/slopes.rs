@@ -4,8 +4,8 @@
 /// velocities between n values.
 ///
 /// Adjacent pieces have equal accelerations at their way-point:
-/// `m₋/h₋ + 2 (1/h₋ + 1/h₊) m + m₊/h₊ = 3 (d₋/h₋ + d₊/h₊)`. Here h is the duration and d the secant before and after. This is a
-/// tridiagonal system with a dominant diagonal, solved by elimination.
+/// `m₋/h₋ + 2 (1/h₋ + 1/h₊) m + m₊/h₊ = 3 (d₋/h₋ + d₊/h₊)`. The symbol h is the duration and d the secant before and after the way-point. The equations
+/// form a tridiagonal system with a dominant diagonal, solved by elimination.
 pub(super) fn clamped_spline(steps: &[f64], secants: &[f64]) -> Vec<f64> {
     let n = steps.len() + 1;
     let mut slopes = vec![0.0; n];

@@ -1,8 +1,8 @@
 //! Basins of the support function: regions of down directions that lead downhill to one minimum.
 //!
 //! 1. On a mesh of directions, each direction flows to its lowest neighbour, which defines basins.
-//! 2. Basins with a low barrier between them are merged, first by the barrier along the mesh. Then each minimum is refined, and the barrier
-//!    is measured along a smooth path between two minima. This path follows the valley of a lying can, which the mesh only
+//! 2. Basins with a low barrier between them are merged, first by the barrier along the mesh. Each minimum is then refined, and the barrier
+//!    is measured along a smooth path between two minima. The smooth path follows the valley of a lying can, which the mesh only
 //!    approximates.
 
 use super::descent::descend;

@@ -97,8 +97,8 @@ fn walls(radius: f64, height: f64, reach: f64) -> [Piece; 3] {
 
 /// Returns min over t of the maximum of `pieces` and `walls`: a linear program in three variables, by the dual simplex method.
 ///
-/// The basis has three pieces whose slopes have 0 as their mean with `weights` ≥ 0. Their common point is the minimum of their
-/// maximum. The piece that is highest there enters the basis, and the one whose weight reaches zero first leaves.
+/// The basis has three pieces whose slopes have 0 as their mean with `weights` ≥ 0. The common point of the three pieces is the
+/// minimum of their maximum. The piece that is highest there enters the basis, and the one whose weight reaches zero first leaves.
 fn lowest_maximum(pieces: &[Piece], walls: [Piece; 3]) -> ([f64; 2], f64) {
     let mut basis = walls;
     let mut weights = [1.0 / 3.0; 3];

@@ -1,6 +1,6 @@
 //! Height of the centre of mass above a table for every direction of down: h(d) = max_j (c_j · d + r_j).
 //!
-//! Here c_j, r_j are spheres relative to the centre of mass and d is a unit vector. Directions are the corners of a subdivided icosahedron. Each
+//! The spheres c_j, r_j are relative to the centre of mass, and d is a unit vector. Directions are the corners of a subdivided icosahedron. Each
 //! triangle stores only the spheres that can be highest somewhere inside it, so h takes a few dot products
 //! and is still exact.
 
@@ -14,7 +14,7 @@ const LEVELS: usize = 5;
 /// Support function of a union about a point, with a mesh of directions for searches.
 pub(crate) struct Support {
     spheres: Vec<Sphere>,
-    /// Unit directions.
+    /// Unit vectors of the mesh of directions.
     pub directions: Vec<DVec3>,
     /// Height h at each direction, metres.
     pub heights: Vec<f64>,

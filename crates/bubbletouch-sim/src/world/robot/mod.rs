@@ -13,7 +13,7 @@
 //! | floating | x, y, z, m; roll, pitch, yaw, rad | shift, then turn: `Rz(yaw) Ry(pitch) Rx(roll)` |
 //!
 //! Links, joints and their origins determine poses and must be valid. A joint whose axis or type cannot be read is fixed. Limits,
-//! shapes and `<mimic>` that cannot be read are omitted. Each such case is a [note](Robot::notes).
+//! shapes and `<mimic>` that cannot be read are omitted. Each of these cases is reported in a [note](Robot::notes).
 //!
 //! The **positions** of a robot are the coordinates of its joints in the order of its file, without fixed joints and without
 //! joints that mimic another.

@@ -1,4 +1,4 @@
-//! Tactile sensors of a URDF file: `<sensor>` with `<tactile>`. They are not read; each is reported in a note.
+//! Tactile sensors of a URDF file: `<sensor>` with `<tactile>`. The sensors are not read; each is reported in a note.
 
 use super::xml::Element;
 use roxmltree::Node;

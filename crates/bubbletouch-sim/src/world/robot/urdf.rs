@@ -128,7 +128,7 @@ fn read_joint(
         "safety_controller",
     ])?;
     let (kind, axis) = match element.or_note(read_kind(&element, name), JointKind::Fixed, FIXED) {
-        // These joints have no axis, whatever is written.
+        // Fixed and floating joints have no axis; an `<axis>` in the file is ignored.
         kind @ (JointKind::Fixed | JointKind::Floating) => (kind, DVec3::X),
         kind => {
             let read = read_axis(element, name).map(|axis| (kind, axis));
