@@ -104,8 +104,8 @@
 //!
 //! [`recognition`], [`study`] and [`kinds`] re-export names of these stages under shorter paths.
 //!
-//! The stages from `mesh` to `calibration` are pure: they use no files, clock, threads, printing or global state. There are three exceptions. A robot may be
-//! read from its path. Large touches in `whole_body` and chains of packings in `packing` use the threads of the pool. All other threads are started in
+//! The stages from `mesh` to `calibration` are pure: they use no files, clock, threads, printing or global state. Exceptions: a robot may be
+//! read from its path; large touches in `whole_body` and chains of packings in `packing` use the threads of the pool. All other threads are started in
 //! `studies` and `report`. Files are read and written in `studies`, `report`, `inputs`, `engine`, `scene` and the command.
 //!
 //! The [`guide`] has chapters for users of the command and of the library, from a [first study](guide::first_study) and the

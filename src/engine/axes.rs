@@ -426,7 +426,7 @@ const UNITS: [(&str, &str); 15] = [
     ("_g", "g"),
 ];
 
-/// Roles by prefix of the key; all other keys are choices. Depth, slide, frequency and speed of a press are choices. Pose and friction of the object are
+/// Roles by prefix of the key; all other keys are choices. Depth, slide, number and speed of presses are choices. Pose and friction of the object are
 /// conditions. The split, its groups and recorded data are conditions of the experiment: as a choice, the easiest split would always win.
 const ROLES: [(&str, Role); 19] = [
     (OF_TESTS, Role::Condition),

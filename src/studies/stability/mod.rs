@@ -9,7 +9,8 @@
 //! prescribes the deflections, or the springs carry the weight ([`rest`](crate::dynamics::rest)). Each method is evaluated at this time:
 //!
 //! - **force imbalance**: |Σ f − expected| / expected, at the end of the simulation or, for an imposed motion, of the hold.
-//! - **deflection error**: Σ |δ − δ\*| / Σ δ\* at this time. For an imposed motion, the error also covers the time after the release, when all deflections must be zero.
+//! - **deflection error**: Σ |δ − δ\*| / Σ δ\* at this time. For an imposed motion, the error also covers the time after the release, when all
+//!   deflections must be zero.
 //! - **outcome**: [`right`](Outcome::Right) if both errors are at most [`TOLERANCE`], otherwise [`inaccurate`](Outcome::Inaccurate). A simulation fails if a
 //!   number is not finite, if the energy exceeds that of the scene, or if contact is missed (deflections less than half of the expected ones, or the ball below
 //!   the stops).
