@@ -26,7 +26,7 @@
 //! use bubbletouch_sim::world::{Extrusion, Patch, Taxel};
 //! use glam::DVec3;
 //!
-//! // Two forearms of 8 cm across, with a taxel every 2 mm, 30 cm apart.
+//! // Two forearms with a diameter of 8 cm and a taxel every 2 mm, 30 cm apart.
 //! let taxel = Taxel { radius: 1e-3, stiffness: 100.0, damping: 0.0, stroke: 2e-3 };
 //! let sleeve = Extrusion::cylinder(0.04, 0.25, 3.0, 2e-3)?;
 //! let patches = ["left", "right"].map(|name| Patch::new(name, sleeve.clone(), taxel));
@@ -34,7 +34,7 @@
 //! let mut state = BodyState::at_rest(&body);
 //! state.place(&body, &[-0.15, 0.15].map(|y| Pose::from_translation(y * DVec3::Y)));
 //!
-//! // A ball comes a millimetre too near to the right one.
+//! // A ball is pressed one millimetre into the right forearm.
 //! let ball = Sphere { center: DVec3::ZERO, radius: 0.03 };
 //! let ball = SphereClusters::new(&SphereUnion::new(vec![ball])?);
 //! let at = Pose::from_translation(DVec3::new(0.07, 0.15, 0.0));

@@ -111,7 +111,7 @@ pub struct FrictionLoad {
 ///     friction.step(&palm, workspace.contacts(), &[pose], NormalForce::Springs);
 /// }
 ///
-/// // It slides: the palm holds it back with μ times what presses it in, less where taxels came only just into contact.
+/// // The ball slides: the friction is μ times the normal force, and less for taxels that have just come into contact.
 /// let load = friction.load(&palm, workspace.contacts());
 /// let held_back = -load.friction.force.x / load.on_object.force.z;
 /// assert!(held_back > 0.48 && held_back <= 0.5);

@@ -22,7 +22,7 @@ use std::ops::RangeInclusive;
 /// let ranges = TouchRanges::usual(TouchKind::Pat);
 /// let pat = HumanTouch::draw(TouchKind::Pat, &ranges, surface, &Seed::new(3))?;
 /// assert!((2..=4).contains(&pat.contacts));
-/// // The hand starts and ends in the air, and is drawn alike from the same seed.
+/// // The hand starts and ends in the air, and equal seeds give equal touches.
 /// assert!(pat.at(0.0).height > 0.01 && pat.at(pat.duration()).height > 0.01);
 /// assert_eq!(pat, HumanTouch::draw(TouchKind::Pat, &ranges, surface, &Seed::new(3))?);
 /// # Ok::<(), bubbletouch_sim::Error>(())
