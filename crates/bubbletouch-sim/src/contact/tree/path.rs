@@ -9,7 +9,7 @@ use crate::world::{Patch, Taxel, TaxelTree};
 use glam::DVec3;
 
 /// Length of a step relative to the shortest stroke. Larger: a short peak of the force may be missed, and small spheres may pass through; smaller:
-/// more presses in vain.
+/// needless presses.
 const STEP: f64 = 0.5;
 /// Length of a step with friction relative to the smallest taxel's radius. Larger: taxels that come into contact within a step are dragged too little;
 /// smaller: more presses for at most a hundredth of the shear.

@@ -224,7 +224,7 @@ pub(crate) fn stop(patch: &Patch, workspace: &mut Workspace) -> Contact {
 /// let taxel = Taxel { radius: 0.5e-3, stiffness: 100.0, damping: 0.0, stroke: 2e-3 };
 /// let fingertip = Patch::new("fingertip", layout, Taxels::Equal(taxel))?;
 ///
-/// // A marble comes half a millimetre too near, from the side.
+/// // A marble presses half a millimetre deep, from the side.
 /// let marble = Sphere { center: DVec3::ZERO, radius: 8e-3 };
 /// let objects = [SphereUnion::new(vec![marble])?.into()];
 /// let pose = Pose::from_translation(16e-3 * DVec3::new(0.6, 0.0, 0.8));
@@ -232,7 +232,7 @@ pub(crate) fn stop(patch: &Patch, workspace: &mut Workspace) -> Contact {
 /// let counts = press_with_contacts(&fingertip, &objects, &[pose], &mut workspace);
 /// assert!(counts.n_touched > 3 && counts.n_saturated == 0);
 ///
-/// // The marble is pushed back the way it came.
+/// // The force on the marble points back along its approach.
 /// let load = spring_load(&fingertip, workspace.contacts());
 /// let force = load.on_object.force;
 /// assert!(force.normalize().dot(DVec3::new(0.6, 0.0, 0.8)) > 0.95);
