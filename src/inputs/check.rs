@@ -98,7 +98,7 @@ pub const NOISE: Range = Range::Of(
 const PENALTY: Range = Range::Of(|c| positive(c) && c <= 1e12, "above 0, 1e-12 to 1e12");
 /// Kernel width γ. At the upper bound, a kernel of degree 20 over 10,000 features is finite in f64.
 const GAMMA: Range = Range::Of(|c| positive(c) && c <= 1e9, "above 0, 1e-12 to 1e9");
-/// Constant c₀ of the polynomial kernel, which is raised to powers of at most 20.
+/// Constant c₀ of the polynomial kernel; the largest degree is 20.
 const COEF0: Range = Range::Of(|c| (0.0..=1e6).contains(&c), "0 to 1e6");
 
 /// Allowed numbers of touches per object.

@@ -21,10 +21,10 @@ pub struct ObjectsSpec {
     pub meshes: Option<FilePath>,
     /// Model built from each mesh. Default: the mesh itself.
     pub model: Option<ModelSpec>,
-    /// Length unit of the mesh files. Default: metres; each mesh must then have a size that the arrays can feel.
+    /// Length unit of the mesh files. Default: metres; the size of each mesh must then be within `sizes`.
     #[serde(alias = "mesh_unit")]
     pub unit: Option<LengthUnit>,
-    /// Range of sizes that the arrays can feel; set by the plan.
+    /// Allowed sizes of meshes without a unit; the plan derives them from the arrays.
     #[serde(skip)]
     pub sizes: Option<SizeLimits>,
     /// Distance between the taxels of the finest array, metres. Vertex spheres farther than half of this distance from their mesh are reported on standard
