@@ -59,6 +59,10 @@ fn an_extended_run_gives_the_tables_of_a_fresh_one() {
         let (study, axis, values) = swept(&case, &mut generator);
         let n_first = generator.rng.gen_range(1..values.len());
         let first = values[values.len() - n_first..].to_vec();
+        if study.swept(axis, first.clone()).load().is_err() {
+            // Without the other values a key of the study cannot act.
+            continue;
+        }
         for values in [first, values] {
             case.file("study.toml", study.swept(axis, values).text());
             case.succeeds(&["run", "study.toml", "--out", "extended"]);

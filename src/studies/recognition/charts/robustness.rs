@@ -8,7 +8,7 @@
 //! again. The interval contains the middle 95 % of the results. n is the number of rows whose Wilson interval is as wide as the interval in `summary.csv`, so
 //! that folds and held-out groups count as in that table.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::random::Seed;
 use crate::report::swept::{Setting, Swept};
 use crate::row;
@@ -210,8 +210,16 @@ fn rows_of_interval(accuracy: f64, width: f64) -> f64 {
 /// Returns the table of robustness, or `None` if no numeric condition has enough values. `summary` has a row for each configuration.
 ///
 /// # Errors
-/// If a row cannot be written to a file.
+/// If an accuracy of the summary is not between 0 and 1, or a row cannot be written to a file.
 pub(super) fn robustness(summary: &Table, confusion: &Table) -> Result<Option<Table>> {
+    let accuracies = (0..summary.n_rows).map(|row| summary.number("accuracy", row));
+    if let Some((row, accuracy)) = (2..)
+        .zip(accuracies)
+        .find(|(_, accuracy)| !(0.0..=1.0).contains(accuracy))
+    {
+        let place = format!("{}:{row}, accuracy", summary.file);
+        return Err(Error::input(place, accuracy, "between 0 and 1"));
+    }
     let all: Vec<usize> = (0..summary.n_rows).collect();
     let mut curves = Vec::new();
     for condition in summary.of_role(Role::Condition) {

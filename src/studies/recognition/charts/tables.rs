@@ -151,7 +151,15 @@ impl From<'_> {
         }
         let of = |file: &str| tables.iter().find(|table| table.file == file);
         if let (Some(summary), Some(confusion)) = (of(SUMMARY.name()), of(CONFUSION.name())) {
-            let robustness = robustness(summary, confusion)?;
+            let read = match self {
+                Self::Rows(_) => None,
+                Self::Folder(folder) => ROBUSTNESS.read_if_there(folder)?,
+            };
+            // Folders of earlier versions lack the table.
+            let robustness = match read {
+                None => robustness(summary, confusion)?,
+                read => read,
+            };
             tables.extend(robustness);
         }
         let cells = cells_of(&tables);
