@@ -10,7 +10,7 @@ use numpy::PyArray2;
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
-/// Named objects in named sets.
+/// Catalogue of named objects, grouped in named sets.
 #[pyclass(frozen, module = "bubbletouch")]
 pub struct Catalogue {
     entries: objects::Catalogue,
@@ -18,7 +18,7 @@ pub struct Catalogue {
 
 #[pymethods]
 impl Catalogue {
-    /// The objects that come with bubbletouch: balls, boxes, cans, a household and hands.
+    /// Returns the catalogue that comes with bubbletouch: balls, boxes, cans, household objects and hands.
     #[staticmethod]
     fn builtin() -> PyResult<Self> {
         guarded(|| {
@@ -27,7 +27,7 @@ impl Catalogue {
         })
     }
 
-    /// A TOML file of objects. Raises OSError, or ValueError with the file's line.
+    /// Reads a TOML file of objects. Raises OSError, or ValueError with the line of the file.
     #[staticmethod]
     fn read(path: PathBuf) -> PyResult<Self> {
         guarded(|| {
@@ -37,7 +37,7 @@ impl Catalogue {
         })
     }
 
-    /// Of all objects, set by set.
+    /// Names of all objects, set by set.
     #[getter]
     fn names(&self) -> Vec<&str> {
         let entries = self.entries.entries().iter();
@@ -49,13 +49,13 @@ impl Catalogue {
         self.entries.sets()
     }
 
-    /// The object of a name. Raises ValueError, which offers names that resemble it.
+    /// Returns the object with this name. Raises ValueError with similar names.
     fn object(&self, name: &str) -> PyResult<Solid> {
         let entry = self.entries.object(name).map_err(exception)?;
         Ok(Solid(entry.clone()))
     }
 
-    /// The objects of a set. Raises ValueError, which lists the sets.
+    /// Returns the objects of a set. Raises ValueError with the names of the sets.
     fn set(&self, name: &str) -> PyResult<Vec<Solid>> {
         let entries = self.entries.set(name).map_err(exception)?;
         Ok(entries.into_iter().cloned().map(Solid).collect())
@@ -71,7 +71,7 @@ impl Catalogue {
     }
 }
 
-/// An object of a catalogue: a union of parametric shapes with real dimensions, resting on z = 0, its box centred at x = y = 0.
+/// An object of a catalogue: a union of parametric shapes with real dimensions. It rests on z = 0; its bounding box is centred at x = y = 0.
 #[pyclass(frozen, module = "bubbletouch")]
 pub struct Solid(Entry);
 
@@ -82,25 +82,25 @@ impl Solid {
         &self.0.name
     }
 
-    /// The set that it belongs to: balls, boxes, cans, household, hands, or a file's name.
+    /// Name of the set: balls, boxes, cans, household, hands, or the name of a file.
     #[getter]
     fn set(&self) -> &str {
         &self.0.set
     }
 
-    /// Where its dimensions are from.
+    /// Source of the dimensions.
     #[getter]
     fn source(&self) -> &str {
         &self.0.source
     }
 
-    /// (2, 3): the least and the largest corner of the box around it, metres.
+    /// Bounding box (2, 3): its least and its greatest corner, metres.
     #[getter]
     fn bounds<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         corners(py, &self.0.solid.bounds())
     }
 
-    /// Spheres whose surface is within the tolerance (metres, positive) of the solid's. Raises ValueError.
+    /// Returns spheres whose surface is within the tolerance (metres, positive) of the solid's surface. Raises ValueError.
     fn pack(&self, py: Python, tolerance: f64) -> PyResult<SphereUnion> {
         guarded(|| {
             let solid = self.0.solid.clone();

@@ -7,30 +7,31 @@ use glam::DVec3;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
-/// Which part of the object touches which taxel: m contacts in the order of poses and taxels, and n poses.
+/// Contacts of n presses: m pairs of a taxel and the part of the object that touches it, in the order of poses and taxels.
 #[pyclass(frozen, get_all, module = "bubbletouch")]
 pub struct Contacts {
-    /// (m,): number of the pose, from 0.
+    /// Number of the pose (m,), from 0.
     pose: Py<PyArray1<i64>>,
-    /// (m,): number of the taxel, in the order of the patch.
+    /// Number of the taxel (m,), in the order of the patch.
     taxel: Py<PyArray1<i64>>,
-    /// (m,): number of the sphere, or of the triangle, that decides how far the taxel goes.
+    /// Number of the sphere or triangle (m,) that determines the deflection.
     part: Py<PyArray1<i64>>,
-    /// (m,): metres; that of the frame to rounding.
+    /// Deflection (m,), metres; equals the frame up to rounding.
     deflection: Py<PyArray1<f64>>,
-    /// (m, 3): unit, from the object's surface to the taxel, in the frame of the patch.
+    /// Contact normal (m, 3): unit vector from the object's surface to the taxel, in the frame of the patch.
     normal: Py<PyArray2<f64>>,
-    /// (m, 3): where they touch, metres, in the frame of the patch.
+    /// Contact point (m, 3), metres, in the frame of the patch.
     point: Py<PyArray2<f64>>,
-    /// (m, 3): of the taxel's spring on the object without friction, newtons, in the frame of the patch.
+    /// Frictionless force of the taxel's spring on the object (m, 3), newtons, in the frame of the patch.
     force: Py<PyArray2<f64>>,
-    /// (m, 3): ∂δ/∂x for a motion x of the part in the frame of the patch, before the taxel's stop; its length is ∂δ/∂R of a sphere's radius.
+    /// Gradient ∂δ/∂x (m, 3) for a motion x of the part in the frame of the patch, before the taxel's stop. Its length is ∂δ/∂R for a sphere's
+    /// radius R.
     gradient: Py<PyArray2<f64>>,
-    /// (n,): how far the patch went along its z, metres; NaN where no taxel met the object.
+    /// Travel of the patch along its z (n,), metres; NaN if no taxel met the object.
     travel: Py<PyArray1<f64>>,
-    /// (n,): taxels with a deflection.
+    /// Number of taxels with a deflection (n,).
     n_touched: Py<PyArray1<i64>>,
-    /// (n,): taxels at their stroke that the object would push further.
+    /// Number of saturated taxels (n,): at their stroke, and pushed further by the object.
     n_saturated: Py<PyArray1<i64>>,
 }
 

@@ -20,10 +20,10 @@ use std::path::PathBuf;
 /// Advice in the error for a mesh that cannot be packed.
 const ADVICE: &str = "Mesh.read(…, close_holes=WIDTH) closes holes up to that width, pack(…, sheet=True) packs the surface without thickness";
 
-/// A triangle mesh, touched exactly: taxels feel its faces, edges and corners, from both sides.
+/// A triangle mesh with exact contact: taxels touch its faces, edges and corners, from both sides.
 ///
-/// `Mesh(vertices, triangles)`: vertices (n, 3), metres; triangles (m, 3), numbers of vertices from 0, counter-clockwise seen from
-/// outside. Raises ValueError for numbers that are not finite and vertices that are not there.
+/// `Mesh(vertices, triangles)`: vertices (n, 3), metres; triangles (m, 3), numbers of vertices from 0, counter-clockwise seen from outside.
+/// Raises ValueError for numbers that are not finite and for vertices that do not exist.
 #[pyclass(frozen, module = "bubbletouch")]
 pub struct Mesh {
     /// Source of the mesh, for error messages.
@@ -79,11 +79,13 @@ impl Mesh {
         })
     }
 
-    /// A PLY, OBJ or STL file.
+    /// Reads a PLY, OBJ or STL file.
     ///
-    /// unit: of the file's numbers; None: metres, and then an object of 0.1 mm to 10 m. close_holes: the widest hole that is closed by a
-    /// cone, metres. Closed parts that face inwards are turned outwards, with a UserWarning. Raises OSError for a file that cannot be read,
-    /// ValueError for one that is no such mesh.
+    /// unit: unit of the file's numbers. None: metres, for objects of 0.1 mm to 10 m.
+    /// close_holes: largest width of holes that are closed by a cone, metres.
+    ///
+    /// Closed parts that face inwards are turned outwards, with a UserWarning. Raises OSError if the file cannot be read, and ValueError if it
+    /// contains no such mesh.
     #[staticmethod]
     #[pyo3(signature = (path, *, unit=None, close_holes=None))]
     fn read(
@@ -116,11 +118,12 @@ impl Mesh {
         })
     }
 
-    /// Few spheres for the solid that the mesh encloses, on all cores.
+    /// Packs the solid enclosed by the mesh with few spheres, on all cores.
     ///
-    /// No sphere reaches more than tolerance / 2 (metres, positive) outside it, and no point of its surface is more than the tolerance
-    /// outside the spheres: proved, or a ValueError. The mesh must be closed; parts that face inwards are turned outwards, with a
-    /// UserWarning. With sheet=True its surface itself is packed, without thickness. Takes seconds for a scan of 16,000 triangles. Ctrl-C ends it.
+    /// No sphere extends more than tolerance / 2 (metres, positive) beyond the surface. No point of the surface is more than the tolerance outside
+    /// the spheres. Both bounds are verified; otherwise ValueError is raised. The mesh must be closed. Parts that face inwards are turned
+    /// outwards, with a UserWarning. With sheet=True, the surface is packed as a sheet without thickness. A scan of 16,000 triangles takes
+    /// seconds. Ctrl-C ends the call.
     #[pyo3(signature = (tolerance, *, sheet=false))]
     fn pack(&self, py: Python, tolerance: f64, sheet: bool) -> PyResult<SphereUnion> {
         guarded(|| {
@@ -145,7 +148,7 @@ impl Mesh {
         })
     }
 
-    /// A sphere around each vertex, of twice the mean distance to the nearest other vertex: the objects of the original BubbleTouch.
+    /// Returns one sphere per vertex, with twice the mean distance to the nearest other vertex as radius: the objects of the original BubbleTouch.
     fn vertex_spheres(&self) -> PyResult<SphereUnion> {
         guarded(|| {
             let vertices = self.triangle_mesh().vertices();
@@ -154,13 +157,13 @@ impl Mesh {
         })
     }
 
-    /// (n, 3), metres; a copy.
+    /// Vertices (n, 3), metres; a copy.
     #[getter]
     fn vertices<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         to_rows(py, self.triangle_mesh().vertices().iter().copied())
     }
 
-    /// (m, 3), numbers of vertices; a copy.
+    /// Triangles (m, 3), as numbers of vertices; a copy.
     #[getter]
     fn triangles<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<u32>> {
         let triangles = self.triangle_mesh().triangles();
@@ -169,25 +172,25 @@ impl Mesh {
         rows.expect("three corners a triangle").into_pyarray(py)
     }
 
-    /// (2, 3): the least and the largest corner of the box around it, metres.
+    /// Bounding box (2, 3): its least and its greatest corner, metres.
     #[getter]
     fn bounds<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         corners(py, &self.triangles.bounds())
     }
 
-    /// m².
+    /// Surface area, m².
     #[getter]
     fn area(&self) -> f64 {
         self.triangle_mesh().area()
     }
 
-    /// m³; negative if the triangles of the arrays that it was made from face inwards.
+    /// Volume, m³; negative if the triangles of the given arrays face inwards.
     #[getter]
     fn volume(&self) -> f64 {
         self.triangle_mesh().volume_and_centroid().0
     }
 
-    /// (3,): of the volume, metres.
+    /// Centroid of the volume (3,), metres.
     #[getter]
     fn centroid<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         let DVec3 { x, y, z } = self.triangle_mesh().volume_and_centroid().1;

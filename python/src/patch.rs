@@ -16,11 +16,11 @@ use pyo3::types::{PyDict, PyTuple};
 /// Default stiffness of a taxel, N/m: equal to the command's default, and written out in signatures for `help()`.
 const STIFFNESS: f64 = 100.0;
 
-/// Taxels on a rigid substrate, made by one of its static methods.
+/// Taxels on a rigid substrate; created by one of the static methods.
 ///
-/// A taxel is a sphere of `taxel_radius` (metres, positive; half the pitch if None) on a spring of `stiffness` (N/m, positive) with
-/// a `damping` (N·s/m, zero or more; read by signal chains and scenes), which goes in by its `stroke` (metres, positive) at most. All raise ValueError for what is out of its range, and for
-/// more than 4,194,304 taxels.
+/// A taxel is a sphere of `taxel_radius` (metres, positive; half the pitch if None) on a spring of `stiffness` (N/m, positive). Its `damping`
+/// (N·s/m, zero or more) is used by signal chains and scenes. Its deflection is at most its `stroke` (metres, positive). The methods raise
+/// ValueError for values out of range, and for more than 4,194,304 taxels.
 #[pyclass(frozen, module = "bubbletouch")]
 pub struct Patch {
     patch: world::Patch,
@@ -81,7 +81,8 @@ fn taxel(pitch: f64, stroke: f64, (radius, stiffness, damping): (Option<f64>, f6
 
 #[pymethods]
 impl Patch {
-    /// ny rows (along y, ascending) of nx taxels in the plane z = 0, `pitch` metres apart, centred on the origin. Frames are (ny, nx).
+    /// Returns a grid of ny rows (along y, ascending) of nx taxels in the plane z = 0, `pitch` metres apart, centred on the origin. Frames are (ny,
+    /// nx).
     #[staticmethod]
     #[pyo3(signature = (ny, nx, pitch, stroke, *, taxel_radius=None, stiffness=100.0, damping=0.0))]
     fn grid(
@@ -104,7 +105,7 @@ impl Patch {
         })
     }
 
-    /// ny staggered rows of nx taxels, each inner one with six neighbours `pitch` metres away; row by row.
+    /// Returns ny staggered rows of nx taxels. Each inner taxel has six neighbours `pitch` metres away. The order is row by row.
     #[staticmethod]
     #[pyo3(signature = (ny, nx, pitch, stroke, *, taxel_radius=None, stiffness=100.0, damping=0.0))]
     fn hexagonal(
@@ -124,7 +125,7 @@ impl Patch {
         })
     }
 
-    /// The places of a hexagonal lattice no farther than `radius` metres from the origin; row by row.
+    /// Returns the taxels of a hexagonal lattice within `radius` metres of the origin, row by row.
     #[staticmethod]
     #[pyo3(signature = (radius, pitch, stroke, *, taxel_radius=None, stiffness=100.0, damping=0.0))]
     fn disc(
@@ -142,11 +143,10 @@ impl Patch {
         })
     }
 
-    /// Rings of taxels around z, pointing away from it: a forearm, a finger.
+    /// Returns rings of taxels around z, facing away from z: a forearm or a finger.
     ///
-    /// radius: of the rest centres; length: between the first and the last ring, zero or more; arc: above 0 to 2π, its middle at +x;
-    /// pitch: along the surface, met as well as whole numbers of taxels allow. Presses go along z: move() the patch to bring its middle
-    /// there.
+    /// radius: of the rest centres; length: between the first and the last ring, zero or more; arc: above 0 to 2π, centred at +x; pitch: along
+    /// the surface, approximated by a whole number of taxels. Presses go along z: use move() to turn the middle of the patch to z.
     #[staticmethod]
     #[pyo3(signature = (radius, length, arc, pitch, stroke, *, taxel_radius=None, stiffness=100.0, damping=0.0))]
     #[expect(clippy::too_many_arguments, reason = "named in Python")]
@@ -167,7 +167,7 @@ impl Patch {
         })
     }
 
-    /// Rings of taxels on a sphere about the origin, from its pole at +z to `half_angle` (above 0 to π): a fingertip, an elbow.
+    /// Returns rings of taxels on a sphere about the origin, from its pole at +z to `half_angle` (above 0 to π): a fingertip or an elbow.
     #[staticmethod]
     #[pyo3(signature = (radius, half_angle, pitch, stroke, *, taxel_radius=None, stiffness=100.0, damping=0.0))]
     fn sphere_cap(
@@ -186,10 +186,12 @@ impl Patch {
         })
     }
 
-    /// Taxels spread over a mesh's outer surface, as many as on a grid of this pitch, at least 0.83 pitches apart; 0.3 ms a taxel. A taxel
-    /// whose axis would meet the mesh again is left out: see n_left_out. The region is where all that is given holds: bounds (2, 3), its least
-    /// and greatest corner; plane (2, 3), a point and the direction to the side that counts; triangles, their numbers. Closed parts of the
-    /// mesh that face inwards are turned outwards, with a UserWarning.
+    /// Returns taxels distributed over the outer surface of a mesh.
+    ///
+    /// Their number equals that of a grid with this pitch; they are at least 0.83 pitches apart. The call takes 0.3 ms per taxel. A taxel whose
+    /// axis would meet the mesh again is left out: see n_left_out. The region is the intersection of the given conditions: bounds (2, 3), its
+    /// least and greatest corner; plane (2, 3), a point and the direction to the covered side; triangles, their numbers. Closed parts of the mesh
+    /// that face inwards are turned outwards, with a UserWarning.
     #[staticmethod]
     #[pyo3(signature = (mesh, pitch, stroke, *, seed=0, bounds=None, plane=None, triangles=None, taxel_radius=None, stiffness=100.0, damping=0.0))]
     #[expect(clippy::too_many_arguments, reason = "named in Python")]
@@ -237,7 +239,8 @@ impl Patch {
         })
     }
 
-    /// Any taxels: centers (n, 3), axes (n, 3) of length one within 1 % (they are normalised), away from the substrate; the others (n,) or one number for all.
+    /// Returns a patch of given taxels: centers (n, 3) and unit axes (n, 3) that point away from the substrate. Axes may differ from unit length by
+    /// 1 %, and are normalised. The other arguments are (n,) or one number for all.
     #[staticmethod]
     #[pyo3(signature = (centers, axes, *, stroke, taxel_radius, stiffness=None, damping=None))]
     fn from_arrays(
@@ -276,7 +279,7 @@ impl Patch {
         })
     }
 
-    /// The same taxels elsewhere in the frame of the patch, and no grid any more. pose: (7,) or (4, 4).
+    /// Returns a copy moved in the frame of the patch; the copy is not a grid. pose: (7,) or (4, 4).
     fn moved(&self, pose: &Bound<PyAny>) -> PyResult<Self> {
         guarded(|| {
             let poses = Poses::of("pose", pose)?;
@@ -289,7 +292,7 @@ impl Patch {
         })
     }
 
-    /// Of a frame: (ny, nx) of a grid, otherwise (n_taxels,).
+    /// Shape of a frame: (ny, nx) for a grid, otherwise (n_taxels,).
     #[getter]
     fn shape<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, &self.shape)
@@ -300,49 +303,49 @@ impl Patch {
         self.patch.n_taxels()
     }
 
-    /// Taxels that a draped patch leaves out because their axes would meet the mesh again; 0 for other patches.
+    /// Number of taxels left out of a draped patch because their axes would meet the mesh again; 0 for other patches.
     #[getter]
     fn n_left_out(&self) -> usize {
         self.patch.layout().n_left_out()
     }
 
-    /// (n_taxels, 3): where they rest, metres; a copy.
+    /// Rest centres (n_taxels, 3), metres; a copy.
     #[getter]
     fn centers<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         to_rows(py, self.patch.layout().centers().iter().copied())
     }
 
-    /// (n_taxels, 3): unit, away from the substrate; a copy.
+    /// Unit axes (n_taxels, 3), away from the substrate; a copy.
     #[getter]
     fn axes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         to_rows(py, self.patch.layout().axes().iter().copied())
     }
 
-    /// Of a grid, metres.
+    /// Distance between the taxels of a grid, metres; None for other patches.
     #[getter]
     fn pitch(&self) -> Option<f64> {
         self.patch.layout().as_grid().map(|grid| grid.pitch)
     }
 
-    /// Metres; one number, or one each.
+    /// Radius of the taxels, metres: one number, or one per taxel.
     #[getter]
     fn taxel_radius<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.property(py, |taxel| taxel.radius)
     }
 
-    /// Metres; one number, or one each. A taxel whose deflection is its stroke is saturated.
+    /// Largest deflection, metres: one number, or one per taxel. A taxel whose deflection equals its stroke is saturated.
     #[getter]
     fn stroke<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.property(py, |taxel| taxel.stroke)
     }
 
-    /// N/m; one number, or one each.
+    /// Stiffness, N/m: one number, or one per taxel.
     #[getter]
     fn stiffness<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.property(py, |taxel| taxel.stiffness)
     }
 
-    /// N·s/m; one number, or one each.
+    /// Damping, N·s/m: one number, or one per taxel.
     #[getter]
     fn damping<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.property(py, |taxel| taxel.damping)
@@ -389,27 +392,28 @@ impl Patch {
         Ok((call, given))
     }
 
-    /// Deflections of the taxels pressed on an object at n poses, metres, 0 to the stroke.
+    /// Presses the patch on an object at n poses; returns the deflections of the taxels, metres, from 0 to the stroke.
     ///
-    /// poses: the object in the frame of the patch, (n, 7) of x, y, z, qw, qx, qy, qz or (n, 4, 4); (7,) or (4, 4) for one alone.
+    /// poses: the object in the frame of the patch, (n, 7) of x, y, z, qw, qx, qy, qz or (n, 4, 4); (7,) or (4, 4) for a single pose.
     ///
-    /// The patch comes from the front along its z. At most one of
+    /// The patch approaches along its z. At most one of the following goals is given, as one number for all poses or (n,):
     ///
     /// - depth: metres past first contact, zero or more;
-    /// - travel: metres from the pose given;
-    /// - force: newtons that all springs carry together, Σ k δ;
+    /// - travel: metres from the given pose;
+    /// - force: newtons, the sum Σ k δ of all springs.
     ///
-    /// each one number for all poses, or (n,). With none the patch is read where it is. A pose at which it meets nothing gives zeros.
+    /// Without a goal, the patch is read at the pose. If the patch meets nothing, the deflections are zero.
     ///
-    /// out: a C-contiguous array of float32 or float64 that takes the frames, and is returned. dtype: of a new array, float64 or float32.
-    /// threads: at most so many, all cores if None. The interpreter's lock is free meanwhile, and Ctrl-C ends the call.
+    /// out: C-contiguous array of float32 or float64 for the frames; it is returned. dtype: of a new array, float64 or float32.
+    /// threads: maximum number of threads; all cores if None. The call releases the interpreter's lock, and Ctrl-C ends it.
     ///
-    /// Returns (n, ny, nx) of a grid, (n, n_taxels) of another patch, without n for one pose; the same bits at any number of threads.
-    /// With contacts=True also the Contacts; frames are the same. With jacobian=True also (…, 6): how each deflection changes with the
-    /// pose, by metres of the object along x, y, z and by radians about x, y, z through the object's origin, all axes the patch's; zero for
-    /// taxels that are free or saturated. With a depth or a force the travel changes along; a depth needs a flat patch for it.
+    /// Returns (n, ny, nx) for a grid, and (n, n_taxels) for another patch; without n for a single pose. The result is bitwise equal for any number
+    /// of threads. With contacts=True, the Contacts are returned too; the frames are unchanged. With jacobian=True, the derivatives (…, 6) of the
+    /// deflections are returned too: per metre along x, y, z, and per radian about x, y, z through the object's origin, in the axes of the patch.
+    /// They are zero for free and saturated taxels. With a depth or a force, the derivatives include the change of the travel; a depth then needs a
+    /// flat patch.
     ///
-    /// Raises ValueError for arrays of another shape or type, numbers that are not finite, and a force that cannot be reached.
+    /// Raises ValueError for arrays of a wrong shape or type, numbers that are not finite, and a force that cannot be reached.
     #[pyo3(signature = (object, poses, *, depth=None, travel=None, force=None, out=None, dtype=None, threads=None, contacts=false, jacobian=false))]
     #[expect(clippy::too_many_arguments, reason = "named in Python")]
     fn press<'py>(

@@ -55,13 +55,13 @@ impl Groups {
     }
 }
 
-/// Poses of an object that lies on a table under a patch that faces down, for Patch.press.
+/// Returns poses, for Patch.press, of an object that lies on a table under a patch that faces down.
 ///
-/// The object stands with its own z up, or, with `rest`, in its stable pose of that number (0: the likeliest); the box around it is
-/// centred at x = y = 0 and turned by `yaw` about the vertical. The axis of the patch goes through `offset` (x, y; metres) at the
-/// height of the object's top and is tilted by `tilt` about the patch's x, then its y.
+/// The object stands with its own z up or, with `rest`, in the stable pose of that number (0: the most probable). Its bounding box is centred
+/// at x = y = 0 and turned by `yaw` about the vertical. The axis of the patch goes through `offset` (x, y; metres) at the height of the
+/// object's top. It is tilted by `tilt` about the patch's x, then about its y.
 ///
-/// offset, tilt: (2,) or (n, 2); yaw: a number or (n,). Returns (7,) if all are of one, otherwise (n, 7). Raises ValueError.
+/// offset, tilt: (2,) or (n, 2); yaw: a number or (n,). Returns (7,) if all arguments are single values, otherwise (n, 7). Raises ValueError.
 #[pyfunction]
 #[pyo3(signature = (object, *, offset=None, yaw=None, tilt=None, rest=None))]
 pub fn touch_poses<'py>(

@@ -10,8 +10,8 @@ use pyo3::prelude::*;
 
 /// A random projection y = Φx from frames of ny × nx taxels to m measurements, drawn once.
 ///
-/// Projection("sbhe", patch.shape, 64, seed=7). ensemble: gaussian, bernoulli, circulant, sparse, sbhe, block_average, subsample,
-/// fourier, or identity (all taxels, whatever m). n_measurements: 1 to the number of taxels. Raises ValueError.
+/// Example: Projection("sbhe", patch.shape, 64, seed=7). ensemble: gaussian, bernoulli, circulant, sparse, sbhe, block_average, subsample,
+/// fourier, or identity (all taxels, for any m). n_measurements: 1 to the number of taxels. Raises ValueError.
 #[pyclass(frozen, module = "bubbletouch")]
 pub struct Projection {
     projection: sensing::Projection,
@@ -62,7 +62,7 @@ impl Projection {
         })
     }
 
-    /// Measurements (n, m) of frames (n, …) of n_taxels each, or of one frame: (1, m). A row has the same bits in any batch.
+    /// Returns the measurements (n, m) of frames (n, …) of n_taxels each; (1, m) for one frame. A row is bitwise equal in any batch.
     fn __call__<'py>(
         &self,
         py: Python<'py>,
@@ -78,25 +78,25 @@ impl Projection {
         })
     }
 
-    /// Φ, (m, n_taxels); made when it is asked for.
+    /// Matrix Φ, (m, n_taxels); computed on access.
     #[getter]
     fn matrix<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         guarded(|| Ok(py.detach(|| self.projection.matrix()).into_pyarray(py)))
     }
 
-    /// Its name.
+    /// Name of the ensemble.
     #[getter]
     fn ensemble(&self) -> &str {
         &self.asked.0
     }
 
-    /// Of a frame.
+    /// Number of taxels of a frame.
     #[getter]
     fn n_taxels(&self) -> usize {
         self.projection.n_taxels()
     }
 
-    /// m.
+    /// Number of measurements m.
     #[getter]
     fn n_measurements(&self) -> usize {
         self.projection.n_measurements()

@@ -32,11 +32,13 @@ self_cell!(
     }
 );
 
-/// Rebuilds frames from the measurements of one projection, by what training frames are made of.
+/// Reconstructs frames from the measurements of one projection, with a basis fitted to training frames.
 ///
-/// Reconstructor(projection, training, basis="pca", solver="lmmse", noise=1e-4). training: (n, ny, nx), metres. basis: dct, haar,
-/// daubechies4 (both of sides that are powers of two) or pca, of which the n_atoms that carry most are kept (None: all; of pca 256). solver: omp (matching
-/// pursuit), l1 (basis pursuit by FISTA) or lmmse (the linear estimate). noise: standard deviation on each taxel, in the frames' unit. Raises ValueError.
+/// Example: Reconstructor(projection, training, basis="pca", solver="lmmse", noise=1e-4). training: (n, ny, nx), metres.
+/// basis: dct, haar, daubechies4 (both for sides that are powers of two) or pca, which keeps the n_atoms components of largest variance. None
+/// keeps all atoms, and 256 of pca.
+/// solver: omp (matching pursuit), l1 (basis pursuit by FISTA) or lmmse (the linear estimate). noise: standard deviation on each taxel, in the
+/// unit of the frames. Raises ValueError.
 #[pyclass(frozen, module = "bubbletouch")]
 pub struct Reconstructor {
     solving: Solving,
@@ -115,7 +117,9 @@ impl Reconstructor {
         })
     }
 
-    /// Of measurements (n, m): frames (n, ny, nx), n_atoms (n,) that each took, is_capped (n,) where its solver stopped at a limit.
+    /// Reconstructs measurements (n, m). Returns the frames (n, ny, nx), the number of atoms used n_atoms (n,), and is_capped (n,): whether the
+    /// solver
+    /// stopped at a limit.
     fn __call__<'py>(
         &self,
         py: Python<'py>,

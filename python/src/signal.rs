@@ -13,7 +13,7 @@ use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-/// A step from deflections to what a skin's electronics read, made by one of its static methods. What it may be is checked by Chain.
+/// A step from deflections to sensor signals; created by one of the static methods. Chain checks whether a step is valid.
 #[pyclass(frozen, module = "bubbletouch")]
 #[derive(Clone)]
 pub struct Step {
@@ -49,7 +49,7 @@ fn words() -> String {
 
 #[pymethods]
 impl Step {
-    /// Deflections become forces, k δ + c δ̇, newtons.
+    /// Returns a step that converts deflections to forces k δ + c δ̇, newtons.
     #[staticmethod]
     fn force() -> Self {
         Self {
@@ -58,7 +58,8 @@ impl Step {
         }
     }
 
-    /// Gaussian noise on every taxel: a fraction of the full scale (of a taxel at its stroke), millimetres, or newtons; zero or more.
+    /// Returns a step that adds Gaussian noise to every taxel. unit: fraction of full scale (of a taxel at its stroke), millimetres, or newtons;
+    /// std: zero or more.
     #[staticmethod]
     #[pyo3(signature = (std, unit="full_scale"))]
     fn noise(std: f64, unit: &str) -> PyResult<Self> {
@@ -77,7 +78,7 @@ impl Step {
         })
     }
 
-    /// A Gaussian over the array, of standard deviation `width` in metres, zero or more.
+    /// Returns a step that smooths frames with a Gaussian of standard deviation `width`, metres, zero or more.
     #[staticmethod]
     fn smoothing(width: f64) -> Self {
         Self {
@@ -86,9 +87,9 @@ impl Step {
         }
     }
 
-    /// A sensor error: Step.error("gain", gain_std=0.07). Raises ValueError, which lists the names, or the strengths of one.
+    /// Returns a step with a sensor error, such as Step.error("gain", gain_std=0.07). Raises ValueError with the allowed names or strengths.
     ///
-    /// errors() has all; those that belong to a piece of hardware (gain, drift, faults) are drawn from the chain's skin_seed.
+    /// errors() lists all errors. Errors of an individual sensor (gain, drift, faults) are drawn from the chain's skin_seed.
     #[staticmethod]
     #[pyo3(signature = (name, **strengths))]
     fn error(name: &str, strengths: Option<&Bound<PyDict>>) -> PyResult<Self> {
@@ -115,7 +116,7 @@ impl Step {
         })
     }
 
-    /// Of each sensor error its strengths, and of each strength what is allowed.
+    /// Returns the strengths of each sensor error, and the allowed values of each strength.
     #[staticmethod]
     fn errors(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         let all = PyDict::new(py);
@@ -134,12 +135,12 @@ impl Step {
     }
 }
 
-/// Steps from deflections to what is read, in their order, prepared for a patch.
+/// A sequence of steps from deflections to sensor signals, prepared for a patch.
 ///
 /// Chain([Step.error("gain", gain_std=0.05), Step.noise(0.02), Step.smoothing(4e-3)], patch, skin_seed=7)
 ///
-/// skin_seed: the piece of hardware, which has its own gains, drift and faults; 0 and above. of_force: whether frames are newtons from
-/// the start. Raises ValueError for a step that this patch, or its place in the chain, cannot have.
+/// skin_seed: number of the individual sensor, which has its own gains, drift and faults; 0 and above. of_force: whether input frames are in
+/// newtons. Raises ValueError if the patch, or the order of the steps, does not allow a step.
 #[pyclass(frozen, module = "bubbletouch")]
 pub struct Chain {
     chain: signal::Chain,
@@ -180,11 +181,11 @@ impl Chain {
         })
     }
 
-    /// What is read of frames, each that of a touch by itself, at rest.
+    /// Returns the sensor signals of frames; each frame is a separate touch at rest.
     ///
-    /// frames: deflections (n, …) of n_taxels each, (n, ny, nx) of a grid, metres, or one frame; they stay as they are. seed: of what changes from touch to
-    /// touch; frame i has the random numbers of touch `first` + i, whatever else is read. rates: δ̇, m/s, as frames. Returns an array
-    /// of the same shape, float64, in the unit of `quantity`. Raises ValueError.
+    /// frames: deflections (n, …) of n_taxels each, (n, ny, nx) of a grid, metres, or one frame; they are not changed. seed: of random values that
+    /// change from touch to touch. Frame i uses the random numbers of touch `first` + i, independently of other frames. rates: δ̇, m/s, in the
+    /// shape of the frames. Returns a float64 array of the shape of the frames, in the unit of `quantity`. Raises ValueError.
     #[pyo3(signature = (frames, *, seed=0, first=0, rates=None, threads=None))]
     fn __call__<'py>(
         &self,
@@ -221,10 +222,10 @@ impl Chain {
         })
     }
 
-    /// What is read of the frames of one touch, in the order of time: hysteresis and scan order connect them.
+    /// Returns the sensor signals of the frames of one touch, in order of time; hysteresis and scan order connect the frames.
     ///
-    /// n_before: leading frames that are remembered, but not returned. interval: seconds between frames; None: the press waits at each.
-    /// time: the share of the session that has gone, 0 to 1, for drift. Returns (n − n_before, …). Raises ValueError.
+    /// n_before: number of leading frames that affect later frames, but are not returned. interval: seconds between frames; None: the press waits
+    /// at each frame. time: elapsed fraction of the session, 0 to 1, for drift. Returns (n − n_before, …). Raises ValueError.
     #[pyo3(signature = (frames, *, seed=0, n_before=0, interval=None, time=None, rates=None))]
     #[expect(clippy::too_many_arguments, reason = "named in Python")]
     fn read_touch<'py>(
@@ -277,13 +278,13 @@ impl Chain {
         })
     }
 
-    /// Of what it returns: deflection (metres) or force (newtons).
+    /// Quantity of the returned signals: deflection (metres) or force (newtons).
     #[getter]
     fn quantity(&self) -> &'static str {
         self.chain.quantity().name()
     }
 
-    /// The steps, in their order.
+    /// Steps, in order.
     #[getter]
     fn steps<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         let steps: PyResult<Vec<_>> = self

@@ -34,16 +34,16 @@ fn begin(plan: &Arc<ScenePlan>) -> OnItsWay {
     })
 }
 
-/// A scene, from its text: bubbletouch.simulate takes a file or a dict.
+/// A scene, created from its text; use bubbletouch.simulate for a file or a dict.
 ///
-/// It is an iterator of frames, one after the other as the scene says; or a program moves things itself, step by step, with set_…(),
+/// The simulation is an iterator over the frames of the scene. Alternatively, a program moves objects and robots step by step with set_…(),
 /// step(dt) and observe(). Frames are dicts:
 ///
 /// - time: seconds;
-/// - patches: of each by name pose (7,) in the world, deflection (ny, nx) or (n_taxels,) in metres, force likewise in newtons, force3
-///   (n_taxels, 3) of the objects on each taxel in newtons in the frame of the patch, whose sum is the wrench's force, signal (or None),
+/// - patches: for each patch, by name: pose (7,) in the world, deflection (ny, nx) or (n_taxels,) in metres, force in newtons of equal shape,
+///   force3 (n_taxels, 3) of the objects on each taxel in newtons in the frame of the patch (its sum is the wrench's force), signal (or None),
 ///   wrench (6,) of force and torque on the patch in its frame, n_touched, n_saturated;
-/// - objects: of each by name pose (7,) in the world, and held: imposed, pressed, at rest, unsettled or escaped.
+/// - objects: for each object, by name: pose (7,) in the world, and held: imposed, pressed, at rest, unsettled or escaped.
 #[pyclass(module = "bubbletouch")]
 pub struct Simulation {
     plan: Arc<ScenePlan>,
@@ -84,8 +84,8 @@ impl Simulation {
         })
     }
 
-    /// Back to before the first frame, and nothing is set by hand any more. The skin stays as it is; the noise of its readings is that of
-    /// `seed` (None: the scene's own). Raises ValueError.
+    /// Resets the simulation to the state before the first frame, and removes everything set by hand. The sensor is unchanged. The noise of its
+    /// readings is drawn from `seed` (None: the scene's seed). Raises ValueError.
     #[pyo3(signature = (seed=None))]
     fn reset(&mut self, seed: Option<i128>) -> PyResult<()> {
         let seed = match seed {
@@ -98,13 +98,13 @@ impl Simulation {
         })
     }
 
-    /// A step by hand of `dt` seconds: what was set goes there, all else goes on as the scene says. Raises ValueError.
+    /// Advances the simulation by `dt` seconds. Poses set by hand are reached; everything else follows the scene. Raises ValueError.
     fn step(&mut self, py: Python, dt: f64) -> PyResult<()> {
         let going = &mut self.going;
         guarded(|| py.detach(|| on(going, |simulation| simulation.step(dt))))
     }
 
-    /// What everything is like now, as a frame; before any step, the scene's first. Raises ValueError.
+    /// Returns the current state as a frame; before any step, the first frame of the scene. Raises ValueError.
     fn observe<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let going = &mut self.going;
         guarded(|| {
@@ -113,19 +113,20 @@ impl Simulation {
         })
     }
 
-    /// From the next step on an object is here, in the world: (7,) or (4, 4). A free one comes to rest from here. Raises ValueError.
+    /// Sets the pose of an object in the world from the next step on: (7,) or (4, 4). A free object comes to rest from this pose. Raises
+    /// ValueError.
     fn set_object_pose(&mut self, object: &str, pose: &Bound<PyAny>) -> PyResult<()> {
         let pose = one_pose(pose)?;
         self.change(|simulation| simulation.set_object_pose(object, pose))
     }
 
-    /// From the next step on the base of a robot is here, in the world: (7,) or (4, 4). Raises ValueError.
+    /// Sets the pose of a robot's base in the world from the next step on: (7,) or (4, 4). Raises ValueError.
     fn set_robot_pose(&mut self, robot: &str, pose: &Bound<PyAny>) -> PyResult<()> {
         let pose = one_pose(pose)?;
         self.change(|simulation| simulation.set_robot_pose(robot, pose))
     }
 
-    /// From the next step on the joints of a robot are here: (n_joints,) in the order of `robots`, radians and metres. Raises ValueError.
+    /// Sets the joint positions of a robot from the next step on: (n_joints,) in the order of `robots`, radians and metres. Raises ValueError.
     fn set_joint_positions(&mut self, robot: &str, positions: &Bound<PyAny>) -> PyResult<()> {
         let is_shape = |shape: &[usize]| shape.len() == 1;
         view("positions", positions, "(n_joints,)", is_shape, |array| {
@@ -134,7 +135,7 @@ impl Simulation {
         })
     }
 
-    /// The skin of a patch, in its own frame. Raises ValueError.
+    /// Returns the patch with this name, in its own frame. Raises ValueError.
     fn patch(&self, name: &str) -> PyResult<Patch> {
         let patches = self.plan.patches.iter();
         let mut patches = patches.filter(|patch| patch.skin.name() == name);
@@ -142,14 +143,14 @@ impl Simulation {
         found.ok_or_else(|| bad_input("patch", format!("`{name}`"), self.patches().join(", ")))
     }
 
-    /// Seconds since the start.
+    /// Time since the start, seconds.
     #[getter]
     fn time(&mut self) -> f64 {
         self.going
             .with_dependent_mut(|_, simulation| simulation.time())
     }
 
-    /// By name, the names of their joints that move.
+    /// For each robot, by name, the names of its movable joints.
     #[getter]
     fn robots<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let robots = PyDict::new(py);
@@ -177,33 +178,33 @@ impl Simulation {
         })
     }
 
-    /// Of the whole scene.
+    /// Number of frames of the whole scene.
     #[getter]
     fn n_frames(&self) -> usize {
         self.plan.n_frames
     }
 
-    /// Frames a second of the scene's time.
+    /// Frames per second of the scene's time.
     #[getter]
     fn output_rate(&self) -> f64 {
         self.plan.output_rate
     }
 
-    /// Their names.
+    /// Names of the patches.
     #[getter]
     fn patches(&self) -> Vec<String> {
         let patches = self.plan.patches.iter();
         patches.map(|patch| patch.skin.name().to_owned()).collect()
     }
 
-    /// Their names.
+    /// Names of the objects.
     #[getter]
     fn objects(&self) -> Vec<String> {
         let objects = self.plan.objects.iter();
         objects.map(|object| object.name.clone()).collect()
     }
 
-    /// What the scene is about.
+    /// Title of the scene.
     #[getter]
     fn title(&self) -> &str {
         &self.plan.spec.title

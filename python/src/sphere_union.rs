@@ -13,8 +13,8 @@ use std::path::PathBuf;
 
 /// A union of rigid spheres.
 ///
-/// `SphereUnion(centers, radii)`: centers (n, 3), metres; radii (n,) or one number, metres, positive. Raises ValueError, which names the
-/// first sphere (from 1) that cannot be.
+/// `SphereUnion(centers, radii)`: centers (n, 3), metres; radii (n,) or one number, metres, positive. Raises ValueError with the number of the
+/// first invalid sphere, from 1.
 #[pyclass(frozen, module = "bubbletouch")]
 pub struct SphereUnion {
     model: Model,
@@ -56,9 +56,9 @@ impl SphereUnion {
         })
     }
 
-    /// A CSV file with columns x, y, z, r in metres, or in a unit.
+    /// Reads a CSV file with columns x, y, z, r in metres, or in another unit.
     ///
-    /// Raises OSError for a file that cannot be read, ValueError for one that holds no such spheres.
+    /// Raises OSError if the file cannot be read, and ValueError if it contains no such spheres.
     #[staticmethod]
     #[pyo3(signature = (path, *, unit=None))]
     fn read(path: PathBuf, unit: Option<&str>) -> PyResult<Self> {
@@ -70,7 +70,7 @@ impl SphereUnion {
         })
     }
 
-    /// Writes a CSV file of which read() gives the same bits. Raises OSError; what stood there is kept then.
+    /// Writes a CSV file from which read() returns bitwise equal spheres. Raises OSError; an existing file is then kept.
     fn write(&self, path: PathBuf) -> PyResult<()> {
         guarded(|| {
             check_folder(&path)?;
@@ -79,19 +79,19 @@ impl SphereUnion {
         })
     }
 
-    /// (n, 3), metres; a copy.
+    /// Centres (n, 3), metres; a copy.
     #[getter]
     fn centers<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         to_rows(py, self.spheres().iter().map(|sphere| sphere.center))
     }
 
-    /// (n,), metres; a copy.
+    /// Radii (n,), metres; a copy.
     #[getter]
     fn radii<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         to_column(py, self.spheres().iter().map(|sphere| sphere.radius))
     }
 
-    /// (2, 3): the least and the largest corner of the box around it, metres.
+    /// Bounding box (2, 3): its least and its greatest corner, metres.
     #[getter]
     fn bounds<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         corners(py, &self.union().bounds())

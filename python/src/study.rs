@@ -139,7 +139,7 @@ fn run(asked: &Asked, told: &Told) -> Result<Vec<Table>> {
     Ok(outcome.tables)
 }
 
-/// Runs a study (TOML) into a folder: of each table its file's name, title, note and columns.
+/// Runs a study (TOML) into a folder; returns the file name, title, note and columns of each table.
 #[pyfunction]
 #[pyo3(signature = (text, place, name, folder, out, seed=None, callback=None))]
 #[expect(clippy::too_many_arguments, reason = "called by bubbletouch.run alone")]
@@ -209,7 +209,7 @@ fn columns<'py>(py: Python<'py>, table: &Table) -> PyResult<Said<'py>> {
     Ok((file, title, table.note.clone(), values))
 }
 
-/// A study in TOML from the same in JSON.
+/// Converts a study from JSON to TOML.
 #[pyfunction]
 pub fn toml_of(json: &str) -> PyResult<String> {
     guarded(|| {
@@ -222,7 +222,8 @@ pub fn toml_of(json: &str) -> PyResult<String> {
     })
 }
 
-/// What the results in a folder advise, as JSON: at least so good, or at most so dear. Raises ValueError.
+/// Returns advice from the results in a folder, as JSON: the cheapest configuration of a minimum quality, or the best within a cost. Raises
+/// ValueError.
 #[pyfunction]
 #[pyo3(signature = (results, reach, budget, value, cost, table, given, worst, limits))]
 #[expect(clippy::too_many_arguments, reason = "named in Python")]

@@ -148,7 +148,7 @@ impl Asked {
     }
 }
 
-/// A trained SVM with a kernel, on labels 0, 1, …: what bubbletouch.learning.SVC fits. Pickled as its training rows, and trained again.
+/// A trained kernel SVM for labels 0, 1, …, used by bubbletouch.learning.SVC. It is pickled as its training rows, and trained again.
 #[pyclass(frozen, module = "bubbletouch._core")]
 pub struct KernelSvm {
     model: SvmModel,
@@ -174,7 +174,7 @@ impl KernelSvm {
         })
     }
 
-    /// (n,): of features (n, m); of equally many votes the lowest label.
+    /// Returns the labels (n,) of features (n, m); of equally many votes, the lowest label wins.
     fn labels<'py>(
         &self,
         py: Python<'py>,
@@ -187,7 +187,7 @@ impl KernelSvm {
         })
     }
 
-    /// (n, n_problems): above 0 speaks for a problem's positive class.
+    /// Returns the decision values (n, n_problems); positive values favour a problem's positive class.
     fn decision_values<'py>(
         &self,
         py: Python<'py>,
@@ -202,7 +202,7 @@ impl KernelSvm {
         })
     }
 
-    /// Of each binary problem its classes, training rows, signed multipliers, ρ, objective, iterations, and whether it was capped.
+    /// For each binary problem, its classes, training rows, signed multipliers, ρ, objective, iterations, and whether it was capped.
     #[getter]
     fn problems<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let problem = |problem: &bubbletouch::recognition::svm::BinaryProblem| {
@@ -224,7 +224,7 @@ impl KernelSvm {
         self.model.problems().iter().map(problem).collect()
     }
 
-    /// Binary problems that stopped at the iteration cap.
+    /// Number of binary problems that stopped at the iteration cap.
     #[getter]
     fn n_capped(&self) -> usize {
         self.model.n_capped()
@@ -243,7 +243,7 @@ impl KernelSvm {
     }
 }
 
-/// A trained linear SVM without a kernel matrix, on labels 0, 1, …: what bubbletouch.learning.LinearSVC fits. Pickled as KernelSvm.
+/// A trained linear SVM without a kernel matrix for labels 0, 1, …, used by bubbletouch.learning.LinearSVC. It is pickled like KernelSvm.
 #[pyclass(frozen, module = "bubbletouch._core")]
 pub struct LinearModel {
     svm: LinearSvm,
@@ -280,7 +280,7 @@ impl LinearModel {
         })
     }
 
-    /// (n,): of features (n, m).
+    /// Returns the labels (n,) of features (n, m).
     fn labels<'py>(
         &self,
         py: Python<'py>,
@@ -292,7 +292,7 @@ impl LinearModel {
         })
     }
 
-    /// (n, n_classes): the largest says the label.
+    /// Returns the scores (n, n_classes); the largest score determines the label.
     fn scores<'py>(
         &self,
         py: Python<'py>,
@@ -304,26 +304,26 @@ impl LinearModel {
         })
     }
 
-    /// (n_classes, m).
+    /// Weights (n_classes, m).
     #[getter]
     fn weights<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         self.svm.model().weights.clone().into_pyarray(py)
     }
 
-    /// (n_classes,).
+    /// Biases (n_classes,).
     #[getter]
     fn bias<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         self.svm.model().bias.clone().into_pyarray(py)
     }
 
-    /// Passes over the rows, most of all problems.
+    /// Largest number of passes over the rows of all problems.
     #[getter]
     fn n_passes(&self) -> usize {
         let passes = self.svm.convergence().iter().map(|end| end.n_passes);
         passes.max().unwrap_or(0)
     }
 
-    /// Problems that stopped at max_passes.
+    /// Number of problems that stopped at max_passes.
     #[getter]
     fn n_capped(&self) -> usize {
         self.svm.n_capped()
@@ -341,8 +341,8 @@ impl LinearModel {
     }
 }
 
-/// Accuracies of every γ (as multiples of that of scale; none: as it is) and C over folds, on one matrix of products: the best C, the best γ, and
-/// tuples of C, γ and accuracy.
+/// Evaluates all γ and C over folds, on one matrix of products. γ values are multiples of 'scale'; without any, γ is unchanged. Returns the best
+/// C, the best γ, and tuples of C, γ and accuracy.
 #[pyfunction]
 pub fn choose_svm<'py>(
     py: Python<'py>,
