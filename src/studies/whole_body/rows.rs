@@ -129,7 +129,7 @@ pub struct BodyStage {
 } }
 
 row! {
-/// Size of the touch in a step that was timed with all threads. A row of `steps.csv` is a [`BodyCase`], a `BodyTouch` and a [`StepTime`].
+/// Number of touched taxels in a step that was timed with all threads. A row of `steps.csv` is a [`BodyCase`], a `BodyTouch` and a [`StepTime`].
 pub struct BodyTouch {
     /// Number of taxels with a deflection, rounded to two digits.
     touched: f64 => Condition "touched taxels, about": Log;

@@ -50,7 +50,7 @@ pub struct WholeBodySpec {
     pub surface_error_mm: f64,
     /// Simulated scenes.
     pub scenes: Vec<BodySceneSpec>,
-    /// Compression of the touched taxels.
+    /// Compression of the readings of touched taxels into measurements.
     pub sensing: BodySensingSpec,
     /// Recognised objects and their touches.
     pub recognition: BodyRecognitionSpec,

@@ -27,7 +27,7 @@ const FEWEST: usize = 200;
 const N_ROUNDS: usize = 8;
 /// Number of iterations of A⁻¹; the remaining fraction of an error is at most (2κ)²⁵.
 const N_STEPS: usize = 25;
-/// Largest leak for which the iteration of A⁻¹ converges fast enough.
+/// Largest leaked fraction κ for which the iterative inverse of the crosstalk matrix A converges fast enough.
 const LARGEST: f64 = 0.45;
 
 /// Estimates the fraction κ that leaks.

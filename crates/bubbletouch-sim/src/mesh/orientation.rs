@@ -24,7 +24,7 @@ const N_POINTS: usize = 9;
 /// Smallest volume of a part relative to its area to the power 3/2. Parts below it enclose nothing: they are both sides of a sheet.
 const MIN_VOLUME: f64 = 1e-9;
 
-/// Fraction of area facing inwards from which on an open part is unsettled. If the value is smaller, scans with a few flipped triangles are rejected; if the
+/// Fraction of the area of an open part that may face inwards. Above it, the orientation of the part is undecided. If the value is smaller, scans with a few flipped triangles are rejected; if the
 /// value is larger, a skin on the part may point both ways.
 const MAX_DISAGREEING: f64 = 0.05;
 

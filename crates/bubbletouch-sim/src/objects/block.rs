@@ -281,7 +281,7 @@ fn cells(half: f64, largest_half: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Returns `x` and `−x`, or one zero.
+/// Returns `x` and `−x`. If `x` is zero, returns zero once.
 fn both_signs(x: f64) -> impl Iterator<Item = f64> {
     let second = (x != 0.0).then_some(-x);
     std::iter::once(x).chain(second)

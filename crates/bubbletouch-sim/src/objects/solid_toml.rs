@@ -84,14 +84,14 @@ impl WrittenPart {
         Part::new(shape, Pose::new(rotation, metres3(position)))
     }
 
-    /// Returns the position in the file of the value of a key; of the shape if the key is missing.
+    /// Returns the byte range of the value of `key` in the file. Returns that of the whole shape if the key is missing.
     pub fn place(&self, key: &str) -> Range<usize> {
         let keys = self.keys().into_iter();
         let mut named = keys.filter_map(|(name, place)| (name == key).then_some(place));
         named.next().flatten().unwrap_or(self.shape.span())
     }
 
-    /// Returns the name of the shape as written.
+    /// Returns the name of the shape as it is written in the file.
     pub fn name(&self) -> &'static str {
         match self.shape.get_ref() {
             ShapeName::Ball => "ball",

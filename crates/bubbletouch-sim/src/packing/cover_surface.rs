@@ -22,8 +22,9 @@ const SAMPLING_TIME: f64 = 0.2;
 struct Pass {
     /// Fraction of the points below each cut. Passes with different fractions have different cell borders.
     cut: f64,
-    /// Fraction of the total effort for exchanges and shifted copies.
+    /// Fraction of the search steps per ball that this pass may use to exchange balls.
     steps: f64,
+    /// Fraction of the moves per ball that this pass may use to shift copies of balls.
     moves: f64,
 }
 

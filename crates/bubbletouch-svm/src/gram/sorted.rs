@@ -148,7 +148,7 @@ impl<T: Scalar> Sorted<T> {
             )
     }
 
-    /// Returns the change of ρ due to the centre, for coefficients of the given sorted rows; 0 for kernels other than the linear one.
+    /// Returns how much centring the rows changes the offset ρ of a decision function with these coefficients. It is 0 unless the kernel is linear.
     pub fn moved(&self, rows: impl Iterator<Item = usize>, coefficients: &[f64]) -> f64 {
         if self.centre_products.is_empty() {
             return 0.0;

@@ -33,7 +33,7 @@ const ROWS_NEAR_MARGIN: usize = 24;
 /// Rows of all classes, with their products.
 pub(crate) struct Classes<'a, T> {
     pub sorted: &'a Sorted<T>,
-    /// Products of rows within each class.
+    /// Inner products between the rows of each class.
     within: Vec<Within<T>>,
 }
 

@@ -88,7 +88,7 @@ impl KeepTogether {
         axes.map(|&axis| Ok((axis, self.distance(axis)?))).collect()
     }
 
-    /// Returns the indices of the values on the listed axes.
+    /// Returns the indices of the values of a touch on those grouping axes whose values are listed in the study.
     fn listed(&self, touch: &Touch) -> Vec<usize> {
         let axes = self.kind.axes().iter();
         let indices = axes.map(|&axis| touch.indices[axis as usize]);

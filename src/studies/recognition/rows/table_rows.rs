@@ -224,7 +224,7 @@ pub struct Pareto {
     fit_s: f64 => Cost "time to train" in "s": Log;
     /// Mean microseconds of fitting per training touch.
     fit_us_per_touch: f64 => Cost "time to train, of a training touch" in "µs": Log;
-    /// Mean microseconds of one decision, which predicts `fused_touches` touches.
+    /// Mean time of one decision on `fused_touches` touches, microseconds.
     predict_us_per_decision: f64 => Cost "time of a decision" in "µs": Log;
     /// Whether the configuration is on the front of accuracy against `fit_s`.
     on_training_front: bool => Note;

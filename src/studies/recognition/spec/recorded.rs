@@ -158,7 +158,7 @@ impl<'de> Deserialize<'de> for ZeroSpec {
     }
 }
 
-/// Touch that precedes each touch of a skin with memory.
+/// Choice of the touch before each touch. It matters for sensor errors with memory, such as hysteresis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PreviousTouch {

@@ -31,7 +31,7 @@ const NEARBY: f64 = 0.04;
 const SMOOTHING: f64 = 1e-2;
 /// Least smoothing, in units of rounding of the object's size.
 const LAST_BITS: f64 = 64.0;
-/// Largest number of rounds in which ties and stops become steeper by a factor of 5; f64 has no digits for more.
+/// Maximum number of rounds of smoothing. Each round makes the smoothed kinks of the energy steeper by a factor of 5; rounding hides further rounds.
 const MAX_TIGHTENINGS: usize = 12;
 /// Distance below which two places count as equal, relative to size and travel of the object.
 const SAME_PLACE: f64 = 1e-15;

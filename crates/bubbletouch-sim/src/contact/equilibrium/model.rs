@@ -12,7 +12,7 @@ use super::slopes::Slopes;
 use super::symmetric::{Six, Symmetric, best_step, dot, norm};
 use glam::DVec3;
 
-/// Largest number of steps inside the model.
+/// Maximum number of iterations that minimise the quadratic model.
 const MAX_STEPS: usize = 40;
 
 /// Model of the energy; a motion has six numbers per [body](super::body::Body).
@@ -23,8 +23,9 @@ pub(super) struct Model {
     loads: Loads,
     curvature: Symmetric,
     held: Held,
-    /// Work memory for the loads of one taxel: weighted means and sums of slopes, one per body that pushes it.
+    /// Workspace for one taxel: for each body that pushes it, the weighted mean of the energy gradients of its loads.
     means: Vec<(u32, Six)>,
+    /// Workspace for one taxel: for each body that pushes it, the sum of these gradients.
     sums: Vec<(u32, Six)>,
 }
 

@@ -256,7 +256,7 @@ impl PlacedSphere {
         }
     }
 
-    /// Raises each deflection to the one that the sphere needs at its own height, and marks the taxels whose deflection was raised. If the
+    /// Increases the deflection of each taxel that the sphere pushes further, and marks these taxels. If the
     /// sphere is behind the substrate, whose height is `behind`, it does not count.
     ///
     /// The footprint is the region where the sphere needs more than zero: `b² < S² − max(h, 0)²`. Ranges are rounded outwards, small

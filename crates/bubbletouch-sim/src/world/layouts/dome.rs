@@ -102,7 +102,7 @@ impl Dome {
         self.directions.len()
     }
 
-    /// Returns the axes of all taxels, unit.
+    /// Returns the unit axes of all taxels.
     pub fn axes(&self) -> impl Iterator<Item = DVec3> + Clone {
         self.rings.iter().flat_map(|ring| {
             let directions = &self.directions[ring.first..ring.first + ring.n];

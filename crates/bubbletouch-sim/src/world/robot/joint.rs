@@ -62,7 +62,7 @@ pub struct Mimic {
     pub joint: usize,
     /// Factor of the other joint's position; dimensionless, rad/m or m/rad.
     pub multiplier: f64,
-    /// Offset, rad or m.
+    /// Offset added to the multiplied position of the other joint, rad or m.
     pub offset: f64,
 }
 
