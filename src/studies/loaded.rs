@@ -21,12 +21,11 @@ use crate::report::study_folder::{files_with, first_found, words_of};
 use crate::studies::any_study::{AnyStudy, Outcome};
 use crate::studies::ceiling::{threads_within, within_memory};
 use crate::studies::source::Source;
-use crate::studies::study::{Facts, Findings, Resumes, Study, run_items};
+use crate::studies::study::{Facts, Resumes, Study, run_items};
 use crate::studies::verified::same_rows;
 use crate::table::{File, Table};
 use crate::toml_numbers::with_line;
 use rand::seq::SliceRandom;
-use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
@@ -80,6 +79,15 @@ impl<K: Study> Loaded<K> {
         StudyRun::<K::Rows>::new(&self.items, &options).n_pending()
     }
 
+    /// Adds the notes of the study to its tables.
+    fn note(&self, tables: &mut [Table]) {
+        for (file, note) in &self.facts.notes {
+            if let Some(table) = tables.iter_mut().find(|table| table.file == *file) {
+                table.note.clone_from(note);
+            }
+        }
+    }
+
     /// Returns the charts, pictures and page of a folder, without writing them. `of_run` describes the run.
     fn files_of(&self, of_run: StudyAbout, tables: &[Table]) -> Result<Vec<NamedFile>> {
         let wall_s = of_run.manifest.as_ref().and_then(Manifest::wall_s);
@@ -90,16 +98,9 @@ impl<K: Study> Loaded<K> {
             program: PROGRAM.to_owned(),
             ..of_run
         };
-        let findings = self.kind.findings(tables)?;
-        let mut noted = Cow::Borrowed(tables);
-        for (file, note) in findings.notes {
-            let is_of = |table: &&mut Table| table.file == file;
-            if let Some(table) = noted.to_mut().iter_mut().find(is_of) {
-                table.note = note;
-            }
-        }
+        let findings = self.kind.findings(tables);
         let found = Found {
-            tables: &noted,
+            tables,
             charts: &findings.charts,
             answers: &findings.answers,
         };
@@ -136,6 +137,7 @@ impl<K: Study> AnyStudy for Loaded<K> {
             let (rows, failures) = run_items(&self.kind, &self.items, options)?;
             Ok((failures, self.kind.tables(rows)?))
         })?;
+        self.note(&mut tables);
         tables.push(FAILURES.of(&finished)?);
         let n_failed = finished.len();
         Ok(Outcome { tables, n_failed })
@@ -180,13 +182,12 @@ impl<K: Study> AnyStudy for Loaded<K> {
 
     fn words(&self, outcome: &Outcome, width: usize) -> String {
         let tables = &outcome.tables;
-        let found = match self.kind.findings(tables) {
-            Ok(Findings {
-                summary: Some(summary),
-                ..
-            }) => summary(tables, width),
-            Ok(findings) => words_of(first_found(tables).as_slice(), &findings.answers, width),
-            Err(error) => error.to_string(),
+        let found = match K::SUMMARY {
+            Some(summary) => summary(tables, width),
+            None => {
+                let answers = self.kind.findings(tables).answers;
+                words_of(first_found(tables).as_slice(), &answers, width)
+            }
         };
         format!("{}\n\n{found}", self.facts.question)
     }
@@ -219,6 +220,7 @@ impl<K: Study> AnyStudy for Loaded<K> {
 
     fn report(&self, folder: &Path, about: StudyAbout) -> Result<()> {
         let mut tables = K::TABLES.read(folder)?;
+        self.note(&mut tables);
         tables.extend(FAILURES.read_if_there(folder)?);
         let manifest = about.manifest.clone();
         let page = self.files_of(about, &tables)?;

@@ -48,6 +48,8 @@ pub struct Facts {
     pub content: BTreeMap<String, String>,
     /// Methods by which intervals and p-values are computed, by table and columns.
     pub methods: Vec<(&'static str, &'static str)>,
+    /// Notes about tables, by the name of the table's file.
+    pub notes: Vec<(&'static str, String)>,
 }
 
 impl Facts {
@@ -163,16 +165,11 @@ impl TableFiles {
 }
 
 /// Findings of a study, computed from its tables for the page and the terminal.
-#[derive(Default)]
 pub struct Findings {
     /// Charts, the most important first.
     pub charts: Vec<ChartSpec>,
     /// Answers in sentences, shown at the top of the page and at the end of the run.
     pub answers: Vec<String>,
-    /// Notes about tables, by the name of the table's file.
-    pub notes: Vec<(&'static str, String)>,
-    /// Function that makes the text at the end of a run, wrapped at a number of characters. `None`: the first table with a value, and the answers.
-    pub summary: Option<fn(&[Table], usize) -> String>,
 }
 
 /// A kind of study. The engine runs, resumes, shards, merges, plans, verifies and reports studies of any kind.
@@ -182,6 +179,9 @@ pub trait Study: Send + Sized + Sync + 'static {
 
     /// Files to which [`tables`](Self::tables) are written.
     const TABLES: TableFiles;
+
+    /// Function that makes the text at the end of a run, wrapped at a number of characters. `None`: the first table with a value, and the answers.
+    const SUMMARY: Option<fn(&[Table], usize) -> String> = None;
 
     /// Rows that a work item produces.
     type Rows: ItemRows;
@@ -226,10 +226,7 @@ pub trait Study: Send + Sized + Sync + 'static {
     fn tables(&self, rows: Self::Rows) -> Result<Vec<Table>>;
 
     /// Returns charts and answers for the tables.
-    ///
-    /// # Errors
-    /// If a file that the findings need cannot be read.
-    fn findings(&self, tables: &[Table]) -> Result<Findings>;
+    fn findings(&self, tables: &[Table]) -> Findings;
 
     /// Returns pictures other than charts, and further sections of the page.
     ///

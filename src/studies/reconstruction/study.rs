@@ -146,12 +146,11 @@ impl Study for ReconstructionStudy {
         Ok(vec![cells, ensembles, timing, PARETO.of(&pareto)?])
     }
 
-    fn findings(&self, tables: &[Table]) -> Result<Findings> {
-        Ok(Findings {
+    fn findings(&self, tables: &[Table]) -> Findings {
+        Findings {
             charts: self.charts(tables),
             answers: self.answers(tables),
-            ..Findings::default()
-        })
+        }
     }
 
     fn beyond(&self, tables: &[Table]) -> Result<Beyond> {

@@ -55,7 +55,10 @@ impl Study for StabilityPlan {
     }
 
     fn facts(&self) -> Result<Facts> {
-        Ok(Facts::of(&self.spec, BTreeMap::new()))
+        Ok(Facts {
+            notes: vec![(CELLS.name(), peer_rows(self)?.1)],
+            ..Facts::of(&self.spec, BTreeMap::new())
+        })
     }
 
     fn scale(&self) -> Scale {
@@ -111,17 +114,11 @@ impl Study for StabilityPlan {
         Ok(vec![cells, summary, timing, joints])
     }
 
-    fn findings(&self, tables: &[Table]) -> Result<Findings> {
-        let sources = peer_rows(self)?.1;
-        // Charts of a table carry the note of the table.
-        let mut tables = tables.to_vec();
-        tables[0].note.clone_from(&sources);
-        Ok(Findings {
-            charts: self.charts(&tables),
-            answers: self.answers(&tables),
-            notes: vec![(CELLS.name(), sources)],
-            ..Findings::default()
-        })
+    fn findings(&self, tables: &[Table]) -> Findings {
+        Findings {
+            charts: self.charts(tables),
+            answers: self.answers(tables),
+        }
     }
 }
 

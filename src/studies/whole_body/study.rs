@@ -169,12 +169,11 @@ impl Study for WholeBodyPlan {
         ])
     }
 
-    fn findings(&self, tables: &[Table]) -> Result<Findings> {
-        Ok(Findings {
+    fn findings(&self, tables: &[Table]) -> Findings {
+        Findings {
             charts: self.charts(tables),
             answers: self.answers(tables),
-            ..Findings::default()
-        })
+        }
     }
 
     fn beyond(&self, tables: &[Table]) -> Result<Beyond> {

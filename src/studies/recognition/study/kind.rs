@@ -69,6 +69,7 @@ impl Study for RecognitionStudy {
         names: &charts::TABLE_NAMES,
         read: charts::read_tables,
     };
+    const SUMMARY: Option<fn(&[Table], usize) -> String> = Some(charts::words);
     type Rows = RecognitionRows;
 
     fn load(source: &Source) -> Result<Self> {
@@ -180,13 +181,11 @@ impl Study for RecognitionStudy {
         charts::tables_of(&self.outcome(rows)?)
     }
 
-    fn findings(&self, tables: &[Table]) -> Result<Findings> {
-        Ok(Findings {
+    fn findings(&self, tables: &[Table]) -> Findings {
+        Findings {
             charts: self.charts(tables),
             answers: self.answers(tables),
-            summary: Some(charts::words),
-            ..Findings::default()
-        })
+        }
     }
 
     fn beyond(&self, tables: &[Table]) -> Result<Beyond> {
