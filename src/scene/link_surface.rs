@@ -142,7 +142,7 @@ fn find_mesh(file: &str, folder: &Path) -> Option<PathBuf> {
 /// Returns the facets of a shape that is not a mesh, in the shape's own frame.
 fn facets(geometry: &LinkGeometry, pitch: f64) -> Result<TriangleMesh> {
     let (vertices, triangles) = match *geometry {
-        LinkGeometry::Box { size } => box_facets(size),
+        LinkGeometry::Box { size } => return TriangleMesh::cuboid("shape", size),
         LinkGeometry::Cylinder { radius, length } => {
             let half = 0.5 * length;
             let profile = [(0.0, -half), (radius, -half), (radius, half), (0.0, half)];
@@ -156,23 +156,6 @@ fn facets(geometry: &LinkGeometry, pitch: f64) -> Result<TriangleMesh> {
 }
 
 type Facets = (Vec<DVec3>, Vec<[u32; 3]>);
-
-fn box_facets(size: DVec3) -> Facets {
-    let sign = |corner: u32, bit: u32| if corner & bit == 0 { -0.5 } else { 0.5 };
-    let corner = |c| size * DVec3::new(sign(c, 1), sign(c, 2), sign(c, 4));
-    let faces = [
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-    ];
-    let halves = faces
-        .into_iter()
-        .flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]);
-    ((0..8).map(corner).collect(), halves.collect())
-}
 
 /// Returns the facets of a ball or capsule: each hemisphere is shifted by `half` along z.
 fn ball(radius: f64, half: f64, pitch: f64) -> Facets {

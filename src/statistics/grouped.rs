@@ -27,7 +27,7 @@
 use crate::{Error, Result};
 use bubbletouch_sim::statistics::interval::{Interval, check_confidence};
 use serde::{Deserialize, Serialize};
-use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
+use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::collections::BTreeMap;
 
 /// Number of groups below which an interval is uninformative: Student's t of three degrees of freedom is 3.2, where the normal quantile is 2.
@@ -111,23 +111,6 @@ pub fn interval_of_groups(tests: &[GroupedTest], confidence: f64) -> Result<(Int
         },
     };
     Ok((interval, n_groups))
-}
-
-/// Returns the effective number of independent rows: n/D*, reduced by the squared ratio of the normal quantile to Student's quantile at this confidence.
-/// Returns 0 for a single group.
-///
-/// # Errors
-/// Returns the errors of [`interval_of_groups`].
-pub fn independent_rows(tests: &[GroupedTest], confidence: f64) -> Result<f64> {
-    check_confidence(confidence)?;
-    let Clustered {
-        n_rows, n_groups, ..
-    } = clustered(tests)?;
-    let (Some(student), Ok(normal)) = (student(n_groups), Normal::new(0.0, 1.0)) else {
-        return Ok(0.0);
-    };
-    let tail = 0.5 + 0.5 * confidence;
-    Ok(n_rows * (normal.inverse_cdf(tail) / student.inverse_cdf(tail)).powi(2))
 }
 
 /// Pooled statistics of all tests; the symbols are defined in the module documentation.

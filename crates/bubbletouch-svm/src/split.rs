@@ -9,7 +9,7 @@ use ndarray::ArrayView1;
 use rand::seq::SliceRandom;
 
 use crate::dataset::check_labels;
-use crate::streams::DynStreams;
+use crate::streams::Streams;
 use crate::{Error, Result};
 
 /// Training rows and test rows, by index.
@@ -82,7 +82,7 @@ pub enum Side {
 pub fn stratified_hold_out(
     labels: ArrayView1<usize>,
     test_fraction: f64,
-    seed: &dyn DynStreams,
+    seed: &dyn Streams,
 ) -> Result<Split> {
     check_fraction(test_fraction)?;
     let mut sides = vec![Side::Train; labels.len()];
@@ -103,7 +103,7 @@ pub fn stratified_hold_out(
 pub fn given_hold_out(
     labels: ArrayView1<usize>,
     sides: &[Side],
-    seed: &dyn DynStreams,
+    seed: &dyn Streams,
 ) -> Result<Split> {
     if sides.len() != labels.len() {
         let allowed = format!("{}, one a label", labels.len());
@@ -120,7 +120,7 @@ pub fn given_hold_out(
 pub fn stratified_k_fold(
     labels: ArrayView1<usize>,
     k: usize,
-    seed: &dyn DynStreams,
+    seed: &dyn Streams,
 ) -> Result<Vec<Split>> {
     check_folds(k)?;
     let drawn = draw_rows(labels, seed);
@@ -147,7 +147,7 @@ pub fn group_hold_out(
     labels: ArrayView1<usize>,
     groups: ArrayView1<usize>,
     test_fraction: f64,
-    seed: &dyn DynStreams,
+    seed: &dyn Streams,
 ) -> Result<Split> {
     check_fraction(test_fraction)?;
     check_labels(labels.len(), groups)?;
@@ -175,7 +175,7 @@ pub fn group_k_fold(
     labels: ArrayView1<usize>,
     groups: ArrayView1<usize>,
     k: usize,
-    seed: &dyn DynStreams,
+    seed: &dyn Streams,
 ) -> Result<Vec<Split>> {
     check_folds(k)?;
     check_labels(labels.len(), groups)?;
@@ -237,7 +237,7 @@ fn check_groups_of_classes(
 }
 
 /// Returns the rows of each class, shuffled by the stream of the class.
-fn draw_rows(labels: ArrayView1<usize>, seed: &dyn DynStreams) -> BTreeMap<usize, Vec<usize>> {
+fn draw_rows(labels: ArrayView1<usize>, seed: &dyn Streams) -> BTreeMap<usize, Vec<usize>> {
     let mut drawn = BTreeMap::<usize, Vec<usize>>::new();
     for (row, &class) in labels.iter().enumerate() {
         drawn.entry(class).or_default().push(row);

@@ -3,52 +3,27 @@
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-/// Name of a random stream, extended by words and numbers, such as `tree 3 rows`.
-pub trait Streams: Copy + 'static {
+/// Name of a random stream, extended by words and numbers, such as `tree 3 rows`. Functions take it behind a pointer, so that training is compiled once, in
+/// this crate, for every type of name.
+pub trait Streams {
     /// Returns the name with this word appended.
-    fn named(&self, word: &str) -> Self;
+    fn named(&self, word: &str) -> Box<dyn Streams>;
 
     /// Returns the name with this number appended.
-    fn numbered(&self, number: u64) -> Self;
+    fn numbered(&self, number: u64) -> Box<dyn Streams>;
 
     /// Returns the generator of this name's stream, at its start.
     fn rng(&self) -> ChaCha8Rng;
-}
-
-/// Random streams behind a pointer, so that training is compiled once, in this crate, for every type of [`Streams`].
-pub trait DynStreams {
-    /// Returns the name with this word appended.
-    fn named(&self, word: &str) -> Box<dyn DynStreams>;
-
-    /// Returns the name with this number appended.
-    fn numbered(&self, number: u64) -> Box<dyn DynStreams>;
-
-    /// Returns the generator of this name's stream, at its start.
-    fn rng(&self) -> ChaCha8Rng;
-}
-
-impl<S: Streams> DynStreams for S {
-    fn named(&self, word: &str) -> Box<dyn DynStreams> {
-        Box::new(Streams::named(self, word))
-    }
-
-    fn numbered(&self, number: u64) -> Box<dyn DynStreams> {
-        Box::new(Streams::numbered(self, number))
-    }
-
-    fn rng(&self) -> ChaCha8Rng {
-        Streams::rng(self)
-    }
 }
 
 /// The streams of a seed: words and numbers are hashed into it (FNV-1a).
 impl Streams for u64 {
-    fn named(&self, word: &str) -> Self {
-        hash(*self, word.as_bytes())
+    fn named(&self, word: &str) -> Box<dyn Streams> {
+        Box::new(hash(*self, word.as_bytes()))
     }
 
-    fn numbered(&self, number: u64) -> Self {
-        hash(*self, &number.to_le_bytes())
+    fn numbered(&self, number: u64) -> Box<dyn Streams> {
+        Box::new(hash(*self, &number.to_le_bytes()))
     }
 
     fn rng(&self) -> ChaCha8Rng {

@@ -76,13 +76,6 @@ impl<'a> Front<'a> {
         self.said(self.numbered().map(|(_, place)| place))
     }
 
-    /// Describes the first and last point of the first front, the cheaper one first.
-    pub fn ends(&self) -> Option<[String; 2]> {
-        let (_, front) = self.fronts.first()?;
-        let ends = [*front.first()?, *front.last()?];
-        self.said(ends.into_iter()).try_into().ok()
-    }
-
     /// Describes each point: its settings, its value and its cost.
     fn said(&self, places: impl Iterator<Item = &'a Place>) -> Vec<String> {
         let view = self.view;

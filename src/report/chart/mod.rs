@@ -18,7 +18,6 @@ pub use view::Place;
 use crate::error::{Error, Result};
 use crate::report::pictures::drawing::Drawing;
 use crate::table::{ChartSpec, Mark, Table};
-use front::Front;
 use view::View;
 
 /// Draws a chart of one of the given tables.
@@ -56,10 +55,4 @@ pub fn places(spec: &ChartSpec, tables: &[Table]) -> Result<Vec<Place>> {
 /// If the specification names a table or a column that does not exist.
 pub fn omitted(spec: &ChartSpec, tables: &[Table]) -> Result<String> {
     Ok(View::of(spec, tables)?.omitted())
-}
-
-/// Describes the cheapest and the best point of the chart's first front. Returns `None` if there is no front.
-pub fn front_ends(spec: &ChartSpec, tables: &[Table]) -> Option<[String; 2]> {
-    let view = View::of(spec, tables).ok()?;
-    Front::of(&view).ends()
 }

@@ -15,6 +15,27 @@ pub struct TriangleMesh {
 }
 
 impl TriangleMesh {
+    /// Creates a box about the origin with these side lengths, metres: 8 vertices and 12 triangles that face outwards.
+    ///
+    /// # Errors
+    /// If a side length is not finite; errors begin with `place`.
+    pub fn cuboid(place: &str, sides: DVec3) -> Result<Self> {
+        let corner = |corner: u32| {
+            let sign = |bit: u32| if corner & bit == 0 { -0.5 } else { 0.5 };
+            sides * DVec3::new(sign(1), sign(2), sign(4))
+        };
+        let faces = [
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+        ];
+        let halves = faces.map(|[a, b, c, d]| [[a, b, c], [a, c, d]]);
+        Self::new(place, (0..8).map(corner).collect(), halves.concat())
+    }
+
     /// Checks the invariant. Vertices are in metres.
     ///
     /// # Errors

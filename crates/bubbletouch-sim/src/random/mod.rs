@@ -59,12 +59,12 @@ impl Seed {
 
 #[cfg(feature = "learning")]
 impl bubbletouch_svm::streams::Streams for Seed {
-    fn named(&self, word: &str) -> Self {
-        Seed::named(self, word)
+    fn named(&self, word: &str) -> Box<dyn bubbletouch_svm::streams::Streams> {
+        Box::new(Seed::named(self, word))
     }
 
-    fn numbered(&self, number: u64) -> Self {
-        Seed::numbered(self, number)
+    fn numbered(&self, number: u64) -> Box<dyn bubbletouch_svm::streams::Streams> {
+        Box::new(Seed::numbered(self, number))
     }
 
     fn rng(&self) -> ChaCha8Rng {

@@ -20,7 +20,7 @@ use crate::linear_svm::LinearSvmParams;
 use crate::scaling::{FittedScaling, Scaling};
 use crate::split::Split;
 use crate::split::stratified_k_fold;
-use crate::streams::DynStreams;
+use crate::streams::Streams;
 use crate::{DEFAULT_MEMORY_BYTES, Multiclass, Solver, SvmParams};
 use crate::{Error, Result};
 
@@ -99,7 +99,7 @@ impl Classifier {
     ///
     /// # Errors
     /// If a parameter is out of range, or the training of the kind or [`stratified_k_fold`] rejects the data.
-    pub fn train(&self, training: &Dataset, seed: &dyn DynStreams) -> Result<TrainedClassifier> {
+    pub fn train(&self, training: &Dataset, seed: &dyn Streams) -> Result<TrainedClassifier> {
         let folds = match &self.c {
             Cost::Chosen(_) if self.kind.has_c() => {
                 let labels = training.targets.view();
@@ -119,7 +119,7 @@ impl Classifier {
         &self,
         training: &Dataset,
         folds: &[Split],
-        seed: &dyn DynStreams,
+        seed: &dyn Streams,
     ) -> Result<TrainedClassifier> {
         match &self.c {
             Cost::Chosen(candidates) if self.kind.has_c() => {
@@ -144,7 +144,7 @@ impl Classifier {
         training: &Dataset,
         folds: &[Split],
         candidates: &Candidates,
-        seed: &dyn DynStreams,
+        seed: &dyn Streams,
     ) -> Result<Chosen> {
         let (_, scaled) = self.scaled(training)?;
         if let Some(params) = self.kernel_svm(1.0) {
@@ -172,7 +172,7 @@ impl Classifier {
     fn train_without_choice(
         &self,
         training: &Dataset,
-        seed: &dyn DynStreams,
+        seed: &dyn Streams,
     ) -> Result<TrainedClassifier> {
         let c = match self.c {
             Cost::Fixed(c) if self.kind.has_c() => Some(c),
@@ -189,7 +189,7 @@ impl Classifier {
         &self,
         training: &Dataset,
         path: &[f64],
-        seed: &dyn DynStreams,
+        seed: &dyn Streams,
     ) -> Result<Vec<TrainedClassifier>> {
         if !self.kind.has_c() {
             let given = format!("for {:?}", self.kind);
@@ -229,7 +229,7 @@ impl Classifier {
         training: &Dataset,
         c: Option<f64>,
         chosen: Option<Chosen>,
-        seed: &dyn DynStreams,
+        seed: &dyn Streams,
     ) -> Result<TrainedClassifier> {
         let (scaling, scaled) = self.scaled(training)?;
         let model = self.train_model(&scaled, c, seed)?;
@@ -237,12 +237,7 @@ impl Classifier {
     }
 
     /// Trains the model on scaled rows.
-    fn train_model(
-        &self,
-        scaled: &Dataset,
-        c: Option<f64>,
-        seed: &dyn DynStreams,
-    ) -> Result<Model> {
+    fn train_model(&self, scaled: &Dataset, c: Option<f64>, seed: &dyn Streams) -> Result<Model> {
         let c = c.unwrap_or(1.0);
         Ok(match self.kernel_svm(c) {
             Some(params) => Model::Svm(Box::new(params.train(scaled)?)),
@@ -255,7 +250,7 @@ impl Classifier {
         &self,
         scaled: &Dataset,
         c: f64,
-        seed: &dyn DynStreams,
+        seed: &dyn Streams,
     ) -> Result<Arc<dyn ClassModel>> {
         let seed = seed.named("descent");
         Ok(Arc::new(self.linear_svm(c)?.train(scaled, &*seed)?))

@@ -6,7 +6,7 @@ use crate::classifiers::classifier::Classifier;
 use crate::dataset::Dataset;
 use crate::error::Result;
 use crate::kernel::Kernel;
-use crate::streams::DynStreams;
+use crate::streams::Streams;
 use std::fmt;
 use std::sync::Arc;
 
@@ -33,7 +33,7 @@ pub struct ClassifierAbout {
 }
 
 /// Function that trains a classifier without a kernel matrix.
-pub type Train = fn(&Classifier, &Dataset, f64, &dyn DynStreams) -> Result<Arc<dyn ClassModel>>;
+pub type Train = fn(&Classifier, &Dataset, f64, &dyn Streams) -> Result<Arc<dyn ClassModel>>;
 
 impl ClassifierAbout {
     /// Describes a classifier without parameters.

@@ -13,7 +13,7 @@ use crate::class_model::{ClassModel, log_vote_shares};
 use crate::classifiers::ranked::Ranked;
 use crate::classifiers::tree::{Growth, Tree, check_depth};
 use crate::dataset::{Dataset, check_width, checked_classes, positions};
-use crate::streams::DynStreams;
+use crate::streams::Streams;
 use crate::{Error, Result};
 
 /// A trained forest. Scores are the logarithms of smoothed vote fractions.
@@ -35,7 +35,7 @@ impl RandomForest {
         data: &Dataset,
         n_trees: usize,
         max_depth: Option<usize>,
-        seed: &dyn DynStreams,
+        seed: &dyn Streams,
     ) -> Result<Self> {
         let classes = checked_classes(data)?;
         check_depth(max_depth)?;

@@ -7,7 +7,7 @@
 //! 3 of 500 predictions). linfa-trees also treats values closer than 1e-5 as equal in any unit, and visits every row and feature at every node.
 
 use crate::classifiers::ranked::Ranked;
-use crate::streams::DynStreams;
+use crate::streams::Streams;
 use crate::{Error, Result};
 use ndarray::ArrayView1;
 use rand::Rng;
@@ -93,7 +93,7 @@ impl Growth {
         label: &[usize],
         n_classes: usize,
         mut rows: Vec<u32>,
-        seed: &dyn DynStreams,
+        seed: &dyn Streams,
     ) -> Tree {
         debug_assert_eq!(label.len(), ranked.n_rows());
         let mut rng = seed.rng();

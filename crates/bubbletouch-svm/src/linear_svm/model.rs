@@ -8,7 +8,7 @@ use crate::dataset::{Dataset, checked_classes, positions};
 use crate::linear_model::LinearModel;
 use crate::linear_svm::coordinate_descent::{self, Rows};
 use crate::linear_svm::params::LinearSvmParams;
-use crate::streams::DynStreams;
+use crate::streams::Streams;
 
 /// Convergence of the solver of one binary problem.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,7 +37,7 @@ impl LinearSvmParams {
     /// # Errors
     /// If C, the tolerance or the cap is out of range, the data are empty, or a feature is NaN, infinite or too large to square. If the number of labels
     /// differs from the number of rows, or there is a single class.
-    pub fn train(&self, data: &Dataset, seed: &dyn DynStreams) -> Result<LinearSvm> {
+    pub fn train(&self, data: &Dataset, seed: &dyn Streams) -> Result<LinearSvm> {
         self.check()?;
         let classes = checked_classes(data)?;
         let rows = Rows::new(data.records.view())?;

@@ -83,20 +83,7 @@ fn shear_along_x(array: &TaxelArray, object: &Model, depth: f64) -> Option<Vec<f
 
 /// Returns the box as a triangle mesh.
 fn exact_box() -> Result<Model> {
-    let sign = |corner: u32, bit: u32| if corner & bit == 0 { -0.5 } else { 0.5 };
-    let corner = |c| BOX * DVec3::new(sign(c, 1), sign(c, 2), sign(c, 4));
-    let quads = [
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-    ];
-    let triangles = quads
-        .into_iter()
-        .flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]);
-    let mesh = TriangleMesh::new("box", (0..8).map(corner).collect(), triangles.collect())?;
+    let mesh = TriangleMesh::cuboid("box", BOX)?;
     Ok(MeshModel::new(mesh).into())
 }
 

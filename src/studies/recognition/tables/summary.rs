@@ -23,11 +23,11 @@ type Row = (Cell, TrialScore);
 ///
 /// # Errors
 /// If the trials of a configuration have no rows.
-pub fn summarise<C: Clone + PartialEq>(
-    rows: &[(C, TrialScore)],
+pub fn summarise(
+    rows: &[Row],
     mut groups: &[Vec<GroupCount>],
-    n_folds: impl Fn(&C) -> usize,
-) -> Result<Vec<(C, CellScore)>> {
+    n_folds: impl Fn(&Cell) -> usize,
+) -> Result<Vec<(Cell, CellScore)>> {
     let mut bootstrap = Bootstrap::default();
     let is_grouped = rows.iter().any(|(_, score)| score.n_groups.is_some());
     rows.chunk_by(|a, b| a.0 == b.0)
